@@ -1,0 +1,1 @@
+//! The command monas, as a library and a five-line binary

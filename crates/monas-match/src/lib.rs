@@ -1,0 +1,1 @@
+//! A match: teams, field, referee and Talws from one file

@@ -1,0 +1,101 @@
+//! What a body is made of and can do.
+
+use std::time::Duration;
+
+use crate::Skill;
+
+/// A range that a joint or a velocity keeps to; radians, metres or the same a second.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Limits {
+    /// Smallest value.
+    pub low: f64,
+    /// Largest value.
+    pub high: f64,
+}
+
+impl Limits {
+    /// From `low` to `high`.
+    pub const fn new(low: f64, high: f64) -> Limits {
+        Limits { low, high }
+    }
+
+    /// From `-size` to `size`.
+    pub const fn symmetric(size: f64) -> Limits {
+        Limits::new(-size, size)
+    }
+
+    /// The nearest value within; a value that is no number becomes the one nearest zero.
+    pub fn clamp(self, value: f64) -> f64 {
+        let value = if value.is_nan() { 0.0 } else { value };
+        value.max(self.low).min(self.high)
+    }
+
+    /// Whether a value lies within.
+    pub fn contains(self, value: f64) -> bool {
+        self.low <= value && value <= self.high
+    }
+}
+
+/// How far a camera sees to the sides.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Camera {
+    /// Angle of view from left to right, radians.
+    pub horizontal: f64,
+    /// Angle of view from top to bottom, radians.
+    pub vertical: f64,
+    /// Height above the ground while standing, metres.
+    pub height: f64,
+}
+
+/// What a body is made of and can do, known before it moves.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Anatomy {
+    /// The model: `field robot`, `nao v6`.
+    pub model: String,
+    /// How often the body senses and acts.
+    pub cycle: Duration,
+    /// Range of the head, positive to the left.
+    pub head_yaw: Limits,
+    /// Range of the head, positive downwards.
+    pub head_pitch: Limits,
+    /// Range of the walk ahead, metres a second; zero for a body that does not walk by itself.
+    pub walk_x: Limits,
+    /// Range of the walk to the side, positive to the left.
+    pub walk_y: Limits,
+    /// Range of the turn, radians a second.
+    pub walk_turn: Limits,
+    /// The camera, for bodies that report sightings.
+    pub camera: Option<Camera>,
+    /// What the body does by name.
+    pub skills: Vec<Skill>,
+}
+
+impl Anatomy {
+    /// A body that senses and acts at a cycle, has a head with the range of a Nao's, and can do nothing else yet.
+    pub fn new(model: impl Into<String>, cycle: Duration) -> Anatomy {
+        Anatomy {
+            model: model.into(),
+            cycle,
+            head_yaw: Limits::symmetric(2.0857),
+            head_pitch: Limits::new(-0.6720, 0.5149),
+            walk_x: Limits::symmetric(0.0),
+            walk_y: Limits::symmetric(0.0),
+            walk_turn: Limits::symmetric(0.0),
+            camera: None,
+            skills: Vec::new(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_hold_what_is_no_number() {
+        assert_eq!(Limits::symmetric(1.0).clamp(f64::NAN), 0.0);
+        assert_eq!(Limits::new(0.5, 1.0).clamp(f64::NAN), 0.5);
+        assert_eq!(Limits::symmetric(1.0).clamp(f64::INFINITY), 1.0);
+        assert!(Limits::symmetric(1.0).contains(-1.0));
+    }
+}

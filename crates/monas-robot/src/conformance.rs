@@ -1,0 +1,55 @@
+//! What every body has to do right, as a suite that runs on any of them.
+
+use narukom::Moment;
+
+use crate::{Actuators, Percepts, Robot};
+
+/// Runs the suite on a body that stands free: ten seconds of its own time.
+///
+/// # Panics
+/// With the promise that was broken, if one was: the suite is for tests.
+#[allow(clippy::panic)] // a suite for tests speaks by panicking
+pub fn check(robot: &mut dyn Robot) {
+    let cycle = robot.anatomy().cycle;
+    assert!(!cycle.is_zero(), "the cycle of a body takes time");
+    let mut now = Moment::from_nanos(0);
+    let mut percepts = Percepts::default();
+    for command in commands() {
+        for _ in 0..200 {
+            now = now + cycle;
+            sense(robot, now, &mut percepts);
+            if let Err(error) = robot.act(now, &command) {
+                panic!("{command:?} was refused: {error}");
+            }
+        }
+    }
+}
+
+/// Sensible, useless and impossible commands.
+fn commands() -> [Actuators; 5] {
+    let still = Actuators::default();
+    [
+        still,
+        Actuators { walk_x: 0.1, head_yaw: 0.5, ..still },
+        Actuators { walk_x: 1e9, walk_y: -1e9, walk_turn: 1e9, head_yaw: 1e9, head_pitch: -1e9, ..still },
+        Actuators { walk_x: f64::NAN, head_yaw: f64::NAN, head_pitch: f64::INFINITY, ..still },
+        Actuators { skill: -7, skill_number: u64::MAX, ..still },
+    ]
+}
+
+#[allow(clippy::panic)] // see `check`
+fn sense(robot: &mut dyn Robot, now: Moment, percepts: &mut Percepts) {
+    (percepts.sightings, percepts.announcement) = (None, None);
+    if let Err(error) = robot.sense(now, percepts) {
+        panic!("sensing failed: {error}");
+    }
+    let (sensors, anatomy) = (&percepts.sensors, robot.anatomy());
+    assert!(sensors.measured_at <= now.as_nanos(), "a measurement lies in the future: {sensors:?}");
+    assert!(anatomy.head_yaw.contains(sensors.head_yaw), "the head's yaw is beyond its limits: {sensors:?}");
+    assert!(anatomy.head_pitch.contains(sensors.head_pitch), "the head's pitch is beyond its limits: {sensors:?}");
+    let felt = [sensors.torso_roll, sensors.torso_pitch, sensors.odometry_x, sensors.odometry_y, sensors.odometry_turn];
+    assert!(felt.iter().all(|value| value.is_finite()), "a sensor is no number: {sensors:?}");
+    for sighting in percepts.sightings.iter().flat_map(|sightings| &sightings.objects) {
+        assert!(sighting.distance >= 0.0 && sighting.bearing.abs() <= 3.2, "a sighting is nowhere: {sighting:?}");
+    }
+}

@@ -1,0 +1,14 @@
+//! The topics between a body and the agents of its host.
+
+use crate::{Actuators, Announcement, Sensors, Sightings};
+
+narukom::topic! {
+    /// What the body feels, every cycle of the body; half a second and more of it at 100 Hz.
+    pub SENSORS: narukom::Data<Sensors, 64> = "body/sensors";
+    /// What the body sees, whenever its camera has taken an image.
+    pub SIGHTINGS: narukom::State<Sightings> = "body/sightings";
+    /// What the referee says.
+    pub ANNOUNCEMENT: narukom::State<Announcement> = "body/referee";
+    /// What the body is to do.
+    pub ACTUATORS: narukom::State<Actuators> = "body/actuators";
+}

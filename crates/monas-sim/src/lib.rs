@@ -1,0 +1,1 @@
+//! A field, a ball and bodies in simulated time

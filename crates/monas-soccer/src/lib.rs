@@ -1,0 +1,1 @@
+//! RoboCup: messages, vision, motion, localisation and the activities of the roles

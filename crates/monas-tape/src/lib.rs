@@ -1,0 +1,1 @@
+//! Records everything published into MCAP files, with protobuf schemas

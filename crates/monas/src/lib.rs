@@ -1,0 +1,1 @@
+//! Activities, agents, statechart agents, and Talws, which runs them

@@ -1,0 +1,1 @@
+//! Messages, topics and blackboards: publish and subscribe without threads, sockets or clocks

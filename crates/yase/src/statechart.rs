@@ -1,0 +1,253 @@
+//! A statechart as data: a tree of nodes, and transitions between them.
+//!
+//! A [`Statechart`] is what model files, formulas and editors produce, and what checks, drawings and the compiler read.
+//! It holds expressions as they were understood, not as they will run; nothing here steps.
+
+use std::time::Duration;
+
+use crate::expression::{Action, TransitionExpression};
+
+/// A node, by its place in [`Statechart::nodes`].
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct NodeId(pub u32);
+
+/// A transition (one segment), by its place in [`Statechart::transitions`].
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct TransitionId(pub u32);
+
+/// What a node is. The first four are states, the others connectors that are never at rest (but for START).
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum NodeKind {
+    /// A composite of which one child is active at a time.
+    Or,
+    /// A composite whose children, all of kind [`Or`](NodeKind::Or), are active together: its regions.
+    And,
+    /// A state without children; it may have an activity.
+    Basic,
+    /// The state in which a composite has reached its end.
+    End,
+    /// Where a composite begins.
+    Start,
+    /// A branch whose guards are read before anything happens.
+    Condition,
+    /// Segments joined into one transition, read before anything happens.
+    Junction,
+    /// A branch whose guards are read after the actions before it.
+    Choice,
+    /// One source, several regions as targets.
+    Fork,
+    /// Several regions as sources, one target.
+    Join,
+    /// The last active child of the composite.
+    ShallowHistory,
+    /// The last active configuration of the composite.
+    DeepHistory,
+    /// Stops the whole chart.
+    Terminate,
+    /// A named way into a composite.
+    EntryPoint,
+    /// A named way out of a composite.
+    ExitPoint,
+}
+
+/// A node of a chart.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Node {
+    /// What it is.
+    pub kind: NodeKind,
+    /// Its name as a person wrote it (a term of a formula, blanks removed, `~` for forever), or empty for what is only known by
+    /// its place: connectors and regions.
+    pub name: String,
+    /// The composite it lies in; none for the root.
+    pub parent: Option<NodeId>,
+    /// The activity that a BASIC state runs, by the name it is registered under.
+    pub activity: Option<String>,
+    /// Priority of its activity on the pool; higher runs first.
+    pub priority: i32,
+    /// What happens whenever it is entered.
+    pub entry: Vec<Action>,
+    /// What happens whenever it is left.
+    pub exit: Vec<Action>,
+    /// Events kept for later while it is active.
+    pub defer: Vec<String>,
+    /// How long its activity takes in simulated time.
+    pub duration: Option<Duration>,
+}
+
+impl Node {
+    /// A node of a kind with a name, and nothing else.
+    pub fn new(kind: NodeKind, name: impl Into<String>) -> Node {
+        Node {
+            kind,
+            name: name.into(),
+            parent: None,
+            activity: None,
+            priority: 0,
+            entry: Vec::new(),
+            exit: Vec::new(),
+            defer: Vec::new(),
+            duration: None,
+        }
+    }
+}
+
+/// One segment of a transition.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Transition {
+    /// Where it leaves.
+    pub source: NodeId,
+    /// Where it leads.
+    pub target: NodeId,
+    /// Trigger, guard and actions.
+    pub expression: TransitionExpression,
+    /// Higher is tried first among the segments that leave one node.
+    pub priority: i32,
+    /// Weight of a probabilistic branch.
+    pub weight: Option<f64>,
+    /// Whether it may leave a state whose activity still runs.
+    pub interrupts: bool,
+    /// Whether it happens inside its source, without leaving it.
+    pub internal: bool,
+}
+
+impl Transition {
+    /// A transition without trigger, guard or actions.
+    pub fn new(source: NodeId, target: NodeId) -> Transition {
+        let expression = TransitionExpression::default();
+        Transition { source, target, expression, priority: 0, weight: None, interrupts: false, internal: false }
+    }
+}
+
+/// A value with a name, usable in expressions.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Constant {
+    /// Its name.
+    pub name: String,
+    /// What it stands for.
+    pub value: ConstantValue,
+}
+
+/// What a constant stands for.
+#[derive(Clone, PartialEq, Debug)]
+pub enum ConstantValue {
+    /// True or false.
+    Bool(bool),
+    /// A number.
+    Number(f64),
+    /// A text.
+    Text(String),
+}
+
+/// A statechart: nodes in a tree, transitions between them, constants for their expressions.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Statechart {
+    /// The model's name.
+    pub name: String,
+    /// Constants that its expressions may name.
+    pub constants: Vec<Constant>,
+    nodes: Vec<Node>,
+    children: Vec<Vec<NodeId>>,
+    transitions: Vec<Transition>,
+}
+
+impl Statechart {
+    /// A chart with nothing but its root, an OR.
+    pub fn new(name: impl Into<String>) -> Statechart {
+        let name = name.into();
+        let root = Node::new(NodeKind::Or, name.clone());
+        Statechart { name, constants: vec![], nodes: vec![root], children: vec![vec![]], transitions: vec![] }
+    }
+
+    /// The root.
+    pub const ROOT: NodeId = NodeId(0);
+
+    /// Adds a node as the last child of `parent`.
+    pub fn add(&mut self, parent: NodeId, mut node: Node) -> NodeId {
+        let id = NodeId(self.nodes.len() as u32);
+        node.parent = Some(parent);
+        self.nodes.push(node);
+        self.children.push(Vec::new());
+        self.children[parent.0 as usize].push(id);
+        id
+    }
+
+    /// Adds a transition after all others.
+    pub fn connect(&mut self, transition: Transition) -> TransitionId {
+        self.transitions.push(transition);
+        TransitionId(self.transitions.len() as u32 - 1)
+    }
+
+    /// Every node, in the order they were added: a parent before its children.
+    pub fn nodes(&self) -> impl ExactSizeIterator<Item = (NodeId, &Node)> {
+        self.nodes.iter().enumerate().map(|(index, node)| (NodeId(index as u32), node))
+    }
+
+    /// Every transition, in the order they were added.
+    pub fn transitions(&self) -> impl ExactSizeIterator<Item = (TransitionId, &Transition)> {
+        self.transitions.iter().enumerate().map(|(index, transition)| (TransitionId(index as u32), transition))
+    }
+
+    /// A node.
+    pub fn node(&self, id: NodeId) -> &Node {
+        &self.nodes[id.0 as usize]
+    }
+
+    /// A node, to be refined.
+    pub fn node_mut(&mut self, id: NodeId) -> &mut Node {
+        &mut self.nodes[id.0 as usize]
+    }
+
+    /// A transition.
+    pub fn transition(&self, id: TransitionId) -> &Transition {
+        &self.transitions[id.0 as usize]
+    }
+
+    /// A transition, to be refined.
+    pub fn transition_mut(&mut self, id: TransitionId) -> &mut Transition {
+        &mut self.transitions[id.0 as usize]
+    }
+
+    /// The children of a node, in order.
+    pub fn children(&self, id: NodeId) -> &[NodeId] {
+        &self.children[id.0 as usize]
+    }
+
+    /// From a node's parent up to the root.
+    pub fn ancestors(&self, id: NodeId) -> impl Iterator<Item = NodeId> {
+        std::iter::successors(self.node(id).parent, |&node| self.node(node).parent)
+    }
+
+    /// The hierarchical label of each node, by [`NodeId`]: the root is `0`, the k-th child of `L` is `L.k`.
+    pub fn labels(&self) -> Vec<String> {
+        let mut labels = vec![String::from("0"); self.nodes.len()];
+        for (id, _) in self.nodes() {
+            for (index, child) in self.children(id).iter().enumerate() {
+                labels[child.0 as usize] = format!("{}.{}", labels[id.0 as usize], index + 1);
+            }
+        }
+        labels
+    }
+
+    /// The names from the root down to a node, separated by `/`; what has no name is known by its number among its siblings (from 1),
+    /// with the kind in capitals for connectors. This is a state's identity: a label changes with every edit, a path does not.
+    pub fn path(&self, id: NodeId) -> String {
+        let mut segments: Vec<String> = std::iter::once(id).chain(self.ancestors(id)).map(|node| self.segment(node)).collect();
+        segments.reverse();
+        segments.join("/")
+    }
+
+    fn segment(&self, id: NodeId) -> String {
+        let node = self.node(id);
+        if !node.name.is_empty() {
+            return node.name.clone();
+        }
+        let place = node.parent.and_then(|parent| self.children(parent).iter().position(|&child| child == id));
+        let number = place.map_or(1, |index| index + 1);
+        match node.kind {
+            NodeKind::Start => "START".into(),
+            NodeKind::End => "END".into(),
+            NodeKind::Condition => "CONDITION".into(),
+            _ => number.to_string(),
+        }
+    }
+}
