@@ -1,1 +1,20 @@
-//! placeholder
+//! Transition expressions.
+
+mod compile;
+mod facts;
+mod lexer;
+mod names;
+mod parser;
+mod print;
+mod program;
+mod syntax;
+
+pub use compile::{compile_actions, CompiledTransition, CompiledTrigger, Effect};
+pub use facts::{CallError, Facts, MessageSource, Origin, TimerId, TimerState};
+pub use names::{EventId, EventTable, Names};
+pub use parser::{parse_actions, parse_actions_at, parse_condition, parse_transition, parse_transition_at};
+pub use program::{Guard, GuardError, Operand};
+pub use syntax::{
+    Action, ActionKind, Additive, Comparison, Expression, ExpressionKind, Multiplicative, Name, Path, Place, TimeoutForm,
+    TransitionExpression, Trigger, started_timers,
+};

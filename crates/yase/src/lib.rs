@@ -1,6 +1,7 @@
 //! Statecharts as checked data, transition expressions, and the machine that steps them.
 
 pub mod diagnostic;
+pub mod expression;
 pub mod statechart;
 pub mod vocabulary;
 

@@ -236,6 +236,19 @@ impl Statechart {
         segments.join("/")
     }
 
+    /// The node that a path names: segments as in [`path`](Statechart::path), from any ancestor or the node itself down; none if no node or
+    /// several fit.
+    pub fn find(&self, path: &str) -> Option<NodeId> {
+        let mut fitting = self.nodes().map(|(id, _)| id).filter(|&id| self.is_at(id, path));
+        let found = fitting.next()?;
+        fitting.next().is_none().then_some(found)
+    }
+
+    fn is_at(&self, id: NodeId, path: &str) -> bool {
+        let mut nodes = std::iter::once(id).chain(self.ancestors(id));
+        path.rsplit('/').all(|segment| nodes.next().is_some_and(|node| self.segment(node) == segment))
+    }
+
     fn segment(&self, id: NodeId) -> String {
         let node = self.node(id);
         if !node.name.is_empty() {

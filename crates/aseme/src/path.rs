@@ -1,0 +1,280 @@
+//! Paths: how a text names states and transitions of a chart that was made from formulas.
+//!
+//! A path is names of states as they stand in the formula, separated by `/`, the last being the state that is meant:
+//! `takeAction/TrackBall`. Blanks mean nothing and `ω` is `~`, as in formulas. The rules:
+//!
+//! 1. A path may begin anywhere: it fits every state whose way from the root ends with it. One writes the shortest that is unique.
+//! 2. Each name is a child of the one before it; AND states and their regions may be left out. A region, which has no
+//!    name, may be given by its number among the regions, from 1.
+//! 3. `START`, `END` and `CONDITION` are the connectors of the state before them.
+//! 4. `name[2]` is the second state of that name in its parent.
+//! 5. `*` is any state, `*~` any state that goes on forever (one without END), `*||*` any AND state.
+
+use std::fmt;
+
+use yase::{NodeId, NodeKind, Statechart, Transition, TransitionId};
+
+use crate::text::{canonical_name, is_name_character};
+
+/// A way down to a state, to be found in a chart.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Path {
+    segments: Vec<Segment>,
+}
+
+#[derive(Clone, PartialEq, Eq, Debug)]
+struct Segment {
+    pattern: Pattern,
+    occurrence: Option<usize>,
+}
+
+#[derive(Clone, PartialEq, Eq, Debug)]
+enum Pattern {
+    Name(String),
+    Connector(NodeKind),
+    AnyState,
+    AnyForever,
+    AnyParallel,
+}
+
+/// No chart has states nested deeper than this.
+const MAX_SEGMENTS: usize = crate::transform::MAX_LEVELS;
+
+impl Path {
+    /// Reads a path, or says in a sentence why it is none.
+    pub fn parse(text: &str) -> Result<Path, String> {
+        let segments: Vec<Segment> = text.split('/').map(Segment::parse).collect::<Result<_, _>>()?;
+        if segments.len() > MAX_SEGMENTS {
+            return Err(format!("a path has at most {MAX_SEGMENTS} names"));
+        }
+        Ok(Path { segments })
+    }
+
+    /// The same path, seen from a state that `scope` names.
+    pub fn within(&self, scope: &Path) -> Path {
+        Path { segments: scope.segments.iter().chain(&self.segments).cloned().collect() }
+    }
+
+    /// Whether it may name several states on purpose.
+    pub fn has_wildcard(&self) -> bool {
+        let is_wildcard = |pattern: &Pattern| matches!(pattern, Pattern::AnyState | Pattern::AnyForever | Pattern::AnyParallel);
+        self.segments.iter().any(|segment| is_wildcard(&segment.pattern))
+    }
+
+    /// Whether it names a node of a chart.
+    pub fn matches(&self, chart: &Statechart, node: NodeId) -> bool {
+        ends_with(chart, node, &self.segments)
+    }
+
+    /// The names in the path that no node of the chart has.
+    pub(crate) fn unknown_names<'a>(&'a self, chart: &'a Statechart) -> impl Iterator<Item = &'a str> {
+        let names = self.segments.iter().filter_map(|segment| match &segment.pattern {
+            Pattern::Name(name) => Some((segment, name.as_str())),
+            _ => None,
+        });
+        names.filter(|(segment, _)| !chart.nodes().any(|(id, _)| segment.pattern.matches(chart, id))).map(|(_, name)| name)
+    }
+
+    /// The last `length` names on the way to a node, `thorough` with ANDs and regions.
+    fn to(chart: &Statechart, node: NodeId, length: usize, thorough: bool) -> Path {
+        let way = std::iter::once(node).chain(chart.ancestors(node));
+        let named = way.filter(|&id| id == node || thorough || !may_be_left_out(chart, id));
+        let mut segments: Vec<Segment> = named.take(length).map(|id| Segment::of(chart, id)).collect();
+        segments.reverse();
+        Path { segments }
+    }
+}
+
+impl fmt::Display for Path {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, segment) in self.segments.iter().enumerate() {
+            let separator = if index > 0 { "/" } else { "" };
+            write!(f, "{separator}{}", segment.pattern.text())?;
+            if let Some(occurrence) = segment.occurrence {
+                write!(f, "[{occurrence}]")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Segment {
+    fn parse(text: &str) -> Result<Segment, String> {
+        let name = canonical_name(text);
+        if name.is_empty() {
+            return Err("a name is missing in the path".into());
+        }
+        let foreign = |c: &char| !is_name_character(*c) && !".|*+~()[]".contains(*c);
+        if let Some(foreign) = name.chars().find(foreign) {
+            return Err(format!("`{foreign}` has no place in a path"));
+        }
+        let (name, occurrence) = split_occurrence(&name);
+        Ok(Segment { pattern: Pattern::of(name), occurrence })
+    }
+
+    /// The segment that names a node in its parent and nothing else.
+    fn of(chart: &Statechart, node: NodeId) -> Segment {
+        let pattern = match (chart.node(node).name.as_str(), chart.node(node).kind) {
+            ("", NodeKind::Or) => Pattern::Name(place(chart, node).to_string()),
+            ("", kind) => Pattern::Connector(kind),
+            (name, _) => Pattern::Name(name.into()),
+        };
+        let several = alike(chart, node, &pattern).nth(1).is_some();
+        let occurrence = alike(chart, node, &pattern).position(|id| id == node).map(|index| index + 1);
+        Segment { pattern, occurrence: occurrence.filter(|_| several) }
+    }
+
+    fn matches(&self, chart: &Statechart, node: NodeId) -> bool {
+        let fits = || match self.occurrence {
+            None => true,
+            Some(0) => false,
+            Some(number) => alike(chart, node, &self.pattern).nth(number - 1) == Some(node),
+        };
+        self.pattern.matches(chart, node) && fits()
+    }
+}
+
+/// `name[2]` is the name and 2; but `[2]` alone, or after an operator, is an option of the formula.
+fn split_occurrence(name: &str) -> (&str, Option<usize>) {
+    let split = || {
+        let (before, number) = name.strip_suffix(']')?.rsplit_once('[')?;
+        let number = number.parse().ok()?;
+        let ends_a_term = before.ends_with(|c| is_name_character(c) || "*+~)]".contains(c));
+        ends_a_term.then_some((before, Some(number)))
+    };
+    split().unwrap_or((name, None))
+}
+
+impl Pattern {
+    fn of(name: &str) -> Pattern {
+        match name {
+            "START" => Pattern::Connector(NodeKind::Start),
+            "END" => Pattern::Connector(NodeKind::End),
+            "CONDITION" => Pattern::Connector(NodeKind::Condition),
+            "*" => Pattern::AnyState,
+            "*~" => Pattern::AnyForever,
+            "*||*" => Pattern::AnyParallel,
+            _ => Pattern::Name(name.into()),
+        }
+    }
+
+    fn text(&self) -> &str {
+        match self {
+            Pattern::Name(name) => name,
+            Pattern::Connector(NodeKind::Start) => "START",
+            Pattern::Connector(NodeKind::End) => "END",
+            Pattern::Connector(_) => "CONDITION",
+            Pattern::AnyState => "*",
+            Pattern::AnyForever => "*~",
+            Pattern::AnyParallel => "*||*",
+        }
+    }
+
+    fn matches(&self, chart: &Statechart, id: NodeId) -> bool {
+        let node = chart.node(id);
+        match self {
+            Pattern::Name(name) if is_region(chart, id) => name.parse() == Ok(place(chart, id)),
+            Pattern::Name(name) => node.name == *name,
+            Pattern::Connector(kind) => node.kind == *kind,
+            Pattern::AnyState => !node.name.is_empty(),
+            Pattern::AnyForever => !node.name.is_empty() && goes_on_forever(chart, id),
+            Pattern::AnyParallel => node.kind == NodeKind::And,
+        }
+    }
+}
+
+/// Whether the way to a node ends with these segments.
+fn ends_with(chart: &Statechart, node: NodeId, segments: &[Segment]) -> bool {
+    let Some((last, before)) = segments.split_last() else { return true };
+    if !last.matches(chart, node) {
+        return false;
+    }
+    if before.is_empty() {
+        return true;
+    }
+    let mut ancestors = chart.ancestors(node);
+    while let Some(ancestor) = ancestors.next() {
+        if ends_with(chart, ancestor, before) {
+            return true;
+        }
+        if !may_be_left_out(chart, ancestor) {
+            return false;
+        }
+    }
+    false
+}
+
+fn may_be_left_out(chart: &Statechart, node: NodeId) -> bool {
+    chart.node(node).kind == NodeKind::And || is_region(chart, node)
+}
+
+fn is_region(chart: &Statechart, node: NodeId) -> bool {
+    chart.node(node).name.is_empty() && chart.node(node).kind == NodeKind::Or
+}
+
+fn goes_on_forever(chart: &Statechart, node: NodeId) -> bool {
+    let children = chart.children(node);
+    let has = |kind| children.iter().any(|&child| chart.node(child).kind == kind);
+    chart.node(node).kind == NodeKind::Or && has(NodeKind::Start) && !has(NodeKind::End)
+}
+
+/// The number of a node among its siblings, from 1.
+fn place(chart: &Statechart, node: NodeId) -> usize {
+    siblings(chart, node).iter().position(|&sibling| sibling == node).map_or(1, |index| index + 1)
+}
+
+fn siblings(chart: &Statechart, node: NodeId) -> &[NodeId] {
+    chart.node(node).parent.map_or(&[], |parent| chart.children(parent))
+}
+
+/// The siblings of a node that a pattern fits, itself among them.
+fn alike<'a>(chart: &'a Statechart, node: NodeId, pattern: &'a Pattern) -> impl Iterator<Item = NodeId> + 'a {
+    siblings(chart, node).iter().copied().filter(|&sibling| pattern.matches(chart, sibling))
+}
+
+/// The transitions whose source and target two paths name.
+pub(crate) fn transitions<'a>(
+    chart: &'a Statechart,
+    source: &'a Path,
+    target: &'a Path,
+) -> impl Iterator<Item = TransitionId> + 'a {
+    let fits = |transition: &Transition| {
+        target.matches(chart, transition.target) && source.matches(chart, transition.source)
+    };
+    chart.transitions().filter(move |(_, transition)| fits(transition)).map(|(id, _)| id)
+}
+
+/// The shortest `path -> path` that names one transition and no other.
+pub fn shortest_transition(chart: &Statechart, transition: TransitionId) -> String {
+    let Transition { source, target, .. } = *chart.transition(transition);
+    let candidates = [false, true].into_iter().flat_map(|thorough| {
+        let lengths = (1..=MAX_SEGMENTS).flat_map(|total| [(total, 1), (1, total), (total, total)]);
+        let longest = chart.ancestors(source).count().max(chart.ancestors(target).count()) + 1;
+        lengths.take(3 * longest).map(move |(of_source, of_target)| {
+            (Path::to(chart, source, of_source, thorough), Path::to(chart, target, of_target, thorough))
+        })
+    });
+    let mut last = String::new();
+    for (from, to) in candidates {
+        last = format!("{from} -> {to}");
+        if transitions(chart, &from, &to).nth(1).is_none() {
+            break;
+        }
+    }
+    last
+}
+
+/// The shortest path that names one node and no other.
+pub fn shortest_path(chart: &Statechart, node: NodeId) -> String {
+    let longest = chart.ancestors(node).count() + 1;
+    let lengths = [false, true].into_iter().flat_map(|thorough| (1..=longest).map(move |length| (length, thorough)));
+    let mut last = String::new();
+    for (length, thorough) in lengths {
+        let path = Path::to(chart, node, length, thorough);
+        last = path.to_string();
+        if chart.nodes().filter(|(id, _)| path.matches(chart, *id)).nth(1).is_none() {
+            break;
+        }
+    }
+    last
+}

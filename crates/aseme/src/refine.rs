@@ -1,0 +1,154 @@
+//! Refinements: what a role says about the transitions and states of the chart that its formulas make.
+//!
+//! An entry names its transition or state by [`Path`]s, never by label, so it stays in force when the formula is edited, for
+//! as long as its paths name exactly one. One that no longer does is handed back with its text and what it might have meant; nothing is
+//! dropped silently. An entry with a wildcard is for all that it names and that no entry without wildcard names.
+
+use std::collections::BTreeMap;
+
+use yase::diagnostic::nearest;
+use yase::{Diagnostic, NodeId, Span, Statechart, TransitionId};
+
+use crate::path::{self, Path};
+use crate::srm::{StateEntry, TransitionEntry};
+
+/// An entry that could not be applied.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Unmatched {
+    /// The entry as it was written, on one line.
+    pub text: String,
+    /// What it may have meant, each in a form that would fit.
+    pub candidates: Vec<String>,
+    /// The same, said to a person.
+    pub diagnostic: Diagnostic,
+}
+
+/// How many candidates are named.
+const CANDIDATES: usize = 5;
+
+/// Gives the transitions of a chart what the entries say of them; entries that do not fit are returned, in order.
+pub fn refine(chart: &mut Statechart, entries: &[TransitionEntry]) -> Vec<Unmatched> {
+    let wishes: Vec<Wish<TransitionId>> = entries.iter().map(|entry| transitions_of(chart, entry)).collect();
+    let (chosen, unmatched) = settle(&wishes, |id| path::shortest_transition(chart, *id));
+    for (id, index) in chosen {
+        entries[index].apply(chart, id);
+    }
+    unmatched
+}
+
+/// Gives the states of a chart what the entries say of them; entries that do not fit are returned, in order.
+pub fn refine_states(chart: &mut Statechart, entries: &[StateEntry]) -> Vec<Unmatched> {
+    let wishes: Vec<Wish<NodeId>> = entries.iter().map(|entry| states_of(chart, entry)).collect();
+    let (chosen, unmatched) = settle(&wishes, |id| path::shortest_path(chart, *id));
+    for (id, index) in chosen {
+        entries[index].apply(chart, id);
+    }
+    unmatched
+}
+
+/// What one entry names.
+struct Wish<'a, Id> {
+    text: &'a str,
+    span: Span,
+    thing: &'static str,
+    has_wildcard: bool,
+    named: Vec<Id>,
+    /// What it may have meant, should it name nothing.
+    near: Vec<String>,
+}
+
+fn transitions_of<'a>(chart: &Statechart, entry: &'a TransitionEntry) -> Wish<'a, TransitionId> {
+    let named: Vec<TransitionId> = path::transitions(chart, &entry.source, &entry.target).collect();
+    let near = if named.is_empty() { near_transitions(chart, entry) } else { Vec::new() };
+    let has_wildcard = entry.source.has_wildcard() || entry.target.has_wildcard();
+    Wish { text: &entry.text, span: entry.span, thing: "transition", has_wildcard, named, near }
+}
+
+fn states_of<'a>(chart: &Statechart, entry: &'a StateEntry) -> Wish<'a, NodeId> {
+    let named: Vec<NodeId> = chart.nodes().map(|(id, _)| id).filter(|&id| entry.path.matches(chart, id)).collect();
+    let near = if named.is_empty() { near_names(chart, &entry.path).collect() } else { Vec::new() };
+    Wish { text: &entry.text, span: entry.span, thing: "state", has_wildcard: entry.path.has_wildcard(), named, near }
+}
+
+/// The names nearest to those in a path that the chart does not have.
+fn near_names<'a>(chart: &'a Statechart, path: &'a Path) -> impl Iterator<Item = String> + 'a {
+    let names = || chart.nodes().map(|(_, node)| node.name.as_str()).filter(|name| !name.is_empty());
+    path.unknown_names(chart).filter_map(move |name| nearest(name, names())).map(String::from)
+}
+
+/// If a name is misspelt, the right one; else the transitions that share the source, then those that share the target.
+fn near_transitions(chart: &Statechart, entry: &TransitionEntry) -> Vec<String> {
+    let names: Vec<String> = near_names(chart, &entry.source).chain(near_names(chart, &entry.target)).collect();
+    if !names.is_empty() {
+        return names;
+    }
+    let sharing_source = chart.transitions().filter(|(_, transition)| entry.source.matches(chart, transition.source));
+    let sharing_target = chart.transitions().filter(|(_, transition)| entry.target.matches(chart, transition.target));
+    let near = sharing_source.chain(sharing_target).map(|(id, _)| path::shortest_transition(chart, id));
+    near.take(CANDIDATES).collect()
+}
+
+/// Which entry is for which thing, and which entries are for none.
+fn settle<Id: Copy + Ord>(
+    wishes: &[Wish<'_, Id>],
+    text_of: impl Fn(&Id) -> String,
+) -> (BTreeMap<Id, usize>, Vec<Unmatched>) {
+    let mut chosen: BTreeMap<Id, usize> = BTreeMap::new();
+    let mut unmatched: BTreeMap<usize, Unmatched> = BTreeMap::new();
+    let (wild, plain): (Vec<usize>, Vec<usize>) = (0..wishes.len()).partition(|&index| wishes[index].has_wildcard);
+    for index in plain {
+        match wishes[index].named.as_slice() {
+            [one] => match chosen.get(one) {
+                Some(&earlier) => drop(unmatched.insert(index, again(&wishes[index], &wishes[earlier], &text_of(one)))),
+                None => drop(chosen.insert(*one, index)),
+            },
+            _ => drop(unmatched.insert(index, misfit(&wishes[index], &text_of))),
+        }
+    }
+    for index in wild {
+        if wishes[index].named.is_empty() {
+            unmatched.insert(index, misfit(&wishes[index], &text_of));
+        }
+        for id in &wishes[index].named {
+            match chosen.get(id) {
+                Some(&earlier) if wishes[earlier].has_wildcard => {
+                    unmatched.entry(index).or_insert_with(|| again(&wishes[index], &wishes[earlier], &text_of(id)));
+                }
+                Some(_) => {}
+                None => drop(chosen.insert(*id, index)),
+            }
+        }
+    }
+    (chosen, unmatched.into_values().collect())
+}
+
+/// An entry that names nothing, or several things without a wildcard.
+fn misfit<Id>(wish: &Wish<'_, Id>, text_of: impl Fn(&Id) -> String) -> Unmatched {
+    let (code, number, candidates) = match wish.named.len() {
+        0 => ("E0250", "no", wish.near.clone()),
+        _ => ("E0251", "more than one", wish.named.iter().take(CANDIDATES).map(text_of).collect()),
+    };
+    let message = format!("`{}` names {number} {} of the chart", wish.text, wish.thing);
+    let diagnostic = Diagnostic::error(code, wish.span, message);
+    let diagnostic = match hint(&candidates) {
+        Some(hint) => diagnostic.with_hint(hint),
+        None => diagnostic,
+    };
+    Unmatched { text: wish.text.into(), candidates, diagnostic }
+}
+
+fn hint(candidates: &[String]) -> Option<String> {
+    let quoted: Vec<String> = candidates.iter().map(|candidate| format!("`{candidate}`")).collect();
+    match quoted.as_slice() {
+        [] => None,
+        [one] => Some(format!("did you mean {one}?")),
+        several => Some(format!("did you mean one of {}?", several.join(", "))),
+    }
+}
+
+/// An entry for something that another one is for already.
+fn again<Id>(wish: &Wish<'_, Id>, earlier: &Wish<'_, Id>, named: &str) -> Unmatched {
+    let message = format!("`{}` is for `{named}`, as `{}` is", wish.text, earlier.text);
+    let diagnostic = Diagnostic::error("E0252", wish.span, message).with_hint("keep one of the two");
+    Unmatched { text: wish.text.into(), candidates: vec![named.into()], diagnostic }
+}

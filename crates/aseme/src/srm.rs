@@ -1,0 +1,284 @@
+//! Roles as text: the System Roles Model of one role, with the refinements of its chart.
+//!
+//! The layout is that of the thesis's Figures 5.2 to 5.4, with three sections more. `#` begins a comment.
+//!
+//! ```text
+//! Role: goalie
+//! Protocols: N/A
+//! Liveness:
+//! goalie = Visionω || decisionω
+//! decision = SearchBall | TrackBall
+//! Constants:
+//! near = 0.25                # a number, true, false or "text"; a unit may follow: m cm mm, s ms, rad deg
+//! Transitions:
+//! Vision -> Vision : [vision_timeout] / StartTimeout(vision_timeout, 100ms)
+//! decision: CONDITION -> SearchBall !1 : [!Ball.found]
+//! *~ -> END : [false]
+//! States:
+//! SearchBall : priority = 5, duration = 2s
+//! ```
+//!
+//! - **Transitions**: `[scope:] source -> target [!priority] [%weight] [interrupts] [: expression]`. Paths are described in
+//!   [`path`](crate::path); `scope: a -> b` is short for `scope/a -> scope/b`. A line without `->` goes on with the entry above it.
+//! - **States**: `path : key = value, ...` with the keys `activity`, `priority`, `entry`, `exit`, `defer` and `duration`. A line
+//!   without `:` goes on with the entry above it.
+//!
+//! What a text is, is told by its content: one that begins with `<` is XMI, one with a section header is as above, any other is bare
+//! formulas.
+
+mod constants;
+mod entries;
+mod sections;
+mod states;
+
+use yase::expression::{Action, TransitionExpression};
+use yase::statechart::Constant;
+use yase::{Diagnostic, NodeId, Span, Statechart, TransitionId};
+
+use crate::liveness::{self, Liveness};
+use crate::path::Path;
+use crate::text;
+
+pub use sections::Section;
+
+/// A role: what it does, and how the chart of that is refined.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Srm {
+    /// Its name, which may have blanks; for bare formulas the left-hand side of the first.
+    pub role: String,
+    /// The protocols it takes part in.
+    pub protocols: Vec<Protocol>,
+    /// Its formulas.
+    pub liveness: Liveness,
+    /// Values that its expressions may name.
+    pub constants: Vec<Constant>,
+    /// What is said of transitions.
+    pub transitions: Vec<TransitionEntry>,
+    /// What is said of states.
+    pub states: Vec<StateEntry>,
+}
+
+/// A part in a protocol between agents.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Protocol {
+    /// The protocol.
+    pub name: String,
+    /// The role's part in it.
+    pub participant: String,
+}
+
+/// What is said of one transition, or by wildcards of several.
+#[derive(Clone, PartialEq, Debug)]
+pub struct TransitionEntry {
+    /// The node it leaves.
+    pub source: Path,
+    /// The node it leads to.
+    pub target: Path,
+    /// Higher is tried first; 0 unless said.
+    pub priority: i32,
+    /// The weight of a probabilistic branch.
+    pub weight: Option<f64>,
+    /// Whether it may leave a state whose activity still runs.
+    pub interrupts: bool,
+    /// Trigger, guard and actions; places count from the beginning of the file.
+    pub expression: TransitionExpression,
+    /// The entry as it is written, on one line, without comments.
+    pub text: String,
+    /// Where it stands.
+    pub span: Span,
+}
+
+impl TransitionEntry {
+    pub(crate) fn apply(&self, chart: &mut Statechart, id: TransitionId) {
+        let transition = chart.transition_mut(id);
+        transition.expression = self.expression.clone();
+        (transition.priority, transition.weight) = (self.priority, self.weight);
+        transition.interrupts = self.interrupts;
+    }
+}
+
+/// What is said of one state, or by wildcards of several; none of a thing leaves it as it is.
+#[derive(Clone, PartialEq, Debug)]
+pub struct StateEntry {
+    /// The state.
+    pub path: Path,
+    /// The activity it runs.
+    pub activity: Option<String>,
+    /// The priority of its activity.
+    pub priority: Option<i32>,
+    /// What happens whenever it is entered.
+    pub entry: Option<Vec<Action>>,
+    /// What happens whenever it is left.
+    pub exit: Option<Vec<Action>>,
+    /// Events kept for later while it is active.
+    pub defer: Option<Vec<String>>,
+    /// How long its activity takes in simulated time.
+    pub duration: Option<std::time::Duration>,
+    /// The entry as it is written, on one line, without comments.
+    pub text: String,
+    /// Where it stands.
+    pub span: Span,
+}
+
+impl StateEntry {
+    pub(crate) fn apply(&self, chart: &mut Statechart, id: NodeId) {
+        let node = chart.node_mut(id);
+        node.activity = self.activity.clone().or(node.activity.take());
+        node.priority = self.priority.unwrap_or(node.priority);
+        node.duration = self.duration.or(node.duration);
+        for (said, place) in [(&self.entry, &mut node.entry), (&self.exit, &mut node.exit)] {
+            if let Some(actions) = said {
+                place.clone_from(actions);
+            }
+        }
+        if let Some(defer) = &self.defer {
+            node.defer.clone_from(defer);
+        }
+    }
+}
+
+/// One entry of a file and its place, without the comment behind it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Entry {
+    /// The section it stands in.
+    pub section: Section,
+    /// Its first to its last letter.
+    pub span: Span,
+}
+
+/// A role's file: the text as it is, the role that it describes, and where each entry stands.
+///
+/// Tools that change a file do so by [`replace_entry`](SrmFile::replace_entry): everything else, comments too, stays as it was.
+#[derive(Clone, PartialEq, Debug)]
+pub struct SrmFile {
+    text: String,
+    srm: Srm,
+    entries: Vec<Entry>,
+}
+
+impl SrmFile {
+    /// Reads a role. What is not understood is skipped and reported; codes are E0201 to E0249 and those of expressions.
+    pub fn parse(text: impl Into<String>) -> (SrmFile, Vec<Diagnostic>) {
+        let text = text.into();
+        let mut reader = Reader::default();
+        if text.trim_start_matches('\u{feff}').trim_start().starts_with('<') {
+            reader.refuse_xmi(&text);
+        } else {
+            reader.read(&text::without_comments(&text));
+        }
+        (SrmFile { text, srm: reader.srm, entries: reader.entries }, reader.diagnostics)
+    }
+
+    /// The text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The role.
+    pub fn srm(&self) -> &Srm {
+        &self.srm
+    }
+
+    /// The entries, in the order of the text: the role, each formula, constant, transition and state.
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// The file with another text in the place of an entry. Comments that stood between the lines of the entry move above it.
+    pub fn replace_entry(&self, entry: Entry, replacement: &str) -> (SrmFile, Vec<Diagnostic>) {
+        let Span { start, end } = entry.span;
+        let comments = text::comments_within(&self.text, entry.span).into_iter();
+        let comments: String = comments.map(|comment| format!("{comment}\n")).collect();
+        SrmFile::parse([&self.text[..start], &comments, replacement, &self.text[end..]].concat())
+    }
+}
+
+/// A reading in progress.
+#[derive(Default)]
+struct Reader {
+    srm: Srm,
+    entries: Vec<Entry>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Reader {
+    fn refuse_xmi(&mut self, text: &str) {
+        let line = text.find('\n').unwrap_or(text.len());
+        let hint = "write the role as text: the formulas alone are enough";
+        self.report(Diagnostic::error("E0230", 0..line, "this is XMI, which is not read yet").with_hint(hint));
+    }
+
+    fn read(&mut self, blanked: &str) {
+        match sections::sections(blanked, &mut self.diagnostics) {
+            Some(sections) => {
+                for (section, body) in sections {
+                    self.section(section, blanked, body);
+                }
+                if !self.entries.iter().any(|entry| entry.section == Section::Liveness) && self.diagnostics.is_empty() {
+                    let place = Span::new(0, text::lines_of(blanked, Span::new(0, blanked.len())).next().map_or(0, |line| line.end));
+                    self.report(Diagnostic::error("E0233", place, "the role has no formula").with_hint("add `Liveness:` and below it `role = activity`"));
+                }
+            }
+            None => {
+                self.liveness(blanked, Span::new(0, blanked.len()));
+                self.srm.role = self.srm.liveness.formulas().first().map_or(String::new(), |formula| formula.name.clone());
+            }
+        }
+    }
+
+    fn section(&mut self, section: Section, blanked: &str, body: Span) {
+        match section {
+            Section::Role => self.role(blanked, body),
+            Section::Protocols => self.protocols(blanked, body),
+            Section::Liveness => self.liveness(blanked, body),
+            Section::Constants => self.constants(blanked, body),
+            Section::Transitions => self.transitions(blanked, body),
+            Section::States => self.states(blanked, body),
+        }
+    }
+
+    fn role(&mut self, blanked: &str, body: Span) {
+        let span = text::trimmed(blanked, body);
+        let words: Vec<&str> = blanked[span.start..span.end].split_whitespace().collect();
+        if words.is_empty() {
+            let place = Span::new(body.start.saturating_sub(1), body.start);
+            return self.report(Diagnostic::error("E0234", place, "the role has no name").with_hint("write it after `Role:`"));
+        }
+        self.srm.role = words.join(" ");
+        self.entries.push(Entry { section: Section::Role, span });
+    }
+
+    /// `N/A`, or `Attack: center, Attack: center_for`.
+    fn protocols(&mut self, blanked: &str, body: Span) {
+        let span = text::trimmed(blanked, body);
+        let all = &blanked[span.start..span.end];
+        if matches!(all, "" | "N/A" | "-") {
+            return;
+        }
+        self.entries.push(Entry { section: Section::Protocols, span });
+        for part in all.split([',', '\n']).map(str::trim).filter(|part| !part.is_empty()) {
+            match part.split_once(':').map(|(name, participant)| (name.trim(), participant.trim())) {
+                Some((name, participant)) if !name.is_empty() && !participant.is_empty() => {
+                    self.srm.protocols.push(Protocol { name: name.into(), participant: participant.into() });
+                }
+                _ => {
+                    let message = format!("`{part}` is not a part in a protocol");
+                    let hint = "write `protocol: participant`, several with commas between, or `N/A`";
+                    self.report(Diagnostic::error("E0235", span, message).with_hint(hint));
+                }
+            }
+        }
+    }
+
+    fn liveness(&mut self, blanked: &str, body: Span) {
+        let (liveness, diagnostics) = liveness::parse_section(blanked, body);
+        let formulas = liveness.formulas().iter();
+        self.entries.extend(formulas.map(|formula| Entry { section: Section::Liveness, span: formula.span }));
+        self.srm.liveness = liveness;
+        self.diagnostics.extend(diagnostics);
+    }
+
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+}

@@ -1,0 +1,153 @@
+//! The command line: what may be written after `monas`. Help and completions come from the same definitions.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+use clap_complete::Shell;
+
+use crate::duration;
+
+/// The configuration that is read when none is named.
+const DEFAULT_CONFIGURATION: &str = "config/agents.xml";
+
+/// From a formula to a running robot team.
+#[derive(Parser, Debug)]
+#[command(name = "monas", version, arg_required_else_help = true, after_help = EXIT_CODES)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes: 0 done, 1 ran and failed, 2 usage, 3 invalid configuration or model, 130 interrupted.
+Environment: NO_COLOR switches colours off; MONAS_LOG chooses what is logged, for example `info` or `monas=debug`.";
+
+#[derive(Subcommand, Debug)]
+pub(crate) enum Command {
+    /// Run a match or a set of agents.
+    Run(RunArguments),
+    /// Read, check and draw models.
+    #[command(subcommand)]
+    Model(ModelCommand),
+    /// Look at configurations without running them.
+    #[command(subcommand)]
+    Config(ConfigCommand),
+    /// Print a completion script for a shell.
+    Completions {
+        /// The shell to print it for.
+        shell: Shell,
+    },
+}
+
+/// What `run` may be told.
+#[derive(Args, Debug)]
+pub(crate) struct RunArguments {
+    /// A match (`<match>`) or a file of agents (`<agents>`).
+    #[arg(default_value = DEFAULT_CONFIGURATION, value_hint = ValueHint::FilePath)]
+    pub(crate) config: PathBuf,
+    /// The seed of everything random; the same seed gives the same run.
+    #[arg(long, default_value_t = 0)]
+    pub(crate) seed: u64,
+    /// Stop after this much time, for example 600s, 10min or 500ms.
+    #[arg(long = "for", value_name = "DURATION", value_parser = duration::parse)]
+    pub(crate) length: Option<Duration>,
+    /// Record every message into this MCAP file.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) record: Option<PathBuf>,
+    /// Let simulated time pass no faster than real time.
+    #[arg(long)]
+    pub(crate) realtime: bool,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
+}
+
+#[derive(Subcommand, Debug)]
+pub(crate) enum ModelCommand {
+    /// Transform a role's formulas into a statechart and print it.
+    Transform {
+        /// The model file.
+        #[arg(value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        #[command(flatten)]
+        format: FormatArgument,
+    },
+    /// Draw the statechart of a model as SVG.
+    Draw {
+        /// The model file.
+        #[arg(value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// Where to write the drawing; standard output if not given.
+        #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        output: Option<PathBuf>,
+        #[command(flatten)]
+        format: FormatArgument,
+    },
+    /// Say what is wrong with models, and nothing else.
+    Check {
+        /// The model files.
+        #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        files: Vec<PathBuf>,
+        #[command(flatten)]
+        format: FormatArgument,
+    },
+}
+
+#[derive(Subcommand, Debug)]
+pub(crate) enum ConfigCommand {
+    /// Read a configuration and everything it names, bind its charts, and say what is wrong.
+    Check {
+        /// A match (`<match>`) or a file of agents (`<agents>`).
+        #[arg(default_value = DEFAULT_CONFIGURATION, value_hint = ValueHint::FilePath)]
+        config: PathBuf,
+        #[command(flatten)]
+        format: FormatArgument,
+    },
+}
+
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct FormatArgument {
+    /// For people, or for programs: one JSON object a line.
+    #[arg(long = "format", value_name = "FORMAT", default_value = "text")]
+    pub(crate) value: Format,
+}
+
+/// How results and diagnostics are written.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub(crate) enum Format {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn definitions_hold_together() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn run_has_defaults() {
+        let Command::Run(run) = Arguments::parse_from(["monas", "run"]).command else { panic!("not a run") };
+        assert_eq!(run.config, PathBuf::from(DEFAULT_CONFIGURATION));
+        assert_eq!((run.seed, run.length, run.record, run.realtime), (0, None, None, false));
+        assert_eq!(run.format.value, Format::Text);
+    }
+
+    #[test]
+    fn run_takes_everything() {
+        let line = "monas run m.xml --seed 7 --for 1.5s --record t.mcap --realtime --format json";
+        let Command::Run(run) = Arguments::parse_from(line.split(' ')).command else { panic!("not a run") };
+        assert_eq!(run.config, PathBuf::from("m.xml"));
+        assert_eq!((run.seed, run.length), (7, Some(Duration::from_millis(1500))));
+        assert_eq!(run.record, Some(PathBuf::from("t.mcap")));
+        assert!(run.realtime);
+        assert_eq!(run.format.value, Format::Json);
+    }
+}

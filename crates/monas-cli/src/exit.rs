@@ -1,0 +1,38 @@
+//! How the command ends.
+
+use std::process::ExitCode;
+
+/// What the exit code of the process says.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum Exit {
+    /// 0: it did what was asked.
+    Success,
+    /// 1: it ran, and failed.
+    Failure,
+    /// 2: the command line was not understood.
+    Usage,
+    /// 3: a configuration or a model is invalid; nothing ran.
+    Invalid,
+    /// 130: it was interrupted.
+    Interrupted,
+}
+
+impl Exit {
+    /// The number that the process ends with.
+    pub const fn code(self) -> u8 {
+        match self {
+            Exit::Success => 0,
+            Exit::Failure => 1,
+            Exit::Usage => 2,
+            Exit::Invalid => 3,
+            Exit::Interrupted => 130,
+        }
+    }
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> ExitCode {
+        ExitCode::from(exit.code())
+    }
+}

@@ -1,0 +1,419 @@
+//! A robot's body: its skills, balance and head, as a machine of phases.
+
+use crate::arena::Base;
+use crate::gait::{Gait, effort};
+use crate::pose::{Pose, Vector, Velocity};
+use crate::rng::Stream;
+use crate::{Command, Motion, Physics, STEP, Side};
+
+/// What a body is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Phase {
+    /// Upright, feet still.
+    #[default]
+    Standing,
+    /// Upright, feet moving.
+    Walking,
+    /// Kicking with a foot.
+    Kicking(Side),
+    /// Falling from the knees to a side, on purpose.
+    SideFalling(Side),
+    /// Diving to a side, on purpose.
+    Diving(Side),
+    /// Falling, not on purpose.
+    Falling(Direction),
+    /// Lying on the ground until told to stand up.
+    Fallen(Direction),
+    /// Standing up.
+    StandingUp,
+}
+
+impl Phase {
+    /// Answers whether the body is on its feet and in balance.
+    pub fn is_upright(self) -> bool {
+        matches!(self, Self::Standing | Self::Walking | Self::Kicking(_))
+    }
+
+    /// Answers whether the body lies on the ground.
+    pub fn is_fallen(self) -> bool {
+        matches!(self, Self::Fallen(_))
+    }
+}
+
+/// Where a body lies, or falls to, in its own frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// On its face.
+    Front,
+    /// On its back.
+    Back,
+    /// On its left side.
+    Left,
+    /// On its right side.
+    Right,
+}
+
+impl Direction {
+    /// The unit vector of this direction in the frame of the body.
+    pub fn vector(self) -> Vector {
+        match self {
+            Self::Front => Vector::new(1.0, 0.0),
+            Self::Back => Vector::new(-1.0, 0.0),
+            Self::Left => Vector::new(0.0, 1.0),
+            Self::Right => Vector::new(0.0, -1.0),
+        }
+    }
+
+    /// The direction nearest to that of `vector`.
+    fn nearest(vector: Vector) -> Self {
+        match (vector.x.abs() >= vector.y.abs(), vector.x >= 0.0, vector.y >= 0.0) {
+            (true, true, _) => Self::Front,
+            (true, false, _) => Self::Back,
+            (false, _, true) => Self::Left,
+            (false, _, false) => Self::Right,
+        }
+    }
+}
+
+impl From<Side> for Direction {
+    fn from(side: Side) -> Self {
+        match side {
+            Side::Left => Self::Left,
+            Side::Right => Self::Right,
+        }
+    }
+}
+
+/// What happened to a body in one step that others must know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Deed {
+    /// The foot is where the ball may be.
+    Strike(Side),
+    /// A dive or sideways fall has begun.
+    Act { side: Side, dive: bool },
+    /// What meets the ball has changed.
+    Rebase(Base),
+}
+
+/// A body without its place, which the arena keeps.
+pub(crate) struct Body {
+    pub(crate) phase: Phase,
+    /// Time since the phase began, s.
+    pub(crate) elapsed: f64,
+    pub(crate) command: Command,
+    pub(crate) head_yaw: f64,
+    pub(crate) head_pitch: f64,
+    pub(crate) gait: Gait,
+    pub(crate) chest_button: bool,
+    /// Way that odometry believes in since it was last read.
+    odometry: Pose,
+    gait_noise: Stream,
+    balance: Stream,
+}
+
+impl Body {
+    /// A standing body; `path` names its random streams.
+    pub(crate) fn new(seed: u64, path: &str) -> Self {
+        Self {
+            phase: Phase::Standing,
+            elapsed: 0.0,
+            command: Command::default(),
+            head_yaw: 0.0,
+            head_pitch: 0.0,
+            gait: Gait::default(),
+            chest_button: false,
+            odometry: Pose::default(),
+            gait_noise: Stream::new(seed, &format!("{path}/gait")),
+            balance: Stream::new(seed, &format!("{path}/balance")),
+        }
+    }
+
+    /// Goes on for one step of time. A body that is `held` by the referee only turns its head and stands up.
+    pub(crate) fn advance(&mut self, physics: &Physics, held: bool) -> Option<Deed> {
+        self.elapsed += STEP;
+        self.turn_head(physics);
+        let deed = match self.phase {
+            Phase::Standing | Phase::Walking => self.follow_command(physics, held),
+            Phase::Kicking(foot) => self.kick(foot, physics),
+            Phase::SideFalling(side) => self.go_down(side, physics.side_fall_reach, physics),
+            Phase::Diving(side) => self.go_down(side, physics.dive_reach, physics),
+            Phase::Falling(direction) => self.fall(direction, physics),
+            Phase::Fallen(_) => self.lie(),
+            Phase::StandingUp => self.stand_up(physics),
+        };
+        let felt = self.gait.felt();
+        let step = Pose { position: felt.linear() * STEP, heading: felt.turn * STEP };
+        self.odometry = self.odometry.compose(&step);
+        deed
+    }
+
+    /// The velocity that the feet produce when nothing is in the way.
+    pub(crate) fn velocity(&self, physics: &Physics) -> Velocity {
+        self.gait.produced(physics)
+    }
+
+    /// Loses balance, perhaps: by a blow (a change of velocity, in the own frame), by pressing against another
+    /// robot, or by walking. Answers whether a fall begins.
+    pub(crate) fn keep_balance(&mut self, blow: Vector, pressed: bool, physics: &Physics) -> bool {
+        if !self.phase.is_upright() {
+            return false;
+        }
+        let effort = effort(self.gait.intended(), physics);
+        let pressing = if pressed { physics.fall_rate_pushed } else { 0.0 };
+        let rate = physics.fall_rate_walking * effort * effort + pressing;
+        let stumbles = self.balance.chance(rate * STEP);
+        if blow.norm() > physics.fall_impact {
+            self.begin_fall(Direction::nearest(blow));
+        } else if stumbles {
+            let angle = std::f64::consts::TAU * self.balance.uniform();
+            self.begin_fall(Direction::nearest(Vector::new(libm::cos(angle), libm::sin(angle))));
+        }
+        !self.phase.is_upright()
+    }
+
+    /// Starts a fall that is not on purpose.
+    pub(crate) fn begin_fall(&mut self, direction: Direction) {
+        self.gait.stop();
+        self.enter(Phase::Falling(direction));
+    }
+
+    /// Puts the body on its feet, as the referee does.
+    pub(crate) fn set_upright(&mut self) {
+        self.gait.stop();
+        self.enter(Phase::Standing);
+    }
+
+    /// The way that odometry believes in since the last call: the pose now in the frame of the pose then.
+    pub(crate) fn take_odometry(&mut self) -> Pose {
+        std::mem::take(&mut self.odometry)
+    }
+
+    /// Part of the phase that is done, from 0 to 1; that of the stride while walking.
+    pub(crate) fn progress(&self, physics: &Physics) -> f64 {
+        let duration = match self.phase {
+            Phase::Standing | Phase::Fallen(_) => return 0.0,
+            Phase::Walking => return self.gait.stride(),
+            Phase::Kicking(_) => physics.kick_duration,
+            Phase::SideFalling(_) | Phase::Diving(_) => physics.dive_duration,
+            Phase::Falling(_) => physics.fall_duration,
+            Phase::StandingUp => physics.stand_up_duration,
+        };
+        (self.elapsed / duration).min(1.0)
+    }
+
+    fn enter(&mut self, phase: Phase) {
+        self.phase = phase;
+        self.elapsed = 0.0;
+    }
+
+    fn turn_head(&mut self, physics: &Physics) {
+        if self.command.motion == Motion::Freeze {
+            return;
+        }
+        let most = physics.head_speed * STEP;
+        let yaw = self.command.head_yaw.clamp(-physics.head_yaw_limit, physics.head_yaw_limit);
+        let pitch = self.command.head_pitch.clamp(physics.head_pitch_least, physics.head_pitch_most);
+        self.head_yaw += (yaw - self.head_yaw).clamp(-most, most);
+        self.head_pitch += (pitch - self.head_pitch).clamp(-most, most);
+    }
+
+    fn follow_command(&mut self, physics: &Physics, held: bool) -> Option<Deed> {
+        let motion = if held { Motion::Stand } else { self.command.motion };
+        match motion {
+            Motion::Kick(foot) => self.begin_skill(Phase::Kicking(foot)),
+            Motion::Fall(side) => return self.act(side, false),
+            Motion::Dive(side) => return self.act(side, true),
+            Motion::Freeze => self.walk(None, physics),
+            Motion::Walk(wanted) => self.walk(Some(wanted), physics),
+            Motion::Stand | Motion::StandUp => self.walk(Some(Velocity::default()), physics),
+        }
+        None
+    }
+
+    /// Walks; without a velocity it stops at once.
+    fn walk(&mut self, wanted: Option<Velocity>, physics: &Physics) {
+        match wanted {
+            Some(wanted) => self.gait.advance(wanted, physics, &mut self.gait_noise),
+            None => self.gait.stop(),
+        }
+        let phase = if self.gait.is_moving() { Phase::Walking } else { Phase::Standing };
+        if phase != self.phase {
+            self.enter(phase);
+        }
+    }
+
+    fn begin_skill(&mut self, phase: Phase) {
+        self.command.motion = Motion::Stand;
+        self.enter(phase);
+    }
+
+    fn act(&mut self, side: Side, dive: bool) -> Option<Deed> {
+        self.gait.stop();
+        self.begin_skill(if dive { Phase::Diving(side) } else { Phase::SideFalling(side) });
+        Some(Deed::Act { side, dive })
+    }
+
+    fn kick(&mut self, foot: Side, physics: &Physics) -> Option<Deed> {
+        self.gait.advance(Velocity::default(), physics, &mut self.gait_noise);
+        if self.elapsed >= physics.kick_duration {
+            self.enter(Phase::Standing);
+        }
+        let strikes = self.elapsed >= physics.kick_strike && self.elapsed - STEP < physics.kick_strike;
+        strikes.then_some(Deed::Strike(foot))
+    }
+
+    fn go_down(&mut self, side: Side, reach: f64, physics: &Physics) -> Option<Deed> {
+        let part = self.progress(physics);
+        let direction = Direction::from(side);
+        if part >= 1.0 {
+            self.enter(Phase::Fallen(direction));
+        }
+        Some(Deed::Rebase(Base::Lying { direction: direction.vector(), reach: reach * part }))
+    }
+
+    fn fall(&mut self, direction: Direction, physics: &Physics) -> Option<Deed> {
+        if self.elapsed < physics.fall_duration {
+            return None;
+        }
+        self.enter(Phase::Fallen(direction));
+        Some(Deed::Rebase(Base::Lying { direction: direction.vector(), reach: physics.lying_reach }))
+    }
+
+    fn lie(&mut self) -> Option<Deed> {
+        if self.command.motion == Motion::StandUp {
+            self.begin_skill(Phase::StandingUp);
+        }
+        None
+    }
+
+    fn stand_up(&mut self, physics: &Physics) -> Option<Deed> {
+        if self.elapsed < physics.stand_up_duration {
+            return None;
+        }
+        if self.balance.chance(physics.stand_up_success) {
+            self.enter(Phase::Standing);
+            return Some(Deed::Rebase(Base::Feet));
+        }
+        self.enter(Phase::Fallen(Direction::Back));
+        Some(Deed::Rebase(Base::Lying { direction: Direction::Back.vector(), reach: physics.lying_reach }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn body(motion: Motion) -> Body {
+        let mut body = Body::new(1, "robot/1/2");
+        body.command = Command::new(motion);
+        body
+    }
+
+    fn run(body: &mut Body, seconds: f64) -> Vec<Deed> {
+        let physics = Physics::default();
+        (0..(seconds / STEP).round() as usize).filter_map(|_| body.advance(&physics, false)).collect()
+    }
+
+    #[test]
+    fn a_kick_strikes_once_and_ends_standing() {
+        let mut body = body(Motion::Kick(Side::Left));
+        assert_eq!(run(&mut body, 0.7), vec![]);
+        assert_eq!(body.phase, Phase::Kicking(Side::Left));
+        assert_eq!(run(&mut body, 5.0), vec![Deed::Strike(Side::Left)]);
+        assert_eq!(body.phase, Phase::Standing);
+    }
+
+    #[test]
+    fn a_dive_covers_its_reach_and_stays_down_until_told() {
+        let physics = Physics::default();
+        let mut body = body(Motion::Dive(Side::Right));
+        let deeds = run(&mut body, 3.0);
+        assert_eq!(deeds.first(), Some(&Deed::Act { side: Side::Right, dive: true }));
+        let down = Base::Lying { direction: Vector::new(0.0, -1.0), reach: physics.dive_reach };
+        assert_eq!(deeds.last(), Some(&Deed::Rebase(down)));
+        assert_eq!(body.phase, Phase::Fallen(Direction::Right));
+        body.command.motion = Motion::Walk(Velocity::new(0.2, 0.0, 0.0));
+        run(&mut body, 1.0);
+        assert!(body.phase.is_fallen());
+    }
+
+    #[test]
+    fn standing_up_takes_its_time_and_mostly_works() {
+        let physics = Physics::default();
+        let mut upright = 0;
+        for seed in 0..200 {
+            let mut body = Body::new(seed, "robot/1/2");
+            body.begin_fall(Direction::Front);
+            run(&mut body, physics.fall_duration + 0.02);
+            assert!(body.phase.is_fallen());
+            body.command.motion = Motion::StandUp;
+            run(&mut body, physics.stand_up_duration - 0.1);
+            assert_eq!(body.phase, Phase::StandingUp);
+            run(&mut body, 0.2);
+            upright += usize::from(body.phase.is_upright());
+        }
+        assert!((180..200).contains(&upright), "{upright}");
+    }
+
+    #[test]
+    fn a_hard_blow_fells_and_a_soft_one_does_not() {
+        let physics = Physics::default();
+        let mut body = body(Motion::Stand);
+        assert!(!body.keep_balance(Vector::new(0.1, 0.0), false, &physics));
+        assert!(body.keep_balance(Vector::new(-0.3, 0.05), false, &physics));
+        assert_eq!(body.phase, Phase::Falling(Direction::Back));
+        assert!(!body.keep_balance(Vector::new(-9.0, 0.0), true, &physics), "it falls already");
+    }
+
+    #[test]
+    fn pressing_fells_at_its_rate() {
+        let physics = Physics::default();
+        let mut falls = 0;
+        for seed in 0..500 {
+            let mut body = Body::new(seed, "robot/2/3");
+            falls += usize::from((0..100).any(|_| body.keep_balance(Vector::zeros(), true, &physics)));
+        }
+        let expected = 500.0 * (1.0 - libm::exp(-physics.fall_rate_pushed));
+        assert!((falls as f64 - expected).abs() < 25.0, "{falls} instead of {expected}");
+    }
+
+    #[test]
+    fn the_head_is_slow_and_limited() {
+        let physics = Physics::default();
+        let mut body = body(Motion::Stand);
+        body.command.head_yaw = 9.0;
+        body.command.head_pitch = -9.0;
+        run(&mut body, 0.1);
+        assert!((body.head_yaw - physics.head_speed * 0.1).abs() < 1e-9);
+        run(&mut body, 3.0);
+        assert_eq!((body.head_yaw, body.head_pitch), (physics.head_yaw_limit, physics.head_pitch_least));
+    }
+
+    #[test]
+    fn a_frozen_body_keeps_still() {
+        let mut body = body(Motion::Walk(Velocity::new(0.2, 0.0, 0.0)));
+        run(&mut body, 1.0);
+        body.command = Command { head_yaw: 1.0, head_pitch: 0.0, motion: Motion::Freeze };
+        run(&mut body, 0.01);
+        assert_eq!((body.phase, body.head_yaw), (Phase::Standing, 0.0));
+    }
+
+    #[test]
+    fn a_held_body_does_not_walk_or_kick() {
+        let physics = Physics::default();
+        for motion in [Motion::Walk(Velocity::new(0.2, 0.0, 0.0)), Motion::Kick(Side::Left)] {
+            let mut body = body(motion);
+            (0..100).for_each(|_| assert_eq!(body.advance(&physics, true), None));
+            assert_eq!(body.phase, Phase::Standing);
+        }
+    }
+
+    #[test]
+    fn odometry_follows_the_walk_and_is_taken_once() {
+        let mut body = body(Motion::Walk(Velocity::new(0.2, 0.0, 0.0)));
+        run(&mut body, 10.0);
+        let way = body.take_odometry().position.x;
+        assert!((1.8..2.1).contains(&way), "{way}");
+        assert_eq!(body.take_odometry(), Pose::default());
+    }
+}

@@ -1,0 +1,18 @@
+//! What a player computes, as ordinary code: nothing here knows messages, topics or blackboards, so all of it is used and tested alone.
+
+pub mod aim;
+pub mod align;
+pub mod approach;
+pub mod avoidance;
+pub mod ball_filter;
+pub mod field;
+pub mod game;
+pub mod geometry;
+pub mod guard;
+pub mod head;
+pub mod interception;
+pub mod lights;
+pub mod localisation;
+pub mod motion;
+pub mod obstacles;
+pub mod walk;

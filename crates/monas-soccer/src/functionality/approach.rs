@@ -1,0 +1,146 @@
+//! Walking to the ball so that one arrives behind it, facing where it is to go.
+//!
+//! Seen from the ball, the robot has to come to the side opposite to the target. While it is elsewhere it walks round the ball on a
+//! circle: first along the tangent, then along the arc. Once it stands in a narrow sector behind the ball it walks up to it. What is
+//! needed of the way is only its next point, so that nothing is remembered between two calls: whoever pushes the robot away only makes
+//! its way longer.
+
+use std::f64::consts::FRAC_PI_2;
+
+use nalgebra::{Point2, Vector2};
+
+use super::avoidance::avoid;
+use super::geometry::{angle_of, rotation, wrap};
+use super::walk::{Walk, stride_to, walk_to};
+
+/// How the ball is approached.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Approach {
+    /// Distance from the ball at which the way ends, metres.
+    pub stand_off: f64,
+    /// Radius of the circle on which the robot walks round the ball, metres.
+    pub circle: f64,
+    /// Half angle of the sector behind the ball in which the robot walks up to it, radians.
+    pub sector: f64,
+    /// Distance from its end from which the way is walked facing the target instead of facing ahead, metres.
+    pub face_target: f64,
+}
+
+impl Default for Approach {
+    fn default() -> Approach {
+        Approach { stand_off: 0.2, circle: 0.38, sector: 0.3, face_target: 0.45 }
+    }
+}
+
+impl Approach {
+    /// The walk towards a ball that is to go to `target`, past `obstacles`; all in the robot's frame.
+    pub fn walk(&self, ball: Point2<f64>, target: Point2<f64>, obstacles: &[Point2<f64>]) -> Walk {
+        let shot = (target - ball).try_normalize(1e-6).unwrap_or(Vector2::x());
+        let (next, way) = self.next_point(ball, shot);
+        let aside = avoid(next, obstacles);
+        if aside != next {
+            return stride_to(aside, way.max(aside.coords.norm()));
+        }
+        if way > self.face_target {
+            return stride_to(next, way);
+        }
+        walk_to(next, way, angle_of(&shot))
+    }
+
+    /// The point to walk to now, and how long the whole way is.
+    fn next_point(&self, ball: Point2<f64>, shot: Vector2<f64>) -> (Point2<f64>, f64) {
+        let from_ball = -ball.coords;
+        let distance = from_ball.norm();
+        // How far round the ball the robot has to go, seen from the ball; positive counterclockwise.
+        let round = wrap(angle_of(&-shot) - angle_of(&from_ball));
+        if round.abs() <= self.sector {
+            let behind = ball - shot * self.stand_off;
+            return (behind, behind.coords.norm());
+        }
+        // The tangent touches the circle this far round; from within the circle the next point is a step ahead on it.
+        let tangent = if distance > self.circle { libm::acos(self.circle / distance) } else { 0.0 };
+        let step = (tangent + self.sector).min(round.abs());
+        let outward = from_ball.try_normalize(1e-6).unwrap_or(-shot);
+        let next = ball + rotation(step.copysign(round)) * outward * self.circle;
+        let arc = (round.abs() - step) * self.circle;
+        (next, next.coords.norm() + arc + (self.circle - self.stand_off))
+    }
+}
+
+/// A place behind the ball from which a team mate's play is supported: `distance` metres back from it, towards the own goal.
+pub fn support_place(ball: Point2<f64>, target: Point2<f64>, distance: f64) -> Point2<f64> {
+    let shot = (target - ball).try_normalize(1e-6).unwrap_or(Vector2::x());
+    let aside = rotation(FRAC_PI_2 / 2.0) * -shot;
+    let other = rotation(-FRAC_PI_2 / 2.0) * -shot;
+    let places = [ball + aside * distance, ball + other * distance];
+    if places[0].coords.norm() <= places[1].coords.norm() { places[0] } else { places[1] }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use nalgebra::Isometry2;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::functionality::geometry::{heading, polar, pose};
+    use crate::functionality::walk::Gait;
+
+    const GAIT: Gait = Gait { forward: 0.25, backward: 0.12, sideways: 0.12, turn: 1.0 };
+    const DT: f64 = 0.1;
+
+    /// Walks until the ball is within `near`, without noise; the seconds it took and the final pose.
+    fn walk_up(mut field_from_robot: Isometry2<f64>, ball: Point2<f64>, target: Point2<f64>) -> (f64, Isometry2<f64>, f64) {
+        let (mut seconds, mut nearest) = (0.0, f64::INFINITY);
+        while seconds < 120.0 {
+            let robot_from_field = field_from_robot.inverse();
+            let (ball, target) = (robot_from_field * ball, robot_from_field * target);
+            if ball.coords.norm() <= 0.25 {
+                break;
+            }
+            nearest = f64::min(nearest, ball.coords.norm());
+            let walk = GAIT.limit(&Approach::default().walk(ball, target, &[]));
+            field_from_robot *= pose(walk.ahead * DT, walk.left * DT, walk.turn * DT);
+            seconds += DT;
+        }
+        (seconds, field_from_robot, nearest)
+    }
+
+    proptest! {
+        #[test]
+        fn it_arrives_behind_the_ball_facing_the_target(
+            distance in 0.5..5.0f64, direction in 0.0..TAU, start_heading in -PI..PI
+        ) {
+            let (ball, target) = (Point2::origin(), Point2::new(3.0, 0.0));
+            let place = polar(distance, direction);
+            let (seconds, end, _) = walk_up(pose(place.x, place.y, start_heading), ball, target);
+            prop_assert!(seconds < 12.0 + distance / 0.2, "took {seconds} s");
+            prop_assert!(heading(&end).abs() < 0.4, "arrives with heading {}", heading(&end));
+            prop_assert!(end.translation.x < -0.2 && end.translation.y.abs() < 0.12, "arrives at {}", end.translation);
+        }
+    }
+
+    #[test]
+    fn a_ball_in_between_is_not_run_over() {
+        let (_, end, nearest) = walk_up(pose(1.0, 0.02, PI), Point2::origin(), Point2::new(3.0, 0.0));
+        assert!(nearest > 0.24, "came as near as {nearest}");
+        assert!(end.translation.x < -0.2);
+    }
+
+    #[test]
+    fn a_robot_in_the_way_is_passed() {
+        let (ball, target) = (Point2::new(2.0, 0.0), Point2::new(4.0, 0.0));
+        let free = Approach::default().walk(ball, target, &[]);
+        assert!(free.left.abs() < 1e-9 && free.turn.abs() < 1e-9);
+        let blocked = Approach::default().walk(ball, target, &[Point2::new(1.0, 0.05)]);
+        assert!(blocked.turn < -0.1);
+    }
+
+    #[test]
+    fn the_supporting_place_is_behind_the_ball_on_the_robots_side() {
+        let place = support_place(Point2::new(2.0, 0.0), Point2::new(5.0, 0.5), 0.8);
+        assert!((place - Point2::new(2.0, 0.0)).norm() - 0.8 < 1e-9);
+        assert!(place.x < 1.6);
+    }
+}

@@ -1,0 +1,63 @@
+//! The field as the rules draw it.
+
+use nalgebra::Point2;
+
+/// The measures of a field that play depends on, and the places that follow from them, in the frame of the player's team: origin in
+/// the centre, x towards the goal to attack.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Field {
+    /// From goal line to goal line, metres.
+    pub length: f64,
+    /// From touch line to touch line, metres.
+    pub width: f64,
+    /// Between the middles of a goal's posts, metres.
+    pub goal_width: f64,
+}
+
+/// One of the two goals.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Goal {
+    /// The one to defend, at -x.
+    Own,
+    /// The one to score in, at +x.
+    Opponent,
+}
+
+impl Field {
+    /// The field of the league in 2010: 6 m by 4 m, goals of 1.4 m.
+    pub const LEAGUE_2010: Field = Field { length: 6.0, width: 4.0, goal_width: 1.4 };
+
+    /// The middle of a goal.
+    pub fn goal(&self, goal: Goal) -> Point2<f64> {
+        Point2::new(self.goal_line(goal), 0.0)
+    }
+
+    /// The left and the right post of a goal, as seen by who faces that goal from the field.
+    pub fn posts(&self, goal: Goal) -> [Point2<f64>; 2] {
+        let (x, half) = (self.goal_line(goal), self.goal_width / 2.0);
+        match goal {
+            Goal::Opponent => [Point2::new(x, half), Point2::new(x, -half)],
+            Goal::Own => [Point2::new(x, -half), Point2::new(x, half)],
+        }
+    }
+
+    fn goal_line(&self, goal: Goal) -> f64 {
+        match goal {
+            Goal::Opponent => self.length / 2.0,
+            Goal::Own => -self.length / 2.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn left_and_right_are_those_of_who_faces_the_goal() {
+        let field = Field::LEAGUE_2010;
+        assert_eq!(field.posts(Goal::Opponent), [Point2::new(3.0, 0.7), Point2::new(3.0, -0.7)]);
+        assert_eq!(field.posts(Goal::Own), [Point2::new(-3.0, -0.7), Point2::new(-3.0, 0.7)]);
+        assert_eq!(field.goal(Goal::Own), Point2::new(-3.0, 0.0));
+    }
+}

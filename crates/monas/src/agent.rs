@@ -1,0 +1,168 @@
+//! Agents: what runs together under one name.
+
+use std::fmt;
+
+use yase::Statechart;
+
+use crate::activity::Activity;
+use crate::frequency::Frequency;
+
+/// What happens when an activity fails or panics. Whatever it is, the failure is logged with the agent and the cycle, and no
+/// other agent notices.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[non_exhaustive]
+pub enum Policy {
+    /// The activity's `start` is called again before its next call. The first failure costs no call, each further one in a
+    /// row twice as many as the one before, up to 64.
+    #[default]
+    Restart,
+    /// Nothing: the activity is called again when it is its turn.
+    Skip,
+    /// The agent stops.
+    StopAgent,
+    /// The agent stops, and the body of its host stands still from then on.
+    SafeState,
+}
+
+impl Policy {
+    /// Every policy with its name in configurations.
+    pub const NAMES: [(&'static str, Policy); 4] = [
+        ("restart", Policy::Restart),
+        ("skip", Policy::Skip),
+        ("stop-agent", Policy::StopAgent),
+        ("safe-state", Policy::SafeState),
+    ];
+}
+
+/// An agent: a list of activities that run one after the other once a period, statecharts that decide which activities run, or
+/// both. The list and each chart share nothing but topics.
+///
+/// ```
+/// use monas::{Agent, Blackboard, Hz};
+///
+/// fn hello(blackboard: &mut Blackboard) {
+///     println!("hello at {}", blackboard.now());
+/// }
+/// let greeter = Agent::new("greeter", Hz(10)).activity(hello);
+/// assert_eq!(greeter.name(), "greeter");
+/// ```
+pub struct Agent {
+    pub(crate) name: String,
+    pub(crate) frequency: Option<Frequency>,
+    pub(crate) activities: Vec<(String, Box<dyn Activity>)>,
+    pub(crate) charts: Vec<Statechart>,
+    pub(crate) policy: Policy,
+    pub(crate) real_time: bool,
+    pub(crate) priority: i32,
+    pub(crate) statistics_every: Option<u64>,
+}
+
+impl Agent {
+    /// An agent whose list of activities runs so often.
+    pub fn new(name: impl Into<String>, frequency: Frequency) -> Agent {
+        Agent { frequency: Some(frequency), ..Agent::idle(name.into()) }
+    }
+
+    /// An agent that does what a statechart says. It steps when something happens: a message arrives that a guard reads, a
+    /// timer expires, an activity returns.
+    pub fn statechart(name: impl Into<String>, chart: Statechart) -> Agent {
+        Agent::idle(name.into()).chart(chart)
+    }
+
+    pub(crate) fn idle(name: String) -> Agent {
+        Agent {
+            name,
+            frequency: None,
+            activities: Vec::new(),
+            charts: Vec::new(),
+            policy: Policy::default(),
+            real_time: false,
+            priority: 0,
+            statistics_every: None,
+        }
+    }
+
+    /// Adds an activity at the end of the list.
+    pub fn activity(self, activity: impl Activity + 'static) -> Agent {
+        let name = activity.name().to_owned();
+        self.named_activity(name, Box::new(activity))
+    }
+
+    /// Adds an activity at the end of the list, under the name it is registered as.
+    pub fn named_activity(mut self, name: impl Into<String>, activity: Box<dyn Activity>) -> Agent {
+        self.activities.push((name.into(), activity));
+        self
+    }
+
+    /// Adds a statechart.
+    pub fn chart(mut self, chart: Statechart) -> Agent {
+        self.charts.push(chart);
+        self
+    }
+
+    /// Says what happens when an activity fails.
+    pub fn on_failure(mut self, policy: Policy) -> Agent {
+        self.policy = policy;
+        self
+    }
+
+    /// Says how often it runs: its list, and its charts besides what wakes them anyway.
+    pub fn every(mut self, frequency: Frequency) -> Agent {
+        self.frequency = Some(frequency);
+        self
+    }
+
+    /// Says how urgent it is, and whether the system's real-time scheduling is wanted for it.
+    pub fn urgency(mut self, priority: i32, real_time: bool) -> Agent {
+        (self.priority, self.real_time) = (priority, real_time);
+        self
+    }
+
+    /// Says after how many cycles its times are written to the log.
+    pub fn statistics_every(mut self, cycles: u64) -> Agent {
+        self.statistics_every = (cycles > 0).then_some(cycles);
+        self
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// How often it runs, if it does not only when something happens.
+    pub fn frequency(&self) -> Option<Frequency> {
+        self.frequency
+    }
+
+    /// The names of the activities in its list, in order.
+    pub fn activity_names(&self) -> impl Iterator<Item = &str> {
+        self.activities.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Its statecharts.
+    pub fn charts(&self) -> &[Statechart] {
+        &self.charts
+    }
+
+    /// What happens when an activity fails.
+    pub fn policy(&self) -> Policy {
+        self.policy
+    }
+
+    /// How urgent it is, and whether real-time scheduling is wanted.
+    pub fn scheduling(&self) -> (i32, bool) {
+        (self.priority, self.real_time)
+    }
+}
+
+impl fmt::Debug for Agent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Agent")
+            .field("name", &self.name)
+            .field("frequency", &self.frequency)
+            .field("activities", &self.activity_names().collect::<Vec<_>>())
+            .field("charts", &self.charts.iter().map(|chart| &chart.name).collect::<Vec<_>>())
+            .field("policy", &self.policy)
+            .finish()
+    }
+}

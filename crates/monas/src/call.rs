@@ -1,0 +1,53 @@
+//! Calls of activities: nothing that they do gets past here.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use narukom::Blackboard;
+
+use crate::activity::{Activity, BoxError, Progress};
+
+/// Why a call of an activity came to nothing.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Failure {
+    /// It returned an error.
+    #[error("{0}")]
+    Error(BoxError),
+    /// It panicked.
+    #[error("panicked: {0}")]
+    Panic(String),
+}
+
+/// Calls `start`.
+pub(crate) fn start(activity: &mut dyn Activity, blackboard: &mut Blackboard) -> Result<(), Failure> {
+    guarded(|| activity.start(blackboard))
+}
+
+/// Calls `execute`.
+pub(crate) fn execute(activity: &mut dyn Activity, blackboard: &mut Blackboard) -> Result<Progress, Failure> {
+    guarded(|| activity.execute(blackboard))
+}
+
+/// Calls `stop`.
+pub(crate) fn stop(activity: &mut dyn Activity, blackboard: &mut Blackboard) -> Result<(), Failure> {
+    guarded(|| {
+        activity.stop(blackboard);
+        Ok(())
+    })
+}
+
+/// Whatever the activity left half done is its own affair: it is started again before it is called again, or never
+/// called. The blackboard is whole at any time, since its own operations do not panic.
+fn guarded<T>(call: impl FnOnce() -> Result<T, BoxError>) -> Result<T, Failure> {
+    match catch_unwind(AssertUnwindSafe(call)) {
+        Ok(Ok(value)) => Ok(value),
+        Ok(Err(error)) => Err(Failure::Error(error)),
+        Err(payload) => Err(Failure::Panic(spoken(payload.as_ref()))),
+    }
+}
+
+/// What a panic said.
+fn spoken(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without a message".into())
+}

@@ -1,0 +1,4 @@
+//! Configuration: agents as people write them.
+
+mod repair;
+pub mod xml;

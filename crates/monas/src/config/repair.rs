@@ -1,0 +1,342 @@
+//! Makes well-formed XML of what people write, and remembers where each byte came from.
+//!
+//! The thesis writes `<agent Priority=1>` without quotes and several roots in a file, and people forget closing tags.
+//! [`repair`] reads such a text tag by tag, says what cannot be meant, and writes a text that an XML parser accepts:
+//! values quoted, ampersands escaped, tags closed, comments and declarations dropped, one root around everything.
+
+use yase::{Diagnostic, Span};
+
+/// Deeper than this an element is refused, so that no reader of the tree needs an unbounded stack.
+const DEPTH: usize = 64;
+
+/// The element that is put around everything.
+pub(super) const ROOT: &str = "monas";
+
+/// A well-formed text, and what was said about the original.
+pub(super) struct Repaired {
+    pub(super) text: String,
+    pub(super) diagnostics: Vec<Diagnostic>,
+    pieces: Vec<Piece>,
+}
+
+/// A run of bytes of the repaired text: copied from the original, or put in at one place of it.
+struct Piece {
+    start: usize,
+    original: usize,
+    copied: bool,
+}
+
+impl Repaired {
+    /// The byte of the original that a byte of the repaired text stands for.
+    pub(super) fn original(&self, byte: usize) -> usize {
+        let index = self.pieces.partition_point(|piece| piece.start <= byte);
+        match index.checked_sub(1).map(|index| &self.pieces[index]) {
+            Some(piece) if piece.copied => piece.original + (byte - piece.start),
+            Some(piece) => piece.original,
+            None => 0,
+        }
+    }
+
+    /// The place in the original that a place in the repaired text stands for.
+    pub(super) fn original_span(&self, start: usize, end: usize) -> Span {
+        let last = self.original(end.saturating_sub(1));
+        let start = self.original(start);
+        Span::new(start, (last + 1).max(start))
+    }
+}
+
+/// Repairs a text.
+pub(super) fn repair(source: &str) -> Repaired {
+    let mut writer = Writer {
+        source,
+        at: 0,
+        open: Vec::new(),
+        out: Repaired { text: String::with_capacity(source.len() + 64), diagnostics: vec![], pieces: vec![] },
+    };
+    writer.insert(&format!("<{ROOT}>"));
+    while writer.at < source.len() {
+        writer.item();
+    }
+    writer.close_down_to(0);
+    writer.insert(&format!("</{ROOT}>"));
+    writer.out
+}
+
+struct Writer<'a> {
+    source: &'a str,
+    at: usize,
+    /// Name of each open element, and the place of its tag's name.
+    open: Vec<(&'a str, Span)>,
+    out: Repaired,
+}
+
+impl<'a> Writer<'a> {
+    /// Reads one comment, declaration, tag or run of text.
+    fn item(&mut self) {
+        let rest = self.rest();
+        if rest.starts_with("<!--") {
+            self.skip_to("-->", "this comment is not closed");
+        } else if rest.starts_with("<![CDATA[") {
+            self.character_data();
+        } else if rest.starts_with("<?") {
+            self.skip_to("?>", "this declaration is not closed");
+        } else if rest.starts_with("<!") {
+            self.say(self.at..self.at + 2, "document types are not read");
+            self.skip_to(">", "this document type is not closed");
+        } else if rest.starts_with("</") {
+            self.closing_tag();
+        } else if rest.strip_prefix('<').is_some_and(starts_name) {
+            self.opening_tag();
+        } else {
+            self.text();
+        }
+    }
+
+    fn rest(&self) -> &'a str {
+        &self.source[self.at..]
+    }
+
+    fn say(&mut self, span: impl Into<Span>, message: impl Into<String>) {
+        self.out.diagnostics.push(Diagnostic::error("E0301", span, message));
+    }
+
+    fn insert(&mut self, text: &str) {
+        self.out.pieces.push(Piece { start: self.out.text.len(), original: self.at, copied: false });
+        self.out.text.push_str(text);
+    }
+
+    /// Copies the bytes up to `end`, which becomes the place to go on from.
+    fn copy_to(&mut self, end: usize) {
+        self.out.pieces.push(Piece { start: self.out.text.len(), original: self.at, copied: true });
+        self.out.text.push_str(&self.source[self.at..end]);
+        self.at = end;
+    }
+
+    fn skip_to(&mut self, terminator: &str, otherwise: &str) {
+        match self.rest().find(terminator) {
+            Some(found) => self.at += found + terminator.len(),
+            None => {
+                self.say(self.at..self.at + 2, otherwise);
+                self.at = self.source.len();
+            }
+        }
+    }
+
+    fn character_data(&mut self) {
+        match self.rest().find("]]>") {
+            Some(found) => self.copy_to(self.at + found + 3),
+            None => self.skip_to("]]>", "this character data is not closed"),
+        }
+    }
+
+    /// Text up to the next tag; a `<` that begins none is taken as it stands, and said.
+    fn text(&mut self) {
+        if self.rest().starts_with('<') {
+            self.say(self.at..self.at + 1, "`<` begins no tag here; write `&lt;`");
+            self.insert("&lt;");
+            self.at += 1;
+        }
+        let end = self.rest().find('<').map_or(self.source.len(), |found| self.at + found);
+        let text = &self.source[self.at..end];
+        if self.open.is_empty() && !text.trim().is_empty() {
+            let start = self.at + (text.len() - text.trim_start().len());
+            self.say(start..start + text.trim().len(), "text outside of an element");
+        }
+        self.escaped_to(end);
+    }
+
+    /// Copies up to `end`, escaping what a person forgets to: `&` that begins no entity, and `<` in a value.
+    fn escaped_to(&mut self, end: usize) {
+        while let Some(found) = self.source[self.at..end].find(['&', '<']) {
+            self.copy_to(self.at + found);
+            if begins_entity(&self.source[self.at..end]) {
+                self.copy_to(self.at + 1);
+            } else {
+                self.insert(if self.rest().starts_with('&') { "&amp;" } else { "&lt;" });
+                self.at += 1;
+            }
+        }
+        self.copy_to(end);
+    }
+
+    fn closing_tag(&mut self) {
+        let start = self.at + 2;
+        let name = name_at(&self.source[start..]);
+        let span = Span::new(start, start + name.len());
+        match self.open.iter().rposition(|(open, _)| *open == name) {
+            Some(depth) => {
+                self.close_down_to(depth + 1);
+                self.open.pop();
+                self.insert(&format!("</{name}>"));
+            }
+            None => self.stray_closing_tag(name, span),
+        }
+        self.at = span.end;
+        self.skip_to(">", "this tag is not closed");
+    }
+
+    /// A closing tag that fits no open element is taken for the innermost one if it is a slip of its name.
+    fn stray_closing_tag(&mut self, name: &str, span: Span) {
+        let message = format!("`</{name}>` closes nothing");
+        let open = self.open.last().copied();
+        let names = open.iter().map(|(open, _)| *open);
+        let diagnostic = Diagnostic::error("E0301", span, message).with_nearest(name, names);
+        let slip = diagnostic.hint.is_some();
+        self.out.diagnostics.push(diagnostic);
+        if let (true, Some((open, _))) = (slip, open) {
+            self.open.pop();
+            self.insert(&format!("</{open}>"));
+        }
+    }
+
+    /// Closes what is still open, down to so many elements.
+    fn close_down_to(&mut self, depth: usize) {
+        while self.open.len() > depth {
+            if let Some((name, span)) = self.open.pop() {
+                self.say(span, format!("`<{name}>` is not closed"));
+                self.insert(&format!("</{name}>"));
+            }
+        }
+    }
+
+    fn opening_tag(&mut self) {
+        let tag = self.at;
+        let name = name_at(&self.source[tag + 1..]);
+        let span = Span::new(tag + 1, tag + 1 + name.len());
+        if self.open.len() >= DEPTH {
+            let message = format!("`<{name}>` is nested more than {DEPTH} levels deep");
+            self.out.diagnostics.push(Diagnostic::error("E0302", span, message));
+            return self.skip_to(">", "this tag is not closed");
+        }
+        self.copy_to(span.end);
+        self.attributes(name, span);
+    }
+
+    /// Attributes, up to and with the end of the tag.
+    fn attributes(&mut self, element: &'a str, span: Span) {
+        let mut seen = Vec::new();
+        loop {
+            self.copy_to(self.source.len() - self.rest().trim_start().len());
+            let rest = self.rest();
+            if rest.starts_with("/>") {
+                return self.copy_to(self.at + 2);
+            } else if rest.starts_with('>') {
+                self.open.push((element, span));
+                return self.copy_to(self.at + 1);
+            } else if rest.is_empty() || rest.starts_with('<') {
+                self.say(span, format!("the tag `<{element}` has no `>`"));
+                self.open.push((element, span));
+                return self.insert(">");
+            } else if starts_name(rest) {
+                self.attribute(&mut seen);
+            } else {
+                let wrong = rest.chars().next().map_or(0, char::len_utf8);
+                self.say(self.at..self.at + wrong, format!("`{}` has no meaning here", &rest[..wrong]));
+                self.at += wrong;
+            }
+        }
+    }
+
+    fn attribute(&mut self, seen: &mut Vec<&'a str>) {
+        let name = name_at(self.rest());
+        let span = Span::new(self.at, self.at + name.len());
+        let after = self.source[span.end..].trim_start();
+        let Some(value) = after.strip_prefix('=') else {
+            let diagnostic = Diagnostic::error("E0301", span, format!("attribute `{name}` has no value"));
+            self.out.diagnostics.push(diagnostic.with_hint(format!("write `{name}=\"1\"`")));
+            self.at = span.end;
+            return;
+        };
+        let value_start = self.source.len() - value.trim_start().len();
+        let repeated = seen.contains(&name);
+        let length = self.out.text.len();
+        if repeated {
+            let diagnostic = Diagnostic::error("E0307", span, format!("attribute `{name}` is given twice"));
+            self.out.diagnostics.push(diagnostic);
+        } else {
+            seen.push(name);
+            self.insert(" ");
+            self.copy_to(span.end);
+            self.insert("=");
+        }
+        self.at = value_start;
+        self.value(name);
+        if repeated {
+            self.take_back(length);
+        }
+    }
+
+    /// Forgets what was written after so many bytes.
+    fn take_back(&mut self, length: usize) {
+        self.out.text.truncate(length);
+        self.out.pieces.retain(|piece| piece.start < length);
+    }
+
+    fn value(&mut self, name: &str) {
+        match self.rest().chars().next() {
+            Some(quote @ ('"' | '\'')) => self.quoted_value(name, quote),
+            _ => {
+                let rest = self.rest();
+                let end = rest.find(|c: char| c.is_whitespace() || c == '>' || c == '<').unwrap_or(rest.len());
+                let value = rest[..end].strip_suffix('/').filter(|_| rest[end..].starts_with('>'));
+                self.enclosed(self.at + value.map_or(end, str::len));
+            }
+        }
+    }
+
+    fn quoted_value(&mut self, name: &str, quote: char) {
+        let start = self.at;
+        let inner = &self.source[start + 1..];
+        let end = inner.find(quote);
+        let line = inner.find(['\n', '>']).unwrap_or(inner.len());
+        self.at = start + 1;
+        match end {
+            // A quote that closes only behind the next tag's beginning is the next value's.
+            Some(end) if !inner[..end].contains(['<', '\n']) || !inner[..end].contains('=') => {
+                self.enclosed(start + 1 + end);
+                self.at += 1;
+            }
+            _ => {
+                self.say(start..start + 1 + line, format!("the value of `{name}` is not closed"));
+                self.enclosed(start + 1 + line);
+            }
+        }
+    }
+
+    /// Copies up to `end` between double quotes.
+    fn enclosed(&mut self, end: usize) {
+        self.insert("\"");
+        while let Some(found) = self.source[self.at..end].find('"') {
+            self.escaped_to(self.at + found);
+            self.insert("&quot;");
+            self.at += 1;
+        }
+        self.escaped_to(end);
+        self.insert("\"");
+    }
+}
+
+fn starts_name(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_alphabetic() || c == '_')
+}
+
+/// The name that a text begins with; empty if it begins with none.
+fn name_at(text: &str) -> &str {
+    let end = text.find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '-' | '.')));
+    &text[..end.unwrap_or(text.len())]
+}
+
+/// Whether a text begins with an entity of XML's own, or a numbered character.
+fn begins_entity(text: &str) -> bool {
+    let Some((name, _)) = text.strip_prefix('&').and_then(|rest| rest.split_once(';')) else {
+        return false;
+    };
+    let digits = |text: &str, radix| !text.is_empty() && text.chars().all(|c| c.is_digit(radix));
+    match name.strip_prefix('#') {
+        Some(number) => match number.strip_prefix('x') {
+            Some(hexadecimal) => digits(hexadecimal, 16),
+            None => digits(number, 10),
+        },
+        None => matches!(name, "lt" | "gt" | "amp" | "quot" | "apos"),
+    }
+}

@@ -1,0 +1,71 @@
+//! How often an agent's cycle begins.
+
+use std::fmt;
+use std::time::Duration;
+
+use narukom::Moment;
+
+/// A number of cycles a second.
+#[derive(Clone, Copy, PartialEq, PartialOrd, Debug)]
+pub struct Frequency {
+    hertz: f64,
+}
+
+/// So many cycles a second: `Hz(10)`, `Hz(83.3)`.
+///
+/// What is not above zero is taken for one cycle in 1,000 seconds, what is above a million for a million.
+#[allow(non_snake_case)] // reads as the unit it is
+pub fn Hz(cycles: impl Into<f64>) -> Frequency {
+    let cycles = cycles.into();
+    // A comparison that a number that is none fails as well.
+    let hertz = if cycles > Frequency::LOWEST { cycles.min(Frequency::HIGHEST) } else { Frequency::LOWEST };
+    Frequency { hertz }
+}
+
+impl Frequency {
+    /// The lowest there is, in cycles a second.
+    pub const LOWEST: f64 = 0.001;
+    /// The highest there is, in cycles a second.
+    pub const HIGHEST: f64 = 1e6;
+
+    /// Cycles a second.
+    pub fn hertz(self) -> f64 {
+        self.hertz
+    }
+
+    /// The time from one cycle to the next.
+    pub fn period(self) -> Duration {
+        Duration::from_secs_f64(1.0 / self.hertz)
+    }
+
+    /// When a cycle is due, counted from 0 at the start of the run. Each is computed from its number, so that nothing adds up.
+    pub fn due(self, cycle: u64) -> Moment {
+        Moment::from_secs_f64(cycle as f64 / self.hertz)
+    }
+}
+
+impl fmt::Display for Frequency {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} Hz", self.hertz)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_millionth_cycle_is_due_without_drift() {
+        assert_eq!(Hz(30).due(3_000_000), Moment::from_nanos(100_000 * 1_000_000_000));
+        assert_eq!(Hz(10).due(1), Moment::from_nanos(100_000_000));
+        assert_eq!(Hz(10).due(0), Moment::ZERO);
+    }
+
+    #[test]
+    fn what_is_no_frequency_is_brought_within_bounds() {
+        for cycles in [0.0, -1.0, f64::NAN, f64::NEG_INFINITY] {
+            assert_eq!(Hz(cycles).hertz(), Frequency::LOWEST);
+        }
+        assert_eq!(Hz(f64::INFINITY).hertz(), Frequency::HIGHEST);
+    }
+}

@@ -1,0 +1,204 @@
+//! Functions that transition expressions may call.
+//!
+//! A function depends on its arguments only (R18): a chart is looked at again when a topic that its guards read has a new
+//! message, and a function that looked elsewhere would change unseen.
+
+use narukom::Message;
+use yase::vocabulary::ValueType;
+use yase::Value;
+
+/// A function as [`function!`](crate::function) registers it.
+#[derive(Clone, Copy)]
+pub struct FunctionDeclaration {
+    /// Its name in expressions.
+    pub name: &'static str,
+    /// The module it was registered in.
+    pub module: &'static str,
+    /// The types of its arguments.
+    pub parameters: fn() -> Vec<ValueType>,
+    /// The type of its result.
+    pub result: fn() -> ValueType,
+    /// Calls it; none if an argument is missing or of another type.
+    pub call: fn(&[Value<'_>]) -> Option<Value<'static>>,
+}
+
+impl std::fmt::Debug for FunctionDeclaration {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}::{}", self.module, self.name)
+    }
+}
+
+/// Every function registered in the crates of this program.
+#[doc(hidden)]
+#[linkme::distributed_slice]
+pub static FUNCTIONS: [FunctionDeclaration];
+
+/// Puts a function into the registry, so that transition expressions can call it.
+///
+/// Arguments are numbers (`f64`, `i64`), truth values (`bool`), texts (`&str`) and whole messages (`&Ball`); results are numbers
+/// and truth values.
+///
+/// ```
+/// fn midway(a: f64, b: f64) -> f64 {
+///     (a + b) / 2.0
+/// }
+/// monas::function!(midway(f64, f64) -> f64);
+///
+/// let registry = monas::Registry::linked();
+/// assert!(registry.function_names().any(|name| name == "midway"));
+/// ```
+#[macro_export]
+macro_rules! function {
+    ($name:ident ( $($argument:ty),* $(,)? ) -> $result:ty) => {
+        $crate::function!($name($($argument),*) -> $result as ::core::stringify!($name));
+    };
+    ($name:ident ( $($argument:ty),* $(,)? ) -> $result:ty as $registered:expr) => {
+        const _: () = {
+            #[$crate::linked::linkme::distributed_slice($crate::linked::FUNCTIONS)]
+            #[linkme(crate = $crate::linked::linkme)]
+            static DECLARATION: $crate::linked::FunctionDeclaration = $crate::linked::FunctionDeclaration {
+                name: $registered,
+                module: ::core::module_path!(),
+                parameters: || ::std::vec![$(<$argument as $crate::linked::Argument<'_>>::value_type()),*],
+                result: <$result as $crate::linked::Answer>::value_type,
+                call: |values| {
+                    #[allow(unused_mut, unused_variables)]
+                    let mut values = values.iter().copied();
+                    let answer: $result =
+                        $name($(<$argument as $crate::linked::Argument<'_>>::from_value(values.next()?)?),*);
+                    ::core::option::Option::Some($crate::linked::Answer::into_value(answer))
+                },
+            };
+        };
+    };
+}
+
+/// What a function takes.
+#[diagnostic::on_unimplemented(
+    message = "a function of expressions cannot take `{Self}`",
+    note = "it takes `f64`, `i64`, `bool`, `&str` and references to messages such as `&Ball`"
+)]
+pub trait Argument<'a>: Sized {
+    /// The type that expressions know.
+    fn value_type() -> ValueType;
+    /// The argument that a value is; none if it is of another type or missing.
+    fn from_value(value: Value<'a>) -> Option<Self>;
+}
+
+impl Argument<'_> for f64 {
+    fn value_type() -> ValueType {
+        ValueType::Number
+    }
+    fn from_value(value: Value<'_>) -> Option<f64> {
+        match value {
+            Value::Float(number) => Some(number),
+            Value::Int(number) => Some(number as f64),
+            Value::Uint(number) => Some(number as f64),
+            _ => None,
+        }
+    }
+}
+
+impl Argument<'_> for i64 {
+    fn value_type() -> ValueType {
+        ValueType::Number
+    }
+    fn from_value(value: Value<'_>) -> Option<i64> {
+        match value {
+            Value::Int(number) => Some(number),
+            Value::Uint(number) => i64::try_from(number).ok(),
+            // A number written with a fraction is no whole number; one beyond 2^53 may be any of several.
+            Value::Float(number) if libm::trunc(number) == number && libm::fabs(number) < 9e15 => Some(number as i64),
+            _ => None,
+        }
+    }
+}
+
+impl Argument<'_> for bool {
+    fn value_type() -> ValueType {
+        ValueType::Bool
+    }
+    fn from_value(value: Value<'_>) -> Option<bool> {
+        match value {
+            Value::Bool(truth) => Some(truth),
+            _ => None,
+        }
+    }
+}
+
+impl<'a> Argument<'a> for &'a str {
+    fn value_type() -> ValueType {
+        ValueType::Text
+    }
+    fn from_value(value: Value<'a>) -> Option<&'a str> {
+        match value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+}
+
+impl<'a, M: Message> Argument<'a> for &'a M {
+    fn value_type() -> ValueType {
+        ValueType::Message(M::descriptor().name.into())
+    }
+    fn from_value(value: Value<'a>) -> Option<&'a M> {
+        match value {
+            Value::Message(message) => message.downcast_ref(),
+            _ => None,
+        }
+    }
+}
+
+/// What a function returns.
+#[diagnostic::on_unimplemented(
+    message = "a function of expressions cannot return `{Self}`",
+    note = "it returns `bool`, `f64` or `i64`"
+)]
+pub trait Answer {
+    /// The type that expressions know.
+    fn value_type() -> ValueType;
+    /// The value that it is.
+    fn into_value(self) -> Value<'static>;
+}
+
+impl Answer for bool {
+    fn value_type() -> ValueType {
+        ValueType::Bool
+    }
+    fn into_value(self) -> Value<'static> {
+        Value::Bool(self)
+    }
+}
+
+impl Answer for f64 {
+    fn value_type() -> ValueType {
+        ValueType::Number
+    }
+    fn into_value(self) -> Value<'static> {
+        Value::Float(self)
+    }
+}
+
+impl Answer for i64 {
+    fn value_type() -> ValueType {
+        ValueType::Number
+    }
+    fn into_value(self) -> Value<'static> {
+        Value::Int(self)
+    }
+}
+
+fn abs(number: f64) -> f64 {
+    libm::fabs(number)
+}
+fn min(a: f64, b: f64) -> f64 {
+    libm::fmin(a, b)
+}
+fn max(a: f64, b: f64) -> f64 {
+    libm::fmax(a, b)
+}
+
+crate::function!(abs(f64) -> f64);
+crate::function!(min(f64, f64) -> f64);
+crate::function!(max(f64, f64) -> f64);

@@ -1,0 +1,16 @@
+//! What the runtime publishes about itself: every cycle of every agent and every micro-step of every chart.
+//!
+//! Numbers stand for names in the records of a cycle; [`HOST`] and [`MODEL`], published before anything runs, say which.
+
+narukom::include_messages!("monas.runtime");
+
+narukom::topic! {
+    /// The host and the paths of its topics.
+    pub HOST: narukom::State<Host> = "monas/host";
+    /// The names in each chart.
+    pub MODEL: narukom::Data<Model, 16> = "monas/model";
+    /// Each cycle of each agent.
+    pub CYCLE: narukom::Data<Cycle, 64> = "monas/cycle";
+    /// Each micro-step of each chart.
+    pub CHART: narukom::Data<Chart, 64> = "monas/chart";
+}

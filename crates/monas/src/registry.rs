@@ -1,0 +1,212 @@
+//! The registry: what a program can name in its configuration and its models.
+
+use std::collections::BTreeMap;
+
+use yase::diagnostic::nearest;
+
+use crate::activity::Activity;
+use crate::error::{Error, ErrorKind};
+use crate::function::{FUNCTIONS, FunctionDeclaration};
+
+/// An activity as [`activity!`](crate::activity) registers it.
+#[derive(Clone, Copy, Debug)]
+pub struct ActivityDeclaration {
+    /// The name that configurations and models use.
+    pub name: &'static str,
+    /// The module it was registered in.
+    pub module: &'static str,
+    /// Makes an instance.
+    pub make: fn() -> Box<dyn Activity>,
+}
+
+/// Every activity registered in the crates of this program.
+#[doc(hidden)]
+#[linkme::distributed_slice]
+pub static ACTIVITIES: [ActivityDeclaration];
+
+/// Puts an activity into the registry, so that configurations and models can name it.
+///
+/// ```
+/// use monas::{Activity, Blackboard, BoxError, Progress};
+///
+/// #[derive(Default)]
+/// struct PassBall;
+/// impl Activity for PassBall {
+///     fn execute(&mut self, _: &mut Blackboard) -> Result<Progress, BoxError> {
+///         Ok(Progress::Done)
+///     }
+/// }
+/// fn stand(_: &mut Blackboard) {}
+///
+/// monas::activity!(PassBall as "passBall"); // a type is made by `Default`
+/// monas::activity!(fn stand);
+///
+/// let registry = monas::Registry::linked();
+/// assert_eq!(registry.activity("passBall").unwrap().name(), "PassBall");
+/// assert!(registry.activity("stand").is_ok());
+/// ```
+///
+/// The linker drops a crate that nothing in the program mentions, and its activities with it: write `use its_name as _;` in the
+/// program.
+#[macro_export]
+macro_rules! activity {
+    (fn $function:ident) => {
+        $crate::activity!(@ ::core::stringify!($function), ::std::boxed::Box::new($function));
+    };
+    (fn $function:ident as $name:expr) => {
+        $crate::activity!(@ $name, ::std::boxed::Box::new($function));
+    };
+    ($type:ident) => {
+        $crate::activity!(@ ::core::stringify!($type), ::std::boxed::Box::<$type>::default());
+    };
+    ($type:ty as $name:expr) => {
+        $crate::activity!(@ $name, ::std::boxed::Box::<$type>::default());
+    };
+    (@ $name:expr, $made:expr) => {
+        const _: () = {
+            #[$crate::linked::linkme::distributed_slice($crate::linked::ACTIVITIES)]
+            #[linkme(crate = $crate::linked::linkme)]
+            static DECLARATION: $crate::linked::ActivityDeclaration = $crate::linked::ActivityDeclaration {
+                name: $name,
+                module: ::core::module_path!(),
+                make: || $made,
+            };
+        };
+    };
+}
+
+type Make = Box<dyn Fn() -> Box<dyn Activity> + Send + Sync>;
+
+/// What is known under one name: one maker, or several, none of which can be meant.
+struct Entry {
+    makers: Vec<(String, Make)>,
+}
+
+/// Activities and functions by name, in alphabetical order.
+///
+/// A name that two crates register is known as `crate::Name` only.
+#[derive(Default)]
+pub struct Registry {
+    activities: BTreeMap<String, Entry>,
+    functions: BTreeMap<String, Vec<FunctionDeclaration>>,
+}
+
+impl Registry {
+    /// A registry that knows nothing.
+    pub fn empty() -> Registry {
+        Registry::default()
+    }
+
+    /// Everything that [`activity!`](crate::activity) and [`function!`](crate::function) registered in this program.
+    pub fn linked() -> Registry {
+        let mut registry = Registry::empty();
+        for declaration in ACTIVITIES {
+            let make: Make = Box::new(declaration.make);
+            let package = package(declaration.module);
+            registry.insert(format!("{package}::{}", declaration.name), declaration.module, make);
+            registry.insert(declaration.name.into(), declaration.module, Box::new(declaration.make));
+        }
+        for declaration in FUNCTIONS {
+            registry.functions.entry(declaration.name.into()).or_default().push(*declaration);
+        }
+        // The linker's order is nobody's order.
+        registry.functions.values_mut().for_each(|same| same.sort_by_key(|function| function.module));
+        registry.activities.values_mut().for_each(|entry| entry.makers.sort_by(|a, b| a.0.cmp(&b.0)));
+        registry
+    }
+
+    /// Adds an activity under a name, for programs and tests that build their registry by hand.
+    pub fn with<A, F>(mut self, name: impl Into<String>, make: F) -> Registry
+    where
+        A: Activity + 'static,
+        F: Fn() -> A + Send + Sync + 'static,
+    {
+        self.insert(name.into(), "this program", Box::new(move || Box::new(make())));
+        self
+    }
+
+    fn insert(&mut self, name: String, module: &str, make: Make) {
+        let entry = self.activities.entry(name).or_insert_with(|| Entry { makers: Vec::new() });
+        entry.makers.push((module.to_owned(), make));
+    }
+
+    /// A new instance of an activity.
+    ///
+    /// # Errors
+    /// [`ErrorKind::UnknownActivity`] names the nearest one there is, [`ErrorKind::AmbiguousActivity`] those to choose from.
+    pub fn activity(&self, name: &str) -> Result<Box<dyn Activity>, Error> {
+        match self.activities.get(name).map(|entry| entry.makers.as_slice()) {
+            Some([(_, make)]) => Ok(make()),
+            Some(several) => Err(ambiguous(name, several)),
+            None => Err(self.unknown(name)),
+        }
+    }
+
+    fn unknown(&self, name: &str) -> Error {
+        let error = Error::new(ErrorKind::UnknownActivity, format!("unknown activity `{name}`"));
+        match nearest(name, self.activities.keys().map(String::as_str)) {
+            Some(known) => error.with_hint(format!("did you mean `{known}`?")),
+            None => error,
+        }
+    }
+
+    /// The names of all activities, those that only their crate's name tells apart in that form.
+    pub fn activity_names(&self) -> impl Iterator<Item = &str> {
+        let plain_is_ambiguous = |name: &str| self.activities.get(name).is_some_and(|e| e.makers.len() > 1);
+        self.activities
+            .iter()
+            .filter(move |(name, entry)| match name.rsplit_once("::") {
+                Some((_, plain)) => plain_is_ambiguous(plain),
+                None => entry.makers.len() == 1,
+            })
+            .map(|(name, _)| name.as_str())
+    }
+
+    /// The names of all functions.
+    pub fn function_names(&self) -> impl Iterator<Item = &str> {
+        self.functions.keys().map(String::as_str)
+    }
+
+    /// All functions, one of each name.
+    ///
+    /// # Errors
+    /// [`ErrorKind::AmbiguousFunction`] if two have one name.
+    pub(crate) fn functions(&self) -> Result<Vec<FunctionDeclaration>, Error> {
+        self.functions.iter().map(|(name, same)| only(name, same)).collect()
+    }
+}
+
+impl std::fmt::Debug for Registry {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Registry")
+            .field("activities", &self.activity_names().collect::<Vec<_>>())
+            .field("functions", &self.function_names().collect::<Vec<_>>())
+            .finish()
+    }
+}
+
+/// The crate that a module is in.
+fn package(module: &str) -> &str {
+    module.split("::").next().unwrap_or(module)
+}
+
+fn ambiguous(name: &str, makers: &[(String, Make)]) -> Error {
+    let modules: Vec<&str> = makers.iter().map(|(module, _)| module.as_str()).collect();
+    let message = format!("activity `{name}` is registered in {}", modules.join(" and in "));
+    let error = Error::new(ErrorKind::AmbiguousActivity, message);
+    match modules.first() {
+        Some(module) if !name.contains("::") => error.with_hint(format!("write `{}::{name}`", package(module))),
+        _ => error,
+    }
+}
+
+fn only(name: &str, same: &[FunctionDeclaration]) -> Result<FunctionDeclaration, Error> {
+    match same {
+        [function] => Ok(*function),
+        several => {
+            let modules: Vec<&str> = several.iter().map(|function| function.module).collect();
+            let message = format!("function `{name}` is registered in {}", modules.join(" and in "));
+            Err(Error::new(ErrorKind::AmbiguousFunction, message))
+        }
+    }
+}

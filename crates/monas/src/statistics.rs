@@ -1,0 +1,175 @@
+//! What is counted and measured about agents while they run.
+
+use std::time::Duration;
+
+/// What a run has done so far, agent by agent in the order in which they run.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Statistics {
+    /// One entry for each agent.
+    pub agents: Vec<AgentStatistics>,
+}
+
+/// What one agent has done so far.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct AgentStatistics {
+    /// Its host.
+    pub host: String,
+    /// Its name.
+    pub agent: String,
+    /// Passes through its list and run-to-completion steps of its charts.
+    pub cycles: u64,
+    /// Cycles that ended after the next was due. In simulated time there are none.
+    pub overruns: u64,
+    /// Micro-steps of its charts.
+    pub micro_steps: u64,
+    /// Each of its activities, those of its list before those of its charts.
+    pub activities: Vec<ActivityStatistics>,
+    /// How long a cycle takes; measured in real time only.
+    pub cycle_time: Option<Average>,
+    /// Why it has stopped, if it has.
+    pub stopped: Option<String>,
+}
+
+/// What one activity has done so far.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct ActivityStatistics {
+    /// The name it is registered under.
+    pub name: String,
+    /// The path of the state that runs it; none in a list.
+    pub state: Option<String>,
+    /// How often it was called.
+    pub calls: u64,
+    /// How often it failed or panicked.
+    pub failures: u64,
+    /// How long a call takes; measured in real time only.
+    pub call_time: Option<Average>,
+}
+
+impl Statistics {
+    /// The sum of the cycles of all agents.
+    pub fn cycles(&self) -> u64 {
+        self.agents.iter().map(|agent| agent.cycles).sum()
+    }
+
+    /// The sum of the overruns of all agents.
+    pub fn overruns(&self) -> u64 {
+        self.agents.iter().map(|agent| agent.overruns).sum()
+    }
+
+    /// The sum of the micro-steps of all charts.
+    pub fn micro_steps(&self) -> u64 {
+        self.agents.iter().map(|agent| agent.micro_steps).sum()
+    }
+
+    /// How often activities of that name were called on a host.
+    pub fn calls(&self, host: &str, activity: &str) -> u64 {
+        let agents = self.agents.iter().filter(|agent| agent.host == host);
+        let activities = agents.flat_map(|agent| &agent.activities);
+        activities.filter(|known| known.name == activity).map(|known| known.calls).sum()
+    }
+}
+
+/// A stopwatch's averages: mean and variance, both by exponential moving average, so that what happened long ago counts less.
+///
+/// With factor a, a new value x moves the mean m by a (x - m) and makes the variance (1 - a) (v + a (x - m)²), the
+/// incremental form of T. Finch, "Incremental calculation of weighted mean and variance", 2009.
+///
+/// ```
+/// use std::time::Duration;
+/// use monas::Average;
+///
+/// let mut average = Average::default();
+/// average.add(Duration::from_millis(10));
+/// average.add(Duration::from_millis(20));
+/// assert_eq!(average.mean(), Duration::from_millis(11));
+/// assert_eq!(average.deviation(), Duration::from_millis(3));
+/// ```
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Average {
+    /// How many values there were.
+    count: u64,
+    /// Seconds.
+    mean: f64,
+    /// Seconds squared.
+    variance: f64,
+    longest: Duration,
+}
+
+impl Average {
+    /// How much a new value counts.
+    const FACTOR: f64 = 0.1;
+
+    /// Takes a value in. The first one is the mean.
+    pub fn add(&mut self, value: Duration) {
+        self.longest = self.longest.max(value);
+        self.count += 1;
+        if self.count == 1 {
+            self.mean = value.as_secs_f64();
+            return;
+        }
+        let difference = value.as_secs_f64() - self.mean;
+        let step = Average::FACTOR * difference;
+        self.mean += step;
+        self.variance = (1.0 - Average::FACTOR) * (self.variance + difference * step);
+    }
+
+    /// How many values there were.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// The average.
+    pub fn mean(&self) -> Duration {
+        rounded(self.mean)
+    }
+
+    /// The square root of the variance.
+    pub fn deviation(&self) -> Duration {
+        rounded(libm::sqrt(self.variance))
+    }
+
+    /// The longest ever.
+    pub fn longest(&self) -> Duration {
+        self.longest
+    }
+}
+
+/// To the nearest nanosecond.
+fn rounded(seconds: f64) -> Duration {
+    Duration::from_nanos(libm::round(seconds * 1e9) as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_values_have_no_deviation() {
+        let mut average = Average::default();
+        (0..100).for_each(|_| average.add(Duration::from_micros(250)));
+        assert_eq!(average.mean(), Duration::from_micros(250));
+        assert_eq!(average.deviation(), Duration::ZERO);
+        assert_eq!(average.count(), 100);
+    }
+
+    #[test]
+    fn old_values_fade() {
+        let mut average = Average::default();
+        average.add(Duration::from_secs(1));
+        (0..200).for_each(|_| average.add(Duration::from_millis(1)));
+        assert_eq!(average.mean(), Duration::from_millis(1));
+        assert_eq!(average.longest(), Duration::from_secs(1));
+    }
+
+    #[test]
+    fn variance_of_alternating_values_approaches_its_limit() {
+        let mut average = Average::default();
+        for index in 0..2000 {
+            average.add(Duration::from_millis(if index % 2 == 0 { 10 } else { 20 }));
+        }
+        // Values 15 +- 5: the weighted variance lies near 25 ms², the mean near 15 ms.
+        let (mean, deviation) = (average.mean().as_secs_f64(), average.deviation().as_secs_f64());
+        assert!((mean - 0.015).abs() < 0.0005, "{mean}");
+        assert!((deviation - 0.005).abs() < 0.0005, "{deviation}");
+    }
+}

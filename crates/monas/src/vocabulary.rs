@@ -1,0 +1,114 @@
+//! The words that the expressions of a chart may use, taken from the topics and functions of the program.
+
+use std::collections::BTreeMap;
+
+use narukom::{EnumDescriptor, FieldKind, Kind, MessageDescriptor, TopicDeclaration};
+use yase::vocabulary::{
+    Enumeration, FieldEntry, FunctionEntry, MessageEntry, TopicEntry, TopicKind, ValueType, Vocabulary,
+};
+use yase::{FieldId, FunctionId, TopicId};
+
+use crate::function::FunctionDeclaration;
+
+/// Makes a vocabulary. A topic's number is its place among all paths in order, as in every hub; a function's is its place in
+/// `functions`; a field's is its place in its message's descriptor.
+pub(crate) fn vocabulary<'a>(
+    topics: impl IntoIterator<Item = &'a TopicDeclaration>,
+    functions: &[FunctionDeclaration],
+) -> Vocabulary {
+    let topics: BTreeMap<&str, &TopicDeclaration> = topics.into_iter().map(|topic| (topic.path(), topic)).collect();
+    let mut types = Types::default();
+    topics.values().for_each(|topic| types.collect(topic.descriptor()));
+    Vocabulary {
+        topics: topics.values().enumerate().map(|(number, topic)| types.topic(number, topic)).collect(),
+        messages: types.messages.values().map(|message| types.message(message)).collect(),
+        enumerations: types.enumerations.values().map(|enumeration| types.enumeration(enumeration)).collect(),
+        functions: functions.iter().enumerate().map(|(number, function)| entry(number, function)).collect(),
+    }
+}
+
+fn entry(number: usize, function: &FunctionDeclaration) -> FunctionEntry {
+    FunctionEntry {
+        id: FunctionId(number as u32),
+        name: function.name.into(),
+        parameters: (function.parameters)(),
+        result: (function.result)(),
+    }
+}
+
+/// Every type that the topics' messages are made of, by full name.
+#[derive(Default)]
+struct Types {
+    messages: BTreeMap<&'static str, &'static MessageDescriptor>,
+    enumerations: BTreeMap<&'static str, &'static EnumDescriptor>,
+}
+
+impl Types {
+    /// Adds a message type and those inside it; types may contain each other.
+    fn collect(&mut self, message: &'static MessageDescriptor) {
+        if self.messages.insert(message.full_name, message).is_some() {
+            return;
+        }
+        for field in message.fields {
+            match field.kind {
+                FieldKind::Message(inner) => self.collect(inner()),
+                FieldKind::Enum(enumeration) => {
+                    self.enumerations.insert(enumeration.full_name, enumeration);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// A message is known by its name without package, unless two packages have one of that name.
+    fn message_name(&self, message: &MessageDescriptor) -> String {
+        let namesakes = self.messages.values().filter(|other| other.name == message.name).count();
+        if namesakes > 1 { message.full_name } else { message.name }.to_owned()
+    }
+
+    fn enumeration_name(&self, enumeration: &EnumDescriptor) -> String {
+        let namesakes = self.enumerations.values().filter(|other| other.name == enumeration.name).count();
+        if namesakes > 1 { enumeration.full_name } else { enumeration.name }.to_owned()
+    }
+
+    fn topic(&self, number: usize, topic: &TopicDeclaration) -> TopicEntry {
+        TopicEntry {
+            id: TopicId(number as u32),
+            path: topic.path().into(),
+            kind: match topic.kind() {
+                Kind::State => TopicKind::State,
+                Kind::Signal => TopicKind::Signal,
+                Kind::Data => TopicKind::Data,
+            },
+            message: self.message_name(topic.descriptor()),
+        }
+    }
+
+    fn message(&self, message: &MessageDescriptor) -> MessageEntry {
+        let fields = message.fields.iter().enumerate();
+        let fields = fields.filter_map(|(index, field)| {
+            let kind = self.value_type(field.kind)?;
+            Some(FieldEntry { id: FieldId(index as u32), name: field.name.into(), kind })
+        });
+        MessageEntry { name: self.message_name(message), fields: fields.collect() }
+    }
+
+    fn enumeration(&self, enumeration: &EnumDescriptor) -> Enumeration {
+        let values = enumeration.values.iter().map(|(name, number)| ((*name).to_owned(), *number));
+        Enumeration { name: self.enumeration_name(enumeration), values: values.collect() }
+    }
+
+    /// What expressions can do with a field; none for lists, maps and bytes, which they cannot read.
+    fn value_type(&self, kind: FieldKind) -> Option<ValueType> {
+        match kind {
+            FieldKind::Bool => Some(ValueType::Bool),
+            FieldKind::I32 | FieldKind::I64 | FieldKind::U32 | FieldKind::U64 | FieldKind::F32 | FieldKind::F64 => {
+                Some(ValueType::Number)
+            }
+            FieldKind::Text => Some(ValueType::Text),
+            FieldKind::Enum(enumeration) => Some(ValueType::Enumeration(self.enumeration_name(enumeration))),
+            FieldKind::Message(inner) => Some(ValueType::Message(self.message_name(inner()))),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! The topics of a hub: checked once at start, found by hash or path ever after.
+
+use crate::error::{Error, ErrorKind};
+use crate::sample::TopicSlot;
+use crate::topic::{Keep, Topic, TopicDeclaration, is_topic_path};
+
+/// The declared topics, sorted by path; a topic's slot is its place.
+pub(crate) struct Catalogue {
+    topics: Vec<TopicDeclaration>,
+    /// Open addressing with linear probing: name hash to slot. At most half full, so that every probe ends.
+    table: Vec<Option<(u64, TopicSlot)>>,
+}
+
+impl Catalogue {
+    /// Checks that every path is well formed and declared with one type and one way of keeping, and that no two paths
+    /// have one hash.
+    pub(crate) fn new(declarations: Vec<TopicDeclaration>) -> Result<Catalogue, Error> {
+        let topics = merge(declarations)?;
+        let mut catalogue = Catalogue { table: vec![None; (topics.len() * 2).next_power_of_two()], topics };
+        for number in 0..catalogue.topics.len() {
+            catalogue.enter(TopicSlot::new(number as u32))?;
+        }
+        Ok(catalogue)
+    }
+
+    fn enter(&mut self, slot: TopicSlot) -> Result<(), Error> {
+        let topic = self.topics[slot.index()];
+        let mut place = self.place(topic.hash());
+        while let Some((hash, other)) = self.table[place] {
+            if hash == topic.hash() {
+                return Err(collision(&self.topics[other.index()], &topic));
+            }
+            place = (place + 1) & (self.table.len() - 1);
+        }
+        self.table[place] = Some((topic.hash(), slot));
+        Ok(())
+    }
+
+    fn place(&self, hash: u64) -> usize {
+        hash as usize & (self.table.len() - 1)
+    }
+
+    /// The slot of the topic with that name hash.
+    pub(crate) fn by_hash(&self, hash: u64) -> Option<TopicSlot> {
+        let mut place = self.place(hash);
+        while let Some((entry, slot)) = self.table[place] {
+            if entry == hash {
+                return Some(slot);
+            }
+            place = (place + 1) & (self.table.len() - 1);
+        }
+        None
+    }
+
+    /// The slot of a topic that is declared, and with messages of that type.
+    pub(crate) fn checked<K: Keep>(&self, topic: Topic<K>) -> Result<TopicSlot, Error> {
+        let slot = self.by_hash(topic.hash()).ok_or_else(|| self.undeclared(topic.path()))?;
+        let declared = &self.topics[slot.index()];
+        if declared.message_type() == std::any::TypeId::of::<K::Message>() {
+            Ok(slot)
+        } else {
+            Err(wrong_type(declared, K::Message::DESCRIPTOR.full_name))
+        }
+    }
+
+    pub(crate) fn by_path(&self, path: &str) -> Option<TopicSlot> {
+        let place = self.topics.binary_search_by(|topic| topic.path().cmp(path)).ok()?;
+        Some(TopicSlot::new(place as u32))
+    }
+
+    pub(crate) fn topics(&self) -> &[TopicDeclaration] {
+        &self.topics
+    }
+
+    pub(crate) fn get(&self, slot: TopicSlot) -> Option<&TopicDeclaration> {
+        self.topics.get(slot.index())
+    }
+
+    /// The error that says that nobody declared `path`, and which declared one is nearest.
+    pub(crate) fn undeclared(&self, path: &str) -> Error {
+        let nearest = self
+            .topics
+            .iter()
+            .map(|topic| (strsim::damerau_levenshtein(topic.path(), path), topic.path()))
+            .filter(|(distance, _)| *distance <= path.len() / 3 + 1)
+            .min();
+        let hint = nearest.map(|(_, name)| format!("; did you mean `{name}`?")).unwrap_or_default();
+        Error::new(ErrorKind::UndeclaredTopic, format!("nobody declared the topic `{path}`{hint}"))
+    }
+}
+
+use crate::message::Message as _;
+
+/// The declarations sorted by path, each path once.
+fn merge(mut declarations: Vec<TopicDeclaration>) -> Result<Vec<TopicDeclaration>, Error> {
+    declarations.sort_by_key(|topic| (topic.path(), topic.module()));
+    let mut merged: Vec<TopicDeclaration> = Vec::with_capacity(declarations.len());
+    for topic in declarations {
+        if !is_topic_path(topic.path()) {
+            return Err(bad_path(&topic));
+        }
+        match merged.last() {
+            Some(first) if first.path() == topic.path() => agree(first, &topic)?,
+            _ => merged.push(topic),
+        }
+    }
+    Ok(merged)
+}
+
+/// Whether two declarations of one path say the same.
+fn agree(first: &TopicDeclaration, second: &TopicDeclaration) -> Result<(), Error> {
+    let path = first.path();
+    if first.message_type() != second.message_type() {
+        let (one, other) = (first.descriptor().full_name, second.descriptor().full_name);
+        let (here, there) = (first.module(), second.module());
+        let text = format!(
+            "the topic `{path}` is declared with two message types: `{one}` in {here} and `{other}` in {there}"
+        );
+        return Err(Error::new(ErrorKind::TypesDiffer, text));
+    }
+    if (first.kind(), first.depth()) != (second.kind(), second.depth()) {
+        let (one, other) = (keeping(first), keeping(second));
+        let text = format!("the topic `{path}` is declared with two ways of keeping: {one} and {other}");
+        return Err(Error::new(ErrorKind::KindsDiffer, text));
+    }
+    Ok(())
+}
+
+fn keeping(topic: &TopicDeclaration) -> String {
+    format!("{} of depth {} in {}", topic.kind(), topic.depth(), topic.module())
+}
+
+fn bad_path(topic: &TopicDeclaration) -> Error {
+    let (path, module) = (topic.path(), topic.module());
+    let text = format!("`{path}` in {module} is no topic path: segments of a-z, 0-9 and _ separated by /");
+    Error::new(ErrorKind::BadPath, text)
+}
+
+fn collision(first: &TopicDeclaration, second: &TopicDeclaration) -> Error {
+    let text = format!(
+        "the topics `{}` ({}) and `{}` ({}) have the same name hash; rename one",
+        first.path(),
+        first.module(),
+        second.path(),
+        second.module()
+    );
+    Error::new(ErrorKind::HashCollision, text)
+}
+
+/// The error that says that messages of type `given` are not the topic's.
+pub(crate) fn wrong_type(topic: &TopicDeclaration, given: &str) -> Error {
+    let text = format!(
+        "the topic `{}` holds `{}` (declared in {}), not `{given}`",
+        topic.path(),
+        topic.descriptor().full_name,
+        topic.module()
+    );
+    Error::new(ErrorKind::WrongType, text)
+}

@@ -1,0 +1,46 @@
+//! Those whom a hub tells of publications: observers see every message, a waker learns which topics moved.
+
+use crate::sample::{AnySample, TopicSlot};
+use crate::topic::TopicDeclaration;
+
+/// A message as it is published, with the names behind its header's numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Publication<'a> {
+    /// The host on which it was published.
+    pub host: &'a str,
+    /// Who published it.
+    pub publisher: &'a str,
+    /// The topic.
+    pub topic: &'a TopicDeclaration,
+    /// The message and its header.
+    pub sample: &'a AnySample,
+}
+
+/// Sees every message that is published on a hub: a recorder, a run hash.
+///
+/// It is called once for each message, in the order of publication, on the publisher's thread. Other publishers of
+/// the hub wait meanwhile, readers do not. So it must be quick, and must not publish on the same hub: that would wait for itself.
+pub trait Observer: Send {
+    /// A message was published.
+    fn observe(&mut self, publication: Publication<'_>);
+}
+
+impl<F: FnMut(Publication<'_>) + Send> Observer for F {
+    fn observe(&mut self, publication: Publication<'_>) {
+        self(publication);
+    }
+}
+
+/// Learns that a message was published on a topic, so that whoever waits for it can be woken.
+///
+/// It is called on the publisher's thread, when no lock of the hub is held and the messages can be fetched.
+pub trait Waker: Send + Sync {
+    /// A message was published on `topic`.
+    fn wake(&self, topic: TopicSlot);
+}
+
+impl<F: Fn(TopicSlot) + Send + Sync> Waker for F {
+    fn wake(&self, topic: TopicSlot) {
+        self(topic);
+    }
+}

@@ -1,0 +1,298 @@
+//! Topics: a path, a message type and a way of keeping, bound together at compile time.
+
+use std::any::TypeId;
+use std::fmt;
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+use linkme::distributed_slice;
+
+use crate::descriptor::MessageDescriptor;
+use crate::message::{AnyMessage, Message};
+
+/// How many of a `state` topic's last messages a hub holds. Readers see the latest; the others serve subscribers, and
+/// readers that come late in a cycle.
+pub const STATE_DEPTH: usize = 8;
+
+/// How many of a `signal` topic's last messages a hub holds for readers that have not fetched them yet.
+pub const SIGNAL_DEPTH: usize = 64;
+
+/// A topic that keeps the latest message; late readers get it.
+pub struct State<M>(PhantomData<fn() -> M>);
+
+/// A topic whose messages each reader sees in one cycle.
+pub struct Signal<M>(PhantomData<fn() -> M>);
+
+/// A topic that keeps a history of the last `DEPTH` messages, read by time.
+pub struct Data<M, const DEPTH: usize>(PhantomData<fn() -> M>);
+
+/// How a topic keeps its messages, without the message type.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum Kind {
+    /// The latest message stays: [`State`].
+    State,
+    /// Each reader sees a message in one cycle: [`Signal`].
+    Signal,
+    /// A bounded history: [`Data`].
+    Data,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Kind::State => "state",
+            Kind::Signal => "signal",
+            Kind::Data => "data",
+        })
+    }
+}
+
+mod sealed {
+    pub trait Sealed {}
+    impl<M> Sealed for super::State<M> {}
+    impl<M> Sealed for super::Signal<M> {}
+    impl<M, const DEPTH: usize> Sealed for super::Data<M, DEPTH> {}
+}
+
+/// A way of keeping messages of one type: [`State`], [`Signal`] or [`Data`].
+pub trait Keep: sealed::Sealed + 'static {
+    /// The type of the messages.
+    type Message: Message;
+    /// The way.
+    const KIND: Kind;
+    /// How many messages a hub holds.
+    const DEPTH: usize;
+}
+
+impl<M: Message> Keep for State<M> {
+    type Message = M;
+    const KIND: Kind = Kind::State;
+    const DEPTH: usize = STATE_DEPTH;
+}
+
+impl<M: Message> Keep for Signal<M> {
+    type Message = M;
+    const KIND: Kind = Kind::Signal;
+    const DEPTH: usize = SIGNAL_DEPTH;
+}
+
+impl<M: Message, const DEPTH: usize> Keep for Data<M, DEPTH> {
+    type Message = M;
+    const KIND: Kind = Kind::Data;
+    const DEPTH: usize = if DEPTH == 0 { 1 } else { DEPTH };
+}
+
+/// A topic as code names it; made by [`topic!`](crate::topic!).
+pub struct Topic<K> {
+    path: &'static str,
+    hash: u64,
+    keep: PhantomData<fn() -> K>,
+}
+
+impl<K: Keep> Topic<K> {
+    /// What [`topic!`](crate::topic!) calls.
+    #[doc(hidden)]
+    pub const fn new(path: &'static str) -> Topic<K> {
+        Topic { path, hash: hash(path), keep: PhantomData }
+    }
+}
+
+impl<K> Topic<K> {
+    /// The path: segments of `[a-z0-9_]+` separated by `/`.
+    pub const fn path(self) -> &'static str {
+        self.path
+    }
+
+    pub(crate) const fn hash(self) -> u64 {
+        self.hash
+    }
+}
+
+impl<K> Clone for Topic<K> {
+    fn clone(&self) -> Topic<K> {
+        *self
+    }
+}
+
+impl<K> Copy for Topic<K> {}
+
+impl<K: Keep> fmt::Debug for Topic<K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({} of {})", self.path, K::KIND, K::Message::DESCRIPTOR.full_name)
+    }
+}
+
+/// What the declaration of a topic says, as the hub needs it.
+#[derive(Clone, Copy)]
+pub struct TopicDeclaration {
+    path: &'static str,
+    hash: u64,
+    kind: Kind,
+    depth: usize,
+    descriptor: &'static MessageDescriptor,
+    module: &'static str,
+    message_type: fn() -> TypeId,
+    make: fn() -> Arc<dyn AnyMessage>,
+}
+
+impl TopicDeclaration {
+    /// The declaration of a topic at `path`, made by `module`. The path is checked by the hub.
+    pub const fn new<K: Keep>(path: &'static str, module: &'static str) -> TopicDeclaration {
+        TopicDeclaration {
+            path,
+            hash: hash(path),
+            kind: K::KIND,
+            depth: K::DEPTH,
+            descriptor: K::Message::DESCRIPTOR,
+            module,
+            message_type: TypeId::of::<K::Message>,
+            make: || Arc::new(K::Message::default()),
+        }
+    }
+
+    /// The path: `soccer/ball`.
+    pub fn path(&self) -> &'static str {
+        self.path
+    }
+
+    /// The way of keeping.
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// How many messages a hub holds.
+    pub fn depth(&self) -> usize {
+        self.depth
+    }
+
+    /// The message type.
+    pub fn descriptor(&self) -> &'static MessageDescriptor {
+        self.descriptor
+    }
+
+    /// The module that declares it.
+    pub fn module(&self) -> &'static str {
+        self.module
+    }
+
+    /// A message of the topic's type with nothing set.
+    pub fn default_message(&self) -> Arc<dyn AnyMessage> {
+        (self.make)()
+    }
+
+    pub(crate) fn hash(&self) -> u64 {
+        self.hash
+    }
+
+    pub(crate) fn message_type(&self) -> TypeId {
+        (self.message_type)()
+    }
+}
+
+impl fmt::Debug for TopicDeclaration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({} of {}, in {})", self.path, self.kind, self.descriptor.full_name, self.module)
+    }
+}
+
+/// Every topic that [`topic!`](crate::topic!) declares in a linked crate. The order is the linker's; hubs sort by path.
+///
+/// A crate of which no code is named is dropped by the linker with its topics: `use that_crate as _;` keeps it.
+#[distributed_slice]
+pub static TOPICS: [TopicDeclaration];
+
+/// Declares topics.
+///
+/// Each becomes a constant of type [`Topic`], and is known to every hub of the program made by
+/// [`Narukom::with_linked_topics`](crate::Narukom::with_linked_topics). The path is checked when it is compiled.
+///
+/// ```
+/// # use narukom::example::Ball;
+/// use narukom::{Data, Signal, State, topic};
+///
+/// topic! {
+///     /// Where the ball is.
+///     pub BALL: State<Ball> = "soccer/ball";
+///     /// Each sighting, for whoever filters.
+///     pub SIGHTING: Data<Ball, 64> = "soccer/sighting";
+///     /// The ball was touched.
+///     pub TOUCH: Signal<Ball> = "soccer/touch";
+/// }
+/// assert_eq!(BALL.path(), "soccer/ball");
+/// ```
+///
+/// ```compile_fail
+/// # use narukom::example::Ball;
+/// narukom::topic! { pub BALL: narukom::State<Ball> = "Soccer/Ball"; }
+/// ```
+#[macro_export]
+macro_rules! topic {
+    ($($(#[$attribute:meta])* $visibility:vis $name:ident : $keep:ty = $path:literal);* $(;)?) => {
+        $(
+            $(#[$attribute])*
+            $visibility const $name: $crate::Topic<$keep> = {
+                const _: () = assert!(
+                    $crate::is_topic_path($path),
+                    "a topic's path is segments of a-z, 0-9 and _ separated by /"
+                );
+                #[$crate::linkme::distributed_slice($crate::TOPICS)]
+                #[linkme(crate = $crate::linkme)]
+                static DECLARATION: $crate::TopicDeclaration =
+                    $crate::TopicDeclaration::new::<$keep>($path, module_path!());
+                $crate::Topic::new($path)
+            };
+        )*
+    };
+}
+
+/// Whether `path` is segments of `[a-z0-9_]+` separated by `/`.
+#[doc(hidden)]
+pub const fn is_topic_path(path: &str) -> bool {
+    let bytes = path.as_bytes();
+    let mut segment = 0;
+    let mut index = 0;
+    while index < bytes.len() {
+        match bytes[index] {
+            b'a'..=b'z' | b'0'..=b'9' | b'_' => segment += 1,
+            b'/' if segment > 0 => segment = 0,
+            _ => return false,
+        }
+        index += 1;
+    }
+    segment > 0
+}
+
+/// FNV-1a, 64 bits (Fowler, Noll, Vo).
+pub(crate) const fn hash(text: &str) -> u64 {
+    let bytes = text.as_bytes();
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut index = 0;
+    while index < bytes.len() {
+        hash = (hash ^ bytes[index] as u64).wrapping_mul(0x0000_0100_0000_01b3);
+        index += 1;
+    }
+    hash
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_lower_case_segments() {
+        for path in ["a", "soccer/ball", "body/joint_3", "_/0"] {
+            assert!(is_topic_path(path), "{path}");
+        }
+        for path in ["", "/", "a/", "/a", "a//b", "A", "a b", "a.b", "a*", "ä"] {
+            assert!(!is_topic_path(path), "{path}");
+        }
+    }
+
+    #[test]
+    fn the_hash_is_fnv_1a() {
+        // From the reference test vectors of FNV.
+        assert_eq!(hash(""), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(hash("a"), 0xaf63_dc4c_8601_ec8c);
+        assert_eq!(hash("foobar"), 0x8594_4171_f739_67e8);
+    }
+}

@@ -1,0 +1,294 @@
+//! A statechart made ready to run: checked, numbered, with every way through it worked out in advance.
+
+mod build;
+mod check;
+mod layout;
+mod ways;
+
+use std::time::Duration;
+
+use crate::bits::BitSet;
+use crate::diagnostic::Diagnostic;
+use crate::expression::{CompiledTrigger, Effect, EventId, EventTable, Guard};
+use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
+use crate::vocabulary::{TopicId, Vocabulary};
+
+pub(crate) use layout::{Layout, Place};
+
+/// A blackboard of a running chart: number 0 is the root's, and each region of an AND has one of its own. Composites within a
+/// region share it.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct RegionId(pub u32);
+
+impl RegionId {
+    /// The root's blackboard.
+    pub const ROOT: RegionId = RegionId(0);
+
+    pub(crate) fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A compound transition of a [`Chart`]: one way from a state through connectors to a state, taken as a whole.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct CompoundId(pub(crate) u32);
+
+/// A statechart that a [`Machine`](crate::Machine) can run; immutable, meant to be shared behind an `Arc`.
+///
+/// It is made by [`Statechart::compile`]. Whatever does not depend on data is decided here: which compound transitions there are and
+/// in which order they are tried, which states each leaves and enters, and on which blackboard it lives.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    statechart: Statechart,
+    events: EventTable,
+    pub(crate) layout: Layout,
+    pub(crate) states: Box<[State]>,
+    pub(crate) regions: Box<[Region]>,
+    pub(crate) branches: Box<[Branch]>,
+    pub(crate) triggers: Box<[CompiledTrigger]>,
+    pub(crate) guards: Box<[ScopedGuard]>,
+    pub(crate) compounds: Box<[Compound]>,
+    pub(crate) activities: Box<[Place]>,
+    pub(crate) timers: Box<[Timer]>,
+    pub(crate) masks: Masks,
+    pub(crate) errors: ErrorEvents,
+    reads: Box<[TopicId]>,
+    max_activities: usize,
+}
+
+/// A node as the machine sees it.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    pub(crate) kind: NodeKind,
+    /// The blackboard it lies in; that of a region is its own.
+    pub(crate) region: RegionId,
+    /// Whether it is the region itself: entering it fills a blackboard.
+    pub(crate) is_region: bool,
+    /// Whether some compound transition out of it is marked `interrupts`.
+    pub(crate) interrupts: bool,
+    /// Its number among the activities.
+    pub(crate) activity: Option<usize>,
+    pub(crate) children: Box<[Place]>,
+    pub(crate) entry: Box<[Effect]>,
+    pub(crate) exit: Box<[Effect]>,
+    pub(crate) defer: Box<[EventId]>,
+    /// The branches without a trigger, then those with one.
+    pub(crate) eventless: Branches,
+    pub(crate) triggered: Branches,
+}
+
+/// Neighbours in [`Chart::branches`].
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(crate) struct Branches {
+    pub(crate) start: usize,
+    pub(crate) end: usize,
+}
+
+impl Branches {
+    pub(crate) fn is_empty(self) -> bool {
+        self.start == self.end
+    }
+}
+
+/// One segment on the ways out of a state. The ways form a tree, written depth first in the order in which they are tried: what follows
+/// a branch is its first continuation, and `skip` leads past all of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Branch {
+    pub(crate) condition: Condition,
+    pub(crate) guard: Option<usize>,
+    /// The compound transition that is complete with this segment.
+    pub(crate) compound: Option<CompoundId>,
+    pub(crate) skip: usize,
+}
+
+/// What a branch asks for beside its guard.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) enum Condition {
+    /// Nothing: it is not the first segment.
+    None,
+    /// That its source has completed.
+    Completed,
+    /// That nothing inside its source can step or runs.
+    Quiescent,
+    /// An event that a trigger matches.
+    Trigger(usize),
+}
+
+/// A guard of a segment on one blackboard.
+#[derive(Clone, Debug)]
+pub(crate) struct ScopedGuard {
+    pub(crate) transition: TransitionId,
+    pub(crate) region: RegionId,
+    pub(crate) guard: Guard,
+}
+
+/// A compound transition.
+#[derive(Clone, Debug)]
+pub(crate) struct Compound {
+    pub(crate) segments: Box<[TransitionId]>,
+    pub(crate) source: Place,
+    /// The blackboard of its scope.
+    pub(crate) region: RegionId,
+    /// Places of which all active ones are left.
+    pub(crate) exits: Option<(Place, Place)>,
+    pub(crate) entries: Box<[Place]>,
+    pub(crate) effects: Box<[(TransitionId, Box<[Effect]>)]>,
+    pub(crate) interrupts: bool,
+    pub(crate) terminates: bool,
+    /// Its place in the order of firing.
+    pub(crate) key: u64,
+}
+
+impl Compound {
+    /// Whether it leaves a place if that is active.
+    pub(crate) fn leaves(&self, place: Place) -> bool {
+        self.exits.is_some_and(|(first, last)| first <= place && place <= last)
+    }
+
+    /// Whether two compound transitions leave common states. Scopes are nested or apart, so one end decides.
+    pub(crate) fn conflicts_with(&self, other: &Compound) -> bool {
+        matches!((self.exits, other.exits), (Some(a), Some(b)) if a.0 <= b.1 && b.0 <= a.1)
+    }
+}
+
+/// A blackboard.
+#[derive(Clone, Debug)]
+pub(crate) struct Region {
+    pub(crate) root: Place,
+    pub(crate) parent: Option<RegionId>,
+    /// The first of its timers; the others follow.
+    pub(crate) timers: usize,
+}
+
+/// A timer of a blackboard.
+#[derive(Clone, Debug)]
+pub(crate) struct Timer {
+    pub(crate) region: RegionId,
+    /// Its number on its blackboard.
+    pub(crate) number: usize,
+    /// The event that its expiry is, if some trigger may name it.
+    pub(crate) event: EventId,
+}
+
+/// Sets of places.
+#[derive(Clone, Debug)]
+pub(crate) struct Masks {
+    pub(crate) leaves: BitSet,
+    pub(crate) starts: BitSet,
+    pub(crate) eventless: BitSet,
+    pub(crate) triggered: BitSet,
+    pub(crate) deferring: BitSet,
+}
+
+/// The events that failures are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ErrorEvents {
+    pub(crate) guard: EventId,
+    pub(crate) action: EventId,
+    pub(crate) activity: EventId,
+}
+
+/// The activity of a BASIC state.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct ActivityEntry<'a> {
+    /// The state.
+    pub node: NodeId,
+    /// The name it is registered under.
+    pub name: &'a str,
+    /// Higher runs first.
+    pub priority: i32,
+    /// How long it takes in simulated time, if the model says so.
+    pub duration: Option<Duration>,
+    /// The blackboard it works on.
+    pub region: RegionId,
+}
+
+impl Statechart {
+    /// Checks the chart and makes it ready to run with the words of a vocabulary.
+    ///
+    /// # Errors
+    /// Everything that is wrong with its structure ([`check`](Statechart::check)), or else with its expressions.
+    pub fn compile(&self, vocabulary: &Vocabulary) -> Result<Chart, Vec<Diagnostic>> {
+        build::build(self, vocabulary)
+    }
+}
+
+impl Chart {
+    /// The statechart it was made from; every [`NodeId`] and [`TransitionId`] is one of it.
+    pub fn statechart(&self) -> &Statechart {
+        &self.statechart
+    }
+
+    /// The events that its expressions name.
+    pub fn events(&self) -> &EventTable {
+        &self.events
+    }
+
+    /// The segments of a compound transition, in order.
+    pub fn segments(&self, compound: CompoundId) -> &[TransitionId] {
+        self.compounds.get(compound.0 as usize).map_or(&[], |compound| &compound.segments)
+    }
+
+    /// Every blackboard, the root's first, then in the order of the document.
+    pub fn regions(&self) -> impl ExactSizeIterator<Item = RegionId> + use<> {
+        (0..self.regions.len() as u32).map(RegionId)
+    }
+
+    /// The blackboard that a node lies in; that of a region is its own.
+    pub fn region_of(&self, node: NodeId) -> Option<RegionId> {
+        self.layout.place(node).map(|place| self.states[place.index()].region)
+    }
+
+    /// The blackboard that a region's lies in; none for the root's.
+    pub fn parent_region(&self, region: RegionId) -> Option<RegionId> {
+        self.regions.get(region.index())?.parent
+    }
+
+    /// The node that a blackboard belongs to: the root, or a region of an AND.
+    pub fn region_node(&self, region: RegionId) -> Option<NodeId> {
+        self.regions.get(region.index()).map(|region| self.layout.node(region.root))
+    }
+
+    /// Every BASIC state with an activity, in the order of the document.
+    pub fn activities(&self) -> impl ExactSizeIterator<Item = ActivityEntry<'_>> {
+        self.activities.iter().map(|&place| self.activity_entry(place))
+    }
+
+    /// The activity of a BASIC state, if it has one.
+    pub fn activity(&self, node: NodeId) -> Option<ActivityEntry<'_>> {
+        let place = self.layout.place(node)?;
+        self.states[place.index()].activity?;
+        Some(self.activity_entry(place))
+    }
+
+    /// The largest number of activities that can be active at once: how many threads can be of use.
+    pub fn max_activities(&self) -> usize {
+        self.max_activities
+    }
+
+    /// The topics that guards or triggers read, in order: a message on any other changes nothing that the chart can see.
+    pub fn reads(&self) -> &[TopicId] {
+        &self.reads
+    }
+
+    /// A node's path without the root's name, as traces show it; the root's own name for the root.
+    pub fn short_path(&self, node: NodeId) -> String {
+        let path = self.statechart.path(node);
+        match path.split_once('/') {
+            Some((_, rest)) => rest.to_owned(),
+            None => path,
+        }
+    }
+
+    fn activity_entry(&self, place: Place) -> ActivityEntry<'_> {
+        let id = self.layout.node(place);
+        let node = self.statechart.node(id);
+        ActivityEntry {
+            node: id,
+            name: node.activity.as_deref().unwrap_or_default(),
+            priority: node.priority,
+            duration: node.duration,
+            region: self.states[place.index()].region,
+        }
+    }
+}

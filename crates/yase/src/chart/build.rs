@@ -1,0 +1,362 @@
+//! From a statechart to a chart.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::bits::BitSet;
+use crate::chart::ways::{self, Way};
+use crate::chart::{
+    Branch, Branches, Chart, Compound, CompoundId, Condition, ErrorEvents, Layout, Masks, Place, Region, RegionId,
+    ScopedGuard, State, Timer,
+};
+use crate::diagnostic::Diagnostic;
+use crate::expression::{
+    CompiledTransition, CompiledTrigger, Effect, EventTable, Names, compile_actions, started_timers,
+};
+use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
+use crate::vocabulary::{TopicId, Vocabulary};
+
+/// Checks a statechart and makes it ready to run.
+pub(super) fn build(chart: &Statechart, vocabulary: &Vocabulary) -> Result<Chart, Vec<Diagnostic>> {
+    let mut found = chart.check();
+    found.retain(Diagnostic::is_error);
+    if !found.is_empty() {
+        return Err(found);
+    }
+    let layout = Layout::new(chart);
+    let (region_of, regions) = regions(chart, &layout);
+    let ways = ways::find(chart, &layout, &region_of)?;
+    let timers = timer_names(chart, &ways, &region_of, regions.len());
+    Builder::new(chart, vocabulary, layout, region_of, timers).finish(ways, regions)
+}
+
+/// The blackboard of each node, and the blackboards in the order of the document.
+fn regions(chart: &Statechart, layout: &Layout) -> (Vec<RegionId>, Vec<Region>) {
+    let mut nodes: Vec<NodeId> = chart.nodes().map(|(id, _)| id).collect();
+    nodes.sort_by_key(|&node| layout.rank(layout.place_of(node)));
+    let mut region_of = vec![RegionId::ROOT; nodes.len()];
+    let mut regions = vec![Region { root: layout.root(), parent: None, timers: 0 }];
+    for node in nodes {
+        let Some(parent) = chart.node(node).parent else { continue };
+        let around = region_of[parent.0 as usize];
+        region_of[node.0 as usize] = around;
+        if chart.node(parent).kind == NodeKind::And {
+            region_of[node.0 as usize] = RegionId(regions.len() as u32);
+            regions.push(Region { root: layout.place_of(node), parent: Some(around), timers: 0 });
+        }
+    }
+    (region_of, regions)
+}
+
+/// The timers that are started on each blackboard, in alphabetical order.
+fn timer_names(chart: &Statechart, ways: &[Vec<Way>], region_of: &[RegionId], count: usize) -> Vec<Vec<String>> {
+    let mut names: Vec<BTreeSet<String>> = vec![BTreeSet::new(); count];
+    for way in ways.iter().flatten() {
+        for &segment in &way.segments {
+            names[way.region.index()].extend(chart.transition(segment).expression.started_timers());
+        }
+    }
+    for (id, node) in chart.nodes() {
+        let started = started_timers(&node.entry).chain(started_timers(&node.exit));
+        names[region_of[id.0 as usize].index()].extend(started);
+    }
+    names.into_iter().map(|names| names.into_iter().collect()).collect()
+}
+
+struct Builder<'a> {
+    chart: &'a Statechart,
+    vocabulary: &'a Vocabulary,
+    layout: Layout,
+    region_of: Vec<RegionId>,
+    timer_names: Vec<Vec<String>>,
+    events: EventTable,
+    segments: BTreeMap<(TransitionId, RegionId), Segment>,
+    branches: Vec<Branch>,
+    triggers: Vec<CompiledTrigger>,
+    guards: Vec<ScopedGuard>,
+    compounds: Vec<Compound>,
+    found: Vec<Diagnostic>,
+}
+
+/// A segment compiled for one blackboard.
+#[derive(Clone, Debug, Default)]
+struct Segment {
+    trigger: Option<usize>,
+    guard: Option<usize>,
+    effects: Box<[Effect]>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(
+        chart: &'a Statechart,
+        vocabulary: &'a Vocabulary,
+        layout: Layout,
+        region_of: Vec<RegionId>,
+        timer_names: Vec<Vec<String>>,
+    ) -> Builder<'a> {
+        Builder {
+            chart,
+            vocabulary,
+            layout,
+            region_of,
+            timer_names,
+            events: EventTable::new(),
+            segments: BTreeMap::new(),
+            branches: Vec::new(),
+            triggers: Vec::new(),
+            guards: Vec::new(),
+            compounds: Vec::new(),
+            found: Vec::new(),
+        }
+    }
+
+    fn finish(mut self, ways: Vec<Vec<Way>>, mut regions: Vec<Region>) -> Result<Chart, Vec<Diagnostic>> {
+        let errors = ErrorEvents {
+            guard: self.events.intern("error.guard"),
+            action: self.events.intern("error.action"),
+            activity: self.events.intern("error.activity"),
+        };
+        let timers = self.timers(&mut regions);
+        let states = self.states(&ways);
+        if !self.found.is_empty() {
+            return Err(self.found);
+        }
+        let activities: Box<[Place]> =
+            self.layout.places().filter(|place| states[place.index()].activity.is_some()).collect();
+        Ok(Chart {
+            masks: masks(&states),
+            reads: self.reads(),
+            max_activities: max_activities(&states),
+            statechart: self.chart.clone(),
+            events: self.events,
+            layout: self.layout,
+            states: states.into(),
+            regions: regions.into(),
+            branches: self.branches.into(),
+            triggers: self.triggers.into(),
+            guards: self.guards.into(),
+            compounds: self.compounds.into(),
+            activities,
+            timers,
+            errors,
+        })
+    }
+
+    fn timers(&mut self, regions: &mut [Region]) -> Box<[Timer]> {
+        let mut timers = Vec::new();
+        for (index, names) in self.timer_names.iter().enumerate() {
+            regions[index].timers = timers.len();
+            for (number, name) in names.iter().enumerate() {
+                let event = self.events.intern(name);
+                timers.push(Timer { region: RegionId(index as u32), number, event });
+            }
+        }
+        timers.into()
+    }
+
+    /// The states by place, with the ways out of each as branches.
+    fn states(&mut self, ways: &[Vec<Way>]) -> Vec<State> {
+        let mut activities = 0;
+        let places: Vec<Place> = self.layout.places().collect();
+        let mut states = Vec::with_capacity(places.len());
+        for place in places {
+            let mut state = self.state(place);
+            if self.chart.node(self.layout.node(place)).activity.is_some() {
+                state.activity = Some(activities);
+                activities += 1;
+            }
+            let ways = &ways[self.layout.node(place).0 as usize];
+            state.interrupts = ways.iter().any(|way| self.interrupts(way));
+            state.eventless = self.tree(ways, true);
+            state.triggered = self.tree(ways, false);
+            states.push(state);
+        }
+        states
+    }
+
+    fn state(&mut self, place: Place) -> State {
+        let id = self.layout.node(place);
+        let (chart, region) = (self.chart, self.region_of[id.0 as usize]);
+        let node = chart.node(id);
+        let what = |when: &str| format!("{when} of `{}`", chart.path(id));
+        let entry = self.actions(region, |names| compile_actions(&node.entry, names), || what("entry"));
+        let exit = self.actions(region, |names| compile_actions(&node.exit, names), || what("exit"));
+        State {
+            kind: node.kind,
+            region,
+            is_region: node.parent.is_some_and(|parent| chart.node(parent).kind == NodeKind::And),
+            interrupts: false,
+            activity: None,
+            children: chart.children(id).iter().map(|&child| self.layout.place_of(child)).collect(),
+            entry,
+            exit,
+            defer: node.defer.iter().map(|event| self.events.intern(event)).collect(),
+            eventless: Branches::default(),
+            triggered: Branches::default(),
+        }
+    }
+
+    /// Compiles with the names of a blackboard; on errors says where they stand, and yields nothing.
+    fn actions<T: Default>(
+        &mut self,
+        region: RegionId,
+        compile: impl FnOnce(&mut Names<'_>) -> Result<T, Vec<Diagnostic>>,
+        what: impl FnOnce() -> String,
+    ) -> T {
+        let chart = self.chart;
+        let mut names = Names {
+            vocabulary: self.vocabulary,
+            constants: &chart.constants,
+            timers: &self.timer_names[region.index()],
+            events: &mut self.events,
+            states: &|path| chart.find(path),
+        };
+        compile(&mut names).unwrap_or_else(|found| {
+            let what = what();
+            self.found.extend(found.into_iter().map(|mut diagnostic| {
+                diagnostic.message = format!("{} ({what})", diagnostic.message);
+                diagnostic
+            }));
+            T::default()
+        })
+    }
+
+    fn interrupts(&self, way: &Way) -> bool {
+        way.segments.iter().any(|&segment| self.chart.transition(segment).interrupts)
+    }
+
+    /// Writes the ways of one state, with or without a trigger, as a tree of branches.
+    fn tree(&mut self, ways: &[Way], eventless: bool) -> Branches {
+        let ways: Vec<&Way> = ways.iter().filter(|way| way.condition.is_some() == eventless).collect();
+        let start = self.branches.len();
+        self.grow(&ways, 0);
+        Branches { start, end: self.branches.len() }
+    }
+
+    /// Neighbouring ways that begin alike, on one blackboard, share branches.
+    fn grow(&mut self, ways: &[&Way], depth: usize) {
+        let alike = |a: &&Way, b: &&Way| {
+            (a.segments[depth], a.region, a.condition) == (b.segments[depth], b.region, b.condition)
+        };
+        for group in ways.chunk_by(alike) {
+            let Some(&first) = group.first() else { continue };
+            let branch = self.branch(first, depth);
+            let index = self.branches.len();
+            self.branches.push(branch);
+            if first.segments.len() > depth + 1 {
+                self.grow(group, depth + 1);
+            }
+            self.branches[index].skip = self.branches.len();
+        }
+    }
+
+    fn branch(&mut self, way: &Way, depth: usize) -> Branch {
+        let segment = self.segment(way.segments[depth], way.region);
+        let condition = match (depth, way.condition, segment.trigger) {
+            (0, Some(condition), _) => condition,
+            (0, None, Some(trigger)) => Condition::Trigger(trigger),
+            _ => Condition::None,
+        };
+        let is_last = way.segments.len() == depth + 1;
+        let compound = is_last.then(|| self.compound(way));
+        Branch { condition, guard: segment.guard, compound, skip: 0 }
+    }
+
+    /// A segment on a blackboard, compiled when it is met first.
+    fn segment(&mut self, id: TransitionId, region: RegionId) -> Segment {
+        if let Some(segment) = self.segments.get(&(id, region)) {
+            return segment.clone();
+        }
+        let chart = self.chart;
+        let transition = chart.transition(id);
+        let what = || format!("from `{}` to `{}`", chart.path(transition.source), chart.path(transition.target));
+        let compiled: CompiledTransition =
+            self.actions(region, |names| transition.expression.compile(names), what);
+        let segment = Segment {
+            trigger: compiled.trigger.map(|trigger| number(&mut self.triggers, trigger)),
+            guard: compiled
+                .guard
+                .map(|guard| number(&mut self.guards, ScopedGuard { transition: id, region, guard })),
+            effects: compiled.effects,
+        };
+        self.segments.insert((id, region), segment.clone());
+        segment
+    }
+
+    fn compound(&mut self, way: &Way) -> CompoundId {
+        let chart = self.chart;
+        let (source, scope) = (self.layout.place_of(way.source), self.layout.place_of(way.scope));
+        let terminates = chart.node(way.target).kind == NodeKind::Terminate;
+        let still = terminates || way.is_targetless(chart);
+        let internal = way.segments.iter().any(|&id| chart.transition(id).internal);
+        let mut effects = Vec::new();
+        for &id in &way.segments {
+            let segment = self.segment(id, way.region);
+            if !segment.effects.is_empty() {
+                effects.push((id, segment.effects));
+            }
+        }
+        let compound = Compound {
+            segments: way.segments.clone().into(),
+            source,
+            region: way.region,
+            exits: (!still).then(|| (self.layout.first(scope), Place(scope.0.saturating_sub(1)))),
+            entries: if still { Box::default() } else { ways::entries(chart, &self.layout, way.scope, way.target).into() },
+            effects: effects.into(),
+            interrupts: self.interrupts(way),
+            terminates,
+            key: u64::from(!internal) << 32 | u64::from(self.layout.rank(source)),
+        };
+        CompoundId(number(&mut self.compounds, compound) as u32)
+    }
+
+    /// The topics that guards read or triggers wait for.
+    fn reads(&self) -> Box<[TopicId]> {
+        let mut topics: BTreeSet<TopicId> =
+            self.guards.iter().flat_map(|guard| guard.guard.reads().iter().copied()).collect();
+        for trigger in &self.triggers {
+            let events = match trigger {
+                CompiledTrigger::OneOf(events) => events.as_ref(),
+                CompiledTrigger::Not(event) => std::slice::from_ref(event),
+                CompiledTrigger::Any => &[],
+            };
+            topics.extend(events.iter().filter_map(|&event| self.events.topic(event)));
+        }
+        topics.into_iter().collect()
+    }
+}
+
+/// Appends, and says at which place.
+fn number<T>(list: &mut Vec<T>, item: T) -> usize {
+    list.push(item);
+    list.len() - 1
+}
+
+fn masks(states: &[State]) -> Masks {
+    let set = |member: &dyn Fn(&State) -> bool| {
+        let mut set = BitSet::new(states.len());
+        for (place, _) in states.iter().enumerate().filter(|(_, state)| member(state)) {
+            set.insert(place);
+        }
+        set
+    };
+    Masks {
+        leaves: set(&|state| !matches!(state.kind, NodeKind::Or | NodeKind::And)),
+        starts: set(&|state| state.kind == NodeKind::Start),
+        eventless: set(&|state| !state.eventless.is_empty()),
+        triggered: set(&|state| !state.triggered.is_empty()),
+        deferring: set(&|state| !state.defer.is_empty()),
+    }
+}
+
+/// A BASIC state has one activity or none; an OR as many as its richest child, an AND those of all regions.
+fn max_activities(states: &[State]) -> usize {
+    let mut most: Vec<usize> = Vec::with_capacity(states.len());
+    for state in states {
+        let inside = state.children.iter().map(|child| most[child.index()]);
+        most.push(match state.kind {
+            NodeKind::And => inside.sum(),
+            _ => inside.max().unwrap_or(0).max(usize::from(state.activity.is_some())),
+        });
+    }
+    most.last().copied().unwrap_or(0)
+}

@@ -1,0 +1,371 @@
+//! Conditions and operands, from the loosest operator to the tightest:
+//! `||`, `&&`, comparison, `+ -`, `* /`, `! -`.
+
+use super::cursor::{Cursor, Parsed};
+use super::name::RESERVED;
+use crate::diagnostic::{Diagnostic, Span};
+use crate::expression::lexer::{Symbol, TokenKind};
+use crate::expression::syntax::{Additive, Comparison, Expression, ExpressionKind, Multiplicative, Name, Path};
+
+/// Parentheses, calls and signs may be nested this deep; deeper trees could not be walked by recursion.
+const MAX_DEPTH: usize = 256;
+
+impl Cursor<'_> {
+    /// A condition or an operand.
+    pub(super) fn condition(&mut self) -> Parsed<Expression> {
+        let start = self.span().start;
+        let mut operands = vec![self.conjunction()?];
+        while self.accept_logic(Symbol::DoubleBar, Symbol::Bar, "or", "||") {
+            operands.push(self.conjunction()?);
+        }
+        Ok(self.joined(start, operands, ExpressionKind::Or))
+    }
+
+    /// Refuses whatever follows a condition that fills its text.
+    pub(super) fn expect_end_of_condition(&mut self) -> Parsed<()> {
+        match self.kind() {
+            TokenKind::End => Ok(()),
+            _ => self.refuse_operator("an operator"),
+        }
+    }
+
+    fn conjunction(&mut self) -> Parsed<Expression> {
+        let start = self.span().start;
+        let mut operands = vec![self.comparison()?];
+        while self.accept_logic(Symbol::DoubleAmpersand, Symbol::DoubleAmpersand, "and", "&&") {
+            operands.push(self.comparison()?);
+        }
+        Ok(self.joined(start, operands, ExpressionKind::And))
+    }
+
+    fn joined(&self, start: usize, mut operands: Vec<Expression>, kind: fn(Vec<Expression>) -> ExpressionKind) -> Expression {
+        match (operands.len(), operands.pop()) {
+            (1, Some(only)) => only,
+            (_, last) => {
+                operands.extend(last);
+                self.expression(start, kind(operands))
+            }
+        }
+    }
+
+    /// The single form of an operator is a slip that is named and then read as the double one.
+    fn accept_logic(&mut self, symbol: Symbol, single: Symbol, word: &str, spelling: &str) -> bool {
+        if self.accept(symbol) || self.accept_word(word) {
+            return true;
+        }
+        let slip = self.at(single) || (spelling == "&&" && self.here() == "&");
+        if slip {
+            let message = format!("{} is no operator of conditions", self.found());
+            self.report(Diagnostic::error("E0122", self.span(), message).with_hint(format!("write `{spelling}`")));
+            self.advance();
+        }
+        slip
+    }
+
+    fn comparison(&mut self) -> Parsed<Expression> {
+        let start = self.span().start;
+        if self.at_null() {
+            return self.null_first(start);
+        }
+        let left = self.sum()?;
+        let Some(comparison) = self.accept_comparison() else {
+            return Ok(left);
+        };
+        if self.at_null() {
+            let null = self.advance().span;
+            return self.absence(start, left, comparison, null);
+        }
+        let right = self.sum()?;
+        self.refuse_chain()?;
+        Ok(self.expression(start, ExpressionKind::Compare(Box::new(left), comparison, Box::new(right))))
+    }
+
+    fn refuse_chain(&mut self) -> Parsed<()> {
+        let operator = self.span();
+        if self.accept_comparison().is_none() {
+            return Ok(());
+        }
+        let hint = "write `a < b && b < c`, or use parentheses";
+        self.refuse(Diagnostic::error("E0111", operator, "comparisons cannot be chained").with_hint(hint))
+    }
+
+    fn at_null(&self) -> bool {
+        matches!(self.word(), Some("NULL" | "null" | "nullptr"))
+    }
+
+    fn null_first(&mut self, start: usize) -> Parsed<Expression> {
+        let null = self.advance().span;
+        match self.accept_comparison() {
+            Some(comparison) => {
+                let message = self.sum()?;
+                self.absence(start, message, comparison, null)
+            }
+            None => self.refuse_null(null),
+        }
+    }
+
+    /// `message == NULL` and `message != NULL`.
+    fn absence(&mut self, start: usize, operand: Expression, comparison: Comparison, null: Span) -> Parsed<Expression> {
+        match (operand.kind, comparison) {
+            (ExpressionKind::Variable(path), Comparison::Equal) => Ok(self.expression(start, ExpressionKind::Absent(path))),
+            (ExpressionKind::Variable(path), Comparison::NotEqual) => Ok(self.expression(start, ExpressionKind::Present(path))),
+            _ => self.refuse_null(null),
+        }
+    }
+
+    fn refuse_null<T>(&mut self, null: Span) -> Parsed<T> {
+        let hint = "write `Message == NULL` or `Message != NULL`; its negation is `!(Message == NULL)`";
+        self.refuse(Diagnostic::error("E0114", null, "NULL can only be compared with a message").with_hint(hint))
+    }
+
+    fn accept_comparison(&mut self) -> Option<Comparison> {
+        let comparison = match (self.kind(), self.word()) {
+            (TokenKind::Symbol(Symbol::Equal), _) | (_, Some("eq")) => Comparison::Equal,
+            (TokenKind::Symbol(Symbol::NotEqual), _) | (_, Some("ne")) => Comparison::NotEqual,
+            (TokenKind::Symbol(Symbol::Less), _) | (_, Some("lt")) => Comparison::Less,
+            (TokenKind::Symbol(Symbol::LessOrEqual), _) | (_, Some("le")) => Comparison::LessOrEqual,
+            (TokenKind::Symbol(Symbol::Greater), _) | (_, Some("gt")) => Comparison::Greater,
+            (TokenKind::Symbol(Symbol::GreaterOrEqual), _) | (_, Some("ge")) => Comparison::GreaterOrEqual,
+            (TokenKind::Symbol(Symbol::Assign), _) => {
+                let diagnostic = Diagnostic::error("E0108", self.span(), "`=` assigns; a condition compares");
+                self.report(diagnostic.with_hint("write `==`"));
+                Comparison::Equal
+            }
+            _ => return None,
+        };
+        self.advance();
+        Some(comparison)
+    }
+
+    fn sum(&mut self) -> Parsed<Expression> {
+        let start = self.span().start;
+        let first = self.product()?;
+        let mut rest = Vec::new();
+        while let Some(operator) = self.accept_additive() {
+            rest.push((operator, self.product()?));
+        }
+        if rest.is_empty() {
+            return Ok(first);
+        }
+        Ok(self.expression(start, ExpressionKind::Sum(Box::new(first), rest)))
+    }
+
+    fn accept_additive(&mut self) -> Option<Additive> {
+        if self.accept(Symbol::Plus) {
+            return Some(Additive::Plus);
+        }
+        self.accept(Symbol::Minus).then_some(Additive::Minus)
+    }
+
+    fn product(&mut self) -> Parsed<Expression> {
+        let start = self.span().start;
+        let first = self.signed()?;
+        let mut rest = Vec::new();
+        while let Some(operator) = self.accept_multiplicative() {
+            rest.push((operator, self.signed()?));
+        }
+        if rest.is_empty() {
+            return Ok(first);
+        }
+        Ok(self.expression(start, ExpressionKind::Product(Box::new(first), rest)))
+    }
+
+    fn accept_multiplicative(&mut self) -> Option<Multiplicative> {
+        if self.accept(Symbol::Star) {
+            return Some(Multiplicative::Times);
+        }
+        self.accept(Symbol::Slash).then_some(Multiplicative::Over)
+    }
+
+    /// Every way into a deeper level passes here, so this is where depth is counted.
+    fn signed(&mut self) -> Parsed<Expression> {
+        if self.depth == MAX_DEPTH {
+            let message = format!("the expression is nested deeper than {MAX_DEPTH} levels");
+            return self.refuse(Diagnostic::error("E0112", self.span(), message).with_hint("split it up"));
+        }
+        self.depth += 1;
+        let expression = self.signed_operand();
+        self.depth -= 1;
+        expression
+    }
+
+    fn signed_operand(&mut self) -> Parsed<Expression> {
+        let start = self.span().start;
+        if self.accept(Symbol::Bang) || self.accept_word("not") {
+            let operand = self.signed()?;
+            return Ok(self.expression(start, ExpressionKind::Not(Box::new(operand))));
+        }
+        if self.accept(Symbol::Minus) {
+            let operand = self.signed()?;
+            return Ok(self.expression(start, ExpressionKind::Negative(Box::new(operand))));
+        }
+        self.operand()
+    }
+
+    fn operand(&mut self) -> Parsed<Expression> {
+        match self.kind() {
+            TokenKind::Integer | TokenKind::Decimal => self.number(),
+            TokenKind::Text => self.text(),
+            TokenKind::Word => self.word_operand(),
+            TokenKind::Quoted => self.named_operand(),
+            TokenKind::Symbol(Symbol::OpenParenthesis) => self.group(),
+            _ => self.refuse_operand(),
+        }
+    }
+
+    fn refuse_operand<T>(&mut self) -> Parsed<T> {
+        self.refuse_here("E0106", "an operand", "an operand is a name, a number, a \"text\", `true`, `false` or a call")
+    }
+
+    fn group(&mut self) -> Parsed<Expression> {
+        let open = self.advance().span;
+        let inner = self.condition()?;
+        self.expect_close_parenthesis(open)?;
+        Ok(Expression { place: self.place(self.since(open.start)), ..inner })
+    }
+
+    fn number(&mut self) -> Parsed<Expression> {
+        let token = self.advance();
+        let text = self.source(token.span);
+        let kind = match token.kind {
+            TokenKind::Integer => text.parse().ok().map(ExpressionKind::Integer),
+            _ => text.parse().ok().filter(|number: &f64| number.is_finite()).map(ExpressionKind::Decimal),
+        };
+        match kind {
+            Some(kind) => Ok(self.expression(token.span.start, kind)),
+            None => {
+                let hint = "whole numbers have 64 bits, others are floating point numbers of 64 bits";
+                let message = format!("the number `{text}` is too large");
+                self.refuse(Diagnostic::error("E0105", token.span, message).with_hint(hint))
+            }
+        }
+    }
+
+    fn text(&mut self) -> Parsed<Expression> {
+        let token = self.advance();
+        let quoted = self.source(token.span);
+        let mut text = String::new();
+        let mut characters = quoted.char_indices().skip(1);
+        while let Some((index, character)) = characters.next() {
+            match character {
+                '"' => break,
+                '\\' => text.push(self.escaped(token.span.start + index, characters.next())?),
+                _ => text.push(character),
+            }
+        }
+        Ok(self.expression(token.span.start, ExpressionKind::Text(text)))
+    }
+
+    fn escaped(&mut self, backslash: usize, escaped: Option<(usize, char)>) -> Parsed<char> {
+        match escaped.map_or('\\', |(_, character)| character) {
+            same @ ('"' | '\\') => Ok(same),
+            'n' => Ok('\n'),
+            'r' => Ok('\r'),
+            't' => Ok('\t'),
+            other => {
+                let span = Span::new(backslash, backslash + 1 + other.len_utf8());
+                let message = format!("`\\{other}` is no escape");
+                self.refuse(Diagnostic::error("E0103", span, message).with_hint(r#"escapes are \" \\ \n \r \t"#))
+            }
+        }
+    }
+
+    fn word_operand(&mut self) -> Parsed<Expression> {
+        let start = self.span().start;
+        let called = self.following() == TokenKind::Symbol(Symbol::OpenParenthesis);
+        match self.here() {
+            "true" | "TRUE" => self.literal(start, true),
+            "false" | "FALSE" => self.literal(start, false),
+            "TimeoutCheck" if called => self.timeout_check(),
+            "In" if called => self.in_state(),
+            _ if self.at_null() => self.refuse_null(self.span()),
+            word if RESERVED.contains(&word) => self.refuse_operand(),
+            _ => self.named_operand(),
+        }
+    }
+
+    fn literal(&mut self, start: usize, value: bool) -> Parsed<Expression> {
+        self.advance();
+        Ok(self.expression(start, ExpressionKind::Bool(value)))
+    }
+
+    fn timeout_check(&mut self) -> Parsed<Expression> {
+        let start = self.advance().span.start;
+        let open = self.advance().span;
+        let timer = self.path()?;
+        self.expect_close_parenthesis(open)?;
+        Ok(self.expression(start, ExpressionKind::TimeoutCheck(timer)))
+    }
+
+    /// A state's path holds terms of a formula, `a/(b|c)*`, so everything up to the matching parenthesis belongs to it.
+    fn in_state(&mut self) -> Parsed<Expression> {
+        let start = self.advance().span.start;
+        let open = self.advance().span;
+        let inside = self.skip_to_matching_parenthesis(open.end);
+        self.expect_close_parenthesis(open)?;
+        let text: String = self.source(inside).split_whitespace().collect::<String>().replace('ω', "~");
+        if text.is_empty() {
+            let hint = "write `In(state)` or `In(outer/inner)`";
+            return self.refuse(Diagnostic::error("E0115", self.since(start), "there is no state in the parentheses").with_hint(hint));
+        }
+        let state = Name { text, place: self.place(inside) };
+        Ok(self.expression(start, ExpressionKind::In(state)))
+    }
+
+    fn skip_to_matching_parenthesis(&mut self, start: usize) -> Span {
+        let mut open = 0;
+        while self.kind() != TokenKind::End {
+            match self.kind() {
+                TokenKind::Symbol(Symbol::OpenParenthesis) => open += 1,
+                TokenKind::Symbol(Symbol::CloseParenthesis) if open == 0 => break,
+                TokenKind::Symbol(Symbol::CloseParenthesis) => open -= 1,
+                _ => {}
+            }
+            self.advance();
+        }
+        self.since(start)
+    }
+
+    /// A variable or a call: only a single name can be called, a member's parentheses are empty and belong to its path.
+    fn named_operand(&mut self) -> Parsed<Expression> {
+        let start = self.span().start;
+        let mut path = self.path()?;
+        if !self.at(Symbol::OpenParenthesis) {
+            return Ok(self.expression(start, ExpressionKind::Variable(path)));
+        }
+        match (path.segments.pop(), path.segments.is_empty()) {
+            (Some(function), true) => {
+                let arguments = self.arguments()?;
+                Ok(self.expression(start, ExpressionKind::Call(function, arguments)))
+            }
+            (member, _) => self.refuse_arguments(path, member),
+        }
+    }
+
+    fn arguments(&mut self) -> Parsed<Vec<Expression>> {
+        let open = self.advance().span;
+        let mut arguments = Vec::new();
+        if self.accept(Symbol::CloseParenthesis) {
+            return Ok(arguments);
+        }
+        arguments.push(self.condition()?);
+        while self.accept(Symbol::Comma) {
+            arguments.push(self.condition()?);
+        }
+        self.expect_close_parenthesis(open)?;
+        Ok(arguments)
+    }
+
+    fn refuse_arguments<T>(&mut self, path: Path, member: Option<Name>) -> Parsed<T> {
+        let member = member.map_or_else(String::new, |name| name.text);
+        let span = self.local(path.place);
+        let message = format!("the member `{member}` takes no arguments");
+        let hint = format!("write `{}.{member}` or `{}.{member}()`", path.text(), path.text());
+        self.refuse(Diagnostic::error("E0113", span, message).with_hint(hint))
+    }
+
+    /// An expression from `start` to the token before this one.
+    fn expression(&self, start: usize, kind: ExpressionKind) -> Expression {
+        Expression { kind, place: self.place(self.since(start)) }
+    }
+}

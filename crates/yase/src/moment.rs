@@ -1,0 +1,75 @@
+//! Time as the machine is told it.
+
+use std::fmt;
+use std::ops::Add;
+use std::time::Duration;
+
+/// A moment on whatever clock the host hands in: nanoseconds since a beginning of its choice.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
+pub struct Moment(u64);
+
+impl Moment {
+    /// The beginning of the clock.
+    pub const ZERO: Moment = Moment(0);
+
+    /// The moment that many nanoseconds after the beginning.
+    pub const fn from_nanos(nanos: u64) -> Moment {
+        Moment(nanos)
+    }
+
+    /// The moment that many milliseconds after the beginning; the last moment there is, if that is later.
+    pub const fn from_millis(millis: u64) -> Moment {
+        Moment(millis.saturating_mul(1_000_000))
+    }
+
+    /// Nanoseconds since the beginning.
+    pub const fn as_nanos(self) -> u64 {
+        self.0
+    }
+
+    /// How long ago `earlier` was; nothing if it was not earlier.
+    pub const fn since(self, earlier: Moment) -> Duration {
+        Duration::from_nanos(self.0.saturating_sub(earlier.0))
+    }
+}
+
+impl Add<Duration> for Moment {
+    type Output = Moment;
+
+    /// A later moment; the last one there is (in 584 years), if that is later.
+    fn add(self, delay: Duration) -> Moment {
+        let nanos = u64::try_from(delay.as_nanos()).unwrap_or(u64::MAX);
+        Moment(self.0.saturating_add(nanos))
+    }
+}
+
+impl fmt::Display for Moment {
+    /// Seconds with three decimals, more if they are needed: `0.350 s`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (seconds, nanos) = (self.0 / 1_000_000_000, self.0 % 1_000_000_000);
+        match nanos % 1_000_000 {
+            0 => write!(f, "{seconds}.{:03} s", nanos / 1_000_000),
+            _ => write!(f, "{seconds}.{nanos:09} s"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn additions_and_differences_stay_within_the_clock() {
+        let late = Moment::from_nanos(u64::MAX);
+        assert_eq!(late + Duration::MAX, late);
+        assert_eq!(Moment::from_millis(u64::MAX), late);
+        assert_eq!(Moment::ZERO.since(late), Duration::ZERO);
+        assert_eq!((Moment::ZERO + Duration::from_millis(3)).since(Moment::from_millis(1)).as_millis(), 2);
+    }
+
+    #[test]
+    fn display_shows_milliseconds_and_what_is_finer() {
+        assert_eq!(Moment::from_millis(12_350).to_string(), "12.350 s");
+        assert_eq!(Moment::from_nanos(1_000_001).to_string(), "0.001000001 s");
+    }
+}

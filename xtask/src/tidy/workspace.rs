@@ -1,0 +1,151 @@
+//! What there is to check: the workspace's crates, as cargo sees them, and its text files.
+
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+/// Folders that hold nothing of the project's own.
+const SKIPPED: [&str; 4] = ["target", ".git", "node_modules", "corpus"];
+
+/// What a text file's name ends with.
+const TEXT: [&str; 13] =
+    ["rs", "toml", "md", "xml", "srm", "proto", "txt", "json", "svg", "snap", "sh", "yml", "run"];
+
+/// The crates and the text files under one root.
+pub(super) struct Workspace {
+    /// The folder all paths are relative to.
+    pub(super) root: PathBuf,
+    /// The members, sorted by name.
+    pub(super) crates: Vec<Crate>,
+    /// The text files, sorted by path.
+    pub(super) files: Vec<TextFile>,
+}
+
+/// A member of the workspace.
+pub(super) struct Crate {
+    /// Its name, with dashes.
+    pub(super) name: String,
+    /// Its folder, relative to the root.
+    pub(super) folder: PathBuf,
+    /// The root file of its library, relative to the root, if it has one.
+    pub(super) library: Option<PathBuf>,
+    /// What it depends on.
+    pub(super) dependencies: Vec<Dependency>,
+}
+
+/// One entry of a crate's dependency tables.
+pub(super) struct Dependency {
+    /// The name of the package.
+    pub(super) name: String,
+    /// Whether only tests, examples and benches need it.
+    pub(super) is_dev: bool,
+}
+
+/// A file and its text.
+pub(super) struct TextFile {
+    /// Relative to the root.
+    pub(super) path: PathBuf,
+    /// All of it.
+    pub(super) text: String,
+}
+
+impl TextFile {
+    /// Whether it is Rust.
+    pub(super) fn is_rust(&self) -> bool {
+        self.path.extension().is_some_and(|extension| extension == "rs")
+    }
+}
+
+impl Workspace {
+    /// Asks cargo for the crates and reads the files.
+    pub(super) fn read(root: &Path) -> Result<Workspace, Box<dyn Error>> {
+        let mut files = Vec::new();
+        read_folder(root, root, &mut files)?;
+        files.sort_by(|a, b| a.path.cmp(&b.path));
+        Ok(Workspace { root: root.to_path_buf(), crates: crates(root)?, files })
+    }
+
+    /// The file at a path relative to the root.
+    pub(super) fn file(&self, path: &Path) -> Option<&TextFile> {
+        self.files.iter().find(|file| file.path == path)
+    }
+
+    /// The Rust files of a crate's `src`, with what they hold.
+    pub(super) fn sources<'a>(&'a self, of: &Crate) -> impl Iterator<Item = &'a TextFile> {
+        let folder = of.folder.join("src");
+        self.files.iter().filter(move |file| file.is_rust() && file.path.starts_with(&folder))
+    }
+}
+
+fn read_folder(root: &Path, folder: &Path, files: &mut Vec<TextFile>) -> Result<(), Box<dyn Error>> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let path = entry.path();
+        let name = entry.file_name();
+        if entry.file_type()?.is_dir() {
+            if !SKIPPED.iter().any(|skipped| name == *skipped) {
+                read_folder(root, &path, files)?;
+            }
+        } else if is_text(&path) {
+            let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+            files.push(TextFile { path: path.strip_prefix(root)?.to_path_buf(), text });
+        }
+    }
+    Ok(())
+}
+
+fn is_text(path: &Path) -> bool {
+    match path.extension() {
+        Some(extension) => TEXT.iter().any(|text| extension == *text),
+        None => path.file_name().is_some_and(|name| name == "run" || name == ".gitignore"),
+    }
+}
+
+fn crates(root: &Path) -> Result<Vec<Crate>, Box<dyn Error>> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(cargo)
+        .args(["metadata", "--no-deps", "--format-version", "1"])
+        .current_dir(root)
+        .output()?;
+    if !output.status.success() {
+        return Err(format!("cargo metadata: {}", String::from_utf8_lossy(&output.stderr)).into());
+    }
+    let metadata: Value = serde_json::from_slice(&output.stdout)?;
+    let packages = metadata["packages"].as_array().ok_or("cargo metadata lists no packages")?;
+    let mut crates =
+        packages.iter().map(|package| read_crate(root, package)).collect::<Result<Vec<_>, _>>()?;
+    crates.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(crates)
+}
+
+fn read_crate(root: &Path, package: &Value) -> Result<Crate, Box<dyn Error>> {
+    let manifest = relative(root, &package["manifest_path"])?;
+    let targets = package["targets"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let is_library = |target: &&Value| {
+        target["kind"].as_array().is_some_and(|kinds| kinds.iter().any(|kind| kind == "lib"))
+    };
+    let library =
+        targets.iter().find(is_library).map(|target| relative(root, &target["src_path"])).transpose()?;
+    let dependencies = package["dependencies"].as_array().map(Vec::as_slice).unwrap_or_default();
+    Ok(Crate {
+        name: text(&package["name"])?.to_string(),
+        folder: manifest.parent().unwrap_or(&manifest).to_path_buf(),
+        library,
+        dependencies: dependencies.iter().map(read_dependency).collect::<Result<_, _>>()?,
+    })
+}
+
+fn read_dependency(dependency: &Value) -> Result<Dependency, Box<dyn Error>> {
+    Ok(Dependency { name: text(&dependency["name"])?.to_string(), is_dev: dependency["kind"] == "dev" })
+}
+
+fn relative(root: &Path, path: &Value) -> Result<PathBuf, Box<dyn Error>> {
+    Ok(Path::new(text(path)?).strip_prefix(root)?.to_path_buf())
+}
+
+fn text(value: &Value) -> Result<&str, Box<dyn Error>> {
+    value.as_str().ok_or_else(|| "cargo metadata is not in the form this program knows".into())
+}
