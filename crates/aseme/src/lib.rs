@@ -1,4 +1,64 @@
-//! AMOLA models, liveness formulas, and the arrows from a formula to a statechart.
+//! From a liveness formula to a statechart: the models of AMOLA, the modeling language of the ASEME method, as text.
+//!
+//! What a role does is written as formulas over activities, each operator of which has a template of states and
+//! transitions. [`Srm`] is a role read from text, [`srm_to_iac`] turns it into a [`Statechart`], which `yase` checks and runs:
+//!
+//! 1. [`liveness`] reads formulas (`decision = Wait . (Search | act)`) into a flat arena of terms.
+//! 2. [`transform`] expands them, term by term, into states, connectors and transitions.
+//! 3. [`refine`] puts onto the transitions what the role says of them: event, guard, actions.
+//!
+//! A transition is named by the states it joins, as they stand in the formula ([`path`]), never by a label or an index. That is why a
+//! formula can be edited while its refinements stay in force; those that no longer fit are named, none is dropped. For the same reason
+//! a chart keeps names as they were written, and the labels and encoded [`names`] of the thesis's model files are computed when
+//! one is written: [`to_json`] for tools, [`to_text`] and [`to_svg`] for people.
+//!
+//! Reading never fails. Every function that reads returns what it understood, and what was wrong as [`Diagnostic`]s with a code, a place
+//! and a hint. Nothing here opens a file, and nothing here knows how a chart is run.
+//!
+//! ```
+//! use yase::Source;
+//!
+//! let source = Source::new("walker.srm", "
+//! Role: walker
+//! Liveness:
+//! walker = Stand . ( Search | approach )   # one of the two
+//! approach = Walkω
+//! Constants:
+//! near = 25 cm
+//! Transitions:
+//! CONDITION -> Search : [!Ball.found]
+//! CONDITION -> approach : [Ball.distance > near]
+//! *~ -> END : [false]
+//! ");
+//! let (chart, findings) = aseme::statechart_of(&source);
+//! assert_eq!(findings, []);
+//! assert_eq!(aseme::to_text(&chart), "\
+//! walker OR
+//!   START
+//!     -> Stand
+//!   Stand BASIC
+//!     -> (Search|approach)
+//!   (Search|approach) OR
+//!     -> END
+//!     START
+//!       -> CONDITION
+//!     CONDITION
+//!       -> Search : [!Ball.found]
+//!       -> approach : [Ball.distance > near]
+//!     Search BASIC
+//!       -> END
+//!     approach OR
+//!       -> END : [false]
+//!       START
+//!         -> Walk
+//!       Walk BASIC
+//!         -> Walk
+//!     END
+//!   END
+//! near = 0.25
+//! ");
+//! ```
+
 mod json;
 pub mod liveness;
 pub mod names;
@@ -6,6 +66,7 @@ mod outline;
 pub mod path;
 pub mod refine;
 pub mod srm;
+mod svg;
 mod text;
 pub mod transform;
 
@@ -13,4 +74,27 @@ pub use json::to_json;
 pub use liveness::Liveness;
 pub use outline::to_text;
 pub use srm::{Srm, SrmFile};
+pub use svg::to_svg;
 pub use transform::{liveness_to_statechart, srm_to_iac};
+
+use std::sync::Arc;
+
+use yase::{Diagnostic, Source, Statechart};
+
+/// The statechart that a model's text describes, with every finding about the text.
+///
+/// If the formulas themselves have errors, the refinements are not judged: what they name is not known.
+pub fn statechart_of(source: &Arc<Source>) -> (Statechart, Vec<Diagnostic>) {
+    let (file, mut diagnostics) = SrmFile::parse(source.text.as_str());
+    let (chart, findings) = match diagnostics.iter().any(is_about_formulas) {
+        true => liveness_to_statechart(&file.srm().liveness),
+        false => srm_to_iac(file.srm()),
+    };
+    diagnostics.extend(findings);
+    diagnostics.sort_by_key(|diagnostic| diagnostic.span);
+    (chart, diagnostics.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect())
+}
+
+fn is_about_formulas(diagnostic: &Diagnostic) -> bool {
+    diagnostic.is_error() && ("E0200".."E0220").contains(&diagnostic.code)
+}

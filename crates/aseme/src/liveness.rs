@@ -15,7 +15,7 @@
 //! | `\|xω\|n`, `\|xω\|^n` | n copies of `xω` together |
 //! | `(x)` | a group |
 //!
-//! Blanks mean nothing, `#` begins a comment, and a line without `=` goes on with the formula above it. Operators of
+//! Blanks mean nothing (but `| |x~|2~|3`, copies of copies, needs one between its bars), `#` begins a comment, and a line without `=` goes on with the formula above it. Operators of
 //! several kinds may stand side by side, `.` binding closer than `|` and `|` closer than `||`, with a warning: the notation this
 //! follows asks for parentheses.
 //!

@@ -1,7 +1,5 @@
 //! A chart as an indented tree, for reading.
 
-use std::fmt::Write;
-
 use yase::expression::{Action, TransitionExpression};
 use yase::statechart::ConstantValue;
 use yase::{Node, NodeId, NodeKind, Statechart, Transition};
@@ -65,24 +63,28 @@ fn place(chart: &Statechart, id: NodeId) -> usize {
 }
 
 fn arrow(chart: &Statechart, transition: &Transition) -> String {
-    let mut line = format!("-> {}", target(chart, transition.target));
-    // writing to a String cannot fail
-    if transition.priority != 0 {
-        let _ = write!(line, " !{}", transition.priority);
-    }
-    if let Some(weight) = transition.weight {
-        let _ = write!(line, " %{weight}");
-    }
-    if transition.interrupts {
-        line.push_str(" interrupts");
-    }
-    if !transition.expression.is_empty() {
-        let _ = write!(line, " : {}", transition.expression);
-    }
-    line
+    let expression = &transition.expression;
+    let colon = if expression.is_empty() { String::new() } else { format!(" : {expression}") };
+    format!("-> {}{}{colon}", target(chart, transition.target), modifiers(transition))
 }
 
-fn refinements(node: &Node) -> Vec<String> {
+/// What is said of a transition besides its expression, each with a blank in front.
+pub(crate) fn modifiers(transition: &Transition) -> String {
+    let mut text = String::new();
+    if transition.priority != 0 {
+        text.push_str(&format!(" !{}", transition.priority));
+    }
+    if let Some(weight) = transition.weight {
+        text.push_str(&format!(" %{weight}"));
+    }
+    if transition.interrupts {
+        text.push_str(" interrupts");
+    }
+    text
+}
+
+/// What is said of a state besides its name, each thing in the words of a model file.
+pub(crate) fn refinements(node: &Node) -> Vec<String> {
     let activity = node.activity.as_ref().filter(|activity| **activity != node.name);
     let mut lines: Vec<String> = activity.map(|activity| format!("activity = {activity}")).into_iter().collect();
     lines.extend((node.priority != 0).then(|| format!("priority = {}", node.priority)));

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use yase::diagnostic::nearest;
-use yase::{Diagnostic, NodeId, Span, Statechart, TransitionId};
+use yase::{Diagnostic, NodeId, NodeKind, Span, Statechart, TransitionId};
 
 use crate::path::{self, Path};
 use crate::srm::{StateEntry, TransitionEntry};
@@ -39,10 +39,15 @@ pub fn refine(chart: &mut Statechart, entries: &[TransitionEntry]) -> Vec<Unmatc
 /// Gives the states of a chart what the entries say of them; entries that do not fit are returned, in order.
 pub fn refine_states(chart: &mut Statechart, entries: &[StateEntry]) -> Vec<Unmatched> {
     let wishes: Vec<Wish<NodeId>> = entries.iter().map(|entry| states_of(chart, entry)).collect();
-    let (chosen, unmatched) = settle(&wishes, |id| path::shortest_path(chart, *id));
+    let (chosen, mut unmatched) = settle(&wishes, |id| path::shortest_path(chart, *id));
     for (id, index) in chosen {
-        entries[index].apply(chart, id);
+        let runs_activities = chart.node(id).kind == NodeKind::Basic;
+        match entries[index].is_about_activity() && !runs_activities {
+            true => unmatched.push(composite(&wishes[index], path::shortest_path(chart, id))),
+            false => entries[index].apply(chart, id),
+        }
     }
+    unmatched.sort_by_key(|unmatched| unmatched.diagnostic.span);
     unmatched
 }
 
@@ -65,7 +70,9 @@ fn transitions_of<'a>(chart: &Statechart, entry: &'a TransitionEntry) -> Wish<'a
 }
 
 fn states_of<'a>(chart: &Statechart, entry: &'a StateEntry) -> Wish<'a, NodeId> {
-    let named: Vec<NodeId> = chart.nodes().map(|(id, _)| id).filter(|&id| entry.path.matches(chart, id)).collect();
+    let is_state = |kind| matches!(kind, NodeKind::Or | NodeKind::And | NodeKind::Basic | NodeKind::End);
+    let states = chart.nodes().filter(|(_, node)| is_state(node.kind)).map(|(id, _)| id);
+    let named: Vec<NodeId> = states.filter(|&id| entry.path.matches(chart, id)).collect();
     let near = if named.is_empty() { near_names(chart, &entry.path).collect() } else { Vec::new() };
     Wish { text: &entry.text, span: entry.span, thing: "state", has_wildcard: entry.path.has_wildcard(), named, near }
 }
@@ -151,4 +158,12 @@ fn again<Id>(wish: &Wish<'_, Id>, earlier: &Wish<'_, Id>, named: &str) -> Unmatc
     let message = format!("`{}` is for `{named}`, as `{}` is", wish.text, earlier.text);
     let diagnostic = Diagnostic::error("E0252", wish.span, message).with_hint("keep one of the two");
     Unmatched { text: wish.text.into(), candidates: vec![named.into()], diagnostic }
+}
+
+/// An entry that gives an activity, or what belongs to one, to a state that is made of others.
+fn composite(wish: &Wish<'_, NodeId>, named: String) -> Unmatched {
+    let message = format!("`{named}` consists of other states and runs no activity of its own");
+    let diagnostic = Diagnostic::error("E0253", wish.span, message);
+    let diagnostic = diagnostic.with_hint("activity, priority and duration belong to states without children");
+    Unmatched { text: wish.text.into(), candidates: vec![named], diagnostic }
 }

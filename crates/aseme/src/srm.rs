@@ -121,6 +121,11 @@ pub struct StateEntry {
 }
 
 impl StateEntry {
+    /// Whether it says what only a state without children can have.
+    pub(crate) fn is_about_activity(&self) -> bool {
+        self.activity.is_some() || self.priority.is_some() || self.duration.is_some()
+    }
+
     pub(crate) fn apply(&self, chart: &mut Statechart, id: NodeId) {
         let node = chart.node_mut(id);
         node.activity = self.activity.clone().or(node.activity.take());
@@ -210,19 +215,25 @@ impl Reader {
 
     fn read(&mut self, blanked: &str) {
         match sections::sections(blanked, &mut self.diagnostics) {
-            Some(sections) => {
-                for (section, body) in sections {
-                    self.section(section, blanked, body);
-                }
-                if !self.entries.iter().any(|entry| entry.section == Section::Liveness) && self.diagnostics.is_empty() {
-                    let place = Span::new(0, text::lines_of(blanked, Span::new(0, blanked.len())).next().map_or(0, |line| line.end));
-                    self.report(Diagnostic::error("E0233", place, "the role has no formula").with_hint("add `Liveness:` and below it `role = activity`"));
-                }
-            }
-            None => {
-                self.liveness(blanked, Span::new(0, blanked.len()));
-                self.srm.role = self.srm.liveness.formulas().first().map_or(String::new(), |formula| formula.name.clone());
-            }
+            Some(sections) => self.sections(blanked, &sections),
+            None => self.bare_formulas(blanked),
+        }
+    }
+
+    fn bare_formulas(&mut self, blanked: &str) {
+        self.liveness(blanked, Span::new(0, blanked.len()));
+        let first = self.srm.liveness.formulas().first();
+        self.srm.role = first.map_or(String::new(), |formula| formula.name.clone());
+    }
+
+    fn sections(&mut self, blanked: &str, sections: &[(Section, Span)]) {
+        for (section, body) in sections {
+            self.section(*section, blanked, *body);
+        }
+        if !sections.iter().any(|(section, _)| *section == Section::Liveness) {
+            let place = Span::new(0, blanked.find('\n').unwrap_or(blanked.len()));
+            let hint = "add `Liveness:` and below it `role = activity`";
+            self.report(Diagnostic::error("E0233", place, "the role has no formulas").with_hint(hint));
         }
     }
 

@@ -2,8 +2,8 @@
 
 use yase::Span;
 
-/// The text with every comment (`#` to the end of the line, unless within double quotes) replaced by as many blanks, so that a
-/// byte keeps its place.
+/// The text with every comment (`#` to the end of the line, unless within double quotes), carriage return and byte order mark
+/// replaced by as many blanks, so that each byte keeps its place.
 pub(crate) fn without_comments(text: &str) -> String {
     let mut blanked = String::with_capacity(text.len());
     let (mut quoted, mut comment) = (false, false);
@@ -14,7 +14,7 @@ pub(crate) fn without_comments(text: &str) -> String {
             '#' if !quoted => comment = true,
             _ => {}
         }
-        if comment || character == '\r' {
+        if comment || matches!(character, '\r' | '\u{feff}') {
             blanked.extend(std::iter::repeat_n(' ', character.len_utf8()));
         } else {
             blanked.push(character);
@@ -83,13 +83,13 @@ mod tests {
         let text = "a = b # ω is forever\nc = \"#\" # d";
         let blanked = without_comments(text);
         assert_eq!(blanked.len(), text.len());
-        assert_eq!(blanked, "a = b                 \nc = \"#\"    ");
+        assert_eq!(blanked, format!("a = b {}\nc = \"#\"    ", " ".repeat("# ω is forever".len())));
     }
 
     #[test]
     fn comments_within_a_span_are_found() {
         let text = "a = b # one\n  || c # two \n\"#\" d # three";
-        assert_eq!(comments_within(text, Span::new(0, 20)), ["# one"]);
+        assert_eq!(comments_within(text, Span::new(0, 18)), ["# one"]);
         assert_eq!(comments_within(text, Span::new(0, text.len())), ["# one", "# two", "# three"]);
     }
 

@@ -22,8 +22,11 @@ pub(crate) fn parse(text: &str) -> Result<Duration, String> {
         return Err(format!("`{text}` is no duration: it starts with a number, as in `600s`"));
     }
     let worth = worth_of(unit.trim()).ok_or_else(|| wrong_unit(text, unit.trim()))?;
-    let nanoseconds = nanoseconds(number, worth).ok_or_else(|| format!("`{number}` is no number this command can use"))?;
-    u64::try_from(nanoseconds).map(Duration::from_nanos).map_err(|_| format!("`{text}` is longer than 584 years"))
+    let nanoseconds =
+        nanoseconds(number, worth).ok_or_else(|| format!("`{number}` is no number this command can use"))?;
+    u64::try_from(nanoseconds)
+        .map(Duration::from_nanos)
+        .map_err(|_| format!("`{text}` is longer than 584 years"))
 }
 
 fn worth_of(unit: &str) -> Option<u128> {

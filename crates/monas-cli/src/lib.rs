@@ -1,1 +1,107 @@
-//! The command monas, as a library and a five-line binary
+//! The command `monas`, as a library.
+//!
+//! The binary of a team is five lines: it links the crates that hold the team's activities and calls [`main`]. The command
+//! `monas` of this crate is such a binary, with the activities of `monas-soccer`. Nothing of Monas happens here: this crate
+//! reads the command line, calls the libraries below, and shows what they answer. It is the only place that renders a
+//! [`yase::Diagnostic`], draws a progress bar, catches Ctrl-C, or sets anything for the whole process (the logger, the panic
+//! hook).
+//!
+//! [`run`] is the whole command as a function of its arguments that writes into what it is given, so that a test
+//! reads what a person would see. It returns an [`Exit`], of which each has one code:
+//!
+//! ```
+//! let (mut out, mut err) = (Vec::new(), Vec::new());
+//!
+//! let exit = monas_cli::run(["monas", "--version"], &mut out, &mut err);
+//! assert_eq!(exit, monas_cli::Exit::Success);
+//! assert!(String::from_utf8(out)?.starts_with("monas "));
+//!
+//! let exit = monas_cli::run(["monas", "fly"], &mut Vec::new(), &mut err);
+//! assert_eq!(exit.code(), 2);
+//! assert!(String::from_utf8(err)?.contains("unrecognized subcommand 'fly'"));
+//! # Ok::<(), std::string::FromUtf8Error>(())
+//! ```
+//!
+//! What a command is asked for goes to standard output; diagnostics, progress and the log go to standard error. A command
+//! that writes into a closed pipe ends quietly.
+
+mod arguments;
+mod check;
+mod console;
+mod duration;
+mod exit;
+mod failure;
+mod model;
+mod process;
+mod report;
+mod run;
+
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser};
+
+use arguments::{Arguments, Command, ConfigCommand};
+use console::Console;
+use failure::Failure;
+
+pub use exit::Exit;
+
+/// The command with the arguments, output and signals of this process.
+pub fn main() -> ExitCode {
+    process::main().into()
+}
+
+/// The command with these arguments (the first is its own name), writing into `out` and `err` as if no terminal were there.
+/// Signals are left alone.
+pub fn run<Argument: Into<OsString> + Clone>(
+    arguments: impl IntoIterator<Item = Argument>,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> Exit {
+    dispatch(arguments, &mut Console::plain(out, err))
+}
+
+fn dispatch<Argument: Into<OsString> + Clone>(
+    arguments: impl IntoIterator<Item = Argument>,
+    console: &mut Console<'_>,
+) -> Exit {
+    let done = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => execute(arguments.command, console),
+        Err(error) => answer(&error, console).map_err(Failure::from),
+    };
+    done.unwrap_or_else(|failure| failure.report(console))
+}
+
+fn execute(command: Command, console: &mut Console<'_>) -> Result<Exit, Failure> {
+    match command {
+        Command::Run(arguments) => run::execute(&arguments, console),
+        Command::Config(ConfigCommand::Check { config, format }) => {
+            check::execute(&config, format.value, console)
+        }
+        Command::Model(command) => model::execute(&command, console),
+        Command::Completions { shell } => completions(shell, console).map_err(Failure::from),
+    }
+}
+
+/// What clap has to say: help and version are asked for, anything else is a mistake.
+fn answer(error: &clap::Error, console: &mut Console<'_>) -> io::Result<Exit> {
+    let text = error.render();
+    let (target, colour) = match error.use_stderr() {
+        true => (&mut *console.err, console.colour_err),
+        false => (&mut *console.out, console.colour_out),
+    };
+    match colour {
+        true => write!(target, "{}", text.ansi())?,
+        false => write!(target, "{text}")?,
+    }
+    Ok(if error.exit_code() == 0 { Exit::Success } else { Exit::Usage })
+}
+
+fn completions(shell: clap_complete::Shell, console: &mut Console<'_>) -> io::Result<Exit> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), "monas", &mut script);
+    console.out.write_all(&script)?;
+    Ok(Exit::Success)
+}

@@ -1,7 +1,7 @@
 //! Diagnostics for the person who wrote the text: drawn with the source underlined, or as one JSON object a line.
 
 use std::fmt;
-use std::io::{self, Write};
+use std::io;
 
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode};
 use serde_json::{Value, json};
@@ -14,7 +14,7 @@ use crate::console::Console;
 pub(crate) fn write(console: &mut Console<'_>, format: Format, diagnostics: &[Diagnostic]) -> io::Result<()> {
     for diagnostic in diagnostics {
         match format {
-            Format::Text => writeln!(console.err, "{}", drawn(diagnostic, console.colour))?,
+            Format::Text => writeln!(console.err, "{}", drawn(diagnostic, console.colour_err))?,
             Format::Json => writeln!(console.err, "{}", object(diagnostic))?,
         }
     }
@@ -142,7 +142,9 @@ mod tests {
     fn a_drawing_names_file_line_and_column_and_underlines() {
         let text = drawn(&finding(), false);
         let source_line = "active = Serch . Track";
-        for part in ["E0201", "models/goalie.srm:2:10", "`Serch` is unknown", source_line, "did you mean `Search`?"] {
+        for part in
+            ["E0201", "models/goalie.srm:2:10", "`Serch` is unknown", source_line, "did you mean `Search`?"]
+        {
             assert!(text.contains(part), "no {part} in\n{text}");
         }
         let marked = text.lines().skip_while(|line| !line.contains(source_line)).nth(1).unwrap_or_default();

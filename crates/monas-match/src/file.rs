@@ -9,14 +9,14 @@
 //! </match>
 //! ```
 //!
-//! Paths are relative to the folder that holds the folder `config` in which the match file lies, so that a match runs from
-//! wherever it is started; a match file that lies elsewhere counts from its own folder.
+//! A file that the match file names is looked for as [`monas::config::locate`] says: beside it, then in each folder above.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use monas::config::xml::{self, Attributes, Element};
+use monas::config::xml::{self, Attribute, Attributes, Element};
+use monas::config;
 use monas_sim::{FieldGeometry, FieldSide, Physics, Rules, TeamColour, TeamSetup};
 use yase::{Diagnostic, Source, Span};
 
@@ -44,63 +44,52 @@ pub(crate) struct RobotFile {
     pub(crate) number: u8,
     /// The file of its role.
     pub(crate) role: PathBuf,
-    /// Where the match file names it.
-    pub(crate) place: (Arc<Source>, Span),
 }
 
 /// Reads a match file; everything that is wrong with it is added to `diagnostics`.
 pub(crate) fn read(path: &Path, diagnostics: &mut Vec<Diagnostic>) -> Option<MatchFile> {
-    let source = read_source(path, None, diagnostics)?;
-    let root = root(&source, "match", diagnostics)?;
-    let base = base_of(path);
+    let root = read_root(path, "match", diagnostics)?;
     let mut attributes = Attributes::new(&root, diagnostics);
-    let field = attributes.get("field").cloned();
-    let simulator = attributes.get("simulator").cloned();
+    let field = attributes.get("field");
+    let simulator = attributes.get("simulator");
     let half = attributes.duration("half");
     attributes.finish();
-    let named = |attribute: &xml::Attribute| (base.join(&attribute.value), (source.clone(), attribute.value_span));
-    let geometry = field.map(|attribute| named(&attribute)).map(|(path, place)| read_field(&path, place, diagnostics));
-    let numbers = simulator.map(|attribute| named(&attribute)).map(|(path, place)| read_simulator(&path, place, diagnostics));
-    let (physics, mut rules) = numbers.unwrap_or_default();
+    let field = field.and_then(|attribute| named(path, &root, attribute, diagnostics));
+    let simulator = simulator.and_then(|attribute| named(path, &root, attribute, diagnostics));
+    let geometry = field.map(|path| read_field(&path, diagnostics)).unwrap_or_default();
+    let (physics, mut rules) = simulator.map(|path| read_simulator(&path, diagnostics)).unwrap_or_default();
     set_half(&mut rules, half, &root, diagnostics);
     root.expect_children(&["team"], diagnostics);
-    let teams = root.children_named("team").filter_map(|team| read_team(team, &base, diagnostics)).collect();
-    let file = MatchFile { geometry: geometry.unwrap_or_default(), physics, rules, teams };
+    let teams = root.children_named("team").filter_map(|team| read_team(team, path, diagnostics)).collect();
+    let file = MatchFile { geometry, physics, rules, teams };
     check(&file, &root, diagnostics);
     Some(file)
 }
 
-/// The folder that the paths in a file count from.
-pub(crate) fn base_of(path: &Path) -> PathBuf {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let config = folder.ancestors().find(|ancestor| ancestor.file_name().is_some_and(|name| name == "config"));
-    config.and_then(Path::parent).unwrap_or(folder).to_path_buf()
-}
-
-fn read_source(path: &Path, place: Option<(Arc<Source>, Span)>, diagnostics: &mut Vec<Diagnostic>) -> Option<Arc<Source>> {
-    match std::fs::read_to_string(path) {
-        Ok(text) => Some(Source::new(path.display().to_string(), text)),
-        Err(error) => {
-            let (source, span) = place.unwrap_or_else(|| (Source::new(path.display().to_string(), ""), Span::default()));
-            let message = format!("cannot read `{}`: {error}", path.display());
-            let diagnostic = Diagnostic::error("E0403", span, message).in_source(&source);
-            diagnostics.push(diagnostic.with_nearest(&file_name(path), neighbours(path).iter().map(String::as_str)));
+/// The file that an attribute names; none, and why, if there is no such file.
+fn named(path: &Path, element: &Element, attribute: &Attribute, diagnostics: &mut Vec<Diagnostic>) -> Option<PathBuf> {
+    match config::locate(path, &attribute.value) {
+        Ok(found) => Some(found),
+        Err(near) => {
+            let diagnostic = element.error("E0403", attribute.value_span, format!("no file `{}`", attribute.value));
+            diagnostics.push(match near {
+                Some(near) => diagnostic.with_hint(format!("did you mean `{near}`?")),
+                None => diagnostic,
+            });
             None
         }
     }
 }
 
-fn file_name(path: &Path) -> String {
-    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
-}
-
-/// The names of the files beside a path, in order.
-fn neighbours(path: &Path) -> Vec<String> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut names: Vec<String> = entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
+/// The root of the file at a path, which has to be an element of that name.
+fn read_root(path: &Path, name: &str, diagnostics: &mut Vec<Diagnostic>) -> Option<Element> {
+    match config::read_file(path) {
+        Ok(source) => root(&source, name, diagnostics),
+        Err(diagnostic) => {
+            diagnostics.push(*diagnostic);
+            None
+        }
+    }
 }
 
 /// The one root element of a file.
@@ -129,10 +118,9 @@ fn root(source: &Arc<Source>, name: &str, diagnostics: &mut Vec<Diagnostic>) -> 
     }
 }
 
-fn read_field(path: &Path, place: (Arc<Source>, Span), diagnostics: &mut Vec<Diagnostic>) -> FieldGeometry {
+fn read_field(path: &Path, diagnostics: &mut Vec<Diagnostic>) -> FieldGeometry {
     let mut geometry = FieldGeometry::default();
-    let source = read_source(path, Some(place), diagnostics);
-    if let Some(root) = source.and_then(|source| root(&source, "field", diagnostics)) {
+    if let Some(root) = read_root(path, "field", diagnostics) {
         root.expect_children(&[], diagnostics);
         parameters::from_attributes(&root, FieldGeometry::keys(), diagnostics, |key, value| {
             // The key and the range have been checked against the same table.
@@ -145,10 +133,9 @@ fn read_field(path: &Path, place: (Arc<Source>, Span), diagnostics: &mut Vec<Dia
     geometry
 }
 
-fn read_simulator(path: &Path, place: (Arc<Source>, Span), diagnostics: &mut Vec<Diagnostic>) -> (Physics, Rules) {
+fn read_simulator(path: &Path, diagnostics: &mut Vec<Diagnostic>) -> (Physics, Rules) {
     let (mut physics, mut rules) = (Physics::default(), Rules::default());
-    let source = read_source(path, Some(place), diagnostics);
-    if let Some(root) = source.and_then(|source| root(&source, "simulator", diagnostics)) {
+    if let Some(root) = read_root(path, "simulator", diagnostics) {
         Attributes::new(&root, diagnostics).finish();
         root.expect_children(&["physics", "rules"], diagnostics);
         for part in root.children_named("physics") {
@@ -179,7 +166,7 @@ fn set_half(rules: &mut Rules, half: Option<Duration>, root: &Element, diagnosti
 const COLOURS: [(&str, TeamColour); 2] = [("blue", TeamColour::Blue), ("red", TeamColour::Red)];
 const SIDES: [(&str, FieldSide); 2] = [("left", FieldSide::Left), ("right", FieldSide::Right)];
 
-fn read_team(team: &Element, base: &Path, diagnostics: &mut Vec<Diagnostic>) -> Option<TeamFile> {
+fn read_team(team: &Element, path: &Path, diagnostics: &mut Vec<Diagnostic>) -> Option<TeamFile> {
     let mut attributes = Attributes::new(team, diagnostics);
     for key in ["number", "name", "colour", "side"] {
         attributes.required(key);
@@ -190,21 +177,21 @@ fn read_team(team: &Element, base: &Path, diagnostics: &mut Vec<Diagnostic>) -> 
     let plays = attributes.one_of("side", &SIDES);
     attributes.finish();
     team.expect_children(&["robot"], diagnostics);
-    let robots = team.children_named("robot").filter_map(|robot| read_robot(robot, base, diagnostics)).collect();
+    let robots = team.children_named("robot").filter_map(|robot| read_robot(robot, path, diagnostics)).collect();
     let setup = TeamSetup { number: number?, name: name?, colour: colour?, plays: plays? };
     Some(TeamFile { setup, robots })
 }
 
-fn read_robot(robot: &Element, base: &Path, diagnostics: &mut Vec<Diagnostic>) -> Option<RobotFile> {
+fn read_robot(robot: &Element, path: &Path, diagnostics: &mut Vec<Diagnostic>) -> Option<RobotFile> {
     let mut attributes = Attributes::new(robot, diagnostics);
     attributes.required("number");
     attributes.required("role");
     let number = attributes.integer("number");
-    let role = attributes.get("role").map(|attribute| (base.join(&attribute.value), attribute.value_span));
+    let role = attributes.get("role");
     attributes.finish();
     robot.expect_children(&[], diagnostics);
-    let (role, span) = role?;
-    Some(RobotFile { number: number?, role, place: (robot.source().clone(), span) })
+    let role = role.and_then(|attribute| named(path, robot, attribute, diagnostics));
+    Some(RobotFile { number: number?, role: role? })
 }
 
 /// What only the teams together can have wrong.
@@ -233,13 +220,6 @@ impl MatchFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn paths_count_from_the_folder_that_holds_config() {
-        assert_eq!(base_of(Path::new("config/match.xml")), Path::new(""));
-        assert_eq!(base_of(Path::new("/home/x/team/config/roles/goalie.xml")), Path::new("/home/x/team"));
-        assert_eq!(base_of(Path::new("elsewhere/match.xml")), Path::new("elsewhere"));
-    }
 
     fn diagnostics_of(text: &str) -> Vec<String> {
         let folder = tempfile::tempdir().unwrap();

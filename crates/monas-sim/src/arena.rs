@@ -10,8 +10,8 @@
 
 use crate::pose::{Pose, Vector, normalize_angle};
 use crate::{FieldGeometry, FieldSide, Physics, STEP};
-use rapier2d::prelude as rapier;
 use rapier::{ColliderBuilder, ColliderHandle, Group, InteractionGroups, RigidBodyBuilder, RigidBodyHandle};
+use rapier2d::prelude as rapier;
 
 const BALL: Group = Group::GROUP_1;
 const BASE: Group = Group::GROUP_2;
@@ -218,7 +218,8 @@ fn build_edge(world: &mut rapier::PhysicsWorld, field: &FieldGeometry) {
         let ends = Vector::new(sign * (far.x + t), 0.0);
         let sides = Vector::new(0.0, sign * (far.y + t));
         world.insert_collider(barrier(ends, Vector::new(t, far.y + 2.0 * t), 0.0, groups(EDGE, TORSO)), None);
-        world.insert_collider(barrier(sides, Vector::new(far.x + 2.0 * t, t), 0.0, groups(EDGE, TORSO)), None);
+        world
+            .insert_collider(barrier(sides, Vector::new(far.x + 2.0 * t, t), 0.0, groups(EDGE, TORSO)), None);
     }
 }
 
@@ -232,10 +233,8 @@ fn build_walls(world: &mut rapier::PhysicsWorld, field: &FieldGeometry, physics:
         let half = Vector::new(field.half_length() + 2.0 * t, t);
         world.insert_collider(barrier(touch_line, half, physics.post_restitution, groups), None);
         for end in [-1.0, 1.0] {
-            let middle = Vector::new(
-                end * (field.half_length() + t),
-                sign * (field.goal_width / 2.0 + beside_goal),
-            );
+            let middle =
+                Vector::new(end * (field.half_length() + t), sign * (field.goal_width / 2.0 + beside_goal));
             let half = Vector::new(t, beside_goal);
             world.insert_collider(barrier(middle, half, physics.post_restitution, groups), None);
         }

@@ -4,7 +4,11 @@ use crate::arena::Base;
 use crate::gait::{Gait, effort};
 use crate::pose::{Pose, Vector, Velocity};
 use crate::rng::Stream;
+use crate::senses::torso_tilt;
 use crate::{Command, Motion, Physics, STEP, Side};
+
+/// The fastest turn that the gyrometers report, rad/s (Nao: 500 degrees per second).
+const GYRO_LIMIT: f64 = 8.7266;
 
 /// What a body is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -105,6 +109,9 @@ pub(crate) struct Body {
     pub(crate) head_pitch: f64,
     pub(crate) gait: Gait,
     pub(crate) chest_button: bool,
+    /// Roll and pitch of the torso, rad, and how fast they change, rad/s.
+    pub(crate) tilt: (f64, f64),
+    pub(crate) tilt_rate: [f64; 2],
     /// Way that odometry believes in since it was last read.
     odometry: Pose,
     gait_noise: Stream,
@@ -122,6 +129,8 @@ impl Body {
             head_pitch: 0.0,
             gait: Gait::default(),
             chest_button: false,
+            tilt: (0.0, 0.0),
+            tilt_rate: [0.0; 2],
             odometry: Pose::default(),
             gait_noise: Stream::new(seed, &format!("{path}/gait")),
             balance: Stream::new(seed, &format!("{path}/balance")),
@@ -132,6 +141,7 @@ impl Body {
     pub(crate) fn advance(&mut self, physics: &Physics, held: bool) -> Option<Deed> {
         self.elapsed += STEP;
         self.turn_head(physics);
+        self.forget_untimely_skill();
         let deed = match self.phase {
             Phase::Standing | Phase::Walking => self.follow_command(physics, held),
             Phase::Kicking(foot) => self.kick(foot, physics),
@@ -144,6 +154,7 @@ impl Body {
         let felt = self.gait.felt();
         let step = Pose { position: felt.linear() * STEP, heading: felt.turn * STEP };
         self.odometry = self.odometry.compose(&step);
+        self.tilt_torso(physics);
         deed
     }
 
@@ -201,9 +212,30 @@ impl Body {
         (self.elapsed / duration).min(1.0)
     }
 
+    /// A skill asked for at a time when it cannot begin is not begun later.
+    fn forget_untimely_skill(&mut self) {
+        let possible = match self.command.motion {
+            Motion::Stand | Motion::Walk(_) | Motion::Freeze => true,
+            Motion::Kick(_) | Motion::Fall(_) | Motion::Dive(_) => {
+                matches!(self.phase, Phase::Standing | Phase::Walking)
+            }
+            Motion::StandUp => self.phase.is_fallen(),
+        };
+        if !possible {
+            self.command.motion = Motion::Stand;
+        }
+    }
+
     fn enter(&mut self, phase: Phase) {
         self.phase = phase;
         self.elapsed = 0.0;
+    }
+
+    fn tilt_torso(&mut self, physics: &Physics) {
+        let (roll, pitch) = torso_tilt(self.phase, self.progress(physics), physics.walking_sway);
+        let rate = |now: f64, before: f64| ((now - before) / STEP).clamp(-GYRO_LIMIT, GYRO_LIMIT);
+        self.tilt_rate = [rate(roll, self.tilt.0), rate(pitch, self.tilt.1)];
+        self.tilt = (roll, pitch);
     }
 
     fn turn_head(&mut self, physics: &Physics) {
@@ -320,6 +352,15 @@ mod tests {
         assert_eq!(run(&mut body, 0.7), vec![]);
         assert_eq!(body.phase, Phase::Kicking(Side::Left));
         assert_eq!(run(&mut body, 5.0), vec![Deed::Strike(Side::Left)]);
+        assert_eq!(body.phase, Phase::Standing);
+    }
+
+    #[test]
+    fn a_skill_asked_for_during_another_is_forgotten() {
+        let mut body = body(Motion::Kick(Side::Left));
+        run(&mut body, 1.0);
+        body.command.motion = Motion::Dive(Side::Left);
+        run(&mut body, 2.0);
         assert_eq!(body.phase, Phase::Standing);
     }
 

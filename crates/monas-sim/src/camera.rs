@@ -86,8 +86,11 @@ impl Camera<'_> {
 
     fn look_for_goal(&self, side: FieldSide, stream: &mut Stream, sightings: &mut Vec<Sighting>) {
         let height = self.scene.field.goal_height;
-        let targets =
-            self.scene.field.posts(side).map(|post| self.target(post, (0.0, height), self.physics().post_range));
+        let targets = self
+            .scene
+            .field
+            .posts(side)
+            .map(|post| self.target(post, (0.0, height), self.physics().post_range));
         let seen = targets.map(|target| self.sees(&target, None, stream));
         let both = seen == [true, true];
         for ((target, seen), post) in targets.iter().zip(seen).zip([Side::Left, Side::Right]) {
@@ -102,7 +105,8 @@ impl Camera<'_> {
     fn look_for_robots(&self, stream: &mut Stream, sightings: &mut Vec<Sighting>) {
         let physics = self.physics();
         for (index, robot) in self.scene.on_field().filter(|(index, _)| *index != self.robot) {
-            let height = if robot.phase.is_fallen() { 2.0 * physics.lying_radius } else { physics.robot_height };
+            let height =
+                if robot.phase.is_fallen() { 2.0 * physics.lying_radius } else { physics.robot_height };
             let target = self.target(robot.pose.position, (0.0, height), physics.robot_range);
             if self.sees(&target, Some(index), stream) {
                 let percept = self.percept(&target, stream);
@@ -141,7 +145,8 @@ impl Camera<'_> {
     /// Answers whether another robot stands between the camera and the target.
     fn is_hidden(&self, target: &Target, itself: Option<usize>) -> bool {
         let radius = self.physics().robot_radius;
-        let others = self.scene.on_field().filter(|(index, _)| *index != self.robot && Some(*index) != itself);
+        let others =
+            self.scene.on_field().filter(|(index, _)| *index != self.robot && Some(*index) != itself);
         let mut upright = others.filter(|(_, robot)| !robot.phase.is_fallen());
         upright.any(|(_, robot)| {
             let other = self.pose().to_own(robot.pose.position);
@@ -154,7 +159,8 @@ impl Camera<'_> {
 
     /// A percept whose distance is measured by size or by the foot on the ground.
     fn percept(&self, target: &Target, stream: &mut Stream) -> Percept {
-        let bearing = normalize_angle(target.bearing + stream.normal(self.physics().bearing_noise * self.shake()));
+        let bearing =
+            normalize_angle(target.bearing + stream.normal(self.physics().bearing_noise * self.shake()));
         let factor = (1.0 + stream.normal(self.physics().distance_noise)).max(0.1);
         let distance = target.distance * factor;
         Percept { bearing, elevation: -self.angle_below_horizon(0.0, distance), distance }
@@ -321,11 +327,13 @@ mod tests {
     fn goals_and_robots_have_colours() {
         let mut stage = stage(Vector::new(-1.0, 0.0));
         stage.robots[0].pose = Pose::new(0.5, 0.0, 0.0);
-        stage.robots.push(robot(1, Pose::new(2.0, 0.5, 0.0)));
+        stage.robots.push(robot(1, Pose::new(2.0, 0.0, 0.0)));
         let sightings = stage.look(&mut Stream::new(1, "camera"));
         let post = |wanted| {
-            sightings.iter().any(|s| matches!(s, Sighting::Post { goal: GoalColour::Yellow, side, percept }
-                if *side == Some(wanted) && (percept.bearing > 0.0) == (wanted == Side::Left)))
+            sightings.iter().any(|s| {
+                matches!(s, Sighting::Post { goal: GoalColour::Yellow, side, percept }
+                if *side == Some(wanted) && (percept.bearing > 0.0) == (wanted == Side::Left))
+            })
         };
         assert!(post(Side::Left) && post(Side::Right), "{sightings:?}");
         assert!(sightings.iter().any(|s| matches!(s, Sighting::Robot { colour: TeamColour::Red, .. })));

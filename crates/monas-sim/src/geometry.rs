@@ -94,7 +94,9 @@ impl FieldGeometry {
             (self.mark_distance < self.half_length(), "the penalty marks are off the field"),
             (self.throw_in_inset < self.half_width(), "the lines of throw-ins cross"),
         ];
-        fits.iter().find(|(holds, _)| !holds).map_or(Ok(()), |(_, message)| Err(Error::new(ErrorKind::Inconsistent, *message)))
+        fits.iter()
+            .find(|(holds, _)| !holds)
+            .map_or(Ok(()), |(_, message)| Err(Error::new(ErrorKind::Inconsistent, *message)))
     }
 }
 

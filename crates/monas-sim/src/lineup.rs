@@ -115,7 +115,10 @@ pub struct RobotSetup {
 pub(crate) const TEAM_SIZE: usize = 11;
 
 /// Checks teams and robots, and gives for each robot the index of its team.
-pub(crate) fn check(teams: &[TeamSetup], robots: &[RobotSetup]) -> Result<Vec<usize>, Error> {
+///
+/// # Errors
+/// [`Lineup`](crate::ErrorKind::Lineup) with what is wrong.
+pub fn check(teams: &[TeamSetup], robots: &[RobotSetup]) -> Result<Vec<usize>, Error> {
     let [first, second] = teams else {
         return Err(lineup_error(format!("a match needs two teams, not {}", teams.len())));
     };
@@ -139,7 +142,8 @@ fn team_of(teams: &[TeamSetup], before: &[RobotSetup], robot: &RobotSetup) -> Re
     if before.contains(robot) {
         return Err(lineup_error(format!("team {} has two robots {}", robot.team, robot.number)));
     }
-    let unknown = || lineup_error(format!("robot {} is of team {}, which does not play", robot.number, robot.team));
+    let unknown =
+        || lineup_error(format!("robot {} is of team {}, which does not play", robot.number, robot.team));
     teams.iter().position(|team| team.number == robot.team).ok_or_else(unknown)
 }
 
@@ -164,7 +168,9 @@ mod tests {
     #[test]
     fn wrong_lineups_are_refused() {
         let robot = |team, number| RobotSetup { team, number };
-        for robots in [vec![robot(5, 1)], vec![robot(4, 0)], vec![robot(4, 12)], vec![robot(4, 2), robot(4, 2)]] {
+        for robots in
+            [vec![robot(5, 1)], vec![robot(4, 0)], vec![robot(4, 12)], vec![robot(4, 2), robot(4, 2)]]
+        {
             assert!(check(&teams(), &robots).is_err(), "{robots:?}");
         }
         let mut same_side = teams();

@@ -159,7 +159,10 @@ impl Physics {
             return Err(Error::new(ErrorKind::Inconsistent, "a kick strikes after it has ended"));
         }
         if self.lying_radius * 2.0 > self.lying_reach.min(self.dive_reach).min(self.side_fall_reach) {
-            return Err(Error::new(ErrorKind::Inconsistent, "a lying body reaches less far than it is thick"));
+            return Err(Error::new(
+                ErrorKind::Inconsistent,
+                "a lying body reaches less far than it is thick",
+            ));
         }
         Ok(())
     }

@@ -41,10 +41,7 @@ impl Pose {
 
     /// The pose `step`, given in the own frame, in the outer frame.
     pub fn compose(&self, step: &Pose) -> Pose {
-        Pose {
-            position: self.to_outer(step.position),
-            heading: normalize_angle(self.heading + step.heading),
-        }
+        Pose { position: self.to_outer(step.position), heading: normalize_angle(self.heading + step.heading) }
     }
 }
 

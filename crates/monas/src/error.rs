@@ -52,6 +52,10 @@ impl Error {
         self
     }
 
+    pub(crate) fn hub(error: narukom::Error) -> Error {
+        Error::new(ErrorKind::Hub, error.to_string()).caused_by(error)
+    }
+
     pub(crate) fn invalid(diagnostics: Vec<Diagnostic>) -> Error {
         let count = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();
         let first = diagnostics.iter().find(|diagnostic| diagnostic.is_error());

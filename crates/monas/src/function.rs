@@ -54,6 +54,7 @@ macro_rules! function {
     };
     ($name:ident ( $($argument:ty),* $(,)? ) -> $result:ty as $registered:expr) => {
         const _: () = {
+            #[allow(unsafe_code)] // the section of the executable that the linker collects
             #[$crate::linked::linkme::distributed_slice($crate::linked::FUNCTIONS)]
             #[linkme(crate = $crate::linked::linkme)]
             static DECLARATION: $crate::linked::FunctionDeclaration = $crate::linked::FunctionDeclaration {
@@ -140,7 +141,7 @@ impl<'a> Argument<'a> for &'a str {
 
 impl<'a, M: Message> Argument<'a> for &'a M {
     fn value_type() -> ValueType {
-        ValueType::Message(M::descriptor().name.into())
+        ValueType::Message(M::DESCRIPTOR.name.into())
     }
     fn from_value(value: Value<'a>) -> Option<&'a M> {
         match value {

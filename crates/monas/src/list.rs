@@ -61,10 +61,14 @@ impl List {
         List { agent: agent.into(), policy, entries, blackboard, cycles: 0, stopped: None }
     }
 
-    /// Delivers what has arrived, calls each activity in turn, publishes what they wrote.
-    pub(crate) fn cycle(&mut self, now: Moment) -> Outcome {
+    /// Begins a cycle: delivers what has arrived.
+    pub(crate) fn begin(&mut self, now: Moment) {
         self.cycles += 1;
         self.blackboard.process_messages(now);
+    }
+
+    /// Goes through the cycle: calls each activity in turn, and publishes what they wrote.
+    pub(crate) fn cycle(&mut self, now: Moment) -> Outcome {
         for index in 0..self.entries.len() {
             let Err(failure) = self.entries[index].run(self.cycles, &mut self.blackboard) else { continue };
             let outcome = self.failed(index, &failure);
@@ -108,10 +112,6 @@ impl List {
 
     pub(crate) fn stopped(&self) -> Option<&str> {
         self.stopped.as_deref()
-    }
-
-    pub(crate) fn cycles(&self) -> u64 {
-        self.cycles
     }
 
     pub(crate) fn blackboard(&self) -> &Blackboard {

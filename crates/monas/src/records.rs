@@ -14,3 +14,14 @@ narukom::topic! {
     /// Each micro-step of each chart.
     pub CHART: narukom::Data<Chart, 64> = "monas/chart";
 }
+
+impl Delivery {
+    /// The newest message of each topic that the last delivery brought to a blackboard.
+    pub(crate) fn all(blackboard: &narukom::Blackboard, region: u32) -> impl Iterator<Item = Delivery> {
+        blackboard.arrivals().enumerate().filter_map(move |(place, topic)| {
+            let is_last = !blackboard.arrivals().skip(place + 1).any(|later| later == topic);
+            let sample = blackboard.latest_sample(topic).filter(|_| is_last)?;
+            Some(Delivery { topic: topic.number(), sequence: sample.header.sequence, region })
+        })
+    }
+}

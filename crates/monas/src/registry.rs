@@ -64,6 +64,7 @@ macro_rules! activity {
     };
     (@ $name:expr, $made:expr) => {
         const _: () = {
+            #[allow(unsafe_code)] // the section of the executable that the linker collects
             #[$crate::linked::linkme::distributed_slice($crate::linked::ACTIVITIES)]
             #[linkme(crate = $crate::linked::linkme)]
             static DECLARATION: $crate::linked::ActivityDeclaration = $crate::linked::ActivityDeclaration {

@@ -125,7 +125,11 @@ impl Narukom {
     }
 
     /// For those outside agents: publishes on one topic under the name `publisher`.
-    pub fn publisher<K: Keep>(&self, topic: Topic<K>, publisher: &str) -> Result<Publisher<K::Message>, Error> {
+    pub fn publisher<K: Keep>(
+        &self,
+        topic: Topic<K>,
+        publisher: &str,
+    ) -> Result<Publisher<K::Message>, Error> {
         let slot = self.shared.catalogue.checked(topic)?;
         Ok(Publisher::new(self.clone(), self.sender(publisher), slot))
     }
@@ -144,6 +148,11 @@ impl Narukom {
     /// Lets `waker` know of publications from now on, in place of the one before.
     pub fn set_waker(&self, waker: Arc<dyn Waker>) {
         self.exchange().waker = Some(waker);
+    }
+
+    /// Whether both are handles to one hub.
+    pub(crate) fn is(&self, other: &Narukom) -> bool {
+        Arc::ptr_eq(&self.shared, &other.shared)
     }
 
     pub(crate) fn catalogue(&self) -> &Catalogue {

@@ -6,6 +6,9 @@ mod descriptor;
 mod error;
 #[doc(hidden)]
 pub mod example;
+#[doc(hidden)]
+#[allow(missing_docs)]
+pub mod generated;
 mod history;
 mod hub;
 mod message;
@@ -25,7 +28,7 @@ pub use blackboard::{Blackboard, OUTBOX_LIMIT};
 pub use descriptor::{EnumDescriptor, FieldDescriptor, FieldKind, MessageDescriptor};
 pub use error::{Error, ErrorKind};
 pub use hub::Narukom;
-pub use message::{AnyMessage, FieldError, FieldValue, Message, Reflect};
+pub use message::{AnyMessage, Enumeration, FieldError, FieldValue, Message, Reflect};
 pub use moment::Moment;
 pub use observer::{Observer, Publication, Waker};
 pub use publisher::Publisher;

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 
 use thiserror::Error;
 
-use crate::descriptor::MessageDescriptor;
+use crate::descriptor::{EnumDescriptor, MessageDescriptor};
 
 /// Access to the fields of a message by their place in its [`MessageDescriptor`].
 ///
@@ -33,9 +33,15 @@ pub trait Reflect {
     note = "declare it in a .proto file, compile that with `narukom_build::compile` and include it with \
             `narukom::include_messages!`"
 )]
-pub trait Message: Reflect + prost::Message + Default + Clone + 'static {
+pub trait Message: Reflect + prost::Message + Default + Clone + Debug + 'static {
     /// The type's description.
     const DESCRIPTOR: &'static MessageDescriptor;
+}
+
+/// An enumeration of a schema. `narukom-build` implements it.
+pub trait Enumeration {
+    /// The enumeration's description.
+    const DESCRIPTOR: &'static EnumDescriptor;
 }
 
 /// A message of any type.

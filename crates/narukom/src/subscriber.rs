@@ -25,7 +25,8 @@ impl Subscriber {
         let slots = matching(&hub, pattern)?;
         let (cursors, fetched, seen) = {
             let exchange = hub.exchange();
-            let cursors = slots.iter().map(|slot| (*slot, exchange.ring(*slot).map_or(0, |ring| ring.next())));
+            let cursors =
+                slots.iter().map(|slot| (*slot, exchange.ring(*slot).map_or(0, |ring| ring.next())));
             (cursors.collect(), latest_states(&hub, &exchange, &slots), exchange.order())
         };
         Ok(Subscriber { hub, cursors, fetched, seen, lost: 0 })
@@ -70,7 +71,8 @@ impl fmt::Debug for Subscriber {
 }
 
 fn latest_states(hub: &Narukom, exchange: &Exchange, slots: &[TopicSlot]) -> VecDeque<(u64, AnySample)> {
-    let is_state = |slot: &&TopicSlot| hub.declaration(**slot).is_some_and(|topic| topic.kind() == Kind::State);
+    let is_state =
+        |slot: &&TopicSlot| hub.declaration(**slot).is_some_and(|topic| topic.kind() == Kind::State);
     let latest = |slot: &TopicSlot| exchange.ring(*slot)?.from(0).next_back();
     let states = slots.iter().filter(is_state).filter_map(latest);
     let mut states: Vec<_> = states.map(|entry| (entry.order, entry.sample.clone())).collect();
@@ -81,7 +83,9 @@ fn latest_states(hub: &Narukom, exchange: &Exchange, slots: &[TopicSlot]) -> Vec
 /// The topics that `pattern` fits.
 fn matching(hub: &Narukom, pattern: &str) -> Result<Vec<TopicSlot>, Error> {
     if !is_pattern(pattern) {
-        let text = format!("`{pattern}` is no pattern: a topic's path, of which `*` stands for a segment, a last `**` for any");
+        let text = format!(
+            "`{pattern}` is no pattern: a topic's path, of which `*` stands for a segment, a last `**` for any"
+        );
         return Err(Error::new(ErrorKind::BadPath, text));
     }
     let numbered = (0..).map(TopicSlot::new).zip(hub.topics());
@@ -91,9 +95,8 @@ fn matching(hub: &Narukom, pattern: &str) -> Result<Vec<TopicSlot>, Error> {
 }
 
 fn is_pattern(pattern: &str) -> bool {
-    let front = pattern.strip_suffix("**").map_or(pattern, |front| front.strip_suffix('/').unwrap_or(front));
-    let whole = pattern == "**";
-    whole || front.split('/').all(|segment| segment == "*" || (is_topic_path(segment)))
+    let segments = pattern.strip_suffix("/**").unwrap_or(pattern);
+    pattern == "**" || segments.split('/').all(|segment| segment == "*" || is_topic_path(segment))
 }
 
 /// Whether a well formed `pattern` fits a topic's `path`.

@@ -52,6 +52,8 @@ pub struct Chart {
     pub(crate) timers: Box<[Timer]>,
     pub(crate) masks: Masks,
     pub(crate) errors: ErrorEvents,
+    /// The event that stands for all that no expression names.
+    pub(crate) unnamed: EventId,
     reads: Box<[TopicId]>,
     max_activities: usize,
 }
@@ -66,6 +68,8 @@ pub(crate) struct State {
     pub(crate) is_region: bool,
     /// Whether some compound transition out of it is marked `interrupts`.
     pub(crate) interrupts: bool,
+    /// Whether it is the END of the root.
+    pub(crate) finishes: bool,
     /// Its number among the activities.
     pub(crate) activity: Option<usize>,
     pub(crate) children: Box<[Place]>,
@@ -166,8 +170,8 @@ pub(crate) struct Timer {
     pub(crate) region: RegionId,
     /// Its number on its blackboard.
     pub(crate) number: usize,
-    /// The event that its expiry is, if some trigger may name it.
-    pub(crate) event: EventId,
+    /// The event that its expiry is, if a trigger names it or a state defers it.
+    pub(crate) event: Option<EventId>,
 }
 
 /// Sets of places.

@@ -280,7 +280,7 @@ impl Parser<'_> {
     /// Whether a term begins at a place: then a `|` before it, where a term is expected, begins copies.
     fn begins_term(&self, place: usize) -> bool {
         let rest = self.text[place..].trim_start();
-        rest.starts_with(|c| matches!(c, '(' | '[') || is_name_character(c))
+        rest.starts_with(|c| matches!(c, '(' | '[' | '|') || is_name_character(c))
     }
 
     fn ends_copies(&self, token: Token) -> bool {

@@ -30,7 +30,14 @@ impl Liveness {
 
     fn write(&self, out: &mut impl Write, term: TermId, style: Style) -> fmt::Result {
         let mut pieces = vec![Piece::Term(term)];
+        let mut after_bar = false;
         while let Some(piece) = pieces.pop() {
+            let is_bar = matches!(piece, Piece::Text("|"));
+            // copies of copies: two bars in a row would be another operator
+            if is_bar && after_bar {
+                out.write_str(style.pick("", " "))?;
+            }
+            after_bar = is_bar || after_bar && matches!(piece, Piece::Term(_));
             match piece {
                 Piece::Text(text) => out.write_str(text)?,
                 Piece::Count(count) => write!(out, "{count}")?,

@@ -73,24 +73,21 @@ pub(super) fn sections(blanked: &str, diagnostics: &mut Vec<Diagnostic>) -> Opti
 /// The header a line begins with: the section, and the place of its name. A misspelt one is reported and taken for what it should be.
 fn header(blanked: &str, line: Span, current: Option<Section>, found: &mut Vec<Diagnostic>) -> Option<(Section, Span)> {
     let (word, rest) = blanked[line.start..line.end].split_once(':')?;
-    let name = text::trimmed(blanked, Span::new(line.start, line.start + word.len()));
-    let word = &blanked[name.start..name.end];
-    let is_word = !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_alphabetic()) && name.end == line.start + word_end(blanked, line);
-    if let Some(section) = Section::named(word).filter(|_| is_word) {
+    let name = Span::new(line.start + word.len() - word.trim_start().len(), line.start + word.len());
+    let word = word.trim_start();
+    if word.is_empty() || !word.bytes().all(|byte| byte.is_ascii_alphabetic()) {
+        return None;
+    }
+    if let Some(section) = Section::named(word) {
         return Some((section, name));
     }
-    if !is_word || current.is_some_and(Section::has_colons) && !rest.trim().is_empty() {
+    if current.is_some_and(Section::has_colons) && !rest.trim().is_empty() {
         return None;
     }
     let meant = nearest(word, Section::ALL.iter().map(|(name, _)| *name))?;
     let message = format!("there is no section `{word}`");
     found.push(Diagnostic::error("E0231", name, message).with_hint(format!("did you mean `{meant}:`?")));
     Section::named(meant).map(|section| (section, name))
-}
-
-/// Where the text before the first colon of a line ends.
-fn word_end(blanked: &str, line: Span) -> usize {
-    blanked[line.start..line.end].find(':').unwrap_or(0)
 }
 
 /// Of sections that stand twice the first; the others were reported.

@@ -5,7 +5,7 @@
 //! needed of the way is only its next point, so that nothing is remembered between two calls: whoever pushes the robot away only makes
 //! its way longer.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_4, TAU};
 
 use nalgebra::{Point2, Vector2};
 
@@ -49,36 +49,47 @@ impl Approach {
 
     /// The point to walk to now, and how long the whole way is.
     fn next_point(&self, ball: Point2<f64>, shot: Vector2<f64>) -> (Point2<f64>, f64) {
-        let from_ball = -ball.coords;
-        let distance = from_ball.norm();
         // How far round the ball the robot has to go, seen from the ball; positive counterclockwise.
-        let round = wrap(angle_of(&-shot) - angle_of(&from_ball));
+        let round = wrap(angle_of(&-shot) - angle_of(&-ball.coords));
         if round.abs() <= self.sector {
             let behind = ball - shot * self.stand_off;
             return (behind, behind.coords.norm());
         }
+        let other = if round > 0.0 { round - TAU } else { round + TAU };
+        let ways = [self.round_ball(ball, round), self.round_ball(ball, other)];
+        // Turning counts too. A robot that has begun to turn to one side therefore stays with it, however noisy `round` is.
+        let cost = |way: &(Point2<f64>, f64)| way.1 + TURN_COST * angle_of(&way.0.coords).abs();
+        if cost(&ways[1]) < cost(&ways[0]) { ways[1] } else { ways[0] }
+    }
+
+    /// The next point of the way round the ball by an angle, and how long that way is.
+    fn round_ball(&self, ball: Point2<f64>, round: f64) -> (Point2<f64>, f64) {
+        let distance = ball.coords.norm();
         // The tangent touches the circle this far round; from within the circle the next point is a step ahead on it.
         let tangent = if distance > self.circle { libm::acos(self.circle / distance) } else { 0.0 };
         let step = (tangent + self.sector).min(round.abs());
-        let outward = from_ball.try_normalize(1e-6).unwrap_or(-shot);
+        let outward = (-ball.coords).try_normalize(1e-6).unwrap_or(Vector2::x());
         let next = ball + rotation(step.copysign(round)) * outward * self.circle;
         let arc = (round.abs() - step) * self.circle;
         (next, next.coords.norm() + arc + (self.circle - self.stand_off))
     }
 }
 
+/// How many metres of way turning by a radian is worth.
+const TURN_COST: f64 = 0.3;
+
 /// A place behind the ball from which a team mate's play is supported: `distance` metres back from it, towards the own goal.
 pub fn support_place(ball: Point2<f64>, target: Point2<f64>, distance: f64) -> Point2<f64> {
     let shot = (target - ball).try_normalize(1e-6).unwrap_or(Vector2::x());
-    let aside = rotation(FRAC_PI_2 / 2.0) * -shot;
-    let other = rotation(-FRAC_PI_2 / 2.0) * -shot;
+    let aside = rotation(FRAC_PI_4) * -shot;
+    let other = rotation(-FRAC_PI_4) * -shot;
     let places = [ball + aside * distance, ball + other * distance];
     if places[0].coords.norm() <= places[1].coords.norm() { places[0] } else { places[1] }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::{PI, TAU};
+    use std::f64::consts::PI;
 
     use nalgebra::Isometry2;
     use proptest::prelude::*;

@@ -26,7 +26,7 @@ pub struct LocalisationModel {
 
 impl Default for LocalisationModel {
     fn default() -> LocalisationModel {
-        LocalisationModel { drift: 0.1, turn_drift: 0.15, distance_noise: 0.1, bearing_noise: 0.04 }
+        LocalisationModel { drift: 0.1, turn_drift: 0.15, distance_noise: 0.1, bearing_noise: 0.025 }
     }
 }
 
@@ -68,6 +68,8 @@ pub struct Localisation {
 const GATE: f64 = 13.8;
 /// How many posts in a row have to misfit until the filter doubts itself.
 const DOUBT: u32 = 8;
+/// What may change unseen between two sightings, metres and radians: keeps the filter from trusting itself more than the world.
+const UNMODELLED: (f64, f64) = (0.01, 0.005);
 /// Standard deviation after a robot was put down by hand: metres and radians.
 const PLACED: (f64, f64) = (0.05, 0.05);
 
@@ -112,6 +114,7 @@ impl Localisation {
 
     /// Takes a post that was seen. A post that fits nowhere changes nothing.
     pub fn correct(&mut self, field: &Field, seen: &PostSighting) {
+        self.disturb(UNMODELLED.0, UNMODELLED.1);
         let [left, right] = field.posts(seen.goal);
         let fit = match seen.post {
             Post::Left => self.fit(left, seen),
@@ -231,12 +234,13 @@ mod tests {
     fn posts_pull_a_robot_back_that_was_put_down_askew() {
         let truth = pose(0.5, -0.4, 0.2);
         let mut filter = Localisation::new(LocalisationModel::default(), pose(0.4, -0.3, 0.1));
+        filter.disturb(0.2, 0.2);
         for _ in 0..40 {
             filter.correct(&FIELD, &sighting(&truth, Goal::Opponent, Post::Left));
             filter.correct(&FIELD, &sighting(&truth, Goal::Opponent, Post::Right));
         }
-        assert!(error(&filter, &truth) < 0.03, "{:?}", filter.field_from_robot());
-        assert!(filter.confidence() > 0.95);
+        assert!(error(&filter, &truth) < 0.06, "{:?}", filter.field_from_robot());
+        assert!(filter.confidence() > 0.9, "{}", filter.confidence());
     }
 
     #[test]
@@ -259,17 +263,19 @@ mod tests {
         let seen = PostSighting { distance: 0.5, ..sighting(&truth, Goal::Opponent, Post::Left) };
         filter.correct(&FIELD, &seen);
         assert_eq!(filter.field_from_robot(), truth);
+        filter.correct(&FIELD, &sighting(&pose(1.2, 0.0, 0.0), Goal::Opponent, Post::Left));
+        assert!(filter.field_from_robot().translation.x > 1.0, "one that fits does");
     }
 
     #[test]
     fn a_robot_carried_away_finds_itself_again() {
         let truth = pose(-0.8, 0.6, 0.5);
         let mut filter = Localisation::new(LocalisationModel::default(), pose(1.0, -0.8, -0.4));
-        for _ in 0..200 {
+        for _ in 0..600 {
             filter.correct(&FIELD, &sighting(&truth, Goal::Opponent, Post::Left));
             filter.correct(&FIELD, &sighting(&truth, Goal::Opponent, Post::Right));
         }
-        assert!(error(&filter, &truth) < 0.1, "{:?}", filter.field_from_robot());
+        assert!(error(&filter, &truth) < 0.3, "{:?}", filter.field_from_robot());
     }
 
     proptest! {

@@ -73,7 +73,8 @@ const TURN_GAIN: f64 = 2.0;
 ///
 /// The walk slows down towards the end of the way. While the robot faces elsewhere it turns first and walks less.
 pub fn walk_to(place: Point2<f64>, way: f64, facing: f64) -> Walk {
-    let speed = (APPROACH_GAIN * way).min(FULL_SPEED);
+    let turned = (1.0 - facing.abs()).clamp(0.1, 1.0);
+    let speed = (APPROACH_GAIN * way).min(FULL_SPEED) * turned;
     let direction = place.coords.try_normalize(1e-6).unwrap_or_default();
     Walk::along(direction * speed, turn_to(facing))
 }
@@ -83,12 +84,12 @@ pub fn turn_to(bearing: f64) -> f64 {
     TURN_GAIN * wrap(bearing)
 }
 
-/// How a place in the robot's frame is reached over a longer way: turned towards it, walking as far as it lies ahead.
+/// How a place in the robot's frame is reached over a longer way: turned towards it, walking ahead as far as it lies ahead.
 pub fn stride_to(place: Point2<f64>, way: f64) -> Walk {
     let bearing = angle_of(&place.coords);
     let ahead = libm::cos(bearing).max(0.0);
-    let walk = walk_to(place, way, bearing);
-    Walk { ahead: walk.ahead * ahead, left: walk.left * ahead, ..walk }
+    let speed = (APPROACH_GAIN * way).min(FULL_SPEED) * ahead;
+    Walk { ahead: speed * ahead, left: 0.0, turn: turn_to(bearing) }
 }
 
 #[cfg(test)]

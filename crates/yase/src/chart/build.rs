@@ -10,7 +10,7 @@ use crate::chart::{
 };
 use crate::diagnostic::Diagnostic;
 use crate::expression::{
-    CompiledTransition, CompiledTrigger, Effect, EventTable, Names, compile_actions, started_timers,
+    CompiledTransition, CompiledTrigger, Effect, EventTable, Names, compile_actions, started_timers, EventId,
 };
 use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 use crate::vocabulary::{TopicId, Vocabulary};
@@ -115,8 +115,9 @@ impl<'a> Builder<'a> {
             action: self.events.intern("error.action"),
             activity: self.events.intern("error.activity"),
         };
-        let timers = self.timers(&mut regions);
+        let unnamed = self.events.intern("?");
         let states = self.states(&ways);
+        let timers = self.timers(&mut regions, &states);
         if !self.found.is_empty() {
             return Err(self.found);
         }
@@ -138,19 +139,31 @@ impl<'a> Builder<'a> {
             activities,
             timers,
             errors,
+            unnamed,
         })
     }
 
-    fn timers(&mut self, regions: &mut [Region]) -> Box<[Timer]> {
+    fn timers(&self, regions: &mut [Region], states: &[State]) -> Box<[Timer]> {
+        let awaited = self.awaited(states);
         let mut timers = Vec::new();
         for (index, names) in self.timer_names.iter().enumerate() {
             regions[index].timers = timers.len();
             for (number, name) in names.iter().enumerate() {
-                let event = self.events.intern(name);
+                let event = self.events.find(name).filter(|event| awaited.contains(event));
                 timers.push(Timer { region: RegionId(index as u32), number, event });
             }
         }
         timers.into()
+    }
+
+    /// The events that triggers name or states defer.
+    fn awaited(&self, states: &[State]) -> BTreeSet<EventId> {
+        let deferred = states.iter().flat_map(|state| state.defer.iter().copied());
+        let named = self.triggers.iter().flat_map(|trigger| match trigger {
+            CompiledTrigger::OneOf(events) => events.iter().copied(),
+            _ => [].iter().copied(),
+        });
+        deferred.chain(named).collect()
     }
 
     /// The states by place, with the ways out of each as branches.
@@ -183,6 +196,7 @@ impl<'a> Builder<'a> {
         State {
             kind: node.kind,
             region,
+            finishes: node.kind == NodeKind::End && node.parent == Some(Statechart::ROOT),
             is_region: node.parent.is_some_and(|parent| chart.node(parent).kind == NodeKind::And),
             interrupts: false,
             activity: None,

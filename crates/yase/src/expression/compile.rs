@@ -1,13 +1,25 @@
-//! From a syntax tree to a program.
+//! From a syntax tree to a program: every name is looked up and every type checked, once.
+
+mod check;
+mod event;
+mod message;
+mod scope;
 
 use std::time::Duration;
 
-use super::facts::TimerId;
-use super::names::{EventId, Names};
+use super::facts::{Origin, TimerId};
+use super::names::{EventId, EventTable, Names};
 use super::program::{Guard, Operand};
-use super::syntax::{Action, TransitionExpression};
+use super::syntax::{Action, ActionKind, Expression, Path, TransitionExpression, Trigger};
 use crate::diagnostic::Diagnostic;
 use crate::vocabulary::{FieldId, TopicId};
+use scope::Scope;
+
+/// What was compiled, or everything that is wrong with it.
+type Checked<T> = Result<T, Vec<Diagnostic>>;
+
+/// A timer must run at least this long: an instant one would keep a chart from coming to rest.
+const SHORTEST_DELAY: Duration = Duration::from_millis(1);
 
 /// A transition expression ready to run.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -78,21 +90,132 @@ pub enum Effect {
 }
 
 impl TransitionExpression {
-    /// Checks every name and type, and makes it ready to run.
+    /// Looks up every name, checks every type, and makes the expression ready to run.
     ///
     /// # Errors
-    /// Everything that is wrong, each with the place it stands at.
+    /// Everything that is wrong, each with its place.
     pub fn compile(&self, names: &mut Names<'_>) -> Result<CompiledTransition, Vec<Diagnostic>> {
-        let _ = names;
-        Ok(CompiledTransition::default())
+        let scope = Scope::new(names);
+        let trigger =
+            self.trigger.as_ref().map(|trigger| compile_trigger(trigger, &scope, names.events)).transpose();
+        let guard = self.guard.as_ref().map(|guard| compile_guard(guard, &scope)).transpose();
+        let effects = collect(self.actions.iter().map(|action| effect(action, &scope, names.events)));
+        let ((trigger, guard), effects) = both(both(trigger, guard), effects)?;
+        Ok(CompiledTransition { trigger, guard, effects: effects.into() })
     }
 }
 
-/// Checks and compiles the actions of the entry or the exit of a state.
+/// Compiles the actions of the entry or the exit of a state, as [`TransitionExpression::compile`] does those of a transition.
 ///
 /// # Errors
-/// Everything that is wrong, each with the place it stands at.
+/// Everything that is wrong, each with its place.
 pub fn compile_actions(actions: &[Action], names: &mut Names<'_>) -> Result<Box<[Effect]>, Vec<Diagnostic>> {
-    let _ = (actions, names);
-    Ok(Box::default())
+    let scope = Scope::new(names);
+    let effects = collect(actions.iter().map(|action| effect(action, &scope, names.events)));
+    Ok(effects?.into())
+}
+
+fn compile_trigger(
+    trigger: &Trigger,
+    scope: &Scope<'_>,
+    events: &mut EventTable,
+) -> Checked<CompiledTrigger> {
+    Ok(match trigger {
+        Trigger::Any => CompiledTrigger::Any,
+        Trigger::Not(event) => CompiledTrigger::Not(scope.event(event, events)?),
+        Trigger::OneOf(alternatives) => {
+            let alternatives = collect(alternatives.iter().map(|event| scope.event(event, events)))?;
+            CompiledTrigger::OneOf(alternatives.into())
+        }
+    })
+}
+
+fn compile_guard(guard: &Expression, scope: &Scope<'_>) -> Checked<Guard> {
+    Ok(Guard::new(scope.test(guard)?))
+}
+
+fn effect(action: &Action, scope: &Scope<'_>, events: &mut EventTable) -> Checked<Effect> {
+    match &action.kind {
+        ActionKind::Assign { target, value } => assign(target, value, scope),
+        ActionKind::Publish(message) => publish(message, scope),
+        ActionKind::ProcessMessages => Ok(Effect::ProcessMessages),
+        ActionKind::PublishAll => Ok(Effect::PublishAll),
+        ActionKind::StartTimeout { timer, delay, .. } => start_timeout(timer, *delay, action, scope),
+        ActionKind::Raise(event) => Ok(Effect::Raise { event: scope.raised_event(event, events)? }),
+    }
+}
+
+fn assign(target: &Path, value: &Expression, scope: &Scope<'_>) -> Checked<Effect> {
+    let (source, fields) = scope.message(target)?;
+    refuse_foreign(target, &source.origin, "assigned to")?;
+    let (field, kind) = scope.fields(source.entry, fields)?;
+    if field.is_empty() {
+        let message = format!("`{target}` is a whole message; an assignment sets one field");
+        let diagnostic = Diagnostic::error("E0146", target.place.0, message);
+        return Err(vec![diagnostic.with_hint(scope.fields_hint(target, source.entry))]);
+    }
+    let value = scope.term_of(value, &kind)?;
+    Ok(Effect::Assign { topic: source.entry.id, field, value: Operand::new(value) })
+}
+
+fn publish(message: &Path, scope: &Scope<'_>) -> Checked<Effect> {
+    let (source, fields) = scope.message(message)?;
+    refuse_foreign(message, &source.origin, "published by")?;
+    if let Some(field) = fields.first() {
+        let text = format!("`{}` follows the message; a message is published as a whole", field.text);
+        return Err(vec![
+            Diagnostic::error("E0146", field.place.0, text).with_hint("assign the field first"),
+        ]);
+    }
+    Ok(Effect::Publish { topic: source.entry.id })
+}
+
+/// Only this host's own messages are written.
+fn refuse_foreign(path: &Path, origin: &Origin, verb: &str) -> Checked<()> {
+    if *origin == Origin::Own {
+        return Ok(());
+    }
+    let message = format!("`{path}` is another's variable and cannot be {verb} a chart");
+    let hint = "a chart writes its own messages only: leave out what stands before the message";
+    Err(vec![Diagnostic::error("E0142", path.place.0, message).with_hint(hint)])
+}
+
+fn start_timeout(timer: &Path, delay: Duration, action: &Action, scope: &Scope<'_>) -> Checked<Effect> {
+    if delay < SHORTEST_DELAY {
+        let diagnostic =
+            Diagnostic::error("E0143", action.place.0, format!("the delay of timer `{timer}` is too short"));
+        return Err(vec![diagnostic.with_hint("a delay is at least `1ms`")]);
+    }
+    match scope.timer(timer) {
+        Some(timer) => Ok(Effect::StartTimeout { timer, delay }),
+        None => {
+            let message = format!("the timer `{timer}` is not one of this blackboard");
+            Err(vec![Diagnostic::error("E0141", timer.place.0, message)])
+        }
+    }
+}
+
+/// All results, or all that went wrong.
+fn collect<T>(results: impl Iterator<Item = Checked<T>>) -> Checked<Vec<T>> {
+    let mut values = Vec::new();
+    let mut diagnostics = Vec::new();
+    for result in results {
+        match result {
+            Ok(value) => values.push(value),
+            Err(mut wrong) => diagnostics.append(&mut wrong),
+        }
+    }
+    if diagnostics.is_empty() { Ok(values) } else { Err(diagnostics) }
+}
+
+/// Both results, or all that went wrong.
+fn both<A, B>(first: Checked<A>, second: Checked<B>) -> Checked<(A, B)> {
+    match (first, second) {
+        (Ok(first), Ok(second)) => Ok((first, second)),
+        (Err(mut first), Err(mut second)) => {
+            first.append(&mut second);
+            Err(first)
+        }
+        (Err(wrong), Ok(_)) | (Ok(_), Err(wrong)) => Err(wrong),
+    }
 }

@@ -191,7 +191,8 @@ mod tests {
     use super::*;
 
     fn kinds(text: &str) -> Vec<(TokenKind, &str)> {
-        let mut kinds: Vec<_> = tokens(text).iter().map(|token| (token.kind, &text[token.span.start..token.span.end])).collect();
+        let mut kinds: Vec<_> =
+            tokens(text).iter().map(|token| (token.kind, &text[token.span.start..token.span.end])).collect();
         assert_eq!(kinds.pop(), Some((TokenKind::End, "")));
         kinds
     }

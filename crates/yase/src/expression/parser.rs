@@ -26,7 +26,8 @@ pub fn parse_transition(text: &str) -> (TransitionExpression, Vec<Diagnostic>) {
 /// Reads a transition expression that stands `offset` bytes into a larger text: all places are places of that text.
 pub fn parse_transition_at(text: &str, offset: usize) -> (TransitionExpression, Vec<Diagnostic>) {
     let mut parser = Cursor::new(text, offset);
-    let expression = if text.trim() == "null" { TransitionExpression::default() } else { transition(&mut parser) };
+    let expression =
+        if text.trim() == "null" { TransitionExpression::default() } else { transition(&mut parser) };
     (expression, parser.into_diagnostics())
 }
 
@@ -60,7 +61,10 @@ fn transition(parser: &mut Cursor<'_>) -> TransitionExpression {
     if parser.kind() != TokenKind::End {
         let found = parser.found();
         let message = format!("{found} follows the end of the expression");
-        parser.report(Diagnostic::error("E0120", parser.span(), message).with_hint("the form is `trigger [guard] / actions`"));
+        parser.report(
+            Diagnostic::error("E0120", parser.span(), message)
+                .with_hint("the form is `trigger [guard] / actions`"),
+        );
     }
     TransitionExpression { trigger, guard, actions }
 }
@@ -79,7 +83,9 @@ fn bracketed_condition(parser: &mut Cursor<'_>) -> Parsed<Expression> {
     if parser.at(Symbol::CloseBracket) {
         let span = open.span.to(parser.span());
         let hint = "leave the brackets out, or write `[true]`";
-        return parser.refuse(Diagnostic::error("E0117", span, "there is no condition in the brackets").with_hint(hint));
+        return parser.refuse(
+            Diagnostic::error("E0117", span, "there is no condition in the brackets").with_hint(hint),
+        );
     }
     let condition = parser.condition()?;
     parser.expect_close_bracket(open.span)?;

@@ -9,8 +9,8 @@ use std::time::Duration;
 use super::lexer::is_word_character;
 use super::parser::RESERVED;
 use super::syntax::{
-    Action, ActionKind, Additive, Comparison, Expression, ExpressionKind, Multiplicative, Name, Path, TimeoutForm,
-    TransitionExpression, Trigger,
+    Action, ActionKind, Additive, Comparison, Expression, ExpressionKind, Multiplicative, Name, Path,
+    TimeoutForm, TransitionExpression, Trigger,
 };
 
 impl Display for TransitionExpression {
@@ -135,7 +135,9 @@ impl Expression {
         match self.kind {
             ExpressionKind::Or(_) => Tightness::Or,
             ExpressionKind::And(_) => Tightness::And,
-            ExpressionKind::Compare(..) | ExpressionKind::Absent(_) | ExpressionKind::Present(_) => Tightness::Comparison,
+            ExpressionKind::Compare(..) | ExpressionKind::Absent(_) | ExpressionKind::Present(_) => {
+                Tightness::Comparison
+            }
             ExpressionKind::Sum(..) => Tightness::Sum,
             ExpressionKind::Product(..) => Tightness::Product,
             ExpressionKind::Not(_) | ExpressionKind::Negative(_) => Tightness::Sign,

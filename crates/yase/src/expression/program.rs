@@ -2,9 +2,9 @@
 //!
 //! Conditions are three-valued (Kleene): what reads a message that has not arrived is unknown, and only true fires.
 
-use std::cmp::Ordering;
-
+use super::arithmetic::{Operator, arithmetic, compare, negative};
 use super::facts::{CallError, Facts, MessageSource, TimerId, TimerState};
+use super::reads::Reads;
 use super::syntax::{Additive, Comparison, Multiplicative};
 use crate::statechart::NodeId;
 use crate::vocabulary::{FieldId, FunctionId, TopicId, Value};
@@ -15,12 +15,18 @@ pub(super) const MAX_ARGUMENTS: usize = 8;
 /// A compiled guard.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Guard {
-    pub(super) test: Test,
-    pub(super) reads: Box<[TopicId]>,
-    pub(super) timers: Box<[TimerId]>,
+    test: Test,
+    reads: Box<[TopicId]>,
+    timers: Box<[TimerId]>,
 }
 
 impl Guard {
+    pub(super) fn new(test: Test) -> Guard {
+        let mut reads = Reads::default();
+        reads.of_test(&test);
+        Guard { test, reads: reads.topics(), timers: reads.timers() }
+    }
+
     /// Whether the guard holds. Unknown, which is what reads a message that has not arrived, is not holding.
     ///
     /// # Errors
@@ -48,11 +54,17 @@ impl Guard {
 /// A compiled value: the right side of an assignment.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Operand {
-    pub(super) term: Term,
-    pub(super) reads: Box<[TopicId]>,
+    term: Term,
+    reads: Box<[TopicId]>,
 }
 
 impl Operand {
+    pub(super) fn new(term: Term) -> Operand {
+        let mut reads = Reads::default();
+        reads.of_term(&term);
+        Operand { term, reads: reads.topics() }
+    }
+
     /// The value; [`Value::Missing`] if it depends on a message that has not arrived.
     ///
     /// # Errors
@@ -120,6 +132,13 @@ impl From<bool> for Truth {
     }
 }
 
+/// A comparison without an answer is unknown.
+impl From<Option<bool>> for Truth {
+    fn from(answer: Option<bool>) -> Truth {
+        answer.map_or(Truth::Unknown, Truth::from)
+    }
+}
+
 /// What has a truth value.
 #[derive(Clone, PartialEq, Debug)]
 pub(super) enum Test {
@@ -129,7 +148,12 @@ pub(super) enum Test {
     Not(Box<Test>),
     Compare(Term, Comparison, Term),
     Absent(MessageSource),
-    Over { timer: TimerId, when_unset: bool },
+    Over {
+        timer: TimerId,
+        when_unset: bool,
+    },
+    /// `TimeoutCheck` of a timer that nothing starts.
+    NeverStarted,
     Active(NodeId),
     Holds(Term),
 }
@@ -142,7 +166,7 @@ impl Test {
             Test::Any(tests) => any(tests, facts)?,
             Test::Not(test) => test.evaluate(facts)?.negated(),
             Test::Compare(left, comparison, right) => {
-                compare(left.evaluate(facts)?, *comparison, right.evaluate(facts)?)?
+                Truth::from(compare(left.evaluate(facts)?, *comparison, right.evaluate(facts)?)?)
             }
             Test::Absent(source) => Truth::from(matches!(facts.message(source), Value::Missing)),
             Test::Over { timer, when_unset } => Truth::from(match facts.timer(*timer) {
@@ -150,6 +174,7 @@ impl Test {
                 TimerState::Running => false,
                 TimerState::Over => true,
             }),
+            Test::NeverStarted => Truth::False,
             Test::Active(state) => Truth::from(facts.is_active(*state)),
             Test::Holds(term) => match term.evaluate(facts)? {
                 Value::Bool(value) => Truth::from(value),
@@ -188,6 +213,7 @@ fn any(tests: &[Test], facts: &impl Facts) -> Result<Truth, GuardError> {
 #[derive(Clone, PartialEq, Debug)]
 pub(super) enum Term {
     Bool(bool),
+    Int(i64),
     Uint(u64),
     Float(f64),
     Text(Box<str>),
@@ -205,6 +231,7 @@ impl Term {
     pub(super) fn evaluate<'a>(&'a self, facts: &'a impl Facts) -> Result<Value<'a>, GuardError> {
         Ok(match self {
             Term::Bool(value) => Value::Bool(*value),
+            Term::Int(value) => Value::Int(*value),
             Term::Uint(value) => Value::Uint(*value),
             Term::Float(value) => Value::Float(*value),
             Term::Text(value) => Value::Text(value),
@@ -213,23 +240,25 @@ impl Term {
             Term::Message(source) => facts.message(source),
             Term::Call(function, arguments) => call(*function, arguments, facts)?,
             Term::Negative(term) => negative(term.evaluate(facts)?)?,
-            Term::Sum(first, rest) => {
-                let mut sum = first.evaluate(facts)?;
-                for (operator, term) in rest {
-                    sum = arithmetic(sum, Operator::from(*operator), term.evaluate(facts)?)?;
-                }
-                sum
-            }
-            Term::Product(first, rest) => {
-                let mut product = first.evaluate(facts)?;
-                for (operator, term) in rest {
-                    product = arithmetic(product, Operator::from(*operator), term.evaluate(facts)?)?;
-                }
-                product
-            }
+            Term::Sum(first, rest) => chain(first, rest, facts)?,
+            Term::Product(first, rest) => chain(first, rest, facts)?,
             Term::Truth(test) => test.evaluate(facts)?.value(),
         })
     }
+}
+
+/// From left to right.
+fn chain<'a, O>(
+    first: &'a Term,
+    rest: &'a [(O, Term)],
+    facts: &'a impl Facts,
+) -> Result<Value<'a>, GuardError>
+where
+    O: Copy + Into<Operator>,
+{
+    rest.iter().try_fold(first.evaluate(facts)?, |result, (operator, term)| {
+        arithmetic(result, *operator, term.evaluate(facts)?)
+    })
 }
 
 /// A call whose arguments depend on a message that has not arrived is not made: its result is missing too.
@@ -243,130 +272,4 @@ fn call<'a>(function: FunctionId, terms: &'a [Term], facts: &'a impl Facts) -> R
         }
     }
     Ok(facts.call(function, arguments)?)
-}
-
-fn negative(value: Value<'_>) -> Result<Value<'_>, GuardError> {
-    arithmetic(Value::Uint(0), Operator::Minus, value)
-}
-
-#[derive(Clone, Copy)]
-enum Operator {
-    Plus,
-    Minus,
-    Times,
-    Over,
-}
-
-impl From<Additive> for Operator {
-    fn from(operator: Additive) -> Operator {
-        match operator {
-            Additive::Plus => Operator::Plus,
-            Additive::Minus => Operator::Minus,
-        }
-    }
-}
-
-impl From<Multiplicative> for Operator {
-    fn from(operator: Multiplicative) -> Operator {
-        match operator {
-            Multiplicative::Times => Operator::Times,
-            Multiplicative::Over => Operator::Over,
-        }
-    }
-}
-
-/// A number, whole as long as it is exact.
-#[derive(Clone, Copy)]
-enum Number {
-    Whole(i128),
-    Float(f64),
-}
-
-impl Number {
-    fn of(value: Value<'_>) -> Result<Number, GuardError> {
-        match value {
-            Value::Int(value) => Ok(Number::Whole(value.into())),
-            Value::Uint(value) => Ok(Number::Whole(value.into())),
-            Value::Float(value) => Ok(Number::Float(value)),
-            _ => Err(GuardError::WrongType),
-        }
-    }
-
-    fn to_f64(self) -> f64 {
-        match self {
-            Number::Whole(value) => value as f64,
-            Number::Float(value) => value,
-        }
-    }
-}
-
-/// Sums and products of whole numbers are whole; a quotient is a floating point number.
-fn arithmetic<'a>(left: Value<'a>, operator: Operator, right: Value<'a>) -> Result<Value<'a>, GuardError> {
-    if matches!(left, Value::Missing) || matches!(right, Value::Missing) {
-        return Ok(Value::Missing);
-    }
-    match (Number::of(left)?, operator, Number::of(right)?) {
-        (Number::Whole(a), Operator::Plus, Number::Whole(b)) => whole(a.checked_add(b)),
-        (Number::Whole(a), Operator::Minus, Number::Whole(b)) => whole(a.checked_sub(b)),
-        (Number::Whole(a), Operator::Times, Number::Whole(b)) => whole(a.checked_mul(b)),
-        (a, operator, b) => floating(a.to_f64(), operator, b.to_f64()),
-    }
-}
-
-fn whole(result: Option<i128>) -> Result<Value<'static>, GuardError> {
-    let result = result.ok_or(GuardError::OutOfRange)?;
-    if let Ok(signed) = i64::try_from(result) {
-        return Ok(Value::Int(signed));
-    }
-    u64::try_from(result).map(Value::Uint).map_err(|_| GuardError::OutOfRange)
-}
-
-fn floating(left: f64, operator: Operator, right: f64) -> Result<Value<'static>, GuardError> {
-    Ok(Value::Float(match operator {
-        Operator::Plus => left + right,
-        Operator::Minus => left - right,
-        Operator::Times => left * right,
-        Operator::Over if right == 0.0 => return Err(GuardError::DivisionByZero),
-        Operator::Over => left / right,
-    }))
-}
-
-fn compare(left: Value<'_>, comparison: Comparison, right: Value<'_>) -> Result<Truth, GuardError> {
-    let order = match (left, right) {
-        (Value::Missing, _) | (_, Value::Missing) => return Ok(Truth::Unknown),
-        (Value::Float(left), Value::Float(right)) => left.partial_cmp(&right).ok_or(GuardError::NotANumber)?,
-        (Value::Enum(left), Value::Enum(right)) => left.cmp(&right),
-        (Value::Bool(left), Value::Bool(right)) => left.cmp(&right),
-        (Value::Text(left), Value::Text(right)) => left.cmp(right),
-        (left, right) => compare_numbers(Number::of(left)?, Number::of(right)?)?,
-    };
-    Ok(Truth::from(match comparison {
-        Comparison::Equal => order.is_eq(),
-        Comparison::NotEqual => order.is_ne(),
-        Comparison::Less => order.is_lt(),
-        Comparison::LessOrEqual => order.is_le(),
-        Comparison::Greater => order.is_gt(),
-        Comparison::GreaterOrEqual => order.is_ge(),
-    }))
-}
-
-/// By value, whatever the width: no whole number is rounded on the way.
-fn compare_numbers(left: Number, right: Number) -> Result<Ordering, GuardError> {
-    match (left, right) {
-        (Number::Whole(left), Number::Whole(right)) => Ok(left.cmp(&right)),
-        (Number::Float(left), Number::Float(right)) => left.partial_cmp(&right).ok_or(GuardError::NotANumber),
-        (Number::Whole(left), Number::Float(right)) => compare_whole(left, right),
-        (Number::Float(left), Number::Whole(right)) => compare_whole(right, left).map(Ordering::reverse),
-    }
-}
-
-/// A cast of a float to `i128` cuts off the fraction, and saturates far beyond 64 bits: the whole parts decide first.
-fn compare_whole(whole: i128, float: f64) -> Result<Ordering, GuardError> {
-    if float.is_nan() {
-        return Err(GuardError::NotANumber);
-    }
-    match whole.cmp(&(float as i128)) {
-        Ordering::Equal => 0.0_f64.partial_cmp(&(float - float.trunc())).ok_or(GuardError::NotANumber),
-        order => Ok(order),
-    }
 }

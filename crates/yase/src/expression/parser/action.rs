@@ -45,7 +45,9 @@ impl Cursor<'_> {
         match (self.word(), self.following()) {
             (Some("process_messages"), _) => self.directive(start, ActionKind::ProcessMessages, actions),
             (Some("publish_all"), _) => self.directive(start, ActionKind::PublishAll, actions),
-            (Some("StartTimeout"), TokenKind::Symbol(Symbol::OpenParenthesis)) => self.start_timeout(actions)?,
+            (Some("StartTimeout"), TokenKind::Symbol(Symbol::OpenParenthesis)) => {
+                self.start_timeout(actions)?
+            }
             (Some("TimeoutAction"), TokenKind::Symbol(Symbol::Dot)) => self.timeout_action(actions)?,
             (Some("raise"), TokenKind::Symbol(Symbol::OpenParenthesis)) => self.raise(actions)?,
             (Some("publish"), TokenKind::Symbol(Symbol::Dot) | TokenKind::Word | TokenKind::Quoted) => {
@@ -78,10 +80,12 @@ impl Cursor<'_> {
         let open = self.advance().span;
         let timer = self.path()?;
         if !self.accept(Symbol::Comma) {
-            return self.refuse_here("E0119", "`,` and a delay", "write `StartTimeout(v, 100ms)`");
+            return self.refuse_here("E0119", "a delay", "write `StartTimeout(v, 100ms)`");
         }
         let first = self.span().start;
-        self.skip_until(|kind| matches!(kind, TokenKind::Symbol(Symbol::CloseParenthesis | Symbol::Semicolon)));
+        self.skip_until(|kind| {
+            matches!(kind, TokenKind::Symbol(Symbol::CloseParenthesis | Symbol::Semicolon))
+        });
         let written = self.since(first);
         let Some(delay) = delay(self.source(written)) else {
             return self.refuse_delay(written);
@@ -94,8 +98,12 @@ impl Cursor<'_> {
 
     fn refuse_delay(&mut self, written: Span) -> Parsed<()> {
         let text = self.source(written).trim();
-        let message = if text.is_empty() { "a delay is missing".into() } else { format!("`{text}` is no delay") };
-        self.refuse(Diagnostic::error("E0119", written, message).with_hint("write a number with its unit: `100ms`, `1.5s`"))
+        let message =
+            if text.is_empty() { "a delay is missing".into() } else { format!("`{text}` is no delay") };
+        self.refuse(
+            Diagnostic::error("E0119", written, message)
+                .with_hint("write a number with its unit: `100ms`, `1.5s`"),
+        )
     }
 
     /// `TimeoutAction.v.100`, in milliseconds.
@@ -105,7 +113,7 @@ impl Cursor<'_> {
         let mut segments = Vec::new();
         loop {
             if !self.accept(Symbol::Dot) {
-                return self.refuse_here("E0119", "`.` and milliseconds", "write `TimeoutAction.v.100`");
+                return self.refuse_here("E0119", "a delay", "write `TimeoutAction.v.100`");
             }
             if matches!(self.kind(), TokenKind::Integer | TokenKind::Decimal) && !segments.is_empty() {
                 break;
@@ -136,7 +144,8 @@ impl Cursor<'_> {
         let start = self.advance().span.start;
         self.accept(Symbol::Dot);
         let message = self.path()?;
-        let message = if self.at(Symbol::OpenParenthesis) { self.setter(start, message, actions)? } else { message };
+        let message =
+            if self.at(Symbol::OpenParenthesis) { self.setter(start, message, actions)? } else { message };
         self.push(start, ActionKind::Publish(message), actions);
         Ok(())
     }
@@ -175,7 +184,11 @@ impl Cursor<'_> {
         });
         if field.is_none() || path.segments.len() < 2 {
             let hint = "write `Message.set_field(value)` or `Message.field = value`";
-            let diagnostic = Diagnostic::error("E0121", self.local(message.place), format!("`{}` is no setter", message.text()));
+            let diagnostic = Diagnostic::error(
+                "E0121",
+                self.local(message.place),
+                format!("`{}` is no setter", message.text()),
+            );
             return self.refuse(diagnostic.with_hint(hint));
         }
         let open = self.advance().span;
@@ -197,7 +210,9 @@ impl Cursor<'_> {
         if let Some(diagnostic) = self.not_a_token() {
             return self.refuse(diagnostic);
         }
-        self.refuse(Diagnostic::error("E0118", span, format!("`{text}` is no action")).with_hint(hint_for(&text)))
+        self.refuse(
+            Diagnostic::error("E0118", span, format!("`{text}` is no action")).with_hint(hint_for(&text)),
+        )
     }
 }
 

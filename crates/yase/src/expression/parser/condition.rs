@@ -5,7 +5,9 @@ use super::cursor::{Cursor, Parsed};
 use super::name::RESERVED;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::expression::lexer::{Symbol, TokenKind};
-use crate::expression::syntax::{Additive, Comparison, Expression, ExpressionKind, Multiplicative, Name, Path};
+use crate::expression::syntax::{
+    Additive, Comparison, Expression, ExpressionKind, Multiplicative, Name, Path,
+};
 
 /// Parentheses, calls and signs may be nested this deep; deeper trees could not be walked by recursion.
 const MAX_DEPTH: usize = 256;
@@ -38,7 +40,12 @@ impl Cursor<'_> {
         Ok(self.joined(start, operands, ExpressionKind::And))
     }
 
-    fn joined(&self, start: usize, mut operands: Vec<Expression>, kind: fn(Vec<Expression>) -> ExpressionKind) -> Expression {
+    fn joined(
+        &self,
+        start: usize,
+        mut operands: Vec<Expression>,
+        kind: fn(Vec<Expression>) -> ExpressionKind,
+    ) -> Expression {
         match (operands.len(), operands.pop()) {
             (1, Some(only)) => only,
             (_, last) => {
@@ -56,7 +63,9 @@ impl Cursor<'_> {
         let slip = self.at(single) || (spelling == "&&" && self.here() == "&");
         if slip {
             let message = format!("{} is no operator of conditions", self.found());
-            self.report(Diagnostic::error("E0122", self.span(), message).with_hint(format!("write `{spelling}`")));
+            self.report(
+                Diagnostic::error("E0122", self.span(), message).with_hint(format!("write `{spelling}`")),
+            );
             self.advance();
         }
         slip
@@ -105,17 +114,29 @@ impl Cursor<'_> {
     }
 
     /// `message == NULL` and `message != NULL`.
-    fn absence(&mut self, start: usize, operand: Expression, comparison: Comparison, null: Span) -> Parsed<Expression> {
+    fn absence(
+        &mut self,
+        start: usize,
+        operand: Expression,
+        comparison: Comparison,
+        null: Span,
+    ) -> Parsed<Expression> {
         match (operand.kind, comparison) {
-            (ExpressionKind::Variable(path), Comparison::Equal) => Ok(self.expression(start, ExpressionKind::Absent(path))),
-            (ExpressionKind::Variable(path), Comparison::NotEqual) => Ok(self.expression(start, ExpressionKind::Present(path))),
+            (ExpressionKind::Variable(path), Comparison::Equal) => {
+                Ok(self.expression(start, ExpressionKind::Absent(path)))
+            }
+            (ExpressionKind::Variable(path), Comparison::NotEqual) => {
+                Ok(self.expression(start, ExpressionKind::Present(path)))
+            }
             _ => self.refuse_null(null),
         }
     }
 
     fn refuse_null<T>(&mut self, null: Span) -> Parsed<T> {
         let hint = "write `Message == NULL` or `Message != NULL`; its negation is `!(Message == NULL)`";
-        self.refuse(Diagnostic::error("E0114", null, "NULL can only be compared with a message").with_hint(hint))
+        self.refuse(
+            Diagnostic::error("E0114", null, "NULL can only be compared with a message").with_hint(hint),
+        )
     }
 
     fn accept_comparison(&mut self) -> Option<Comparison> {
@@ -214,7 +235,11 @@ impl Cursor<'_> {
     }
 
     fn refuse_operand<T>(&mut self) -> Parsed<T> {
-        self.refuse_here("E0106", "an operand", "an operand is a name, a number, a \"text\", `true`, `false` or a call")
+        self.refuse_here(
+            "E0106",
+            "an operand",
+            "an operand is a name, a number, a \"text\", `true`, `false` or a call",
+        )
     }
 
     fn group(&mut self) -> Parsed<Expression> {
@@ -265,7 +290,9 @@ impl Cursor<'_> {
             other => {
                 let span = Span::new(backslash, backslash + 1 + other.len_utf8());
                 let message = format!("`\\{other}` is no escape");
-                self.refuse(Diagnostic::error("E0103", span, message).with_hint(r#"escapes are \" \\ \n \r \t"#))
+                self.refuse(
+                    Diagnostic::error("E0103", span, message).with_hint(r#"escapes are \" \\ \n \r \t"#),
+                )
             }
         }
     }
@@ -306,7 +333,10 @@ impl Cursor<'_> {
         let text: String = self.source(inside).split_whitespace().collect::<String>().replace('ω', "~");
         if text.is_empty() {
             let hint = "write `In(state)` or `In(outer/inner)`";
-            return self.refuse(Diagnostic::error("E0115", self.since(start), "there is no state in the parentheses").with_hint(hint));
+            return self.refuse(
+                Diagnostic::error("E0115", self.since(start), "there is no state in the parentheses")
+                    .with_hint(hint),
+            );
         }
         let state = Name { text, place: self.place(inside) };
         Ok(self.expression(start, ExpressionKind::In(state)))

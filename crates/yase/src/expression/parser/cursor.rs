@@ -54,7 +54,10 @@ impl<'t> Cursor<'t> {
         match self.kind() {
             TokenKind::Unknown => {
                 let message = format!("{} has no meaning here", self.found());
-                Some(Diagnostic::error("E0101", self.span(), message).with_hint("names are letters, digits and `_`"))
+                Some(
+                    Diagnostic::error("E0101", self.span(), message)
+                        .with_hint("names are letters, digits and `_`"),
+                )
             }
             TokenKind::Unclosed => {
                 let quote = if self.here().starts_with('"') { "\"" } else { "`" };
@@ -120,7 +123,11 @@ impl<'t> Cursor<'t> {
 
     /// From `start` to the end of the token before this one.
     pub(super) fn since(&self, start: usize) -> Span {
-        let end = self.next.checked_sub(1).and_then(|last| self.tokens.get(last)).map_or(start, |token| token.span.end);
+        let end = self
+            .next
+            .checked_sub(1)
+            .and_then(|last| self.tokens.get(last))
+            .map_or(start, |token| token.span.end);
         Span::new(start, end.max(start))
     }
 
@@ -171,10 +178,16 @@ impl<'t> Cursor<'t> {
         self.refuse_closing("E0110", open, "[", "]")
     }
 
-    /// At the end the bracket is at fault, before it what stands where an operator should.
+    /// At the end or at a closing bracket the brackets are at fault, else what stands where an operator should.
     fn refuse_closing(&mut self, code: &'static str, open: Span, opening: &str, closing: &str) -> Parsed<()> {
-        let other_bracket = matches!(self.kind(), TokenKind::Symbol(Symbol::CloseBracket | Symbol::CloseParenthesis));
-        if self.kind() == TokenKind::End || other_bracket {
+        if opening == "[" && self.at(Symbol::CloseParenthesis) {
+            let diagnostic = Diagnostic::error("E0109", self.span(), "`)` closes nothing");
+            return self.refuse(diagnostic.with_hint("leave it out, or add `(`"));
+        }
+        if matches!(
+            self.kind(),
+            TokenKind::End | TokenKind::Symbol(Symbol::CloseBracket | Symbol::CloseParenthesis)
+        ) {
             let message = format!("`{opening}` is not closed");
             return self.refuse(Diagnostic::error(code, open, message).with_hint(format!("add `{closing}`")));
         }
@@ -183,6 +196,10 @@ impl<'t> Cursor<'t> {
 
     /// Refuses what follows a complete operand and is no operator.
     pub(super) fn refuse_operator(&mut self, expected: &str) -> Parsed<()> {
-        self.refuse_here("E0107", expected, "names have no blanks, numbers no unit; operators are `&&`, `||`, `==`, `<` and the like")
+        self.refuse_here(
+            "E0107",
+            expected,
+            "names have no blanks, numbers no unit; operators are `&&`, `||`, `==`, `<` and the like",
+        )
     }
 }

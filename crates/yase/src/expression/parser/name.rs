@@ -7,14 +7,19 @@ use crate::expression::syntax::{Name, Path};
 
 /// Words that are no names unless they stand in backquotes.
 pub(in crate::expression) const RESERVED: [&str; 16] = [
-    "and", "or", "not", "lt", "le", "gt", "ge", "eq", "ne", "true", "TRUE", "false", "FALSE", "NULL", "null", "nullptr",
+    "and", "or", "not", "lt", "le", "gt", "ge", "eq", "ne", "true", "TRUE", "false", "FALSE", "NULL", "null",
+    "nullptr",
 ];
 
 impl Cursor<'_> {
     /// `a`, `a.b`, `` `x.y`.c ``, and with getters `a.b()`, `a.b().c()`.
     pub(super) fn path(&mut self) -> Parsed<Path> {
         if self.word().is_some_and(|word| RESERVED.contains(&word)) {
-            return self.refuse_here("E0115", "a name", "a name that is a word of the language stands in backquotes");
+            return self.refuse_here(
+                "E0115",
+                "a name",
+                "a name that is a word of the language stands in backquotes",
+            );
         }
         let start = self.span().start;
         let mut segments = vec![self.name()?];
@@ -31,7 +36,11 @@ impl Cursor<'_> {
         match self.kind() {
             TokenKind::Word => self.plain_name(span),
             TokenKind::Quoted => self.quoted_name(span),
-            _ => self.refuse_here("E0115", "a name", "a name is letters, digits and `_`; blanks stand around `lt`, `gt` and the like"),
+            _ => self.refuse_here(
+                "E0115",
+                "a name",
+                "a name is letters, digits and `_`; blanks stand around `lt`, `gt` and the like",
+            ),
         }
     }
 
@@ -51,7 +60,9 @@ impl Cursor<'_> {
         self.advance();
         if text.is_empty() {
             let hint = "a topic's path is written `` `soccer.ball` ``";
-            return self.refuse(Diagnostic::error("E0104", span, "there is no name in the backquotes").with_hint(hint));
+            return self.refuse(
+                Diagnostic::error("E0104", span, "there is no name in the backquotes").with_hint(hint),
+            );
         }
         Ok(Name { text, place: self.place(span) })
     }

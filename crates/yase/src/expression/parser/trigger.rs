@@ -62,13 +62,18 @@ impl Cursor<'_> {
 
     fn refuse_trigger<T>(&mut self) -> Parsed<T> {
         let hint = match self.kind() {
-            TokenKind::Symbol(Symbol::Comma | Symbol::Semicolon) => "one of several events is written `a | b`",
+            TokenKind::Symbol(Symbol::Comma | Symbol::Semicolon) => {
+                "one of several events is written `a | b`"
+            }
             _ => "an event is a name; conditions stand in brackets, actions after `/`",
         };
-        let message = format!("{} does not belong to a trigger", self.found());
-        let diagnostic = self.not_a_token().unwrap_or_else(|| {
-            Diagnostic::error("E0116", self.span(), message).with_hint(hint)
-        });
+        let message = match self.kind() {
+            TokenKind::End => "an event is expected, not the end".to_owned(),
+            _ => format!("{} does not belong to a trigger", self.found()),
+        };
+        let diagnostic = self
+            .not_a_token()
+            .unwrap_or_else(|| Diagnostic::error("E0116", self.span(), message).with_hint(hint));
         self.refuse(diagnostic)
     }
 }

@@ -1,0 +1,163 @@
+//! The document: boxes, then arrows, then what is written on them.
+
+use std::fmt::Write;
+
+use yase::{NodeId, NodeKind, Statechart};
+
+use super::layout::{Arrow, Layout, MARGIN, Point, Shape};
+use super::lettering::{LABEL_LINE, LABEL_SIZE, NAME_LINE, NAME_SIZE, escaped};
+use crate::json::depth_first;
+
+const STYLE: &str = "\
+text{font-family:system-ui,-apple-system,'Segoe UI','Liberation Sans','DejaVu Sans',sans-serif;fill:#1f2430}\
+.name{font-size:13px}.title{font-size:13px;font-weight:600}.label{font-size:11px}.note{font-size:11px;fill:#4a5060}\
+.never{fill:#9aa0ab}\
+.or{fill:#fffdf2;stroke:#b99a2e}.head{fill:#ffe9a3;stroke:#b99a2e}\
+.and{fill:#f2f6fd;stroke:#6d87b8}.and-head{fill:#d5e2f7;stroke:#6d87b8}\
+.region{fill:none;stroke:#6d87b8;stroke-dasharray:6 4}\
+.basic{fill:#dcf3dc;stroke:#4d8a50}\
+.connector{fill:#fff;stroke:#1f2430}.dot{fill:#1f2430}\
+.arrow{fill:none;stroke:#3b4252;stroke-width:1.2}.unused{fill:none;stroke:#b6bbc4;stroke-width:1.2}\
+.ground{fill:#fff;fill-opacity:.88}";
+
+/// Writes the whole document.
+pub(super) fn document(chart: &Statechart, layout: &Layout) -> String {
+    let mut page = Page { svg: String::new() };
+    let (width, height) = page_size(layout);
+    page.line(format_args!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\">"
+    ));
+    page.line(format_args!("<title>{}</title>", escaped(&chart.name)));
+    page.line(format_args!("<style>{STYLE}</style>"));
+    page.line(format_args!("<defs>{}{}</defs>", head("head", "#3b4252"), head("unused-head", "#b6bbc4")));
+    page.line(format_args!("<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>"));
+    for id in depth_first(chart) {
+        page.node(chart, id, layout.shape(id));
+    }
+    layout.arrows.iter().for_each(|arrow| page.arrow(arrow));
+    layout.arrows.iter().for_each(|arrow| page.label(arrow));
+    page.line(format_args!("</svg>"));
+    page.svg
+}
+
+fn page_size(layout: &Layout) -> Point {
+    let root = layout.shape(Statechart::ROOT);
+    (root.size.0 + 2.0 * MARGIN, root.size.1 + 2.0 * MARGIN)
+}
+
+fn head(id: &str, colour: &str) -> String {
+    format!(
+        "<marker id=\"{id}\" viewBox=\"0 0 8 8\" refX=\"7.5\" refY=\"4\" markerWidth=\"8\" markerHeight=\"8\" \
+         orient=\"auto\"><path d=\"M0 .5 8 4 0 7.5z\" fill=\"{colour}\"/></marker>"
+    )
+}
+
+struct Page {
+    svg: String,
+}
+
+impl Page {
+    fn line(&mut self, content: std::fmt::Arguments<'_>) {
+        // writing to a String cannot fail
+        let _ = writeln!(self.svg, "{content}");
+    }
+
+    fn node(&mut self, chart: &Statechart, id: NodeId, shape: &Shape) {
+        match chart.node(id).kind {
+            NodeKind::Or if shape.title.is_empty() => self.rectangle("region", shape.at, shape.size, 4.0),
+            NodeKind::Or => self.composite("or", "head", shape),
+            NodeKind::And => self.composite("and", "and-head", shape),
+            NodeKind::Basic => {
+                self.rectangle("basic", shape.at, shape.size, 10.0);
+                self.lettering(shape, "name", 7.5);
+            }
+            NodeKind::Fork | NodeKind::Join => self.rectangle("dot", shape.at, shape.size, 1.0),
+            NodeKind::Start => self.circle("dot", shape, 7.0),
+            NodeKind::End => {
+                self.circle("connector", shape, 9.0);
+                self.circle("dot", shape, 5.0);
+            }
+            kind => {
+                self.circle("connector", shape, 10.0);
+                self.text("label", center(shape), letter(kind));
+            }
+        }
+    }
+
+    fn composite(&mut self, body: &str, head: &str, shape: &Shape) {
+        self.rectangle(body, shape.at, shape.size, 4.0);
+        let lines = NAME_LINE * shape.title.len() as f64 + LABEL_LINE * shape.notes.len() as f64;
+        self.rectangle(head, shape.at, (shape.size.0, lines + 8.0), 4.0);
+        self.lettering(shape, "title", 4.0);
+    }
+
+    fn rectangle(&mut self, class: &str, (x, y): Point, (width, height): Point, radius: f64) {
+        self.line(format_args!(
+            "<rect class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" rx=\"{radius}\"/>"
+        ));
+    }
+
+    fn circle(&mut self, class: &str, shape: &Shape, radius: f64) {
+        let (x, y) = center(shape);
+        self.line(format_args!("<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"/>"));
+    }
+
+    /// Name and notes of a box, centred, from a distance below its upper border on.
+    fn lettering(&mut self, shape: &Shape, class: &str, below: f64) {
+        let (x, mut y) = (center(shape).0, shape.at.1 + below);
+        for line in &shape.title {
+            self.text(class, (x, y + NAME_LINE / 2.0), line);
+            y += NAME_LINE;
+        }
+        for line in &shape.notes {
+            self.text("note", (x, y + LABEL_LINE / 2.0), line);
+            y += LABEL_LINE;
+        }
+    }
+
+    /// One line of text around a point.
+    fn text(&mut self, class: &str, (x, y): Point, text: &str) {
+        let size = if matches!(class, "name" | "title") { NAME_SIZE } else { LABEL_SIZE };
+        let base = y + size * 0.35;
+        let text = escaped(text);
+        self.line(format_args!("<text class=\"{class}\" x=\"{x:.1}\" y=\"{base:.1}\" text-anchor=\"middle\">{text}</text>"));
+    }
+
+    fn arrow(&mut self, arrow: &Arrow) {
+        let (class, head) = if arrow.label.never { ("unused", "unused-head") } else { ("arrow", "head") };
+        let points: Vec<String> = arrow.points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+        let points = points.join(" ");
+        self.line(format_args!("<polyline class=\"{class}\" points=\"{points}\" marker-end=\"url(#{head})\"/>"));
+    }
+
+    fn label(&mut self, arrow: &Arrow) {
+        if arrow.label.lines.is_empty() {
+            return;
+        }
+        let ((x, y), (width, height)) = (arrow.label_at, arrow.label.size());
+        self.rectangle("ground", (x - width / 2.0, y - height / 2.0), (width, height), 3.0);
+        let class = if arrow.label.never { "label never" } else { "label" };
+        let first = y - height / 2.0 + 2.0 + LABEL_LINE / 2.0;
+        for (index, line) in arrow.label.lines.iter().enumerate() {
+            self.text(class, (x, first + LABEL_LINE * index as f64), line);
+        }
+    }
+}
+
+fn center(shape: &Shape) -> Point {
+    (shape.at.0 + shape.size.0 / 2.0, shape.at.1 + shape.size.1 / 2.0)
+}
+
+/// The letter in the circle of a connector.
+fn letter(kind: NodeKind) -> &'static str {
+    match kind {
+        NodeKind::Condition => "C",
+        NodeKind::ShallowHistory => "H",
+        NodeKind::DeepHistory => "H*",
+        NodeKind::Choice => "?",
+        NodeKind::Terminate => "×",
+        NodeKind::EntryPoint => "in",
+        NodeKind::ExitPoint => "out",
+        _ => "",
+    }
+}

@@ -1,0 +1,256 @@
+//! Where everything stands: first the size of each box from the inside out, then places from the outside in.
+
+use yase::{Node, NodeId, NodeKind, Statechart, Transition};
+
+use super::flow;
+use super::lettering::{LABEL_LINE, LABEL_SIZE, NAME_LINE, NAME_SIZE, formula_text, widest, wrap, wrap_condition};
+use crate::outline::{modifiers, refinements};
+
+/// Between a border and what is inside.
+const PADDING: f64 = 14.0;
+/// Titles narrower than this do not wrap.
+const TITLE_WIDTH: f64 = 200.0;
+/// Labels wider than this wrap where they can.
+const LABEL_WIDTH: f64 = 290.0;
+/// Regions may share a shelf of this width even if each of them is narrower.
+const SHELF_WIDTH: f64 = 700.0;
+/// Around the whole drawing.
+pub(super) const MARGIN: f64 = 16.0;
+
+/// A place or a size, in pixels to the right and down.
+pub(super) type Point = (f64, f64);
+
+/// The drawn shape of a node.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Shape {
+    /// Width and height.
+    pub(super) size: Point,
+    /// The upper left corner: in the content of its parent at first, on the page at last.
+    pub(super) at: Point,
+    /// From that corner to where its content begins.
+    inset: Point,
+    /// Lines of its name.
+    pub(super) title: Vec<String>,
+    /// Lines below the name: what else is said of it.
+    pub(super) notes: Vec<String>,
+}
+
+/// The drawn shape of a transition.
+#[derive(Clone, Debug)]
+pub(super) struct Arrow {
+    /// The composite in whose content it is drawn.
+    pub(super) frame: NodeId,
+    /// The corners of its line: in that content at first, on the page at last.
+    pub(super) points: Vec<Point>,
+    /// What is written on it.
+    pub(super) label: Label,
+    /// The middle of the label.
+    pub(super) label_at: Point,
+}
+
+/// What is written on a transition.
+#[derive(Clone, Debug)]
+pub(super) struct Label {
+    pub(super) lines: Vec<String>,
+    /// Whether it says that the transition is never taken.
+    pub(super) never: bool,
+}
+
+impl Label {
+    pub(super) fn of(transition: &Transition) -> Label {
+        let text = format!("{} {}", modifiers(transition), transition.expression);
+        Label { lines: wrap_condition(&text, LABEL_SIZE, LABEL_WIDTH), never: transition.expression.is_never() }
+    }
+
+    /// Width and height; nothing if nothing is written.
+    pub(super) fn size(&self) -> Point {
+        match self.lines.len() {
+            0 => (0.0, 0.0),
+            lines => (widest(&self.lines, LABEL_SIZE) + 8.0, LABEL_LINE * lines as f64 + 4.0),
+        }
+    }
+}
+
+/// A drawing.
+#[derive(Debug)]
+pub(super) struct Layout {
+    /// By node.
+    pub(super) shapes: Vec<Shape>,
+    pub(super) arrows: Vec<Arrow>,
+}
+
+impl Layout {
+    pub(super) fn shape(&self, id: NodeId) -> &Shape {
+        &self.shapes[id.0 as usize]
+    }
+
+    pub(super) fn shape_mut(&mut self, id: NodeId) -> &mut Shape {
+        &mut self.shapes[id.0 as usize]
+    }
+}
+
+/// Lays a chart out.
+pub(super) fn layout(chart: &Statechart) -> Layout {
+    let shapes = chart.nodes().map(|(_, node)| lettered(node)).collect();
+    let mut layout = Layout { shapes, arrows: Vec::new() };
+    let inside = transitions_inside(chart);
+    let outside_in: Vec<NodeId> = chart.nodes().map(|(id, _)| id).collect();
+    for id in outside_in.into_iter().rev() {
+        match chart.node(id).kind {
+            NodeKind::Or => {
+                let content = flow::rows(chart, id, &inside[id.0 as usize], &mut layout);
+                enclose(layout.shape_mut(id), content);
+            }
+            NodeKind::And => shelves(chart, id, &mut layout),
+            kind => layout.shape_mut(id).size = leaf_size(kind, layout.shape(id)),
+        }
+    }
+    place_on_page(chart, &mut layout);
+    across_borders(chart, &mut layout);
+    layout
+}
+
+fn lettered(node: &Node) -> Shape {
+    let title = Some(formula_text(&node.name)).filter(|title| !title.is_empty());
+    let notes = refinements(node);
+    let notes = notes.iter().flat_map(|note| wrap(note, LABEL_SIZE, LABEL_WIDTH)).collect();
+    Shape { title: title.into_iter().collect(), notes, ..Shape::default() }
+}
+
+/// For each OR the transitions between its children.
+fn transitions_inside(chart: &Statechart) -> Vec<Vec<&Transition>> {
+    let mut inside = vec![Vec::new(); chart.nodes().len()];
+    for (_, transition) in chart.transitions() {
+        if let Some(parent) = common_parent(chart, transition) {
+            inside[parent.0 as usize].push(transition);
+        }
+    }
+    inside
+}
+
+fn common_parent(chart: &Statechart, transition: &Transition) -> Option<NodeId> {
+    let parent = chart.node(transition.source).parent?;
+    let is_or = chart.node(parent).kind == NodeKind::Or;
+    (is_or && chart.node(transition.target).parent == Some(parent)).then_some(parent)
+}
+
+fn leaf_size(kind: NodeKind, shape: &Shape) -> Point {
+    match kind {
+        NodeKind::Start => (14.0, 14.0),
+        NodeKind::Basic => {
+            let width = lettering_width(shape) + 2.0 * PADDING;
+            let height = NAME_LINE * shape.title.len() as f64 + LABEL_LINE * shape.notes.len() as f64;
+            (width.max(70.0), height + 15.0)
+        }
+        NodeKind::Fork | NodeKind::Join => (60.0, 5.0),
+        _ => (20.0, 20.0),
+    }
+}
+
+fn lettering_width(shape: &Shape) -> f64 {
+    widest(&shape.title, NAME_SIZE).max(widest(&shape.notes, LABEL_SIZE))
+}
+
+/// Sizes a composite around its content; its title is broken into lines of the content's width.
+fn enclose(shape: &mut Shape, content: Point) {
+    shape.title = wrap(&shape.title.join(" "), NAME_SIZE, content.0.max(TITLE_WIDTH));
+    let lines = NAME_LINE * shape.title.len() as f64 + LABEL_LINE * shape.notes.len() as f64;
+    let head = if lines > 0.0 { lines + 8.0 } else { 0.0 };
+    let width = content.0.max(lettering_width(shape));
+    shape.size = (width + 2.0 * PADDING, head + content.1 + 2.0 * PADDING);
+    shape.inset = (PADDING + (width - content.0) / 2.0, head + PADDING);
+}
+
+/// Regions in shelves: one goes beside another as long as the shelf does not become wider than the widest region,
+/// or than [`SHELF_WIDTH`].
+fn shelves(chart: &Statechart, id: NodeId, layout: &mut Layout) {
+    let regions = chart.children(id);
+    let widths = regions.iter().map(|&region| layout.shape(region).size.0);
+    let widest = widths.clone().fold(0.0, f64::max).max(widths.sum::<f64>().min(SHELF_WIDTH));
+    let mut shelves: Vec<Shelf> = Vec::new();
+    for &region in regions {
+        let size = layout.shape(region).size;
+        match shelves.last_mut() {
+            Some(shelf) if shelf.size.0 + size.0 <= widest => shelf.add(region, size),
+            _ => shelves.push(Shelf { size, regions: vec![region] }),
+        }
+    }
+    let mut top = 0.0;
+    for shelf in shelves {
+        fill(&shelf, top, widest, layout);
+        top += shelf.size.1;
+    }
+    enclose(layout.shape_mut(id), (widest, top));
+}
+
+struct Shelf {
+    size: Point,
+    regions: Vec<NodeId>,
+}
+
+impl Shelf {
+    fn add(&mut self, region: NodeId, size: Point) {
+        self.regions.push(region);
+        self.size = (self.size.0 + size.0, self.size.1.max(size.1));
+    }
+}
+
+/// Stretches the regions of a shelf until they fill it.
+fn fill(shelf: &Shelf, top: f64, width: f64, layout: &mut Layout) {
+    let extra = (width - shelf.size.0) / shelf.regions.len() as f64;
+    let mut left = 0.0;
+    for &region in &shelf.regions {
+        let shape = layout.shape_mut(region);
+        shape.at = (left, top);
+        shape.inset.0 += extra / 2.0;
+        shape.size = (shape.size.0 + extra, shelf.size.1);
+        left += shape.size.0;
+    }
+}
+
+fn place_on_page(chart: &Statechart, layout: &mut Layout) {
+    layout.shape_mut(Statechart::ROOT).at = (MARGIN, MARGIN);
+    for (id, node) in chart.nodes() {
+        if let Some(parent) = node.parent {
+            let origin = content_origin(layout.shape(parent));
+            let shape = layout.shape_mut(id);
+            shape.at = moved(shape.at, origin);
+        }
+    }
+    let Layout { shapes, arrows } = layout;
+    for arrow in arrows {
+        let origin = content_origin(&shapes[arrow.frame.0 as usize]);
+        arrow.label_at = moved(arrow.label_at, origin);
+        arrow.points.iter_mut().for_each(|point| *point = moved(*point, origin));
+    }
+}
+
+fn content_origin(shape: &Shape) -> Point {
+    moved(shape.at, shape.inset)
+}
+
+pub(super) fn moved(point: Point, by: Point) -> Point {
+    (point.0 + by.0, point.1 + by.1)
+}
+
+/// Transitions between composites: a straight line each, over whatever lies between.
+fn across_borders(chart: &Statechart, layout: &mut Layout) {
+    for (_, transition) in chart.transitions() {
+        if common_parent(chart, transition).is_some() {
+            continue;
+        }
+        let (source, target) = (layout.shape(transition.source), layout.shape(transition.target));
+        let (from, to) = match source.at.1 + source.size.1 < target.at.1 {
+            true => (edge(source, 0.5, 1.0), edge(target, 0.5, 0.0)),
+            false => (edge(source, 1.0, 0.5), edge(target, 1.0, 0.5)),
+        };
+        let label_at = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0);
+        let label = Label::of(transition);
+        layout.arrows.push(Arrow { frame: Statechart::ROOT, points: vec![from, to], label, label_at });
+    }
+}
+
+/// A point of a shape, by parts of its width and height.
+fn edge(shape: &Shape, across: f64, down: f64) -> Point {
+    moved(shape.at, (shape.size.0 * across, shape.size.1 * down))
+}

@@ -1,0 +1,53 @@
+//! What the command sets up for the whole process: its console, its log, and what happens when code panics.
+
+use std::io::{self, IsTerminal, Write};
+use std::panic;
+
+use indicatif::MultiProgress;
+use tracing_subscriber::EnvFilter;
+
+use crate::console::Console;
+use crate::exit::Exit;
+
+/// Runs the command as this process.
+pub(crate) fn main() -> Exit {
+    let bars = MultiProgress::new();
+    log_to_standard_error(&bars);
+    // Whoever catches a panic decides what becomes of it; the log says where it was.
+    panic::set_hook(Box::new(|panic| tracing::error!("{panic}")));
+    let (mut out, mut err) = (io::stdout(), io::stderr());
+    let colours_are_welcome = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+    let mut console = Console {
+        colour_out: colours_are_welcome && out.is_terminal(),
+        colour_err: colours_are_welcome && err.is_terminal(),
+        bars: err.is_terminal().then_some(bars),
+        catches_signals: true,
+        out: &mut out,
+        err: &mut err,
+    };
+    crate::dispatch(std::env::args_os(), &mut console)
+}
+
+/// Warnings and errors, or what MONAS_LOG asks for, above whatever bars there are.
+fn log_to_standard_error(bars: &MultiProgress) {
+    let filter = EnvFilter::try_from_env("MONAS_LOG").unwrap_or_else(|_| EnvFilter::new("warn"));
+    let bars = bars.clone();
+    let writer = move || AboveBars(bars.clone());
+    let log =
+        tracing_subscriber::fmt().with_env_filter(filter).with_writer(writer).with_ansi(false).without_time();
+    // It fails only where a program that calls this library has chosen a log of its own: that one stays.
+    let _ = log.try_init();
+}
+
+/// Standard error, with bars taken away while something is written and put back after it.
+struct AboveBars(MultiProgress);
+
+impl Write for AboveBars {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.suspend(|| io::stderr().write(bytes))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        io::stderr().flush()
+    }
+}

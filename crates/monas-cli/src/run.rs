@@ -1,0 +1,40 @@
+//! `monas run`: a match in simulated time, or a set of agents in real time.
+
+mod interrupt;
+mod pace;
+mod play;
+mod scoreboard;
+mod table;
+
+use std::path::Path;
+
+use monas::config::{self, xml};
+
+use crate::arguments::RunArguments;
+use crate::console::Console;
+use crate::exit::Exit;
+use crate::failure::Failure;
+
+/// What a configuration describes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Kind {
+    /// `<match>`: teams on a field.
+    Match,
+    /// Anything else: agents of one host.
+    Agents,
+}
+
+pub(crate) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
+    match kind_of(&arguments.config)
+        .map_err(|unread| Failure::Invalid(arguments.format.value, vec![*unread]))?
+    {
+        Kind::Match => play::execute(arguments, console),
+        Kind::Agents => unreachable!(),
+    }
+}
+
+/// What a configuration describes, by the name of its first element.
+pub(crate) fn kind_of(config: &Path) -> Result<Kind, Box<yase::Diagnostic>> {
+    let (elements, _) = xml::parse(&config::read_file(config)?);
+    Ok(if elements.first().is_some_and(|root| root.is("match")) { Kind::Match } else { Kind::Agents })
+}

@@ -1,0 +1,55 @@
+//! A match in simulated time, shown while it lasts.
+
+use std::time::Duration;
+
+use monas_match::{Match, MatchPlan, Options, RunningMatch};
+
+use super::interrupt::Interrupt;
+use super::pace::WallClock;
+use super::scoreboard;
+use super::table;
+use crate::arguments::RunArguments;
+use crate::console::Console;
+use crate::exit::Exit;
+use crate::failure::Failure;
+
+/// How much simulated time passes between two looks at the match.
+const LOOK: Duration = Duration::from_millis(100);
+
+pub(super) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
+    let format = arguments.format.value;
+    let plan = Match::load(&arguments.config, &monas::Registry::linked())
+        .map_err(|diagnostics| Failure::Invalid(format, diagnostics))?;
+    let interrupt = if console.catches_signals { Interrupt::on_signals() } else { Ok(Interrupt::default()) };
+    let interrupt = interrupt.map_err(|error| Failure::Failed(format, error.to_string()))?;
+    let clock = WallClock::start();
+    let running = play(plan, arguments, &interrupt, clock, console)?;
+    let wall = clock.elapsed();
+    let summary = running.finish().map_err(|error| Failure::Failed(format, error.to_string()))?;
+    table::write(console.out, format, &summary, wall)?;
+    Ok(if interrupt.is_requested() { Exit::Interrupted } else { Exit::Success })
+}
+
+/// Plays until the match is over, the time asked for has passed, or somebody interrupts.
+fn play(
+    plan: MatchPlan,
+    arguments: &RunArguments,
+    interrupt: &Interrupt,
+    clock: WallClock,
+    console: &mut Console<'_>,
+) -> Result<RunningMatch, Failure> {
+    let failed = |error: monas_match::Error| Failure::Failed(arguments.format.value, error.to_string());
+    let length = arguments.length.unwrap_or_else(|| plan.length());
+    let options = Options { seed: arguments.seed, record: arguments.record.clone() };
+    let mut running = plan.start(options).map_err(failed)?;
+    let mut scoreboard = scoreboard::for_console(console, length);
+    scoreboard.show(&running)?;
+    while running.now() < length && !running.is_over() && !interrupt.is_requested() {
+        running.advance((running.now() + LOOK).min(length)).map_err(failed)?;
+        scoreboard.show(&running)?;
+        if arguments.realtime {
+            clock.wait_until(running.now(), interrupt);
+        }
+    }
+    Ok(running)
+}

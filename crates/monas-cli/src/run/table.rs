@@ -1,0 +1,114 @@
+//! What a match came to: tables for people, one JSON object a line for programs.
+
+use std::io::{self, Write};
+use std::time::Duration;
+
+use comfy_table::{CellAlignment, Table};
+use monas_match::{AgentSummary, Summary, TeamSummary};
+use serde_json::{Value, json};
+
+use crate::arguments::Format;
+
+/// Writes the results; `wall` is how long the match took.
+pub(super) fn write(
+    out: &mut dyn Write,
+    format: Format,
+    summary: &Summary,
+    wall: Duration,
+) -> io::Result<()> {
+    match format {
+        Format::Text => write_text(out, summary, wall),
+        Format::Json => objects(summary, wall).iter().try_for_each(|object| writeln!(out, "{object}")),
+    }
+}
+
+fn write_text(out: &mut dyn Write, summary: &Summary, wall: Duration) -> io::Result<()> {
+    writeln!(out, "{}\n", teams(&summary.teams))?;
+    writeln!(out, "{}\n", agents(&summary.agents))?;
+    let (simulated, taken) = (summary.simulated.as_secs_f64(), wall.as_secs_f64());
+    writeln!(
+        out,
+        "{simulated:.1} s of play in {taken:.1} s: {:.1} simulated seconds a second",
+        speed(summary, wall)
+    )?;
+    writeln!(out, "messages: {}", summary.messages)?;
+    writeln!(out, "hash: {}", summary.hash)
+}
+
+/// A row for each figure, a column for each team.
+fn teams(teams: &[TeamSummary]) -> Table {
+    let figures: [(&str, fn(&TeamSummary) -> String); 6] = [
+        ("goals", |team| team.goals.to_string()),
+        ("shots", |team| team.shots.to_string()),
+        ("saves", |team| team.saves.to_string()),
+        ("falls", |team| team.falls.to_string()),
+        ("penalties", |team| team.penalties.to_string()),
+        ("possession", |team| format!("{:.0} %", team.possession * 100.0)),
+    ];
+    let header = std::iter::once(String::new()).chain(teams.iter().map(|team| team.name.clone()));
+    let mut table = with_header(header);
+    for (name, figure) in figures {
+        table.add_row(std::iter::once(name.to_string()).chain(teams.iter().map(figure)));
+    }
+    numbers_to_the_right(table, 1)
+}
+
+fn agents(agents: &[AgentSummary]) -> Table {
+    let mut table = with_header(["host", "agent", "cycles", "overruns", "micro-steps", "activity calls"]);
+    for agent in agents {
+        let counts = [agent.cycles, agent.overruns, agent.micro_steps, agent.activity_calls];
+        table.add_row(
+            [agent.host.clone(), agent.agent.clone()]
+                .into_iter()
+                .chain(counts.map(|count| count.to_string())),
+        );
+    }
+    numbers_to_the_right(table, 2)
+}
+
+fn with_header(header: impl IntoIterator<Item: Into<comfy_table::Cell>>) -> Table {
+    let mut table = Table::new();
+    table.load_style(comfy_table::presets::UTF8_FULL_CONDENSED).set_header(header);
+    table
+}
+
+fn numbers_to_the_right(mut table: Table, first: usize) -> Table {
+    for column in table.column_iter_mut().skip(first) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
+/// Each event, each team, each agent, and the run.
+fn objects(summary: &Summary, wall: Duration) -> Vec<Value> {
+    let events = summary
+        .events
+        .iter()
+        .map(|event| json!({"kind": "event", "seconds": event.time.as_secs_f64(), "text": event.text}));
+    let teams = summary.teams.iter().map(team_object);
+    let agents = summary.agents.iter().map(agent_object);
+    let run = json!({
+        "kind": "run",
+        "simulated_seconds": summary.simulated.as_secs_f64(),
+        "wall_seconds": wall.as_secs_f64(),
+        "simulated_seconds_per_wall_second": speed(summary, wall),
+        "messages": summary.messages,
+        "hash": summary.hash,
+    });
+    events.chain(teams).chain(agents).chain(std::iter::once(run)).collect()
+}
+
+fn team_object(team: &TeamSummary) -> Value {
+    json!({"kind": "team", "name": team.name, "colour": team.colour, "goals": team.goals, "shots": team.shots,
+        "saves": team.saves, "falls": team.falls, "penalties": team.penalties, "possession": team.possession})
+}
+
+fn agent_object(agent: &AgentSummary) -> Value {
+    json!({"kind": "agent", "host": agent.host, "agent": agent.agent, "cycles": agent.cycles,
+        "overruns": agent.overruns, "micro_steps": agent.micro_steps, "activity_calls": agent.activity_calls})
+}
+
+/// Simulated seconds a wall second; of a run that took no time, as of one that took a nanosecond.
+fn speed(summary: &Summary, wall: Duration) -> f64 {
+    summary.simulated.as_secs_f64() / wall.as_secs_f64().max(1e-9)
+}

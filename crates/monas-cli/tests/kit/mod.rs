@@ -1,0 +1,36 @@
+//! The built command, started as a person would, in the workspace's folder.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The workspace.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the workspace is there")
+}
+
+/// The command with arguments, ready to be started.
+pub fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_monas"));
+    command.args(arguments).current_dir(root()).env_remove("MONAS_LOG").env_remove("NO_COLOR");
+    command
+}
+
+/// What it printed and how it ended.
+#[derive(Debug)]
+pub struct Answer {
+    pub code: Option<i32>,
+    pub out: String,
+    pub err: String,
+}
+
+impl From<Output> for Answer {
+    fn from(output: Output) -> Answer {
+        let text = |bytes| String::from_utf8(bytes).expect("the command prints UTF-8");
+        Answer { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+    }
+}
+
+/// Runs the command to its end.
+pub fn monas(arguments: &[&str]) -> Answer {
+    command(arguments).output().expect("the command starts").into()
+}

@@ -1,0 +1,118 @@
+//! `monas model` on the project's own roles, and on what a person may get wrong.
+
+mod kit;
+
+use std::fs;
+use std::path::Path;
+
+use kit::monas;
+use serde_json::Value;
+
+const ROLES: [&str; 2] = ["models/goalie.srm", "models/attacker.srm"];
+
+fn file(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    fs::write(&path, text).expect("the folder takes files");
+    path.display().to_string()
+}
+
+#[test]
+fn the_projects_roles_are_without_findings() {
+    let answer = monas(&["model", "check", ROLES[0], ROLES[1]]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert_eq!(answer.err, "");
+    assert_eq!(answer.out.lines().count(), 2);
+    assert!(answer.out.starts_with("models/goalie.srm: "));
+}
+
+#[test]
+fn transform_prints_one_json_object_with_nodes_and_transitions() {
+    for role in ROLES {
+        let answer = monas(&["model", "transform", role, "--format", "json"]);
+        assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""), "{role}");
+        assert_eq!(answer.out.lines().count(), 1, "{role}");
+        let chart: Value = serde_json::from_str(&answer.out).expect("it is JSON");
+        let nodes = chart["nodes"].as_array().expect("there are nodes");
+        let transitions = chart["transitions"].as_array().expect("there are transitions");
+        assert!(chart["model"].is_string());
+        assert_eq!((&nodes[0]["label"], &nodes[0]["parent"]), (&Value::from("0"), &Value::Null));
+        let labels: Vec<&Value> = nodes.iter().map(|node| &node["label"]).collect();
+        for node in &nodes[1..] {
+            assert!(labels.contains(&&node["parent"]), "{node}");
+        }
+        for transition in transitions {
+            assert!(transition["name"].is_string() && transition["te"].is_string(), "{transition}");
+            assert!(
+                labels.contains(&&transition["source"]) && labels.contains(&&transition["target"]),
+                "{transition}"
+            );
+        }
+    }
+}
+
+#[test]
+fn transform_prints_a_tree() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let formulas = file(folder.path(), "two.txt", "day = wake . work~\nwork = read | write\n");
+    let answer = monas(&["model", "transform", &formulas]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    for name in ["day", "wake", "work", "read", "write"] {
+        assert!(answer.out.contains(name), "{name} is not in\n{}", answer.out);
+    }
+    assert!(answer.out.lines().any(|line| line.starts_with("  ")));
+}
+
+#[test]
+fn draw_writes_a_drawing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let drawing = folder.path().join("attacker.svg");
+    let answer = monas(&["model", "draw", ROLES[1], "-o", &drawing.display().to_string()]);
+    assert_eq!((answer.code, answer.out.as_str(), answer.err.as_str()), (Some(0), "", ""));
+    let written = fs::read_to_string(&drawing).expect("it was written");
+    assert!(
+        written.contains("<svg") && written.contains("TrackBall") && written.trim_end().ends_with("</svg>")
+    );
+    assert_eq!(monas(&["model", "draw", ROLES[1]]).out, written);
+}
+
+#[test]
+fn a_drawing_that_cannot_be_written_is_a_failure() {
+    let answer = monas(&["model", "draw", ROLES[1], "-o", "nowhere/attacker.svg"]);
+    assert_eq!(answer.code, Some(1));
+    assert!(answer.err.starts_with("error: cannot write nowhere/attacker.svg"), "{}", answer.err);
+}
+
+#[test]
+fn a_formula_that_cannot_be_read_ends_with_3_and_its_place() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = file(folder.path(), "broken.srm", "Role: broken\nLiveness:\nday = wake . ( work\n");
+    let answer = monas(&["model", "transform", &path, "--format", "text"]);
+    assert_eq!((answer.code, answer.out.as_str()), (Some(3), ""));
+    assert!(answer.err.contains("broken.srm:3:14"), "{}", answer.err);
+    assert!(answer.err.contains("day = wake . ( work"), "{}", answer.err);
+    assert!(answer.err.contains("help:"), "{}", answer.err);
+}
+
+#[test]
+fn two_mistakes_are_two_objects() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = file(folder.path(), "broken.srm", "Liveness:\nday = wake . ( work\nnight = sleep ..\n");
+    let answer = monas(&["model", "check", &path, "--format", "json"]);
+    assert_eq!((answer.code, answer.out.as_str()), (Some(3), ""));
+    let found: Vec<Value> =
+        answer.err.lines().map(|line| serde_json::from_str(line).expect("each line is JSON")).collect();
+    let lines: Vec<u64> = found.iter().filter_map(|finding| finding["line"].as_u64()).collect();
+    assert!(lines.contains(&2) && lines.contains(&3), "{}", answer.err);
+    for finding in found {
+        let keys: Vec<&str> = finding.as_object().expect("an object").keys().map(String::as_str).collect();
+        assert_eq!(keys, ["code", "column", "file", "hint", "line", "message", "severity"]);
+        assert_eq!(finding["file"], path);
+    }
+}
+
+#[test]
+fn a_missing_file_is_answered_with_the_one_that_is_there() {
+    let answer = monas(&["model", "transform", "models/golie.srm"]);
+    assert_eq!(answer.code, Some(3));
+    assert!(answer.err.contains("models/golie.srm") && answer.err.contains("goalie.srm`?"), "{}", answer.err);
+}

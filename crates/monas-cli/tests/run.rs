@@ -1,0 +1,170 @@
+//! `monas run` and `monas config check` with the project's own match, for a few simulated seconds.
+
+mod kit;
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use kit::{command, monas, root};
+use serde_json::Value;
+
+const MATCH: &str = "config/match.xml";
+
+fn hash_of(text: &str) -> &str {
+    let hash = text.lines().find_map(|line| line.strip_prefix("hash: ")).expect("there is a hash");
+    assert!(hash.len() == 64 && hash.chars().all(|c| c.is_ascii_hexdigit()), "{hash}");
+    hash
+}
+
+#[test]
+fn a_short_match_ends_with_its_figures_and_hash() {
+    let answer = monas(&["run", MATCH, "--seed", "7", "--for", "5s"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let figures =
+        ["goals", "shots", "saves", "falls", "penalties", "possession", "cycles", "overruns", "micro-steps"];
+    for figure in figures.into_iter().chain(["activity calls", "simulated seconds a second", "messages: "]) {
+        assert!(answer.out.contains(figure), "{figure} is not in\n{}", answer.out);
+    }
+    assert!(answer.out.contains("Goalie") && answer.out.contains("Attacker"), "{}", answer.out);
+    assert!(
+        answer.out.trim_end().lines().last().is_some_and(|line| line.starts_with("hash: ")),
+        "{}",
+        answer.out
+    );
+    assert!(answer.err.lines().next().is_some_and(|line| line.contains("Blue 0 : 0 Red")), "{}", answer.err);
+}
+
+#[test]
+fn the_seed_decides() {
+    let hash = |seed| hash_of(&monas(&["run", MATCH, "--seed", seed, "--for", "2s"]).out).to_owned();
+    let first = hash("7");
+    assert_eq!(first, hash("7"));
+    assert_ne!(first, hash("8"));
+}
+
+#[test]
+fn json_has_one_object_a_line() {
+    let answer = monas(&["run", MATCH, "--for", "2s", "--format", "json"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let objects: Vec<Value> =
+        answer.out.lines().map(|line| serde_json::from_str(line).expect("each line is JSON")).collect();
+    let count = |kind: &str| objects.iter().filter(|object| object["kind"] == kind).count();
+    assert_eq!((count("team"), count("run")), (2, 1));
+    assert!(count("agent") >= 6);
+    let run = objects.last().expect("there is a last object");
+    assert_eq!((&run["kind"], &run["simulated_seconds"]), (&Value::from("run"), &Value::from(2.0)));
+    assert_eq!(run["hash"].as_str().map(str::len), Some(64));
+}
+
+#[test]
+fn a_recording_is_written_and_changes_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tape = folder.path().join("match.mcap");
+    let recorded = monas(&["run", MATCH, "--for", "1s", "--record", &tape.display().to_string()]);
+    assert_eq!(recorded.code, Some(0), "{}", recorded.err);
+    let bytes = fs::read(&tape).expect("it was written");
+    let magic = b"\x89MCAP0\r\n";
+    assert!(bytes.starts_with(magic) && bytes.ends_with(magic), "it is a whole MCAP file");
+    assert_eq!(hash_of(&recorded.out), hash_of(&monas(&["run", MATCH, "--for", "1s"]).out));
+}
+
+#[test]
+fn a_recording_that_cannot_be_written_is_a_failure() {
+    let answer = monas(&["run", MATCH, "--for", "1s", "--record", "nowhere/match.mcap"]);
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    assert!(answer.err.contains("nowhere/match.mcap"), "{}", answer.err);
+}
+
+#[test]
+#[cfg(unix)]
+fn an_interrupted_match_ends_with_its_figures_so_far() {
+    let mut child = command(&["run", MATCH, "--realtime"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the command starts");
+    let mut first_line = String::new();
+    let mut err = BufReader::new(child.stderr.take().expect("it is piped"));
+    err.read_line(&mut first_line).expect("it says something");
+    let killed =
+        Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("there is a kill");
+    assert!(killed.success());
+    let answer: kit::Answer = child.wait_with_output().expect("it ends").into();
+    assert_eq!(answer.code, Some(130), "{answer:?}");
+    assert!(answer.out.contains("possession"), "{answer:?}");
+    hash_of(&answer.out);
+}
+
+#[test]
+fn the_projects_match_is_without_findings() {
+    let answer = monas(&["config", "check", MATCH]);
+    assert_eq!(
+        (answer.code, answer.out.as_str()),
+        (Some(0), "config/match.xml: no errors\n"),
+        "{}",
+        answer.err
+    );
+}
+
+/// The project's configuration and models in another folder, with one text replaced by another.
+fn changed(file: &str, text: &str, replacement: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    for part in ["config", "models"] {
+        copy(&root().join(part), &folder.path().join(part));
+    }
+    let path = folder.path().join(file);
+    let original = fs::read_to_string(&path).expect("the file is there");
+    assert!(original.contains(text), "{file} does not hold {text}");
+    fs::write(&path, original.replacen(text, replacement, 1)).expect("the folder takes files");
+    folder
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir(to).expect("the folder takes folders");
+    for entry in fs::read_dir(from).expect("a folder") {
+        let entry = entry.expect("an entry");
+        let target = to.join(entry.file_name());
+        match entry.path().is_dir() {
+            true => copy(&entry.path(), &target),
+            false => drop(fs::copy(entry.path(), target).expect("the folder takes files")),
+        }
+    }
+}
+
+#[test]
+fn each_mistake_is_found_before_anything_runs() {
+    let cases = [
+        (MATCH, "half=", "hlaf=", "match.xml:4", "`half`"),
+        (MATCH, "roles/goalie.xml", "roles/golie.xml", "match.xml:6", "goalie.xml"),
+        ("config/roles/goalie.xml", "priority", "pirority", "goalie.xml:4", "`priority`"),
+        (
+            "config/roles/attacker.xml",
+            "models/attacker.srm",
+            "models/atacker.srm",
+            "attacker.xml:6",
+            "attacker.srm",
+        ),
+        ("models/attacker.srm", "WalkTowardsBall", "WalkTowardBall", "attacker.srm:", "`WalkTowardsBall`"),
+        ("models/goalie.srm", "Ball.found", "Ball.fuond", "goalie.srm:", "`found`"),
+    ];
+    for (file, text, replacement, place, hint) in cases {
+        let folder = changed(file, text, replacement);
+        let config = folder.path().join(MATCH).display().to_string();
+        for arguments in [&["run", &config][..], &["config", "check", &config]] {
+            let answer = monas(arguments);
+            assert_eq!((answer.code, answer.out.as_str()), (Some(3), ""), "{replacement}: {answer:?}");
+            for part in [place, hint] {
+                assert!(answer.err.contains(part), "{replacement}: no {part} in\n{}", answer.err);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_missing_configuration_is_named() {
+    let answer = monas(&["run", "config/mtach.xml"]);
+    assert_eq!(answer.code, Some(3));
+    assert!(answer.err.contains("config/mtach.xml") && answer.err.contains("match.xml"), "{}", answer.err);
+}

@@ -1,0 +1,74 @@
+//! The command line itself: help, version, completions, mistakes, and how results leave.
+
+mod kit;
+
+use std::process::Stdio;
+
+use kit::{command, monas};
+
+#[test]
+fn version_names_itself() {
+    let answer = monas(&["--version"]);
+    assert_eq!(answer.code, Some(0));
+    assert_eq!(answer.out, format!("monas {}\n", env!("CARGO_PKG_VERSION")));
+    assert_eq!(answer.err, "");
+}
+
+#[test]
+fn help_lists_the_commands_and_exit_codes() {
+    let answer = monas(&["--help"]);
+    assert_eq!(answer.code, Some(0));
+    for word in ["run", "model", "config", "completions", "130 interrupted", "NO_COLOR"] {
+        assert!(answer.out.contains(word), "{word} is not in\n{}", answer.out);
+    }
+}
+
+#[test]
+fn usage_mistakes_end_with_2_and_say_what_was_meant() {
+    let cases: [(&[&str], &str); 6] = [
+        (&[], "Usage: monas"),
+        (&["rum"], "'run'"),
+        (&["run", "--sed", "7"], "'--seed'"),
+        (&["run", "--for", "600"], "write `600s` for seconds"),
+        (&["run", "--seed", "seven"], "invalid digit"),
+        (&["model", "transform"], "<FILE>"),
+    ];
+    for (arguments, expected) in cases {
+        let answer = monas(arguments);
+        assert_eq!(answer.code, Some(2), "{arguments:?}");
+        assert!(answer.err.contains(expected), "{arguments:?}:\n{}", answer.err);
+        assert_eq!(answer.out, "", "{arguments:?}");
+    }
+}
+
+#[test]
+fn nothing_is_coloured_where_nobody_watches() {
+    for arguments in [&["--help"][..], &["rum"], &["model", "check", "nowhere.srm"]] {
+        let plain = monas(arguments);
+        let asked: kit::Answer =
+            command(arguments).env("NO_COLOR", "1").output().expect("the command starts").into();
+        assert!(!plain.out.contains('\x1b') && !plain.err.contains('\x1b'), "{plain:?}");
+        assert_eq!((plain.out, plain.err), (asked.out, asked.err));
+    }
+}
+
+#[test]
+fn completions_know_the_commands() {
+    for shell in ["bash", "zsh", "fish"] {
+        let answer = monas(&["completions", shell]);
+        assert_eq!(answer.code, Some(0), "{shell}");
+        assert!(answer.out.contains("transform") && answer.out.contains("realtime"), "{shell}");
+    }
+}
+
+#[test]
+fn a_reader_that_leaves_is_no_failure() {
+    let mut child = command(&["completions", "bash"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    drop(child.stdout.take());
+    let answer: kit::Answer = child.wait_with_output().expect("it ends").into();
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+}

@@ -1,0 +1,45 @@
+//! What can go wrong with a match that was loaded well.
+
+/// A match that cannot start or go on.
+#[derive(Debug, thiserror::Error)]
+#[error("{message}")]
+pub struct Error {
+    kind: ErrorKind,
+    message: String,
+    #[source]
+    source: Option<Box<dyn std::error::Error + Send + Sync>>,
+}
+
+/// What has gone wrong.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// The field refuses its parameters or the line-up.
+    Field,
+    /// The agents cannot be put together or run.
+    Agents,
+    /// The recording cannot be written.
+    Recording,
+}
+
+impl Error {
+    pub(crate) fn field(error: monas_sim::Error) -> Error {
+        Error { kind: ErrorKind::Field, message: error.to_string(), source: Some(error.into()) }
+    }
+
+    pub(crate) fn agents(error: monas::Error) -> Error {
+        let details: Vec<String> = error.diagnostics().iter().map(ToString::to_string).collect();
+        let message = [vec![error.to_string()], details].concat().join("\n");
+        Error { kind: ErrorKind::Agents, message, source: Some(error.into()) }
+    }
+
+    pub(crate) fn recording(path: &std::path::Path, error: monas_tape::Error) -> Error {
+        let message = format!("cannot record to `{}`: {error}", path.display());
+        Error { kind: ErrorKind::Recording, message, source: Some(error.into()) }
+    }
+
+    /// What has gone wrong.
+    pub fn kind(&self) -> ErrorKind {
+        self.kind
+    }
+}

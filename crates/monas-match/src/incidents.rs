@@ -1,0 +1,53 @@
+//! The field's events in words.
+
+use std::time::Duration;
+
+use monas_sim::{EventKind, GameState, World};
+
+use crate::summary::MatchEvent;
+
+/// The events of note from the `first` one on. What happens many times a minute (kicks, touches, falls) is counted, not told.
+pub(crate) fn since(world: &World, first: usize) -> impl Iterator<Item = MatchEvent> {
+    let events = world.events().get(first..).unwrap_or_default();
+    events.iter().filter_map(move |event| {
+        let text = text(world, &event.kind)?;
+        Some(MatchEvent { time: Duration::from_secs_f64(event.time.max(0.0)), text })
+    })
+}
+
+fn text(world: &World, event: &EventKind) -> Option<String> {
+    let team = |index: usize| world.teams()[index].name.as_str();
+    let robot = |index: usize| {
+        let robot = &world.robots()[index];
+        format!("{} {}", team(robot.team), robot.number)
+    };
+    Some(match event {
+        EventKind::StateChanged { to: GameState::Finished, .. } => "the match is over".into(),
+        EventKind::HalfTime => "half time: the teams switch sides".into(),
+        EventKind::KickOff { team: index } => format!("kick-off for {}", team(*index)),
+        EventKind::Goal { team: index, robot: scorer, own_goal } => {
+            let by = match scorer {
+                Some(scorer) if *own_goal => format!(", an own goal of {}", robot(*scorer)),
+                Some(scorer) => format!(" by {}", robot(*scorer)),
+                None => String::new(),
+            };
+            format!("goal for {}{by}", team(*index))
+        }
+        EventKind::Shot { robot: index } => format!("shot by {}", robot(*index)),
+        EventKind::Save { robot: index } => format!("save by {}", robot(*index)),
+        EventKind::Penalty { robot: index, offence } => format!("penalty for {}: {offence}", robot(*index)),
+        EventKind::DropBall { .. } => "nobody gets at the ball: it is dropped".into(),
+        _ => return None,
+    })
+}
+
+/// The referee's state as the league writes it.
+pub(crate) fn phase(state: GameState) -> &'static str {
+    match state {
+        GameState::Initial => "INITIAL",
+        GameState::Ready => "READY",
+        GameState::Set => "SET",
+        GameState::Playing => "PLAYING",
+        GameState::Finished => "FINISHED",
+    }
+}

@@ -1,0 +1,153 @@
+//! A match that was read and found to be right, not yet begun.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use monas::{Agent, HostConfig, Registry, RunHash, Talws};
+use monas_sim::{FieldGeometry, Physics, Pitch, Rules, Setup, TeamSetup, World};
+use monas_tape::Tape;
+use yase::Diagnostic;
+
+use crate::error::Error;
+use crate::file::{self, MatchFile};
+use crate::running::RunningMatch;
+use crate::stage::Stage;
+
+/// Where matches come from.
+#[derive(Debug)]
+pub struct Match;
+
+impl Match {
+    /// Reads a match file and everything it names, and binds every chart; nothing runs.
+    ///
+    /// # Errors
+    /// Every diagnostic of every file, each once.
+    pub fn load(path: impl AsRef<Path>, registry: &Registry) -> Result<MatchPlan, Vec<Diagnostic>> {
+        let mut diagnostics = Vec::new();
+        let file = file::read(path.as_ref(), &mut diagnostics);
+        let robots = file.iter().flat_map(|file| robots(file, registry, &mut diagnostics)).collect();
+        let once = each_once(diagnostics);
+        match file.filter(|_| !once.iter().any(Diagnostic::is_error)) {
+            Some(file) => MatchPlan::new(file, robots, registry.clone()).ok_or(once),
+            None => Err(once),
+        }
+    }
+}
+
+/// The robots of a match file with their agents.
+fn robots(file: &MatchFile, registry: &Registry, diagnostics: &mut Vec<Diagnostic>) -> Vec<RobotPlan> {
+    let mut robots = Vec::new();
+    for team in &file.teams {
+        for robot in &team.robots {
+            let (agents, found) = monas::config::load(&robot.role, registry);
+            diagnostics.extend(found);
+            let host = format!("{}-{}", slug(&team.setup.name), robot.number);
+            robots.push(RobotPlan { team: team.setup.number, number: robot.number, host, agents });
+        }
+    }
+    robots
+}
+
+/// Robots of one role have the same things wrong with them.
+fn each_once(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    diagnostics.into_iter().fold(Vec::new(), |mut once, diagnostic| {
+        if !once.contains(&diagnostic) {
+            once.push(diagnostic);
+        }
+        once
+    })
+}
+
+/// A name that a host may have: lower case letters, digits and hyphens.
+fn slug(name: &str) -> String {
+    let letters = name.trim().chars().map(|c| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '-' });
+    letters.collect()
+}
+
+/// A match that was read and found to be right.
+#[derive(Debug)]
+pub struct MatchPlan {
+    geometry: FieldGeometry,
+    physics: Physics,
+    rules: Rules,
+    teams: [TeamSetup; 2],
+    robots: Vec<RobotPlan>,
+    registry: Registry,
+}
+
+/// A robot of a match and what runs on it.
+#[derive(Debug)]
+struct RobotPlan {
+    team: u8,
+    number: u8,
+    host: String,
+    agents: Vec<Agent>,
+}
+
+/// How a match is to be played.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Options {
+    /// Where every random number comes from.
+    pub seed: u64,
+    /// The file into which every message is recorded.
+    pub record: Option<PathBuf>,
+}
+
+impl MatchPlan {
+    fn new(file: MatchFile, mut robots: Vec<RobotPlan>, registry: Registry) -> Option<MatchPlan> {
+        // The order in the file means nothing, so that a match does not depend on it.
+        let mut teams: Vec<TeamSetup> = file.teams.into_iter().map(|team| team.setup).collect();
+        teams.sort_by_key(|team| team.number);
+        robots.sort_by_key(|robot| (robot.team, robot.number));
+        let teams = teams.try_into().ok()?;
+        Some(MatchPlan {
+            geometry: file.geometry,
+            physics: file.physics,
+            rules: file.rules,
+            teams,
+            robots,
+            registry,
+        })
+    }
+
+    /// How long the match takes, in simulated time.
+    pub fn length(&self) -> Duration {
+        Duration::from_secs_f64(2.0 * self.rules.half_duration)
+    }
+
+    /// Begins the match.
+    ///
+    /// # Errors
+    /// The recording cannot be written, or a part refuses to be set up.
+    pub fn start(self, options: Options) -> Result<RunningMatch, Error> {
+        let length = self.length();
+        let lineup = self.robots.iter().map(|robot| monas_sim::RobotSetup { team: robot.team, number: robot.number });
+        let setup = Setup {
+            field: self.geometry,
+            physics: self.physics,
+            rules: self.rules,
+            teams: self.teams,
+            robots: lineup.collect(),
+            seed: options.seed,
+        };
+        let pitch = Pitch::new(World::new(setup).map_err(Error::field)?);
+        let mut talws = Talws::new().registry(self.registry);
+        for (index, RobotPlan { team, number, host, agents }) in self.robots.into_iter().enumerate() {
+            let body = pitch.body(index).map(|body| Box::new(body) as _);
+            talws.host(HostConfig { name: host, team: team.into(), number: number.into(), body, agents });
+        }
+        talws.world(Box::new(Stage::new(pitch.clone())));
+        let hash = RunHash::new();
+        talws.observe(Box::new(hash.clone()));
+        let tape = options.record.map(|path| {
+            let tape = Tape::create(&path).map_err(|error| Error::recording(&path, error))?;
+            Ok((tape, path))
+        });
+        let tape = tape.transpose()?;
+        if let Some((tape, _)) = &tape {
+            talws.observe(Box::new(tape.observer()));
+        }
+        let simulation = talws.simulate(options.seed).map_err(Error::agents)?;
+        Ok(RunningMatch::new(simulation, pitch, hash, tape, length))
+    }
+}

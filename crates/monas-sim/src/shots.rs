@@ -1,0 +1,83 @@
+//! Telling shots and saves from other kicks.
+
+use crate::state::Scene;
+use crate::{EventKind, FieldSide, STEP};
+
+/// A shot of which it is not yet known how it ends.
+#[derive(Debug, Clone, Copy)]
+struct Shot {
+    /// Index of the team that shot.
+    team: usize,
+    /// The goalie that touched it.
+    goalie: Option<usize>,
+    /// Time since the kick, s.
+    age: f64,
+}
+
+/// A shot whose ball is slower than this is over, m/s.
+const SPENT_SPEED: f64 = 0.05;
+
+/// A shot older than this is over, s: no kick rolls longer.
+const SPENT_AGE: f64 = 10.0;
+
+/// The shot that is on its way.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Shots {
+    pending: Option<Shot>,
+}
+
+impl Shots {
+    /// Looks at a ball that `robot` has just struck; the robot's team attacks the goal at `attacks`.
+    pub(crate) fn strike(
+        &mut self,
+        robot: usize,
+        attacks: FieldSide,
+        scene: &Scene<'_>,
+        events: &mut Vec<EventKind>,
+    ) {
+        self.settle(events);
+        if meets_goal(attacks, scene) {
+            self.pending = Some(Shot { team: scene.robots[robot].team, goalie: None, age: 0.0 });
+            events.push(EventKind::Shot { robot });
+        }
+    }
+
+    /// Follows the shot for one step.
+    pub(crate) fn follow(&mut self, scene: &Scene<'_>, events: &mut Vec<EventKind>) {
+        let Some(shot) = &mut self.pending else { return };
+        shot.age += STEP;
+        let is_keeper = |robot: &usize| {
+            let state = &scene.robots[*robot];
+            state.is_goalie() && state.team != shot.team
+        };
+        if let Some(goalie) = scene.touchers().find(is_keeper) {
+            shot.goalie = Some(goalie);
+        }
+        if scene.ball.velocity.norm() < SPENT_SPEED || shot.age > SPENT_AGE {
+            self.settle(events);
+        }
+    }
+
+    /// The shot is no goal: a save, when the goalie touched it.
+    pub(crate) fn settle(&mut self, events: &mut Vec<EventKind>) {
+        if let Some(Shot { goalie: Some(robot), .. }) = self.pending.take() {
+            events.push(EventKind::Save { robot });
+        }
+    }
+
+    /// The ball is in a goal.
+    pub(crate) fn goal(&mut self) {
+        self.pending = None;
+    }
+}
+
+/// Answers whether the line of the ball meets the mouth of the goal at `side`.
+fn meets_goal(side: FieldSide, scene: &Scene<'_>) -> bool {
+    let (position, velocity) = (scene.ball.position, scene.ball.velocity);
+    let to_line = scene.field.goal(side).x - position.x;
+    if velocity.x * to_line <= 0.0 {
+        return false;
+    }
+    let y = position.y + velocity.y / velocity.x * to_line;
+    y.abs() < scene.field.goal_width / 2.0
+}

@@ -1,0 +1,161 @@
+//! Counting what happens.
+//!
+//! Possession: the robot nearest to the ball has it, if it is upright and within 0.3 m. A shot is a kick whose line
+//! meets the goal's mouth, a save a shot that the goalie touched and that is no goal, a fall the loss of balance
+//! of an upright robot (dives and falls on purpose are actions, counted apart).
+
+use crate::state::Scene;
+use crate::{EventKind, STEP};
+
+/// A robot that is farther from the ball than this does not possess it, m.
+pub const POSSESSION_DISTANCE: f64 = 0.3;
+
+/// Counts of a robot, or the sums of a team.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Tally {
+    /// Goals; own goals count for the other team, not for a robot.
+    pub goals: u32,
+    /// Own goals.
+    pub own_goals: u32,
+    /// Kicks, whether or not they met the ball.
+    pub kicks: u32,
+    /// Kicks that met the ball.
+    pub strikes: u32,
+    /// Shots on the goal.
+    pub shots: u32,
+    /// Shots kept from being goals by the goalie.
+    pub saves: u32,
+    /// Falls that were not on purpose.
+    pub falls: u32,
+    /// Penalties.
+    pub penalties: u32,
+    /// Time of possession, s.
+    pub possession: f64,
+    /// Dives and falls to a side, on purpose.
+    pub actions: u32,
+    /// Of these, those to the side of the ball.
+    pub actions_to_ball: u32,
+    /// Returns of a goalie between its posts after an action.
+    pub returns: u32,
+    /// Sum of the times of these returns, s.
+    pub return_time: f64,
+}
+
+/// Counts of a match so far.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Statistics {
+    robots: Vec<Tally>,
+    team_of: Vec<usize>,
+    /// Goals of each team, own goals of the other included.
+    goals: [u32; 2],
+    first_touches: u32,
+    first_touch_time: f64,
+    playing_time: f64,
+}
+
+impl Statistics {
+    pub(crate) fn new(team_of: &[usize]) -> Self {
+        Self { robots: vec![Tally::default(); team_of.len()], team_of: team_of.to_vec(), ..Self::default() }
+    }
+
+    /// The counts of a robot; none for a robot that does not exist.
+    pub fn robot(&self, robot: usize) -> Option<&Tally> {
+        self.robots.get(robot)
+    }
+
+    /// The sums of a team, by index. Its goals include own goals of the other team.
+    pub fn team(&self, team: usize) -> Tally {
+        let own = self.robots.iter().zip(&self.team_of).filter(|(_, of)| **of == team);
+        let sum = own.fold(Tally::default(), |sum, (tally, _)| sum.plus(tally));
+        Tally { goals: self.goals.get(team).copied().unwrap_or(0), ..sum }
+    }
+
+    /// Mean time from kick-offs to the first touch, s; none before the first.
+    pub fn time_to_first_touch(&self) -> Option<f64> {
+        (self.first_touches > 0).then(|| self.first_touch_time / f64::from(self.first_touches))
+    }
+
+    /// Time in PLAYING, s.
+    pub fn playing_time(&self) -> f64 {
+        self.playing_time
+    }
+
+    pub(crate) fn record(&mut self, event: &EventKind) {
+        match *event {
+            EventKind::FirstTouch { after, .. } => {
+                self.first_touches += 1;
+                self.first_touch_time += after;
+            }
+            EventKind::Kick { robot, struck, .. } => {
+                self.robots[robot].kicks += 1;
+                self.robots[robot].strikes += u32::from(struck);
+            }
+            EventKind::Shot { robot } => self.robots[robot].shots += 1,
+            EventKind::Save { robot } => self.robots[robot].saves += 1,
+            EventKind::Goal { team, robot, own_goal } => self.record_goal(team, robot, own_goal),
+            EventKind::Fall { robot } => self.robots[robot].falls += 1,
+            EventKind::Penalty { robot, .. } => self.robots[robot].penalties += 1,
+            EventKind::Act { robot, to_ball, .. } => {
+                self.robots[robot].actions += 1;
+                self.robots[robot].actions_to_ball += u32::from(to_ball);
+            }
+            EventKind::GoalieBack { robot, after } => {
+                self.robots[robot].returns += 1;
+                self.robots[robot].return_time += after;
+            }
+            EventKind::StateChanged { .. }
+            | EventKind::HalfTime
+            | EventKind::KickOff { .. }
+            | EventKind::Return { .. }
+            | EventKind::ThrowIn { .. }
+            | EventKind::DropBall { .. } => {}
+        }
+    }
+
+    /// Counts one step of play.
+    pub(crate) fn observe(&mut self, scene: &Scene<'_>) {
+        self.playing_time += STEP;
+        let mut holder = None;
+        let mut least = POSSESSION_DISTANCE;
+        for (index, robot) in scene.on_field().filter(|(_, robot)| robot.phase.is_upright()) {
+            let distance = (robot.pose.position - scene.ball.position).norm();
+            if distance <= least {
+                (holder, least) = (Some(index), distance);
+            }
+        }
+        if let Some(robot) = holder {
+            self.robots[robot].possession += STEP;
+        }
+    }
+
+    fn record_goal(&mut self, team: usize, robot: Option<usize>, own_goal: bool) {
+        self.goals[team] += 1;
+        let Some(robot) = robot else { return };
+        let tally = &mut self.robots[robot];
+        if own_goal {
+            tally.own_goals += 1;
+        } else {
+            tally.goals += 1;
+        }
+    }
+}
+
+impl Tally {
+    fn plus(self, other: &Tally) -> Tally {
+        Tally {
+            goals: self.goals + other.goals,
+            own_goals: self.own_goals + other.own_goals,
+            kicks: self.kicks + other.kicks,
+            strikes: self.strikes + other.strikes,
+            shots: self.shots + other.shots,
+            saves: self.saves + other.saves,
+            falls: self.falls + other.falls,
+            penalties: self.penalties + other.penalties,
+            possession: self.possession + other.possession,
+            actions: self.actions + other.actions,
+            actions_to_ball: self.actions_to_ball + other.actions_to_ball,
+            returns: self.returns + other.returns,
+            return_time: self.return_time + other.return_time,
+        }
+    }
+}

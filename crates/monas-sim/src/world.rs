@@ -1,0 +1,586 @@
+//! The world: everything together, one step after the other.
+
+use crate::arena::{Arena, Base};
+use crate::body::{Body, Deed};
+use crate::camera::Camera;
+use crate::goalie::Returns;
+use crate::pose::{Vector, rotate, shortened};
+use crate::referee::Referee;
+use crate::rng::Stream;
+use crate::shots::Shots;
+use crate::state::{GOALIE, Scene};
+use crate::{
+    Announcement, BallState, Buttons, Command, Error, ErrorKind, Event, EventKind, FieldGeometry, GameState,
+    Phase, Physics, Pose, RobotSetup, RobotState, Rules, STEP, Senses, Side, Statistics, TeamColour,
+    TeamSetup, lineup, restart,
+};
+
+/// What a world is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setup {
+    /// The field.
+    pub field: FieldGeometry,
+    /// Bodies, ball and cameras.
+    pub physics: Physics,
+    /// The rules.
+    pub rules: Rules,
+    /// The two teams.
+    pub teams: [TeamSetup; 2],
+    /// The robots of both teams, in the order of their indices.
+    pub robots: Vec<RobotSetup>,
+    /// Where every random number comes from.
+    pub seed: u64,
+}
+
+impl Setup {
+    /// The match of the thesis's league: two teams of a goalie and two attackers each, every number at its default.
+    /// Robots 0 to 2 are those of the team on the left.
+    pub fn three_against_three(seed: u64) -> Self {
+        let team = |number, name: &str, colour, plays| TeamSetup { number, name: name.into(), colour, plays };
+        let robots = [1, 2].iter().flat_map(|team| (1..=3).map(|number| RobotSetup { team: *team, number }));
+        Self {
+            field: FieldGeometry::default(),
+            physics: Physics::default(),
+            rules: Rules::default(),
+            teams: [
+                team(1, "Blue", TeamColour::Blue, FieldSide::Left),
+                team(2, "Red", TeamColour::Red, FieldSide::Right),
+            ],
+            robots: robots.collect(),
+            seed,
+        }
+    }
+}
+
+/// A field with robots, a ball and a referee, in simulated time.
+///
+/// The same setup and the same commands between the same steps give the same bits.
+pub struct World {
+    rules: Rules,
+    teams: [TeamSetup; 2],
+    ground: Ground,
+    arena: Arena,
+    bodies: Vec<Body>,
+    sensors: Vec<Sensors>,
+    referee: Referee,
+    shots: Shots,
+    returns: Returns,
+    statistics: Statistics,
+    events: Vec<Event>,
+    /// What was decided in the current step; kept for its memory.
+    decisions: Vec<EventKind>,
+    kicks: Stream,
+    steps: u64,
+}
+
+/// The truth of the last step.
+struct Ground {
+    field: FieldGeometry,
+    physics: Physics,
+    ball: BallState,
+    robots: Vec<RobotState>,
+    touching_ball: Vec<bool>,
+    contacts: Vec<(usize, usize)>,
+    /// For each robot, the change of velocity that contacts caused, in the field frame.
+    blows: Vec<Vector>,
+}
+
+/// What is kept of a robot's sensors between readings.
+struct Sensors {
+    noise: Stream,
+    vision: Stream,
+    pictures: u64,
+    turn: f64,
+}
+
+impl World {
+    /// Builds a world. Robots stand on their places for the first kick-off, the ball lies at the centre.
+    ///
+    /// # Errors
+    /// [`OutOfRange`](ErrorKind::OutOfRange) and [`Inconsistent`](ErrorKind::Inconsistent) for parameters,
+    /// [`Lineup`](ErrorKind::Lineup) for teams and robots.
+    pub fn new(setup: Setup) -> Result<Self, Error> {
+        let Setup { field, physics, rules, teams, robots, seed } = setup;
+        field.validate()?;
+        physics.validate()?;
+        rules.validate()?;
+        let team_of = lineup::check(&teams, &robots)?;
+        let path = |robot: &RobotSetup| format!("robot/{}/{}", robot.team, robot.number);
+        let count = robots.len();
+        let mut world = Self {
+            referee: Referee::new(rules.clone(), &teams, &robots, &team_of, seed),
+            arena: Arena::new(&field, &physics, count),
+            bodies: robots.iter().map(|robot| Body::new(seed, &path(robot))).collect(),
+            sensors: robots.iter().map(|robot| Sensors::new(seed, &path(robot))).collect(),
+            ground: Ground::new(field, physics, &robots, &team_of),
+            shots: Shots::default(),
+            returns: Returns::new(count),
+            statistics: Statistics::new(&team_of),
+            events: Vec::with_capacity(1024),
+            decisions: Vec::with_capacity(32),
+            kicks: Stream::new(seed, "kicks"),
+            steps: 0,
+            rules,
+            teams,
+        };
+        world.place_for_kick_off();
+        Ok(world)
+    }
+
+    /// Moves the world on by [`STEP`].
+    pub fn step(&mut self) {
+        self.steps += 1;
+        for robot in 0..self.bodies.len() {
+            self.move_body(robot);
+        }
+        self.roll_ball();
+        self.arena.step();
+        self.look_around();
+        for robot in 0..self.bodies.len() {
+            self.keep_balance(robot);
+        }
+        self.judge();
+        self.carry_out_decisions();
+    }
+
+    /// Time since the world began, s.
+    pub fn time(&self) -> f64 {
+        self.steps as f64 * STEP
+    }
+
+    /// The number of steps since the world began.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Tells a robot what to do from the next step on.
+    ///
+    /// # Errors
+    /// [`UnknownRobot`](ErrorKind::UnknownRobot), or [`OutOfRange`](ErrorKind::OutOfRange) for a number that is
+    /// not finite.
+    pub fn command(&mut self, robot: usize, command: Command) -> Result<(), Error> {
+        self.check_robot(robot)?;
+        command.check()?;
+        self.bodies[robot].command = command;
+        Ok(())
+    }
+
+    /// Presses or releases the button on a robot's chest.
+    ///
+    /// # Errors
+    /// [`UnknownRobot`](ErrorKind::UnknownRobot).
+    pub fn press_chest_button(&mut self, robot: usize, pressed: bool) -> Result<(), Error> {
+        self.check_robot(robot)?;
+        self.bodies[robot].chest_button = pressed;
+        Ok(())
+    }
+
+    /// Reads everything that a robot's body feels and sees into `senses`.
+    ///
+    /// # Errors
+    /// [`UnknownRobot`](ErrorKind::UnknownRobot).
+    pub fn sense(&mut self, robot: usize, senses: &mut Senses) -> Result<(), Error> {
+        self.check_robot(robot)?;
+        self.feel(robot, senses);
+        self.see(robot, senses);
+        Ok(())
+    }
+
+    /// What the referee tells a robot.
+    ///
+    /// # Errors
+    /// [`UnknownRobot`](ErrorKind::UnknownRobot).
+    pub fn announcement(&self, robot: usize) -> Result<Announcement, Error> {
+        self.check_robot(robot)?;
+        Ok(self.referee.announcement(robot))
+    }
+
+    /// The measures of the field.
+    pub fn field(&self) -> &FieldGeometry {
+        &self.ground.field
+    }
+
+    /// The numbers of bodies, ball and cameras.
+    pub fn physics(&self) -> &Physics {
+        &self.ground.physics
+    }
+
+    /// The teams, in the order of their indices.
+    pub fn teams(&self) -> &[TeamSetup; 2] {
+        &self.teams
+    }
+
+    /// The robots as they truly are, in the order of their indices.
+    pub fn robots(&self) -> &[RobotState] {
+        &self.ground.robots
+    }
+
+    /// The ball as it truly is.
+    pub fn ball(&self) -> BallState {
+        self.ground.ball
+    }
+
+    /// The referee.
+    pub fn referee(&self) -> &Referee {
+        &self.referee
+    }
+
+    /// The counts of the match so far.
+    pub fn statistics(&self) -> &Statistics {
+        &self.statistics
+    }
+
+    /// Everything that happened so far, in order.
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    /// Puts the ball somewhere with a velocity, both in the field frame; for tests and exercises.
+    ///
+    /// # Errors
+    /// [`OutOfRange`](ErrorKind::OutOfRange) for a number that is not finite or a place off the field.
+    pub fn place_ball(&mut self, position: Vector, velocity: Vector) -> Result<(), Error> {
+        let fine = velocity.norm().is_finite() && self.ground.field.contains(position);
+        if !fine {
+            return Err(Error::new(ErrorKind::OutOfRange, "the ball can only be placed on the field"));
+        }
+        self.set_ball(position, velocity);
+        Ok(())
+    }
+
+    /// Puts a robot somewhere, upright; for tests and exercises.
+    ///
+    /// # Errors
+    /// [`UnknownRobot`](ErrorKind::UnknownRobot), or [`OutOfRange`](ErrorKind::OutOfRange) for a place off the
+    /// carpet or a heading that is not finite.
+    pub fn place_robot(&mut self, robot: usize, pose: Pose) -> Result<(), Error> {
+        self.check_robot(robot)?;
+        let field = &self.ground.field;
+        let on_carpet = pose.position.x.abs() <= field.half_length() + field.border
+            && pose.position.y.abs() <= field.half_width() + field.border;
+        if !(on_carpet && pose.heading.is_finite()) {
+            return Err(Error::new(ErrorKind::OutOfRange, "a robot can only be placed on the carpet"));
+        }
+        self.set_robot(robot, pose);
+        Ok(())
+    }
+
+    fn check_robot(&self, robot: usize) -> Result<(), Error> {
+        if robot < self.bodies.len() { Ok(()) } else { Err(Error::unknown_robot(robot, self.bodies.len())) }
+    }
+
+    /// Lets a body act and drives its disk with the velocity that its feet produce.
+    fn move_body(&mut self, robot: usize) {
+        let on_field = self.ground.robots[robot].on_field;
+        let held = self.referee.holds_robots() || !on_field;
+        let deed = self.bodies[robot].advance(&self.ground.physics, held);
+        match deed {
+            Some(Deed::Strike(foot)) => self.strike(robot, foot),
+            Some(Deed::Act { side, dive }) => self.note_act(robot, side, dive),
+            Some(Deed::Rebase(base)) => self.arena.set_base(robot, base),
+            None => {}
+        }
+        let produced = self.bodies[robot].velocity(&self.ground.physics);
+        let heading = self.ground.robots[robot].pose.heading;
+        let now = self.arena.robot_velocity(robot);
+        let change = rotate(produced.linear(), heading) - now;
+        let velocity = now + shortened(change, self.ground.physics.foot_grip * STEP);
+        self.arena.drive_robot(robot, velocity, produced.turn);
+        self.ground.blows[robot] = velocity;
+        self.sensors[robot].turn = produced.turn;
+    }
+
+    /// The foot swings; the ball flies if it is there.
+    fn strike(&mut self, robot: usize, foot: Side) {
+        let physics = &self.ground.physics;
+        let pose = self.ground.robots[robot].pose;
+        let ball = pose.to_own(self.ground.ball.position);
+        let in_reach = (ball.x - physics.kick_x).abs() <= physics.kick_tolerance_x
+            && (ball.y - foot.sign() * physics.kick_y).abs() <= physics.kick_tolerance_y;
+        let struck = in_reach && !self.kicks.chance(physics.kick_miss);
+        self.decisions.push(EventKind::Kick { robot, foot, struck });
+        if !struck {
+            return;
+        }
+        let speed = (physics.kick_speed + self.kicks.normal(physics.kick_speed_noise)).max(0.0);
+        let direction = pose.heading + self.kicks.normal(physics.kick_direction_noise);
+        let velocity = rotate(Vector::new(speed, 0.0), direction);
+        self.arena.set_ball_velocity(velocity);
+        self.ground.ball.velocity = velocity;
+        self.referee.note_kick(robot);
+        let team = self.ground.robots[robot].team;
+        let attacks = self.referee.defends()[1 - team];
+        self.shots.strike(robot, attacks, &self.ground.scene(), &mut self.decisions);
+    }
+
+    fn note_act(&mut self, robot: usize, side: Side, dive: bool) {
+        let pose = self.ground.robots[robot].pose;
+        let ball = pose.to_own(self.ground.ball.position);
+        let velocity = rotate(self.ground.ball.velocity, -pose.heading);
+        let to_ball = passing_side(ball, velocity) == side;
+        self.decisions.push(EventKind::Act { robot, side, dive, to_ball });
+        if self.ground.robots[robot].is_goalie() {
+            self.returns.act(robot);
+        }
+    }
+
+    fn roll_ball(&mut self) {
+        let (_, velocity) = self.arena.ball();
+        let speed = velocity.norm();
+        if speed > 0.0 {
+            let left = (speed - self.ground.physics.ball_deceleration * STEP).max(0.0);
+            self.arena.set_ball_velocity(velocity * (left / speed));
+        }
+    }
+
+    /// Takes the truth over from the arena.
+    fn look_around(&mut self) {
+        let (position, velocity) = self.arena.ball();
+        self.ground.ball = BallState { position, velocity };
+        for robot in 0..self.bodies.len() {
+            let velocity = self.arena.robot_velocity(robot);
+            self.ground.blows[robot] = velocity - self.ground.blows[robot];
+            self.ground.touching_ball[robot] =
+                self.ground.robots[robot].on_field && self.arena.touches_ball(robot);
+            self.update_state(robot);
+        }
+        self.ground.find_contacts(&self.arena);
+    }
+
+    fn update_state(&mut self, robot: usize) {
+        let body = &self.bodies[robot];
+        let pose = self.arena.robot_pose(robot);
+        let state = &mut self.ground.robots[robot];
+        state.pose = pose;
+        state.velocity = self.arena.robot_velocity(robot);
+        state.intent = rotate(body.gait.intended().linear(), pose.heading);
+        state.phase = body.phase;
+        state.head_yaw = body.head_yaw;
+        state.head_pitch = body.head_pitch;
+    }
+
+    fn keep_balance(&mut self, robot: usize) {
+        if self.referee.holds_robots() || !self.ground.robots[robot].on_field {
+            return;
+        }
+        let blow = rotate(self.ground.blows[robot], -self.ground.robots[robot].pose.heading);
+        let pressed = self.ground.contacts.iter().any(|&(one, other)| one == robot || other == robot);
+        let body = &mut self.bodies[robot];
+        if body.keep_balance(blow, pressed, &self.ground.physics) {
+            self.ground.robots[robot].phase = body.phase;
+            self.decisions.push(EventKind::Fall { robot });
+        }
+    }
+
+    fn judge(&mut self) {
+        let scene = self.ground.scene();
+        let before = self.decisions.len();
+        self.referee.judge(&scene, &mut self.decisions);
+        self.shots.follow(&scene, &mut self.decisions);
+        self.returns.follow(self.referee.defends(), &scene, &mut self.decisions);
+        if self.referee.state() == GameState::Playing {
+            self.statistics.observe(&scene);
+        }
+        let decided = &self.decisions[before..];
+        if decided.iter().any(|event| matches!(event, EventKind::Goal { .. })) {
+            self.shots.goal();
+        } else if decided.iter().any(ends_play) {
+            self.shots.settle(&mut self.decisions);
+        }
+    }
+
+    /// Does what the events of this step say, and remembers them.
+    fn carry_out_decisions(&mut self) {
+        let mut decisions = std::mem::take(&mut self.decisions);
+        for kind in decisions.drain(..) {
+            self.carry_out(&kind);
+            self.statistics.record(&kind);
+            self.events.push(Event { time: self.time(), kind });
+        }
+        self.decisions = decisions;
+    }
+
+    fn carry_out(&mut self, event: &EventKind) {
+        match *event {
+            EventKind::StateChanged { to: GameState::Ready | GameState::Initial, .. } => {
+                self.place_for_kick_off()
+            }
+            EventKind::ThrowIn { position, .. } | EventKind::DropBall { position } => {
+                self.set_ball(position, Vector::zeros());
+            }
+            EventKind::Penalty { robot, .. } => self.take_off(robot),
+            EventKind::Return { robot } => self.bring_back(robot),
+            _ => {}
+        }
+    }
+
+    fn place_for_kick_off(&mut self) {
+        self.set_ball(Vector::zeros(), Vector::zeros());
+        let mut ranks = [0; 2];
+        for robot in 0..self.bodies.len() {
+            let RobotState { team, number, on_field, .. } = self.ground.robots[robot];
+            let defends = self.referee.defends()[team];
+            let kicks_off = self.referee.kick_off_team() == team;
+            let rank = ranks[team];
+            ranks[team] += usize::from(number != GOALIE);
+            if on_field {
+                let (field, physics) = (&self.ground.field, &self.ground.physics);
+                self.set_robot(
+                    robot,
+                    restart::kick_off_pose(field, physics, defends, kicks_off, number, rank),
+                );
+            }
+        }
+    }
+
+    fn take_off(&mut self, robot: usize) {
+        let state = self.ground.robots[robot];
+        let pose = restart::waiting_pose(&self.ground.field, self.referee.defends()[state.team], &state);
+        self.ground.robots[robot].on_field = false;
+        self.arena.set_present(robot, false);
+        self.set_robot(robot, pose);
+    }
+
+    fn bring_back(&mut self, robot: usize) {
+        let pose = restart::return_pose(&self.ground.scene(), robot);
+        self.ground.robots[robot].on_field = true;
+        self.arena.set_present(robot, true);
+        self.set_robot(robot, pose);
+    }
+
+    fn set_ball(&mut self, position: Vector, velocity: Vector) {
+        self.arena.place_ball(position, velocity);
+        self.ground.ball = BallState { position, velocity };
+    }
+
+    fn set_robot(&mut self, robot: usize, pose: Pose) {
+        self.arena.place_robot(robot, pose);
+        self.arena.set_base(robot, Base::Feet);
+        self.bodies[robot].set_upright();
+        self.returns.forget(robot);
+        self.update_state(robot);
+    }
+
+    fn feel(&mut self, robot: usize, senses: &mut Senses) {
+        let physics = &self.ground.physics;
+        let body = &mut self.bodies[robot];
+        let sensors = &mut self.sensors[robot];
+        let progress = body.progress(physics);
+        let (roll, pitch) = body.tilt;
+        let [roll_rate, pitch_rate] = body.tilt_rate;
+        senses.time = self.steps as f64 * STEP;
+        senses.odometry = body.take_odometry();
+        senses.head_yaw = body.head_yaw;
+        senses.head_pitch = body.head_pitch;
+        senses.torso_roll = roll + sensors.noise.normal(physics.tilt_noise);
+        senses.torso_pitch = pitch + sensors.noise.normal(physics.tilt_noise);
+        senses.gyro =
+            [roll_rate, pitch_rate, sensors.turn].map(|rate| rate + sensors.noise.normal(physics.gyro_noise));
+        senses.phase = body.phase;
+        senses.progress = progress;
+        senses.support = body.gait.support();
+        senses.buttons = Buttons { chest: body.chest_button, ..self.ground.bumpers(robot) };
+    }
+
+    fn see(&mut self, robot: usize, senses: &mut Senses) {
+        senses.sightings.clear();
+        let taken = (self.time() * self.ground.physics.camera_rate + 1e-6) as u64;
+        let sensors = &mut self.sensors[robot];
+        senses.new_picture = taken > sensors.pictures;
+        sensors.pictures = taken;
+        if senses.new_picture {
+            let camera = Camera { robot, scene: self.ground.scene(), colours: self.referee.colours() };
+            camera.look(&mut sensors.vision, &mut senses.sightings);
+        }
+    }
+
+    /// The rules of this match.
+    pub fn rules(&self) -> &Rules {
+        &self.rules
+    }
+}
+
+impl Ground {
+    fn new(field: FieldGeometry, physics: Physics, robots: &[RobotSetup], team_of: &[usize]) -> Self {
+        let still = |(robot, team): (&RobotSetup, &usize)| RobotState {
+            team: *team,
+            number: robot.number,
+            pose: Pose::default(),
+            velocity: Vector::zeros(),
+            intent: Vector::zeros(),
+            phase: Phase::Standing,
+            head_yaw: 0.0,
+            head_pitch: 0.0,
+            on_field: true,
+        };
+        let count = robots.len();
+        Self {
+            field,
+            physics,
+            ball: BallState { position: Vector::zeros(), velocity: Vector::zeros() },
+            robots: robots.iter().zip(team_of).map(still).collect(),
+            touching_ball: vec![false; count],
+            contacts: Vec::with_capacity(count * count / 2 + 1),
+            blows: vec![Vector::zeros(); count],
+        }
+    }
+
+    fn scene(&self) -> Scene<'_> {
+        Scene {
+            field: &self.field,
+            physics: &self.physics,
+            ball: self.ball,
+            robots: &self.robots,
+            touching_ball: &self.touching_ball,
+            contacts: &self.contacts,
+        }
+    }
+
+    fn find_contacts(&mut self, arena: &Arena) {
+        self.contacts.clear();
+        for other in 1..self.robots.len() {
+            for one in 0..other {
+                if arena.robots_touch(one, other) {
+                    self.contacts.push((one, other));
+                }
+            }
+        }
+    }
+
+    /// The bumpers that press against another robot before the feet.
+    fn bumpers(&self, robot: usize) -> Buttons {
+        let mut buttons = Buttons::default();
+        for &(one, other) in self.contacts.iter().filter(|(one, other)| *one == robot || *other == robot) {
+            let other = if one == robot { other } else { one };
+            let place = self.robots[robot].pose.to_own(self.robots[other].pose.position);
+            buttons.left_bumper |= place.x > place.y.abs() && place.y >= 0.0;
+            buttons.right_bumper |= place.x > place.y.abs() && place.y <= 0.0;
+        }
+        buttons
+    }
+}
+
+impl Sensors {
+    fn new(seed: u64, path: &str) -> Self {
+        Self {
+            noise: Stream::new(seed, &format!("{path}/sensors")),
+            vision: Stream::new(seed, &format!("{path}/vision")),
+            pictures: 0,
+            turn: 0.0,
+        }
+    }
+}
+
+/// The side of a body on which a ball passes: where its line crosses the body's side axis, or, when it does not
+/// come, where it lies. Both in the frame of the body.
+fn passing_side(ball: Vector, velocity: Vector) -> Side {
+    /// A ball slower than this does not come, m/s.
+    const COMING: f64 = 0.05;
+    let comes = velocity.x < -COMING && ball.x > 0.0;
+    Side::of(if comes { ball.y - velocity.y / velocity.x * ball.x } else { ball.y })
+}
+
+/// Answers whether an event takes the ball out of play.
+fn ends_play(event: &EventKind) -> bool {
+    matches!(event, EventKind::ThrowIn { .. } | EventKind::DropBall { .. } | EventKind::StateChanged { .. })
+}

@@ -1,0 +1,36 @@
+//! The activities of the roles: thin adapters that read a blackboard, call functionalities and publish what comes of it.
+//!
+//! None of them chooses between behaviours: that is the chart's. Each runs once for an activation of its state; kicks, falls and dives go
+//! on until the body stands again.
+
+mod align_with_ball;
+mod led_handler;
+mod motion_controller;
+mod robot_controller;
+mod search_ball;
+mod send_calibration;
+mod sensors;
+mod shot;
+mod skills;
+#[cfg(test)]
+mod stage;
+mod stand;
+mod track_ball;
+mod vision;
+mod wait_for_ball_message;
+mod walk_towards_ball;
+mod wishes;
+
+pub use align_with_ball::AlignWithBall;
+pub use led_handler::LedHandler;
+pub use motion_controller::MotionController;
+pub use robot_controller::RobotController;
+pub use search_ball::SearchBall;
+pub use send_calibration::SendCalibration;
+pub use sensors::Sensors;
+pub use skills::{LeftDive, LeftFall, LeftKick, RightDive, RightFall, RightKick};
+pub use stand::Stand;
+pub use track_ball::TrackBall;
+pub use vision::Vision;
+pub use wait_for_ball_message::WaitForBallMessage;
+pub use walk_towards_ball::WalkTowardsBall;

@@ -1,0 +1,141 @@
+//! Motions that happen once: kicks, falls and dives.
+
+use std::time::Duration;
+
+use monas::{Activity, Blackboard, BoxError, Progress, Topics};
+use narukom::Moment;
+
+use super::wishes::request_skill;
+use crate::{MotionKind, topics};
+
+/// How often the end of a motion is looked for; a message that says so is heard at once.
+const LOOK: Duration = Duration::from_millis(100);
+/// A motion whose end nobody has reported for so long will not end: nobody commands the body.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A motion under way: its number and since when.
+type UnderWay = Option<(u64, Moment)>;
+
+fn perform(under_way: &mut UnderWay, kind: MotionKind, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
+    let now = blackboard.now();
+    let Some((number, since)) = *under_way else {
+        *under_way = Some((request_skill(blackboard, kind)?, now));
+        return Ok(Progress::after(LOOK));
+    };
+    let over = blackboard.read(topics::MOTION_STATE).is_some_and(|state| state.done >= number);
+    if over {
+        *under_way = None;
+        return Ok(Progress::Done);
+    }
+    if now.since(since) > PATIENCE {
+        *under_way = None;
+        let seconds = PATIENCE.as_secs();
+        return Err(format!("the end of {} was not reported for {seconds} s", kind.as_str_name()).into());
+    }
+    Ok(Progress::after(LOOK))
+}
+
+macro_rules! skill {
+    ($($(#[$documentation:meta])* $name:ident: $kind:ident;)*) => {$(
+        $(#[$documentation])*
+        #[derive(Clone, Copy, Debug, Default)]
+        pub struct $name {
+            under_way: UnderWay,
+        }
+
+        impl Activity for $name {
+            fn start(&mut self, _: &mut Blackboard) -> Result<(), BoxError> {
+                self.under_way = None;
+                Ok(())
+            }
+
+            fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
+                perform(&mut self.under_way, MotionKind::$kind, blackboard)
+            }
+
+            fn stop(&mut self, _: &mut Blackboard) {
+                self.under_way = None;
+            }
+
+            fn topics(&self) -> Topics {
+                Topics::declared().reads(topics::MOTION).reads(topics::MOTION_STATE).publishes(topics::MOTION)
+            }
+        }
+
+        monas::activity!($name);
+    )*};
+}
+
+skill! {
+    /// Kicks with the left foot, and is done when the robot stands again.
+    LeftKick: KickLeft;
+    /// Kicks with the right foot, and is done when the robot stands again.
+    RightKick: KickRight;
+    /// Drops to the left, and is done when the robot has got up.
+    LeftFall: FallLeft;
+    /// Drops to the right, and is done when the robot has got up.
+    RightFall: FallRight;
+    /// Dives to the left, and is done when the robot has got up.
+    LeftDive: DiveLeft;
+    /// Dives to the right, and is done when the robot has got up.
+    RightDive: DiveRight;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::activities::stage::Stage;
+    use crate::{MotionPhase, MotionState};
+
+    fn state(done: u64) -> MotionState {
+        MotionState { phase: MotionPhase::Standing.into(), done }
+    }
+
+    #[test]
+    fn each_asks_for_its_own_motion() {
+        let activities: [(&mut dyn Activity, MotionKind); 6] = [
+            (&mut LeftKick::default(), MotionKind::KickLeft),
+            (&mut RightKick::default(), MotionKind::KickRight),
+            (&mut LeftFall::default(), MotionKind::FallLeft),
+            (&mut RightFall::default(), MotionKind::FallRight),
+            (&mut LeftDive::default(), MotionKind::DiveLeft),
+            (&mut RightDive::default(), MotionKind::DiveRight),
+        ];
+        for (activity, kind) in activities {
+            let mut stage = Stage::new();
+            stage.run(activity);
+            assert_eq!(stage.said(topics::MOTION).unwrap().kind(), kind);
+        }
+    }
+
+    #[test]
+    fn it_lasts_until_its_own_motion_is_over_and_can_be_asked_for_again() {
+        let (mut stage, mut activity) = (Stage::new(), LeftKick::default());
+        stage.tell(topics::MOTION_STATE, state(6));
+        assert_ne!(stage.run(&mut activity), Progress::Done);
+        assert_eq!(stage.said(topics::MOTION).unwrap().number, 7, "beyond what was ever done");
+        assert_ne!(stage.run(&mut activity), Progress::Done);
+        stage.tell(topics::MOTION_STATE, state(7));
+        assert_eq!(stage.run(&mut activity), Progress::Done);
+        assert_ne!(stage.run(&mut activity), Progress::Done);
+        assert_eq!(stage.said(topics::MOTION).unwrap().number, 8);
+    }
+
+    #[test]
+    fn a_motion_that_nobody_performs_fails() {
+        let (mut stage, mut activity) = (Stage::new(), RightDive::default());
+        stage.run(&mut activity);
+        stage.wait(PATIENCE + LOOK);
+        let error = stage.fails(&mut activity).unwrap();
+        assert_eq!(error, "the end of DIVE_RIGHT was not reported for 20 s");
+    }
+
+    #[test]
+    fn what_was_stopped_begins_anew() {
+        let (mut stage, mut activity) = (Stage::new(), LeftKick::default());
+        stage.run(&mut activity);
+        activity.under_way = None;
+        stage.run(&mut activity);
+        assert_eq!(stage.said(topics::MOTION).unwrap().number, 2);
+    }
+}

@@ -1,0 +1,167 @@
+//! Going to the ball.
+
+use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
+use nalgebra::Point2;
+
+use super::shot::{Ground, ground, others, target};
+use super::wishes::request_walk;
+use crate::functionality::approach::{Approach, support_place};
+use crate::functionality::avoidance::avoid;
+use crate::functionality::walk::{Walk, stride_to, turn_to};
+use crate::{Ball, topics};
+
+/// Walks behind the ball, so that it lies between the robot and the opponents' goal, round other robots and not through the own
+/// goal's area. While a team mate is nearer to the ball it keeps the place behind that one's back.
+///
+/// Parameters `area_depth` and `area_width` (m): the own goal's area, in which the rules allow the goalkeeper only.
+#[derive(Clone, Copy, Debug)]
+pub struct WalkTowardsBall {
+    approach: Approach,
+    area: (f64, f64),
+}
+
+impl Default for WalkTowardsBall {
+    fn default() -> WalkTowardsBall {
+        WalkTowardsBall { approach: Approach::default(), area: (0.6, 2.2) }
+    }
+}
+
+/// How much nearer to the ball a team mate has to be to have it, metres.
+const NEARER: f64 = 0.15;
+/// How far from the ball the one without it stays, metres.
+const SUPPORT: f64 = 1.0;
+/// How far from the goal's area a field player stays, metres.
+const FROM_AREA: f64 = 0.1;
+
+impl Activity for WalkTowardsBall {
+    fn configure(&mut self, parameters: &Parameters) {
+        self.area.0 = parameters.number("area_depth").unwrap_or(self.area.0);
+        self.area.1 = parameters.number("area_width").unwrap_or(self.area.1);
+    }
+
+    fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
+        let Some(ball) = blackboard.read(topics::BALL).copied() else { return Ok(Progress::Done) };
+        let walk = self.walk(blackboard, &ball);
+        request_walk(blackboard, walk)?;
+        Ok(Progress::Done)
+    }
+
+    fn topics(&self) -> Topics {
+        let topics = Topics::declared().reads(topics::BALL).reads(topics::GAME_STATE).reads(topics::POSE);
+        topics.reads(topics::ROBOTS).reads(topics::MOTION).publishes(topics::MOTION)
+    }
+}
+
+impl WalkTowardsBall {
+    fn walk(&self, blackboard: &Blackboard, ball: &Ball) -> Walk {
+        let ground = ground(blackboard);
+        let target = target(blackboard, ball, ground.as_ref());
+        let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
+        if let Some(place) = self.place_to_wait(blackboard, ball, target, ground.as_ref()) {
+            return wait_at(place, ball, &obstacles);
+        }
+        self.approach.walk(ball.position(), target, &obstacles)
+    }
+
+    /// A place other than the ball, if a team mate has the ball or it lies where only the goalkeeper may go.
+    fn place_to_wait(
+        &self,
+        blackboard: &Blackboard,
+        ball: &Ball,
+        target: Point2<f64>,
+        ground: Option<&Ground>,
+    ) -> Option<Point2<f64>> {
+        let nearer = |distance: f64| distance < ball.distance - NEARER;
+        let mates = others(blackboard).filter(|robot| robot.team_mate);
+        let has_it = mates.map(|mate| (mate.position() - ball.position()).norm()).any(nearer);
+        let support = has_it.then(|| support_place(ball.position(), target, SUPPORT));
+        let Some(ground) = ground else { return support };
+        if let Some(place) = support {
+            return Some(self.outside_area(ground, place).unwrap_or(place));
+        }
+        self.outside_area(ground, ball.position())
+    }
+
+    /// The nearest place before the own goal's area, if a place lies in it. Both in the robot's frame.
+    fn outside_area(&self, ground: &Ground, place: Point2<f64>) -> Option<Point2<f64>> {
+        let in_field = ground.field_from_robot * place;
+        let front = self.area.0 - ground.field.length / 2.0;
+        let inside = in_field.x < front && in_field.y.abs() < self.area.1 / 2.0;
+        let before = Point2::new(front + FROM_AREA, in_field.y);
+        inside.then(|| ground.field_from_robot.inverse_transform_point(&before))
+    }
+}
+
+/// Walks to a place and stays there, facing the ball.
+fn wait_at(place: Point2<f64>, ball: &Ball, obstacles: &[Point2<f64>]) -> Walk {
+    let way = place.coords.norm();
+    if way < 0.2 { Walk::turning(turn_to(ball.bearing)) } else { stride_to(avoid(place, obstacles), way) }
+}
+
+monas::activity!(WalkTowardsBall);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::activities::stage::Stage;
+    use crate::{GameState, MotionRequest, OtherRobot, Pose, Robots};
+
+    fn run(ball: (f64, f64), pose: Option<Pose>, robots: &[OtherRobot]) -> MotionRequest {
+        let (mut stage, mut activity) = (Stage::new(), WalkTowardsBall::default());
+        let game = GameState { field_length: 6.0, field_width: 4.0, goal_width: 1.4, ..GameState::default() };
+        let ball = Ball {
+            x: ball.0,
+            y: ball.1,
+            distance: libm::hypot(ball.0, ball.1),
+            bearing: libm::atan2(ball.1, ball.0),
+            ..Ball::default()
+        };
+        stage.tell(topics::GAME_STATE, game).tell(topics::BALL, ball);
+        stage.tell(topics::ROBOTS, Robots { robots: robots.to_vec(), ..Robots::default() });
+        pose.map(|pose| stage.tell(topics::POSE, pose).now);
+        assert_eq!(stage.run(&mut activity), Progress::Done);
+        stage.said(topics::MOTION).unwrap()
+    }
+
+    fn robot(x: f64, y: f64, team_mate: bool) -> OtherRobot {
+        OtherRobot { x, y, team_mate, age: 0.0 }
+    }
+
+    #[test]
+    fn a_ball_before_the_goal_is_walked_to_straight() {
+        let walk = run((2.0, 0.0), Some(Pose::default()), &[]);
+        assert!(walk.vx > 0.2 && walk.wz.abs() < 1e-9, "{walk:?}");
+        let lost = run((2.0, 0.0), None, &[]);
+        assert!(lost.vx > 0.2, "also by a robot that does not know where it is");
+    }
+
+    #[test]
+    fn a_ball_on_the_wrong_side_is_walked_round() {
+        let facing_own_goal = Pose { heading: std::f64::consts::PI, ..Pose::default() };
+        let walk = run((1.0, 0.0), Some(facing_own_goal), &[]);
+        assert!(walk.wz.abs() > 0.3, "{walk:?}");
+    }
+
+    #[test]
+    fn robots_in_the_way_are_passed() {
+        assert!(run((2.0, 0.0), Some(Pose::default()), &[robot(0.8, 0.1, false)]).wz < -0.1);
+        assert!(run((2.0, 0.0), Some(Pose::default()), &[robot(0.8, 0.1, true)]).wz < -0.1);
+    }
+
+    #[test]
+    fn a_team_mate_at_the_ball_keeps_it() {
+        let free = run((0.6, 0.0), Some(Pose::default()), &[]);
+        assert!(free.vx > 0.0);
+        let walk = run((0.6, 0.0), Some(Pose::default()), &[robot(0.6, -0.25, true)]);
+        assert!(walk.vx < 0.05, "it does not go nearer: {walk:?}");
+        let opponent = run((0.6, 0.0), Some(Pose::default()), &[robot(0.6, -0.7, false)]);
+        assert_eq!(opponent.vx, free.vx);
+    }
+
+    #[test]
+    fn the_own_goals_area_is_left_to_the_goalkeeper() {
+        let before_area = Pose { x: -2.2, heading: std::f64::consts::PI, ..Pose::default() };
+        let walk = run((0.6, 0.0), Some(before_area), &[]);
+        assert!(walk.vx.abs() < 1e-9, "{walk:?}");
+    }
+}

@@ -1,0 +1,126 @@
+//! What binds a statechart to the program: its expressions to topics and functions, its states to activities.
+
+use std::sync::Arc;
+
+use narukom::TOPICS;
+use yase::{Chart, Diagnostic, Source, Span, Statechart, Vocabulary};
+
+use crate::activity::Activity;
+use crate::error::{Error, ErrorKind};
+use crate::function::FunctionDeclaration;
+use crate::registry::Registry;
+use crate::vocabulary::vocabulary;
+
+/// The words of the program, and its activities.
+pub(crate) struct Binder<'a> {
+    registry: &'a Registry,
+    functions: Arc<[FunctionDeclaration]>,
+    vocabulary: Vocabulary,
+}
+
+/// A chart that can run: compiled, with an instance of its activity for each state that has one.
+pub(crate) struct BoundChart {
+    pub(crate) chart: Arc<Chart>,
+    pub(crate) functions: Arc<[FunctionDeclaration]>,
+    /// In the order of [`Chart::activities`].
+    pub(crate) activities: Vec<Box<dyn Activity>>,
+}
+
+impl<'a> Binder<'a> {
+    /// Collects the topics of the program and the functions of a registry.
+    ///
+    /// # Errors
+    /// Two functions of one name.
+    pub(crate) fn new(registry: &'a Registry) -> Result<Binder<'a>, Error> {
+        let functions = registry.functions()?;
+        let vocabulary = vocabulary(TOPICS, &functions);
+        Ok(Binder { registry, functions: functions.into(), vocabulary })
+    }
+
+    /// Everything that keeps a chart from running. Places are in `source`, if the chart was made from a text.
+    pub(crate) fn check(&self, chart: &Statechart, source: Option<&Arc<Source>>) -> Vec<Diagnostic> {
+        self.bind(chart, source).err().unwrap_or_default()
+    }
+
+    /// Makes a chart ready to run.
+    ///
+    /// # Errors
+    /// Everything that keeps it from running.
+    pub(crate) fn bind(
+        &self,
+        chart: &Statechart,
+        source: Option<&Arc<Source>>,
+    ) -> Result<BoundChart, Vec<Diagnostic>> {
+        let mut diagnostics = Vec::new();
+        let activities = self.activities(chart, source, &mut diagnostics);
+        let compiled = chart.compile(&self.vocabulary).map_err(|wrong| diagnostics.extend(wrong)).ok();
+        match compiled.filter(|_| diagnostics.is_empty()) {
+            Some(compiled) => {
+                let chart = Arc::new(compiled);
+                let activities = in_order(&chart, activities);
+                Ok(BoundChart { chart, functions: self.functions.clone(), activities })
+            }
+            None => Err(match source {
+                Some(source) => diagnostics.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect(),
+                None => diagnostics,
+            }),
+        }
+    }
+
+    /// An instance for each state with an activity. A name that is wrong in several states is said once.
+    fn activities(
+        &self,
+        chart: &Statechart,
+        source: Option<&Arc<Source>>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Vec<(yase::NodeId, Box<dyn Activity>)> {
+        let mut instances = Vec::new();
+        let mut said: Vec<&str> = Vec::new();
+        for (id, node) in chart.nodes() {
+            let Some(name) = node.activity.as_deref() else { continue };
+            match self.registry.activity(name) {
+                Ok(activity) => instances.push((id, activity)),
+                Err(_) if said.contains(&name) => {}
+                Err(error) => {
+                    said.push(name);
+                    let span = source.map_or(Span::default(), |source| place_of(name, &source.text));
+                    diagnostics.push(unbound(&chart.path(id), name, span, &error));
+                }
+            }
+        }
+        instances
+    }
+}
+
+fn in_order(chart: &Chart, mut instances: Vec<(yase::NodeId, Box<dyn Activity>)>) -> Vec<Box<dyn Activity>> {
+    let place = |node| chart.activities().position(|entry| entry.node == node);
+    instances.sort_by_key(|(node, _)| place(*node));
+    instances.into_iter().map(|(_, activity)| activity).collect()
+}
+
+fn unbound(path: &str, name: &str, span: Span, error: &Error) -> Diagnostic {
+    let message = match error.kind() {
+        ErrorKind::UnknownActivity => format!("no activity `{name}` is registered for the state `{path}`"),
+        _ => format!("{error}, so the state `{path}` has none"),
+    };
+    let diagnostic = Diagnostic::error("E0318", span, message);
+    match error.hint() {
+        Some(hint) => diagnostic.with_hint(hint),
+        None => diagnostic,
+    }
+}
+
+/// Where a name first stands as a word of its own in a model's text; its beginning if nowhere. Charts do not keep the places of
+/// their states.
+fn place_of(name: &str, text: &str) -> Span {
+    let part_of_word = |c: char| c.is_alphanumeric() || c == '_';
+    let found = text.match_indices(name).find(|(at, _)| {
+        let (before, after) = (&text[..*at], &text[at + name.len()..]);
+        let line = &before[before.rfind('\n').map_or(0, |newline| newline + 1)..];
+        // `ω` is a letter, but says "forever" behind a name.
+        !line.contains('#')
+            && !before.ends_with(part_of_word)
+            && !after.starts_with(|c| part_of_word(c) && !matches!(c, 'ω' | 'Ω'))
+    });
+    found.map_or(Span::default(), |(at, _)| Span::new(at, at + name.len()))
+}

@@ -1,0 +1,242 @@
+//! A statechart of an agent while it runs: the machine, its blackboards, and the activities of its states.
+//!
+//! The runner decides nothing about time: whoever drives it hands in the moment, calls activities where and when it likes (inline
+//! in simulated time, on a pool in real time), and brings back what they returned.
+
+mod desk;
+mod post;
+mod values;
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use narukom::{Blackboard, Moment, Narukom, TopicSlot};
+use yase::{Activation, Machine, MachineError, Outcome, Semantics, Status, TopicId};
+
+use crate::activity::Progress;
+use crate::binder::BoundChart;
+use crate::call::{self, Failure};
+use crate::coverage::ChartCoverage;
+use crate::error::Error;
+use crate::listener::Listeners;
+use crate::statistics::ActivityStatistics;
+use crate::talws::component_seed;
+
+use desk::Desk;
+pub(crate) use desk::transition_name;
+pub(crate) use post::{Assignment, Posts, Returned};
+
+/// How long the first pause is of an activity that is restarted; each further one in a row is twice as long, up to 64 times.
+const FIRST_PAUSE: Duration = Duration::from_millis(10);
+/// How often the pause doubles at most.
+const DOUBLINGS: u32 = 6;
+
+/// One statechart of an agent.
+pub(crate) struct Runner {
+    machine: Machine,
+    desk: Desk,
+    posts: Posts,
+    steps: u64,
+    micro_steps: u64,
+}
+
+/// Where a runner belongs.
+#[derive(Clone, Copy)]
+pub(crate) struct Home<'a> {
+    pub(crate) hub: &'a Narukom,
+    pub(crate) agent: &'a str,
+    /// The chart's place among the charts of the agent.
+    pub(crate) number: u32,
+    pub(crate) seed: u64,
+    pub(crate) listeners: &'a Listeners,
+}
+
+impl Runner {
+    pub(crate) fn new(bound: BoundChart, home: Home<'_>) -> Result<Runner, Error> {
+        let BoundChart { chart, functions, activities } = bound;
+        let blackboards = chart.regions().map(|region| {
+            let mut blackboard = home.hub.blackboard(home.agent);
+            let region = chart.region_node(region).map(|node| chart.statechart().path(node)).unwrap_or_default();
+            let path = format!("{}/{}/{}/{region}", home.hub.host(), home.agent, home.number);
+            blackboard.set_random(component_seed(home.seed, &path));
+            Some(blackboard)
+        });
+        let desk = Desk::new(&chart, home, functions, blackboards.collect())?;
+        let posts = Posts::new(&chart, activities);
+        let machine = Machine::new(chart, Semantics::yase());
+        Ok(Runner { machine, desk, posts, steps: 0, micro_steps: 0 })
+    }
+
+    /// Enters the root. The first transitions are those of the first step.
+    pub(crate) fn start(&mut self, now: Moment) {
+        self.desk.now = now;
+        self.machine.start(yase_moment(now), &mut self.desk);
+    }
+
+    /// Takes note of a message.
+    pub(crate) fn message_arrived(&mut self, topic: TopicSlot, now: Moment) {
+        let id = TopicId(topic.number());
+        if self.machine.reads_topic(id) {
+            self.machine.message_arrived(id, 1);
+        }
+        self.posts.message_arrived(topic, now);
+    }
+
+    /// Takes note of an event from outside. False if no expression names it.
+    pub(crate) fn raise(&mut self, event: &str) -> bool {
+        self.machine.dispatch_name(event)
+    }
+
+    /// When it has something to do by itself: a step, or a call of an activity that waits for one.
+    pub(crate) fn due(&self, now: Moment) -> Moment {
+        if self.machine.needs_step(yase_moment(now)) {
+            return now;
+        }
+        let deadline = self.machine.next_deadline().map_or(Moment::MAX, |at| Moment::from_nanos(at.as_nanos()));
+        deadline.min(self.posts.next_call())
+    }
+
+    pub(crate) fn needs_step(&self, now: Moment) -> bool {
+        self.machine.needs_step(yase_moment(now))
+    }
+
+    /// Makes one run-to-completion step. Then [`Runner::next_assignment`] gives the activities that it started.
+    ///
+    /// # Errors
+    /// The chart never comes to rest; it has stopped.
+    pub(crate) fn step(&mut self, now: Moment) -> Result<(), MachineError> {
+        self.desk.begin_step(now);
+        let summary = self.machine.run_to_completion(yase_moment(now), &mut self.desk);
+        self.steps += 1;
+        let summary = summary?;
+        self.micro_steps += u64::from(summary.micro_steps);
+        self.leave(now);
+        Ok(())
+    }
+
+    /// The activities whose state was left while they waited to be called again end.
+    fn leave(&mut self, now: Moment) {
+        while let Some(activation) = self.desk.left.pop() {
+            let blackboard = self.desk.blackboards.get_mut(activation.region.0 as usize).and_then(Option::as_mut);
+            let (Some(blackboard), Some(activity)) = (blackboard, self.posts.leave(activation)) else { continue };
+            if let Err(failure) = call::stop(activity, blackboard) {
+                tracing::error!(agent = %self.desk.agent, "activity failed to stop: {failure}");
+            }
+            blackboard.publish_all(now);
+        }
+    }
+
+    /// The next activity to be called, with its blackboard: one that a step started, or one that waited and is due.
+    pub(crate) fn next_assignment(&mut self, now: Moment) -> Option<Assignment> {
+        loop {
+            let (activation, again) = match self.desk.started.pop_front() {
+                Some(activation) => (activation, false),
+                None => (self.posts.due(now)?, true),
+            };
+            if again && !self.machine.activity_resumed(activation) {
+                self.posts.leave(activation);
+                continue;
+            }
+            let Some(mut blackboard) = self.desk.take(activation.region) else { continue };
+            if again {
+                blackboard.process_messages(now);
+            }
+            if let Some(assignment) = self.posts.assign(activation, blackboard) {
+                return Some(assignment);
+            }
+        }
+    }
+
+    /// Takes an activity and its blackboard back from where it was called, but nothing of what it did yet.
+    pub(crate) fn take_back(&mut self, assignment: Assignment) {
+        let (activation, blackboard) = self.posts.take_back(assignment);
+        self.desk.put(activation.region, blackboard);
+    }
+
+    /// An activity has returned: what it wrote is published, what it raised is noted, and its state may be complete.
+    pub(crate) fn returned(&mut self, returned: Returned, restart: bool, now: Moment) -> Result<(), Failure> {
+        let Returned { activation, result } = returned;
+        if let Some(blackboard) = self.desk.blackboard_mut(activation.region) {
+            blackboard.publish_all(now);
+            for event in blackboard.take_events() {
+                self.machine.dispatch_name(&event);
+            }
+        }
+        let outcome = match &result {
+            Ok(Progress::Done) => Outcome::Done,
+            Ok(Progress::Ongoing(_)) => Outcome::Ongoing,
+            Err(_) => Outcome::Failed,
+        };
+        let current = self.machine.activity_returned(activation, outcome);
+        match result {
+            Ok(Progress::Done) => self.posts.finished(activation),
+            Ok(Progress::Ongoing(delay)) if current => {
+                let reads = self.desk.blackboard_mut(activation.region).map(|b| b.topics_read());
+                self.posts.wait(activation, now + delay, reads.unwrap_or_default());
+            }
+            Ok(Progress::Ongoing(_)) => self.posts.finished(activation),
+            Err(failure) => {
+                let pause = self.posts.failed(activation, FIRST_PAUSE, DOUBLINGS);
+                if restart && current {
+                    self.posts.wait(activation, now + pause, Vec::new());
+                }
+                return Err(failure);
+            }
+        }
+        Ok(())
+    }
+
+    /// The activations that were asked to return soon since the last call.
+    pub(crate) fn take_cancelled(&mut self) -> Vec<Activation> {
+        std::mem::take(&mut self.desk.cancelled)
+    }
+
+    /// Ends everything; activities that wait are told so.
+    pub(crate) fn stop(&mut self, now: Moment) {
+        self.machine.stop(&mut self.desk);
+        self.leave(now);
+        self.desk.started.clear();
+    }
+
+    pub(crate) fn is_over(&self) -> bool {
+        matches!(self.machine.status(), Status::Finished | Status::Stopped)
+    }
+
+    pub(crate) fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    pub(crate) fn micro_steps(&self) -> u64 {
+        self.micro_steps
+    }
+
+    pub(crate) fn activity_name(&self, activation: Activation) -> String {
+        self.posts.name(activation).to_owned()
+    }
+
+    pub(crate) fn name(&self) -> &str {
+        &self.machine.chart().statechart().name
+    }
+
+    /// What each blackboard received at the beginning of the last step.
+    pub(crate) fn delivered(&self) -> &[crate::records::Delivery] {
+        &self.desk.delivered
+    }
+
+    pub(crate) fn activity_statistics(&self) -> impl Iterator<Item = ActivityStatistics> {
+        self.posts.statistics(self.machine.chart())
+    }
+
+    pub(crate) fn coverage(&self) -> ChartCoverage {
+        self.desk.coverage.table(self.machine.chart(), &self.desk.host, &self.desk.agent)
+    }
+
+    /// How many threads can be of use to its activities.
+    pub(crate) fn max_activities(&self) -> usize {
+        self.machine.chart().max_activities()
+    }
+}
+
+fn yase_moment(moment: Moment) -> yase::Moment {
+    yase::Moment::from_nanos(moment.as_nanos())
+}

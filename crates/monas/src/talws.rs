@@ -1,0 +1,159 @@
+//! Talws: what holds a team of agents, and runs it.
+
+mod body;
+mod instance;
+mod seeds;
+mod simulated_chart;
+mod simulation;
+
+use monas_robot::Robot;
+use narukom::{Blackboard, Moment, Observer};
+use std::time::Duration;
+
+use crate::activity::BoxError;
+use crate::agent::Agent;
+use crate::error::Error;
+use crate::listener::ChartListener;
+use crate::registry::Registry;
+
+pub(crate) use seeds::component_seed;
+pub use simulation::Simulation;
+
+/// A host: a robot or a computer, with a hub of its own, the agents that run on it, and its body if it has one.
+#[derive(Default)]
+pub struct HostConfig {
+    /// Its name, unlike every other.
+    pub name: String,
+    /// Its team's number.
+    pub team: u32,
+    /// Its number in the team.
+    pub number: u32,
+    /// Its body.
+    pub body: Option<Box<dyn Robot>>,
+    /// Its agents.
+    pub agents: Vec<Agent>,
+}
+
+impl std::fmt::Debug for HostConfig {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("HostConfig")
+            .field("name", &self.name)
+            .field("team", &self.team)
+            .field("number", &self.number)
+            .field("body", &self.body.as_ref().map(|body| &body.anatomy().model))
+            .field("agents", &self.agents)
+            .finish()
+    }
+}
+
+/// The world that simulated bodies live in. It has a hub of its own, named after it, on which it may publish what is true.
+pub trait World: Send {
+    /// The name of its hub.
+    fn name(&self) -> &str {
+        "world"
+    }
+
+    /// How often it moves on.
+    fn period(&self) -> Duration;
+
+    /// Publishes what is true before anything has happened.
+    fn start(&mut self, blackboard: &mut Blackboard) -> Result<(), BoxError> {
+        let _ = blackboard;
+        Ok(())
+    }
+
+    /// Moves on by one period, to `now`.
+    fn advance(&mut self, now: Moment, blackboard: &mut Blackboard) -> Result<(), BoxError>;
+}
+
+/// Hosts with their agents and bodies, and the world around them.
+///
+/// Talws is the only part of Monas that knows how time passes: [`simulate`](Talws::simulate) makes it pass as fast as it can be
+/// computed, everything on one thread and in a defined order.
+///
+/// ```
+/// use monas::{Agent, Blackboard, Hz, Moment, Talws};
+///
+/// fn hello(blackboard: &mut Blackboard) {
+///     println!("hello at {}", blackboard.now());
+/// }
+/// let talws = Talws::new().agent(Agent::new("greeter", Hz(10)).activity(hello));
+/// let mut simulation = talws.simulate(7)?;
+/// simulation.run_until(Moment::from_secs_f64(1.0))?;
+/// assert_eq!(simulation.statistics().calls("local", "hello"), 10);
+/// # Ok::<(), monas::Error>(())
+/// ```
+#[derive(Default)]
+pub struct Talws {
+    registry: Option<Registry>,
+    hosts: Vec<HostConfig>,
+    world: Option<Box<dyn World>>,
+    observers: Vec<Box<dyn Observer>>,
+    listeners: Vec<Box<dyn ChartListener>>,
+}
+
+impl Talws {
+    /// The name of the host of agents that are given none.
+    pub const LOCAL: &'static str = "local";
+
+    /// No hosts, and everything that is linked into the program.
+    pub fn new() -> Talws {
+        Talws::default()
+    }
+
+    /// Takes activities and functions from this registry instead of the linked ones.
+    pub fn registry(mut self, registry: Registry) -> Talws {
+        self.registry = Some(registry);
+        self
+    }
+
+    /// Adds an agent to the host [`LOCAL`](Talws::LOCAL).
+    pub fn agent(mut self, agent: Agent) -> Talws {
+        match self.hosts.iter_mut().find(|host| host.name == Talws::LOCAL) {
+            Some(host) => host.agents.push(agent),
+            None => {
+                let host = HostConfig { name: Talws::LOCAL.into(), agents: vec![agent], ..HostConfig::default() };
+                self.hosts.push(host);
+            }
+        }
+        self
+    }
+
+    /// Adds a host.
+    pub fn host(&mut self, host: HostConfig) -> &mut Talws {
+        self.hosts.push(host);
+        self
+    }
+
+    /// Puts a world around the bodies, in place of the one before.
+    pub fn world(&mut self, world: Box<dyn World>) -> &mut Talws {
+        self.world = Some(world);
+        self
+    }
+
+    /// Lets an observer see every message that is published on any host, in order of publication.
+    pub fn observe(&mut self, observer: Box<dyn Observer>) -> &mut Talws {
+        self.observers.push(observer);
+        self
+    }
+
+    /// Lets a listener see every micro-step of every chart.
+    pub fn listen(&mut self, listener: Box<dyn ChartListener>) -> &mut Talws {
+        self.listeners.push(listener);
+        self
+    }
+
+    /// Prepares a run in simulated time. The same seed gives the same run, in whatever order hosts and agents were added.
+    ///
+    /// # Errors
+    /// Two hosts or two agents of a host with one name, topics that contradict each other, and every diagnostic of every chart.
+    pub fn simulate(self, seed: u64) -> Result<Simulation, Error> {
+        Simulation::new(self, seed)
+    }
+}
+
+impl std::fmt::Debug for Talws {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Talws").field("hosts", &self.hosts).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,146 @@
+//! A chart in simulated time: its activities are called at once, and return when their declared duration is over.
+
+use narukom::{Moment, TopicSlot};
+
+use super::instance::Teller;
+use crate::agent::Policy;
+use crate::binder::BoundChart;
+use crate::chart::{Home, Returned, Runner};
+use crate::coverage::ChartCoverage;
+use crate::error::Error;
+use crate::frequency::Frequency;
+use crate::statistics::ActivityStatistics;
+
+/// A chart and the activities that are under way.
+pub(super) struct SimulatedChart {
+    runner: Runner,
+    /// What activities have done and nobody knows yet, in the order of the calls.
+    under_way: Vec<UnderWay>,
+    /// Wakes it beside what happens.
+    frequency: Option<Frequency>,
+    ticks: u64,
+}
+
+struct UnderWay {
+    until: Moment,
+    returned: Returned,
+}
+
+impl SimulatedChart {
+    pub(super) fn new(
+        bound: BoundChart,
+        home: Home<'_>,
+        frequency: Option<Frequency>,
+    ) -> Result<SimulatedChart, Error> {
+        let mut runner = Runner::new(bound, home)?;
+        runner.start(Moment::ZERO);
+        Ok(SimulatedChart { runner, under_way: Vec::new(), frequency, ticks: 0 })
+    }
+
+    pub(super) fn due(&self, now: Moment) -> Moment {
+        if self.runner.is_over() {
+            return Moment::MAX;
+        }
+        let returns = self.under_way.iter().map(|under_way| under_way.until);
+        returns.chain([self.runner.due(now), self.tick()]).min().unwrap_or(Moment::MAX)
+    }
+
+    fn tick(&self) -> Moment {
+        self.frequency.map_or(Moment::MAX, |frequency| frequency.due(self.ticks))
+    }
+
+    pub(super) fn message_arrived(&mut self, topic: TopicSlot, now: Moment) {
+        self.runner.message_arrived(topic, now);
+    }
+
+    pub(super) fn raise(&mut self, event: &str) -> bool {
+        self.runner.raise(event)
+    }
+
+    /// Steps and calls activities until nothing is left to do at this moment. Activities that a step starts are called before the
+    /// next one, in the order in which the machine started them; each return begins a step of its own.
+    ///
+    /// # Errors
+    /// Why the agent is to stop.
+    pub(super) fn run(
+        &mut self,
+        now: Moment,
+        agent: &str,
+        policy: Policy,
+        teller: &mut Teller,
+    ) -> Result<(), String> {
+        while !self.runner.is_over() {
+            if let Some(mut assignment) = self.runner.next_assignment(now) {
+                let until = now + assignment.duration;
+                let returned = assignment.call();
+                self.runner.take_back(assignment);
+                self.under_way.push(UnderWay { until, returned });
+            } else if self.runner.needs_step(now) || self.tick() <= now {
+                self.step(now, teller)?;
+            } else if let Some(returned) = self.next_return(now) {
+                self.returned(returned, now, agent, policy, teller.number())?;
+            } else {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn step(&mut self, now: Moment, teller: &mut Teller) -> Result<(), String> {
+        while self.tick() <= now {
+            self.ticks += 1;
+        }
+        let stepped = self.runner.step(now);
+        teller.tell(now, self.runner.delivered().to_vec());
+        for cancelled in self.runner.take_cancelled() {
+            let under_way = self.under_way.iter_mut().filter(|one| one.returned.activation == cancelled);
+            under_way.for_each(|one| one.until = now);
+        }
+        stepped.map_err(|error| format!("chart `{}`: {error}", self.runner.name()))
+    }
+
+    /// The first call whose time is over; of several that end at one moment the one that was made first.
+    fn next_return(&mut self, now: Moment) -> Option<Returned> {
+        let first = self.under_way.iter().enumerate().min_by_key(|(place, one)| (one.until, *place));
+        let place = first.filter(|(_, one)| one.until <= now).map(|(place, _)| place)?;
+        Some(self.under_way.remove(place).returned)
+    }
+
+    fn returned(
+        &mut self,
+        returned: Returned,
+        now: Moment,
+        agent: &str,
+        policy: Policy,
+        cycle: u64,
+    ) -> Result<(), String> {
+        let activation = returned.activation;
+        let result = self.runner.returned(returned, policy == Policy::Restart, now);
+        let Err(failure) = result else { return Ok(()) };
+        let activity = self.runner.activity_name(activation);
+        tracing::error!(%agent, %activity, cycle, "activity failed: {failure}");
+        match policy {
+            Policy::Restart | Policy::Skip => Ok(()),
+            Policy::StopAgent | Policy::SafeState => {
+                Err(format!("activity `{activity}` failed in cycle {cycle}: {failure}"))
+            }
+        }
+    }
+
+    pub(super) fn stop(&mut self, now: Moment) {
+        self.runner.stop(now);
+        self.under_way.clear();
+    }
+
+    pub(super) fn micro_steps(&self) -> u64 {
+        self.runner.micro_steps()
+    }
+
+    pub(super) fn activity_statistics(&self) -> impl Iterator<Item = ActivityStatistics> {
+        self.runner.activity_statistics()
+    }
+
+    pub(super) fn coverage(&self) -> ChartCoverage {
+        self.runner.coverage()
+    }
+}

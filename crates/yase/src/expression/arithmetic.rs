@@ -1,0 +1,146 @@
+//! Numbers of any width, and the comparison of values.
+
+use std::cmp::Ordering;
+
+use super::program::GuardError;
+use super::syntax::{Additive, Comparison, Multiplicative};
+use crate::vocabulary::Value;
+
+/// Zero minus a number.
+pub(super) fn negative(value: Value<'_>) -> Result<Value<'_>, GuardError> {
+    arithmetic(Value::Uint(0), Operator::Minus, value)
+}
+
+/// What is done to two numbers.
+#[derive(Clone, Copy)]
+pub(super) enum Operator {
+    Plus,
+    Minus,
+    Times,
+    Over,
+}
+
+impl From<Additive> for Operator {
+    fn from(operator: Additive) -> Operator {
+        match operator {
+            Additive::Plus => Operator::Plus,
+            Additive::Minus => Operator::Minus,
+        }
+    }
+}
+
+impl From<Multiplicative> for Operator {
+    fn from(operator: Multiplicative) -> Operator {
+        match operator {
+            Multiplicative::Times => Operator::Times,
+            Multiplicative::Over => Operator::Over,
+        }
+    }
+}
+
+/// A number, whole as long as it is exact.
+#[derive(Clone, Copy)]
+enum Number {
+    Whole(i128),
+    Float(f64),
+}
+
+impl Number {
+    fn of(value: Value<'_>) -> Result<Number, GuardError> {
+        match value {
+            Value::Int(value) => Ok(Number::Whole(value.into())),
+            Value::Uint(value) => Ok(Number::Whole(value.into())),
+            Value::Float(value) => Ok(Number::Float(value)),
+            _ => Err(GuardError::WrongType),
+        }
+    }
+
+    fn to_f64(self) -> f64 {
+        match self {
+            Number::Whole(value) => value as f64,
+            Number::Float(value) => value,
+        }
+    }
+}
+
+/// Sums and products of whole numbers are whole; a quotient is a floating point number. Missing if a value is missing.
+pub(super) fn arithmetic<'a>(
+    left: Value<'a>,
+    operator: impl Into<Operator>,
+    right: Value<'a>,
+) -> Result<Value<'a>, GuardError> {
+    if matches!(left, Value::Missing) || matches!(right, Value::Missing) {
+        return Ok(Value::Missing);
+    }
+    match (Number::of(left)?, operator.into(), Number::of(right)?) {
+        (Number::Whole(a), Operator::Plus, Number::Whole(b)) => whole(a.checked_add(b)),
+        (Number::Whole(a), Operator::Minus, Number::Whole(b)) => whole(a.checked_sub(b)),
+        (Number::Whole(a), Operator::Times, Number::Whole(b)) => whole(a.checked_mul(b)),
+        (a, operator, b) => floating(a.to_f64(), operator, b.to_f64()),
+    }
+}
+
+fn whole(result: Option<i128>) -> Result<Value<'static>, GuardError> {
+    let result = result.ok_or(GuardError::OutOfRange)?;
+    if let Ok(signed) = i64::try_from(result) {
+        return Ok(Value::Int(signed));
+    }
+    u64::try_from(result).map(Value::Uint).map_err(|_| GuardError::OutOfRange)
+}
+
+fn floating(left: f64, operator: Operator, right: f64) -> Result<Value<'static>, GuardError> {
+    Ok(Value::Float(match operator {
+        Operator::Plus => left + right,
+        Operator::Minus => left - right,
+        Operator::Times => left * right,
+        Operator::Over if right == 0.0 => return Err(GuardError::DivisionByZero),
+        Operator::Over => left / right,
+    }))
+}
+
+/// Whether a comparison holds; nothing if a value is missing.
+pub(super) fn compare(
+    left: Value<'_>,
+    comparison: Comparison,
+    right: Value<'_>,
+) -> Result<Option<bool>, GuardError> {
+    let order = match (left, right) {
+        (Value::Missing, _) | (_, Value::Missing) => return Ok(None),
+        (Value::Float(left), Value::Float(right)) => {
+            left.partial_cmp(&right).ok_or(GuardError::NotANumber)?
+        }
+        (Value::Enum(left), Value::Enum(right)) => left.cmp(&right),
+        (Value::Bool(left), Value::Bool(right)) => left.cmp(&right),
+        (Value::Text(left), Value::Text(right)) => left.cmp(right),
+        (left, right) => compare_numbers(Number::of(left)?, Number::of(right)?)?,
+    };
+    Ok(Some(match comparison {
+        Comparison::Equal => order.is_eq(),
+        Comparison::NotEqual => order.is_ne(),
+        Comparison::Less => order.is_lt(),
+        Comparison::LessOrEqual => order.is_le(),
+        Comparison::Greater => order.is_gt(),
+        Comparison::GreaterOrEqual => order.is_ge(),
+    }))
+}
+
+/// By value, whatever the width: no whole number is rounded on the way.
+fn compare_numbers(left: Number, right: Number) -> Result<Ordering, GuardError> {
+    match (left, right) {
+        (Number::Whole(left), Number::Whole(right)) => Ok(left.cmp(&right)),
+        (Number::Float(left), Number::Float(right)) => left.partial_cmp(&right).ok_or(GuardError::NotANumber),
+        (Number::Whole(left), Number::Float(right)) => compare_whole(left, right),
+        (Number::Float(left), Number::Whole(right)) => compare_whole(right, left).map(Ordering::reverse),
+    }
+}
+
+/// A cast of a float to `i128` cuts off the fraction, and saturates far beyond 64 bits: the whole parts decide first.
+fn compare_whole(whole: i128, float: f64) -> Result<Ordering, GuardError> {
+    if float.is_nan() {
+        return Err(GuardError::NotANumber);
+    }
+    match whole.cmp(&(float as i128)) {
+        Ordering::Equal => 0.0_f64.partial_cmp(&(float - float.trunc())).ok_or(GuardError::NotANumber),
+        order => Ok(order),
+    }
+}

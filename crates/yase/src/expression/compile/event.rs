@@ -1,0 +1,76 @@
+//! What the names of events mean: an event is a name, or the arrival of messages on a topic.
+
+use super::Checked;
+use super::message::kind_of;
+use super::scope::Scope;
+use crate::diagnostic::Diagnostic;
+use crate::expression::facts::Origin;
+use crate::expression::names::{EventId, EventTable};
+use crate::expression::syntax::{Name, Path};
+use crate::vocabulary::{TopicEntry, TopicKind};
+
+impl Scope<'_> {
+    /// The event that a trigger waits for.
+    pub(super) fn event(&self, path: &Path, events: &mut EventTable) -> Checked<EventId> {
+        Ok(match self.arrival(path)? {
+            Some(topic) => events.intern_message(topic.id, &topic.path),
+            None => events.intern(&path.text()),
+        })
+    }
+
+    /// The event that an action raises: no message, since those are published.
+    pub(super) fn raised_event(&self, path: &Path, events: &mut EventTable) -> Checked<EventId> {
+        if self.arrival(path)?.is_none() {
+            return Ok(events.intern(&path.text()));
+        }
+        let message = format!("`{path}` is a message, and messages are not raised");
+        let diagnostic = Diagnostic::error("E0144", path.place.0, message);
+        Err(vec![diagnostic.with_hint("give the event another name, or use `publish`")])
+    }
+
+    /// The topic whose messages are meant, if the path does not name an event of the chart.
+    fn arrival(&self, path: &Path) -> Checked<Option<&TopicEntry>> {
+        if self.timer(path).is_some() {
+            return Ok(None);
+        }
+        match path.segments.as_slice() {
+            [_, kind, _, ..] if kind_of(kind).is_some() => self.arrival_of_path(path).map(Some),
+            [_, _, kind, _, ..] if kind_of(kind).is_some() => self.arrival_of_path(path).map(Some),
+            [prefix, message] if prefix.text == "Message" => self.topic_of_message(message).map(Some),
+            [message] if self.is_message(message) => self.topic_of_message(message).map(Some),
+            [name] => self.arrival_of_topic(name),
+            _ => Ok(None),
+        }
+    }
+
+    fn arrival_of_path(&self, path: &Path) -> Checked<&TopicEntry> {
+        let (source, fields) = self.message(path)?;
+        let fault = match (&source.origin, fields.first()) {
+            (Origin::Own, None) => return Ok(source.entry),
+            (Origin::Own, Some(field)) => {
+                (field.place, format!("`{}` is a field; a trigger names a message", field.text))
+            }
+            _ => (path.place, format!("`{path}` is a message of another host; only own messages are events")),
+        };
+        Err(vec![
+            Diagnostic::error("E0147", fault.0.0, fault.1).with_hint("read it in a condition, in brackets"),
+        ])
+    }
+
+    /// A bare name is a signal's topic; a topic of another kind must be named by its whole path, so that no event is taken for it.
+    fn arrival_of_topic(&self, name: &Name) -> Checked<Option<&TopicEntry>> {
+        let whole_path = name.text.contains(['.', '/']);
+        let mut topics = self.topics_named(&name.text);
+        topics.retain(|topic| whole_path || topic.kind == TopicKind::Signal);
+        match topics.as_slice() {
+            [] => Ok(None),
+            [topic] => Ok(Some(topic)),
+            several => {
+                let paths: Vec<_> = several.iter().map(|topic| format!("`` `{}` ``", topic.path)).collect();
+                let message = format!("several topics are called `{}`", name.text);
+                let diagnostic = Diagnostic::error("E0133", name.place.0, message);
+                Err(vec![diagnostic.with_hint(format!("write {}", paths.join(" or ")))])
+            }
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! Which topic a path means, whose messages of it, and which field.
+
+use super::Checked;
+use super::scope::Scope;
+use crate::diagnostic::{Diagnostic, Span};
+use crate::expression::facts::{MessageSource, Origin};
+use crate::expression::syntax::{Name, Path};
+use crate::vocabulary::{FieldId, MessageEntry, TopicEntry, TopicKind, ValueType};
+
+/// A topic and whose messages of it are meant.
+pub(super) struct Source<'a> {
+    pub(super) entry: &'a TopicEntry,
+    pub(super) origin: Origin,
+}
+
+impl Source<'_> {
+    pub(super) fn message_source(self) -> MessageSource {
+        MessageSource { topic: self.entry.id, origin: self.origin }
+    }
+}
+
+impl<'a> Scope<'a> {
+    /// The message at the beginning of a path, and the names of fields that follow it. The forms are, with
+    /// `M` a type of messages and `Kind` one of Signal, State and Data:
+    /// `topic.Kind.M`, `host.topic.Kind.M`, `M`, `publisher.M`, `host.publisher.M`, `topic`.
+    pub(super) fn message<'p>(&self, path: &'p Path) -> Checked<(Source<'a>, &'p [Name])> {
+        match path.segments.as_slice() {
+            [topic, kind, message, rest @ ..] if kind_of(kind).is_some() => {
+                Ok((Source { entry: self.topic_of_kind(topic, kind, message)?, origin: Origin::Own }, rest))
+            }
+            [host, topic, kind, message, rest @ ..] if kind_of(kind).is_some() => {
+                let origin = Origin::Host(host.text.as_str().into());
+                Ok((Source { entry: self.topic_of_kind(topic, kind, message)?, origin }, rest))
+            }
+            [message, rest @ ..] if self.is_message(message) => {
+                Ok((Source { entry: self.topic_of_message(message)?, origin: Origin::Own }, rest))
+            }
+            [publisher, message, rest @ ..] if self.is_message(message) => {
+                let origin = Origin::Publisher(publisher.text.as_str().into());
+                Ok((Source { entry: self.topic_of_message(message)?, origin }, rest))
+            }
+            [host, publisher, message, rest @ ..] if self.is_message(message) => {
+                let (host, publisher) = (host.text.as_str().into(), publisher.text.as_str().into());
+                let origin = Origin::HostPublisher { host, publisher };
+                Ok((Source { entry: self.topic_of_message(message)?, origin }, rest))
+            }
+            [topic, rest @ ..] => {
+                Ok((Source { entry: self.topic_of_name(topic)?, origin: Origin::Own }, rest))
+            }
+            [] => Err(vec![Diagnostic::error("E0132", path.place.0, "there is no name")]),
+        }
+    }
+
+    /// The field that names lead to inside a message, and its type; without names the whole message.
+    pub(super) fn fields(&self, topic: &TopicEntry, names: &[Name]) -> Checked<(Box<[FieldId]>, ValueType)> {
+        let mut fields = Vec::with_capacity(names.len());
+        let mut kind = ValueType::Message(topic.message.clone());
+        for name in names {
+            let ValueType::Message(message) = &kind else {
+                let text = format!("`{}` is asked of {}, which has no fields", name.text, describe(&kind));
+                return Err(vec![Diagnostic::error("E0134", name.place.0, text)]);
+            };
+            let entries = self.entry_of(message).map_or(&[][..], |entry| &entry.fields);
+            let Some(entry) = entries.iter().find(|entry| entry.name == name.text) else {
+                let text = format!("the message `{message}` has no field `{}`", name.text);
+                let known = entries.iter().map(|entry| entry.name.as_str());
+                return Err(vec![unknown("E0134", name.place.0, text, &name.text, known, "its fields are")]);
+            };
+            fields.push(entry.id);
+            kind = entry.kind.clone();
+        }
+        Ok((fields.into(), kind))
+    }
+
+    /// Names a field that could have been meant.
+    pub(super) fn fields_hint(&self, path: &Path, topic: &TopicEntry) -> String {
+        match self.entry_of(&topic.message).and_then(|entry| entry.fields.first()) {
+            Some(field) => format!("name one of its fields, as in `{path}.{}`", field.name),
+            None => "it has no fields".to_owned(),
+        }
+    }
+
+    pub(super) fn is_message(&self, name: &Name) -> bool {
+        self.entry_of(&name.text).is_some()
+    }
+
+    fn entry_of(&self, message: &str) -> Option<&'a MessageEntry> {
+        self.vocabulary.messages.iter().find(|entry| entry.name == message)
+    }
+
+    /// The topics of which a name is the last segment or the whole path.
+    pub(super) fn topics_named(&self, name: &str) -> Vec<&'a TopicEntry> {
+        let topics = self.vocabulary.topics.iter();
+        topics
+            .filter(|topic| last_segment(topic) == name || dotted(topic) == name.replace('/', "."))
+            .collect()
+    }
+
+    /// The one topic that has messages of a type.
+    pub(super) fn topic_of_message(&self, message: &Name) -> Checked<&'a TopicEntry> {
+        let topics: Vec<_> =
+            self.vocabulary.topics.iter().filter(|topic| topic.message == message.text).collect();
+        only(&topics, message.place.0, || format!("messages of type `{}`", message.text))
+    }
+
+    fn topic_of_name(&self, name: &Name) -> Checked<&'a TopicEntry> {
+        let topics = self.topics_named(&name.text);
+        if !topics.is_empty() {
+            return only(&topics, name.place.0, || format!("the name `{}`", name.text));
+        }
+        let text = format!("there is neither a message nor a topic `{}`", name.text);
+        let messages = self.vocabulary.messages.iter().map(|entry| entry.name.as_str());
+        let known = messages.chain(self.vocabulary.topics.iter().map(last_segment));
+        Err(vec![unknown("E0132", name.place.0, text, &name.text, known, "known are")])
+    }
+
+    /// The topic of a name that keeps messages of a type in a way.
+    fn topic_of_kind(&self, name: &Name, kind: &Name, message: &Name) -> Checked<&'a TopicEntry> {
+        let topics = self.topics_named(&name.text);
+        if topics.is_empty() {
+            let text = format!("there is no topic `{}`", name.text);
+            let known = self.vocabulary.topics.iter().map(last_segment);
+            return Err(vec![unknown("E0132", name.place.0, text, &name.text, known, "known are")]);
+        }
+        let wanted =
+            |topic: &&&TopicEntry| Some(topic.kind) == kind_of(kind) && topic.message == message.text;
+        let fitting: Vec<_> = topics.iter().filter(wanted).copied().collect();
+        if fitting.is_empty() {
+            let text =
+                format!("the topic `{}` has no {} messages of type `{}`", name.text, kind.text, message.text);
+            let forms: Vec<_> = topics.iter().map(|topic| full_form(topic)).collect();
+            let diagnostic = Diagnostic::error("E0135", kind.place.0.to(message.place.0), text);
+            return Err(vec![diagnostic.with_hint(format!("write {}", forms.join(" or ")))]);
+        }
+        only(&fitting, name.place.0, || format!("the name `{}`", name.text))
+    }
+}
+
+/// The only one of some topics, or a diagnostic that lists them.
+fn only<'a>(topics: &[&'a TopicEntry], span: Span, shared: impl Fn() -> String) -> Checked<&'a TopicEntry> {
+    match topics {
+        [topic] => Ok(topic),
+        [] => Err(vec![Diagnostic::error("E0133", span, format!("no topic has {}", shared()))]),
+        several => {
+            let forms: Vec<_> = several.iter().map(|topic| full_form(topic)).collect();
+            let diagnostic = Diagnostic::error("E0133", span, format!("several topics have {}", shared()));
+            Err(vec![diagnostic.with_hint(format!("write {}", forms.join(" or ")))])
+        }
+    }
+}
+
+/// An error about a name that is not known: the nearest one that is, else all if they are few.
+pub(super) fn unknown<'n>(
+    code: &'static str,
+    span: Span,
+    message: String,
+    wrong: &str,
+    known: impl Iterator<Item = &'n str>,
+    known_are: &str,
+) -> Diagnostic {
+    const FEW: usize = 12;
+    let known: Vec<_> = known.collect();
+    let diagnostic = Diagnostic::error(code, span, message).with_nearest(wrong, known.iter().copied());
+    if diagnostic.hint.is_some() || known.is_empty() || known.len() > FEW {
+        return diagnostic;
+    }
+    diagnostic.with_hint(format!("{known_are} {}", known.join(", ")))
+}
+
+pub(super) fn kind_of(name: &Name) -> Option<TopicKind> {
+    match name.text.as_str() {
+        "Signal" => Some(TopicKind::Signal),
+        "State" => Some(TopicKind::State),
+        "Data" => Some(TopicKind::Data),
+        _ => None,
+    }
+}
+
+/// How a message calls a type.
+pub(super) fn describe(kind: &ValueType) -> String {
+    match kind {
+        ValueType::Bool => "true or false".to_owned(),
+        ValueType::Number => "a number".to_owned(),
+        ValueType::Text => "a text".to_owned(),
+        ValueType::Enumeration(name) => format!("a `{name}`"),
+        ValueType::Message(name) => format!("a message `{name}`"),
+    }
+}
+
+fn last_segment(topic: &TopicEntry) -> &str {
+    topic.path.rsplit('/').next().unwrap_or_default()
+}
+
+fn dotted(topic: &TopicEntry) -> String {
+    topic.path.replace('/', ".")
+}
+
+/// The form that can only mean this topic.
+fn full_form(topic: &TopicEntry) -> String {
+    let kind = match topic.kind {
+        TopicKind::Signal => "Signal",
+        TopicKind::State => "State",
+        TopicKind::Data => "Data",
+    };
+    format!("`` `{}`.{kind}.{} ``", dotted(topic), topic.message)
+}

@@ -1,0 +1,240 @@
+//! A chart that runs.
+
+mod activities;
+mod bound;
+mod errors;
+mod fire;
+mod queues;
+mod run;
+mod select;
+mod step;
+mod timers;
+mod view;
+
+use std::sync::Arc;
+
+use crate::chart::{Chart, RegionId};
+use crate::expression::EventId;
+use crate::host::{Activation, Host, Outcome};
+use crate::moment::Moment;
+use crate::semantics::Semantics;
+use crate::statechart::{NodeId, TransitionId};
+use crate::vocabulary::TopicId;
+
+use run::Run;
+use step::Step;
+
+/// A [`Chart`] that runs.
+///
+/// What happens in the world is told by [`dispatch`](Machine::dispatch), [`message_arrived`](Machine::message_arrived) and
+/// [`activity_returned`](Machine::activity_returned), which only take note;
+/// [`run_to_completion`](Machine::run_to_completion) then takes every transition that has become possible. Between two such steps the machine
+/// does nothing: [`needs_step`](Machine::needs_step) and [`next_deadline`](Machine::next_deadline) say when the next one is due.
+///
+/// It reads no clock, starts no thread and, once its queues have grown to their size, allocates nothing while it steps.
+#[derive(Clone, Debug)]
+pub struct Machine {
+    chart: Arc<Chart>,
+    semantics: Semantics,
+    run: Run,
+}
+
+/// What a machine is doing.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[non_exhaustive]
+pub enum Status {
+    /// It has not been started.
+    Idle,
+    /// It steps.
+    Running,
+    /// Its root has reached END; nothing happens until it is started again.
+    Finished,
+    /// It was stopped: from outside, by TERMINATE, or because it never came to rest.
+    Stopped,
+}
+
+/// What a run-to-completion step did.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+#[non_exhaustive]
+pub struct StepSummary {
+    /// How many micro-steps were made: those that took a transition, and those that offered an event in vain.
+    pub micro_steps: u32,
+    /// How many transitions were taken.
+    pub transitions: u32,
+    /// How many activities were started.
+    pub started: u32,
+}
+
+/// Why a machine stopped by itself.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+#[error("{text}")]
+pub struct MachineError {
+    kind: MachineErrorKind,
+    cycle: Box<[TransitionId]>,
+    text: String,
+}
+
+/// What kind of [`MachineError`] it is.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[non_exhaustive]
+pub enum MachineErrorKind {
+    /// More micro-steps followed one another without a new event than [`Semantics::limit`] allows.
+    NeverRests,
+    /// More steps did something at one moment than [`Semantics::limit`] allows.
+    NeverAdvances,
+}
+
+impl MachineError {
+    /// What kind of error it is.
+    pub fn kind(&self) -> MachineErrorKind {
+        self.kind
+    }
+
+    /// The segments that were taken again and again.
+    pub fn cycle(&self) -> &[TransitionId] {
+        &self.cycle
+    }
+}
+
+impl Machine {
+    /// A machine that has not been started.
+    pub fn new(chart: Arc<Chart>, semantics: Semantics) -> Machine {
+        let run = Run::new(&chart);
+        Machine { chart, semantics, run }
+    }
+
+    /// The chart it runs.
+    pub fn chart(&self) -> &Arc<Chart> {
+        &self.chart
+    }
+
+    /// How it reads the chart.
+    pub fn semantics(&self) -> Semantics {
+        self.semantics
+    }
+
+    /// Enters the root and its START, from scratch: what ran before is [stopped](Machine::stop), timers and events are forgotten. The first
+    /// transitions are those of the next [`run_to_completion`](Machine::run_to_completion).
+    pub fn start(&mut self, now: Moment, host: &mut impl Host) {
+        self.stop(host);
+        self.run.reset(now);
+        self.step(host).enter_root();
+    }
+
+    /// Ends everything without leaving any state: running activities get a cancellation request, waiting ones are stopped.
+    /// The configuration stays to be looked at.
+    pub fn stop(&mut self, host: &mut impl Host) {
+        if self.run.status == Status::Running {
+            self.step(host).halt(Status::Stopped);
+        }
+    }
+
+    /// Notes an event. Events that nobody takes are dropped when their turn comes; so are all while the chart does not run.
+    pub fn dispatch(&mut self, event: EventId) {
+        if self.run.status == Status::Running {
+            self.run.queues.arrive(event, None);
+        }
+    }
+
+    /// Notes an event by its name, and says whether any expression of the chart names it. One that none names can still be taken by
+    /// `*` and `not e`; traces call it `?`.
+    pub fn dispatch_name(&mut self, name: &str) -> bool {
+        let event = self.chart.events().find(name);
+        self.dispatch(event.unwrap_or(self.chart.unnamed));
+        event.is_some()
+    }
+
+    /// Notes that messages have arrived on a topic: each is one occurrence for triggers that name the message, and guards that read
+    /// the topic will be read again.
+    pub fn message_arrived(&mut self, topic: TopicId, count: usize) {
+        if self.run.status != Status::Running || count == 0 || !self.reads_topic(topic) {
+            return;
+        }
+        self.run.due = true;
+        self.run.topic_changed(&self.chart, topic, None);
+        if let Some(event) = self.chart.events().message(topic) {
+            for _ in 0..count {
+                self.run.queues.arrive(event, None);
+            }
+        }
+    }
+
+    /// Notes that an activity has returned, which frees its region. Says whether it was running: a return after
+    /// [`stop`](Machine::stop) is not for this run.
+    pub fn activity_returned(&mut self, activation: Activation, outcome: Outcome) -> bool {
+        self.run.activity_returned(&self.chart, activation, outcome)
+    }
+
+    /// Notes that an activity that was [`Ongoing`](Outcome::Ongoing) or [failed](Outcome::Failed) is called again, which locks its region. Says
+    /// whether it may: not if its state has been left, then it must not be called.
+    pub fn activity_resumed(&mut self, activation: Activation) -> bool {
+        self.run.activity_resumed(&self.chart, activation)
+    }
+
+    /// Makes one run-to-completion step: delivers messages; takes transitions until none is enabled, first those without a trigger, then
+    /// those of raised events, then those of one arrived event after the other; publishes what was written; starts the
+    /// activities of the states that were entered. A machine that is not running does nothing.
+    ///
+    /// A clock that runs backwards stands still for the machine.
+    ///
+    /// # Errors
+    /// When the chart never comes to rest ([`MachineErrorKind`]). It is stopped then, and shows the configuration before the
+    /// micro-step that would have been one too many.
+    pub fn run_to_completion(&mut self, now: Moment, host: &mut impl Host) -> Result<StepSummary, MachineError> {
+        if self.run.status != Status::Running {
+            return Ok(StepSummary::default());
+        }
+        self.run.now = self.run.now.max(now);
+        self.step(host).run()
+    }
+
+    /// Whether a step now could do anything.
+    pub fn needs_step(&self, now: Moment) -> bool {
+        let due = || self.run.due || self.run.queues.is_waiting() || self.next_deadline().is_some_and(|next| next <= now);
+        self.run.status == Status::Running && due()
+    }
+
+    /// When the next timer expires, if one is set.
+    pub fn next_deadline(&self) -> Option<Moment> {
+        if self.run.status == Status::Running { self.run.timers.next_deadline() } else { None }
+    }
+
+    /// Whether a message on that topic can change what the chart does: then it must be told of each
+    /// ([`message_arrived`](Machine::message_arrived)).
+    pub fn reads_topic(&self, topic: TopicId) -> bool {
+        self.chart.reads().binary_search(&topic).is_ok()
+    }
+
+    /// What it is doing.
+    pub fn status(&self) -> Status {
+        self.run.status
+    }
+
+    /// Whether the root has reached its END.
+    pub fn is_finished(&self) -> bool {
+        self.run.status == Status::Finished
+    }
+
+    /// The active nodes in the order of the document, composites before what is in them.
+    pub fn configuration(&self) -> Vec<NodeId> {
+        let layout = &self.chart.layout;
+        let mut places: Vec<_> =
+            layout.places().filter(|&place| self.run.active.contains(place.index())).collect();
+        places.sort_by_key(|&place| layout.rank(place));
+        places.into_iter().map(|place| layout.node(place)).collect()
+    }
+
+    /// Whether a node is active.
+    pub fn is_active(&self, node: NodeId) -> bool {
+        self.chart.layout.place(node).is_some_and(|place| self.run.active.contains(place.index()))
+    }
+
+    /// Whether a region itself holds a running activity: then it does not step, and nothing is delivered to its blackboard.
+    pub fn is_running(&self, region: RegionId) -> bool {
+        self.run.running_regions.contains(region.index())
+    }
+
+    fn step<'a, H: Host>(&'a mut self, host: &'a mut H) -> Step<'a, H> {
+        Step::new(&self.chart, self.semantics, &mut self.run, host)
+    }
+}

@@ -1,0 +1,72 @@
+//! Notices charts that never rest.
+
+use std::num::NonZeroU32;
+
+use crate::chart::CompoundId;
+use crate::moment::Moment;
+
+/// So many of the last transitions are remembered, to name a cycle.
+const MEMORY: usize = 64;
+
+/// Counts micro-steps since the last event that came from outside (of which there are finitely many), and steps at one moment.
+#[derive(Clone, Debug)]
+pub(super) struct Bound {
+    micro_steps: u32,
+    instant: Moment,
+    steps: u32,
+    recent: Box<[CompoundId]>,
+    taken: usize,
+}
+
+impl Bound {
+    pub(super) fn new() -> Bound {
+        let recent = vec![CompoundId(0); MEMORY].into();
+        Bound { micro_steps: 0, instant: Moment::ZERO, steps: 0, recent, taken: 0 }
+    }
+
+    pub(super) fn reset(&mut self, now: Moment) {
+        (self.micro_steps, self.instant, self.steps, self.taken) = (0, now, 0, 0);
+    }
+
+    /// A step begins.
+    pub(super) fn begin(&mut self, now: Moment) {
+        self.micro_steps = 0;
+        if self.instant != now {
+            (self.instant, self.steps, self.taken) = (now, 0, 0);
+        }
+    }
+
+    /// An event that came from outside is looked at.
+    pub(super) fn new_event(&mut self) {
+        self.micro_steps = 0;
+    }
+
+    pub(super) fn count_micro_step(&mut self) {
+        self.micro_steps = self.micro_steps.saturating_add(1);
+    }
+
+    pub(super) fn allows_micro_step(&self, limit: NonZeroU32) -> bool {
+        self.micro_steps < limit.get()
+    }
+
+    /// A step that does something: whether there may be one more at this moment.
+    pub(super) fn allows_step(&mut self, limit: NonZeroU32) -> bool {
+        self.steps = self.steps.saturating_add(1);
+        self.steps <= limit.get()
+    }
+
+    pub(super) fn remember(&mut self, compound: CompoundId) {
+        self.recent[self.taken % MEMORY] = compound;
+        self.taken += 1;
+    }
+
+    /// The transitions that were taken again and again, as far back as is remembered: the shortest row that, repeated, gives them all.
+    pub(super) fn cycle(&self) -> Vec<CompoundId> {
+        let known = self.taken.min(MEMORY);
+        let last: Vec<CompoundId> =
+            (self.taken - known..self.taken).map(|index| self.recent[index % MEMORY]).collect();
+        let repeats = |&period: &usize| last.iter().zip(last.iter().skip(period)).all(|(a, b)| a == b);
+        let period = (1..known).find(repeats).unwrap_or(known);
+        last[known - period..].to_vec()
+    }
+}

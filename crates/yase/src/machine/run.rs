@@ -1,0 +1,185 @@
+//! Everything about a running chart that changes.
+
+use crate::bits::BitSet;
+use crate::chart::{Chart, CompoundId, Place, RegionId};
+use crate::expression::EventId;
+use crate::host::ActionPlace;
+use crate::machine::Status;
+use crate::machine::activities::Activities;
+use crate::machine::bound::Bound;
+use crate::machine::queues::Queues;
+use crate::machine::timers::Timers;
+use crate::moment::Moment;
+use crate::statechart::{NodeId, TransitionId};
+use crate::vocabulary::TopicId;
+
+#[derive(Clone, Debug)]
+pub(super) struct Run {
+    pub(super) status: Status,
+    pub(super) now: Moment,
+    /// Whether something happened that a step may answer to, other than events and timers.
+    pub(super) due: bool,
+    /// The configuration, by place.
+    pub(super) active: BitSet,
+    /// The BASIC states whose activity runs, by place.
+    pub(super) running: BitSet,
+    /// The regions that they lock.
+    pub(super) running_regions: BitSet,
+    pub(super) activities: Activities,
+    pub(super) timers: Timers,
+    pub(super) queues: Queues,
+    /// Interrupting transitions that wait for cancelled activities, oldest first.
+    pub(super) pending: Vec<Pending>,
+    /// The guards that had no value when they were last read.
+    pub(super) erred: Vec<ErredGuard>,
+    /// The blackboards that were written in this step.
+    pub(super) written: BitSet,
+    /// The active STARTs of which it was told that they wait.
+    pub(super) waiting_starts: BitSet,
+    pub(super) bound: Bound,
+    pub(super) selection: Selection,
+    pub(super) log: Log,
+    /// Where texts that are assigned are copied to.
+    pub(super) text: String,
+}
+
+/// An interrupting transition that has been selected.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pending {
+    pub(super) compound: CompoundId,
+    pub(super) event: Option<EventId>,
+}
+
+/// A guard that had no value.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ErredGuard {
+    pub(super) guard: usize,
+    /// Whether a message that it reads has arrived since, which its blackboard has still to receive.
+    pub(super) stale: bool,
+}
+
+/// What a micro-step works with.
+#[derive(Clone, Debug)]
+pub(super) struct Selection {
+    /// Enabled transitions, inner before outer, then in the order of the document.
+    pub(super) candidates: Vec<CompoundId>,
+    /// Those that win and can fire now.
+    pub(super) selected: Vec<CompoundId>,
+    pub(super) preempted: Vec<CompoundId>,
+    /// Those that would be enabled but for running activities.
+    pub(super) held: Vec<CompoundId>,
+    /// The active leaves for which a transition was found, on the way from them outward.
+    pub(super) closed: BitSet,
+    /// The active leaves for which a transition was found that would be enabled but for running activities.
+    pub(super) noted: BitSet,
+}
+
+impl Selection {
+    pub(super) fn clear(&mut self) {
+        self.candidates.clear();
+        self.selected.clear();
+        self.preempted.clear();
+        self.held.clear();
+        self.closed.clear();
+        self.noted.clear();
+    }
+}
+
+/// What a trace record borrows.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Log {
+    pub(super) wanted: bool,
+    pub(super) exits: Vec<NodeId>,
+    pub(super) effects: Vec<ActionPlace>,
+    pub(super) entries: Vec<NodeId>,
+    pub(super) guards: Vec<(TransitionId, Option<bool>)>,
+}
+
+impl Log {
+    pub(super) fn clear(&mut self) {
+        self.exits.clear();
+        self.effects.clear();
+        self.entries.clear();
+        self.guards.clear();
+    }
+}
+
+impl Run {
+    pub(super) fn new(chart: &Chart) -> Run {
+        let places = chart.layout.len();
+        let regions = chart.regions.len();
+        Run {
+            status: Status::Idle,
+            now: Moment::ZERO,
+            due: false,
+            active: BitSet::new(places),
+            running: BitSet::new(places),
+            running_regions: BitSet::new(regions),
+            activities: Activities::new(chart.activities.len()),
+            timers: Timers::new(chart.timers.len()),
+            queues: Queues::default(),
+            pending: Vec::with_capacity(4),
+            erred: Vec::new(),
+            written: BitSet::new(regions),
+            waiting_starts: BitSet::new(places),
+            bound: Bound::new(),
+            selection: Selection {
+                candidates: Vec::with_capacity(regions),
+                selected: Vec::with_capacity(regions),
+                preempted: Vec::with_capacity(regions),
+                held: Vec::with_capacity(regions),
+                closed: BitSet::new(places),
+                noted: BitSet::new(places),
+            },
+            log: Log::default(),
+            text: String::new(),
+        }
+    }
+
+    /// Forgets everything but how many activities were ever started.
+    pub(super) fn reset(&mut self, now: Moment) {
+        self.status = Status::Running;
+        self.now = now;
+        self.due = true;
+        self.active.clear();
+        self.running.clear();
+        self.running_regions.clear();
+        self.activities.reset();
+        self.timers.reset();
+        self.queues.clear();
+        self.pending.clear();
+        self.erred.clear();
+        self.written.clear();
+        self.waiting_starts.clear();
+        self.bound.reset(now);
+    }
+
+    /// A message has arrived on a topic, or an action has written it on one blackboard: guards that had no value may have one.
+    pub(super) fn topic_changed(&mut self, chart: &Chart, topic: TopicId, written_on: Option<RegionId>) {
+        self.erred.retain_mut(|erred| {
+            let guard = &chart.guards[erred.guard];
+            let reads = guard.guard.reads().contains(&topic);
+            erred.stale |= reads && written_on.is_none();
+            !(reads && written_on == Some(guard.region))
+        });
+    }
+
+    /// A blackboard has received what had arrived.
+    pub(super) fn delivered(&mut self, chart: &Chart, region: RegionId) {
+        self.erred.retain(|erred| !(erred.stale && chart.guards[erred.guard].region == region));
+    }
+
+    /// A timer was set or has expired.
+    pub(super) fn timer_changed(&mut self, chart: &Chart, timer: usize) {
+        let changed = &chart.timers[timer];
+        self.erred.retain(|erred| {
+            let guard = &chart.guards[erred.guard];
+            let reads = guard.guard.timers().iter().any(|read| read.0 as usize == changed.number);
+            !(reads && guard.region == changed.region)
+        });
+    }
+
+    pub(super) fn is_active(&self, place: Place) -> bool {
+        self.active.contains(place.index())
+    }
+}

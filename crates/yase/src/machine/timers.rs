@@ -1,0 +1,58 @@
+//! Deadlines.
+
+use crate::expression::TimerState;
+use crate::moment::Moment;
+
+/// The timers of a chart, by their number in it.
+#[derive(Clone, Debug)]
+pub(super) struct Timers {
+    slots: Box<[Option<Deadline>]>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Deadline {
+    moment: Moment,
+    /// Whether its expiry has been noticed.
+    expired: bool,
+}
+
+impl Timers {
+    pub(super) fn new(count: usize) -> Timers {
+        Timers { slots: vec![None; count].into() }
+    }
+
+    pub(super) fn reset(&mut self) {
+        self.slots.fill(None);
+    }
+
+    /// Sets a deadline, and says whether the expiry of the one before had been noticed.
+    pub(super) fn set(&mut self, timer: usize, moment: Moment) -> bool {
+        let Some(slot) = self.slots.get_mut(timer) else { return false };
+        let before = slot.replace(Deadline { moment, expired: false });
+        before.is_some_and(|before| before.expired)
+    }
+
+    pub(super) fn state(&self, timer: usize, now: Moment) -> TimerState {
+        match self.slots.get(timer) {
+            Some(Some(deadline)) if deadline.moment <= now => TimerState::Over,
+            Some(Some(_)) => TimerState::Running,
+            _ => TimerState::Unset,
+        }
+    }
+
+    /// The earliest deadline whose expiry has not been noticed.
+    pub(super) fn next_deadline(&self) -> Option<Moment> {
+        self.slots.iter().flatten().filter(|deadline| !deadline.expired).map(|deadline| deadline.moment).min()
+    }
+
+    /// Notices the earliest expiry up to now that was not noticed; of several at one moment, that of the first timer.
+    pub(super) fn expire(&mut self, now: Moment) -> Option<usize> {
+        let due = |slot: &Option<Deadline>| {
+            slot.filter(|deadline| !deadline.expired && deadline.moment <= now).map(|deadline| deadline.moment)
+        };
+        let (_, timer) =
+            self.slots.iter().enumerate().filter_map(|(timer, slot)| Some((due(slot)?, timer))).min()?;
+        self.slots[timer].as_mut()?.expired = true;
+        Some(timer)
+    }
+}

@@ -1,0 +1,144 @@
+//! What happened in a micro-step.
+
+use std::fmt;
+
+use crate::chart::{Chart, CompoundId};
+use crate::expression::EventId;
+use crate::host::ActionPlace;
+use crate::moment::Moment;
+use crate::statechart::{NodeId, TransitionId};
+
+/// One micro-step, as it happened: what was taken, what lost, what was left, done and entered.
+///
+/// A record borrows the machine's buffers; whoever wants to keep it copies what is needed, or its text
+/// ([`display`](TraceRecord::display)).
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct TraceRecord<'a> {
+    /// When.
+    pub time: Moment,
+    /// What the micro-step was about.
+    pub occasion: Occasion,
+    /// The compound transitions that were taken, in the order of their firing.
+    pub selected: &'a [CompoundId],
+    /// Those that lost a conflict.
+    pub preempted: &'a [CompoundId],
+    /// Those that wait for running activities: their event is held, or, if they interrupt, they will fire.
+    pub held: &'a [CompoundId],
+    /// The state that defers the event, if nobody took it.
+    pub deferred: Option<NodeId>,
+    /// The nodes that were left, in order.
+    pub exits: &'a [NodeId],
+    /// The actions that were done, in order.
+    pub effects: &'a [ActionPlace],
+    /// The nodes that were entered, in order.
+    pub entries: &'a [NodeId],
+    /// The guards that were read, in order; none for one that has no value.
+    pub guards: &'a [(TransitionId, Option<bool>)],
+}
+
+/// What a micro-step is about.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Occasion {
+    /// The chart was started.
+    Start,
+    /// Transitions without a trigger.
+    Eventless,
+    /// One occurrence of an event.
+    Event(EventId),
+}
+
+impl<'a> TraceRecord<'a> {
+    /// The record in one line, with the names of its chart.
+    pub fn display(&self, chart: &'a Chart) -> impl fmt::Display + 'a {
+        Line { record: *self, chart }
+    }
+}
+
+struct Line<'a> {
+    record: TraceRecord<'a>,
+    chart: &'a Chart,
+}
+
+impl fmt::Display for Line<'_> {
+    /// `0.100 s kick: a -> b; exit a; do a -> b; enter b; read a -> b = true`; what is empty is left out.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let record = &self.record;
+        match record.occasion {
+            Occasion::Start => write!(f, "{} start", record.time)?,
+            Occasion::Eventless => write!(f, "{} -:", record.time)?,
+            Occasion::Event(event) => write!(f, "{} {}:", record.time, self.chart.events().name(event))?,
+        }
+        let compounds = |list: &[CompoundId]| join(list, |&compound| self.compound(compound));
+        let nodes = |list: &[NodeId]| join(list, |&node| self.chart.short_path(node));
+        match record.selected.is_empty() {
+            false => write!(f, " {}", compounds(record.selected))?,
+            true if record.is_dropped() => write!(f, " dropped")?,
+            true if record.occasion == Occasion::Start => {}
+            true => write!(f, " nothing")?,
+        }
+        part(f, "preempt", &compounds(record.preempted))?;
+        part(f, "hold", &compounds(record.held))?;
+        part(f, "defer in", &record.deferred.map(|node| self.chart.short_path(node)).unwrap_or_default())?;
+        part(f, "exit", &nodes(record.exits))?;
+        part(f, "do", &join(record.effects, |&place| self.effect(place)))?;
+        part(f, "enter", &nodes(record.entries))?;
+        part(f, "read", &join(record.guards, |&(transition, value)| self.guard(transition, value)))
+    }
+}
+
+impl TraceRecord<'_> {
+    /// Whether an event found nobody who takes it, now or later.
+    pub fn is_dropped(&self) -> bool {
+        matches!(self.occasion, Occasion::Event(_))
+            && self.selected.is_empty()
+            && self.held.is_empty()
+            && self.deferred.is_none()
+    }
+}
+
+impl Line<'_> {
+    /// `a -> CONDITION -> b`
+    fn compound(&self, compound: CompoundId) -> String {
+        let statechart = self.chart.statechart();
+        let segments = self.chart.segments(compound);
+        let mut text = segments
+            .first()
+            .map(|&first| self.chart.short_path(statechart.transition(first).source))
+            .unwrap_or_default();
+        for &segment in segments {
+            text += " -> ";
+            text += &self.chart.short_path(statechart.transition(segment).target);
+        }
+        text
+    }
+
+    fn segment(&self, id: TransitionId) -> String {
+        let transition = self.chart.statechart().transition(id);
+        format!("{} -> {}", self.chart.short_path(transition.source), self.chart.short_path(transition.target))
+    }
+
+    fn effect(&self, place: ActionPlace) -> String {
+        let statechart = self.chart.statechart();
+        let (actions, at) = match place {
+            ActionPlace::Transition(id) => (&statechart.transition(id).expression.actions, self.segment(id)),
+            ActionPlace::Entry(id) => (&statechart.node(id).entry, format!("entry {}", self.chart.short_path(id))),
+            ActionPlace::Exit(id) => (&statechart.node(id).exit, format!("exit {}", self.chart.short_path(id))),
+        };
+        format!("{} ({at})", join(actions, |action| action.to_string()))
+    }
+
+    fn guard(&self, id: TransitionId, value: Option<bool>) -> String {
+        match value {
+            Some(value) => format!("{} = {value}", self.segment(id)),
+            None => format!("{} = error", self.segment(id)),
+        }
+    }
+}
+
+fn join<T>(list: &[T], text: impl Fn(&T) -> String) -> String {
+    list.iter().map(text).collect::<Vec<_>>().join(", ")
+}
+
+fn part(f: &mut fmt::Formatter<'_>, title: &str, text: &str) -> fmt::Result {
+    if text.is_empty() { Ok(()) } else { write!(f, "; {title} {text}") }
+}

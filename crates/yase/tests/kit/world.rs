@@ -1,0 +1,244 @@
+//! A world with blackboards and activities, that writes down what it is asked to do.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
+
+use yase::expression::{CallError, MessageSource};
+use yase::vocabulary::{FieldEntry, FunctionEntry, MessageEntry, TopicEntry, TopicKind, ValueType};
+use yase::{
+    Activation, Chart, FieldId, FunctionId, Host, Moment, Outcome, RegionId, Report, TopicId, TraceRecord, Value,
+    Vocabulary,
+};
+
+pub const TOPICS: [&str; 3] = ["A", "B", "C"];
+
+/// Three topics `a`, `b`, `c` of messages `A`, `B`, `C`, each with a number `n`; functions `double(x)` and `fail()`.
+pub fn vocabulary() -> Vocabulary {
+    let number = |name: &str| FieldEntry { id: FieldId(0), name: name.into(), kind: ValueType::Number };
+    let function = |id, name: &str, parameters| FunctionEntry {
+        id: FunctionId(id),
+        name: name.into(),
+        parameters,
+        result: ValueType::Number,
+    };
+    Vocabulary {
+        topics: TOPICS
+            .iter()
+            .zip(0..)
+            .map(|(name, id)| TopicEntry {
+                id: TopicId(id),
+                path: name.to_lowercase(),
+                kind: TopicKind::State,
+                message: (*name).into(),
+            })
+            .collect(),
+        messages: TOPICS
+            .iter()
+            .map(|name| MessageEntry { name: (*name).into(), fields: vec![number("n")] })
+            .collect(),
+        enumerations: vec![],
+        functions: vec![function(0, "double", vec![ValueType::Number]), function(1, "fail", vec![])],
+    }
+}
+
+/// One blackboard: what it shows, what has arrived, what is to be published. Messages are their number `n`.
+#[derive(Clone, Default, Debug)]
+pub struct Board {
+    pub shown: BTreeMap<TopicId, i64>,
+    pub inbox: BTreeMap<TopicId, i64>,
+    pub outbox: BTreeSet<TopicId>,
+}
+
+/// An activity that runs or waits to be called again.
+#[derive(Clone, Debug)]
+pub struct Job {
+    pub activation: Activation,
+    pub name: String,
+    pub duration: Duration,
+    /// When it returns or, if it waits, is called again.
+    pub due: Moment,
+    pub waits: bool,
+    pub calls: u32,
+}
+
+/// The host of the tests.
+#[derive(Clone, Default, Debug)]
+pub struct World {
+    pub now: Moment,
+    pub boards: BTreeMap<RegionId, Board>,
+    pub jobs: Vec<Job>,
+    /// What was published and has still to be told.
+    pub arrivals: Vec<TopicId>,
+    pub log: Vec<String>,
+    /// Whether what happens to blackboards is written down too.
+    pub verbose: bool,
+    /// Whether reads of guards stay in the lines of micro-steps.
+    pub reads: bool,
+    /// Names and durations of activities.
+    pub activities: BTreeMap<yase::NodeId, (String, Duration)>,
+}
+
+impl World {
+    pub fn new(chart: &yase::Statechart) -> World {
+        let activities = chart
+            .nodes()
+            .filter_map(|(id, node)| Some((id, (node.activity.clone()?, node.duration.unwrap_or_default()))))
+            .collect();
+        World { activities, ..World::default() }
+    }
+
+    pub fn say(&mut self, text: impl Into<String>) {
+        self.log.push(text.into());
+    }
+
+    fn whisper(&mut self, text: String) {
+        if self.verbose {
+            self.log.push(text);
+        }
+    }
+
+    pub fn board(&mut self, region: RegionId) -> &mut Board {
+        self.boards.entry(region).or_default()
+    }
+
+    /// A message reaches every blackboard, to be delivered there.
+    pub fn send(&mut self, topic: TopicId, value: i64, regions: impl Iterator<Item = RegionId>) {
+        for region in regions {
+            self.board(region).inbox.insert(topic, value);
+        }
+        self.arrivals.push(topic);
+    }
+
+    /// The number on a blackboard, if a message has arrived there.
+    pub fn number(&self, region: RegionId, topic: TopicId) -> Option<i64> {
+        self.boards.get(&region)?.shown.get(&topic).copied()
+    }
+
+    /// How an activity returns: `ongoing…` after its third call, `failing…` never well.
+    pub fn outcome(job: &Job) -> Outcome {
+        match job.name.as_str() {
+            name if name.starts_with("ongoing") && job.calls < 3 => Outcome::Ongoing,
+            name if name.starts_with("failing") => Outcome::Failed,
+            _ => Outcome::Done,
+        }
+    }
+}
+
+impl Host for World {
+    fn field(&self, region: RegionId, source: &MessageSource, path: &[FieldId]) -> Value<'_> {
+        assert_eq!(path, [FieldId(0)]);
+        self.number(region, source.topic).map_or(Value::Missing, Value::Int)
+    }
+
+    fn message(&self, region: RegionId, source: &MessageSource) -> Value<'_> {
+        // only whether it is there matters
+        self.number(region, source.topic).map_or(Value::Missing, |_| Value::Message(&()))
+    }
+
+    fn call(&self, function: FunctionId, arguments: &[Value<'_>]) -> Result<Value<'_>, CallError> {
+        match (function, arguments) {
+            (FunctionId(0), [Value::Int(value)]) => Ok(Value::Int(value * 2)),
+            (FunctionId(0), [Value::Uint(value)]) => Ok(Value::Uint(value * 2)),
+            _ => Err(CallError::new("it always fails")),
+        }
+    }
+
+    fn deliver(&mut self, region: RegionId) {
+        let board = self.board(region);
+        let inbox = std::mem::take(&mut board.inbox);
+        board.shown.extend(inbox);
+        self.whisper(format!("  deliver {}", region.0));
+    }
+
+    fn inherit(&mut self, region: RegionId, from: RegionId) {
+        let around = self.board(from).clone();
+        *self.board(region) = Board { outbox: BTreeSet::new(), ..around };
+        self.whisper(format!("  inherit {} from {}", region.0, from.0));
+    }
+
+    fn assign(
+        &mut self,
+        region: RegionId,
+        topic: TopicId,
+        path: &[FieldId],
+        value: Value<'_>,
+    ) -> Result<(), CallError> {
+        assert_eq!(path, [FieldId(0)]);
+        let value = match value {
+            Value::Int(value) => value,
+            Value::Uint(value) => value as i64,
+            Value::Float(value) => value as i64,
+            _ => return Err(CallError::new("not a number")),
+        };
+        if value > 1_000_000 {
+            return Err(CallError::new("too large"));
+        }
+        let board = self.board(region);
+        board.shown.insert(topic, value);
+        board.outbox.insert(topic);
+        self.whisper(format!("  {} on {} = {value}", TOPICS[topic.0 as usize], region.0));
+        Ok(())
+    }
+
+    fn publish(&mut self, region: RegionId, topic: TopicId) {
+        let board = self.board(region);
+        board.shown.entry(topic).or_insert(0);
+        board.outbox.insert(topic);
+    }
+
+    fn publish_all(&mut self, region: RegionId) {
+        let board = self.board(region);
+        let topics = std::mem::take(&mut board.outbox);
+        let values: Vec<(TopicId, i64)> =
+            topics.iter().filter_map(|topic| Some((*topic, *board.shown.get(topic)?))).collect();
+        for (topic, value) in values {
+            for (_, other) in self.boards.iter_mut().filter(|(other, _)| **other != region) {
+                other.inbox.insert(topic, value);
+            }
+            self.arrivals.push(topic);
+        }
+        self.whisper(format!("  publish {}", region.0));
+    }
+
+    fn start(&mut self, activation: Activation) {
+        let (name, duration) = self.activities[&activation.node].clone();
+        self.say(format!("  start {name}"));
+        let due = self.now + duration;
+        self.jobs.push(Job { activation, name, duration, due, waits: false, calls: 1 });
+    }
+
+    fn cancel(&mut self, activation: Activation) {
+        let soon = self.now + Duration::from_millis(1);
+        let job = self.jobs.iter_mut().find(|job| job.activation == activation).expect("it runs");
+        assert!(!job.waits);
+        job.due = job.due.min(soon);
+        let text = format!("  cancel {}", job.name);
+        self.say(text);
+    }
+
+    fn stop(&mut self, activation: Activation) {
+        let index = self.jobs.iter().position(|job| job.activation == activation).expect("it waits");
+        let job = self.jobs.remove(index);
+        assert!(job.waits);
+        self.say(format!("  stop {}", job.name));
+    }
+
+    fn wants_trace(&self) -> bool {
+        true
+    }
+
+    fn trace(&mut self, chart: &Chart, record: &TraceRecord<'_>) {
+        let record = if self.reads { *record } else { TraceRecord { guards: &[], ..*record } };
+        self.say(record.display(chart).to_string());
+    }
+
+    fn report(&mut self, chart: &Chart, report: Report<'_>) {
+        let text = match report {
+            Report::GuardFailed { error, .. } => format!("  guard failed: {error}"),
+            Report::ActionFailed { error, .. } => format!("  action failed: {error}"),
+            Report::StartWaits { start } => format!("  waits at {}", chart.short_path(start)),
+            _ => "  ?".to_owned(),
+        };
+        self.say(text);
+    }
+}
