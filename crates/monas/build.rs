@@ -1,4 +1,4 @@
-//! Compiles the records of the runtime.
+//! Compiles the records of the runtime, and the messages of its tests.
 fn main() -> Result<(), narukom_build::Error> {
-    narukom_build::compile(&["proto/monas.proto"], &["proto"])
+    narukom_build::compile(&["proto/monas.proto", "tests/proto/test.proto"], &["proto", "tests/proto"])
 }

@@ -111,7 +111,10 @@ pub(crate) fn parse_section(blanked: &str, section: Span) -> (Liveness, Vec<Diag
         liveness.formulas.push(Formula { name, name_span, expression, span, terms });
     }
     if liveness.formulas.is_empty() && diagnostics.is_empty() {
-        diagnostics.push(Diagnostic::error("E0216", section, "there is no formula").with_hint("write `role = activity1 . activity2`"));
+        diagnostics.push(
+            Diagnostic::error("E0216", section, "there is no formula")
+                .with_hint("write `role = activity1 . activity2`"),
+        );
     }
     diagnostics.extend(check::check(&liveness));
     (liveness, diagnostics)
@@ -180,7 +183,8 @@ fn split(text: &str, section: Span, diagnostics: &mut Vec<Diagnostic>) -> Vec<Fo
             (Some(equals), _) => formulas.push(begin(text, line, line.start + equals, diagnostics)),
             (None, Some(formula)) => formula.body.end = line.end,
             (None, None) => diagnostics.push(
-                Diagnostic::error("E0201", content, "this line belongs to no formula").with_hint("a formula begins with `name =`"),
+                Diagnostic::error("E0201", content, "this line belongs to no formula")
+                    .with_hint("a formula begins with `name =`"),
             ),
         }
     }

@@ -86,7 +86,8 @@ pub(crate) fn modifiers(transition: &Transition) -> String {
 /// What is said of a state besides its name, each thing in the words of a model file.
 pub(crate) fn refinements(node: &Node) -> Vec<String> {
     let activity = node.activity.as_ref().filter(|activity| **activity != node.name);
-    let mut lines: Vec<String> = activity.map(|activity| format!("activity = {activity}")).into_iter().collect();
+    let mut lines: Vec<String> =
+        activity.map(|activity| format!("activity = {activity}")).into_iter().collect();
     lines.extend((node.priority != 0).then(|| format!("priority = {}", node.priority)));
     lines.extend(actions("entry", &node.entry));
     lines.extend(actions("exit", &node.exit));

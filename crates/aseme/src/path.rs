@@ -12,9 +12,9 @@
 
 use std::fmt;
 
-use yase::{NodeId, NodeKind, Statechart, Transition, TransitionId};
+use yase::{Diagnostic, NodeId, NodeKind, Span, Statechart, Transition, TransitionId};
 
-use crate::text::{canonical_name, is_name_character};
+use crate::text::{canonical_name, is_name_character, trimmed};
 
 /// A way down to a state, to be found in a chart.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -41,13 +41,18 @@ enum Pattern {
 const MAX_SEGMENTS: usize = crate::transform::MAX_LEVELS;
 
 impl Path {
-    /// Reads a path, or says in a sentence why it is none.
-    pub fn parse(text: &str) -> Result<Path, String> {
-        let segments: Vec<Segment> = text.split('/').map(Segment::parse).collect::<Result<_, _>>()?;
-        if segments.len() > MAX_SEGMENTS {
-            return Err(format!("a path has at most {MAX_SEGMENTS} names"));
-        }
-        Ok(Path { segments })
+    /// Reads a path, or says why it is none (E0241).
+    pub fn parse(text: &str) -> Result<Path, Diagnostic> {
+        let segments = text.split('/').map(Segment::parse).collect::<Result<Vec<Segment>, String>>();
+        let reason = match segments {
+            Ok(segments) if segments.len() <= MAX_SEGMENTS => return Ok(Path { segments }),
+            Ok(_) => format!("a path has at most {MAX_SEGMENTS} names"),
+            Err(reason) => reason,
+        };
+        let place = trimmed(text, Span::new(0, text.len()));
+        let hint =
+            "a path is names of states from the formula with `/` between, such as `takeAction/TrackBall`";
+        Err(Diagnostic::error("E0241", place, reason).with_hint(hint))
     }
 
     /// The same path, seen from a state that `scope` names.
@@ -57,7 +62,9 @@ impl Path {
 
     /// Whether it may name several states on purpose.
     pub fn has_wildcard(&self) -> bool {
-        let is_wildcard = |pattern: &Pattern| matches!(pattern, Pattern::AnyState | Pattern::AnyForever | Pattern::AnyParallel);
+        let is_wildcard = |pattern: &Pattern| {
+            matches!(pattern, Pattern::AnyState | Pattern::AnyForever | Pattern::AnyParallel)
+        };
         self.segments.iter().any(|segment| is_wildcard(&segment.pattern))
     }
 
@@ -72,7 +79,9 @@ impl Path {
             Pattern::Name(name) => Some((segment, name.as_str())),
             _ => None,
         });
-        names.filter(|(segment, _)| !chart.nodes().any(|(id, _)| segment.pattern.matches(chart, id))).map(|(_, name)| name)
+        names
+            .filter(|(segment, _)| !chart.nodes().any(|(id, _)| segment.pattern.matches(chart, id)))
+            .map(|(_, name)| name)
     }
 
     /// The last `length` names on the way to a node, `thorough` with ANDs and regions.
@@ -99,6 +108,7 @@ impl fmt::Display for Path {
 }
 
 impl Segment {
+    /// The segment, or in a sentence why it is none.
     fn parse(text: &str) -> Result<Segment, String> {
         let name = canonical_name(text);
         if name.is_empty() {
@@ -192,8 +202,7 @@ fn ends_with(chart: &Statechart, node: NodeId, segments: &[Segment]) -> bool {
     if before.is_empty() {
         return true;
     }
-    let mut ancestors = chart.ancestors(node);
-    while let Some(ancestor) = ancestors.next() {
+    for ancestor in chart.ancestors(node) {
         if ends_with(chart, ancestor, before) {
             return true;
         }
@@ -247,34 +256,95 @@ pub(crate) fn transitions<'a>(
 /// The shortest `path -> path` that names one transition and no other.
 pub fn shortest_transition(chart: &Statechart, transition: TransitionId) -> String {
     let Transition { source, target, .. } = *chart.transition(transition);
-    let candidates = [false, true].into_iter().flat_map(|thorough| {
-        let lengths = (1..=MAX_SEGMENTS).flat_map(|total| [(total, 1), (1, total), (total, total)]);
-        let longest = chart.ancestors(source).count().max(chart.ancestors(target).count()) + 1;
-        lengths.take(3 * longest).map(move |(of_source, of_target)| {
-            (Path::to(chart, source, of_source, thorough), Path::to(chart, target, of_target, thorough))
-        })
+    let longest = 1 + chart.ancestors(source).count().max(chart.ancestors(target).count());
+    let paths = lengths(longest).flat_map(|(length, thorough)| {
+        let path = |node, length| Path::to(chart, node, length, thorough);
+        let pairs = [(length, 1), (1, length), (length, length)];
+        pairs.map(|(of_source, of_target)| (path(source, of_source), path(target, of_target)))
     });
-    let mut last = String::new();
-    for (from, to) in candidates {
-        last = format!("{from} -> {to}");
-        if transitions(chart, &from, &to).nth(1).is_none() {
-            break;
-        }
-    }
-    last
+    let is_unique = |(source, target): &(Path, Path)| transitions(chart, source, target).nth(1).is_none();
+    first_or_last(paths, is_unique).map_or(String::new(), |(source, target)| format!("{source} -> {target}"))
 }
 
 /// The shortest path that names one node and no other.
 pub fn shortest_path(chart: &Statechart, node: NodeId) -> String {
-    let longest = chart.ancestors(node).count() + 1;
-    let lengths = [false, true].into_iter().flat_map(|thorough| (1..=longest).map(move |length| (length, thorough)));
-    let mut last = String::new();
-    for (length, thorough) in lengths {
-        let path = Path::to(chart, node, length, thorough);
-        last = path.to_string();
-        if chart.nodes().filter(|(id, _)| path.matches(chart, *id)).nth(1).is_none() {
-            break;
+    let paths = lengths(1 + chart.ancestors(node).count())
+        .map(|(length, thorough)| Path::to(chart, node, length, thorough));
+    let is_unique = |path: &Path| chart.nodes().filter(|(id, _)| path.matches(chart, *id)).nth(1).is_none();
+    first_or_last(paths, is_unique).map_or(String::new(), |path| path.to_string())
+}
+
+/// Lengths of paths from the shortest on, first without ANDs and regions, then with them.
+fn lengths(longest: usize) -> impl Iterator<Item = (usize, bool)> {
+    [false, true].into_iter().flat_map(move |thorough| (1..=longest).map(move |length| (length, thorough)))
+}
+
+/// The first thing that is accepted, else the last.
+fn first_or_last<T>(things: impl Iterator<Item = T>, accepts: impl Fn(&T) -> bool) -> Option<T> {
+    let mut last = None;
+    for thing in things {
+        if accepts(&thing) {
+            return Some(thing);
         }
+        last = Some(thing);
     }
     last
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn path(text: &str) -> Path {
+        Path::parse(text).unwrap()
+    }
+
+    /// The chart of formulas.
+    fn chart(formulas: &str) -> Statechart {
+        crate::liveness_to_statechart(&crate::liveness::parse(formulas).0).0
+    }
+
+    /// How many nodes a path names.
+    fn count(chart: &Statechart, text: &str) -> usize {
+        chart.nodes().filter(|(id, _)| path(text).matches(chart, *id)).count()
+    }
+
+    #[test]
+    fn paths_print_without_blanks() {
+        assert_eq!(path(" a ω / ( b | c )[2] /START").to_string(), "a~/(b|c)[2]/START");
+        assert_eq!(path("[b]").to_string(), "[b]");
+        assert_eq!(path("b").within(&path("a/x")).to_string(), "a/x/b");
+    }
+
+    #[test]
+    fn an_option_is_no_occurrence() {
+        assert_eq!(split_occurrence("a[2]"), ("a", Some(2)));
+        assert_eq!(split_occurrence("[a][2]"), ("[a]", Some(2)));
+        assert_eq!(split_occurrence("[2]"), ("[2]", None));
+        assert_eq!(split_occurrence("a.[2]"), ("a.[2]", None));
+    }
+
+    #[test]
+    fn a_path_fits_the_end_of_the_way_to_a_state() {
+        let chart = chart("r = a~ || b\nb = a . c . a");
+        assert_eq!(count(&chart, "a"), 3);
+        assert_eq!(count(&chart, "b/a"), 2);
+        assert_eq!(count(&chart, "b/a[2]"), 1);
+        assert_eq!(count(&chart, "b/a[3]"), 0);
+        assert_eq!(count(&chart, "r/a~/a"), 1, "the AND and its region are left out");
+        assert_eq!(count(&chart, "r/a~||b/1/a~/a"), 1, "or not");
+        assert_eq!(count(&chart, "r/a"), 0, "a state is never left out");
+        assert_eq!(count(&chart, "r/START"), 3, "the regions' too");
+        assert_eq!(count(&chart, "r/2/START"), 1);
+    }
+
+    #[test]
+    fn wildcards_name_kinds_of_states() {
+        let chart = chart("r = a~ || b\nb = (c.d)+ . e\ne = x~");
+        assert_eq!(count(&chart, "*~"), 2, "`e` goes on forever, whatever its name");
+        assert_eq!(count(&chart, "*||*"), 1);
+        assert_eq!(count(&chart, "b/*"), 2);
+        assert!(path("b/*").has_wildcard());
+        assert!(!path("b*").has_wildcard());
+    }
 }

@@ -74,7 +74,14 @@ fn states_of<'a>(chart: &Statechart, entry: &'a StateEntry) -> Wish<'a, NodeId> 
     let states = chart.nodes().filter(|(_, node)| is_state(node.kind)).map(|(id, _)| id);
     let named: Vec<NodeId> = states.filter(|&id| entry.path.matches(chart, id)).collect();
     let near = if named.is_empty() { near_names(chart, &entry.path).collect() } else { Vec::new() };
-    Wish { text: &entry.text, span: entry.span, thing: "state", has_wildcard: entry.path.has_wildcard(), named, near }
+    Wish {
+        text: &entry.text,
+        span: entry.span,
+        thing: "state",
+        has_wildcard: entry.path.has_wildcard(),
+        named,
+        near,
+    }
 }
 
 /// The names nearest to those in a path that the chart does not have.
@@ -85,44 +92,38 @@ fn near_names<'a>(chart: &'a Statechart, path: &'a Path) -> impl Iterator<Item =
 
 /// If a name is misspelt, the right one; else the transitions that share the source, then those that share the target.
 fn near_transitions(chart: &Statechart, entry: &TransitionEntry) -> Vec<String> {
-    let names: Vec<String> = near_names(chart, &entry.source).chain(near_names(chart, &entry.target)).collect();
+    let names: Vec<String> =
+        near_names(chart, &entry.source).chain(near_names(chart, &entry.target)).collect();
     if !names.is_empty() {
         return names;
     }
-    let sharing_source = chart.transitions().filter(|(_, transition)| entry.source.matches(chart, transition.source));
-    let sharing_target = chart.transitions().filter(|(_, transition)| entry.target.matches(chart, transition.target));
+    let sharing_source =
+        chart.transitions().filter(|(_, transition)| entry.source.matches(chart, transition.source));
+    let sharing_target =
+        chart.transitions().filter(|(_, transition)| entry.target.matches(chart, transition.target));
     let near = sharing_source.chain(sharing_target).map(|(id, _)| path::shortest_transition(chart, id));
     near.take(CANDIDATES).collect()
 }
 
-/// Which entry is for which thing, and which entries are for none.
+/// Which entry is for which thing, and which entries are for none, in order.
 fn settle<Id: Copy + Ord>(
     wishes: &[Wish<'_, Id>],
     text_of: impl Fn(&Id) -> String,
 ) -> (BTreeMap<Id, usize>, Vec<Unmatched>) {
-    let mut chosen: BTreeMap<Id, usize> = BTreeMap::new();
-    let mut unmatched: BTreeMap<usize, Unmatched> = BTreeMap::new();
-    let (wild, plain): (Vec<usize>, Vec<usize>) = (0..wishes.len()).partition(|&index| wishes[index].has_wildcard);
-    for index in plain {
-        match wishes[index].named.as_slice() {
-            [one] => match chosen.get(one) {
-                Some(&earlier) => drop(unmatched.insert(index, again(&wishes[index], &wishes[earlier], &text_of(one)))),
-                None => drop(chosen.insert(*one, index)),
-            },
-            _ => drop(unmatched.insert(index, misfit(&wishes[index], &text_of))),
+    let mut chosen = BTreeMap::new();
+    let mut unmatched = BTreeMap::new();
+    let (wild, plain): (Vec<usize>, Vec<usize>) =
+        (0..wishes.len()).partition(|&index| wishes[index].has_wildcard);
+    for index in plain.into_iter().chain(wild) {
+        let wish = &wishes[index];
+        if wish.named.is_empty() || wish.named.len() > 1 && !wish.has_wildcard {
+            unmatched.insert(index, misfit(wish, &text_of));
+            continue;
         }
-    }
-    for index in wild {
-        if wishes[index].named.is_empty() {
-            unmatched.insert(index, misfit(&wishes[index], &text_of));
-        }
-        for id in &wishes[index].named {
-            match chosen.get(id) {
-                Some(&earlier) if wishes[earlier].has_wildcard => {
-                    unmatched.entry(index).or_insert_with(|| again(&wishes[index], &wishes[earlier], &text_of(id)));
-                }
-                Some(_) => {}
-                None => drop(chosen.insert(*id, index)),
+        for id in &wish.named {
+            let earlier: usize = *chosen.entry(*id).or_insert(index);
+            if earlier != index && wishes[earlier].has_wildcard == wish.has_wildcard {
+                unmatched.entry(index).or_insert_with(|| again(wish, &wishes[earlier], &text_of(id)));
             }
         }
     }
@@ -164,6 +165,7 @@ fn again<Id>(wish: &Wish<'_, Id>, earlier: &Wish<'_, Id>, named: &str) -> Unmatc
 fn composite(wish: &Wish<'_, NodeId>, named: String) -> Unmatched {
     let message = format!("`{named}` consists of other states and runs no activity of its own");
     let diagnostic = Diagnostic::error("E0253", wish.span, message);
-    let diagnostic = diagnostic.with_hint("activity, priority and duration belong to states without children");
+    let diagnostic =
+        diagnostic.with_hint("activity, priority and duration belong to states without children");
     Unmatched { text: wish.text.into(), candidates: vec![named], diagnostic }
 }

@@ -23,13 +23,14 @@
 //! - **States**: `path : key = value, ...` with the keys `activity`, `priority`, `entry`, `exit`, `defer` and `duration`. A line
 //!   without `:` goes on with the entry above it.
 //!
-//! What a text is, is told by its content: one that begins with `<` is XMI, one with a section header is as above, any other is bare
-//! formulas.
+//! What a text is, is told by its content: one that begins with `<` is XMI, the form in which the method's Eclipse tools keep a System
+//! Roles Model, of which the role's name and formulas are read; one with a section header is as above, any other is bare formulas.
 
 mod constants;
 mod entries;
 mod sections;
 mod states;
+mod xmi;
 
 use yase::expression::{Action, TransitionExpression};
 use yase::statechart::Constant;
@@ -162,12 +163,13 @@ pub struct SrmFile {
 }
 
 impl SrmFile {
-    /// Reads a role. What is not understood is skipped and reported; codes are E0201 to E0249 and those of expressions.
+    /// Reads a role. What is not understood is skipped and reported; codes are E0201 to E0219 for formulas, E0230 to E0249 for
+    /// the rest, and those of expressions.
     pub fn parse(text: impl Into<String>) -> (SrmFile, Vec<Diagnostic>) {
         let text = text.into();
         let mut reader = Reader::default();
         if text.trim_start_matches('\u{feff}').trim_start().starts_with('<') {
-            reader.refuse_xmi(&text);
+            reader.xmi(&text);
         } else {
             reader.read(&text::without_comments(&text));
         }
@@ -184,7 +186,7 @@ impl SrmFile {
         &self.srm
     }
 
-    /// The entries, in the order of the text: the role, each formula, constant, transition and state.
+    /// The entries, in the order of the text: the role, each formula, constant, transition and state. XMI has none.
     pub fn entries(&self) -> &[Entry] {
         &self.entries
     }
@@ -207,12 +209,6 @@ struct Reader {
 }
 
 impl Reader {
-    fn refuse_xmi(&mut self, text: &str) {
-        let line = text.find('\n').unwrap_or(text.len());
-        let hint = "write the role as text: the formulas alone are enough";
-        self.report(Diagnostic::error("E0230", 0..line, "this is XMI, which is not read yet").with_hint(hint));
-    }
-
     fn read(&mut self, blanked: &str) {
         match sections::sections(blanked, &mut self.diagnostics) {
             Some(sections) => self.sections(blanked, &sections),
@@ -253,7 +249,9 @@ impl Reader {
         let words: Vec<&str> = blanked[span.start..span.end].split_whitespace().collect();
         if words.is_empty() {
             let place = Span::new(body.start.saturating_sub(1), body.start);
-            return self.report(Diagnostic::error("E0234", place, "the role has no name").with_hint("write it after `Role:`"));
+            return self.report(
+                Diagnostic::error("E0234", place, "the role has no name").with_hint("write it after `Role:`"),
+            );
         }
         self.srm.role = words.join(" ");
         self.entries.push(Entry { section: Section::Role, span });

@@ -27,12 +27,15 @@ pub(crate) fn without_comments(text: &str) -> String {
 pub(crate) fn comments_within(text: &str, span: Span) -> Vec<&str> {
     let blanked = without_comments(text);
     let lines = lines_of(text, span);
-    lines.filter_map(|line| comment_start(text, &blanked, line).map(|start| text[start..line.end].trim_end())).collect()
+    lines
+        .filter_map(|line| comment_start(text, &blanked, line).map(|start| text[start..line.end].trim_end()))
+        .collect()
 }
 
 fn comment_start(text: &str, blanked: &str, line: Span) -> Option<usize> {
     let (text, blanked) = (&text[line.start..line.end], &blanked[line.start..line.end]);
-    let differs = text.char_indices().find(|&(at, character)| character == '#' && blanked[at..].starts_with(' '));
+    let differs =
+        text.char_indices().find(|&(at, character)| character == '#' && blanked[at..].starts_with(' '));
     differs.map(|(at, _)| line.start + at)
 }
 
@@ -96,7 +99,8 @@ mod tests {
     #[test]
     fn lines_know_their_place() {
         let text = "x\nab\n\ncd";
-        let lines: Vec<&str> = lines_of(text, Span::new(2, 8)).map(|line| &text[line.start..line.end]).collect();
+        let lines: Vec<&str> =
+            lines_of(text, Span::new(2, 8)).map(|line| &text[line.start..line.end]).collect();
         assert_eq!(lines, ["ab", "", "cd"]);
     }
 

@@ -29,7 +29,7 @@ use crate::srm::Srm;
 pub const MAX_LEVELS: usize = 256;
 
 /// The most memory that a chart's nodes and their names may take: copies of copies grow without bound.
-const MAX_BYTES: usize = 32 << 20;
+const MAX_BYTES: usize = 16 << 20;
 
 /// What a node costs besides its name.
 const NODE_BYTES: usize = 256;
@@ -131,7 +131,8 @@ fn refusal(span: Span, level: usize, bytes: usize) -> Option<Diagnostic> {
         return Some(Diagnostic::error("E0220", span, message).with_hint("flatten the formula"));
     }
     let hint = "a name with a formula is expanded wherever it stands; share less, or copy fewer times";
-    (bytes > MAX_BYTES).then(|| Diagnostic::error("E0221", span, "the chart grows too large here").with_hint(hint))
+    (bytes > MAX_BYTES)
+        .then(|| Diagnostic::error("E0221", span, "the chart grows too large here").with_hint(hint))
 }
 
 /// The templates.

@@ -1,5 +1,7 @@
 //! Every mistake has its code, its place and a hint.
 
+#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
+
 use yase::{Diagnostic, Severity, Source};
 
 /// All findings about a text.
@@ -100,7 +102,7 @@ fn charts_have_limits() {
 
 #[test]
 fn sections_are_known() {
-    check("<?xml version='1.0'?>\n<SRM:SRMmodel/>", "E0230", "<?xml version='1.0'?>", "XMI");
+    check("<Model name='m'/>", "E0230", "<Model", "an `SRM:SRMmodel`, or text");
     check("Role: r\nLivenes:\nr = a", "E0231", "Livenes", "did you mean `Liveness:`?");
     check("Liveness:\nr = a\nLiveness:\nq = b", "E0232", "Liveness", "already");
     check("Role: r\nConstants:", "E0233", "Role: r", "add `Liveness:`");
@@ -111,7 +113,9 @@ fn sections_are_known() {
 
 #[test]
 fn constants_are_values_with_names() {
-    let check = |line: &str, code, place, says| check(&format!("Liveness:\nr = a\nConstants:\n{line}\n"), code, place, says);
+    let check = |line: &str, code, place, says| {
+        check(&format!("Liveness:\nr = a\nConstants:\n{line}\n"), code, place, says)
+    };
     check("near", "E0237", "near", "name = value");
     check("2near = 1", "E0237", "2near = 1", "begins with a letter");
     check("a = 1\na = 2", "E0238", "a = 2", "already");
@@ -120,7 +124,9 @@ fn constants_are_values_with_names() {
 
 #[test]
 fn transition_entries_are_well_formed() {
-    let check = |line: &str, code, place, says| check(&format!("Liveness:\nr = a . b\nTransitions:\n{line}\n"), code, place, says);
+    let check = |line: &str, code, place, says| {
+        check(&format!("Liveness:\nr = a . b\nTransitions:\n{line}\n"), code, place, says)
+    };
     check("a b : [false]", "E0240", "a b : [false]", "source -> target");
     check("a/ -> b", "E0241", "a/", "missing in the path");
     check("a -> b$", "E0241", "b$", "`$` has no place");
@@ -130,7 +136,9 @@ fn transition_entries_are_well_formed() {
 
 #[test]
 fn state_entries_are_well_formed() {
-    let check = |line: &str, code, place, says| check(&format!("Liveness:\nr = a . b\nStates:\n{line}\n"), code, place, says);
+    let check = |line: &str, code, place, says| {
+        check(&format!("Liveness:\nr = a . b\nStates:\n{line}\n"), code, place, says)
+    };
     check("a", "E0243", "a", "path : key = value");
     check("a : 5", "E0243", "5", "keys are");
     check("a : prioritty = 5", "E0244", "prioritty", "did you mean `priority`?");
@@ -141,13 +149,20 @@ fn state_entries_are_well_formed() {
 
 #[test]
 fn entries_name_one_thing() {
-    let check = |lines: &str, code, place, says| check(&format!("Liveness:\nr = (a . b) | (b . c)\n{lines}\n"), code, place, says);
+    let check = |lines: &str, code, place, says| {
+        check(&format!("Liveness:\nr = (a . b) | (b . c)\n{lines}\n"), code, place, says)
+    };
     check("Transitions:\nb -> a : [false]", "E0250", "b -> a : [false]", "names no transition");
     check("Transitions:\na -> bb : [x_timeout]", "E0250", "a -> bb : [x_timeout]", "did you mean `b`?");
     check("Transitions:\nSTART -> *~", "E0250", "START -> *~", "names no transition");
     check("Transitions:\na -> b\n(a.b)/a -> b : [false]", "E0252", "(a.b)/a -> b : [false]", "keep one");
     check("States:\nb : priority = 5", "E0251", "b : priority = 5", "`(a.b)/b`, `(b.c)/b`");
-    check("States:\nCONDITION : exit = publish_all", "E0250", "CONDITION : exit = publish_all", "names no state");
+    check(
+        "States:\nCONDITION : exit = publish_all",
+        "E0250",
+        "CONDITION : exit = publish_all",
+        "names no state",
+    );
     check("States:\n(a.b) : activity = Walk", "E0253", "(a.b) : activity = Walk", "runs no activity");
 }
 
@@ -156,6 +171,10 @@ fn two_mistakes_are_two_findings_with_their_lines() {
     let text = "Role: r\nLiveness:\nr = a . b\nTransitions:\na -> b : [false]\na -> c : [false]\nStates:\nb : prio = 1\n";
     let found: Vec<String> = findings(text).iter().map(Diagnostic::to_string).collect();
     assert_eq!(found.len(), 2, "{found:#?}");
-    assert!(found[0].starts_with("role.srm:6:1: error[E0250]: `a -> c : [false]` names no transition"), "{}", found[0]);
+    assert!(
+        found[0].starts_with("role.srm:6:1: error[E0250]: `a -> c : [false]` names no transition"),
+        "{}",
+        found[0]
+    );
     assert!(found[1].starts_with("role.srm:8:5: error[E0244]: states have no `prio`"), "{}", found[1]);
 }

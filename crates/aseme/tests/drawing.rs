@@ -1,5 +1,7 @@
 //! Drawings can be read: nothing lies on a label, nothing leaves the page.
 
+#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
+
 use roxmltree::{Document, Node};
 use yase::Source;
 
@@ -29,12 +31,20 @@ fn check(name: &str, text: &str) {
     let svg = aseme::to_svg(&chart);
     let document = Document::parse(&svg).expect("well-formed");
     let labels = areas(&document, "ground");
-    let written = chart.transitions().filter(|(_, transition)| !transition.expression.is_empty() || transition.priority != 0).count();
+    let written = chart
+        .transitions()
+        .filter(|(_, transition)| !transition.expression.is_empty() || transition.priority != 0)
+        .count();
     assert_eq!(labels.len(), written, "{name}: every expression is written");
-    let boxes: Vec<Area> = ["basic", "head", "and-head"].iter().flat_map(|class| areas(&document, class)).collect();
+    let boxes: Vec<Area> =
+        ["basic", "head", "and-head"].iter().flat_map(|class| areas(&document, class)).collect();
     for (index, label) in labels.iter().enumerate() {
         let others = labels[index + 1..].iter().chain(&boxes);
-        assert_eq!(others.filter(|other| overlap(label, other)).count(), 0, "{name}: something lies on the label at {label:?}");
+        assert_eq!(
+            others.filter(|other| overlap(label, other)).count(),
+            0,
+            "{name}: something lies on the label at {label:?}"
+        );
     }
     let number = |name| document.root_element().attribute(name).and_then(|value| value.parse::<f64>().ok());
     let page = (0.0, 0.0, number("width").expect("a width"), number("height").expect("a height"));

@@ -1,5 +1,7 @@
 //! The thesis's Figures 5.2 to 5.4, letter by letter.
 
+#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
+
 use aseme::SrmFile;
 
 const FIGURE_5_2: &str = "
@@ -62,10 +64,12 @@ fn figure_5_2_is_the_goalie() {
     let file = read(FIGURE_5_2);
     assert_eq!(file.srm().role, "goalie");
     assert_eq!(file.srm().protocols, []);
-    let names: Vec<&str> = file.srm().liveness.formulas().iter().map(|formula| formula.name.as_str()).collect();
+    let names: Vec<&str> =
+        file.srm().liveness.formulas().iter().map(|formula| formula.name.as_str()).collect();
     assert_eq!(names, ["goalie", "active", "decision", "takeAction", "action"]);
     let first = file.srm().liveness.to_string().lines().next().map(String::from);
-    let expected = "goalie = RobotController~ || LedHandler~ || MotionController~ || (Stand . SendCalibration . active)";
+    let expected =
+        "goalie = RobotController~ || LedHandler~ || MotionController~ || (Stand . SendCalibration . active)";
     assert_eq!(first.as_deref(), Some(expected));
 }
 
@@ -97,7 +101,13 @@ fn the_models_hold_the_figures() {
 #[test]
 fn omega_tilde_and_caret_mean_the_same() {
     let expected = chart("r = a~ || (b.c)~");
-    for text in ["r = aω || (b.c)ω", "r = a ω||( b . c ) ~", "r=a^ω||(b.c)^~", "r = aΩ\n  || (b\t.c)~ # twice", "\u{feff}r = a~ ||\r\n(b.c)~\r\n"] {
+    for text in [
+        "r = aω || (b.c)ω",
+        "r = a ω||( b . c ) ~",
+        "r=a^ω||(b.c)^~",
+        "r = aΩ\n  || (b\t.c)~ # twice",
+        "\u{feff}r = a~ ||\r\n(b.c)~\r\n",
+    ] {
         assert_eq!(chart(text), expected, "{text}");
     }
 }

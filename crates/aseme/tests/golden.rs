@@ -1,5 +1,7 @@
 //! The thesis's two roles, transformed: as trees in `tests/golden`. With `MONAS_BLESS=1` the files are written anew.
 
+#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
+
 use std::path::{Path, PathBuf};
 
 use yase::{NodeKind, Source, Statechart};
@@ -54,8 +56,11 @@ fn loops_wait_and_set_their_timer_again() {
     for name in ["goalie.srm", "attacker.srm"] {
         let chart = model(name);
         let loops = chart.transitions().filter(|(_, transition)| transition.source == transition.target);
-        let timers: Vec<String> = loops.flat_map(|(_, transition)| transition.expression.started_timers().collect::<Vec<_>>()).collect();
-        let expected = ["robot", "led", "motion", "sensors", "vision", "decision"].map(|timer| format!("{timer}_timeout"));
+        let timers: Vec<String> = loops
+            .flat_map(|(_, transition)| transition.expression.started_timers().collect::<Vec<_>>())
+            .collect();
+        let expected = ["robot", "led", "motion", "sensors", "vision", "decision"]
+            .map(|timer| format!("{timer}_timeout"));
         assert_eq!(timers, expected, "{name}");
     }
 }

@@ -1,5 +1,7 @@
 //! What holds for every text and every formula.
 
+#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
+
 use std::fmt::Write;
 
 use aseme::liveness::{self, Liveness, Term};
@@ -22,21 +24,28 @@ fn exercise(text: String) -> Vec<Diagnostic> {
 }
 
 fn terms(liveness: &Liveness) -> Vec<String> {
-    liveness.formulas().iter().filter_map(|formula| formula.expression).map(|term| liveness.compact(term)).collect()
+    liveness
+        .formulas()
+        .iter()
+        .filter_map(|formula| formula.expression)
+        .map(|term| liveness.compact(term))
+        .collect()
 }
 
 /// A formula's right-hand side, grown from names.
 fn expression() -> impl Strategy<Value = String> {
     "[a-f][a-z0-9_]{0,3}".prop_recursive(5, 60, 4, |inner| {
         let list = |separator: &'static str, inner| {
-            prop::collection::vec(inner, 2..4).prop_map(move |items: Vec<String>| format!("({})", items.join(separator)))
+            prop::collection::vec(inner, 2..4)
+                .prop_map(move |items: Vec<String>| format!("({})", items.join(separator)))
         };
         prop_oneof![
             list(" . ", inner.clone().boxed()),
             list(" | ", inner.clone().boxed()),
             list(" || ", inner.clone().boxed()),
             inner.clone().prop_map(|x| format!("[{x}]")),
-            (inner.clone(), prop::sample::select(vec!["*", "+", "~", "ω", "^ω"])).prop_map(|(x, op)| format!("{x}{op}")),
+            (inner.clone(), prop::sample::select(vec!["*", "+", "~", "ω", "^ω"]))
+                .prop_map(|(x, op)| format!("{x}{op}")),
             (inner, 1..4_u32).prop_map(|(x, count)| format!("| {x}~|{count}")),
         ]
     })
@@ -91,9 +100,46 @@ proptest! {
 }
 
 const TOKENS: [&str; 40] = [
-    "Role: r", "Protocols:", "Liveness:", "Constants:", "Transitions:", "States:", "\n", "\n", "\n", " ", "a", "b", "r", "=", " = ", ".", "|",
-    "||", "*", "+", "~", "ω", "^", "(", ")", "[", "]", "|a~|2", "->", " : ", "START", "END", "CONDITION", "*~", "/", "!2", "%0.5", "[false]",
-    "# c\n", "\"",
+    "Role: r",
+    "Protocols:",
+    "Liveness:",
+    "Constants:",
+    "Transitions:",
+    "States:",
+    "\n",
+    "\n",
+    "\n",
+    " ",
+    "a",
+    "b",
+    "r",
+    "=",
+    " = ",
+    ".",
+    "|",
+    "||",
+    "*",
+    "+",
+    "~",
+    "ω",
+    "^",
+    "(",
+    ")",
+    "[",
+    "]",
+    "|a~|2",
+    "->",
+    " : ",
+    "START",
+    "END",
+    "CONDITION",
+    "*~",
+    "/",
+    "!2",
+    "%0.5",
+    "[false]",
+    "# c\n",
+    "\"",
 ];
 
 #[test]
@@ -108,7 +154,14 @@ fn a_hundred_thousand_brackets_are_read_printed_and_dropped() {
         let (_, findings) = aseme::liveness_to_statechart(&liveness);
         assert_eq!(findings.is_empty(), open == "(", "groups are no levels of a chart");
     }
-    for text in ["(".repeat(depth), ")".repeat(depth), "[(".repeat(depth), "a.(".repeat(depth), "|a".repeat(depth), format!("{}{}", "[".repeat(depth), ")".repeat(depth))] {
+    for text in [
+        "(".repeat(depth),
+        ")".repeat(depth),
+        "[(".repeat(depth),
+        "a.(".repeat(depth),
+        "|a".repeat(depth),
+        format!("{}{}", "[".repeat(depth), ")".repeat(depth)),
+    ] {
         let (_, findings) = liveness::parse(&format!("r={text}"));
         assert!(findings.iter().any(Diagnostic::is_error));
     }

@@ -1,5 +1,7 @@
 //! Refinements stay in force when formulas are edited, as far as they still fit.
 
+#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
+
 use aseme::{SrmFile, srm::Section};
 use yase::{Diagnostic, Statechart};
 
@@ -26,7 +28,11 @@ fn chart(text: &str) -> (Statechart, Vec<Diagnostic>) {
 /// Each refined transition as `source -> target : expression`.
 fn refined(chart: &Statechart) -> Vec<String> {
     let refined = chart.transitions().filter(|(_, transition)| !transition.expression.is_empty());
-    refined.map(|(id, transition)| format!("{} : {}", aseme::path::shortest_transition(chart, id), transition.expression)).collect()
+    refined
+        .map(|(id, transition)| {
+            format!("{} : {}", aseme::path::shortest_transition(chart, id), transition.expression)
+        })
+        .collect()
 }
 
 #[test]
@@ -47,7 +53,9 @@ fn every_entry_finds_its_transition() {
 
 #[test]
 fn an_edit_elsewhere_keeps_every_refinement() {
-    let edited = ROLE.replace("player = Stand .", "player = LedHandlerω || ( Boot . Stand .").replace("act )   #", "act ) )   #");
+    let edited = ROLE
+        .replace("player = Stand .", "player = LedHandlerω || ( Boot . Stand .")
+        .replace("act )   #", "act ) )   #");
     let (before, _) = chart(ROLE);
     let (after, unmatched) = chart(&edited);
     assert_eq!(unmatched, []);
@@ -102,9 +110,25 @@ r/START -> a[1]
     let (chart, unmatched) = chart(text);
     // `*` names states, END is none
     assert_eq!(unmatched, []);
-    assert_eq!(refined(&chart), ["START -> a[1] : [first]", "a[2] -> c~ : [second]", "c~ -> d~ : [wild]", "d~ -> END : [plain]"]);
-    let said: Vec<_> = chart.transitions().map(|(_, transition)| (transition.priority, transition.weight, transition.interrupts)).collect();
-    assert_eq!(said[..6], [(-1, None, false), (0, None, false), (0, None, false), (3, None, false), (0, None, false), (0, Some(0.5), true)]);
+    assert_eq!(
+        refined(&chart),
+        ["START -> a[1] : [first]", "a[2] -> c~ : [second]", "c~ -> d~ : [wild]", "d~ -> END : [plain]"]
+    );
+    let said: Vec<_> = chart
+        .transitions()
+        .map(|(_, transition)| (transition.priority, transition.weight, transition.interrupts))
+        .collect();
+    assert_eq!(
+        said[..6],
+        [
+            (-1, None, false),
+            (0, None, false),
+            (0, None, false),
+            (3, None, false),
+            (0, None, false),
+            (0, Some(0.5), true)
+        ]
+    );
 }
 
 #[test]
@@ -118,7 +142,9 @@ a : activity = Walk, priority = 5, entry = StartTimeout(t, 100ms), publish_all, 
 *: priority = 1
 ";
     let (chart, unmatched) = chart(text);
-    let nodes = |name: &str| chart.nodes().find(|(_, node)| node.name == name).map(|(_, node)| node.clone()).expect("a node");
+    let nodes = |name: &str| {
+        chart.nodes().find(|(_, node)| node.name == name).map(|(_, node)| node.clone()).expect("a node")
+    };
     let codes: Vec<&str> = unmatched.iter().map(|finding| finding.code).collect();
     assert_eq!(codes, ["E0253", "E0253"], "`*` is for composites too");
     let a = nodes("a");
@@ -131,8 +157,12 @@ a : activity = Walk, priority = 5, entry = StartTimeout(t, 100ms), publish_all, 
 #[test]
 fn an_entry_is_replaced_and_nothing_else() {
     let (file, _) = SrmFile::parse(ROLE);
-    let entries: Vec<&str> = file.entries().iter().map(|entry| &ROLE[entry.span.start..entry.span.end]).collect();
-    assert_eq!(entries[..4], ["player", "player = Stand . ( Search | act )", "act = Track . Kick", "Stand -> (Search|act) : [up]"]);
+    let entries: Vec<&str> =
+        file.entries().iter().map(|entry| &ROLE[entry.span.start..entry.span.end]).collect();
+    assert_eq!(
+        entries[..4],
+        ["player", "player = Stand . ( Search | act )", "act = Track . Kick", "Stand -> (Search|act) : [up]"]
+    );
     let (edited, findings) = file.replace_entry(file.entries()[3], "Stand -> (Search|act) : [up && ready]");
     assert_eq!(findings, []);
     assert_eq!(edited.text(), ROLE.replace("[up]", "[up && ready]"));

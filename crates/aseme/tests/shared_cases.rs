@@ -1,5 +1,7 @@
 //! Formulas beside the charts they become, as other tools of the method make them.
 
+#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
+
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
@@ -28,7 +30,8 @@ fn every_case_agrees_exactly() {
         println!("skipped: the folder of cases is not there");
         return;
     };
-    let mut files: Vec<PathBuf> = folder.read_dir().expect("readable").map(|entry| entry.expect("an entry").path()).collect();
+    let mut files: Vec<PathBuf> =
+        folder.read_dir().expect("readable").map(|entry| entry.expect("an entry").path()).collect();
     files.retain(|file| file.extension().is_some_and(|extension| extension == "srm"));
     files.sort();
     for file in &files {

@@ -1,5 +1,6 @@
 //! `monas run`: a match in simulated time, or a set of agents in real time.
 
+mod coverage;
 mod interrupt;
 mod pace;
 mod play;

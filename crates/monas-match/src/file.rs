@@ -50,12 +50,12 @@ pub(crate) struct RobotFile {
 pub(crate) fn read(path: &Path, diagnostics: &mut Vec<Diagnostic>) -> Option<MatchFile> {
     let root = read_root(path, "match", diagnostics)?;
     let mut attributes = Attributes::new(&root, diagnostics);
-    let field = attributes.get("field");
-    let simulator = attributes.get("simulator");
+    let field = attributes.get("field").cloned();
+    let simulator = attributes.get("simulator").cloned();
     let half = attributes.duration("half");
     attributes.finish();
-    let field = field.and_then(|attribute| named(path, &root, attribute, diagnostics));
-    let simulator = simulator.and_then(|attribute| named(path, &root, attribute, diagnostics));
+    let field = field.and_then(|attribute| named(path, &root, &attribute, diagnostics));
+    let simulator = simulator.and_then(|attribute| named(path, &root, &attribute, diagnostics));
     let geometry = field.map(|path| read_field(&path, diagnostics)).unwrap_or_default();
     let (physics, mut rules) = simulator.map(|path| read_simulator(&path, diagnostics)).unwrap_or_default();
     set_half(&mut rules, half, &root, diagnostics);
@@ -187,10 +187,10 @@ fn read_robot(robot: &Element, path: &Path, diagnostics: &mut Vec<Diagnostic>) -
     attributes.required("number");
     attributes.required("role");
     let number = attributes.integer("number");
-    let role = attributes.get("role");
+    let role = attributes.get("role").cloned();
     attributes.finish();
     robot.expect_children(&[], diagnostics);
-    let role = role.and_then(|attribute| named(path, robot, attribute, diagnostics));
+    let role = role.and_then(|attribute| named(path, robot, &attribute, diagnostics));
     Some(RobotFile { number: number?, role: role? })
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use monas_sim::{EventKind, GameState, World};
+use monas_sim::{EventKind, GameState, Offence, World};
 
 use crate::summary::MatchEvent;
 
@@ -35,10 +35,18 @@ fn text(world: &World, event: &EventKind) -> Option<String> {
         }
         EventKind::Shot { robot: index } => format!("shot by {}", robot(*index)),
         EventKind::Save { robot: index } => format!("save by {}", robot(*index)),
-        EventKind::Penalty { robot: index, offence } => format!("penalty for {}: {offence}", robot(*index)),
+        EventKind::Penalty { robot: index, offence } => format!("penalty for {}: {}", robot(*index), offence_name(*offence)),
         EventKind::DropBall { .. } => "nobody gets at the ball: it is dropped".into(),
         _ => return None,
     })
+}
+
+fn offence_name(offence: Offence) -> &'static str {
+    match offence {
+        Offence::Pushing => "pushing",
+        Offence::BallHolding => "ball holding",
+        Offence::IllegalDefender => "illegal defender",
+    }
 }
 
 /// The referee's state as the league writes it.

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use monas::{Agent, HostConfig, Registry, RunHash, Talws};
 use monas_sim::{FieldGeometry, Physics, Pitch, Rules, Setup, TeamSetup, World};
-use monas_tape::Tape;
 use yase::Diagnostic;
 
 use crate::error::Error;
@@ -139,15 +138,7 @@ impl MatchPlan {
         talws.world(Box::new(Stage::new(pitch.clone())));
         let hash = RunHash::new();
         talws.observe(Box::new(hash.clone()));
-        let tape = options.record.map(|path| {
-            let tape = Tape::create(&path).map_err(|error| Error::recording(&path, error))?;
-            Ok((tape, path))
-        });
-        let tape = tape.transpose()?;
-        if let Some((tape, _)) = &tape {
-            talws.observe(Box::new(tape.observer()));
-        }
         let simulation = talws.simulate(options.seed).map_err(Error::agents)?;
-        Ok(RunningMatch::new(simulation, pitch, hash, tape, length))
+        Ok(RunningMatch::new(simulation, pitch, hash, length))
     }
 }

@@ -52,8 +52,8 @@ pub struct Summary {
     pub events: Vec<MatchEvent>,
     /// From the beginning of play to the first touch of the ball.
     pub time_to_first_touch: Option<Duration>,
-    /// Which states were active and which transitions fired.
-    pub coverage: monas::Coverage,
+    /// Which states were active and which transitions fired, chart by chart.
+    pub coverage: Vec<monas::ChartCoverage>,
 }
 
 /// What a team did.

@@ -141,7 +141,7 @@ impl Body {
     pub(crate) fn advance(&mut self, physics: &Physics, held: bool) -> Option<Deed> {
         self.elapsed += STEP;
         self.turn_head(physics);
-        self.forget_untimely_skill();
+        self.forget_untimely_skill(held);
         let deed = match self.phase {
             Phase::Standing | Phase::Walking => self.follow_command(physics, held),
             Phase::Kicking(foot) => self.kick(foot, physics),
@@ -213,11 +213,11 @@ impl Body {
     }
 
     /// A skill asked for at a time when it cannot begin is not begun later.
-    fn forget_untimely_skill(&mut self) {
+    fn forget_untimely_skill(&mut self, held: bool) {
         let possible = match self.command.motion {
             Motion::Stand | Motion::Walk(_) | Motion::Freeze => true,
             Motion::Kick(_) | Motion::Fall(_) | Motion::Dive(_) => {
-                matches!(self.phase, Phase::Standing | Phase::Walking)
+                !held && matches!(self.phase, Phase::Standing | Phase::Walking)
             }
             Motion::StandUp => self.phase.is_fallen(),
         };
@@ -446,6 +446,8 @@ mod tests {
             let mut body = body(motion);
             (0..100).for_each(|_| assert_eq!(body.advance(&physics, true), None));
             assert_eq!(body.phase, Phase::Standing);
+            body.advance(&physics, false);
+            assert!(!matches!(body.phase, Phase::Kicking(_)), "what was asked for meanwhile is forgotten");
         }
     }
 

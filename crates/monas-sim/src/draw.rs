@@ -188,7 +188,7 @@ impl Picture {
         writeln!(
             self.text,
             r##"<ellipse rx="{:.1}" ry="{radius:.1}" fill="{shirt}" stroke="#101820" stroke-width="1.2"/>"##,
-            radius * 0.72
+            radius * 0.55
         )?;
         writeln!(
             self.text,

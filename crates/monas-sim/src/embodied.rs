@@ -36,7 +36,8 @@ pub(crate) struct Placement {
 impl Pitch {
     /// Shares a world. Its robots have been placed once: where they stand.
     pub fn new(world: World) -> Pitch {
-        let placements = world.robots().iter().map(|robot| Placement { count: 1, pose: robot.pose }).collect();
+        let placements =
+            world.robots().iter().map(|robot| Placement { count: 1, pose: robot.pose }).collect();
         Pitch { ground: Arc::new(Mutex::new(Ground { world, placements, seen_events: 0 })) }
     }
 

@@ -92,7 +92,7 @@ impl FieldGeometry {
             (self.goal_area_depth < self.half_length(), "the goal areas overlap"),
             (self.centre_circle_radius < self.half_width(), "the centre circle does not fit on the field"),
             (self.mark_distance < self.half_length(), "the penalty marks are off the field"),
-            (self.throw_in_inset < self.half_width(), "the lines of throw-ins cross"),
+            (self.throw_in_inset < self.half_width().min(self.half_length()), "the lines of throw-ins cross"),
         ];
         fits.iter()
             .find(|(holds, _)| !holds)

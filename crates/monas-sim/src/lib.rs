@@ -10,10 +10,13 @@
 //!   numbers that a configuration file can set by name, with [`TeamSetup`] and [`RobotSetup`] beside them.
 //! - [`Referee`] keeps states, clock, score and penalties; [`Announcement`] is what it tells a robot.
 //! - [`Event`]s tell what happened, [`Statistics`] counts it, and [`render_svg`] draws the moment.
+//! - [`Pitch`] lends a world's robots to agents as [`monas_robot::Robot`]s, and [`messages`] are what the field
+//!   publishes about itself.
 //!
 //! # Why it is so
 //!
-//! *Plain structs in and out.* The crate knows no topics, messages or agents. Who plays on it translates.
+//! *Plain structs inside.* The world knows no topics, messages or agents; [`Pitch`] translates for those who do, and
+//! everything else can be used, and tested, without them.
 //!
 //! *The same seed, the same bits.* Every component draws from a stream of its own, seeded by a hash of the world's
 //! seed and the component's path; there is no clock, no thread, no hash map, and sines come from `libm`. Contacts
@@ -89,7 +92,9 @@ mod restart;
 mod rng;
 mod rules;
 mod senses;
+mod setup;
 mod shots;
+mod snapshot;
 mod state;
 mod statistics;
 mod world;
@@ -111,9 +116,10 @@ pub use pose::{Pose, Vector, Velocity, normalize_angle};
 pub use referee::{Announcement, GameState, Penalty, Referee};
 pub use rules::Rules;
 pub use senses::{Buttons, Senses};
+pub use setup::Setup;
 pub use state::{BallState, RobotState};
 pub use statistics::{POSSESSION_DISTANCE, Statistics, Tally};
-pub use world::{Setup, World};
+pub use world::World;
 
 /// The time of one step, s.
 pub const STEP: f64 = 0.01;

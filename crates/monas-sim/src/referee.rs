@@ -2,6 +2,10 @@
 //!
 //! It sees the truth, decides, and says so in events; the world carries them out. Every half begins in INITIAL and
 //! its clock runs until the half ends. A goal leads from PLAYING to READY; READY places everyone for a kick-off.
+//!
+//! Not judged are who enters the centre circle before the ball is touched, goals straight from a kick-off, and robots
+//! that leave the field: the first two need no judge as long as robots are placed by hand, the last are in nobody's
+//! way.
 
 use crate::fouls::Fouls;
 use crate::rng::Stream;
@@ -94,6 +98,8 @@ pub struct Referee {
     score: [u32; 2],
     penalties: Vec<Option<Penalty>>,
     last_touch: Option<usize>,
+    /// The robot that struck the ball in this step.
+    striker: Option<usize>,
     touched_since_kick_off: bool,
     fouls: Fouls,
     coin: Stream,
@@ -126,6 +132,7 @@ impl Referee {
             score: [0, 0],
             penalties: vec![None; robots.len()],
             last_touch: None,
+            striker: None,
             touched_since_kick_off: false,
             fouls: Fouls::new(robots.len()),
             coin,
@@ -294,7 +301,7 @@ impl Referee {
 
     fn watch_touches(&mut self, scene: &Scene<'_>, events: &mut Vec<EventKind>) {
         self.untouched_steps += 1;
-        for robot in scene.touchers() {
+        for robot in self.striker.take().into_iter().chain(scene.touchers()) {
             if !self.touched_since_kick_off {
                 self.touched_since_kick_off = true;
                 events.push(EventKind::FirstTouch { robot, after: self.state_steps as f64 * STEP });
@@ -304,10 +311,9 @@ impl Referee {
         }
     }
 
-    /// Notes a kick, whose ball may leave the foot without another touch.
+    /// Notes a kick, which is a touch although the ball is not at the foot when the step ends.
     pub(crate) fn note_kick(&mut self, robot: usize) {
-        self.last_touch = Some(robot);
-        self.untouched_steps = 0;
+        self.striker = Some(robot);
     }
 
     fn give_goal(&mut self, side: FieldSide, events: &mut Vec<EventKind>) {
@@ -365,4 +371,32 @@ fn goal_side(scene: &Scene<'_>) -> Option<FieldSide> {
 
 fn steps(seconds: f64) -> u64 {
     (seconds / STEP).round() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_these_changes_of_state_are_legal() {
+        use GameState::{Finished, Initial, Playing, Ready, Set};
+        let legal = [
+            (Initial, Ready),
+            (Ready, Set),
+            (Ready, Initial),
+            (Ready, Finished),
+            (Set, Playing),
+            (Set, Initial),
+            (Set, Finished),
+            (Playing, Ready),
+            (Playing, Initial),
+            (Playing, Finished),
+        ];
+        let all = [Initial, Ready, Set, Playing, Finished];
+        for from in all {
+            for to in all {
+                assert_eq!(from.may_become(to), legal.contains(&(from, to)), "{from:?} to {to:?}");
+            }
+        }
+    }
 }

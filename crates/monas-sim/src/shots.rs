@@ -81,3 +81,29 @@ fn meets_goal(side: FieldSide, scene: &Scene<'_>) -> bool {
     let y = position.y + velocity.y / velocity.x * to_line;
     y.abs() < scene.field.goal_width / 2.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BallState, FieldGeometry, Physics, Vector};
+
+    fn meets(side: FieldSide, position: (f64, f64), velocity: (f64, f64)) -> bool {
+        let (field, physics) = (FieldGeometry::default(), Physics::default());
+        let ball = BallState {
+            position: Vector::new(position.0, position.1),
+            velocity: Vector::new(velocity.0, velocity.1),
+        };
+        let scene =
+            Scene { field: &field, physics: &physics, ball, robots: &[], touching_ball: &[], contacts: &[] };
+        meets_goal(side, &scene)
+    }
+
+    #[test]
+    fn a_line_meets_the_goal_between_the_posts_and_ahead() {
+        assert!(meets(FieldSide::Right, (0.0, 0.0), (1.0, 0.2)));
+        assert!(!meets(FieldSide::Right, (0.0, 0.0), (1.0, 0.25)), "beside the post");
+        assert!(!meets(FieldSide::Right, (0.0, 0.0), (-1.0, 0.0)), "away from it");
+        assert!(meets(FieldSide::Left, (0.0, 0.0), (-1.0, 0.0)));
+        assert!(!meets(FieldSide::Left, (0.0, 0.0), (0.0, 1.0)), "along the goal line");
+    }
+}

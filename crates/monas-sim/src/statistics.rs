@@ -159,3 +159,33 @@ impl Tally {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn events_are_counted_for_robots_and_teams() {
+        let mut statistics = Statistics::new(&[0, 0, 1]);
+        let events = [
+            EventKind::Shot { robot: 0 },
+            EventKind::Shot { robot: 1 },
+            EventKind::Goal { team: 0, robot: Some(1), own_goal: false },
+            EventKind::Goal { team: 0, robot: Some(2), own_goal: true },
+            EventKind::Goal { team: 1, robot: None, own_goal: false },
+            EventKind::Save { robot: 2 },
+            EventKind::Fall { robot: 2 },
+            EventKind::GoalieBack { robot: 2, after: 4.0 },
+            EventKind::FirstTouch { robot: 0, after: 1.0 },
+            EventKind::FirstTouch { robot: 0, after: 3.0 },
+        ];
+        events.iter().for_each(|event| statistics.record(event));
+        let (first, second) = (statistics.team(0), statistics.team(1));
+        assert_eq!((first.goals, first.own_goals, first.shots), (2, 0, 2));
+        assert_eq!((second.goals, second.own_goals, second.saves, second.falls), (1, 1, 1, 1));
+        assert_eq!((second.returns, second.return_time), (1, 4.0));
+        assert_eq!(statistics.robot(1).map(|tally| tally.goals), Some(1));
+        assert_eq!(statistics.time_to_first_touch(), Some(2.0));
+        assert_eq!(statistics.robot(3), None);
+    }
+}

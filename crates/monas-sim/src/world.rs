@@ -8,49 +8,13 @@ use crate::pose::{Vector, rotate, shortened};
 use crate::referee::Referee;
 use crate::rng::Stream;
 use crate::shots::Shots;
-use crate::state::{GOALIE, Scene};
+use crate::snapshot::Snapshot;
+use crate::state::GOALIE;
 use crate::{
     Announcement, BallState, Buttons, Command, Error, ErrorKind, Event, EventKind, FieldGeometry, GameState,
-    Phase, Physics, Pose, RobotSetup, RobotState, Rules, STEP, Senses, Side, Statistics, TeamColour,
-    TeamSetup, lineup, restart,
+    Physics, Pose, RobotSetup, RobotState, Rules, STEP, Senses, Setup, Side, Statistics, TeamSetup, lineup,
+    restart,
 };
-
-/// What a world is made of.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Setup {
-    /// The field.
-    pub field: FieldGeometry,
-    /// Bodies, ball and cameras.
-    pub physics: Physics,
-    /// The rules.
-    pub rules: Rules,
-    /// The two teams.
-    pub teams: [TeamSetup; 2],
-    /// The robots of both teams, in the order of their indices.
-    pub robots: Vec<RobotSetup>,
-    /// Where every random number comes from.
-    pub seed: u64,
-}
-
-impl Setup {
-    /// The match of the thesis's league: two teams of a goalie and two attackers each, every number at its default.
-    /// Robots 0 to 2 are those of the team on the left.
-    pub fn three_against_three(seed: u64) -> Self {
-        let team = |number, name: &str, colour, plays| TeamSetup { number, name: name.into(), colour, plays };
-        let robots = [1, 2].iter().flat_map(|team| (1..=3).map(|number| RobotSetup { team: *team, number }));
-        Self {
-            field: FieldGeometry::default(),
-            physics: Physics::default(),
-            rules: Rules::default(),
-            teams: [
-                team(1, "Blue", TeamColour::Blue, FieldSide::Left),
-                team(2, "Red", TeamColour::Red, FieldSide::Right),
-            ],
-            robots: robots.collect(),
-            seed,
-        }
-    }
-}
 
 /// A field with robots, a ball and a referee, in simulated time.
 ///
@@ -58,7 +22,7 @@ impl Setup {
 pub struct World {
     rules: Rules,
     teams: [TeamSetup; 2],
-    ground: Ground,
+    now: Snapshot,
     arena: Arena,
     bodies: Vec<Body>,
     sensors: Vec<Sensors>,
@@ -71,18 +35,6 @@ pub struct World {
     decisions: Vec<EventKind>,
     kicks: Stream,
     steps: u64,
-}
-
-/// The truth of the last step.
-struct Ground {
-    field: FieldGeometry,
-    physics: Physics,
-    ball: BallState,
-    robots: Vec<RobotState>,
-    touching_ball: Vec<bool>,
-    contacts: Vec<(usize, usize)>,
-    /// For each robot, the change of velocity that contacts caused, in the field frame.
-    blows: Vec<Vector>,
 }
 
 /// What is kept of a robot's sensors between readings.
@@ -112,7 +64,7 @@ impl World {
             arena: Arena::new(&field, &physics, count),
             bodies: robots.iter().map(|robot| Body::new(seed, &path(robot))).collect(),
             sensors: robots.iter().map(|robot| Sensors::new(seed, &path(robot))).collect(),
-            ground: Ground::new(field, physics, &robots, &team_of),
+            now: Snapshot::new(field, physics, &robots, &team_of),
             shots: Shots::default(),
             returns: Returns::new(count),
             statistics: Statistics::new(&team_of),
@@ -197,12 +149,17 @@ impl World {
 
     /// The measures of the field.
     pub fn field(&self) -> &FieldGeometry {
-        &self.ground.field
+        &self.now.field
     }
 
     /// The numbers of bodies, ball and cameras.
     pub fn physics(&self) -> &Physics {
-        &self.ground.physics
+        &self.now.physics
+    }
+
+    /// The rules of this match.
+    pub fn rules(&self) -> &Rules {
+        &self.rules
     }
 
     /// The teams, in the order of their indices.
@@ -212,12 +169,12 @@ impl World {
 
     /// The robots as they truly are, in the order of their indices.
     pub fn robots(&self) -> &[RobotState] {
-        &self.ground.robots
+        &self.now.robots
     }
 
     /// The ball as it truly is.
     pub fn ball(&self) -> BallState {
-        self.ground.ball
+        self.now.ball
     }
 
     /// The referee.
@@ -240,7 +197,7 @@ impl World {
     /// # Errors
     /// [`OutOfRange`](ErrorKind::OutOfRange) for a number that is not finite or a place off the field.
     pub fn place_ball(&mut self, position: Vector, velocity: Vector) -> Result<(), Error> {
-        let fine = velocity.norm().is_finite() && self.ground.field.contains(position);
+        let fine = velocity.norm().is_finite() && self.now.field.contains(position);
         if !fine {
             return Err(Error::new(ErrorKind::OutOfRange, "the ball can only be placed on the field"));
         }
@@ -255,7 +212,7 @@ impl World {
     /// carpet or a heading that is not finite.
     pub fn place_robot(&mut self, robot: usize, pose: Pose) -> Result<(), Error> {
         self.check_robot(robot)?;
-        let field = &self.ground.field;
+        let field = &self.now.field;
         let on_carpet = pose.position.x.abs() <= field.half_length() + field.border
             && pose.position.y.abs() <= field.half_width() + field.border;
         if !(on_carpet && pose.heading.is_finite()) {
@@ -271,30 +228,31 @@ impl World {
 
     /// Lets a body act and drives its disk with the velocity that its feet produce.
     fn move_body(&mut self, robot: usize) {
-        let on_field = self.ground.robots[robot].on_field;
+        let on_field = self.now.robots[robot].on_field;
         let held = self.referee.holds_robots() || !on_field;
-        let deed = self.bodies[robot].advance(&self.ground.physics, held);
+        let deed = self.bodies[robot].advance(&self.now.physics, held);
         match deed {
             Some(Deed::Strike(foot)) => self.strike(robot, foot),
             Some(Deed::Act { side, dive }) => self.note_act(robot, side, dive),
             Some(Deed::Rebase(base)) => self.arena.set_base(robot, base),
             None => {}
         }
-        let produced = self.bodies[robot].velocity(&self.ground.physics);
-        let heading = self.ground.robots[robot].pose.heading;
-        let now = self.arena.robot_velocity(robot);
-        let change = rotate(produced.linear(), heading) - now;
-        let velocity = now + shortened(change, self.ground.physics.foot_grip * STEP);
+        let produced = self.bodies[robot].velocity(&self.now.physics);
+        let heading = self.now.robots[robot].pose.heading;
+        let before = self.arena.robot_velocity(robot);
+        let change = rotate(produced.linear(), heading) - before;
+        let velocity = before + shortened(change, self.now.physics.foot_grip * STEP);
+        let velocity = self.now.stopped_at_edge(robot, velocity);
         self.arena.drive_robot(robot, velocity, produced.turn);
-        self.ground.blows[robot] = velocity;
+        self.now.driven[robot] = velocity;
         self.sensors[robot].turn = produced.turn;
     }
 
     /// The foot swings; the ball flies if it is there.
     fn strike(&mut self, robot: usize, foot: Side) {
-        let physics = &self.ground.physics;
-        let pose = self.ground.robots[robot].pose;
-        let ball = pose.to_own(self.ground.ball.position);
+        let physics = &self.now.physics;
+        let pose = self.now.robots[robot].pose;
+        let ball = pose.to_own(self.now.ball.position);
         let in_reach = (ball.x - physics.kick_x).abs() <= physics.kick_tolerance_x
             && (ball.y - foot.sign() * physics.kick_y).abs() <= physics.kick_tolerance_y;
         let struck = in_reach && !self.kicks.chance(physics.kick_miss);
@@ -306,20 +264,20 @@ impl World {
         let direction = pose.heading + self.kicks.normal(physics.kick_direction_noise);
         let velocity = rotate(Vector::new(speed, 0.0), direction);
         self.arena.set_ball_velocity(velocity);
-        self.ground.ball.velocity = velocity;
+        self.now.ball.velocity = velocity;
         self.referee.note_kick(robot);
-        let team = self.ground.robots[robot].team;
+        let team = self.now.robots[robot].team;
         let attacks = self.referee.defends()[1 - team];
-        self.shots.strike(robot, attacks, &self.ground.scene(), &mut self.decisions);
+        self.shots.strike(robot, attacks, &self.now.scene(), &mut self.decisions);
     }
 
     fn note_act(&mut self, robot: usize, side: Side, dive: bool) {
-        let pose = self.ground.robots[robot].pose;
-        let ball = pose.to_own(self.ground.ball.position);
-        let velocity = rotate(self.ground.ball.velocity, -pose.heading);
+        let pose = self.now.robots[robot].pose;
+        let ball = pose.to_own(self.now.ball.position);
+        let velocity = rotate(self.now.ball.velocity, -pose.heading);
         let to_ball = passing_side(ball, velocity) == side;
         self.decisions.push(EventKind::Act { robot, side, dive, to_ball });
-        if self.ground.robots[robot].is_goalie() {
+        if self.now.robots[robot].is_goalie() {
             self.returns.act(robot);
         }
     }
@@ -328,7 +286,7 @@ impl World {
         let (_, velocity) = self.arena.ball();
         let speed = velocity.norm();
         if speed > 0.0 {
-            let left = (speed - self.ground.physics.ball_deceleration * STEP).max(0.0);
+            let left = (speed - self.now.physics.ball_deceleration * STEP).max(0.0);
             self.arena.set_ball_velocity(velocity * (left / speed));
         }
     }
@@ -336,21 +294,18 @@ impl World {
     /// Takes the truth over from the arena.
     fn look_around(&mut self) {
         let (position, velocity) = self.arena.ball();
-        self.ground.ball = BallState { position, velocity };
+        self.now.ball = BallState { position, velocity };
         for robot in 0..self.bodies.len() {
-            let velocity = self.arena.robot_velocity(robot);
-            self.ground.blows[robot] = velocity - self.ground.blows[robot];
-            self.ground.touching_ball[robot] =
-                self.ground.robots[robot].on_field && self.arena.touches_ball(robot);
+            self.now.touching_ball[robot] = self.now.robots[robot].on_field && self.arena.touches_ball(robot);
             self.update_state(robot);
         }
-        self.ground.find_contacts(&self.arena);
+        self.now.find_contacts(&self.arena);
     }
 
     fn update_state(&mut self, robot: usize) {
         let body = &self.bodies[robot];
         let pose = self.arena.robot_pose(robot);
-        let state = &mut self.ground.robots[robot];
+        let state = &mut self.now.robots[robot];
         state.pose = pose;
         state.velocity = self.arena.robot_velocity(robot);
         state.intent = rotate(body.gait.intended().linear(), pose.heading);
@@ -360,20 +315,20 @@ impl World {
     }
 
     fn keep_balance(&mut self, robot: usize) {
-        if self.referee.holds_robots() || !self.ground.robots[robot].on_field {
+        if self.referee.holds_robots() || !self.now.robots[robot].on_field {
             return;
         }
-        let blow = rotate(self.ground.blows[robot], -self.ground.robots[robot].pose.heading);
-        let pressed = self.ground.contacts.iter().any(|&(one, other)| one == robot || other == robot);
+        let blow = self.now.blow(robot);
+        let pressed = self.now.is_pressed(robot);
         let body = &mut self.bodies[robot];
-        if body.keep_balance(blow, pressed, &self.ground.physics) {
-            self.ground.robots[robot].phase = body.phase;
+        if body.keep_balance(blow, pressed, &self.now.physics) {
+            self.now.robots[robot].phase = body.phase;
             self.decisions.push(EventKind::Fall { robot });
         }
     }
 
     fn judge(&mut self) {
-        let scene = self.ground.scene();
+        let scene = self.now.scene();
         let before = self.decisions.len();
         self.referee.judge(&scene, &mut self.decisions);
         self.shots.follow(&scene, &mut self.decisions);
@@ -418,13 +373,13 @@ impl World {
         self.set_ball(Vector::zeros(), Vector::zeros());
         let mut ranks = [0; 2];
         for robot in 0..self.bodies.len() {
-            let RobotState { team, number, on_field, .. } = self.ground.robots[robot];
+            let RobotState { team, number, on_field, .. } = self.now.robots[robot];
             let defends = self.referee.defends()[team];
             let kicks_off = self.referee.kick_off_team() == team;
             let rank = ranks[team];
             ranks[team] += usize::from(number != GOALIE);
             if on_field {
-                let (field, physics) = (&self.ground.field, &self.ground.physics);
+                let (field, physics) = (&self.now.field, &self.now.physics);
                 self.set_robot(
                     robot,
                     restart::kick_off_pose(field, physics, defends, kicks_off, number, rank),
@@ -434,23 +389,23 @@ impl World {
     }
 
     fn take_off(&mut self, robot: usize) {
-        let state = self.ground.robots[robot];
-        let pose = restart::waiting_pose(&self.ground.field, self.referee.defends()[state.team], &state);
-        self.ground.robots[robot].on_field = false;
+        let state = self.now.robots[robot];
+        let pose = restart::waiting_pose(&self.now.field, self.referee.defends()[state.team], &state);
+        self.now.robots[robot].on_field = false;
         self.arena.set_present(robot, false);
         self.set_robot(robot, pose);
     }
 
     fn bring_back(&mut self, robot: usize) {
-        let pose = restart::return_pose(&self.ground.scene(), robot);
-        self.ground.robots[robot].on_field = true;
+        let pose = restart::return_pose(&self.now.scene(), robot);
+        self.now.robots[robot].on_field = true;
         self.arena.set_present(robot, true);
         self.set_robot(robot, pose);
     }
 
     fn set_ball(&mut self, position: Vector, velocity: Vector) {
         self.arena.place_ball(position, velocity);
-        self.ground.ball = BallState { position, velocity };
+        self.now.ball = BallState { position, velocity };
     }
 
     fn set_robot(&mut self, robot: usize, pose: Pose) {
@@ -462,7 +417,7 @@ impl World {
     }
 
     fn feel(&mut self, robot: usize, senses: &mut Senses) {
-        let physics = &self.ground.physics;
+        let physics = &self.now.physics;
         let body = &mut self.bodies[robot];
         let sensors = &mut self.sensors[robot];
         let progress = body.progress(physics);
@@ -479,84 +434,19 @@ impl World {
         senses.phase = body.phase;
         senses.progress = progress;
         senses.support = body.gait.support();
-        senses.buttons = Buttons { chest: body.chest_button, ..self.ground.bumpers(robot) };
+        senses.buttons = Buttons { chest: body.chest_button, ..self.now.bumpers(robot) };
     }
 
     fn see(&mut self, robot: usize, senses: &mut Senses) {
         senses.sightings.clear();
-        let taken = (self.time() * self.ground.physics.camera_rate + 1e-6) as u64;
+        let taken = (self.time() * self.now.physics.camera_rate + 1e-6) as u64;
         let sensors = &mut self.sensors[robot];
         senses.new_picture = taken > sensors.pictures;
         sensors.pictures = taken;
         if senses.new_picture {
-            let camera = Camera { robot, scene: self.ground.scene(), colours: self.referee.colours() };
+            let camera = Camera { robot, scene: self.now.scene(), colours: self.referee.colours() };
             camera.look(&mut sensors.vision, &mut senses.sightings);
         }
-    }
-
-    /// The rules of this match.
-    pub fn rules(&self) -> &Rules {
-        &self.rules
-    }
-}
-
-impl Ground {
-    fn new(field: FieldGeometry, physics: Physics, robots: &[RobotSetup], team_of: &[usize]) -> Self {
-        let still = |(robot, team): (&RobotSetup, &usize)| RobotState {
-            team: *team,
-            number: robot.number,
-            pose: Pose::default(),
-            velocity: Vector::zeros(),
-            intent: Vector::zeros(),
-            phase: Phase::Standing,
-            head_yaw: 0.0,
-            head_pitch: 0.0,
-            on_field: true,
-        };
-        let count = robots.len();
-        Self {
-            field,
-            physics,
-            ball: BallState { position: Vector::zeros(), velocity: Vector::zeros() },
-            robots: robots.iter().zip(team_of).map(still).collect(),
-            touching_ball: vec![false; count],
-            contacts: Vec::with_capacity(count * count / 2 + 1),
-            blows: vec![Vector::zeros(); count],
-        }
-    }
-
-    fn scene(&self) -> Scene<'_> {
-        Scene {
-            field: &self.field,
-            physics: &self.physics,
-            ball: self.ball,
-            robots: &self.robots,
-            touching_ball: &self.touching_ball,
-            contacts: &self.contacts,
-        }
-    }
-
-    fn find_contacts(&mut self, arena: &Arena) {
-        self.contacts.clear();
-        for other in 1..self.robots.len() {
-            for one in 0..other {
-                if arena.robots_touch(one, other) {
-                    self.contacts.push((one, other));
-                }
-            }
-        }
-    }
-
-    /// The bumpers that press against another robot before the feet.
-    fn bumpers(&self, robot: usize) -> Buttons {
-        let mut buttons = Buttons::default();
-        for &(one, other) in self.contacts.iter().filter(|(one, other)| *one == robot || *other == robot) {
-            let other = if one == robot { other } else { one };
-            let place = self.robots[robot].pose.to_own(self.robots[other].pose.position);
-            buttons.left_bumper |= place.x > place.y.abs() && place.y >= 0.0;
-            buttons.right_bumper |= place.x > place.y.abs() && place.y <= 0.0;
-        }
-        buttons
     }
 }
 

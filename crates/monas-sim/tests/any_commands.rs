@@ -1,6 +1,10 @@
 //! Whatever robots are told, the world stays sane.
+#![allow(clippy::unwrap_used)] // a test stops at the first surprise
 
-use monas_sim::{Command, EventKind, GameState, Motion, Senses, Setup, Side, Velocity, World};
+use monas_sim::{
+    Command, EventKind, FieldGeometry, GameState, Motion, Parameter, Physics, Rules, Senses, Setup, Side,
+    Velocity, World,
+};
 use proptest::prelude::*;
 
 fn side() -> impl Strategy<Value = Side> {
@@ -45,6 +49,49 @@ fn check(world: &World, senses: &Senses) -> Result<(), TestCaseError> {
     let numbers = [senses.torso_roll, senses.torso_pitch, senses.odometry.position.norm(), senses.gyro[2]];
     prop_assert!(numbers.iter().all(|number| number.is_finite()), "{senses:?}");
     Ok(())
+}
+
+/// A setup with some of its numbers anywhere in their ranges.
+fn any_setup() -> impl Strategy<Value = Setup> {
+    let parts = prop::collection::vec((any::<prop::sample::Index>(), 0.0..=1.0), 0..12);
+    (any::<u64>(), parts).prop_map(|(seed, parts)| {
+        let mut setup = Setup::three_against_three(seed);
+        setup.rules.half_duration = 30.0;
+        let keys: Vec<&Parameter> =
+            FieldGeometry::keys().iter().chain(Physics::keys()).chain(Rules::keys()).collect();
+        for (index, part) in parts {
+            let parameter = index.get(&keys);
+            let value = parameter.least + part * (parameter.most - parameter.least);
+            let set = setup.field.set(parameter.key, value);
+            let set = set.or_else(|_| setup.physics.set(parameter.key, value));
+            set.or_else(|_| setup.rules.set(parameter.key, value)).unwrap();
+        }
+        setup
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_numbers_are_refused_or_leave_finite_numbers(
+        setup in any_setup(),
+        commands in prop::collection::vec((0usize..6, command()), 1..12),
+    ) {
+        let Ok(mut world) = World::new(setup) else { return Ok(()) };
+        let mut senses = Senses::default();
+        for (robot, command) in commands {
+            world.command(robot, command).unwrap();
+            for _ in 0..100 {
+                world.step();
+                world.sense(robot, &mut senses).unwrap();
+            }
+            let ball = world.ball();
+            prop_assert!(ball.position.norm().is_finite() && ball.velocity.norm().is_finite());
+            prop_assert!(world.robots().iter().all(|robot| robot.pose.position.norm().is_finite()));
+        }
+        prop_assert!(!monas_sim::render_svg(&world).contains("NaN"));
+    }
 }
 
 proptest! {

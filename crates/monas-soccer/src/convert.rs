@@ -13,7 +13,9 @@ use crate::functionality::interception::Crossing;
 use crate::functionality::localisation::{Localisation, Post, PostSighting};
 use crate::functionality::motion::{Order, Posture, Report, Request, Skill, Wish};
 use crate::functionality::walk::Walk;
-use crate::{Ball, GameState, LedRequest, MotionKind, MotionRequest, OtherRobot, PlayerState, Pose, SensorEntry};
+use crate::{
+    Ball, GameState, LedRequest, MotionKind, MotionRequest, OtherRobot, PlayerState, Pose, SensorEntry,
+};
 
 /// `time_to_cross` of a ball that will not cross, seconds.
 const NEVER: f64 = 1e6;

@@ -3,7 +3,8 @@
 use narukom::{Data, State};
 
 use crate::{
-    Ball, Calibration, GameState, HeadRequest, LedRequest, MotionRequest, MotionState, Pose, Robots, SensorEntry,
+    Ball, Calibration, GameState, HeadRequest, LedRequest, MotionRequest, MotionState, Pose, Robots,
+    SensorEntry,
 };
 
 narukom::topic! {

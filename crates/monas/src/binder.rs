@@ -61,7 +61,9 @@ impl<'a> Binder<'a> {
                 Ok(BoundChart { chart, functions: self.functions.clone(), activities })
             }
             None => Err(match source {
-                Some(source) => diagnostics.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect(),
+                Some(source) => {
+                    diagnostics.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect()
+                }
                 None => diagnostics,
             }),
         }

@@ -7,10 +7,9 @@ mod desk;
 mod post;
 mod values;
 
-use std::sync::Arc;
 use std::time::Duration;
 
-use narukom::{Blackboard, Moment, Narukom, TopicSlot};
+use narukom::{Moment, Narukom, TopicSlot};
 use yase::{Activation, Machine, MachineError, Outcome, Semantics, Status, TopicId};
 
 use crate::activity::Progress;
@@ -36,7 +35,6 @@ pub(crate) struct Runner {
     machine: Machine,
     desk: Desk,
     posts: Posts,
-    steps: u64,
     micro_steps: u64,
 }
 
@@ -56,7 +54,8 @@ impl Runner {
         let BoundChart { chart, functions, activities } = bound;
         let blackboards = chart.regions().map(|region| {
             let mut blackboard = home.hub.blackboard(home.agent);
-            let region = chart.region_node(region).map(|node| chart.statechart().path(node)).unwrap_or_default();
+            let region =
+                chart.region_node(region).map(|node| chart.statechart().path(node)).unwrap_or_default();
             let path = format!("{}/{}/{}/{region}", home.hub.host(), home.agent, home.number);
             blackboard.set_random(component_seed(home.seed, &path));
             Some(blackboard)
@@ -64,7 +63,7 @@ impl Runner {
         let desk = Desk::new(&chart, home, functions, blackboards.collect())?;
         let posts = Posts::new(&chart, activities);
         let machine = Machine::new(chart, Semantics::yase());
-        Ok(Runner { machine, desk, posts, steps: 0, micro_steps: 0 })
+        Ok(Runner { machine, desk, posts, micro_steps: 0 })
     }
 
     /// Enters the root. The first transitions are those of the first step.
@@ -92,7 +91,8 @@ impl Runner {
         if self.machine.needs_step(yase_moment(now)) {
             return now;
         }
-        let deadline = self.machine.next_deadline().map_or(Moment::MAX, |at| Moment::from_nanos(at.as_nanos()));
+        let deadline =
+            self.machine.next_deadline().map_or(Moment::MAX, |at| Moment::from_nanos(at.as_nanos()));
         deadline.min(self.posts.next_call())
     }
 
@@ -107,7 +107,6 @@ impl Runner {
     pub(crate) fn step(&mut self, now: Moment) -> Result<(), MachineError> {
         self.desk.begin_step(now);
         let summary = self.machine.run_to_completion(yase_moment(now), &mut self.desk);
-        self.steps += 1;
         let summary = summary?;
         self.micro_steps += u64::from(summary.micro_steps);
         self.leave(now);
@@ -117,8 +116,11 @@ impl Runner {
     /// The activities whose state was left while they waited to be called again end.
     fn leave(&mut self, now: Moment) {
         while let Some(activation) = self.desk.left.pop() {
-            let blackboard = self.desk.blackboards.get_mut(activation.region.0 as usize).and_then(Option::as_mut);
-            let (Some(blackboard), Some(activity)) = (blackboard, self.posts.leave(activation)) else { continue };
+            let blackboard =
+                self.desk.blackboards.get_mut(activation.region.0 as usize).and_then(Option::as_mut);
+            let (Some(blackboard), Some(activity)) = (blackboard, self.posts.leave(activation)) else {
+                continue;
+            };
             if let Err(failure) = call::stop(activity, blackboard) {
                 tracing::error!(agent = %self.desk.agent, "activity failed to stop: {failure}");
             }
@@ -200,10 +202,6 @@ impl Runner {
 
     pub(crate) fn is_over(&self) -> bool {
         matches!(self.machine.status(), Status::Finished | Status::Stopped)
-    }
-
-    pub(crate) fn steps(&self) -> u64 {
-        self.steps
     }
 
     pub(crate) fn micro_steps(&self) -> u64 {

@@ -81,8 +81,10 @@ impl Counts {
     pub(crate) fn table(&self, chart: &Chart, host: &str, agent: &str) -> ChartCoverage {
         let statechart = chart.statechart();
         let basic = statechart.nodes().filter(|(_, node)| node.kind == NodeKind::Basic);
-        let states =
-            basic.map(|(id, _)| StateCoverage { path: chart.short_path(id), entered: self.entered[id.0 as usize] });
+        let states = basic.map(|(id, _)| StateCoverage {
+            path: chart.short_path(id),
+            entered: self.entered[id.0 as usize],
+        });
         let transitions = statechart.transitions().map(|(id, transition)| TransitionCoverage {
             name: crate::chart::transition_name(chart, id),
             fired: self.fired[id.0 as usize],

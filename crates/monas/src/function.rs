@@ -4,8 +4,8 @@
 //! message, and a function that looked elsewhere would change unseen.
 
 use narukom::Message;
-use yase::vocabulary::ValueType;
 use yase::Value;
+use yase::vocabulary::ValueType;
 
 /// A function as [`function!`](crate::function) registers it.
 #[derive(Clone, Copy)]
@@ -109,7 +109,9 @@ impl Argument<'_> for i64 {
             Value::Int(number) => Some(number),
             Value::Uint(number) => i64::try_from(number).ok(),
             // A number written with a fraction is no whole number; one beyond 2^53 may be any of several.
-            Value::Float(number) if libm::trunc(number) == number && libm::fabs(number) < 9e15 => Some(number as i64),
+            Value::Float(number) if libm::trunc(number) == number && libm::fabs(number) < 9e15 => {
+                Some(number as i64)
+            }
             _ => None,
         }
     }

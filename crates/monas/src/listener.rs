@@ -49,8 +49,10 @@ pub struct MicroStep<'a> {
 #[derive(Clone, Default)]
 pub(crate) struct Listeners {
     /// None if nobody listens, so that nobody waits for a lock.
-    shared: Option<Arc<Mutex<Vec<Box<dyn ChartListener>>>>>,
+    shared: Option<Shared>,
 }
+
+type Shared = Arc<Mutex<Vec<Box<dyn ChartListener>>>>;
 
 impl Listeners {
     pub(crate) fn new(listeners: Vec<Box<dyn ChartListener>>) -> Listeners {

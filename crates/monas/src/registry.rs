@@ -1,6 +1,7 @@
 //! The registry: what a program can name in its configuration and its models.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use yase::diagnostic::nearest;
 
@@ -76,9 +77,10 @@ macro_rules! activity {
     };
 }
 
-type Make = Box<dyn Fn() -> Box<dyn Activity> + Send + Sync>;
+type Make = Arc<dyn Fn() -> Box<dyn Activity> + Send + Sync>;
 
 /// What is known under one name: one maker, or several, none of which can be meant.
+#[derive(Clone)]
 struct Entry {
     makers: Vec<(String, Make)>,
 }
@@ -86,7 +88,7 @@ struct Entry {
 /// Activities and functions by name, in alphabetical order.
 ///
 /// A name that two crates register is known as `crate::Name` only.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Registry {
     activities: BTreeMap<String, Entry>,
     functions: BTreeMap<String, Vec<FunctionDeclaration>>,
@@ -102,10 +104,10 @@ impl Registry {
     pub fn linked() -> Registry {
         let mut registry = Registry::empty();
         for declaration in ACTIVITIES {
-            let make: Make = Box::new(declaration.make);
+            let make: Make = Arc::new(declaration.make);
             let package = package(declaration.module);
             registry.insert(format!("{package}::{}", declaration.name), declaration.module, make);
-            registry.insert(declaration.name.into(), declaration.module, Box::new(declaration.make));
+            registry.insert(declaration.name.into(), declaration.module, Arc::new(declaration.make));
         }
         for declaration in FUNCTIONS {
             registry.functions.entry(declaration.name.into()).or_default().push(*declaration);
@@ -122,7 +124,7 @@ impl Registry {
         A: Activity + 'static,
         F: Fn() -> A + Send + Sync + 'static,
     {
-        self.insert(name.into(), "this program", Box::new(move || Box::new(make())));
+        self.insert(name.into(), "this program", Arc::new(move || Box::new(make())));
         self
     }
 
@@ -196,7 +198,9 @@ fn ambiguous(name: &str, makers: &[(String, Make)]) -> Error {
     let message = format!("activity `{name}` is registered in {}", modules.join(" and in "));
     let error = Error::new(ErrorKind::AmbiguousActivity, message);
     match modules.first() {
-        Some(module) if !name.contains("::") => error.with_hint(format!("write `{}::{name}`", package(module))),
+        Some(module) if !name.contains("::") => {
+            error.with_hint(format!("write `{}::{name}`", package(module)))
+        }
         _ => error,
     }
 }

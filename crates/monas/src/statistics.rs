@@ -156,7 +156,7 @@ mod tests {
     fn old_values_fade() {
         let mut average = Average::default();
         average.add(Duration::from_secs(1));
-        (0..200).for_each(|_| average.add(Duration::from_millis(1)));
+        (0..400).for_each(|_| average.add(Duration::from_millis(1)));
         assert_eq!(average.mean(), Duration::from_millis(1));
         assert_eq!(average.longest(), Duration::from_secs(1));
     }

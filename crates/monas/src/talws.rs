@@ -112,7 +112,8 @@ impl Talws {
         match self.hosts.iter_mut().find(|host| host.name == Talws::LOCAL) {
             Some(host) => host.agents.push(agent),
             None => {
-                let host = HostConfig { name: Talws::LOCAL.into(), agents: vec![agent], ..HostConfig::default() };
+                let host =
+                    HostConfig { name: Talws::LOCAL.into(), agents: vec![agent], ..HostConfig::default() };
                 self.hosts.push(host);
             }
         }

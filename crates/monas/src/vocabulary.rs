@@ -16,7 +16,8 @@ pub(crate) fn vocabulary<'a>(
     topics: impl IntoIterator<Item = &'a TopicDeclaration>,
     functions: &[FunctionDeclaration],
 ) -> Vocabulary {
-    let topics: BTreeMap<&str, &TopicDeclaration> = topics.into_iter().map(|topic| (topic.path(), topic)).collect();
+    let topics: BTreeMap<&str, &TopicDeclaration> =
+        topics.into_iter().map(|topic| (topic.path(), topic)).collect();
     let mut types = Types::default();
     topics.values().for_each(|topic| types.collect(topic.descriptor()));
     Vocabulary {
@@ -102,9 +103,12 @@ impl Types {
     fn value_type(&self, kind: FieldKind) -> Option<ValueType> {
         match kind {
             FieldKind::Bool => Some(ValueType::Bool),
-            FieldKind::I32 | FieldKind::I64 | FieldKind::U32 | FieldKind::U64 | FieldKind::F32 | FieldKind::F64 => {
-                Some(ValueType::Number)
-            }
+            FieldKind::I32
+            | FieldKind::I64
+            | FieldKind::U32
+            | FieldKind::U64
+            | FieldKind::F32
+            | FieldKind::F64 => Some(ValueType::Number),
             FieldKind::Text => Some(ValueType::Text),
             FieldKind::Enum(enumeration) => Some(ValueType::Enumeration(self.enumeration_name(enumeration))),
             FieldKind::Message(inner) => Some(ValueType::Message(self.message_name(inner()))),

@@ -42,7 +42,7 @@ pub struct Blackboard {
     /// Where `publish_all` collects them; kept for its memory.
     outgoing: Vec<Outgoing>,
     /// The topics on which something ends with the cycle.
-    open: Vec<TopicSlot>,
+    open: RefCell<Vec<TopicSlot>>,
     /// The messages of the last delivery: number and topic.
     arrivals: Vec<(u64, TopicSlot)>,
     window: Window,
@@ -73,7 +73,7 @@ impl Blackboard {
             written: Vec::new(),
             outbox: Vec::new(),
             outgoing: Vec::new(),
-            open: Vec::new(),
+            open: RefCell::default(),
             arrivals: Vec::new(),
             // Signals from before its time are not for it; states and histories are.
             window: Window { since: head, delivered: 0 },
@@ -148,9 +148,6 @@ impl Blackboard {
             }
             let Some(reading) = self.attach(slot) else { continue };
             reading.set_interest(interest);
-            if reading.is_open() {
-                self.open.push(slot);
-            }
         }
     }
 
@@ -166,14 +163,14 @@ impl Blackboard {
             let (false, Some(theirs)) = (is_signal, theirs) else { continue };
             if let Some(writing) = self.writing(*slot) {
                 writing.inherit(theirs.visible());
-                self.open.push(*slot);
+                self.open.get_mut().push(*slot);
             }
         }
     }
 
     /// What ends with the cycle ends.
     fn close(&mut self) {
-        let mut open = std::mem::take(&mut self.open);
+        let mut open = self.open.take();
         open.retain(|slot| {
             let place = &mut self.places[slot.index()];
             if let Some(reading) = place.reading.get_mut() {
@@ -184,7 +181,7 @@ impl Blackboard {
                 writing.is_open()
             })
         });
-        self.open = open;
+        self.open = RefCell::new(open);
     }
 
     fn deliver(&mut self) {
@@ -209,7 +206,7 @@ impl Blackboard {
         let was_open = reading.is_open();
         reading.deliver(ring, reader, &mut self.arrivals);
         if reading.is_open() && !was_open {
-            self.open.push(slot);
+            self.open.get_mut().push(slot);
         }
     }
 
@@ -331,6 +328,9 @@ impl Blackboard {
     }
 
     fn keep(&self, slot: TopicSlot, reading: Box<Reading>) {
+        if reading.is_open() {
+            self.open.borrow_mut().push(slot);
+        }
         if self.places[slot.index()].reading.set(reading).is_ok() {
             self.attached.borrow_mut().push(slot);
         }
@@ -411,7 +411,7 @@ impl Blackboard {
         write(writing, header);
         self.outbox.push(slot);
         if !was_open {
-            self.open.push(slot);
+            self.open.get_mut().push(slot);
         }
     }
 }

@@ -45,15 +45,15 @@ impl Reader {
 impl Reading {
     /// The reading that a blackboard would have by now if it had read the topic from the start.
     pub(crate) fn attach(topic: &TopicDeclaration, ring: &Ring, reader: Reader, window: Window) -> Reading {
+        let first = if topic.kind() == Kind::Signal { window.since } else { 0 };
         let mut reading = Reading {
             kind: topic.kind(),
             depth: topic.depth(),
-            cursor: ring.after(window.delivered),
+            cursor: ring.after(window.delivered.max(first)),
             samples: VecDeque::new(),
             lost: 0,
             interest: Cell::new(false),
         };
-        let first = if reading.kind == Kind::Signal { window.since } else { 0 };
         let entries = ring.from(0).filter(|entry| entry.order > first && entry.order <= window.delivered);
         entries.for_each(|entry| reading.accept(entry, reader));
         reading

@@ -147,4 +147,12 @@ mod tests {
         assert!(findings(vec![nao(), member("crates/monas-cli", &[("nao", false)])]).is_empty());
         assert_eq!(findings(vec![nao(), member("crates/monas-studio", &[("nao", false)])]).len(), 1);
     }
+
+    #[test]
+    fn the_arrows_of_this_house_go_down() {
+        let workspace = Workspace::read(&crate::root()).expect("the workspace can be read");
+        assert!(workspace.crates.len() >= 12, "every crate is looked at");
+        let found: Vec<String> = check(&workspace).iter().map(ToString::to_string).collect();
+        assert!(found.is_empty(), "{}", found.join("\n"));
+    }
 }

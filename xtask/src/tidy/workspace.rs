@@ -57,6 +57,11 @@ impl TextFile {
     pub(super) fn is_rust(&self) -> bool {
         self.path.extension().is_some_and(|extension| extension == "rs")
     }
+
+    /// Whether it holds nothing but tests.
+    fn is_test(&self) -> bool {
+        self.path.iter().any(|part| part == "tests" || part == "tests.rs")
+    }
 }
 
 impl Workspace {
@@ -73,10 +78,12 @@ impl Workspace {
         self.files.iter().find(|file| file.path == path)
     }
 
-    /// The Rust files of a crate's `src`, with what they hold.
+    /// The Rust files of a crate's `src` that are not tests.
     pub(super) fn sources<'a>(&'a self, of: &Crate) -> impl Iterator<Item = &'a TextFile> {
         let folder = of.folder.join("src");
-        self.files.iter().filter(move |file| file.is_rust() && file.path.starts_with(&folder))
+        let is_source =
+            move |file: &&TextFile| file.is_rust() && file.path.starts_with(&folder) && !file.is_test();
+        self.files.iter().filter(is_source)
     }
 }
 
@@ -148,4 +155,25 @@ fn relative(root: &Path, path: &Value) -> Result<PathBuf, Box<dyn Error>> {
 
 fn text(value: &Value) -> Result<&str, Box<dyn Error>> {
     value.as_str().ok_or_else(|| "cargo metadata is not in the form this program knows".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn test_modules_are_no_sources() {
+        let file = |path: &str| TextFile { path: path.into(), text: String::new() };
+        let files = ["src/lib.rs", "src/a/tests.rs", "src/tests/b.rs", "tests/c.rs", "src/d.txt"]
+            .map(|path| file(&format!("crates/yase/{path}")));
+        let member = Crate {
+            name: "yase".into(),
+            folder: "crates/yase".into(),
+            library: None,
+            dependencies: Vec::new(),
+        };
+        let workspace = Workspace { root: PathBuf::new(), crates: Vec::new(), files: files.into() };
+        let sources: Vec<&Path> = workspace.sources(&member).map(|file| file.path.as_path()).collect();
+        assert_eq!(sources, [Path::new("crates/yase/src/lib.rs")]);
+    }
 }

@@ -11,7 +11,8 @@ pub(super) fn check(liveness: &Liveness) -> Vec<Diagnostic> {
     let by_name = liveness.by_name();
     let uses = uses(liveness, &by_name);
     let mut diagnostics = duplicates(liveness, &by_name);
-    let mut search = Search { liveness, uses: &uses, states: vec![Visit::New; uses.len()], diagnostics: Vec::new() };
+    let mut search =
+        Search { liveness, uses: &uses, states: vec![Visit::New; uses.len()], diagnostics: Vec::new() };
     search.visit(0);
     let reached: Vec<bool> = search.states.iter().map(|state| *state != Visit::New).collect();
     (0..uses.len()).for_each(|formula| search.visit(formula));
@@ -23,7 +24,9 @@ pub(super) fn check(liveness: &Liveness) -> Vec<Diagnostic> {
 
 /// For each formula the formulas it names, with the place.
 fn uses(liveness: &Liveness, by_name: &BTreeMap<&str, usize>) -> Vec<Vec<(usize, Span)>> {
-    let of = |formula| liveness.names(formula).filter_map(|(name, span)| Some((*by_name.get(name)?, span))).collect();
+    let of = |formula| {
+        liveness.names(formula).filter_map(|(name, span)| Some((*by_name.get(name)?, span))).collect()
+    };
     liveness.formulas().iter().map(of).collect()
 }
 
@@ -33,7 +36,8 @@ fn duplicates(liveness: &Liveness, by_name: &BTreeMap<&str, usize>) -> Vec<Diagn
     later
         .map(|(_, formula)| {
             let message = format!("`{}` has a formula already", formula.name);
-            Diagnostic::error("E0213", formula.name_span, message).with_hint("give one of the two another name, or join them")
+            Diagnostic::error("E0213", formula.name_span, message)
+                .with_hint("give one of the two another name, or join them")
         })
         .collect()
 }
@@ -89,12 +93,14 @@ impl Search<'_> {
 
 fn unused(liveness: &Liveness, by_name: &BTreeMap<&str, usize>, reached: &[bool]) -> Vec<Diagnostic> {
     let formulas = liveness.formulas().iter().enumerate();
-    let unused = formulas.filter(|(index, formula)| !reached[*index] && by_name.get(formula.name.as_str()) == Some(index));
+    let unused = formulas
+        .filter(|(index, formula)| !reached[*index] && by_name.get(formula.name.as_str()) == Some(index));
     let root = liveness.formulas().first().map_or("", |formula| formula.name.as_str());
     unused
         .map(|(_, formula)| {
             let message = format!("`{}` is not part of `{root}`", formula.name);
-            let used = liveness.formulas().iter().flat_map(|formula| liveness.names(formula)).map(|(name, _)| name);
+            let used =
+                liveness.formulas().iter().flat_map(|formula| liveness.names(formula)).map(|(name, _)| name);
             let activities = used.filter(|name| !by_name.contains_key(name));
             Diagnostic::warning("E0215", formula.name_span, message).with_nearest(&formula.name, activities)
         })

@@ -93,7 +93,9 @@ impl Parser<'_> {
             Kind::Name => self.name(token),
             Kind::Open => self.open(Bracket::Group, token),
             Kind::OpenOption => self.open(Bracket::Option, token),
-            Kind::Bar if self.top.expects && self.begins_term(token.span.end) => self.open(Bracket::Copies, token),
+            Kind::Bar if self.top.expects && self.begins_term(token.span.end) => {
+                self.open(Bracket::Copies, token)
+            }
             Kind::Close => self.close(Bracket::Group, token),
             Kind::CloseOption => self.close(Bracket::Option, token),
             Kind::Star | Kind::Plus | Kind::Forever => self.postfix(token),
@@ -126,7 +128,12 @@ impl Parser<'_> {
     fn close(&mut self, bracket: Bracket, token: Token) {
         if self.open[bracket as usize] == 0 {
             let message = format!("nothing is open that `{}` could close", bracket.closing());
-            return self.error("E0206", token.span, message, &format!("add a `{}` or take this away", bracket.opening()));
+            return self.error(
+                "E0206",
+                token.span,
+                message,
+                &format!("add a `{}` or take this away", bracket.opening()),
+            );
         }
         while self.top.bracket != bracket {
             self.close_missing(token.span.start);
@@ -136,7 +143,8 @@ impl Parser<'_> {
 
     fn postfix(&mut self, token: Token) {
         if self.top.expects {
-            let message = format!("there is nothing before `{}` that it could repeat", self.spelled(token.span));
+            let message =
+                format!("there is nothing before `{}` that it could repeat", self.spelled(token.span));
             return self.error("E0209", token.span, message, "write the activity or group first, as in `x~`");
         }
         let Some(operand) = self.top.sequence.pop() else { return };
@@ -292,7 +300,12 @@ impl Parser<'_> {
         let span = level.opened.to(count.map_or(bar.span, |count| count.span));
         let Some(term) = self.end_expression(level) else { return self.operand(None) };
         if !matches!(self.liveness.term(term), Term::Forever(_)) {
-            self.error("E0212", self.liveness.span(term), "only what goes on forever is copied", "write `|x~|n`");
+            self.error(
+                "E0212",
+                self.liveness.span(term),
+                "only what goes on forever is copied",
+                "write `|x~|n`",
+            );
             return self.operand(Some(term));
         }
         let number = count.and_then(|count| self.spelled(count.span).parse().ok());

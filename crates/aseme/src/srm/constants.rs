@@ -25,9 +25,12 @@ impl Reader {
     }
 
     fn constant(&mut self, line: &str, span: Span) {
-        let Some((name, value)) = line.split_once('=').map(|(name, value)| (name.trim(), value.trim())) else {
+        let Some((name, value)) = line.split_once('=').map(|(name, value)| (name.trim(), value.trim()))
+        else {
             let hint = "write `name = value`";
-            return self.report(Diagnostic::error("E0237", span, "a constant has a name and a value").with_hint(hint));
+            return self.report(
+                Diagnostic::error("E0237", span, "a constant has a name and a value").with_hint(hint),
+            );
         };
         if !text::is_name(name) || name.starts_with(|c: char| c.is_ascii_digit()) {
             let message = format!("`{name}` is not a name for a constant");
@@ -64,7 +67,8 @@ fn constant_value(text: &str) -> Option<ConstantValue> {
 
 fn number(text: &str) -> Option<f64> {
     let plain = |text: &str| text.bytes().any(|byte| byte.is_ascii_digit()).then(|| text.parse().ok())?;
-    let with_unit = UNITS.iter().find_map(|(unit, factor)| Some((plain(text.strip_suffix(unit)?.trim_end())?, *factor)));
+    let with_unit =
+        UNITS.iter().find_map(|(unit, factor)| Some((plain(text.strip_suffix(unit)?.trim_end())?, *factor)));
     let (value, factor): (f64, f64) = plain(text).map(|value| (value, 1.0)).or(with_unit)?;
     Some(value * factor).filter(|value| value.is_finite())
 }

@@ -21,21 +21,39 @@ impl Reader {
         let text = &blanked[span.start..span.end];
         let Some(arrow) = text.find("->") else {
             let hint = "write `source -> target : expression`";
-            return self.report(Diagnostic::error("E0240", span, "an entry has a source, `->` and a target").with_hint(hint));
+            return self.report(
+                Diagnostic::error("E0240", span, "an entry has a source, `->` and a target").with_hint(hint),
+            );
         };
         let head_end = text[arrow..].find(':').map_or(text.len(), |colon| arrow + colon);
         let ends = self.ends(blanked, span, arrow, head_end);
         let expression_start = span.start + (head_end + 1).min(text.len());
-        let (expression, findings) = parse_transition_at(&blanked[expression_start..span.end], expression_start);
+        let (expression, findings) =
+            parse_transition_at(&blanked[expression_start..span.end], expression_start);
         self.diagnostics.extend(findings);
         let Some((source, target, modifiers)) = ends else { return };
         let Modifiers { priority, weight, interrupts } = modifiers;
         let text = one_line(text);
-        self.srm.transitions.push(TransitionEntry { source, target, priority, weight, interrupts, expression, text, span });
+        self.srm.transitions.push(TransitionEntry {
+            source,
+            target,
+            priority,
+            weight,
+            interrupts,
+            expression,
+            text,
+            span,
+        });
     }
 
     /// Everything before the expression.
-    fn ends(&mut self, blanked: &str, span: Span, arrow: usize, head_end: usize) -> Option<(Path, Path, Modifiers)> {
+    fn ends(
+        &mut self,
+        blanked: &str,
+        span: Span,
+        arrow: usize,
+        head_end: usize,
+    ) -> Option<(Path, Path, Modifiers)> {
         let left = Span::new(span.start, span.start + arrow);
         let right = Span::new(left.end + 2, span.start + head_end);
         let scope_end = blanked[left.start..left.end].find(':');
@@ -52,17 +70,10 @@ impl Reader {
         }
     }
 
-    /// A path, or the reason why it is none.
+    /// A path; if it is none, that is reported.
     pub(super) fn path(&mut self, blanked: &str, span: Span) -> Option<Path> {
-        let place = text::trimmed(blanked, span);
-        match Path::parse(&blanked[span.start..span.end]) {
-            Ok(path) => Some(path),
-            Err(reason) => {
-                let hint = "a path is names of states from the formula, separated by `/`, such as `takeAction/TrackBall`";
-                self.report(Diagnostic::error("E0241", place, reason).with_hint(hint));
-                None
-            }
-        }
+        let path = Path::parse(&blanked[span.start..span.end]);
+        path.map_err(|diagnostic| self.report(diagnostic.shifted(span.start))).ok()
     }
 
     fn modifiers(&mut self, blanked: &str, span: Span) -> Modifiers {
@@ -72,7 +83,9 @@ impl Reader {
             if modifiers.accept(word).is_none() {
                 let message = format!("`{word}` is not understood after a target");
                 let hint = "a target may be followed by `!priority`, `%weight` and `interrupts`";
-                self.report(Diagnostic::error("E0242", text::trimmed(blanked, span), message).with_hint(hint));
+                self.report(
+                    Diagnostic::error("E0242", text::trimmed(blanked, span), message).with_hint(hint),
+                );
             }
         }
         modifiers
@@ -112,7 +125,9 @@ fn modifiers_start(head: &str) -> usize {
 /// Whether blanks, or nothing, stand around a part of a text, and something in front of it.
 fn is_word(text: &str, at: usize, length: usize) -> bool {
     let (before, after) = (&text[..at], &text[at + length..]);
-    before.ends_with(char::is_whitespace) && !before.trim().is_empty() && !after.starts_with(text::is_name_character)
+    before.ends_with(char::is_whitespace)
+        && !before.trim().is_empty()
+        && !after.starts_with(text::is_name_character)
 }
 
 /// The entries of a section: a line that `begins` one, and the lines up to the next.

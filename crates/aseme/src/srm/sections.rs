@@ -55,7 +55,9 @@ pub(super) fn sections(blanked: &str, diagnostics: &mut Vec<Diagnostic>) -> Opti
             None => preamble.end = line.start,
         }
         if sections.iter().any(|(earlier, _)| *earlier == section) {
-            found.push(Diagnostic::error("E0232", name, "this section is there already").with_hint("join the two"));
+            found.push(
+                Diagnostic::error("E0232", name, "this section is there already").with_hint("join the two"),
+            );
         }
         sections.push((section, Span::new(name.end + 1, blanked.len())));
     }
@@ -71,7 +73,12 @@ pub(super) fn sections(blanked: &str, diagnostics: &mut Vec<Diagnostic>) -> Opti
 }
 
 /// The header a line begins with: the section, and the place of its name. A misspelt one is reported and taken for what it should be.
-fn header(blanked: &str, line: Span, current: Option<Section>, found: &mut Vec<Diagnostic>) -> Option<(Section, Span)> {
+fn header(
+    blanked: &str,
+    line: Span,
+    current: Option<Section>,
+    found: &mut Vec<Diagnostic>,
+) -> Option<(Section, Span)> {
     let (word, rest) = blanked[line.start..line.end].split_once(':')?;
     let name = Span::new(line.start + word.len() - word.trim_start().len(), line.start + word.len());
     let word = word.trim_start();

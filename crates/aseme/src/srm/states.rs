@@ -24,7 +24,9 @@ impl Reader {
     fn state(&mut self, blanked: &str, span: Span) {
         let Some(colon) = blanked[span.start..span.end].find(':').map(|colon| span.start + colon) else {
             let hint = "write `path : key = value`";
-            return self.report(Diagnostic::error("E0243", span, "an entry has a path, `:` and settings").with_hint(hint));
+            return self.report(
+                Diagnostic::error("E0243", span, "an entry has a path, `:` and settings").with_hint(hint),
+            );
         };
         let path = self.path(blanked, Span::new(span.start, colon));
         let text = one_line(&blanked[span.start..span.end]);
@@ -34,7 +36,17 @@ impl Reader {
         }
         let Some(path) = path else { return };
         let Settings { activity, priority, entry, exit, defer, duration } = settings;
-        self.srm.states.push(StateEntry { path, activity, priority, entry, exit, defer, duration, text, span });
+        self.srm.states.push(StateEntry {
+            path,
+            activity,
+            priority,
+            entry,
+            exit,
+            defer,
+            duration,
+            text,
+            span,
+        });
     }
 
     /// The places of keys and values.
@@ -47,7 +59,9 @@ impl Reader {
                 (None, None) => {
                     let place = text::trimmed(blanked, span);
                     let hint = format!("keys are {}", KEYS.join(", "));
-                    self.report(Diagnostic::error("E0243", place, "a setting is `key = value`").with_hint(hint));
+                    self.report(
+                        Diagnostic::error("E0243", place, "a setting is `key = value`").with_hint(hint),
+                    );
                     return settings;
                 }
             }

@@ -120,14 +120,18 @@ impl Page {
         let size = if matches!(class, "name" | "title") { NAME_SIZE } else { LABEL_SIZE };
         let base = y + size * 0.35;
         let text = escaped(text);
-        self.line(format_args!("<text class=\"{class}\" x=\"{x:.1}\" y=\"{base:.1}\" text-anchor=\"middle\">{text}</text>"));
+        self.line(format_args!(
+            "<text class=\"{class}\" x=\"{x:.1}\" y=\"{base:.1}\" text-anchor=\"middle\">{text}</text>"
+        ));
     }
 
     fn arrow(&mut self, arrow: &Arrow) {
         let (class, head) = if arrow.label.never { ("unused", "unused-head") } else { ("arrow", "head") };
         let points: Vec<String> = arrow.points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
         let points = points.join(" ");
-        self.line(format_args!("<polyline class=\"{class}\" points=\"{points}\" marker-end=\"url(#{head})\"/>"));
+        self.line(format_args!(
+            "<polyline class=\"{class}\" points=\"{points}\" marker-end=\"url(#{head})\"/>"
+        ));
     }
 
     fn label(&mut self, arrow: &Arrow) {

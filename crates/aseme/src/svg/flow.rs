@@ -25,7 +25,12 @@ const LOOP: f64 = 18.0;
 const LOOP_HEIGHT: f64 = 16.0;
 
 /// Arranges the children of an OR from (0, 0) on, draws the transitions between them, and returns the size of it all.
-pub(super) fn rows(chart: &Statechart, id: NodeId, transitions: &[&Transition], layout: &mut Layout) -> Point {
+pub(super) fn rows(
+    chart: &Statechart,
+    id: NodeId,
+    transitions: &[&Transition],
+    layout: &mut Layout,
+) -> Point {
     let children = chart.children(id);
     let mut flow = Flow::new(children, transitions, layout);
     flow.reserve_labels();
@@ -106,9 +111,11 @@ struct Flow {
 
 impl Flow {
     fn new(children: &[NodeId], transitions: &[&Transition], layout: &Layout) -> Flow {
-        let places: BTreeMap<NodeId, usize> = children.iter().enumerate().map(|(place, &child)| (child, place)).collect();
+        let places: BTreeMap<NodeId, usize> =
+            children.iter().enumerate().map(|(place, &child)| (child, place)).collect();
         let place = |node: NodeId| places.get(&node).copied().unwrap_or(0);
-        let ends: Vec<(usize, usize)> = transitions.iter().map(|it| (place(it.source), place(it.target))).collect();
+        let ends: Vec<(usize, usize)> =
+            transitions.iter().map(|it| (place(it.source), place(it.target))).collect();
         let (row_of, courses) = ranks(children.len(), &ends);
         let mut rows = vec![Vec::new(); row_of.iter().max().map_or(0, |last| last + 1)];
         row_of.iter().enumerate().for_each(|(place, &row)| rows[row].push(place));
@@ -117,13 +124,8 @@ impl Flow {
             Cell { size, row, left: size.0 / 2.0, right: size.0 / 2.0, height: size.1, ..Cell::default() }
         };
         let cells = children.iter().zip(row_of).map(cell).collect();
-        let edge = |((&transition, &(source, target)), course): ((&&Transition, &(usize, usize)), Course)| Edge {
-            source,
-            target,
-            course,
-            label: Label::of(transition),
-            at_target: true,
-            offset: 0.0,
+        let edge = |((&transition, &(source, target)), course): ((&&Transition, &(usize, usize)), Course)| {
+            Edge { source, target, course, label: Label::of(transition), at_target: true, offset: 0.0 }
         };
         let edges = transitions.iter().zip(&ends).zip(courses).map(edge).collect();
         Flow { cells, edges, rows, turns: Vec::new(), left: 0.0, right: 0.0, height: 0.0 }
@@ -174,8 +176,10 @@ impl Flow {
     fn place_rows(&mut self) {
         let mut top = 0.0;
         for row in &self.rows {
-            let highest = |of: fn(&Cell) -> f64| row.iter().map(|&place| of(&self.cells[place])).fold(0.0, f64::max);
-            let (above, height) = (highest(|cell| cell.above), highest(|cell| cell.height.max(cell.size.1 + cell.below)));
+            let highest =
+                |of: fn(&Cell) -> f64| row.iter().map(|&place| of(&self.cells[place])).fold(0.0, f64::max);
+            let (above, height) =
+                (highest(|cell| cell.above), highest(|cell| cell.height.max(cell.size.1 + cell.below)));
             if !self.turns.is_empty() {
                 top += above + HEAD + if above > 0.0 { LABEL_GAP } else { 0.0 };
             }
@@ -198,7 +202,12 @@ impl Flow {
     fn draw_down(&self, edge: &Edge) -> Drawn {
         let (source, target) = (&self.cells[edge.source], &self.cells[edge.target]);
         let turn = self.turns[source.row];
-        let mut points = vec![(source.axis, source.bottom()), (source.axis, turn), (target.axis, turn), (target.axis, target.top)];
+        let mut points = vec![
+            (source.axis, source.bottom()),
+            (source.axis, turn),
+            (target.axis, turn),
+            (target.axis, target.top),
+        ];
         if source.axis == target.axis {
             points.drain(1..3);
         }
@@ -231,7 +240,10 @@ impl Flow {
         let lane = border + side * (TURN + room);
         let from = (source.axis + side * source.size.0 / 2.0, source.middle());
         let to = (target.axis + side * target.size.0 / 2.0, target.middle());
-        let drawn = Drawn { points: vec![from, (lane, from.1), (lane, to.1), to], label_at: (lane, (from.1 + to.1) / 2.0) };
+        let drawn = Drawn {
+            points: vec![from, (lane, from.1), (lane, to.1), to],
+            label_at: (lane, (from.1 + to.1) / 2.0),
+        };
         if side < 0.0 {
             self.left = lane - room;
         } else {

@@ -3,7 +3,9 @@
 use yase::{Node, NodeId, NodeKind, Statechart, Transition};
 
 use super::flow;
-use super::lettering::{LABEL_LINE, LABEL_SIZE, NAME_LINE, NAME_SIZE, formula_text, widest, wrap, wrap_condition};
+use super::lettering::{
+    LABEL_LINE, LABEL_SIZE, NAME_LINE, NAME_SIZE, formula_text, widest, wrap, wrap_condition,
+};
 use crate::outline::{modifiers, refinements};
 
 /// Between a border and what is inside.
@@ -59,7 +61,10 @@ pub(super) struct Label {
 impl Label {
     pub(super) fn of(transition: &Transition) -> Label {
         let text = format!("{} {}", modifiers(transition), transition.expression);
-        Label { lines: wrap_condition(&text, LABEL_SIZE, LABEL_WIDTH), never: transition.expression.is_never() }
+        Label {
+            lines: wrap_condition(&text, LABEL_SIZE, LABEL_WIDTH),
+            never: transition.expression.is_never(),
+        }
     }
 
     /// Width and height; nothing if nothing is written.

@@ -47,7 +47,10 @@ fn fill(pieces: impl Iterator<Item = String>, size: f64, max_width: f64) -> Vec<
     let mut lines: Vec<String> = Vec::new();
     for piece in pieces {
         match lines.last_mut() {
-            Some(line) if !piece.starts_with('/') && width(line, size) + width(&piece, size) + 0.34 * size <= max_width => {
+            Some(line)
+                if !piece.starts_with('/')
+                    && width(line, size) + width(&piece, size) + 0.34 * size <= max_width =>
+            {
                 line.extend([" ", &piece]);
             }
             _ => lines.push(piece),
@@ -102,7 +105,10 @@ mod tests {
     #[test]
     fn conditions_break_before_operators_and_actions() {
         let text = "[alpha && beta && gamma] / StartTimeout(t, 100ms)";
-        assert_eq!(wrap_condition(text, LABEL_SIZE, 1000.0), ["[alpha && beta && gamma]", "/ StartTimeout(t, 100ms)"]);
+        assert_eq!(
+            wrap_condition(text, LABEL_SIZE, 1000.0),
+            ["[alpha && beta && gamma]", "/ StartTimeout(t, 100ms)"]
+        );
         let narrow = width("[alpha && beta &&", LABEL_SIZE);
         assert_eq!(wrap_condition(text, LABEL_SIZE, narrow)[..2], ["[alpha && beta", "&& gamma]"]);
     }

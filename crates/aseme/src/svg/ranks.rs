@@ -28,7 +28,9 @@ pub(super) fn ranks(count: usize, edges: &[(usize, usize)]) -> (Vec<usize>, Vec<
             rows[target] = rows[target].max(rows[source] + 1);
         }
     }
-    let course = |(index, (source, target)): (usize, &(usize, usize))| match rows[*target].checked_sub(rows[*source]) {
+    let course = |(index, (source, target)): (usize, &(usize, usize))| match rows[*target]
+        .checked_sub(rows[*source])
+    {
         _ if source == target => Course::Loop,
         Some(1) => Course::Down,
         Some(2..) if !is_back[index] => Course::Skip,

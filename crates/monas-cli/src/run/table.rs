@@ -7,6 +7,7 @@ use comfy_table::{CellAlignment, Table};
 use monas_match::{AgentSummary, Summary, TeamSummary};
 use serde_json::{Value, json};
 
+use super::coverage;
 use crate::arguments::Format;
 
 /// Writes the results; `wall` is how long the match took.
@@ -25,6 +26,10 @@ pub(super) fn write(
 fn write_text(out: &mut dyn Write, summary: &Summary, wall: Duration) -> io::Result<()> {
     writeln!(out, "{}\n", teams(&summary.teams))?;
     writeln!(out, "{}\n", agents(&summary.agents))?;
+    coverage::by_role(&summary.coverage).iter().try_for_each(|role| coverage::write(out, role))?;
+    if let Some(time) = summary.time_to_first_touch {
+        writeln!(out, "from kick-off to the first touch: {:.1} s on average", time.as_secs_f64())?;
+    }
     let (simulated, taken) = (summary.simulated.as_secs_f64(), wall.as_secs_f64());
     writeln!(
         out,
@@ -37,13 +42,21 @@ fn write_text(out: &mut dyn Write, summary: &Summary, wall: Duration) -> io::Res
 
 /// A row for each figure, a column for each team.
 fn teams(teams: &[TeamSummary]) -> Table {
-    let figures: [(&str, fn(&TeamSummary) -> String); 6] = [
+    let figures: [(&str, fn(&TeamSummary) -> String); 10] = [
         ("goals", |team| team.goals.to_string()),
+        ("kicks", |team| team.kicks.to_string()),
         ("shots", |team| team.shots.to_string()),
         ("saves", |team| team.saves.to_string()),
         ("falls", |team| team.falls.to_string()),
         ("penalties", |team| team.penalties.to_string()),
-        ("possession", |team| format!("{:.0} %", team.possession * 100.0)),
+        ("possession", |team| percentage(team.possession)),
+        ("dives and falls to a side", |team| team.actions.to_string()),
+        ("of these to the ball's side", |team| {
+            share(team.actions_to_ball, team.actions).map_or_else(none, percentage)
+        }),
+        ("back between the posts after", |team| {
+            return_time(team).map_or_else(none, |seconds| format!("{seconds:.1} s"))
+        }),
     ];
     let header = std::iter::once(String::new()).chain(teams.iter().map(|team| team.name.clone()));
     let mut table = with_header(header);
@@ -51,6 +64,24 @@ fn teams(teams: &[TeamSummary]) -> Table {
         table.add_row(std::iter::once(name.to_string()).chain(teams.iter().map(figure)));
     }
     numbers_to_the_right(table, 1)
+}
+
+fn percentage(share: f64) -> String {
+    format!("{:.0} %", share * 100.0)
+}
+
+/// What stands where there was nothing to measure.
+fn none() -> String {
+    "-".into()
+}
+
+fn share(part: u32, whole: u32) -> Option<f64> {
+    (whole > 0).then(|| f64::from(part) / f64::from(whole))
+}
+
+/// How long the goalie needs on average from an action until it stands between its posts again, s.
+fn return_time(team: &TeamSummary) -> Option<f64> {
+    (team.returns > 0).then(|| team.return_seconds / f64::from(team.returns))
 }
 
 fn agents(agents: &[AgentSummary]) -> Table {
@@ -87,20 +118,29 @@ fn objects(summary: &Summary, wall: Duration) -> Vec<Value> {
         .map(|event| json!({"kind": "event", "seconds": event.time.as_secs_f64(), "text": event.text}));
     let teams = summary.teams.iter().map(team_object);
     let agents = summary.agents.iter().map(agent_object);
+    let roles = coverage::by_role(&summary.coverage);
     let run = json!({
         "kind": "run",
         "simulated_seconds": summary.simulated.as_secs_f64(),
         "wall_seconds": wall.as_secs_f64(),
         "simulated_seconds_per_wall_second": speed(summary, wall),
+        "seconds_to_first_touch": summary.time_to_first_touch.map(|time| time.as_secs_f64()),
         "messages": summary.messages,
         "hash": summary.hash,
     });
-    events.chain(teams).chain(agents).chain(std::iter::once(run)).collect()
+    events
+        .chain(teams)
+        .chain(agents)
+        .chain(roles.iter().map(coverage::object))
+        .chain(std::iter::once(run))
+        .collect()
 }
 
 fn team_object(team: &TeamSummary) -> Value {
     json!({"kind": "team", "name": team.name, "colour": team.colour, "goals": team.goals, "shots": team.shots,
-        "saves": team.saves, "falls": team.falls, "penalties": team.penalties, "possession": team.possession})
+        "saves": team.saves, "falls": team.falls, "penalties": team.penalties, "possession": team.possession,
+        "kicks": team.kicks, "actions": team.actions, "actions_to_ball": team.actions_to_ball,
+        "return_seconds": return_time(team)})
 }
 
 fn agent_object(agent: &AgentSummary) -> Value {

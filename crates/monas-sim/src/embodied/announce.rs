@@ -44,11 +44,8 @@ fn in_frame_of_team(pose: Pose, attacks: GoalColour) -> Pose {
 
 /// Whether an announcement says something new, but for the clocks in it.
 pub(super) fn is_news(now: &Announcement, before: &Announcement) -> bool {
-    let timeless = |announcement: &Announcement| Announcement {
-        seconds_left: 0.0,
-        penalty_left: 0.0,
-        ..announcement.clone()
-    };
+    let timeless =
+        |announcement: &Announcement| Announcement { seconds_left: 0.0, penalty_left: 0.0, ..*announcement };
     timeless(now) != timeless(before)
 }
 

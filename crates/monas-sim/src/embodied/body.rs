@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use monas_robot::{
-    Actuators, Anatomy, Announcement, Camera, Error, ErrorKind, Limits, ObjectKind, Percepts, Posture, Robot, Skill,
+    Actuators, Anatomy, Announcement, Camera, Error, ErrorKind, Limits, ObjectKind, Percepts, Posture, Robot,
+    Skill,
 };
 use narukom::Moment;
 
@@ -45,7 +46,7 @@ impl FieldBody {
         if !said.is_none_or(stale) {
             return None;
         }
-        self.announced = Some((now, announcement.clone()));
+        self.announced = Some((now, announcement));
         Some(announcement)
     }
 
@@ -121,7 +122,7 @@ impl Robot for FieldBody {
     }
 
     fn act(&mut self, _now: Moment, actuators: &Actuators) -> Result<(), Error> {
-        self.command = actuators.clone();
+        self.command = *actuators;
         self.skill.command(actuators);
         self.drive()
     }
@@ -195,7 +196,8 @@ mod tests {
     use crate::{FieldSide, RobotSetup, Setup, TeamColour, TeamSetup, World};
 
     fn pitch() -> Pitch {
-        let team = |number, colour, plays| TeamSetup { number, name: format!("team {number}"), colour, plays };
+        let team =
+            |number, colour, plays| TeamSetup { number, name: format!("team {number}"), colour, plays };
         let setup = Setup {
             field: Default::default(),
             physics: Default::default(),

@@ -1,22 +1,31 @@
 //! What the tests of worlds share.
 #![allow(dead_code)] // each test file uses a part
 
+pub(crate) mod script;
+
 use monas_sim::{Command, EventKind, GameState, Motion, Pose, Rules, Setup, Vector, World};
 
 /// A world of three against three.
-pub fn world(seed: u64) -> World {
+pub(crate) fn world(seed: u64) -> World {
     World::new(Setup::three_against_three(seed)).unwrap()
 }
 
 /// A world whose rules are changed.
-pub fn world_with_rules(seed: u64, change: impl FnOnce(&mut Rules)) -> World {
+pub(crate) fn world_with_rules(seed: u64, change: impl FnOnce(&mut Rules)) -> World {
     let mut setup = Setup::three_against_three(seed);
     change(&mut setup.rules);
     World::new(setup).unwrap()
 }
 
+/// A world in play, without the time before it.
+pub(crate) fn playing(seed: u64) -> World {
+    play(world_with_rules(seed, |rules| {
+        (rules.initial_duration, rules.ready_duration, rules.set_duration) = (0.0, 0.0, 0.0);
+    }))
+}
+
 /// Steps until play begins.
-pub fn play(mut world: World) -> World {
+pub(crate) fn play(mut world: World) -> World {
     while world.referee().state() != GameState::Playing {
         world.step();
     }
@@ -24,7 +33,7 @@ pub fn play(mut world: World) -> World {
 }
 
 /// Puts every robot but `kept` into the corners, out of the way.
-pub fn clear_field(world: &mut World, kept: &[usize]) {
+pub(crate) fn clear_field(world: &mut World, kept: &[usize]) {
     for robot in (0..world.robots().len()).filter(|robot| !kept.contains(robot)) {
         let x = -2.9 + 0.4 * robot as f64;
         world.place_robot(robot, Pose::new(x, 2.5, 0.0)).unwrap();
@@ -33,19 +42,19 @@ pub fn clear_field(world: &mut World, kept: &[usize]) {
 }
 
 /// Steps for a time.
-pub fn run(world: &mut World, seconds: f64) {
+pub(crate) fn run(world: &mut World, seconds: f64) {
     for _ in 0..(seconds / monas_sim::STEP).round() as usize {
         world.step();
     }
 }
 
 /// The events of the world that are wanted.
-pub fn events(world: &World, wanted: impl Fn(&EventKind) -> bool) -> Vec<EventKind> {
+pub(crate) fn events(world: &World, wanted: impl Fn(&EventKind) -> bool) -> Vec<EventKind> {
     world.events().iter().map(|event| event.kind).filter(|kind| wanted(kind)).collect()
 }
 
 /// Rolls the ball into the goal at the end with this sign.
-pub fn roll_into_goal(world: &mut World, sign: f64) {
+pub(crate) fn roll_into_goal(world: &mut World, sign: f64) {
     world.place_ball(Vector::new(sign * 2.6, 0.4), Vector::new(sign * 2.0, 0.0)).unwrap();
     run(world, 0.4);
 }

@@ -15,7 +15,9 @@ pub struct LedHandler {
 impl Activity for LedHandler {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let colours = LedRequest {
-            chest: blackboard.read(topics::GAME_STATE).map_or(lights::OFF, |game| lights::chest(game.state())),
+            chest: blackboard
+                .read(topics::GAME_STATE)
+                .map_or(lights::OFF, |game| lights::chest(game.state())),
             left_eye: lights::ball_eye(blackboard.read(topics::BALL).is_some_and(|ball| ball.found)),
             right_eye: lights::pose_eye(blackboard.read(topics::POSE).map_or(0.0, |pose| pose.confidence)),
         };
@@ -45,7 +47,10 @@ mod tests {
         let (mut stage, mut activity) = (Stage::new(), LedHandler::default());
         stage.run(&mut activity);
         assert_eq!(stage.said(topics::LEDS), Some(LedRequest::default()));
-        stage.tell(topics::GAME_STATE, GameState { player_state: PlayerState::Playing.into(), ..Default::default() });
+        stage.tell(
+            topics::GAME_STATE,
+            GameState { player_state: PlayerState::Playing.into(), ..Default::default() },
+        );
         stage.tell(topics::BALL, Ball { found: true, ..Default::default() });
         stage.tell(topics::POSE, Pose { confidence: 1.0, ..Default::default() });
         stage.run(&mut activity);

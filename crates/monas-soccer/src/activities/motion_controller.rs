@@ -44,7 +44,8 @@ impl Default for MotionController {
 impl Activity for MotionController {
     fn configure(&mut self, parameters: &Parameters) {
         let speed = |key, speed: &mut f64| {
-            let positive = |text: &str| text.parse().ok().filter(|value: &f64| value.is_finite() && *value > 0.0);
+            let positive =
+                |text: &str| text.parse().ok().filter(|value: &f64| value.is_finite() && *value > 0.0);
             *speed = parameters.read(key, "a speed above 0", positive).unwrap_or(*speed);
         };
         speed("walk_forward", &mut self.gait.forward);
@@ -56,7 +57,9 @@ impl Activity for MotionController {
 
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         // Without a body that feels there is none to command.
-        let Some(report) = blackboard.read(body::SENSORS).map(convert::report) else { return Ok(Progress::Done) };
+        let Some(report) = blackboard.read(body::SENSORS).map(convert::report) else {
+            return Ok(Progress::Done);
+        };
         let now = blackboard.now();
         let allowed = may_move(blackboard);
         let order = self.motion.step(now, report, request(blackboard), allowed);

@@ -28,7 +28,13 @@ struct Button {
 
 impl Default for RobotController {
     fn default() -> RobotController {
-        RobotController { goalkeeper: 1, game: Game::default(), heard: None, button: Button::default(), said: None }
+        RobotController {
+            goalkeeper: 1,
+            game: Game::default(),
+            heard: None,
+            button: Button::default(),
+            said: None,
+        }
     }
 }
 
@@ -116,7 +122,14 @@ mod tests {
     use crate::activities::stage::{Stage, TICK};
 
     fn announcement(phase: monas_robot::GamePhase, penalized: bool) -> Announcement {
-        Announcement { phase: phase.into(), penalized, team: 3, number: 2, field_length: 6.0, ..Announcement::default() }
+        Announcement {
+            phase: phase.into(),
+            penalized,
+            team: 3,
+            number: 2,
+            field_length: 6.0,
+            ..Announcement::default()
+        }
     }
 
     #[test]
@@ -124,13 +137,20 @@ mod tests {
         let (mut stage, mut activity) = (Stage::new(), RobotController::default());
         stage.run(&mut activity);
         assert_eq!(stage.said(topics::GAME_STATE).unwrap().player_state(), PlayerState::Initial);
-        stage.tell(body::ANNOUNCEMENT, announcement(monas_robot::GamePhase::Playing, false)).run(&mut activity);
+        stage
+            .tell(body::ANNOUNCEMENT, announcement(monas_robot::GamePhase::Playing, false))
+            .run(&mut activity);
         let game = stage.said(topics::GAME_STATE).unwrap();
-        assert_eq!((game.player_state(), game.team, game.number, game.goalkeeper), (PlayerState::Playing, 3, 2, false));
+        assert_eq!(
+            (game.player_state(), game.team, game.number, game.goalkeeper),
+            (PlayerState::Playing, 3, 2, false)
+        );
         assert_eq!(stage.heard(topics::GAME_STATE), 0);
         stage.wait(TICK).run(&mut activity);
         assert_eq!(stage.heard(topics::GAME_STATE), 0);
-        stage.tell(body::ANNOUNCEMENT, announcement(monas_robot::GamePhase::Playing, true)).run(&mut activity);
+        stage
+            .tell(body::ANNOUNCEMENT, announcement(monas_robot::GamePhase::Playing, true))
+            .run(&mut activity);
         assert_eq!(stage.said(topics::GAME_STATE).unwrap().player_state(), PlayerState::Penalized);
     }
 

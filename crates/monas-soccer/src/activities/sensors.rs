@@ -20,7 +20,8 @@ impl Activity for Sensors {
         let last = blackboard.read(topics::SENSORS).copied();
         let felt_until = last.map_or(0, |entry| entry.measured_at);
         let mut odometry = last.map_or(Isometry2::identity(), |entry| entry.odometry());
-        let felt = blackboard.recent(body::SENSORS, Duration::MAX).filter(|felt| felt.measured_at > felt_until);
+        let felt =
+            blackboard.recent(body::SENSORS, Duration::MAX).filter(|felt| felt.measured_at > felt_until);
         let entries: Vec<SensorEntry> = felt
             .map(|felt| {
                 odometry *= convert::odometry(felt.message);
@@ -76,6 +77,9 @@ mod tests {
         stage.wait(TICK).run(&mut Sensors);
         assert_eq!(stage.heard(topics::SENSORS), 0);
         stage.tell(body::SENSORS, felt(6, 0.1)).run(&mut Sensors);
-        assert!((stage.said(topics::SENSORS).unwrap().odometry_x - 0.6).abs() < 1e-12, "another instance goes on");
+        assert!(
+            (stage.said(topics::SENSORS).unwrap().odometry_x - 0.6).abs() < 1e-12,
+            "another instance goes on"
+        );
     }
 }

@@ -16,7 +16,11 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// A motion under way: its number and since when.
 type UnderWay = Option<(u64, Moment)>;
 
-fn perform(under_way: &mut UnderWay, kind: MotionKind, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
+fn perform(
+    under_way: &mut UnderWay,
+    kind: MotionKind,
+    blackboard: &mut Blackboard,
+) -> Result<Progress, BoxError> {
     let now = blackboard.now();
     let Some((number, since)) = *under_way else {
         *under_way = Some((request_skill(blackboard, kind)?, now));
@@ -112,12 +116,12 @@ mod tests {
     fn it_lasts_until_its_own_motion_is_over_and_can_be_asked_for_again() {
         let (mut stage, mut activity) = (Stage::new(), LeftKick::default());
         stage.tell(topics::MOTION_STATE, state(6));
-        assert_ne!(stage.run(&mut activity), Progress::Done);
+        assert!(!stage.run(&mut activity));
         assert_eq!(stage.said(topics::MOTION).unwrap().number, 7, "beyond what was ever done");
-        assert_ne!(stage.run(&mut activity), Progress::Done);
+        assert!(!stage.run(&mut activity));
         stage.tell(topics::MOTION_STATE, state(7));
-        assert_eq!(stage.run(&mut activity), Progress::Done);
-        assert_ne!(stage.run(&mut activity), Progress::Done);
+        assert!(stage.run(&mut activity));
+        assert!(!stage.run(&mut activity));
         assert_eq!(stage.said(topics::MOTION).unwrap().number, 8);
     }
 

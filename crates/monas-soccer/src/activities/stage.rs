@@ -34,12 +34,12 @@ impl Stage {
         self
     }
 
-    /// Calls the activity once, as a cycle of its own.
-    pub(crate) fn run(&mut self, activity: &mut dyn Activity) -> Progress {
+    /// Calls the activity once, as a cycle of its own, and answers whether it is done.
+    pub(crate) fn run(&mut self, activity: &mut dyn Activity) -> bool {
         self.actor.process_messages(self.now);
         let progress = activity.execute(&mut self.actor).unwrap();
         self.actor.publish_all(self.now);
-        progress
+        progress == Progress::Done
     }
 
     /// Whether a call of the activity fails, and how.

@@ -83,7 +83,13 @@ mod tests {
 
     fn run(ball: Ball, goalkeeper: bool, pose: Pose) -> (HeadRequest, Option<crate::MotionRequest>) {
         let (mut stage, mut activity) = (Stage::new(), TrackBall::default());
-        let game = GameState { goalkeeper, field_length: 6.0, field_width: 4.0, goal_width: 1.4, ..Default::default() };
+        let game = GameState {
+            goalkeeper,
+            field_length: 6.0,
+            field_width: 4.0,
+            goal_width: 1.4,
+            ..Default::default()
+        };
         stage.tell(topics::BALL, ball).tell(topics::GAME_STATE, game).tell(topics::POSE, pose);
         stage.now = narukom::Moment::from_nanos(9_300_000_000);
         stage.run(&mut activity);

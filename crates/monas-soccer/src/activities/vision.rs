@@ -294,7 +294,8 @@ mod tests {
                 distance,
                 bearing,
             });
-            let image = Sightings { taken_at: measured_at, objects: objects.collect(), ..Sightings::default() };
+            let image =
+                Sightings { taken_at: measured_at, objects: objects.collect(), ..Sightings::default() };
             self.stage.tell(body::SIGHTINGS, image);
             self.stage.run(&mut Sensors);
             self.stage.run(&mut self.vision);
@@ -319,13 +320,19 @@ mod tests {
         eye.stage.tell(topics::GAME_STATE, Eye::placed(1, 0.0, 0.0, 0.0));
         assert!(!eye.show(0.0, &[]).found);
         let ball = eye.ball(1.0, 0.5);
-        assert!(ball.found && (ball.distance - 1.0).abs() < 0.01 && (ball.bearing - 0.5).abs() < 0.01, "{ball:?}");
+        assert!(
+            ball.found && (ball.distance - 1.0).abs() < 0.01 && (ball.bearing - 0.5).abs() < 0.01,
+            "{ball:?}"
+        );
         assert_eq!((ball.seen_at, ball.age), (eye.stage.now.as_nanos(), 0.0));
         for _ in 0..12 {
             assert!(eye.show(0.0, &[]).found);
         }
         let ball = eye.show(0.0, &[]);
-        assert!(!ball.found && ball.age > 1.2 && (ball.bearing - 0.5).abs() < 0.01, "its bearing is kept: {ball:?}");
+        assert!(
+            !ball.found && ball.age > 1.2 && (ball.bearing - 0.5).abs() < 0.01,
+            "its bearing is kept: {ball:?}"
+        );
     }
 
     #[test]
@@ -404,7 +411,10 @@ mod tests {
         let mut eye = Eye::new();
         eye.stage.tell(topics::GAME_STATE, Eye::placed(1, 0.0, 0.0, 0.0));
         eye.show(0.0, &[]);
-        eye.show(0.0, &[(ObjectKind::Robot, Colour::Red, 1.0, 0.0), (ObjectKind::Robot, Colour::Blue, 2.0, 0.5)]);
+        eye.show(
+            0.0,
+            &[(ObjectKind::Robot, Colour::Red, 1.0, 0.0), (ObjectKind::Robot, Colour::Blue, 2.0, 0.5)],
+        );
         let robots = eye.stage.said(topics::ROBOTS).unwrap();
         assert_eq!(robots.nearest, 1.0);
         let robots = robots.robots;

@@ -31,7 +31,8 @@ pub(super) fn request_gaze(blackboard: &mut Blackboard, gaze: Gaze) -> Result<()
 }
 
 pub(super) fn request_scan(blackboard: &mut Blackboard) -> Result<(), BoxError> {
-    Ok(blackboard.publish(topics::HEAD, HeadRequest { mode: HeadMode::Scan.into(), ..HeadRequest::default() })?)
+    Ok(blackboard
+        .publish(topics::HEAD, HeadRequest { mode: HeadMode::Scan.into(), ..HeadRequest::default() })?)
 }
 
 fn publish(blackboard: &mut Blackboard, request: MotionRequest) -> Result<(), BoxError> {

@@ -14,7 +14,8 @@ const FROM_POST: f64 = 0.15;
 pub fn shot_target(field: &Field, ball: Point2<f64>, opponents: &[Point2<f64>]) -> Point2<f64> {
     let goal = field.goal(Goal::Opponent);
     let reach = (field.goal_width / 2.0 - FROM_POST).max(0.0);
-    let mut shadows: Vec<(f64, f64)> = opponents.iter().filter_map(|robot| shadow(goal.x, ball, *robot)).collect();
+    let mut shadows: Vec<(f64, f64)> =
+        opponents.iter().filter_map(|robot| shadow(goal.x, ball, *robot)).collect();
     shadows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let gap = widest_gap(-reach, reach, &shadows);
     Point2::new(goal.x, gap.map_or(goal.y, |(low, high)| (low + high) / 2.0))

@@ -28,7 +28,14 @@ pub struct Alignment {
 
 impl Default for Alignment {
     fn default() -> Alignment {
-        Alignment { kick_x: 0.15, kick_y: 0.05, turn_x: 0.205, tolerance: 0.12, patience: 2.0, turn_speed: 0.6 }
+        Alignment {
+            kick_x: 0.15,
+            kick_y: 0.05,
+            turn_x: 0.205,
+            tolerance: 0.12,
+            patience: 2.0,
+            turn_speed: 0.6,
+        }
     }
 }
 
@@ -83,14 +90,19 @@ mod tests {
         (ball.x - 0.15).abs() <= 0.025 && (ball.y.abs() - 0.05).abs() <= 0.025
     }
 
-    fn align(mut field_from_robot: Isometry2<f64>, ball: Point2<f64>, target: Point2<f64>) -> (f64, Isometry2<f64>) {
+    fn align(
+        mut field_from_robot: Isometry2<f64>,
+        ball: Point2<f64>,
+        target: Point2<f64>,
+    ) -> (f64, Isometry2<f64>) {
         let mut seconds = 0.0;
         while seconds < 60.0 {
             let robot_from_field = field_from_robot.inverse();
             if at_kick_point(robot_from_field * ball) {
                 break;
             }
-            let walk = GAIT.limit(&Alignment::default().walk(robot_from_field * ball, robot_from_field * target));
+            let walk =
+                GAIT.limit(&Alignment::default().walk(robot_from_field * ball, robot_from_field * target));
             field_from_robot *= pose(walk.ahead * 0.1, walk.left * 0.1, walk.turn * 0.1);
             seconds += 0.1;
         }

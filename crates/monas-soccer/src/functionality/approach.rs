@@ -102,7 +102,11 @@ mod tests {
     const DT: f64 = 0.1;
 
     /// Walks until the ball is within `near`, without noise; the seconds it took and the final pose.
-    fn walk_up(mut field_from_robot: Isometry2<f64>, ball: Point2<f64>, target: Point2<f64>) -> (f64, Isometry2<f64>, f64) {
+    fn walk_up(
+        mut field_from_robot: Isometry2<f64>,
+        ball: Point2<f64>,
+        target: Point2<f64>,
+    ) -> (f64, Isometry2<f64>, f64) {
         let (mut seconds, mut nearest) = (0.0, f64::INFINITY);
         while seconds < 120.0 {
             let robot_from_field = field_from_robot.inverse();

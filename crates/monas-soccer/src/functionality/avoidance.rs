@@ -37,7 +37,10 @@ mod tests {
     fn a_free_way_is_kept() {
         let place = Point2::new(2.0, 0.0);
         assert_eq!(avoid(place, &[]), place);
-        assert_eq!(avoid(place, &[Point2::new(1.0, 0.6), Point2::new(-0.3, 0.0), Point2::new(1.8, 0.0)]), place);
+        assert_eq!(
+            avoid(place, &[Point2::new(1.0, 0.6), Point2::new(-0.3, 0.0), Point2::new(1.8, 0.0)]),
+            place
+        );
     }
 
     #[test]

@@ -169,7 +169,8 @@ impl BallFilter {
     fn measurement_noise(&self, distance: f64, bearing: f64) -> Matrix2<f64> {
         // A ball on the ground at distance d is seen at the elevation atan(h/d): δd = δe (d² + h²) / h.
         let height = self.model.eye_height;
-        let along = self.model.elevation_noise * (distance * distance + height * height) / height + LEAST_NOISE;
+        let along =
+            self.model.elevation_noise * (distance * distance + height * height) / height + LEAST_NOISE;
         let across = self.model.bearing_noise * distance + LEAST_NOISE;
         let sight = *super::geometry::rotation(bearing).to_rotation_matrix().matrix();
         sight * Matrix2::new(along * along, 0.0, 0.0, across * across) * sight.transpose()

@@ -43,7 +43,11 @@ pub fn wrap(angle: f64) -> f64 {
 pub fn distance_to_segment(point: Point2<f64>, from: Point2<f64>, to: Point2<f64>) -> (f64, f64) {
     let along = to - from;
     let length_squared = along.norm_squared();
-    let part = if length_squared > 0.0 { ((point - from).dot(&along) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
+    let part = if length_squared > 0.0 {
+        ((point - from).dot(&along) / length_squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
     ((point - (from + along * part)).norm(), part)
 }
 

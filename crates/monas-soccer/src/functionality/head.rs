@@ -54,7 +54,13 @@ impl Head {
         let part = sweeps - libm::floor(sweeps);
         let far = libm::fmod(libm::floor(sweeps), 2.0) == 0.0;
         // A triangle that begins in the middle: 0, 1, 0, -1, 0.
-        let swing = if part < 0.25 { 4.0 * part } else if part < 0.75 { 2.0 - 4.0 * part } else { 4.0 * part - 4.0 };
+        let swing = if part < 0.25 {
+            4.0 * part
+        } else if part < 0.75 {
+            2.0 - 4.0 * part
+        } else {
+            4.0 * part - 4.0
+        };
         Gaze { yaw: self.sweep * swing, pitch: if far { -0.1 } else { 0.35 } }
     }
 }

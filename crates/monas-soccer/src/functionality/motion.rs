@@ -280,6 +280,9 @@ mod tests {
     fn the_body_gets_a_number_it_has_not_met() {
         let mut motion = Motion::new(GAIT);
         let report = Report { posture: Posture::Upright, skill_done: 41 };
-        assert_eq!(motion.step(at(0), report, request(Wish::Skill(Skill::KickLeft), 1), true).skill_number, 42);
+        assert_eq!(
+            motion.step(at(0), report, request(Wish::Skill(Skill::KickLeft), 1), true).skill_number,
+            42
+        );
     }
 }

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use narukom::Moment;
 use nalgebra::{Isometry2, Point2};
+use narukom::Moment;
 
 /// A robot that was seen.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -42,7 +42,10 @@ impl Obstacles {
     pub fn see(&mut self, sighting: Obstacle) {
         let distance = |obstacle: &Obstacle| (obstacle.position - sighting.position).norm();
         let full = self.seen.len() >= MOST;
-        let same = self.seen.iter_mut().filter(|known| known.team_mate == sighting.team_mate && distance(known) < SAME);
+        let same = self
+            .seen
+            .iter_mut()
+            .filter(|known| known.team_mate == sighting.team_mate && distance(known) < SAME);
         match same.min_by(|a, b| distance(a).total_cmp(&distance(b))) {
             Some(known) => *known = sighting,
             None if !full => self.seen.push(sighting),

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use narukom::{Blackboard, Moment, Publisher, TopicSlot};
 use yase::expression::{CallError, MessageSource, Origin};
 use yase::{
-    Activation, Chart, FieldId, FunctionId, Host, Occasion, RegionId, Report, TopicId, TraceRecord, TransitionId, Value,
+    Activation, Chart, FieldId, FunctionId, Host, Occasion, RegionId, Report, TopicId, TraceRecord,
+    TransitionId, Value,
 };
 
 use super::Home;
@@ -45,7 +46,10 @@ impl Desk {
         functions: Arc<[FunctionDeclaration]>,
         blackboards: Vec<Option<Blackboard>>,
     ) -> Result<Desk, Error> {
-        home.hub.publisher(MODEL, home.agent).map_err(Error::hub)?.publish(model(chart, home.number), Moment::ZERO);
+        home.hub
+            .publisher(MODEL, home.agent)
+            .map_err(Error::hub)?
+            .publish(model(chart, home.number), Moment::ZERO);
         Ok(Desk {
             host: home.hub.host().into(),
             agent: home.agent.into(),
@@ -119,12 +123,15 @@ impl Host for Desk {
     fn call(&self, function: FunctionId, arguments: &[Value<'_>]) -> Result<Value<'_>, CallError> {
         let declaration = self.functions.get(function.0 as usize);
         let declaration = declaration.ok_or_else(|| CallError::new("there is no such function"))?;
-        (declaration.call)(arguments).ok_or_else(|| CallError::new("the function does not take these arguments"))
+        (declaration.call)(arguments)
+            .ok_or_else(|| CallError::new("the function does not take these arguments"))
     }
 
     fn deliver(&mut self, region: RegionId) {
         let now = self.now;
-        let Some(blackboard) = self.blackboards.get_mut(region.0 as usize).and_then(Option::as_mut) else { return };
+        let Some(blackboard) = self.blackboards.get_mut(region.0 as usize).and_then(Option::as_mut) else {
+            return;
+        };
         blackboard.process_messages(now);
         self.delivered.extend(Delivery::all(blackboard, region.0));
     }

@@ -149,7 +149,12 @@ impl Posts {
     }
 
     /// The activation failed: how long it pauses before it is started again.
-    pub(crate) fn failed(&mut self, activation: Activation, first_pause: Duration, doublings: u32) -> Duration {
+    pub(crate) fn failed(
+        &mut self,
+        activation: Activation,
+        first_pause: Duration,
+        doublings: u32,
+    ) -> Duration {
         let Some(post) = self.post(activation) else { return first_pause };
         post.started = false;
         post.failures += 1;
@@ -190,7 +195,10 @@ impl Posts {
         self.place(activation).map_or("", |place| &self.posts[place].name)
     }
 
-    pub(crate) fn statistics<'a>(&'a self, chart: &'a Chart) -> impl Iterator<Item = ActivityStatistics> + 'a {
+    pub(crate) fn statistics<'a>(
+        &'a self,
+        chart: &'a Chart,
+    ) -> impl Iterator<Item = ActivityStatistics> + 'a {
         self.posts.iter().map(|post| ActivityStatistics {
             name: post.name.clone(),
             state: Some(chart.short_path(post.node)),

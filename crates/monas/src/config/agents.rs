@@ -10,11 +10,11 @@ use super::paths;
 use super::xml::{self, Attributes, Element};
 use crate::activity::Activity;
 use crate::agent::{Agent, Policy};
+use crate::binder::Binder;
 use crate::error::ErrorKind;
 use crate::frequency::{Frequency, Hz};
 use crate::parameters::Parameters;
 use crate::registry::Registry;
-use crate::binder::Binder;
 
 /// Reads the agents in a file, and everything that is wrong with it or with a model it names.
 ///
@@ -73,7 +73,8 @@ impl Reader<'_> {
             self.diagnostics.push(element.error("E0319", element.name_span(), message));
         }
         for part in parts {
-            agent = if part.is("activity") { self.activity(part, agent) } else { self.statechart(part, agent) };
+            agent =
+                if part.is("activity") { self.activity(part, agent) } else { self.statechart(part, agent) };
         }
         self.add(element, agent, enabled);
     }
@@ -96,11 +97,6 @@ impl Reader<'_> {
         Attributes::new(name, &mut self.diagnostics).finish();
         if name.text().is_empty() {
             self.diagnostics.push(name.error("E0310", name.name_span(), "an agent's name is empty"));
-        }
-        let taken = self.agents.iter().any(|agent| agent.name == name.text());
-        if taken {
-            let message = format!("another agent is named `{}`", name.text());
-            self.diagnostics.push(name.error("E0311", name.text_span(), message));
         }
         name.text().to_owned()
     }
@@ -135,7 +131,12 @@ impl Reader<'_> {
     }
 
     /// An activity with its parameters; none, and why, if there is none of that name.
-    fn instance(&mut self, element: &Element, name: &str, parameters: &Parameters) -> Option<Box<dyn Activity>> {
+    fn instance(
+        &mut self,
+        element: &Element,
+        name: &str,
+        parameters: &Parameters,
+    ) -> Option<Box<dyn Activity>> {
         match self.registry.activity(name) {
             Ok(mut activity) => {
                 activity.configure(parameters);
@@ -162,7 +163,8 @@ impl Reader<'_> {
                 Some(attribute) => ("E0315", attribute.value_span),
                 None => ("E0315", element.name_span()),
             };
-            let diagnostic = element.error(code, span, format!("{} of activity `{}`", fault.message, element.text()));
+            let diagnostic =
+                element.error(code, span, format!("activity `{}`: {}", element.text(), fault.message));
             self.diagnostics.push(match fault.nearest {
                 Some(known) => diagnostic.with_hint(format!("did you mean `{known}`?")),
                 None => diagnostic,
@@ -216,7 +218,16 @@ impl Reader<'_> {
             }
         }
         if enabled {
+            self.refuse_namesake(element, &agent.name);
             self.agents.push(agent);
+        }
+    }
+
+    fn refuse_namesake(&mut self, element: &Element, name: &str) {
+        if !name.is_empty() && self.agents.iter().any(|agent| agent.name == name) {
+            let named = element.children_named("name").next().unwrap_or(element);
+            let message = format!("another agent is named `{name}`");
+            self.diagnostics.push(element.error("E0311", named.text_span(), message));
         }
     }
 }
@@ -225,5 +236,7 @@ impl Reader<'_> {
 fn frequency(attributes: &mut Attributes<'_>) -> Option<Frequency> {
     let fits = |hertz: &f64| (Frequency::LOWEST..=Frequency::HIGHEST).contains(hertz);
     let expected = format!("a number from {} to {}", Frequency::LOWEST, Frequency::HIGHEST);
-    attributes.read("thread_frequency", &expected, |text| text.parse().ok().filter(fits)).map(|hertz: f64| Hz(hertz))
+    attributes
+        .read("thread_frequency", &expected, |text| text.parse().ok().filter(fits))
+        .map(|hertz: f64| Hz(hertz))
 }

@@ -277,7 +277,8 @@ impl<'a> Writer<'a> {
             Some(quote @ ('"' | '\'')) => self.quoted_value(name, quote),
             _ => {
                 let rest = self.rest();
-                let end = rest.find(|c: char| c.is_whitespace() || c == '>' || c == '<').unwrap_or(rest.len());
+                let end =
+                    rest.find(|c: char| c.is_whitespace() || c == '>' || c == '<').unwrap_or(rest.len());
                 let value = rest[..end].strip_suffix('/').filter(|_| rest[end..].starts_with('>'));
                 self.enclosed(self.at + value.map_or(end, str::len));
             }

@@ -248,7 +248,10 @@ impl<'a> Attributes<'a> {
     }
 
     fn near_misses(&self, key: &'static str) -> Option<&'a str> {
-        yase::diagnostic::nearest(key, self.element.attributes.iter().map(|attribute| attribute.name.as_str()))
+        yase::diagnostic::nearest(
+            key,
+            self.element.attributes.iter().map(|attribute| attribute.name.as_str()),
+        )
     }
 
     /// A finite number.
@@ -312,7 +315,11 @@ impl<'a> Attributes<'a> {
 
     fn malformed(&self, attribute: &Attribute, expected: &str) -> Diagnostic {
         let Attribute { name, value, .. } = attribute;
-        self.element.error("E0306", attribute.value_span, format!("`{name}` is `{value}`, expected {expected}"))
+        self.element.error(
+            "E0306",
+            attribute.value_span,
+            format!("`{name}` is `{value}`, expected {expected}"),
+        )
     }
 
     /// The attributes that nobody has asked for, for elements whose attributes are not all known here.
@@ -325,7 +332,8 @@ impl<'a> Attributes<'a> {
     pub fn finish(self) {
         let Attributes { element, asked, .. } = &self;
         let unasked = |attribute: &&Attribute| !asked.iter().any(|key| is_written(&attribute.name, key));
-        let unknown: Vec<Diagnostic> = element.attributes.iter().filter(unasked).map(|a| self.unknown(a)).collect();
+        let unknown: Vec<Diagnostic> =
+            element.attributes.iter().filter(unasked).map(|a| self.unknown(a)).collect();
         self.diagnostics.extend(unknown);
     }
 
@@ -350,7 +358,9 @@ fn camel_case(key: &str) -> String {
 }
 
 fn capitalised(word: &str) -> impl Iterator<Item = char> {
-    word.chars().enumerate().map(|(index, letter)| if index == 0 { letter.to_ascii_uppercase() } else { letter })
+    word.chars()
+        .enumerate()
+        .map(|(index, letter)| if index == 0 { letter.to_ascii_uppercase() } else { letter })
 }
 
 /// Reads a length of time: a number and `ns`, `us`, `ms`, `s` or `min`.

@@ -49,7 +49,7 @@ impl Body {
         self.percepts.sightings = None;
         self.percepts.announcement = None;
         self.robot.sense(now, &mut self.percepts).map_err(failed)?;
-        self.sensors.publish(self.percepts.sensors.clone(), now);
+        self.sensors.publish(self.percepts.sensors, now);
         if let Some(sightings) = self.percepts.sightings.take() {
             self.sightings.publish(sightings, now);
         }

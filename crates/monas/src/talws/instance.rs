@@ -113,7 +113,8 @@ impl Instance {
 
     /// Notes an event for its charts; false if none of them names it.
     pub(super) fn raise(&mut self, event: &str) -> bool {
-        self.charts.iter_mut().fold(false, |known, chart| chart.raise(event) || known)
+        // Every chart takes note, also when an earlier one has.
+        self.charts.iter_mut().filter_map(|chart| chart.raise(event).then_some(())).count() > 0
     }
 
     /// Ends everything.

@@ -67,7 +67,10 @@ impl Simulation {
         let observers = Arc::new(Mutex::new(talws.observers));
         let mut configs = talws.hosts;
         configs.sort_by(|a, b| (a.team, a.number, &a.name).cmp(&(b.team, b.number, &b.name)));
-        distinct("host", configs.iter().map(|host| host.name.as_str()).chain(talws.world.iter().map(|w| w.name())))?;
+        distinct(
+            "host",
+            configs.iter().map(|host| host.name.as_str()).chain(talws.world.iter().map(|w| w.name())),
+        )?;
         let registry = talws.registry.unwrap_or_else(Registry::linked);
         let crew = Crew { binder: Binder::new(&registry)?, listeners: Listeners::new(talws.listeners), seed };
         let world = talws.world.map(|world| Environment::new(world, &observers)).transpose()?;
@@ -99,7 +102,8 @@ impl Simulation {
 
     /// What agents have done so far.
     pub fn statistics(&self) -> Statistics {
-        let agents = self.hosts.iter().flat_map(|host| host.instances.iter().map(|i| i.statistics(host.hub.host())));
+        let agents =
+            self.hosts.iter().flat_map(|host| host.instances.iter().map(|i| i.statistics(host.hub.host())));
         Statistics { agents: agents.collect() }
     }
 
@@ -152,6 +156,13 @@ impl Simulation {
             any |= host.run_agents(now)?;
         }
         Ok(any)
+    }
+}
+
+impl std::fmt::Debug for Simulation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let hosts: Vec<&str> = self.hosts.iter().map(|host| host.hub.host()).collect();
+        f.debug_struct("Simulation").field("now", &self.now).field("hosts", &hosts).finish_non_exhaustive()
     }
 }
 
@@ -277,7 +288,9 @@ fn set_up(agents: Vec<Agent>, hub: &Narukom, crew: &Crew<'_>) -> Result<Vec<Inst
     for agent in agents {
         match Instance::new(agent, hub, crew.seed, &crew.binder, &crew.listeners) {
             Ok(instance) => instances.push(instance),
-            Err(error) if error.kind() == ErrorKind::Invalid => diagnostics.extend_from_slice(error.diagnostics()),
+            Err(error) if error.kind() == ErrorKind::Invalid => {
+                diagnostics.extend_from_slice(error.diagnostics())
+            }
             Err(error) => return Err(error),
         }
     }
@@ -301,7 +314,9 @@ fn distinct<'a>(kind: &str, names: impl Iterator<Item = &'a str>) -> Result<(), 
     let mut names: Vec<&str> = names.collect();
     names.sort_unstable();
     match names.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(Error::new(ErrorKind::DuplicateName, format!("two {kind}s are named `{}`", pair[0]))),
+        Some(pair) => {
+            Err(Error::new(ErrorKind::DuplicateName, format!("two {kind}s are named `{}`", pair[0])))
+        }
         None => Ok(()),
     }
 }

@@ -55,11 +55,22 @@ fn timer_names(chart: &Statechart, ways: &[Vec<Way>], region_of: &[RegionId], co
             names[way.region.index()].extend(chart.transition(segment).expression.started_timers());
         }
     }
+    for segment in unreached(chart, ways) {
+        let transition = chart.transition(segment);
+        names[region_of[transition.source.0 as usize].index()].extend(transition.expression.started_timers());
+    }
     for (id, node) in chart.nodes() {
         let started = started_timers(&node.entry).chain(started_timers(&node.exit));
         names[region_of[id.0 as usize].index()].extend(started);
     }
     names.into_iter().map(|names| names.into_iter().collect()).collect()
+}
+
+/// The segments that no way leads through, since their connectors are never entered. They are checked all the same.
+fn unreached(chart: &Statechart, ways: &[Vec<Way>]) -> Vec<TransitionId> {
+    let reached: BTreeSet<TransitionId> =
+        ways.iter().flatten().flat_map(|way| way.segments.iter().copied()).collect();
+    chart.transitions().map(|(id, _)| id).filter(|id| !reached.contains(id)).collect()
 }
 
 struct Builder<'a> {
@@ -117,6 +128,9 @@ impl<'a> Builder<'a> {
         };
         let unnamed = self.events.intern("?");
         let states = self.states(&ways);
+        for segment in unreached(self.chart, &ways) {
+            self.segment(segment, self.region_of[self.chart.transition(segment).source.0 as usize]);
+        }
         let timers = self.timers(&mut regions, &states);
         if !self.found.is_empty() {
             return Err(self.found);

@@ -63,7 +63,8 @@ impl Number {
     }
 }
 
-/// Sums and products of whole numbers are whole; a quotient is a floating point number. Missing if a value is missing.
+/// Sums and products of whole numbers are whole; a quotient is a floating point number. Missing if a value is
+/// missing.
 pub(super) fn arithmetic<'a>(
     left: Value<'a>,
     operator: impl Into<Operator>,
@@ -134,7 +135,8 @@ fn compare_numbers(left: Number, right: Number) -> Result<Ordering, GuardError> 
     }
 }
 
-/// A cast of a float to `i128` cuts off the fraction, and saturates far beyond 64 bits: the whole parts decide first.
+/// A cast of a float to `i128` cuts off the fraction, and saturates far beyond 64 bits: the whole parts
+/// decide first.
 fn compare_whole(whole: i128, float: f64) -> Result<Ordering, GuardError> {
     if float.is_nan() {
         return Err(GuardError::NotANumber);

@@ -105,7 +105,8 @@ impl TransitionExpression {
     }
 }
 
-/// Compiles the actions of the entry or the exit of a state, as [`TransitionExpression::compile`] does those of a transition.
+/// Compiles the actions of the entry or the exit of a state, as [`TransitionExpression::compile`] does those
+/// of a transition.
 ///
 /// # Errors
 /// Everything that is wrong, each with its place.
@@ -147,11 +148,11 @@ fn effect(action: &Action, scope: &Scope<'_>, events: &mut EventTable) -> Checke
 
 fn assign(target: &Path, value: &Expression, scope: &Scope<'_>) -> Checked<Effect> {
     let (source, fields) = scope.message(target)?;
-    refuse_foreign(target, &source.origin, "assigned to")?;
+    refuse_foreign(target, &source.origin, "assigned")?;
     let (field, kind) = scope.fields(source.entry, fields)?;
     if field.is_empty() {
         let message = format!("`{target}` is a whole message; an assignment sets one field");
-        let diagnostic = Diagnostic::error("E0146", target.place.0, message);
+        let diagnostic = Diagnostic::error("E0145", target.place.0, message);
         return Err(vec![diagnostic.with_hint(scope.fields_hint(target, source.entry))]);
     }
     let value = scope.term_of(value, &kind)?;
@@ -160,11 +161,11 @@ fn assign(target: &Path, value: &Expression, scope: &Scope<'_>) -> Checked<Effec
 
 fn publish(message: &Path, scope: &Scope<'_>) -> Checked<Effect> {
     let (source, fields) = scope.message(message)?;
-    refuse_foreign(message, &source.origin, "published by")?;
+    refuse_foreign(message, &source.origin, "published")?;
     if let Some(field) = fields.first() {
         let text = format!("`{}` follows the message; a message is published as a whole", field.text);
         return Err(vec![
-            Diagnostic::error("E0146", field.place.0, text).with_hint("assign the field first"),
+            Diagnostic::error("E0145", field.place.0, text).with_hint("assign the field first"),
         ]);
     }
     Ok(Effect::Publish { topic: source.entry.id })
@@ -175,7 +176,7 @@ fn refuse_foreign(path: &Path, origin: &Origin, verb: &str) -> Checked<()> {
     if *origin == Origin::Own {
         return Ok(());
     }
-    let message = format!("`{path}` is another's variable and cannot be {verb} a chart");
+    let message = format!("`{path}` is another's variable and cannot be {verb} by a chart");
     let hint = "a chart writes its own messages only: leave out what stands before the message";
     Err(vec![Diagnostic::error("E0142", path.place.0, message).with_hint(hint)])
 }
@@ -190,7 +191,8 @@ fn start_timeout(timer: &Path, delay: Duration, action: &Action, scope: &Scope<'
         Some(timer) => Ok(Effect::StartTimeout { timer, delay }),
         None => {
             let message = format!("the timer `{timer}` is not one of this blackboard");
-            Err(vec![Diagnostic::error("E0141", timer.place.0, message)])
+            let hint = "a timer belongs to the blackboard of the transitions that start it";
+            Err(vec![Diagnostic::error("E0141", timer.place.0, message).with_hint(hint)])
         }
     }
 }

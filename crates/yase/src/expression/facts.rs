@@ -7,13 +7,15 @@ use crate::vocabulary::{FieldId, FunctionId, TopicId, Value};
 
 /// The world as a guard sees it: one blackboard, its timers, and the active states.
 ///
-/// The answers of one evaluation must belong to one moment: a guard sees the data of the beginning of its step.
+/// The answers of one evaluation must belong to one moment: a guard sees the data of the beginning of its
+/// step.
 pub trait Facts {
-    /// A field of the latest message of a source; the path leads through nested messages. [`Value::Missing`] if no
-    /// message has arrived.
+    /// A field of the latest message of a source; the path leads through nested messages. [`Value::Missing`]
+    /// if no message has arrived.
     fn field(&self, source: &MessageSource, path: &[FieldId]) -> Value<'_>;
 
-    /// The latest message of a source as a whole: [`Value::Message`], or [`Value::Missing`] if none has arrived.
+    /// The latest message of a source as a whole: [`Value::Message`], or [`Value::Missing`] if none has
+    /// arrived.
     fn message(&self, source: &MessageSource) -> Value<'_>;
 
     /// The result of a function, which depends on its arguments only. None of them is [`Value::Missing`].

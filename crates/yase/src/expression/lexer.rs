@@ -155,7 +155,8 @@ fn digits(text: &str) -> usize {
     text.find(|character: char| !character.is_ascii_digit()).unwrap_or(text.len())
 }
 
-/// What begins with a digit is a number if the number ends where the word ends: `100`, `0.5`, `1e-3`, but not `100ms`.
+/// What begins with a digit is a number if the number ends where the word ends: `100`, `0.5`, `1e-3`, but not
+/// `100ms`.
 fn number_or_word(text: &str) -> (TokenKind, usize) {
     let whole = digits(text);
     let fraction = match text[whole..].strip_prefix('.').map(digits) {

@@ -11,8 +11,8 @@ pub struct Names<'a> {
     pub vocabulary: &'a Vocabulary,
     /// The constants of the model.
     pub constants: &'a [Constant],
-    /// The timers that some action starts on the blackboard of the expression's scope; the place of a name is its
-    /// [`TimerId`](super::TimerId).
+    /// The timers that some action starts on the blackboard of the expression's scope; the place of a name is
+    /// its [`TimerId`](super::TimerId).
     pub timers: &'a [String],
     /// The events of the chart; names that are new are added.
     pub events: &'a mut EventTable,
@@ -54,7 +54,8 @@ impl EventTable {
         id
     }
 
-    /// The event that is each arrival of a message on a topic, added if it is new; `name` is what traces call it.
+    /// The event that is each arrival of a message on a topic, added if it is new; `name` is what traces call
+    /// it.
     pub fn intern_message(&mut self, topic: TopicId, name: &str) -> EventId {
         if let Some(&id) = self.by_topic.get(&topic) {
             return id;

@@ -1,12 +1,14 @@
 //! From text to a syntax tree, by recursive descent.
 //!
-//! A part that cannot be read is refused with one diagnostic, left out of the tree, and skipped: the guard up to its
-//! bracket, an action up to its separator. So each mistake is said once, and two mistakes are both said.
+//! A part that cannot be read is refused with one diagnostic, left out of the tree, and skipped: the guard up
+//! to its bracket, an action up to its separator. So each mistake is said once, and two mistakes are both
+//! said.
 
 mod action;
 mod condition;
 mod cursor;
 mod name;
+mod operand;
 mod trigger;
 
 use super::lexer::{Symbol, TokenKind};
@@ -15,15 +17,17 @@ use crate::diagnostic::Diagnostic;
 use cursor::{Cursor, Parsed};
 pub(super) use name::RESERVED;
 
-/// Reads a transition expression, `trigger [guard] / actions`; no text, blanks and the word `null` are the empty one.
+/// Reads a transition expression, `trigger [guard] / actions`; no text, blanks and the word `null` are the
+/// empty one.
 ///
-/// Returns what was understood and what is wrong with the rest. With an error among the diagnostics the tree lacks the
-/// part that was refused and must not be run.
+/// Returns what was understood and what is wrong with the rest. With an error among the diagnostics the tree
+/// lacks the part that was refused and must not be run.
 pub fn parse_transition(text: &str) -> (TransitionExpression, Vec<Diagnostic>) {
     parse_transition_at(text, 0)
 }
 
-/// Reads a transition expression that stands `offset` bytes into a larger text: all places are places of that text.
+/// Reads a transition expression that stands `offset` bytes into a larger text: all places are places of that
+/// text.
 pub fn parse_transition_at(text: &str, offset: usize) -> (TransitionExpression, Vec<Diagnostic>) {
     let mut parser = Cursor::new(text, offset);
     let expression =

@@ -1,7 +1,8 @@
 //! The canonical text of an expression.
 //!
-//! One tree has one text, and the text reads back as the same tree. Two ways to write one thing (`and` and `&&`, a
-//! setter and an assignment) are one tree and so one text; only the form of a timeout is kept, because it has a meaning.
+//! One tree has one text, and the text reads back as the same tree. Two ways to write one thing (`and` and
+//! `&&`, a setter and an assignment) are one tree and so one text; only the form of a timeout is kept,
+//! because it has a meaning.
 
 use std::fmt::{self, Display, Formatter, Write};
 use std::time::Duration;

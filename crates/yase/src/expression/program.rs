@@ -1,6 +1,7 @@
 //! Compiled expressions, and how they are evaluated: without allocation, without names.
 //!
-//! Conditions are three-valued (Kleene): what reads a message that has not arrived is unknown, and only true fires.
+//! Conditions are three-valued (Kleene): what reads a message that has not arrived is unknown, and only true
+//! fires.
 
 use super::arithmetic::{Operator, arithmetic, compare, negative};
 use super::facts::{CallError, Facts, MessageSource, TimerId, TimerState};

@@ -44,7 +44,8 @@ pub fn started_timers(actions: &[Action]) -> impl Iterator<Item = String> {
 
 /// Where a part stands in its text.
 ///
-/// Any two places are equal: what an expression says does not depend on where it stands, so trees compare by meaning.
+/// Any two places are equal: what an expression says does not depend on where it stands, so trees compare by
+/// meaning.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Place(pub Span);
 
@@ -98,7 +99,8 @@ impl Path {
     }
 }
 
-/// The events a transition waits for. An event is named by a path; so is a message, each arrival of which is an event.
+/// The events a transition waits for. An event is named by a path; so is a message, each arrival of which is
+/// an event.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Trigger {
     /// `*`: whatever event.

@@ -12,7 +12,8 @@ pub trait Interpreter {
     fn start(&mut self, now: Moment, world: &mut World);
     fn event(&mut self, name: &str);
     fn message(&mut self, topic: TopicId);
-    fn returned(&mut self, activation: Activation, outcome: Outcome);
+    /// False if it is not one of this run any more.
+    fn returned(&mut self, activation: Activation, outcome: Outcome) -> bool;
     fn resumed(&mut self, activation: Activation) -> bool;
     /// `Err` with a text when it gives up.
     fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String>;
@@ -34,8 +35,8 @@ impl Interpreter for Machine {
         self.message_arrived(topic, 1);
     }
 
-    fn returned(&mut self, activation: Activation, outcome: Outcome) {
-        self.activity_returned(activation, outcome);
+    fn returned(&mut self, activation: Activation, outcome: Outcome) -> bool {
+        self.activity_returned(activation, outcome)
     }
 
     fn resumed(&mut self, activation: Activation) -> bool {
@@ -184,11 +185,9 @@ fn advance(interpreter: &mut impl Interpreter, now: Moment, world: &mut World, i
     }
     let outcome = World::outcome(job);
     let text = format!("  {} returns {outcome:?}", job.name);
-    if outcome == Outcome::Ongoing {
-        (job.waits, job.due) = (true, now + Duration::from_millis(10));
-    } else {
+    (job.waits, job.due) = (true, now + Duration::from_millis(10));
+    world.say(text);
+    if !interpreter.returned(activation, outcome) || outcome != Outcome::Ongoing {
         world.jobs.remove(index);
     }
-    world.say(text);
-    interpreter.returned(activation, outcome);
 }

@@ -8,6 +8,9 @@ use yase::TopicId;
 
 use crate::kit::script::{Input, Script};
 
+/// A chart with so many nodes gets no more composites.
+const MANY: usize = 25;
+
 /// Random choices out of bytes; when they have run out, always the first.
 pub struct Choices<'a> {
     bytes: std::slice::Iter<'a, u8>,
@@ -42,7 +45,7 @@ pub fn case(choices: &mut Choices<'_>) -> (Statechart, Script) {
 }
 
 fn script(choices: &mut Choices<'_>) -> Script {
-    let mut inputs: Vec<(u64, Input)> = (0..4 + choices.below(16))
+    let mut inputs: Vec<(u64, Input)> = (0..8 + choices.below(24))
         .map(|_| {
             let time = 5 * choices.below(30) as u64;
             let input = match choices.below(4) {
@@ -71,7 +74,7 @@ impl Maker<'_, '_> {
 
     fn composite(&mut self, composite: NodeId, depth: usize) {
         self.chart.add(composite, Node::new(NodeKind::Start, ""));
-        for _ in 0..1 + self.choices.below(3) {
+        for _ in 0..2 + self.choices.below(3) {
             self.state(composite, depth);
         }
         for _ in 0..self.choices.below(2) {
@@ -90,9 +93,9 @@ impl Maker<'_, '_> {
 
     fn state(&mut self, parent: NodeId, depth: usize) {
         let kind = match self.choices.below(10) {
-            0..6 => NodeKind::Basic,
-            6..8 if depth < 4 => NodeKind::Or,
-            8.. if depth < 3 => NodeKind::And,
+            0..5 => NodeKind::Basic,
+            5..7 if depth < 4 && self.names < MANY => NodeKind::Or,
+            7.. if depth < 3 && self.names < MANY => NodeKind::And,
             _ => NodeKind::Basic,
         };
         let name = self.name("s");
@@ -132,7 +135,7 @@ impl Maker<'_, '_> {
                 NodeKind::Start => self.out_of_start(node),
                 NodeKind::Condition | NodeKind::Junction => self.out_of_connector(node),
                 NodeKind::Or | NodeKind::And | NodeKind::Basic => {
-                    for _ in 0..self.choices.below(4) {
+                    for _ in 0..1 + self.choices.below(4) {
                         self.out_of_state(node, &nodes);
                     }
                 }
@@ -148,13 +151,17 @@ impl Maker<'_, '_> {
     }
 
     fn out_of_start(&mut self, start: NodeId) {
-        let all = self.siblings(start, |kind| kind != NodeKind::Start);
+        let all = self.siblings(start, |kind| match kind {
+            NodeKind::Start | NodeKind::Terminate => false,
+            NodeKind::End => self.choices.bytes.len() % 8 == 0,
+            _ => true,
+        });
         if self.choices.percent(25) {
             let target = self.choices.pick(&all);
             let text = format!("{} {}", self.guard(), self.slash_actions(20));
             self.connect(start, target, &text);
         }
-        if self.choices.percent(90) {
+        if !self.choices.percent(5) {
             let target = self.choices.pick(&all);
             let text = self.slash_actions(20);
             self.connect(start, target, &text);

@@ -935,13 +935,17 @@ impl<'c> Stepper<'c> {
         deferring: Option<NodeId>,
         world: &mut World,
     ) {
-        let event = event.map(|event| if self.is_known(event) { event } else { "?" });
+        let event = event.map(|event| match topic(event) {
+            Some(_) => event.to_lowercase(), // messages are known by their topic
+            None if self.is_known(event) => event.to_owned(),
+            None => "?".to_owned(),
+        });
         let selected = match (fired.is_empty(), event.is_some() && held.is_empty() && deferring.is_none()) {
             (false, _) => self.way_names(fired),
             (true, true) => "dropped".to_owned(),
             (true, false) => "nothing".to_owned(),
         };
-        let mut text = format!("{} {}: {selected}", self.now, event.unwrap_or("-"));
+        let mut text = format!("{} {}: {selected}", self.now, event.as_deref().unwrap_or("-"));
         let parts = [
             ("preempt", self.way_names(losers)),
             ("hold", self.way_names(held)),
@@ -1006,9 +1010,9 @@ impl Interpreter for Stepper<'_> {
         }
     }
 
-    fn returned(&mut self, activation: Activation, outcome: Outcome) {
+    fn returned(&mut self, activation: Activation, outcome: Outcome) -> bool {
         if !self.running_chart {
-            return;
+            return false;
         }
         let job = self.jobs.get_mut(&activation.node).unwrap();
         assert_eq!((job.number, job.phase), (activation.number, Phase::Running));
@@ -1029,6 +1033,7 @@ impl Interpreter for Stepper<'_> {
             self.arrive("error.activity", None);
         }
         self.due = true;
+        true
     }
 
     fn resumed(&mut self, activation: Activation) -> bool {

@@ -1,33 +1,44 @@
+//! One test and more for each rule of the machine, named after it: a chart, what happens to it, and every line of its trace.
+
 #[path = "../kit/mod.rs"]
 mod kit;
 
-use kit::{chart, play};
+mod completion;
+mod data;
+mod firing;
+mod pool;
+mod running;
+mod selection;
+mod structure;
+mod timers;
+mod trace;
+mod wiring;
 
-#[test]
-fn smoke() {
-    let chart = chart(
-        "
-        START
-        A | run | for=20ms
-        & both
-          one
-            START
-            B
-            END
-          two
-            START
-            D
-            END
-        END
-        c/START -> A
-        A -> both : e
-        one/START -> B
-        B -> one/END : f
-        two/START -> D
-        D -> two/END : f / raise(g)
-        both -> c/END
-        ",
-    );
-    println!("{}", play(&chart, "10 e; 30 f; 100").join("\n"));
-    panic!();
+use yase::Semantics;
+
+/// Plays a script to a chart and compares every line that the world wrote down.
+#[track_caller]
+fn check(chart: &str, script: &str, expected: &str) {
+    check_with(Semantics::yase(), chart, script, expected);
+}
+
+#[track_caller]
+fn check_with(semantics: Semantics, chart: &str, script: &str, expected: &str) {
+    let found = kit::script::play_with(&kit::chart(chart), script, semantics);
+    compare(&found, expected);
+}
+
+#[track_caller]
+fn compare(found: &[String], expected: &str) {
+    let expected: Vec<&str> = expected.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    let found: Vec<&str> = found.iter().map(|line| line.trim()).collect();
+    assert!(found == expected, "found\n{}\n\nexpected\n{}\n", found.join("\n"), expected.join("\n"));
+}
+
+/// The diagnostics that a chart gets, one a line.
+fn refusal(chart: &str) -> String {
+    match kit::chart(chart).compile(&kit::world::vocabulary()) {
+        Ok(_) => "none".to_owned(),
+        Err(found) => found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"),
+    }
 }

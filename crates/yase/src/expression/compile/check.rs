@@ -36,11 +36,8 @@ impl Scope<'_> {
         }
         let message =
             format!("`{expression}` is {}, but {} is needed here", describe(&typed.kind), describe(expected));
-        Err(vec![with_type_hint(
-            Diagnostic::error("E0137", expression.span(), message),
-            &typed.kind,
-            expected,
-        )])
+        let diagnostic = Diagnostic::error("E0137", expression.span(), message);
+        Err(vec![diagnostic.with_hint(needed_hint(&typed.kind, expected))])
     }
 
     fn tests(&self, operands: &[Expression]) -> Checked<Vec<Test>> {
@@ -67,19 +64,20 @@ impl Scope<'_> {
 
     fn comparison(&self, left: &Expression, comparison: Comparison, right: &Expression) -> Checked<Test> {
         let (left_hint, right_hint) = (self.type_hint(left), self.type_hint(right));
-        let sides = both(self.term(left, right_hint.as_ref()), self.term(right, left_hint.as_ref()))?;
-        let (a, b) = sides;
+        let (a, b) = both(self.term(left, right_hint.as_ref()), self.term(right, left_hint.as_ref()))?;
         let span = left.span().to(right.span());
         if a.kind != b.kind {
             let (of_a, of_b) = (describe(&a.kind), describe(&b.kind));
             let message = format!("`{left}` is {of_a} and `{right}` is {of_b}: they cannot be compared");
-            return Err(vec![with_type_hint(Diagnostic::error("E0137", span, message), &a.kind, &b.kind)]);
+            let diagnostic = Diagnostic::error("E0137", span, message);
+            return Err(vec![diagnostic.with_hint(comparison_hint(&a.kind, &b.kind))]);
         }
         refuse_order(&a.kind, comparison, span)?;
         Ok(Test::Compare(a.term, comparison, b.term))
     }
 
-    /// The type of an operand as far as it is plain before its neighbour is known: bare names of enumerations are not.
+    /// The type of an operand as far as it is plain before its neighbour is known: bare names of enumerations
+    /// are not.
     fn type_hint(&self, expression: &Expression) -> Option<ValueType> {
         match &expression.kind {
             ExpressionKind::Variable(path) => self.variable(path, None).ok().map(|typed| typed.kind),
@@ -144,11 +142,13 @@ fn check_count(function: &FunctionEntry, given: usize, span: Span) -> Checked<()
     let types: Vec<_> = function.parameters.iter().map(describe).collect();
     let hint =
         if types.is_empty() { "it takes none".to_owned() } else { format!("it takes {}", types.join(", ")) };
-    let message = format!("the function `{}` takes {wanted} arguments, not {given}", function.name);
+    let plural = if wanted == 1 { "" } else { "s" };
+    let message = format!("the function `{}` takes {wanted} argument{plural}, not {given}", function.name);
     Err(vec![Diagnostic::error("E0136", span, message).with_hint(hint)])
 }
 
-/// Numbers have an order; of everything else it can only be said whether it is the same. Messages not even that.
+/// Numbers have an order; of everything else it can only be said whether it is the same. Messages not even
+/// that.
 fn refuse_order(kind: &ValueType, comparison: Comparison, span: Span) -> Checked<()> {
     let sameness = matches!(comparison, Comparison::Equal | Comparison::NotEqual);
     match kind {
@@ -181,20 +181,28 @@ fn negated(term: Term) -> Term {
     }
 }
 
-fn with_type_hint(diagnostic: Diagnostic, one: &ValueType, other: &ValueType) -> Diagnostic {
+/// What to do with an operand of one type where another is needed.
+fn needed_hint(found: &ValueType, needed: &ValueType) -> String {
+    match (found, needed) {
+        (ValueType::Message(_), _) => "name a field of the message".to_owned(),
+        (_, ValueType::Bool) => "compare it with something".to_owned(),
+        (_, ValueType::Enumeration(name)) => format!("write the name of a value of `{name}`"),
+        (_, ValueType::Text) => "a text stands in double quotes".to_owned(),
+        (_, ValueType::Number) => "write a number, or a field that holds one".to_owned(),
+        (_, ValueType::Message(name)) => format!("write `{name}`, or its topic"),
+    }
+}
+
+/// What to do with two operands of different types.
+fn comparison_hint(one: &ValueType, other: &ValueType) -> String {
     match (one, other) {
-        (ValueType::Bool, ValueType::Number) | (ValueType::Number, ValueType::Bool) => diagnostic.with_hint(
-            "true and false are no numbers: write `x` or `!x`; compare numbers by `==`, `<` and the like",
-        ),
+        (ValueType::Message(_), _) | (_, ValueType::Message(_)) => "name a field of the message".to_owned(),
+        (ValueType::Bool, _) | (_, ValueType::Bool) => {
+            "true and false are no numbers: write `x` or `!x`".to_owned()
+        }
         (ValueType::Enumeration(name), _) | (_, ValueType::Enumeration(name)) => {
-            diagnostic.with_hint(format!("write the name of a value of `{name}`"))
+            format!("write the name of a value of `{name}`")
         }
-        (ValueType::Text, ValueType::Number) | (ValueType::Number, ValueType::Text) => {
-            diagnostic.with_hint("numbers stand without quotes")
-        }
-        (ValueType::Message(_), _) | (_, ValueType::Message(_)) => {
-            diagnostic.with_hint("name a field of the message")
-        }
-        _ => diagnostic,
+        _ => "numbers stand without quotes, texts in quotes".to_owned(),
     }
 }

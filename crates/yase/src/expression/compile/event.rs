@@ -1,7 +1,7 @@
 //! What the names of events mean: an event is a name, or the arrival of messages on a topic.
 
 use super::Checked;
-use super::message::kind_of;
+use super::message::{full_form, kind_of};
 use super::scope::Scope;
 use crate::diagnostic::Diagnostic;
 use crate::expression::facts::Origin;
@@ -53,11 +53,12 @@ impl Scope<'_> {
             _ => (path.place, format!("`{path}` is a message of another host; only own messages are events")),
         };
         Err(vec![
-            Diagnostic::error("E0147", fault.0.0, fault.1).with_hint("read it in a condition, in brackets"),
+            Diagnostic::error("E0146", fault.0.0, fault.1).with_hint("read it in a condition, in brackets"),
         ])
     }
 
-    /// A bare name is a signal's topic; a topic of another kind must be named by its whole path, so that no event is taken for it.
+    /// A bare name is a signal's topic; a topic of another kind must be named by its whole path, so that no
+    /// event is taken for it.
     fn arrival_of_topic(&self, name: &Name) -> Checked<Option<&TopicEntry>> {
         let whole_path = name.text.contains(['.', '/']);
         let mut topics = self.topics_named(&name.text);
@@ -66,10 +67,10 @@ impl Scope<'_> {
             [] => Ok(None),
             [topic] => Ok(Some(topic)),
             several => {
-                let paths: Vec<_> = several.iter().map(|topic| format!("`` `{}` ``", topic.path)).collect();
+                let forms: Vec<_> = several.iter().map(|topic| full_form(topic)).collect();
                 let message = format!("several topics are called `{}`", name.text);
                 let diagnostic = Diagnostic::error("E0133", name.place.0, message);
-                Err(vec![diagnostic.with_hint(format!("write {}", paths.join(" or ")))])
+                Err(vec![diagnostic.with_hint(format!("write {}", forms.join(" or ")))])
             }
         }
     }

@@ -1,5 +1,7 @@
 //! Which topic a path means, whose messages of it, and which field.
 
+use std::collections::BTreeSet;
+
 use super::Checked;
 use super::scope::Scope;
 use crate::diagnostic::{Diagnostic, Span};
@@ -58,13 +60,20 @@ impl<'a> Scope<'a> {
         for name in names {
             let ValueType::Message(message) = &kind else {
                 let text = format!("`{}` is asked of {}, which has no fields", name.text, describe(&kind));
-                return Err(vec![Diagnostic::error("E0134", name.place.0, text)]);
+                let diagnostic = Diagnostic::error("E0134", name.place.0, text);
+                return Err(vec![diagnostic.with_hint(format!("leave `.{}` out", name.text))]);
             };
             let entries = self.entry_of(message).map_or(&[][..], |entry| &entry.fields);
             let Some(entry) = entries.iter().find(|entry| entry.name == name.text) else {
                 let text = format!("the message `{message}` has no field `{}`", name.text);
                 let known = entries.iter().map(|entry| entry.name.as_str());
-                return Err(vec![unknown("E0134", name.place.0, text, &name.text, known, "its fields are")]);
+                let diagnostic = Diagnostic::error("E0134", name.place.0, text);
+                return Err(vec![unknown(
+                    diagnostic,
+                    &name.text,
+                    known,
+                    "see the definition of the message",
+                )]);
             };
             fields.push(entry.id);
             kind = entry.kind.clone();
@@ -98,6 +107,9 @@ impl<'a> Scope<'a> {
 
     /// The one topic that has messages of a type.
     pub(super) fn topic_of_message(&self, message: &Name) -> Checked<&'a TopicEntry> {
+        if !self.is_message(message) {
+            return Err(vec![self.unknown_message(message)]);
+        }
         let topics: Vec<_> =
             self.vocabulary.topics.iter().filter(|topic| topic.message == message.text).collect();
         only(&topics, message.place.0, || format!("messages of type `{}`", message.text))
@@ -105,13 +117,18 @@ impl<'a> Scope<'a> {
 
     fn topic_of_name(&self, name: &Name) -> Checked<&'a TopicEntry> {
         let topics = self.topics_named(&name.text);
-        if !topics.is_empty() {
-            return only(&topics, name.place.0, || format!("the name `{}`", name.text));
+        if topics.is_empty() {
+            return Err(vec![self.unknown_message(name)]);
         }
+        only(&topics, name.place.0, || format!("the name `{}`", name.text))
+    }
+
+    fn unknown_message(&self, name: &Name) -> Diagnostic {
         let text = format!("there is neither a message nor a topic `{}`", name.text);
         let messages = self.vocabulary.messages.iter().map(|entry| entry.name.as_str());
         let known = messages.chain(self.vocabulary.topics.iter().map(last_segment));
-        Err(vec![unknown("E0132", name.place.0, text, &name.text, known, "known are")])
+        let diagnostic = Diagnostic::error("E0132", name.place.0, text);
+        unknown(diagnostic, &name.text, known, "a variable is `Message.field` or `topic.Kind.Message.field`")
     }
 
     /// The topic of a name that keeps messages of a type in a way.
@@ -120,7 +137,8 @@ impl<'a> Scope<'a> {
         if topics.is_empty() {
             let text = format!("there is no topic `{}`", name.text);
             let known = self.vocabulary.topics.iter().map(last_segment);
-            return Err(vec![unknown("E0132", name.place.0, text, &name.text, known, "known are")]);
+            let diagnostic = Diagnostic::error("E0132", name.place.0, text);
+            return Err(vec![unknown(diagnostic, &name.text, known, "a topic is named by its last segment")]);
         }
         let wanted =
             |topic: &&&TopicEntry| Some(topic.kind) == kind_of(kind) && topic.message == message.text;
@@ -140,7 +158,12 @@ impl<'a> Scope<'a> {
 fn only<'a>(topics: &[&'a TopicEntry], span: Span, shared: impl Fn() -> String) -> Checked<&'a TopicEntry> {
     match topics {
         [topic] => Ok(topic),
-        [] => Err(vec![Diagnostic::error("E0133", span, format!("no topic has {}", shared()))]),
+        [] => {
+            let diagnostic = Diagnostic::error("E0133", span, format!("no topic has {}", shared()));
+            Err(vec![
+                diagnostic.with_hint("read a message that is published, or a field that holds this one"),
+            ])
+        }
         several => {
             let forms: Vec<_> = several.iter().map(|topic| full_form(topic)).collect();
             let diagnostic = Diagnostic::error("E0133", span, format!("several topics have {}", shared()));
@@ -149,22 +172,25 @@ fn only<'a>(topics: &[&'a TopicEntry], span: Span, shared: impl Fn() -> String) 
     }
 }
 
-/// An error about a name that is not known: the nearest one that is, else all if they are few.
+/// An error about a name that is not known, with the nearest one that is, else all if they are few, else a
+/// word on the form.
 pub(super) fn unknown<'n>(
-    code: &'static str,
-    span: Span,
-    message: String,
+    diagnostic: Diagnostic,
     wrong: &str,
     known: impl Iterator<Item = &'n str>,
-    known_are: &str,
+    form: &str,
 ) -> Diagnostic {
     const FEW: usize = 12;
-    let known: Vec<_> = known.collect();
-    let diagnostic = Diagnostic::error(code, span, message).with_nearest(wrong, known.iter().copied());
-    if diagnostic.hint.is_some() || known.is_empty() || known.len() > FEW {
+    let known: BTreeSet<_> = known.collect();
+    let diagnostic = diagnostic.with_nearest(wrong, known.iter().copied());
+    if diagnostic.hint.is_some() {
         return diagnostic;
     }
-    diagnostic.with_hint(format!("{known_are} {}", known.join(", ")))
+    if known.is_empty() || known.len() > FEW {
+        return diagnostic.with_hint(form);
+    }
+    let known: Vec<_> = known.into_iter().collect();
+    diagnostic.with_hint(format!("known are {}", known.join(", ")))
 }
 
 pub(super) fn kind_of(name: &Name) -> Option<TopicKind> {
@@ -196,7 +222,7 @@ fn dotted(topic: &TopicEntry) -> String {
 }
 
 /// The form that can only mean this topic.
-fn full_form(topic: &TopicEntry) -> String {
+pub(super) fn full_form(topic: &TopicEntry) -> String {
     let kind = match topic.kind {
         TopicKind::Signal => "Signal",
         TopicKind::State => "State",

@@ -59,11 +59,18 @@ impl<'a> Scope<'a> {
         self.vocabulary.functions.iter().find(|function| function.name == name.text).ok_or_else(|| {
             let message = format!("there is no function `{}`", name.text);
             let known = self.vocabulary.functions.iter().map(|function| function.name.as_str());
-            vec![unknown("E0139", name.place.0, message, &name.text, known, "known are")]
+            let diagnostic = Diagnostic::error("E0139", name.place.0, message);
+            vec![unknown(
+                diagnostic,
+                &name.text,
+                known,
+                "functions are registered by the program that runs the chart",
+            )]
         })
     }
 
-    /// What a path means; `expected` is the type of the operand beside it, whose enumeration gives its values to bare names.
+    /// What a path means; `expected` is the type of the operand beside it, whose enumeration gives its values
+    /// to bare names.
     pub(super) fn variable(&self, path: &Path, expected: Option<&ValueType>) -> Checked<Typed> {
         let mut meanings = self.meanings(path, expected);
         let as_message = self.variable_of_message(path, expected);
@@ -77,9 +84,15 @@ impl<'a> Scope<'a> {
         }
         match (meanings.pop(), path.bare()) {
             (Some(meaning), _) => Ok(meaning.typed),
-            (None, Some(name)) if as_message.is_err() => Err(vec![self.unknown_name(path, name, expected)]),
+            (None, Some(name)) if !self.names_message(name) => {
+                Err(vec![self.unknown_name(path, name, expected)])
+            }
             _ => as_message,
         }
+    }
+
+    fn names_message(&self, name: &str) -> bool {
+        self.vocabulary.messages.iter().any(|entry| entry.name == name) || !self.topics_named(name).is_empty()
     }
 
     /// A field, or a whole message: a bare name only where a message is expected.
@@ -88,7 +101,9 @@ impl<'a> Scope<'a> {
         let (fields, kind) = self.fields(source.entry, names)?;
         let term = if fields.is_empty() {
             if path.bare().is_some() && !matches!(expected, Some(ValueType::Message(_))) {
-                return Err(Vec::new());
+                let message = format!("`{path}` is a message, not a value");
+                let diagnostic = Diagnostic::error("E0130", path.place.0, message);
+                return Err(vec![diagnostic.with_hint(self.fields_hint(path, source.entry))]);
             }
             Term::Message(source.message_source())
         } else {
@@ -97,8 +112,8 @@ impl<'a> Scope<'a> {
         Ok(Typed { term, kind })
     }
 
-    /// Every meaning but a message: a timer of the chart, a value of the expected enumeration, a constant of the model, a
-    /// function without arguments.
+    /// Every meaning but a message: a timer of the chart, a value of the expected enumeration, a constant of
+    /// the model, a function without arguments.
     fn meanings(&self, path: &Path, expected: Option<&ValueType>) -> Vec<Meaning> {
         let mut meanings = Vec::new();
         meanings.extend(self.timer(path).map(|timer| Meaning {
@@ -137,10 +152,11 @@ impl<'a> Scope<'a> {
         if let Some(enumeration) = self.expected_values(expected) {
             let message = format!("the enumeration `{}` has no value `{name}`", enumeration.name);
             let known = enumeration.values.iter().map(|(value, _)| value.as_str());
-            return unknown("E0130", span, message, name, known, "its values are");
+            let form = "see the definition of the enumeration";
+            return unknown(Diagnostic::error("E0130", span, message), name, known, form);
         }
         let message = format!("there is nothing called `{name}` here");
-        if let Some(hint) = self.hint_for_unknown(path, name, expected) {
+        if let Some(hint) = self.hint_for_unknown(name, expected) {
             return Diagnostic::error("E0130", span, message).with_hint(hint);
         }
         let timers = self.timers.iter().map(String::as_str);
@@ -157,15 +173,12 @@ impl<'a> Scope<'a> {
     }
 
     /// What is known elsewhere, but not as a bare name here.
-    fn hint_for_unknown(&self, path: &Path, name: &str, expected: Option<&ValueType>) -> Option<String> {
+    fn hint_for_unknown(&self, name: &str, expected: Option<&ValueType>) -> Option<String> {
         if name.starts_with(|first: char| first.is_ascii_digit()) {
             return Some("numbers carry no unit".to_owned());
         }
-        if let Some(ValueType::Message(message)) = expected {
-            return Some(format!("{} is expected", describe(&ValueType::Message(message.clone()))));
-        }
-        if let Ok((source, _)) = self.message(path) {
-            return Some(format!("`{name}` is a message: {}", self.fields_hint(path, source.entry)));
+        if let Some(message @ ValueType::Message(_)) = expected {
+            return Some(format!("{} is expected", describe(message)));
         }
         if self.vocabulary.functions.iter().any(|function| function.name == name) {
             return Some(format!("`{name}` is a function: write its arguments in parentheses"));

@@ -40,7 +40,8 @@ impl<'t> Cursor<'t> {
         Err(Refused)
     }
 
-    /// Refuses the token that stands here: what is no token at all has a code of its own, else `code` and what was expected.
+    /// Refuses the token that stands here: what is no token at all has a code of its own, else `code` and
+    /// what was expected.
     pub(super) fn refuse_here<T>(&mut self, code: &'static str, expected: &str, hint: &str) -> Parsed<T> {
         let diagnostic = self.not_a_token().unwrap_or_else(|| {
             let message = format!("{expected} is expected, not {}", self.found());
@@ -178,7 +179,8 @@ impl<'t> Cursor<'t> {
         self.refuse_closing("E0110", open, "[", "]")
     }
 
-    /// At the end or at a closing bracket the brackets are at fault, else what stands where an operator should.
+    /// At the end or at a closing bracket the brackets are at fault, else what stands where an operator
+    /// should.
     fn refuse_closing(&mut self, code: &'static str, open: Span, opening: &str, closing: &str) -> Parsed<()> {
         if opening == "[" && self.at(Symbol::CloseParenthesis) {
             let diagnostic = Diagnostic::error("E0109", self.span(), "`)` closes nothing");

@@ -30,7 +30,8 @@ impl Cursor<'_> {
         Ok(Path { segments, place: self.place(self.since(start)) })
     }
 
-    /// One segment of a path: a word, a function's name with its crate (`soccer::near`), or anything in backquotes.
+    /// One segment of a path: a word, a function's name with its crate (`soccer::near`), or anything in
+    /// backquotes.
     pub(super) fn name(&mut self) -> Parsed<Name> {
         let span = self.span();
         match self.kind() {

@@ -1,24 +1,214 @@
-use super::world::{compile_with, said};
-use crate::expression::EventTable;
+//! What names come to mean.
+
+use std::time::Duration;
+
+use super::world::{
+    BALL, BEHAVIOR_FALL, COLOUR, DISTANCE, GAME, LEFT_ARM, MOTION, POSITION, World, X, compile_with,
+    compiled, constants, guard, state_of, timers, vocabulary,
+};
+use crate::expression::{
+    CompiledTransition, CompiledTrigger, Effect, EventId, EventTable, Names, Origin, TimerId,
+    compile_actions, parse_actions,
+};
+use crate::vocabulary::{FieldId, Value};
+
+fn effects(text: &str) -> Box<[Effect]> {
+    compiled(&format!("/ {text}")).effects
+}
+
 #[test]
-fn scratch() {
-    for text in [
-        "[limt > 1]", "[nothing > 1]", "[PLAYING]", "[Ball]", "[near]", "[3m > 1]", "[GameState.player_state == PLAYNG]", "[GameState.player_state == GONE]", "[moton_timeout]", "[near(nothing, 1)]",
-        "[both == 1]", "[GameState.player_state == READY]",
-        "[Bal.distance > 1]", "[nowhere.State.Ball.distance > 1]", "[bal.State.Ball.distance > 1]", "[Zebra.distance > 1]",
-        "[Arm.angle > 1]", "[arm.angle > 1]", "[Unheard.x > 1]", "[whistle.loudness > 1]", "[Point.x > 1]",
-        "[Ball.distnce > 1]", "[Ball.distance.x > 1]", "[Ball.position.z > 1]",
-        "[ball.Signal.Ball.distance > 1]", "[behavior.State.Fall.fall > 1]",
-        "[abs(1, 2) > 1]", "[kick_off(1)]", "[abs() > 1]", "[crowded(1,2,3,4,5,6,7,8,9)]",
-        "[Ball.distance]", "[Ball.found == 1]", "[GameState.player_state == 3]", "[Ball.distance == \"3\"]", "[Ball.position == Ball.position]", "[Ball.colour < \"a\"]", "[Ball.found > true]", "[GameState.player_state == GameState.phase]", "[Ball.distance + true > 1]", "[-Ball.found]", "[!Ball.distance]", "[GameState.player_state < PLAYING]", "[abs(Ball.found) > 1]", "[near(Arm, 1)]", "[near(GameState, 1)]", "[near(ball.State.Ball.position, 1)]", "[ball.State.Ball]", "[\"a\" && 1]",
-        "[Ball.distance == NULL]", "[Bal == NULL]",
-        "[In(nowhere)]", "[abz(1) > 1]",
-        "/ StartTimeout(unknown, 1ms)", "/ StartTimeout(motion_timeout, 0.9ms)", "/ Vision.Ball.distance = 1", "/ striker.ball.State.Ball.distance = 1", "/ Ball = 1", "/ x = 1", "/ Ball.distance = true", "/ GameState.player_state = GONE", "/ publish.Vision.Ball", "/ publish.Ball.found", "/ publish.Bal", "/ raise(Ball)", "/ raise(motion)", "ball.State.Ball.found", "striker.ball.State.Ball", "Message.Arm", "whistle", "Message.Nothing", "e | nowhere.State.Ball",
-        "Message.Nothing [abz(1) > 1 && Ball.distance || zzz] / raise(Ball); Ball.found = 1", "[abs(a) > zz + yy]",
+fn nothing_compiles_to_nothing() {
+    assert_eq!(compiled(""), CompiledTransition::default());
+}
+
+#[test]
+fn a_topic_is_named_in_every_way() {
+    let world = World::new().with(BALL, &[DISTANCE], Value::Float(2.0));
+    for variable in [
+        "Ball.distance",
+        "ball.distance",
+        "`soccer.ball`.distance",
+        "`soccer/ball`.distance",
+        "ball.State.Ball.distance",
+        "`soccer.ball`.State.Ball.distance()",
     ] {
-        let diagnostics = compile_with(text, &mut EventTable::new()).err().unwrap_or_default();
-        println!("        ({text:?}, &[");
-        for line in said(text, &diagnostics) { println!("            {line:?},"); }
-        println!("        ]),");
+        assert_eq!(world.holds(&format!("{variable} == 2")), Ok(true), "{variable}");
     }
+    assert_eq!(guard("`left.arm`.State.Arm.angle > 1").reads(), [LEFT_ARM]);
+    assert_eq!(guard("behavior.Signal.Fall.fall > 0").reads(), [BEHAVIOR_FALL]);
+}
+
+#[test]
+fn what_stands_before_a_message_says_whose_it_is() {
+    let host = || "striker".into();
+    let publisher = || "Vision".into();
+    for (variable, origin) in [
+        ("Ball.distance", Origin::Own),
+        ("Vision.Ball.distance", Origin::Publisher(publisher())),
+        ("`Vision`.Ball.distance", Origin::Publisher(publisher())),
+        ("striker.ball.State.Ball.distance", Origin::Host(host())),
+        ("striker.Vision.Ball.distance", Origin::HostPublisher { host: host(), publisher: publisher() }),
+    ] {
+        let world = World::new().with_from(origin.clone(), BALL, &[DISTANCE], Value::Int(1));
+        assert_eq!(world.holds(&format!("{variable} == 1")), Ok(true), "{variable}");
+        let elsewhere =
+            World::new().with_from(Origin::Host("keeper".into()), BALL, &[DISTANCE], Value::Int(1));
+        assert_eq!(elsewhere.holds(&format!("{variable} == 1")), Ok(false), "{variable}");
+    }
+}
+
+#[test]
+fn fields_of_fields_are_read_in_one_path() {
+    let world = World::new().with(BALL, &[POSITION, X], Value::Float(-1.0));
+    assert_eq!(world.holds("Ball.position.x < 0"), Ok(true));
+    assert_eq!(world.holds("ball.State.Ball.position().x() < 0"), Ok(true));
+}
+
+#[test]
+fn a_bare_name_is_a_value_of_the_enumeration_beside_it() {
+    let world =
+        World::new().with(GAME, &[FieldId(0)], Value::Enum(3)).with(GAME, &[FieldId(1)], Value::Enum(0));
+    assert_eq!(world.holds("GameState.player_state == PLAYING"), Ok(true));
+    assert_eq!(world.holds("PLAYING == GameState.player_state"), Ok(true));
+    assert_eq!(world.holds("GameState.phase == PLAYING"), Ok(false));
+    assert_eq!(world.holds("GameState.phase == FIRST"), Ok(true));
+}
+
+#[test]
+fn a_bare_name_is_a_constant_or_a_function_without_arguments() {
+    let world = World::new().with(BALL, &[COLOUR], Value::Text("blue"));
+    assert_eq!(world.holds("limit == 0.25"), Ok(true));
+    assert_eq!(world.holds("Ball.colour == own"), Ok(true));
+    assert_eq!(world.holds("!debug && kick_off"), Ok(true));
+    assert_eq!(world.holds("kick_off()"), Ok(true));
+}
+
+#[test]
+fn a_timer_may_have_dots() {
+    assert_eq!(guard("motion_timeout && robot.period").timers(), [TimerId(0), TimerId(1)]);
+    assert_eq!(guard("TimeoutCheck(robot.period)").timers(), [TimerId(1)]);
+}
+
+#[test]
+fn triggers_name_events_and_arrivals_of_messages() {
+    let mut events = EventTable::new();
+    let trigger =
+        |text: &str, events: &mut EventTable| compile_with(text, events).unwrap().trigger.unwrap();
+    let kick = events.intern("kick");
+    assert_eq!(trigger("*", &mut events), CompiledTrigger::Any);
+    assert_eq!(trigger("kick", &mut events), CompiledTrigger::OneOf([kick].into()));
+    assert_eq!(trigger("not kick", &mut events), CompiledTrigger::Not(kick));
+    let both = trigger("kick | error.activity", &mut events);
+    assert_eq!(both, CompiledTrigger::OneOf([kick, events.find("error.activity").unwrap()].into()));
+
+    for (text, topic) in [
+        ("Message.Ball", BALL),
+        ("Ball", BALL),
+        ("ball.State.Ball", BALL),
+        ("`soccer.ball`", BALL),
+        ("motion", MOTION),
+        ("Motion", MOTION),
+        ("`body.motion`.Signal.Motion", MOTION),
+    ] {
+        let CompiledTrigger::OneOf(alternatives) = trigger(text, &mut events) else { panic!("{text}") };
+        assert_eq!(events.message(topic), Some(alternatives[0]), "{text}");
+        assert_eq!(events.topic(alternatives[0]), Some(topic), "{text}");
+    }
+    assert_eq!(events.message(GAME), None);
+    assert_eq!(events.name(events.message(BALL).unwrap()), "soccer/ball");
+    assert_eq!(events.len(), 4);
+}
+
+/// A topic that keeps its messages is no event unless it is written as one; nor is a timer's name a topic.
+#[test]
+fn names_of_events_are_not_taken_for_topics() {
+    let mut events = EventTable::new();
+    compile_with("ball | motion_timeout | state.x", &mut events).unwrap();
+    for name in ["ball", "motion_timeout", "state.x"] {
+        let event = events.find(name).expect(name);
+        assert_eq!((events.name(event), events.topic(event)), (name, None));
+    }
+    assert_eq!((events.name(EventId(99)), events.topic(EventId(99))), ("", None));
+}
+
+#[test]
+fn triggers_match_their_events() {
+    let (a, b, c) = (EventId(0), EventId(1), EventId(2));
+    let one_of = CompiledTrigger::OneOf([a, b].into());
+    assert_eq!([a, b, c].map(|event| one_of.matches(event)), [true, true, false]);
+    assert_eq!([a, b].map(|event| CompiledTrigger::Not(a).matches(event)), [false, true]);
+    assert!(CompiledTrigger::Any.matches(c));
+}
+
+#[test]
+fn assignments_know_topic_field_and_value() {
+    let effects =
+        effects("Ball.position.x = Motion.speed * 2; Motion.command = \"Init\"; Motion.state = PLAYING");
+    let [Effect::Assign { topic, field, value }, command, state] = &effects[..] else {
+        panic!("{effects:?}")
+    };
+    assert_eq!((*topic, &field[..], value.reads()), (BALL, &[POSITION, X][..], &[MOTION][..]));
+    let world = World::new().with(MOTION, &[FieldId(1)], Value::Int(-3));
+    assert!(matches!(value.evaluate(&world), Ok(Value::Int(-6))));
+    assert!(matches!(value.evaluate(&World::new()), Ok(Value::Missing)));
+    let Effect::Assign { value, .. } = command else { panic!("{command:?}") };
+    assert!(matches!(value.evaluate(&world), Ok(Value::Text("Init"))));
+    let Effect::Assign { value, .. } = state else { panic!("{state:?}") };
+    assert!(matches!(value.evaluate(&world), Ok(Value::Enum(3))));
+}
+
+#[test]
+fn a_condition_can_be_assigned() {
+    let effects = effects("Ball.found = Ball.distance < limit || debug");
+    let [Effect::Assign { value, .. }] = &effects[..] else { panic!("{effects:?}") };
+    let world = World::new().with(BALL, &[DISTANCE], Value::Float(0.1));
+    assert!(matches!(value.evaluate(&world), Ok(Value::Bool(true))));
+    assert!(matches!(value.evaluate(&World::new()), Ok(Value::Missing)));
+}
+
+#[test]
+fn other_effects() {
+    let mut events = EventTable::new();
+    let text = "/ process_messages; publish.Ball; publish_all; StartTimeout(robot.period, 1ms); \
+                TimeoutAction.motion_timeout.250; raise(done)";
+    let effects = compile_with(text, &mut events).unwrap().effects;
+    let expected = [
+        Effect::ProcessMessages,
+        Effect::Publish { topic: BALL },
+        Effect::PublishAll,
+        Effect::StartTimeout { timer: TimerId(1), delay: Duration::from_millis(1) },
+        Effect::StartTimeout { timer: TimerId(0), delay: Duration::from_millis(250) },
+        Effect::Raise { event: events.find("done").unwrap() },
+    ];
+    assert_eq!(effects[..], expected);
+}
+
+#[test]
+fn actions_compile_without_a_transition() {
+    let (vocabulary, constants, timers) = (vocabulary(), constants(), timers());
+    let mut events = EventTable::new();
+    let (vocabulary, states) = (&vocabulary, &state_of);
+    let mut names = Names { vocabulary, constants: &constants, timers: &timers, events: &mut events, states };
+    let (actions, _) = parse_actions("raise(entered)");
+    assert_eq!(compile_actions(&actions, &mut names), Ok([Effect::Raise { event: EventId(0) }].into()));
+    let (actions, _) = parse_actions("Ball.x = 1; Ball.y = 2");
+    assert_eq!(compile_actions(&actions, &mut names).map_err(|wrong| wrong.len()), Err(2));
+    assert!(!events.is_empty());
+}
+
+#[test]
+fn reads_are_found_wherever_they_stand() {
+    let text = "near(ball.State.Ball, -GameState.score) || !(Motion == NULL) && 1 + `left.arm`.State.Arm.angle * 2 > 0 \
+                || Ball.found && TimeoutCheck(robot.period) && motion_timeout";
+    let guard = guard(text);
+    assert_eq!(guard.reads(), [BALL, GAME, MOTION, LEFT_ARM]);
+    assert_eq!(guard.timers(), [TimerId(0), TimerId(1)]);
+}
+
+#[test]
+fn only_the_literal_is_literally_false() {
+    assert!(guard("false").is_literally_false());
+    assert!(!guard("debug").is_literally_false());
+    assert!(!guard("TimeoutCheck(never)").is_literally_false());
+    assert!(!guard("true").is_literally_false());
 }

@@ -1,0 +1,289 @@
+//! Agents from XML: what the thesis writes is read, and everything that is wrong is said at once, with its place.
+
+mod kit;
+
+use std::fs;
+
+use monas::{Activity, Agent, Blackboard, BoxError, Parameters, Policy, Progress, Registry, config};
+use yase::Source;
+
+#[derive(Default)]
+struct Walk;
+
+impl Activity for Walk {
+    fn configure(&mut self, parameters: &Parameters) {
+        if parameters.number("speed").is_some_and(|speed| speed > 1.0) {
+            parameters.refuse("speed", "is more than the legs can do");
+        }
+        parameters.flag("careful");
+    }
+    fn execute(&mut self, _: &mut Blackboard) -> Result<Progress, BoxError> {
+        Ok(Progress::Done)
+    }
+}
+
+fn plain(_: &mut Blackboard) {}
+
+fn registry() -> Registry {
+    let names = ["Vision", "Behavior", "Sensors", "RobotController"];
+    names.into_iter().fold(Registry::empty().with("Walk", Walk::default), |r, name| r.with(name, || plain))
+}
+
+/// Reads a text as a file in a folder with these models.
+fn read(text: &str, models: &[(&str, &str)]) -> (Vec<Agent>, Vec<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir_all(folder.path().join("models")).unwrap();
+    for (name, model) in models {
+        fs::write(folder.path().join("models").join(name), model).unwrap();
+    }
+    let path = folder.path().join("config/agents.xml");
+    let (agents, diagnostics) = config::read(&Source::new("agents.xml", text), &path, &registry());
+    let prefix = format!("{}/", folder.path().display());
+    (agents, diagnostics.iter().map(|diagnostic| diagnostic.to_string().replace(&prefix, "")).collect())
+}
+
+/// What is wrong with a text, line by line.
+fn check(text: &str, expected: &[&str]) {
+    assert_eq!(read(text, &[]).1, expected);
+}
+
+/// What is wrong with the attributes and elements of an agent that is otherwise in order.
+fn check_agent(attributes: &str, elements: &str, expected: &[&str]) {
+    let text = format!("<agent thread_frequency='10' {attributes}>\n<name>a</name>\n{elements}\n</agent>");
+    check(&text, expected);
+}
+
+/// Listing 4.17 of the thesis.
+const LISTING: &str = "\
+<agent IsRealTime=1 Priority=1 ThreadFrequency=10 StatsCycle=15>
+  <name>Motion</name>
+  <activity>Vision</activity>
+  <activity>Behavior</activity>
+</agent>
+";
+
+#[test]
+fn the_listing_of_the_thesis_is_read_as_it_stands() {
+    let (agents, diagnostics) = read(LISTING, &[]);
+    assert_eq!(diagnostics, [""; 0]);
+    let [agent] = agents.as_slice() else { panic!("{agents:?}") };
+    assert_eq!(agent.name(), "Motion");
+    assert_eq!(agent.activity_names().collect::<Vec<_>>(), ["Vision", "Behavior"]);
+    assert_eq!(agent.frequency().map(|frequency| frequency.hertz()), Some(10.0));
+    assert_eq!(agent.scheduling(), (1, true));
+    assert_eq!(agent.policy(), Policy::Restart);
+}
+
+#[test]
+fn the_files_of_2012_are_read() {
+    let text = r#"<?xml version="1.0"?>
+        <!-- who runs where -->
+        <agent IsRealTime="1" Priority="1" ThreadFrequency="50" StatsCycle="1000" Enable="1">
+            <name>KMC</name>
+            <activity Enable="0">Vision</activity>
+            <activity>Behavior</activity>
+        </agent>
+        <provider IsRealTime="1" Priority="1" ThreadFrequency="10" StatsCycle="1000" Enable="1">Sensors</provider>
+        <agent ThreadFrequency="1" Enable="0"><name>Rest</name><activity>Vision</activity></agent>"#;
+    let (agents, diagnostics) = read(text, &[]);
+    assert_eq!(diagnostics, [""; 0]);
+    let names: Vec<_> =
+        agents.iter().map(|agent| (agent.name(), agent.activity_names().collect::<Vec<_>>())).collect();
+    assert_eq!(names, [("KMC", vec!["Behavior"]), ("Sensors", vec!["Sensors"])]);
+}
+
+#[test]
+fn canonical_names_and_the_thesis_s_mean_the_same() {
+    let text = "<agent is_real_time='true' priority='3' thread_frequency='2.5' stats_cycle='0' enable='1' \
+                on_failure='safe-state'><name>a</name><activity careful='1' speed='0.5'>Walk</activity></agent>";
+    let (agents, diagnostics) = read(text, &[]);
+    assert_eq!(diagnostics, [""; 0]);
+    assert_eq!(agents[0].scheduling(), (3, true));
+    assert_eq!(agents[0].frequency().map(|frequency| frequency.hertz()), Some(2.5));
+    assert_eq!(agents[0].policy(), Policy::SafeState);
+}
+
+#[test]
+fn names_that_are_not_known_come_with_the_nearest_that_is() {
+    check_agent(
+        "",
+        "<activty>Vision</activty>",
+        &["agents.xml:3:2: error[E0303]: unknown element `activty` (did you mean `activity`?)"],
+    );
+    check_agent(
+        "Prioritty='1'",
+        "<activity>Vision</activity>",
+        &[
+            "agents.xml:1:30: error[E0304]: unknown attribute `Prioritty` of `agent` (did you mean `Priority`?)",
+        ],
+    );
+    check_agent(
+        "",
+        "<activity>Vsion</activity>",
+        &["agents.xml:3:11: error[E0312]: unknown activity `Vsion` (did you mean `Vision`?)"],
+    );
+    check("<agnet/>", &["agents.xml:1:2: error[E0303]: unknown element `agnet` (did you mean `agent`?)"]);
+    check(
+        "<robot/>",
+        &["agents.xml:1:2: error[E0303]: unknown element `robot` (expected `agent`, `provider` or `agents`)"],
+    );
+}
+
+#[test]
+fn values_that_cannot_be_meant_are_said() {
+    check_agent(
+        "priority='high'",
+        "<activity>Vision</activity>",
+        &["agents.xml:1:40: error[E0306]: `priority` is `high`, expected a whole number"],
+    );
+    check_agent(
+        "IsRealTime='maybe'",
+        "<activity>Vision</activity>",
+        &[
+            "agents.xml:1:42: error[E0306]: `IsRealTime` is `maybe`, expected one of `1`, `0`, `true` or `false`",
+        ],
+    );
+    check_agent(
+        "on_failure='restrt'",
+        "<activity>Vision</activity>",
+        &[
+            "agents.xml:1:42: error[E0306]: `on_failure` is `restrt`, expected one of `restart`, `skip`, `stop-agent` or \
+         `safe-state` (did you mean `restart`?)",
+        ],
+    );
+    for frequency in ["0", "-5", "NaN", "inf", "quick"] {
+        let text = format!(
+            "<agent thread_frequency='{frequency}'><name>a</name><activity>Vision</activity></agent>"
+        );
+        let expected = format!(
+            "agents.xml:1:26: error[E0306]: `thread_frequency` is `{frequency}`, expected a number from 0.001 to 1000000"
+        );
+        check(&text, &[&expected]);
+    }
+}
+
+#[test]
+fn what_an_agent_lacks_is_said() {
+    check(
+        "<agent thread_frequency='1'><activity>Vision</activity></agent>",
+        &["agents.xml:1:2: error[E0305]: `agent` has no `<name>`"],
+    );
+    check(
+        "<agent thread_frequency='1'><name> </name><activity>Vision</activity></agent>",
+        &["agents.xml:1:30: error[E0310]: an agent's name is empty"],
+    );
+    check(
+        "<agent thread_frequency='1'><name>a</name></agent>",
+        &["agents.xml:1:2: error[E0319]: agent `a` has no activity and no statechart"],
+    );
+    check(
+        "<agent><name>a</name><activity>Vision</activity></agent>",
+        &["agents.xml:1:2: error[E0305]: agent `a` has activities and no `thread_frequency`"],
+    );
+}
+
+#[test]
+fn two_agents_of_one_name_are_said() {
+    let agent = "<agent thread_frequency='1'><name>a</name><activity>Vision</activity></agent>\n";
+    check(&agent.repeat(2), &["agents.xml:2:35: error[E0311]: another agent is named `a`"]);
+    let provider = "<provider thread_frequency='1'>Vision</provider>";
+    check(&provider.repeat(2), &["agents.xml:1:81: error[E0311]: another agent is named `Vision`"]);
+}
+
+#[test]
+fn parameters_are_checked_by_the_activity_that_has_them() {
+    check_agent(
+        "",
+        "<activity sped='1'>Walk</activity>",
+        &["agents.xml:3:11: error[E0314]: activity `Walk`: unknown parameter `sped` (did you mean `speed`?)"],
+    );
+    check_agent(
+        "",
+        "<activity speed='quick' careful='perhaps'>Walk</activity>",
+        &[
+            "agents.xml:3:18: error[E0315]: activity `Walk`: parameter `speed` is `quick`, expected a number",
+            "agents.xml:3:34: error[E0315]: activity `Walk`: parameter `careful` is `perhaps`, expected `1`, `0`, \
+         `true` or `false`",
+        ],
+    );
+    check_agent(
+        "",
+        "<activity speed='2'>Walk</activity>",
+        &["agents.xml:3:18: error[E0315]: activity `Walk`: parameter `speed` is more than the legs can do"],
+    );
+}
+
+#[test]
+fn ill_formed_xml_is_repaired_and_said() {
+    check_agent("", "<activity>Vision", &["agents.xml:3:2: error[E0301]: `<activity>` is not closed"]);
+    check_agent(
+        "",
+        "<activity>Vision</activty>",
+        &["agents.xml:3:19: error[E0301]: `</activty>` closes nothing (did you mean `activity`?)"],
+    );
+    check_agent(
+        "Enable",
+        "<activity>Vision</activity>",
+        &["agents.xml:1:30: error[E0301]: attribute `Enable` has no value (write `Enable=\"1\"`)"],
+    );
+    check_agent(
+        "priority='1' priority='2'",
+        "<activity>Vision</activity>",
+        &["agents.xml:1:43: error[E0307]: attribute `priority` is given twice"],
+    );
+    check("hello", &["agents.xml:1:1: error[E0301]: text outside of an element"]);
+    check("<agents>", &["agents.xml:1:2: error[E0301]: `<agents>` is not closed"]);
+}
+
+#[test]
+fn two_mistakes_are_two_diagnostics() {
+    check_agent(
+        "prority='1'",
+        "<activity>Vsion</activity>\n<activity>Behaviour</activity>",
+        &[
+            "agents.xml:1:30: error[E0304]: unknown attribute `prority` of `agent` (did you mean `priority`?)",
+            "agents.xml:3:11: error[E0312]: unknown activity `Vsion` (did you mean `Vision`?)",
+            "agents.xml:4:11: error[E0312]: unknown activity `Behaviour` (did you mean `Behavior`?)",
+        ],
+    );
+}
+
+#[test]
+fn files_that_are_not_there_are_said_with_the_nearest_that_is() {
+    let text = "<agent><name>a</name><statechart>models/golie.srm</statechart></agent>";
+    let expected =
+        "agents.xml:1:34: error[E0316]: no model file `models/golie.srm` (did you mean `models/goalie.srm`?)";
+    assert_eq!(read(text, &[("goalie.srm", "goalie = Vision")]).1, [expected]);
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("agents.xml"), "").unwrap();
+    let (agents, diagnostics) = config::load(folder.path().join("agent.xml"), &registry());
+    assert!(agents.is_empty());
+    let said = diagnostics[0].to_string().replace(&format!("{}/", folder.path().display()), "");
+    assert_eq!(said, "agent.xml:1:1: error[E0316]: no file `agent.xml` (did you mean `agents.xml`?)");
+}
+
+/// What is wrong with a model that an agent names.
+fn check_model(model: &str, expected: &[&str]) {
+    let text = "<agent><name>a</name><statechart>models/m.srm</statechart></agent>";
+    assert_eq!(read(text, &[("m.srm", model)]).1, expected);
+}
+
+#[test]
+fn a_model_is_found_from_the_folders_above() {
+    let (agents, diagnostics) = read(
+        "<agent><name>a</name><statechart>models/m.srm</statechart></agent>",
+        &[("m.srm", "m = Vision . Behavior")],
+    );
+    assert_eq!(diagnostics, [""; 0]);
+    assert_eq!(agents[0].charts()[0].name, "m");
+}
+
+#[test]
+fn mistakes_in_a_model_are_said_with_their_place_in_it() {
+    check_model(
+        "m = Vsion . Behavior",
+        &[
+            "models/m.srm:1:5: error[E0318]: no activity `Vsion` is registered for the state `m/Vsion` (did you mean `Vision`?)",
+        ],
+    );
+}
