@@ -50,6 +50,8 @@ pub(crate) struct Arena {
     robots: Vec<RobotHandles>,
     feet: (rapier::SharedShape, rapier::Pose),
     lying_radius: f64,
+    foot_restitution: f32,
+    lying_restitution: f32,
 }
 
 impl Arena {
@@ -65,7 +67,16 @@ impl Arena {
         let (ball, ball_shape) = build_ball(&mut world, physics);
         let feet = feet(physics);
         let robots = (0..robots).map(|_| build_robot(&mut world, physics, &feet)).collect();
-        Self { world, ball, ball_shape, robots, feet, lying_radius: physics.lying_radius }
+        Self {
+            world,
+            ball,
+            ball_shape,
+            robots,
+            feet,
+            lying_radius: physics.lying_radius,
+            foot_restitution: physics.foot_restitution as f32,
+            lying_restitution: physics.lying_restitution as f32,
+        }
     }
 
     /// Moves everything on by one step.
@@ -119,13 +130,14 @@ impl Arena {
 
     /// Changes what of a robot meets the ball.
     pub(crate) fn set_base(&mut self, robot: usize, base: Base) {
-        let (shape, place) = match base {
-            Base::Feet => self.feet.clone(),
-            Base::Lying { direction, reach } => self.lying(direction, reach),
+        let ((shape, place), restitution) = match base {
+            Base::Feet => (self.feet.clone(), self.foot_restitution),
+            Base::Lying { direction, reach } => (self.lying(direction, reach), self.lying_restitution),
         };
         let collider = &mut self.world.colliders[self.robots[robot].base];
         collider.set_shape(shape);
         collider.set_position_wrt_parent(place);
+        collider.set_restitution(restitution);
     }
 
     /// Puts a robot on the field, or takes it out of everybody's way.
@@ -153,10 +165,17 @@ impl Arena {
     }
 
     fn lying(&self, direction: Vector, reach: f64) -> (rapier::SharedShape, rapier::Pose) {
-        let far = direction * (reach - self.lying_radius).max(0.0);
-        let shape = rapier::SharedShape::capsule(rapier::Vector::ZERO, narrow(far), self.lying_radius as f32);
-        (shape, rapier::Pose::identity())
+        let middle = direction * (reach / 2.0);
+        let half = direction.abs() * (reach / 2.0).max(self.lying_radius)
+            + left_of(direction).abs() * self.lying_radius;
+        let shape = rapier::SharedShape::cuboid(half.x as f32, half.y as f32);
+        (shape, rapier::Pose::from_translation(narrow(middle)))
     }
+}
+
+/// `direction`, turned to its left by a right angle.
+fn left_of(direction: Vector) -> Vector {
+    Vector::new(-direction.y, direction.x)
 }
 
 fn build_ball(world: &mut rapier::PhysicsWorld, physics: &Physics) -> (RigidBodyHandle, ColliderHandle) {
@@ -186,7 +205,7 @@ fn build_robot(
         .position(feet.1)
         .density(0.0)
         .friction(0.0)
-        .restitution(physics.body_restitution as f32)
+        .restitution(physics.foot_restitution as f32)
         .collision_groups(groups(BASE, BALL));
     let base = world.insert_collider(base, Some(body));
     RobotHandles { body, torso, base }

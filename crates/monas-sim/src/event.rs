@@ -59,7 +59,7 @@ pub enum EventKind {
     Goal {
         /// The team that it counts for.
         team: usize,
-        /// The robot that touched the ball last; none when nobody has touched it.
+        /// The robot whose shot it was, else the one that touched the ball last; none when nobody has touched it.
         robot: Option<usize>,
         /// Whether that robot is of the other team.
         own_goal: bool,

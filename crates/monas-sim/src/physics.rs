@@ -104,8 +104,11 @@ parameters! {
         ball_mass: "kg" = 0.055 in 0.005 to 1.0;
         /// Constant deceleration of a rolling ball (chosen: a kick of 2 m/s rolls 6.7 m on short carpet).
         ball_deceleration: "m/s^2" = 0.30 in 0.0 to 5.0;
-        /// Part of the speed that a bounce from a robot keeps (chosen: feet and arms give way).
-        body_restitution: "1" = 0.2 in 0.0 to 1.0;
+        /// Part of the speed that a bounce from feet keeps (chosen: legs give way a little).
+        foot_restitution: "1" = 0.4 in 0.0 to 1.0;
+        /// Part of the speed that a bounce from a lying body keeps (chosen: a
+        /// swung arm bats the ball away, so that a saved ball does not come to rest before the goal).
+        lying_restitution: "1" = 0.8 in 0.0 to 1.0;
         /// Part of the speed that a bounce from a post or wall keeps (chosen).
         post_restitution: "1" = 0.6 in 0.0 to 1.0;
 

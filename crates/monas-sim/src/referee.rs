@@ -207,8 +207,8 @@ impl Referee {
         self.state != GameState::Playing
     }
 
-    /// Judges one step; what is decided is put behind `events`.
-    pub(crate) fn judge(&mut self, scene: &Scene<'_>, events: &mut Vec<EventKind>) {
+    /// Judges one step while the shot of `shooter`, if any, is on its way; what is decided is put behind `events`.
+    pub(crate) fn judge(&mut self, scene: &Scene<'_>, shooter: Option<usize>, events: &mut Vec<EventKind>) {
         if self.state == GameState::Finished {
             return;
         }
@@ -223,7 +223,7 @@ impl Referee {
             GameState::Initial => self.leave_after(self.rules.initial_duration, GameState::Ready, events),
             GameState::Ready => self.leave_after(self.rules.ready_duration, GameState::Set, events),
             GameState::Set => self.leave_after(self.rules.set_duration, GameState::Playing, events),
-            GameState::Playing => self.judge_play(scene, events),
+            GameState::Playing => self.judge_play(scene, shooter, events),
             GameState::Finished => {}
         }
     }
@@ -285,10 +285,10 @@ impl Referee {
         }
     }
 
-    fn judge_play(&mut self, scene: &Scene<'_>, events: &mut Vec<EventKind>) {
+    fn judge_play(&mut self, scene: &Scene<'_>, shooter: Option<usize>, events: &mut Vec<EventKind>) {
         self.watch_touches(scene, events);
         if let Some(goal) = goal_side(scene) {
-            self.give_goal(goal, events);
+            self.give_goal(goal, shooter, events);
             return;
         }
         if self.is_out(scene) {
@@ -316,11 +316,13 @@ impl Referee {
         self.striker = Some(robot);
     }
 
-    fn give_goal(&mut self, side: FieldSide, events: &mut Vec<EventKind>) {
+    /// Gives a goal. A shot that others deflect on its way is the goal of who shot.
+    fn give_goal(&mut self, side: FieldSide, shooter: Option<usize>, events: &mut Vec<EventKind>) {
         let conceding = usize::from(self.defends[1] == side);
         let team = 1 - conceding;
         self.score[team] += 1;
-        let robot = self.last_touch;
+        let shooter = shooter.filter(|robot| self.team_of[*robot] == team);
+        let robot = shooter.or(self.last_touch);
         let own_goal = robot.is_some_and(|robot| self.team_of[robot] == conceding);
         events.push(EventKind::Goal { team, robot, own_goal });
         self.kick_off = conceding;

@@ -32,7 +32,8 @@ parameters! {
         stuck_time: "s" = 30.0 in 1.0 to 3600.0;
         /// How far a ball out of play is put back against the team that touched it last.
         throw_in_setback: "m" = 1.0 in 0.0 to 10.0;
-        /// 1 when teams also change shirts at half time, so that blue always defends the blue goal; 0 when they keep them.
+        /// 1 when teams also change shirts at half time, so that blue always defends the blue goal; 0 when they
+        /// keep them.
         switch_colours: "0 or 1" = 1.0 in 0.0 to 1.0;
     }
 }

@@ -6,7 +6,8 @@ use crate::{EventKind, FieldSide, STEP};
 /// A shot of which it is not yet known how it ends.
 #[derive(Debug, Clone, Copy)]
 struct Shot {
-    /// Index of the team that shot.
+    /// The robot that shot, and the index of its team.
+    robot: usize,
     team: usize,
     /// The goalie that touched it.
     goalie: Option<usize>,
@@ -37,7 +38,7 @@ impl Shots {
     ) {
         self.settle(events);
         if meets_goal(attacks, scene) {
-            self.pending = Some(Shot { team: scene.robots[robot].team, goalie: None, age: 0.0 });
+            self.pending = Some(Shot { robot, team: scene.robots[robot].team, goalie: None, age: 0.0 });
             events.push(EventKind::Shot { robot });
         }
     }
@@ -63,6 +64,11 @@ impl Shots {
         if let Some(Shot { goalie: Some(robot), .. }) = self.pending.take() {
             events.push(EventKind::Save { robot });
         }
+    }
+
+    /// The robot whose shot is on its way.
+    pub(crate) fn shooter(&self) -> Option<usize> {
+        self.pending.map(|shot| shot.robot)
     }
 
     /// The ball is in a goal.

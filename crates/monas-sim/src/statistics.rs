@@ -1,8 +1,9 @@
 //! Counting what happens.
 //!
 //! Possession: the robot nearest to the ball has it, if it is upright and within 0.3 m. A shot is a kick whose line
-//! meets the goal's mouth, a save a shot that the goalie touched and that is no goal, a fall the loss of balance
-//! of an upright robot (dives and falls on purpose are actions, counted apart).
+//! meets the goal's mouth, a save a shot that the goalie touched and that is no goal; a goal belongs to who shot,
+//! whoever deflected the ball. A fall is the loss of balance of an upright robot; dives and falls on purpose are
+//! actions, counted apart.
 
 use crate::state::Scene;
 use crate::{EventKind, STEP};

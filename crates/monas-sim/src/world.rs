@@ -330,7 +330,7 @@ impl World {
     fn judge(&mut self) {
         let scene = self.now.scene();
         let before = self.decisions.len();
-        self.referee.judge(&scene, &mut self.decisions);
+        self.referee.judge(&scene, self.shots.shooter(), &mut self.decisions);
         self.shots.follow(&scene, &mut self.decisions);
         self.returns.follow(self.referee.defends(), &scene, &mut self.decisions);
         if self.referee.state() == GameState::Playing {

@@ -260,6 +260,24 @@ fn an_own_goal_counts_for_the_others() {
 }
 
 #[test]
+fn a_shot_that_a_goalie_deflects_into_its_goal_is_the_shooters() {
+    let mut world = playing(15);
+    clear_field(&mut world, &[1, 3]);
+    world.place_robot(1, Pose::new(1.5, -0.05, 0.0)).unwrap();
+    world.place_robot(3, Pose::new(3.0, 0.75, 3.0)).unwrap();
+    world.place_ball(Vector::new(1.66, 0.0), Vector::zeros()).unwrap();
+    world.command(1, Command::new(Motion::Kick(Side::Left))).unwrap();
+    run(&mut world, 0.85);
+    world.place_robot(3, Pose::new(2.8, 0.0, 0.0)).unwrap();
+    world.place_ball(Vector::new(2.9245, 0.0), Vector::new(1.0, 0.0)).unwrap();
+    world.step();
+    assert_eq!(world.referee().last_touch(), Some(3));
+    run(&mut world, 0.5);
+    let goals = events(&world, |kind| matches!(kind, EventKind::Goal { .. }));
+    assert_eq!(goals, [EventKind::Goal { team: 0, robot: Some(1), own_goal: false }], "{:?}", world.events());
+}
+
+#[test]
 fn possession_and_first_touch_are_measured() {
     let mut world = playing(14);
     clear_field(&mut world, &[1, 4]);

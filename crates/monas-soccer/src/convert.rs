@@ -20,6 +20,9 @@ use crate::{
 /// `time_to_cross` of a ball that will not cross, seconds.
 const NEVER: f64 = 1e6;
 
+/// The distance behind the robot from which `crossing_bearing` is seen, metres.
+const CROSSING_DEPTH: f64 = 0.6;
+
 impl Ball {
     /// Where it is, in the robot's frame.
     pub fn position(&self) -> Point2<f64> {
@@ -49,7 +52,7 @@ impl Ball {
     pub(crate) fn with_crossing(self, crossing: Option<Crossing>) -> Ball {
         let approaching = crossing.is_some();
         let crossing = crossing.unwrap_or(Crossing { time: NEVER, y: 0.0 });
-        let crossing_bearing = if approaching { libm::atan2(crossing.y, self.x) } else { 0.0 };
+        let crossing_bearing = if approaching { libm::atan2(crossing.y, CROSSING_DEPTH) } else { 0.0 };
         Ball { approaching, time_to_cross: crossing.time, crossing_y: crossing.y, crossing_bearing, ..self }
     }
 }
@@ -225,7 +228,7 @@ mod tests {
         let ball = Ball { x: 1.0, ..Ball::default() };
         let far = ball.with_crossing(None);
         assert!(!far.approaching && far.time_to_cross >= 1e6 && far.crossing_bearing == 0.0);
-        let near = far.with_crossing(Some(Crossing { time: 0.5, y: -1.0 }));
+        let near = far.with_crossing(Some(Crossing { time: 0.5, y: -0.6 }));
         assert!(near.approaching && near.time_to_cross == 0.5);
         assert!((near.crossing_bearing + std::f64::consts::FRAC_PI_4).abs() < 1e-12);
     }

@@ -18,12 +18,12 @@ use crate::recorder::Recorder;
 /// Cloning it gives another handle to the same file. Each hub gets a handle as its observer; the last act is
 /// [`finish`](Tape::finish), which says whether everything was written.
 pub struct Tape {
-    recording: Arc<Mutex<Recording>>,
+    progress: Arc<Mutex<Progress>>,
     channels: Channels,
 }
 
 /// The file, until it is finished or cannot be written.
-enum Recording {
+enum Progress {
     Running(Box<Recorder>),
     Failed(McapError),
     Finished,
@@ -46,8 +46,8 @@ impl Tape {
     /// A tape that is written to `output`.
     pub fn to_writer(output: impl Write + Send + 'static) -> Result<Tape, Error> {
         let recorder = Recorder::new(Box::new(output)).map_err(Error::writing)?;
-        let recording = Arc::new(Mutex::new(Recording::Running(Box::new(recorder))));
-        Ok(Tape { recording, channels: Channels::default() })
+        let progress = Arc::new(Mutex::new(Progress::Running(Box::new(recorder))));
+        Ok(Tape { progress, channels: Channels::default() })
     }
 
     /// Writes facts about the run under a name: version, seed, hash of the configuration.
@@ -63,22 +63,22 @@ impl Tape {
     /// Ends the recording and answers how many messages it has. It is an error if something could not be written, now or
     /// before, or if the tape is finished already; what is published later is not recorded.
     pub fn finish(&self) -> Result<u64, Error> {
-        match std::mem::replace(&mut *self.recording(), Recording::Finished) {
-            Recording::Running(recorder) => recorder.finish().map_err(Error::writing),
-            Recording::Failed(error) => Err(Error::writing(error)),
-            Recording::Finished => Err(Error::finished()),
+        match std::mem::replace(&mut *self.progress(), Progress::Finished) {
+            Progress::Running(recorder) => recorder.finish().map_err(Error::writing),
+            Progress::Failed(error) => Err(Error::writing(error)),
+            Progress::Finished => Err(Error::finished()),
         }
     }
 
-    fn recording(&self) -> MutexGuard<'_, Recording> {
-        self.recording.lock().unwrap_or_else(PoisonError::into_inner)
+    fn progress(&self) -> MutexGuard<'_, Progress> {
+        self.progress.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Does what can be answered at once; the recording goes on after an error.
     fn change(&self, act: impl FnOnce(&mut Recorder) -> McapResult<()>) -> Result<(), Error> {
-        match &mut *self.recording() {
-            Recording::Running(recorder) => act(recorder).map_err(Error::writing),
-            Recording::Failed(_) | Recording::Finished => Err(Error::finished()),
+        match &mut *self.progress() {
+            Progress::Running(recorder) => act(recorder).map_err(Error::writing),
+            Progress::Failed(_) | Progress::Finished => Err(Error::finished()),
         }
     }
 }
@@ -86,28 +86,28 @@ impl Tape {
 /// Another handle to the same file, to observe another hub.
 impl Clone for Tape {
     fn clone(&self) -> Tape {
-        Tape { recording: self.recording.clone(), channels: Channels::default() }
+        Tape { progress: self.progress.clone(), channels: Channels::default() }
     }
 }
 
 /// Records each message on the publisher's thread. An error ends the recording; [`Tape::finish`] tells of it.
 impl Observer for Tape {
     fn observe(&mut self, publication: Publication<'_>) {
-        let mut recording = self.recording.lock().unwrap_or_else(PoisonError::into_inner);
-        let Recording::Running(recorder) = &mut *recording else { return };
+        let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        let Progress::Running(recorder) = &mut *progress else { return };
         let channel = self.channels.of(publication, recorder);
         if let Err(error) = channel.and_then(|channel| recorder.write(channel, publication)) {
-            *recording = Recording::Failed(error);
+            *progress = Progress::Failed(error);
         }
     }
 }
 
 impl fmt::Debug for Tape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match &*self.recording() {
-            Recording::Running(_) => "Tape(running)",
-            Recording::Failed(_) => "Tape(failed)",
-            Recording::Finished => "Tape(finished)",
+        f.write_str(match &*self.progress() {
+            Progress::Running(_) => "Tape(running)",
+            Progress::Failed(_) => "Tape(failed)",
+            Progress::Finished => "Tape(finished)",
         })
     }
 }

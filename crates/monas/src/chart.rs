@@ -128,23 +128,21 @@ impl Runner {
         }
     }
 
-    /// The next activity to be called, with its blackboard: one that a step started, or one that waited and is due.
-    pub(crate) fn next_assignment(&mut self, now: Moment) -> Option<Assignment> {
+    /// The next activity that the last step started, with its blackboard.
+    pub(crate) fn next_started(&mut self) -> Option<Assignment> {
+        let activation = self.desk.started.pop_front()?;
+        let blackboard = self.desk.take(activation.region)?;
+        self.posts.assign(activation, blackboard)
+    }
+
+    /// The next activity that waited for another call and is due, with its blackboard, to which what arrived is delivered.
+    pub(crate) fn next_waiting(&mut self, now: Moment) -> Option<Assignment> {
         loop {
-            let (activation, again) = match self.desk.started.pop_front() {
-                Some(activation) => (activation, false),
-                None => (self.posts.due(now)?, true),
-            };
-            if again && !self.machine.activity_resumed(activation) {
-                self.posts.leave(activation);
-                continue;
-            }
-            let Some(mut blackboard) = self.desk.take(activation.region) else { continue };
-            if again {
+            let activation = self.posts.due(now)?;
+            if self.machine.activity_resumed(activation) {
+                let mut blackboard = self.desk.take(activation.region)?;
                 blackboard.process_messages(now);
-            }
-            if let Some(assignment) = self.posts.assign(activation, blackboard) {
-                return Some(assignment);
+                return self.posts.assign(activation, blackboard);
             }
         }
     }
@@ -173,8 +171,8 @@ impl Runner {
         match result {
             Ok(Progress::Done) => self.posts.finished(activation),
             Ok(Progress::Ongoing(delay)) if current => {
-                let reads = self.desk.blackboard_mut(activation.region).map(|b| b.topics_read());
-                self.posts.wait(activation, now + delay, reads.unwrap_or_default());
+                let topics = self.topics_read(activation);
+                self.posts.wait(activation, now + delay, topics);
             }
             Ok(Progress::Ongoing(_)) => self.posts.finished(activation),
             Err(failure) => {
@@ -186,6 +184,18 @@ impl Runner {
             }
         }
         Ok(())
+    }
+
+    /// The topics whose messages call an activity early: of those that were read on its blackboard, what it says it reads. The chart's
+    /// guards read there too, so of an activity that says nothing their topics do so as well.
+    fn topics_read(&mut self, activation: Activation) -> Vec<TopicSlot> {
+        let Some(blackboard) = self.desk.blackboard_mut(activation.region) else { return Vec::new() };
+        let mut topics = blackboard.topics_read();
+        if let Some(declared) = self.posts.declared(activation) {
+            let path = |slot: &TopicSlot| blackboard.hub().declaration(*slot).map(|topic| topic.path());
+            topics.retain(|slot| path(slot).is_some_and(|path| declared.read_paths().contains(&path)));
+        }
+        topics
     }
 
     /// The activations that were asked to return soon since the last call.
@@ -206,6 +216,20 @@ impl Runner {
 
     pub(crate) fn micro_steps(&self) -> u64 {
         self.micro_steps
+    }
+
+    /// The topics whose messages call a waiting activation early.
+    pub(crate) fn waits_for(&self, activation: Activation) -> &[TopicSlot] {
+        self.posts.waits_for(activation)
+    }
+
+    /// The topics whose messages wake the chart.
+    pub(crate) fn topics_of_guards(&self) -> Vec<TopicSlot> {
+        self.machine.chart().reads().iter().map(|topic| TopicSlot::new(topic.0)).collect()
+    }
+
+    pub(crate) fn host(&self) -> &str {
+        &self.desk.host
     }
 
     pub(crate) fn activity_name(&self, activation: Activation) -> String {

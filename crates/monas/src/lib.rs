@@ -31,7 +31,7 @@ pub use parameters::{ParameterFault, Parameters};
 pub use registry::Registry;
 pub use run_hash::RunHash;
 pub use statistics::{ActivityStatistics, AgentStatistics, Average, Statistics};
-pub use talws::{HostConfig, Simulation, Talws, World};
+pub use talws::{HostConfig, Running, Simulation, Stopper, Talws, World};
 
 /// What the macros of this crate expand to.
 #[doc(hidden)]

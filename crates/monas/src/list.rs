@@ -5,7 +5,8 @@ use narukom::{Blackboard, Moment};
 use crate::activity::Activity;
 use crate::agent::Policy;
 use crate::call::{self, Failure};
-use crate::statistics::ActivityStatistics;
+use crate::statistics::{ActivityStatistics, Average};
+use crate::talws::Clock;
 
 /// How many calls an activity that keeps failing misses at most before it is tried again.
 const LONGEST_PAUSE: u64 = 64;
@@ -27,6 +28,7 @@ struct Entry {
     health: Health,
     calls: u64,
     failures: u64,
+    time: Option<Average>,
 }
 
 /// Whether an activity may be called.
@@ -56,7 +58,8 @@ impl List {
         blackboard: Blackboard,
     ) -> List {
         let down = || Health::Down { since_failures: 0, retry: 0 };
-        let entry = |(name, activity)| Entry { name, activity, health: down(), calls: 0, failures: 0 };
+        let entry =
+            |(name, activity)| Entry { name, activity, health: down(), calls: 0, failures: 0, time: None };
         let entries = activities.into_iter().map(entry).collect();
         List { agent: agent.into(), policy, entries, blackboard, cycles: 0, stopped: None }
     }
@@ -67,10 +70,15 @@ impl List {
         self.blackboard.process_messages(now);
     }
 
-    /// Goes through the cycle: calls each activity in turn, and publishes what they wrote.
-    pub(crate) fn cycle(&mut self, now: Moment) -> Outcome {
+    /// Goes through the cycle: calls each activity in turn, and publishes what they wrote. With a clock, measures how long each takes.
+    pub(crate) fn cycle(&mut self, now: Moment, clock: Option<&Clock>) -> Outcome {
+        let mut watch = clock.map(|clock| (clock, clock.now()));
         for index in 0..self.entries.len() {
-            let Err(failure) = self.entries[index].run(self.cycles, &mut self.blackboard) else { continue };
+            let result = self.entries[index].run(self.cycles, &mut self.blackboard);
+            if let Some((clock, since)) = &mut watch {
+                self.entries[index].measure(clock, since);
+            }
+            let Err(failure) = result else { continue };
             let outcome = self.failed(index, &failure);
             if outcome != Outcome::Continues {
                 self.blackboard.publish_all(now);
@@ -123,7 +131,8 @@ impl List {
             name: entry.name.clone(),
             calls: entry.calls,
             failures: entry.failures,
-            ..ActivityStatistics::default()
+            call_time: entry.time,
+            state: None,
         })
     }
 }
@@ -141,6 +150,13 @@ impl Entry {
         let _ = call::execute(self.activity.as_mut(), blackboard)?;
         self.health = Health::Up;
         Ok(())
+    }
+
+    /// Takes the time since the one before it ended, which one reading of the clock serves for both.
+    fn measure(&mut self, clock: &Clock, since: &mut Moment) {
+        let now = clock.now();
+        self.time.get_or_insert_default().add(now.since(*since));
+        *since = now;
     }
 
     /// The first failure costs no call, the n-th in a row 2^(n-1) - 1 of them.

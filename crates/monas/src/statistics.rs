@@ -22,7 +22,7 @@ pub struct AgentStatistics {
     pub overruns: u64,
     /// Micro-steps of its charts.
     pub micro_steps: u64,
-    /// Each of its activities, those of its list before those of its charts.
+    /// Each of its activities.
     pub activities: Vec<ActivityStatistics>,
     /// How long a cycle takes; measured in real time only.
     pub cycle_time: Option<Average>,
@@ -43,6 +43,18 @@ pub struct ActivityStatistics {
     pub failures: u64,
     /// How long a call takes; measured in real time only.
     pub call_time: Option<Average>,
+}
+
+impl AgentStatistics {
+    /// Adds what another thread of the same agent has done.
+    pub(crate) fn add(&mut self, part: AgentStatistics) {
+        self.cycles += part.cycles;
+        self.overruns += part.overruns;
+        self.micro_steps += part.micro_steps;
+        self.activities.extend(part.activities);
+        self.cycle_time = self.cycle_time.or(part.cycle_time);
+        self.stopped = self.stopped.take().or(part.stopped);
+    }
 }
 
 impl Statistics {

@@ -1,10 +1,20 @@
 //! Talws: what holds a team of agents, and runs it.
 
 mod body;
+mod chart_thread;
+mod clock;
+mod deadlines;
 mod instance;
+mod list_thread;
+mod mailbox;
+mod pool;
+mod real_time;
 mod seeds;
+mod setup;
 mod simulated_chart;
 mod simulation;
+mod stopper;
+mod teller;
 
 use monas_robot::Robot;
 use narukom::{Blackboard, Moment, Observer};
@@ -15,9 +25,13 @@ use crate::agent::Agent;
 use crate::error::Error;
 use crate::listener::ChartListener;
 use crate::registry::Registry;
+use crate::statistics::Statistics;
 
+pub(crate) use clock::Clock;
+pub use real_time::Running;
 pub(crate) use seeds::component_seed;
 pub use simulation::Simulation;
+pub use stopper::Stopper;
 
 /// A host: a robot or a computer, with a hub of its own, the agents that run on it, and its body if it has one.
 #[derive(Default)]
@@ -69,7 +83,7 @@ pub trait World: Send {
 /// Hosts with their agents and bodies, and the world around them.
 ///
 /// Talws is the only part of Monas that knows how time passes: [`simulate`](Talws::simulate) makes it pass as fast as it can be
-/// computed, everything on one thread and in a defined order.
+/// computed, everything on one thread and in a defined order; [`start`](Talws::start) lets it pass by itself.
 ///
 /// ```
 /// use monas::{Agent, Blackboard, Hz, Moment, Talws};
@@ -150,6 +164,24 @@ impl Talws {
     /// Two hosts or two agents of a host with one name, topics that contradict each other, and every diagnostic of every chart.
     pub fn simulate(self, seed: u64) -> Result<Simulation, Error> {
         Simulation::new(self, seed)
+    }
+
+    /// Starts a run in real time: a thread for each list of activities, each chart, each body and the world, and a pool of threads
+    /// for the activities of each agent's charts.
+    ///
+    /// # Errors
+    /// As in [`simulate`](Talws::simulate), and when the system gives no thread.
+    pub fn start(self) -> Result<Running, Error> {
+        // Nobody can repeat a run in real time, so one seed is as good as any.
+        Running::start(self, 0)
+    }
+
+    /// Runs in real time until somebody [stops](Stopper::stop) it.
+    ///
+    /// # Errors
+    /// As in [`start`](Talws::start).
+    pub fn run(self) -> Result<Statistics, Error> {
+        Ok(self.start()?.wait())
     }
 }
 

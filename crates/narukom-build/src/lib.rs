@@ -1,4 +1,38 @@
-//! For build scripts: .proto files to messages with descriptors and field access by name.
+//! For build scripts: `.proto` files to messages with descriptors and field access by name.
+//!
+//! A build script calls [`compile`] (or a [`Compiler`], when messages of other crates are imported):
+//!
+//! ```no_run
+//! fn main() -> Result<(), narukom_build::Error> {
+//!     narukom_build::compile(&["proto/soccer.proto"], &["proto"])
+//! }
+//! ```
+//!
+//! and the crate includes the result, one module for each package:
+//!
+//! ```text
+//! /// The messages of soccer.
+//! pub mod messages {
+//!     narukom::include_messages!("monas.soccer");
+//! }
+//! ```
+//!
+//! The structs are those of prost, with the schema's comments as documentation and maps as `BTreeMap`, so that equal messages have equal
+//! bytes. Beside each struct stand an `impl narukom::Message` with a static descriptor (names, fields, enumerations, and the
+//! serialised schema for recorders and links) and an `impl narukom::Reflect`, through which transition expressions and
+//! tools read and set fields by index.
+//!
+//! # What it asks of a schema
+//!
+//! - It is written in proto3 and has a package.
+//! - Names are in the style of their kind: fields in `snake_case`, messages and enumerations in `UpperCamelCase` with acronyms
+//!   written as words (`RobotId`). What is read in Rust, in expressions and in tools is then one name.
+//! - Messages of other packages are mapped to their crate by [`Compiler::extern_package`].
+//!
+//! Lists, maps, members of a `oneof`, and protobuf's well-known types are fields of the struct, but not reachable by index. A crate
+//! that uses the well-known types depends on `prost-types`.
+//!
+//! No `protoc` is needed: the compiler is protox, which is written in Rust.
 
 mod error;
 mod generate;

@@ -2,6 +2,7 @@
 //!
 //! `tests/generated` holds the code for `tests/proto`, so that changes of the generator show in review and the code itself is
 //! compiled and tried here.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
 
 use std::fs;
 use std::path::Path;

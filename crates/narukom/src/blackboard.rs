@@ -301,7 +301,8 @@ impl Blackboard {
 
     /// All messages of a topic, oldest first.
     fn history(&self, slot: TopicSlot) -> Option<History<'_>> {
-        let depth = self.hub.declaration(slot)?.depth();
+        let topic = self.hub.declaration(slot)?;
+        let depth = if topic.kind() == Kind::Data { topic.depth() } else { usize::MAX };
         let reading = self.attach(slot)?;
         reading.set_interest(true);
         let writing = self.places[slot.index()].writing.as_deref();

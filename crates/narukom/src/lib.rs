@@ -1,4 +1,86 @@
-//! Messages, topics and blackboards: publish and subscribe without threads, sockets or clocks
+//! Messages, topics and blackboards: publish and subscribe without threads, sockets or clocks.
+//!
+//! Agents on one host talk through a hub, [`Narukom`]. What they say are messages: structs compiled from `.proto` files,
+//! shared behind a reference count and never serialised inside a process. Where they say it are topics: constants made by
+//! [`topic!`], each with a path, a message type and a way of keeping:
+//!
+//! | | keeps | a reader sees |
+//! |---|---|---|
+//! | [`State`] | the latest message | the latest, however late it comes |
+//! | [`Signal`] | what readers have not fetched yet | each message in one cycle |
+//! | [`Data`] | a history of bounded depth | the history, by time |
+//!
+//! An agent reads and writes through its [`Blackboard`]. Its cycle is a transaction: it begins with
+//! [`process_messages`](Blackboard::process_messages), which delivers what others have published, runs the agent's code on a
+//! blackboard that does not move meanwhile, and ends with [`publish_all`](Blackboard::publish_all), which publishes everything at
+//! once. A region of a statechart has a blackboard too. Whoever is no agent (a body, a recorder, a link) uses a [`Publisher`], a
+//! [`Subscriber`] or an [`Observer`].
+//!
+//! # Why it is so
+//!
+//! - **Time is handed in.** Nothing here reads a clock, sleeps or starts a thread, so the same agents run in real and in
+//!   simulated time, and a simulated run gives the same messages each time. Threads may share a hub all the same.
+//! - **Readers fetch.** A hub holds a bounded ring for each topic; each reader has its own place in it. A reader that never
+//!   fetches slows nobody and fills no memory. What it misses is counted ([`Blackboard::lost`]); a state never loses its last value.
+//! - **Nothing is looked up by text.** A topic is found by a hash that is made when it is compiled; reading costs a table
+//!   access. In the steady state publishing, delivering and reading small messages do not allocate.
+//! - **What does not fit is an error**: two message types on one topic (when the hub is made, with the names of both),
+//!   or a message on a topic that nobody declared.
+//!
+//! # Memory
+//!
+//! A hub holds at most as many messages of each topic as the topic is deep ([`STATE_DEPTH`], [`SIGNAL_DEPTH`], or what
+//! [`Data`] says). A blackboard takes 16 bytes for each topic of the hub, and for each topic that it reads references to at most
+//! as many messages again. Messages are shared: with N topics of depth D and M readers there are at most N·D messages in the hub, and the
+//! readers hold on to at most D more for each topic when they stop fetching. Each writer keeps the memory of its last D + 4 messages of a topic for the next ones.
+//!
+//! # Example
+//!
+//! The messages are declared in a `.proto` file,
+//!
+//! ```text
+//! syntax = "proto3";
+//! package narukom.example;
+//!
+//! // Where the ball is, as seen from the robot.
+//! message Ball {
+//!   double distance = 1;  // metres
+//!   double bearing = 2;   // radians, to the left
+//! }
+//! ```
+//!
+//! which `narukom_build::compile(&["proto/ball.proto"], &["proto"])` compiles in the build script, and
+//! `narukom::include_messages!("narukom.example")` includes. Then:
+//!
+//! ```
+//! # use narukom::example::Ball;
+//! use narukom::{Moment, Narukom, State, topic};
+//!
+//! topic! {
+//!     /// Where the ball is.
+//!     pub BALL: State<Ball> = "soccer/ball";
+//! }
+//!
+//! fn main() -> Result<(), narukom::Error> {
+//!     let hub = Narukom::with_linked_topics("robot_1")?;
+//!     let mut vision = hub.blackboard("vision");
+//!     let mut behaviour = hub.blackboard("behaviour");
+//!
+//!     // A cycle of the one: it sees a ball.
+//!     vision.process_messages(Moment::from_nanos(10));
+//!     vision.publish(BALL, Ball { distance: 1.5, bearing: 0.2 })?;
+//!     assert!(vision.read(BALL).is_some(), "own messages are read at once");
+//!     assert!(behaviour.read(BALL).is_none(), "others' only as delivered");
+//!     vision.publish_all(Moment::from_nanos(20));
+//!
+//!     // A cycle of the other.
+//!     behaviour.process_messages(Moment::from_nanos(30));
+//!     let ball = behaviour.sample(BALL).unwrap();
+//!     assert_eq!(ball.distance, 1.5);
+//!     assert_eq!(ball.header.published, Moment::from_nanos(20));
+//!     Ok(())
+//! }
+//! ```
 
 mod blackboard;
 mod catalogue;
@@ -47,9 +129,10 @@ pub use prost;
 #[doc(hidden)]
 pub use linkme;
 
-/// Includes the messages that `narukom_build` compiled for a package.
+/// Includes the messages that `narukom_build` compiled for a package, from a module of their own:
 ///
 /// ```text
+/// /// The messages of soccer.
 /// pub mod messages {
 ///     narukom::include_messages!("monas.soccer");
 /// }

@@ -23,7 +23,7 @@ pub struct State<M>(PhantomData<fn() -> M>);
 /// A topic whose messages each reader sees in one cycle.
 pub struct Signal<M>(PhantomData<fn() -> M>);
 
-/// A topic that keeps a history of the last `DEPTH` messages, read by time.
+/// A topic that keeps a history of the last `DEPTH` messages, at least one, read by time.
 pub struct Data<M, const DEPTH: usize>(PhantomData<fn() -> M>);
 
 /// How a topic keeps its messages, without the message type.

@@ -10,47 +10,53 @@
 //! It lives three lives, each a type of its own:
 //!
 //! - a [`TransitionExpression`] is the tree of what was written, with the place of each part.
-//! [`parse_transition`] makes it from
-//!   text and never fails: it returns what it understood and [diagnostics](crate::Diagnostic). Its `Display` is
-//!   the canonical text, which reads back as the same tree. Charts hold these trees; editors and checks read them.
-//! - a [`CompiledTransition`] knows no names any more: [`TransitionExpression::compile`] has looked up each
-//! in
-//!   [`Names`] and has checked all types, so that whatever is misspelt is said before a chart starts, with the nearest right name.
+//!   [`parse_transition`] makes it from text and never fails: it returns what it understood and
+//!   [diagnostics](crate::Diagnostic). Its `Display` is the canonical text, which reads back as the same tree.
+//!   Charts hold these trees; editors and checks read them.
+//! - a [`CompiledTransition`] knows no names any more: [`TransitionExpression::compile`] has looked up each in
+//!   [`Names`] and has checked all types, so that whatever is misspelt is said before a chart starts, with the
+//!   nearest right name.
 //! - a [`Guard`] is evaluated against [`Facts`], the data of one moment, without allocation and without
-//! comparing names.
+//!   comparing names.
 //!
 //! ```
 //! use yase::expression::*;
+//! use yase::statechart::{Constant, ConstantValue, NodeId};
 //! use yase::vocabulary::*;
-//! use yase::NodeId;
 //!
 //! // Two spellings, one tree, one canonical text.
-//! let (transition, diagnostics) = parse_transition("[not Ball.found or Ball.distance() gt
-//! limit]/StartTimeout(look,1s)"); assert!(diagnostics.is_empty()); assert_eq!(transition.to_string(),
-//! "[!Ball.found || Ball.distance > limit] / StartTimeout(look, 1000ms)");
+//! let text = "[not Ball.found or Ball.distance() gt limit]/StartTimeout(look,1s)";
+//! let (transition, diagnostics) = parse_transition(text);
+//! assert!(diagnostics.is_empty());
+//! let canonical = "[!Ball.found || Ball.distance > limit] / StartTimeout(look, 1000ms)";
+//! assert_eq!(transition.to_string(), canonical);
 //!
 //! // What the names mean.
 //! let field = |id, name: &str, kind| FieldEntry { id: FieldId(id), name: name.into(), kind };
 //! let vocabulary = Vocabulary {
-//!     topics: vec![TopicEntry { id: TopicId(0), path: "soccer/ball".into(), kind: TopicKind::State, message: "Ball".into() }],
+//!     topics: vec![TopicEntry {
+//!         id: TopicId(0),
+//!         path: "soccer/ball".into(),
+//!         kind: TopicKind::State,
+//!         message: "Ball".into(),
+//!     }],
 //!     messages: vec![MessageEntry {
 //!         name: "Ball".into(),
 //!         fields: vec![field(0, "found", ValueType::Bool), field(1, "distance", ValueType::Number)],
 //!     }],
 //!     ..Vocabulary::default()
 //! };
-//! let limit = yase::statechart::Constant { name: "limit".into(), value:
-//! yase::statechart::ConstantValue::Number(0.25) }; let timers: Vec<String> =
-//! transition.started_timers().collect(); let mut events = EventTable::new(); let compiled =
-//! transition.compile(&mut Names {
+//! let limit = Constant { name: "limit".into(), value: ConstantValue::Number(0.25) };
+//! let timers: Vec<String> = transition.started_timers().collect();
+//! let mut events = EventTable::new();
+//! let compiled = transition.compile(&mut Names {
 //!     vocabulary: &vocabulary,
 //!     constants: &[limit],
 //!     timers: &timers,
 //!     events: &mut events,
 //!     states: &|_| None,
 //! });
-//! let compiled = compiled.expect("every name is known");
-//! let guard = compiled.guard.expect("it has a guard");
+//! let guard = compiled.expect("every name is known").guard.expect("it has a guard");
 //! assert_eq!(guard.reads(), [TopicId(0)]);
 //!
 //! // A world in which a ball was seen at some distance, or none has been heard of.
@@ -63,10 +69,18 @@
 //!             _ => Value::Missing,
 //!         }
 //!     }
-//!     fn message(&self, _: &MessageSource) -> Value<'_> { Value::Missing }
-//!     fn call(&self, _: FunctionId, _: &[Value<'_>]) -> Result<Value<'_>, CallError> { Err(CallError::new("no functions")) }
-//!     fn timer(&self, _: TimerId) -> TimerState { TimerState::Unset }
-//!     fn is_active(&self, _: NodeId) -> bool { false }
+//!     fn message(&self, _: &MessageSource) -> Value<'_> {
+//!         Value::Missing
+//!     }
+//!     fn call(&self, _: FunctionId, _: &[Value<'_>]) -> Result<Value<'_>, CallError> {
+//!         Err(CallError::new("there are no functions"))
+//!     }
+//!     fn timer(&self, _: TimerId) -> TimerState {
+//!         TimerState::Unset
+//!     }
+//!     fn is_active(&self, _: NodeId) -> bool {
+//!         false
+//!     }
 //! }
 //! assert_eq!(guard.evaluate(&Seen(Some(0.5))), Ok(true));
 //! assert_eq!(guard.evaluate(&Seen(Some(0.1))), Ok(false));

@@ -180,7 +180,11 @@ impl Machine {
     /// # Errors
     /// When the chart never comes to rest ([`MachineErrorKind`]). It is stopped then, and shows the configuration before the
     /// micro-step that would have been one too many.
-    pub fn run_to_completion(&mut self, now: Moment, host: &mut impl Host) -> Result<StepSummary, MachineError> {
+    pub fn run_to_completion(
+        &mut self,
+        now: Moment,
+        host: &mut impl Host,
+    ) -> Result<StepSummary, MachineError> {
         if self.run.status != Status::Running {
             return Ok(StepSummary::default());
         }
@@ -190,7 +194,11 @@ impl Machine {
 
     /// Whether a step now could do anything.
     pub fn needs_step(&self, now: Moment) -> bool {
-        let due = || self.run.due || self.run.queues.is_waiting() || self.next_deadline().is_some_and(|next| next <= now);
+        let due = || {
+            self.run.due
+                || self.run.queues.is_waiting()
+                || self.next_deadline().is_some_and(|next| next <= now)
+        };
         self.run.status == Status::Running && due()
     }
 

@@ -114,7 +114,15 @@ impl Transition {
     /// A transition without trigger, guard or actions.
     pub fn new(source: NodeId, target: NodeId) -> Transition {
         let expression = TransitionExpression::default();
-        Transition { source, target, expression, priority: 0, weight: None, interrupts: false, internal: false }
+        Transition {
+            source,
+            target,
+            expression,
+            priority: 0,
+            weight: None,
+            interrupts: false,
+            internal: false,
+        }
     }
 }
 
@@ -184,7 +192,10 @@ impl Statechart {
 
     /// Every transition, in the order they were added.
     pub fn transitions(&self) -> impl ExactSizeIterator<Item = (TransitionId, &Transition)> {
-        self.transitions.iter().enumerate().map(|(index, transition)| (TransitionId(index as u32), transition))
+        self.transitions
+            .iter()
+            .enumerate()
+            .map(|(index, transition)| (TransitionId(index as u32), transition))
     }
 
     /// A node.
@@ -231,7 +242,8 @@ impl Statechart {
     /// The names from the root down to a node, separated by `/`; what has no name is known by its number among its siblings (from 1),
     /// with the kind in capitals for connectors. This is a state's identity: a label changes with every edit, a path does not.
     pub fn path(&self, id: NodeId) -> String {
-        let mut segments: Vec<String> = std::iter::once(id).chain(self.ancestors(id)).map(|node| self.segment(node)).collect();
+        let mut segments: Vec<String> =
+            std::iter::once(id).chain(self.ancestors(id)).map(|node| self.segment(node)).collect();
         segments.reverse();
         segments.join("/")
     }
@@ -254,7 +266,8 @@ impl Statechart {
         if !node.name.is_empty() {
             return node.name.clone();
         }
-        let place = node.parent.and_then(|parent| self.children(parent).iter().position(|&child| child == id));
+        let place =
+            node.parent.and_then(|parent| self.children(parent).iter().position(|&child| child == id));
         let number = place.map_or(1, |index| index + 1);
         match node.kind {
             NodeKind::Start => "START".into(),

@@ -114,15 +114,23 @@ impl Line<'_> {
 
     fn segment(&self, id: TransitionId) -> String {
         let transition = self.chart.statechart().transition(id);
-        format!("{} -> {}", self.chart.short_path(transition.source), self.chart.short_path(transition.target))
+        format!(
+            "{} -> {}",
+            self.chart.short_path(transition.source),
+            self.chart.short_path(transition.target)
+        )
     }
 
     fn effect(&self, place: ActionPlace) -> String {
         let statechart = self.chart.statechart();
         let (actions, at) = match place {
             ActionPlace::Transition(id) => (&statechart.transition(id).expression.actions, self.segment(id)),
-            ActionPlace::Entry(id) => (&statechart.node(id).entry, format!("entry {}", self.chart.short_path(id))),
-            ActionPlace::Exit(id) => (&statechart.node(id).exit, format!("exit {}", self.chart.short_path(id))),
+            ActionPlace::Entry(id) => {
+                (&statechart.node(id).entry, format!("entry {}", self.chart.short_path(id)))
+            }
+            ActionPlace::Exit(id) => {
+                (&statechart.node(id).exit, format!("exit {}", self.chart.short_path(id)))
+            }
         };
         format!("{} ({at})", join(actions, |action| action.to_string()))
     }

@@ -1,5 +1,6 @@
 //! Which states of each role were active and which of its transitions fired, over all the robots that play it.
 
+use std::collections::BTreeSet;
 use std::io::{self, Write};
 
 use monas::ChartCoverage;
@@ -25,8 +26,38 @@ pub(super) fn write(out: &mut dyn Write, role: &ChartCoverage) -> io::Result<()>
         "{}: {} of {} states were active, {} of {} transitions fired",
         role.model, counts.states_met, counts.states, counts.transitions_met, counts.transitions
     )?;
-    role.states_missed().try_for_each(|path| writeln!(out, "  never active: {path}"))?;
-    role.transitions_missed().try_for_each(|name| writeln!(out, "  never fired: {name}"))
+    let paths = Paths::of(role);
+    role.states_missed().try_for_each(|path| writeln!(out, "  never active: {}", paths.short(path)))?;
+    role.transitions_missed()
+        .try_for_each(|name| writeln!(out, "  never fired: {}", paths.short_transition(name)))
+}
+
+/// Every path in a role's chart, to find out how little of one is enough.
+struct Paths<'a>(BTreeSet<&'a str>);
+
+/// What stands between source and target in a transition's name.
+const ARROW: &str = " -> ";
+
+impl<'a> Paths<'a> {
+    fn of(role: &'a ChartCoverage) -> Paths<'a> {
+        let ends = role.transitions.iter().flat_map(|transition| transition.name.split(ARROW));
+        Paths(role.states.iter().map(|state| state.path.as_str()).chain(ends).collect())
+    }
+
+    /// The shortest end of a path, in whole names, that no other path ends with.
+    fn short<'p>(&self, path: &'p str) -> &'p str {
+        let starts = path.rmatch_indices('/').map(|(index, _)| index + 1);
+        let mut ends = starts.map(|start| &path[start..]);
+        ends.find(|end| self.0.iter().filter(|other| ends_with(other, end)).count() == 1).unwrap_or(path)
+    }
+
+    fn short_transition(&self, name: &str) -> String {
+        name.split(ARROW).map(|path| self.short(path)).collect::<Vec<_>>().join(ARROW)
+    }
+}
+
+fn ends_with(path: &str, end: &str) -> bool {
+    path.strip_suffix(end).is_some_and(|before| before.is_empty() || before.ends_with('/'))
 }
 
 /// A role's coverage for programs.
@@ -93,6 +124,14 @@ mod tests {
             "goalie: 1 of 2 states were active, 1 of 2 transitions fired\n  never active: state 1\n  never fired: a -> 1\n\
              player: 2 of 2 states were active, 2 of 2 transitions fired\n"
         );
+    }
+
+    #[test]
+    fn paths_are_as_short_as_they_can_be() {
+        let paths = Paths(["a/b/END", "a/c/END", "a/b", "a/b/kick", "d/c"].into());
+        let short = ["a/b/END", "a/b/kick", "a/c/END", "d/c", "a/b"].map(|path| paths.short(path));
+        assert_eq!(short, ["b/END", "kick", "c/END", "c", "b"]);
+        assert_eq!(paths.short_transition("a/b/kick -> a/b/END"), "kick -> b/END");
     }
 
     #[test]

@@ -40,9 +40,12 @@ fn write_text(out: &mut dyn Write, summary: &Summary, wall: Duration) -> io::Res
     writeln!(out, "hash: {}", summary.hash)
 }
 
+/// What is shown of a team in one row.
+type Figure = fn(&TeamSummary) -> String;
+
 /// A row for each figure, a column for each team.
 fn teams(teams: &[TeamSummary]) -> Table {
-    let figures: [(&str, fn(&TeamSummary) -> String); 10] = [
+    let figures: [(&str, Figure); 10] = [
         ("goals", |team| team.goals.to_string()),
         ("kicks", |team| team.kicks.to_string()),
         ("shots", |team| team.shots.to_string()),

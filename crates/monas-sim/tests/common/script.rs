@@ -30,7 +30,7 @@ fn keep_goal(world: &World, me: &RobotState) -> Command {
     }
     let side = world.referee().defends()[me.team];
     let home = world.field().goal(side) - Vector::new(side.sign() * 0.2, 0.0);
-    go(me, home, world.ball().position)
+    go(me, home, Vector::zeros())
 }
 
 fn attack(world: &World, me: &RobotState, goal: Vector) -> Command {

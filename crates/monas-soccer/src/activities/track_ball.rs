@@ -10,7 +10,7 @@ use crate::functionality::head::{Gaze, Head};
 use crate::{Ball, topics};
 
 /// Keeps the head on the ball; the goalkeeper also stays between ball and goal, and comes back there from wherever a dive or a search
-/// has brought it.
+/// has brought it. Before a shot that it need not jump for it steps aside.
 ///
 /// A field player that is not certain where it stands looks up at a goal for a moment now and then, while the ball is neither near nor
 /// quick.
@@ -45,10 +45,13 @@ impl TrackBall {
         if !keeps_goal(blackboard) {
             return Ok(());
         }
+        if ball.approaching {
+            return request_walk(blackboard, self.guard.step_before(ball.crossing_y));
+        }
         let Some(ground) = ground(blackboard) else { return Ok(()) };
         let ball_in_field = ground.field_from_robot * ball.position();
         let place = self.guard.place(&ground.field, Some(ball_in_field));
-        request_walk(blackboard, self.guard.walk(&ground.field_from_robot, place))
+        request_walk(blackboard, self.guard.walk(&ground.field_from_robot, &place))
     }
 
     /// The gaze at the goal nearer to the ball's direction, when it is time for one.
@@ -118,10 +121,18 @@ mod tests {
 
     #[test]
     fn the_goalkeeper_goes_between_ball_and_goal() {
-        let home = Pose { x: -2.75, confidence: 1.0, ..Pose::default() };
+        let home = Pose { x: -2.65, confidence: 1.0, ..Pose::default() };
         let (_, motion) = run(ball(1.0, 0.6), true, home);
         assert!(motion.unwrap().vy > 0.05, "{motion:?}");
         let (_, motion) = run(ball(1.0, 0.0), true, home);
         assert_eq!(motion.map(|walk| (walk.vx, walk.vy, walk.wz)), Some((0.0, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn the_goalkeeper_steps_before_a_shot() {
+        let home = Pose { x: -2.65, confidence: 1.0, ..Pose::default() };
+        let shot = Ball { approaching: true, crossing_y: -0.1, ..ball(1.0, 0.0) };
+        let (_, motion) = run(shot, true, home);
+        assert!(motion.is_some_and(|walk| walk.vy < -0.05 && walk.vx == 0.0), "{motion:?}");
     }
 }

@@ -34,7 +34,7 @@ impl Default for BallModel {
     fn default() -> BallModel {
         BallModel {
             rolling_deceleration: 0.25,
-            acceleration_noise: 2.0,
+            acceleration_noise: 3.0,
             elevation_noise: 0.01,
             bearing_noise: 0.015,
             eye_height: 0.5,

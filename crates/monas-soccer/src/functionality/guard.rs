@@ -3,53 +3,88 @@
 use nalgebra::{Isometry2, Point2};
 
 use super::field::{Field, Goal};
-use super::geometry::heading;
+use super::geometry::{angle_of, heading, pose, wrap};
 use super::walk::{Walk, stride_to, walk_to};
 
 /// How the goal is kept.
+///
+/// The keeper stands on the line from the middle of the goal to the ball, so that a shot has to pass it on either side: the nearer
+/// the ball, the farther it comes out, since the angle that it covers grows.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Guard {
-    /// Distance before the goal line, metres.
-    pub before_line: f64,
+    /// Distances before the goal line that are kept: not behind the posts, and not out of the goal's area. Metres.
+    pub before_line: (f64, f64),
     /// Distance from the posts that is kept, metres.
     pub from_post: f64,
+    /// Distance from the middle of the goal while the ball is far, metres.
+    pub radius: f64,
+    /// Distance from the ball that is kept, metres.
+    pub from_ball: f64,
+    /// How much of the ball's direction the keeper turns to; the line through its shoulders stays roughly parallel to the goal line.
+    pub turn: f64,
     /// How far off its place the keeper stays where it is, metres, and how far off its heading, radians.
     pub content: (f64, f64),
 }
 
+/// A ball that crosses nearer than this hits the keeper's middle, metres.
+const STEP_NOT: f64 = 0.03;
+/// Metres a second for each metre to the side: there is not much time.
+const STEP_GAIN: f64 = 4.0;
+
 impl Default for Guard {
     fn default() -> Guard {
-        Guard { before_line: 0.25, from_post: 0.3, content: (0.06, 0.15) }
+        Guard {
+            before_line: (0.15, 0.5),
+            from_post: 0.15,
+            radius: 0.35,
+            from_ball: 0.2,
+            turn: 0.5,
+            content: (0.04, 0.15),
+        }
     }
 }
 
 impl Guard {
-    /// The place between the posts from which the ball is on the way to the middle of the goal; without a ball, the middle. In the
-    /// field frame; the keeper faces the field there, so that the line through its shoulders is parallel to the goal line.
-    pub fn place(&self, field: &Field, ball: Option<Point2<f64>>) -> Point2<f64> {
+    /// The keeper's pose in the field for a ball in the field; without a ball, before the middle of the goal.
+    pub fn place(&self, field: &Field, ball: Option<Point2<f64>>) -> Isometry2<f64> {
         let goal = field.goal(Goal::Own);
-        let x = goal.x + self.before_line;
+        let Some(ball) = ball else { return pose(goal.x + self.before_line.0.max(self.radius), 0.0, 0.0) };
+        let to_ball = ball - goal;
+        let direction = to_ball.try_normalize(1e-6).unwrap_or(nalgebra::Vector2::x());
+        let out = (to_ball.norm() - self.from_ball).min(self.far_out(to_ball.norm())).max(0.0);
         let reach = (field.goal_width / 2.0 - self.from_post).max(0.0);
-        let y = ball.map_or(0.0, |ball| {
-            let depth = (ball.x - goal.x).max(self.before_line);
-            ball.y * self.before_line / depth
-        });
-        // The nearer the ball, the more the keeper has to come towards its side: the bare line to the goal's middle is too timid.
-        Point2::new(x, (1.5 * y).clamp(-reach, reach))
+        let x = (out * direction.x).clamp(self.before_line.0, self.before_line.1);
+        let y = (out * direction.y).clamp(-reach, reach);
+        pose(goal.x + x, y, self.turn * angle_of(&direction))
     }
 
-    /// The walk to a place of the field, to face the field there.
-    pub fn walk(&self, field_from_robot: &Isometry2<f64>, place: Point2<f64>) -> Walk {
-        let place_in_robot = field_from_robot.inverse_transform_point(&place);
-        let way = place_in_robot.coords.norm();
-        let off = -heading(field_from_robot);
+    /// How far from the middle of the goal the keeper comes out: all the way to a near ball, little to a far one.
+    fn far_out(&self, distance: f64) -> f64 {
+        let near = 1.0;
+        if distance < near { distance } else { self.radius.max(2.0 * near - distance) }
+    }
+
+    /// The step to the side that brings the keeper before a ball that crosses its line `crossing_y` metres to its left.
+    pub fn step_before(&self, crossing_y: f64) -> Walk {
+        if crossing_y.abs() < STEP_NOT {
+            Walk::STILL
+        } else {
+            Walk { left: STEP_GAIN * crossing_y, ..Walk::STILL }
+        }
+    }
+
+    /// The walk to a pose of the field.
+    pub fn walk(&self, field_from_robot: &Isometry2<f64>, field_from_place: &Isometry2<f64>) -> Walk {
+        let robot_from_place = field_from_robot.inverse() * field_from_place;
+        let place = Point2::from(robot_from_place.translation.vector);
+        let (way, off) = (place.coords.norm(), wrap(heading(&robot_from_place)));
         if way > 0.6 {
-            return stride_to(place_in_robot, way);
+            return stride_to(place, way);
         }
         if way <= self.content.0 && off.abs() <= self.content.1 {
             return Walk::STILL;
         }
-        walk_to(place_in_robot, way, off)
+        walk_to(place, way, off)
     }
 }
 
@@ -57,20 +92,46 @@ impl Guard {
 mod tests {
     use std::f64::consts::PI;
 
+    use proptest::prelude::*;
+
     use super::*;
-    use crate::functionality::geometry::pose;
     use crate::functionality::walk::Gait;
 
     const FIELD: Field = Field::LEAGUE_2010;
 
+    fn place(x: f64, y: f64) -> (f64, f64, f64) {
+        let place = Guard::default().place(&FIELD, Some(Point2::new(x, y)));
+        (place.translation.x, place.translation.y, heading(&place))
+    }
+
     #[test]
-    fn the_place_is_between_the_posts_on_the_balls_side() {
+    fn without_a_ball_it_stands_before_the_middle_of_the_goal() {
+        assert_eq!(Guard::default().place(&FIELD, None), pose(-2.65, 0.0, 0.0));
+    }
+
+    #[test]
+    fn it_comes_out_to_a_near_ball_on_its_side() {
+        let (far, near) = (place(0.0, 1.0), place(-2.3, 0.3));
+        assert!((-2.7..-2.6).contains(&far.0) && (0.05..0.2).contains(&far.1), "{far:?}");
+        assert!(near.0 > far.0 + 0.05 && near.1 > 0.1 && near.2 > 0.1, "{near:?}");
+        let corner = place(-2.95, 1.5);
+        assert!((corner.0 + 2.85).abs() < 1e-9 && corner.1 > 0.3, "{corner:?}");
+    }
+
+    #[test]
+    fn it_steps_to_the_side_of_the_shot() {
         let guard = Guard::default();
-        assert_eq!(guard.place(&FIELD, None), Point2::new(-2.75, 0.0));
-        let left = guard.place(&FIELD, Some(Point2::new(-2.0, 1.0)));
-        assert!(left.y > 0.2 && left.y <= 0.4 + 1e-12, "{left}");
-        let corner = guard.place(&FIELD, Some(Point2::new(-2.99, -2.0)));
-        assert!((corner.y + 0.4).abs() < 1e-12, "{corner}");
+        assert!(guard.step_before(0.1).left > 0.2 && guard.step_before(-0.1).left < -0.2);
+        assert_eq!(guard.step_before(0.02), Walk::STILL);
+    }
+
+    proptest! {
+        #[test]
+        fn its_place_is_between_the_posts_and_in_its_area(x in -3.2..3.0f64, y in -2.0..2.0f64) {
+            let (x, y, heading) = place(x, y);
+            prop_assert!((-2.86..=-2.49).contains(&x) && y.abs() <= 0.56, "{x} {y}");
+            prop_assert!(heading.abs() <= PI / 2.0 + 1e-9);
+        }
     }
 
     #[test]
@@ -81,11 +142,11 @@ mod tests {
         for start in [pose(-1.0, 1.5, PI), pose(-2.7, -0.6, -1.5), pose(-3.2, 0.3, 3.0)] {
             let mut field_from_robot = start;
             for _ in 0..300 {
-                let walk = gait.limit(&guard.walk(&field_from_robot, place));
+                let walk = gait.limit(&guard.walk(&field_from_robot, &place));
                 field_from_robot *= pose(walk.ahead * 0.1, walk.left * 0.1, walk.turn * 0.1);
             }
-            assert_eq!(guard.walk(&field_from_robot, place), Walk::STILL);
-            assert!((field_from_robot.translation.vector - place.coords).norm() < 0.07);
+            assert_eq!(guard.walk(&field_from_robot, &place), Walk::STILL);
+            assert!((field_from_robot.translation.vector - place.translation.vector).norm() < 0.07);
         }
     }
 }

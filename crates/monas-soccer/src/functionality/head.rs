@@ -29,7 +29,7 @@ pub struct Head {
 impl Default for Head {
     /// A Nao's.
     fn default() -> Head {
-        Head { eye_height: 0.5, view_below: 0.32, sweep: 1.2, sweep_time: Duration::from_millis(2400) }
+        Head { eye_height: 0.5, view_below: 0.32, sweep: 1.6, sweep_time: Duration::from_millis(3000) }
     }
 }
 
@@ -82,12 +82,12 @@ mod tests {
     #[test]
     fn a_search_sweeps_both_sides_far_and_near() {
         let head = Head::default();
-        let gazes: Vec<Gaze> = (0..48).map(|step| head.scan(Duration::from_millis(100 * step))).collect();
+        let gazes: Vec<Gaze> = (0..60).map(|step| head.scan(Duration::from_millis(100 * step))).collect();
         let yaw = |pick: fn(f64, f64) -> f64| gazes.iter().map(|gaze| gaze.yaw).fold(0.0, pick);
-        assert!(yaw(f64::max) > 1.1 && yaw(f64::min) < -1.1);
-        assert!(gazes[..24].iter().all(|gaze| gaze.pitch < 0.0));
-        assert!(gazes[24..].iter().all(|gaze| gaze.pitch > 0.3));
+        assert!(yaw(f64::max) > 1.5 && yaw(f64::min) < -1.5);
+        assert!(gazes[..30].iter().all(|gaze| gaze.pitch < 0.0));
+        assert!(gazes[30..].iter().all(|gaze| gaze.pitch > 0.3));
         let jump = gazes.windows(2).map(|pair| (pair[1].yaw - pair[0].yaw).abs()).fold(0.0, f64::max);
-        assert!(jump < 0.25, "the head moves evenly: {jump}");
+        assert!(jump < 0.3, "the head moves evenly: {jump}");
     }
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use narukom::{Blackboard, Moment, TopicSlot};
 use yase::{Activation, Chart, NodeId};
 
-use crate::activity::{Activity, Progress};
+use crate::activity::{Activity, Progress, Topics};
 use crate::call::{self, Failure};
 use crate::statistics::ActivityStatistics;
 
@@ -129,6 +129,19 @@ impl Posts {
         post.started = started;
         post.calls += u64::from(called);
         (activation, blackboard)
+    }
+
+    /// The topics whose messages call a waiting activation early.
+    pub(crate) fn waits_for(&self, activation: Activation) -> &[TopicSlot] {
+        let post = self.place(activation).map(|place| &self.posts[place]);
+        let waiting = post.and_then(|post| post.waits.as_ref());
+        waiting.map_or(&[], |waiting| &waiting.topics)
+    }
+
+    /// What the activity says it reads and publishes, if it says so.
+    pub(crate) fn declared(&self, activation: Activation) -> Option<Topics> {
+        let activity = self.posts[self.place(activation)?].activity.as_ref()?;
+        Some(activity.topics()).filter(Topics::is_declared)
     }
 
     /// The activation has come to its end.

@@ -1,18 +1,15 @@
-//! An agent on its host, ready to run in simulated time: its list, its charts, and what it tells of both.
+//! An agent in simulated time: its list, its charts, and when each has something to do.
 
-use narukom::{Moment, Narukom, Publisher, TopicSlot};
+use narukom::{Moment, TopicSlot};
 
-use super::seeds::component_seed;
+use super::setup::Member;
 use super::simulated_chart::SimulatedChart;
-use crate::agent::{Agent, Policy};
-use crate::binder::Binder;
-use crate::chart::Home;
+use super::teller::Teller;
+use crate::agent::Policy;
 use crate::coverage::ChartCoverage;
-use crate::error::Error;
 use crate::frequency::Frequency;
 use crate::list::{List, Outcome};
-use crate::listener::Listeners;
-use crate::records::{self, CYCLE, Delivery};
+use crate::records::Delivery;
 use crate::statistics::AgentStatistics;
 
 /// An agent on its host.
@@ -32,47 +29,13 @@ struct Scheduled {
     next: u64,
 }
 
-/// Counts the cycles of an agent and publishes a record of each.
-pub(super) struct Teller {
-    number: u64,
-    cycles: Publisher<records::Cycle>,
-}
-
-impl Teller {
-    /// A cycle has begun, and brought this.
-    pub(super) fn tell(&mut self, now: Moment, delivered: Vec<Delivery>) {
-        self.number += 1;
-        self.cycles.publish(records::Cycle { number: self.number, time: now.as_nanos(), delivered }, now);
-    }
-
-    pub(super) fn number(&self) -> u64 {
-        self.number
-    }
-}
-
 impl Instance {
-    /// Puts an agent on a hub and starts its charts.
-    pub(super) fn new(
-        agent: Agent,
-        hub: &Narukom,
-        seed: u64,
-        binder: &Binder<'_>,
-        listeners: &Listeners,
-    ) -> Result<Instance, Error> {
-        let Agent { name, policy, frequency, activities, charts, .. } = agent;
-        let cycles = hub.publisher(CYCLE, &name).map_err(Error::hub)?;
-        let charts = charts.iter().zip(0..).map(|(chart, number)| {
-            let home = Home { hub, agent: &name, number, seed, listeners };
-            let bound = binder.bind(chart, None).map_err(Error::invalid)?;
-            SimulatedChart::new(bound, home, frequency)
-        });
-        let charts = charts.collect::<Result<_, Error>>()?;
-        let list = frequency.filter(|_| !activities.is_empty()).map(|frequency| {
-            let mut blackboard = hub.blackboard(&name);
-            blackboard.set_random(component_seed(seed, &format!("{}/{name}", hub.host())));
-            Scheduled { list: List::new(&name, policy, activities, blackboard), frequency, next: 0 }
-        });
-        Ok(Instance { name, policy, list, charts, teller: Teller { number: 0, cycles }, stopped: None })
+    /// Takes over an agent, and starts its charts.
+    pub(super) fn new(member: Member) -> Instance {
+        let Member { name, policy, frequency, list, charts, teller, .. } = member;
+        let list = list.zip(frequency).map(|(list, frequency)| Scheduled { list, frequency, next: 0 });
+        let charts = charts.into_iter().map(|runner| SimulatedChart::new(runner, frequency)).collect();
+        Instance { name, policy, list, charts, teller, stopped: None }
     }
 
     /// When it has something to do, if nothing happens before.
@@ -92,10 +55,7 @@ impl Instance {
     /// Does what is due: a cycle of its list, then the steps of each chart until it rests.
     pub(super) fn run(&mut self, now: Moment) -> Outcome {
         if let Some(scheduled) = self.list.as_mut().filter(|scheduled| scheduled.due() <= now) {
-            scheduled.next += 1;
-            scheduled.list.begin(now);
-            self.teller.tell(now, Delivery::all(scheduled.list.blackboard(), 0).collect());
-            let outcome = scheduled.list.cycle(now);
+            let outcome = scheduled.cycle(now, &mut self.teller);
             if outcome != Outcome::Continues {
                 let reason = scheduled.list.stopped().unwrap_or_default().to_owned();
                 self.stop(&reason, now);
@@ -140,7 +100,7 @@ impl Instance {
         AgentStatistics {
             host: host.into(),
             agent: self.name.clone(),
-            cycles: self.teller.number,
+            cycles: self.teller.number(),
             micro_steps: self.charts.iter().map(SimulatedChart::micro_steps).sum(),
             activities: listed.chain(charted).collect(),
             stopped: self.stopped.clone(),
@@ -156,5 +116,12 @@ impl Instance {
 impl Scheduled {
     fn due(&self) -> Moment {
         self.frequency.due(self.next)
+    }
+
+    fn cycle(&mut self, now: Moment, teller: &mut Teller) -> Outcome {
+        self.next += 1;
+        self.list.begin(now);
+        teller.tell(now, Delivery::all(self.list.blackboard(), 0).collect());
+        self.list.cycle(now, None)
     }
 }

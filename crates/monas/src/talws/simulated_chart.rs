@@ -2,12 +2,10 @@
 
 use narukom::{Moment, TopicSlot};
 
-use super::instance::Teller;
+use super::teller::Teller;
 use crate::agent::Policy;
-use crate::binder::BoundChart;
-use crate::chart::{Home, Returned, Runner};
+use crate::chart::{Assignment, Returned, Runner};
 use crate::coverage::ChartCoverage;
-use crate::error::Error;
 use crate::frequency::Frequency;
 use crate::statistics::ActivityStatistics;
 
@@ -27,14 +25,9 @@ struct UnderWay {
 }
 
 impl SimulatedChart {
-    pub(super) fn new(
-        bound: BoundChart,
-        home: Home<'_>,
-        frequency: Option<Frequency>,
-    ) -> Result<SimulatedChart, Error> {
-        let mut runner = Runner::new(bound, home)?;
+    pub(super) fn new(mut runner: Runner, frequency: Option<Frequency>) -> SimulatedChart {
         runner.start(Moment::ZERO);
-        Ok(SimulatedChart { runner, under_way: Vec::new(), frequency, ticks: 0 })
+        SimulatedChart { runner, under_way: Vec::new(), frequency, ticks: 0 }
     }
 
     pub(super) fn due(&self, now: Moment) -> Moment {
@@ -58,7 +51,8 @@ impl SimulatedChart {
     }
 
     /// Steps and calls activities until nothing is left to do at this moment. Activities that a step starts are called before the
-    /// next one, in the order in which the machine started them; each return begins a step of its own.
+    /// next one, in the order in which the machine started them; each return begins a step of its own; those that wait for another
+    /// call get it when the chart rests.
     ///
     /// # Errors
     /// Why the agent is to stop.
@@ -70,20 +64,26 @@ impl SimulatedChart {
         teller: &mut Teller,
     ) -> Result<(), String> {
         while !self.runner.is_over() {
-            if let Some(mut assignment) = self.runner.next_assignment(now) {
-                let until = now + assignment.duration;
-                let returned = assignment.call();
-                self.runner.take_back(assignment);
-                self.under_way.push(UnderWay { until, returned });
+            if let Some(assignment) = self.runner.next_started() {
+                self.call(assignment, now);
             } else if self.runner.needs_step(now) || self.tick() <= now {
                 self.step(now, teller)?;
             } else if let Some(returned) = self.next_return(now) {
                 self.returned(returned, now, agent, policy, teller.number())?;
+            } else if let Some(assignment) = self.runner.next_waiting(now) {
+                self.call(assignment, now);
             } else {
                 break;
             }
         }
         Ok(())
+    }
+
+    fn call(&mut self, mut assignment: Assignment, now: Moment) {
+        let until = now + assignment.duration;
+        let returned = assignment.call();
+        self.runner.take_back(assignment);
+        self.under_way.push(UnderWay { until, returned });
     }
 
     fn step(&mut self, now: Moment, teller: &mut Teller) -> Result<(), String> {

@@ -1,21 +1,18 @@
 //! Runs in simulated time: one thread, exact nanoseconds, a defined order.
 
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
 
-use narukom::{Blackboard, Moment, Narukom, Observer, Publication, TopicSlot};
+use narukom::{Moment, Narukom, TopicSlot};
 
+use super::Talws;
 use super::body::Body;
+use super::clock::Clock;
 use super::instance::Instance;
-use super::{HostConfig, Talws, World};
-use crate::agent::Agent;
-use crate::binder::Binder;
+use super::setup::{Environment, Stage, Station, tick};
+use super::stopper::Stopper;
 use crate::coverage::ChartCoverage;
-use crate::error::{Error, ErrorKind};
+use crate::error::Error;
 use crate::list::Outcome;
-use crate::listener::Listeners;
-use crate::records::{self, HOST};
-use crate::registry::Registry;
 use crate::statistics::Statistics;
 
 /// A run in simulated time.
@@ -29,13 +26,6 @@ pub struct Simulation {
     hosts: Vec<Host>,
 }
 
-/// The world and when it moves on.
-struct Environment {
-    world: Box<dyn World>,
-    blackboard: Blackboard,
-    ticks: u64,
-}
-
 /// A host with all that runs on it.
 struct Host {
     hub: Narukom,
@@ -46,36 +36,16 @@ struct Host {
     instances: Vec<Instance>,
 }
 
-/// What every agent is set up with.
-struct Crew<'a> {
-    binder: Binder<'a>,
-    listeners: Listeners,
-    seed: u64,
-}
-
 /// The topics on which something was published since somebody looked.
 #[derive(Default)]
 struct Moved {
     topics: Mutex<Vec<TopicSlot>>,
 }
 
-/// The observers of all hubs, called one at a time.
-type Observers = Arc<Mutex<Vec<Box<dyn Observer>>>>;
-
 impl Simulation {
     pub(super) fn new(talws: Talws, seed: u64) -> Result<Simulation, Error> {
-        let observers = Arc::new(Mutex::new(talws.observers));
-        let mut configs = talws.hosts;
-        configs.sort_by(|a, b| (a.team, a.number, &a.name).cmp(&(b.team, b.number, &b.name)));
-        distinct(
-            "host",
-            configs.iter().map(|host| host.name.as_str()).chain(talws.world.iter().map(|w| w.name())),
-        )?;
-        let registry = talws.registry.unwrap_or_else(Registry::linked);
-        let crew = Crew { binder: Binder::new(&registry)?, listeners: Listeners::new(talws.listeners), seed };
-        let world = talws.world.map(|world| Environment::new(world, &observers)).transpose()?;
-        let hosts = configs.into_iter().map(|config| Host::new(config, &observers, &crew));
-        Ok(Simulation { now: Moment::ZERO, world, hosts: hosts.collect::<Result<_, _>>()? })
+        let Stage { world, stations } = Stage::new(talws, seed)?;
+        Ok(Simulation { now: Moment::ZERO, world, hosts: stations.into_iter().map(Host::new).collect() })
     }
 
     /// The moment up to which everything has happened.
@@ -100,6 +70,24 @@ impl Simulation {
         }
     }
 
+    /// As [`run_until`](Simulation::run_until), but no faster than time really passes, from the first moment of this call on. A stopper
+    /// ends it early.
+    ///
+    /// # Errors
+    /// As in [`run_until`](Simulation::run_until).
+    pub fn run_paced(&mut self, end: Moment, stopper: &Stopper) -> Result<(), Error> {
+        let (clock, begun) = (Clock::start(), self.now);
+        while self.due() < end {
+            let next = self.due();
+            if !stopper.wait_until(Moment::ZERO + next.since(begun), &clock) {
+                return Ok(());
+            }
+            self.now = next;
+            self.happen(next)?;
+        }
+        self.run_until(end)
+    }
+
     /// What agents have done so far.
     pub fn statistics(&self) -> Statistics {
         let agents =
@@ -109,7 +97,7 @@ impl Simulation {
 
     /// The hub of a host or of the world, for those who look on.
     pub fn hub(&self, host: &str) -> Option<&Narukom> {
-        let world = self.world.iter().map(|environment| environment.blackboard.hub());
+        let world = self.world.iter().map(Environment::hub);
         let hosts = self.hosts.iter().map(|host| &host.hub);
         world.chain(hosts).find(|hub| hub.host() == host)
     }
@@ -166,42 +154,14 @@ impl std::fmt::Debug for Simulation {
     }
 }
 
-impl Environment {
-    fn new(mut world: Box<dyn World>, observers: &Observers) -> Result<Environment, Error> {
-        let hub = hub(world.name(), observers)?;
-        let mut blackboard = hub.blackboard(world.name());
-        world.start(&mut blackboard).map_err(world_failed)?;
-        blackboard.publish_all(Moment::ZERO);
-        Ok(Environment { world, blackboard, ticks: 0 })
-    }
-
-    fn due(&self) -> Moment {
-        tick(self.world.period(), self.ticks + 1)
-    }
-
-    fn advance(&mut self, now: Moment) -> Result<(), Error> {
-        self.ticks += 1;
-        self.blackboard.process_messages(now);
-        self.world.advance(now, &mut self.blackboard).map_err(world_failed)?;
-        self.blackboard.publish_all(now);
-        Ok(())
-    }
-}
-
 impl Host {
-    fn new(config: HostConfig, observers: &Observers, crew: &Crew<'_>) -> Result<Host, Error> {
-        let hub = hub(&config.name, observers)?;
-        let mut agents = config.agents;
-        agents.sort_by(|a, b| a.name.cmp(&b.name));
-        distinct("agent", agents.iter().map(|agent| agent.name.as_str()))
-            .map_err(|error| error.with_hint(format!("both are on host `{}`", config.name)))?;
-        introduce(&hub, config.team, config.number)?;
-        let body = config.body.map(|robot| Body::new(robot, &hub)).transpose()?;
-        let instances = set_up(agents, &hub, crew)?;
+    fn new(station: Station) -> Host {
+        let Station { hub, body, members } = station;
         let moved = Arc::new(Moved::default());
         let waker = moved.clone();
         hub.set_waker(Arc::new(move |topic| waker.note(topic)));
-        Ok(Host { moved, looked_through: Vec::new(), body: body.map(|body| (body, 0)), instances, hub })
+        let instances = members.into_iter().map(Instance::new).collect();
+        Host { hub, moved, looked_through: Vec::new(), body: body.map(|body| (body, 0)), instances }
     }
 
     fn due(&self, now: Moment) -> Moment {
@@ -261,62 +221,5 @@ impl Moved {
     fn take(&self, into: &mut Vec<TopicSlot>) {
         into.clear();
         std::mem::swap(&mut *self.topics.lock().unwrap_or_else(PoisonError::into_inner), into);
-    }
-}
-
-/// When a tick of something periodic is due, counted from 0.
-fn tick(period: Duration, number: u64) -> Moment {
-    // A period of nothing would never let time pass.
-    let nanos = period.as_nanos().max(1).saturating_mul(u128::from(number));
-    Moment::from_nanos(u64::try_from(nanos).unwrap_or(u64::MAX))
-}
-
-fn hub(name: &str, observers: &Observers) -> Result<Narukom, Error> {
-    let hub = Narukom::with_linked_topics(name).map_err(Error::hub)?;
-    let observers = observers.clone();
-    hub.observe(Box::new(move |publication: Publication<'_>| {
-        let mut observers = observers.lock().unwrap_or_else(PoisonError::into_inner);
-        observers.iter_mut().for_each(|observer| observer.observe(publication));
-    }));
-    Ok(hub)
-}
-
-/// Puts agents on a hub. What is wrong with the charts of one does not keep those of the others from being looked at.
-fn set_up(agents: Vec<Agent>, hub: &Narukom, crew: &Crew<'_>) -> Result<Vec<Instance>, Error> {
-    let mut diagnostics = Vec::new();
-    let mut instances = Vec::new();
-    for agent in agents {
-        match Instance::new(agent, hub, crew.seed, &crew.binder, &crew.listeners) {
-            Ok(instance) => instances.push(instance),
-            Err(error) if error.kind() == ErrorKind::Invalid => {
-                diagnostics.extend_from_slice(error.diagnostics())
-            }
-            Err(error) => return Err(error),
-        }
-    }
-    if diagnostics.is_empty() { Ok(instances) } else { Err(Error::invalid(diagnostics)) }
-}
-
-/// Publishes who the host is and which topics it has.
-fn introduce(hub: &Narukom, team: u32, number: u32) -> Result<(), Error> {
-    let topics = hub.topics().iter().map(|topic| topic.path().to_owned()).collect();
-    let record = records::Host { name: hub.host().into(), team, number, topics };
-    hub.publisher(HOST, "monas").map_err(Error::hub)?.publish(record, Moment::ZERO);
-    Ok(())
-}
-
-fn world_failed(error: crate::activity::BoxError) -> Error {
-    Error::new(ErrorKind::World, format!("the world failed: {error}")).caused_by(error)
-}
-
-/// Refuses two of one name.
-fn distinct<'a>(kind: &str, names: impl Iterator<Item = &'a str>) -> Result<(), Error> {
-    let mut names: Vec<&str> = names.collect();
-    names.sort_unstable();
-    match names.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => {
-            Err(Error::new(ErrorKind::DuplicateName, format!("two {kind}s are named `{}`", pair[0])))
-        }
-        None => Ok(()),
     }
 }

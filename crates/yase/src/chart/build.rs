@@ -5,12 +5,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::bits::BitSet;
 use crate::chart::ways::{self, Way};
 use crate::chart::{
-    Branch, Branches, Chart, Compound, CompoundId, Condition, ErrorEvents, Layout, Masks, Place, Region, RegionId,
-    ScopedGuard, State, Timer,
+    Branch, Branches, Chart, Compound, CompoundId, Condition, ErrorEvents, Layout, Masks, Place, Region,
+    RegionId, ScopedGuard, State, Timer,
 };
 use crate::diagnostic::Diagnostic;
 use crate::expression::{
-    CompiledTransition, CompiledTrigger, Effect, EventTable, Names, compile_actions, started_timers, EventId,
+    CompiledTransition, CompiledTrigger, Effect, EventId, EventTable, Names, compile_actions, started_timers,
 };
 use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 use crate::vocabulary::{TopicId, Vocabulary};
@@ -48,7 +48,12 @@ fn regions(chart: &Statechart, layout: &Layout) -> (Vec<RegionId>, Vec<Region>) 
 }
 
 /// The timers that are started on each blackboard, in alphabetical order.
-fn timer_names(chart: &Statechart, ways: &[Vec<Way>], region_of: &[RegionId], count: usize) -> Vec<Vec<String>> {
+fn timer_names(
+    chart: &Statechart,
+    ways: &[Vec<Way>],
+    region_of: &[RegionId],
+    count: usize,
+) -> Vec<Vec<String>> {
     let mut names: Vec<BTreeSet<String>> = vec![BTreeSet::new(); count];
     for way in ways.iter().flatten() {
         for &segment in &way.segments {
@@ -296,7 +301,8 @@ impl<'a> Builder<'a> {
         }
         let chart = self.chart;
         let transition = chart.transition(id);
-        let what = || format!("from `{}` to `{}`", chart.path(transition.source), chart.path(transition.target));
+        let what =
+            || format!("from `{}` to `{}`", chart.path(transition.source), chart.path(transition.target));
         let compiled: CompiledTransition =
             self.actions(region, |names| transition.expression.compile(names), what);
         let segment = Segment {
@@ -328,7 +334,11 @@ impl<'a> Builder<'a> {
             source,
             region: way.region,
             exits: (!still).then(|| (self.layout.first(scope), Place(scope.0.saturating_sub(1)))),
-            entries: if still { Box::default() } else { ways::entries(chart, &self.layout, way.scope, way.target).into() },
+            entries: if still {
+                Box::default()
+            } else {
+                ways::entries(chart, &self.layout, way.scope, way.target).into()
+            },
             effects: effects.into(),
             interrupts: self.interrupts(way),
             terminates,

@@ -57,7 +57,8 @@ impl Check<'_> {
                     self.error("E0301", message);
                 }
                 kind if !chart.children(id).is_empty() => {
-                    let message = format!("`{}` is a {} and cannot hold states", self.path(id), kind_name(kind));
+                    let message =
+                        format!("`{}` is a {} and cannot hold states", self.path(id), kind_name(kind));
                     self.error("E0302", message);
                 }
                 _ => {}
@@ -71,7 +72,8 @@ impl Check<'_> {
     }
 
     fn composite(&mut self, id: NodeId) {
-        let starts = self.chart.children(id).iter().filter(|&&child| self.kind(child) == NodeKind::Start).count();
+        let starts =
+            self.chart.children(id).iter().filter(|&&child| self.kind(child) == NodeKind::Start).count();
         if starts != 1 {
             let message = match starts {
                 0 => format!("composite `{}` has no START", self.path(id)),
@@ -94,7 +96,8 @@ impl Check<'_> {
                     self.path(child),
                     kind_name(self.kind(child))
                 );
-                self.error("M01", message).hint = Some("the children of an AND are its regions, each an OR".into());
+                self.error("M01", message).hint =
+                    Some("the children of an AND are its regions, each an OR".into());
             }
         }
     }
@@ -142,7 +145,8 @@ impl Check<'_> {
             self.error("M02", message).hint = Some("write the trigger where the way begins".into());
         }
         if transition.weight.is_some() {
-            let message = format!("the transition out of `{}` has a weight, which is not run", self.path(source));
+            let message =
+                format!("the transition out of `{}` has a weight, which is not run", self.path(source));
             self.error("E0301", message);
         }
     }
@@ -207,7 +211,8 @@ impl Check<'_> {
         let length = longest.max().unwrap_or(0) + 1;
         lengths[node.0 as usize] = Length::Known(length);
         if length == MAX_SEGMENTS {
-            let message = format!("more than {MAX_SEGMENTS} connectors follow one another at `{}`", self.path(node));
+            let message =
+                format!("more than {MAX_SEGMENTS} connectors follow one another at `{}`", self.path(node));
             self.error("M06", message);
         }
     }
@@ -235,7 +240,8 @@ impl Check<'_> {
                 self.start_target(id, target);
             }
             if !sure {
-                let message = format!("every way out of `{}` has a guard: the chart may stay there", self.path(id));
+                let message =
+                    format!("every way out of `{}` has a guard: the chart may stay there", self.path(id));
                 self.found.push(Diagnostic::warning("M01", Span::default(), message));
             }
         }
@@ -243,8 +249,11 @@ impl Check<'_> {
 
     fn start_target(&mut self, start: NodeId, target: NodeId) {
         let parent = self.chart.node(start).parent;
-        if self.kind(target) != NodeKind::Terminate && !self.chart.ancestors(target).any(|ancestor| Some(ancestor) == parent) {
-            let message = format!("`{}` leads out of its composite, to `{}`", self.path(start), self.path(target));
+        if self.kind(target) != NodeKind::Terminate
+            && !self.chart.ancestors(target).any(|ancestor| Some(ancestor) == parent)
+        {
+            let message =
+                format!("`{}` leads out of its composite, to `{}`", self.path(start), self.path(target));
             self.error("M01", message);
         }
     }

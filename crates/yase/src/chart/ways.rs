@@ -34,7 +34,8 @@ pub(super) fn find(
     layout: &Layout,
     regions: &[RegionId],
 ) -> Result<Vec<Vec<Way>>, Vec<Diagnostic>> {
-    let mut search = Search { chart, layout, regions, outgoing: outgoing(chart), count: 0, errors: Vec::new() };
+    let mut search =
+        Search { chart, layout, regions, outgoing: outgoing(chart), count: 0, errors: Vec::new() };
     let mut ways = vec![Vec::new(); chart.nodes().len()];
     for (id, node) in chart.nodes() {
         if !check::is_connector(node.kind) {
@@ -124,7 +125,11 @@ impl Search<'_> {
             return Some(common);
         }
         let across = source != target && !self.nested(source, target);
-        if across { None } else { self.chart.ancestors(common).find(|&above| self.chart.node(above).kind == NodeKind::Or) }
+        if across {
+            None
+        } else {
+            self.chart.ancestors(common).find(|&above| self.chart.node(above).kind == NodeKind::Or)
+        }
     }
 
     fn nested(&self, one: NodeId, other: NodeId) -> bool {
@@ -175,7 +180,11 @@ fn push_children(chart: &Statechart, node: NodeId, next: Option<NodeId>, open: &
         NodeKind::And => open.extend(children.map(|&child| (child, Some(child) == next))),
         NodeKind::Or => match next {
             Some(next) => open.push((next, true)),
-            None => open.extend(children.filter(|&&child| chart.node(child).kind == NodeKind::Start).map(|&start| (start, false))),
+            None => open.extend(
+                children
+                    .filter(|&&child| chart.node(child).kind == NodeKind::Start)
+                    .map(|&start| (start, false)),
+            ),
         },
         _ => {}
     }

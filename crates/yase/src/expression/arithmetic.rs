@@ -100,6 +100,7 @@ fn floating(left: f64, operator: Operator, right: f64) -> Result<Value<'static>,
 }
 
 /// Whether a comparison holds; nothing if a value is missing.
+#[inline]
 pub(super) fn compare(
     left: Value<'_>,
     comparison: Comparison,
@@ -107,9 +108,7 @@ pub(super) fn compare(
 ) -> Result<Option<bool>, GuardError> {
     let order = match (left, right) {
         (Value::Missing, _) | (_, Value::Missing) => return Ok(None),
-        (Value::Float(left), Value::Float(right)) => {
-            left.partial_cmp(&right).ok_or(GuardError::NotANumber)?
-        }
+        (Value::Float(left), Value::Float(right)) => compare_floats(left, right)?,
         (Value::Enum(left), Value::Enum(right)) => left.cmp(&right),
         (Value::Bool(left), Value::Bool(right)) => left.cmp(&right),
         (Value::Text(left), Value::Text(right)) => left.cmp(right),
@@ -125,11 +124,16 @@ pub(super) fn compare(
     }))
 }
 
+#[inline]
+fn compare_floats(left: f64, right: f64) -> Result<Ordering, GuardError> {
+    left.partial_cmp(&right).ok_or(GuardError::NotANumber)
+}
+
 /// By value, whatever the width: no whole number is rounded on the way.
 fn compare_numbers(left: Number, right: Number) -> Result<Ordering, GuardError> {
     match (left, right) {
         (Number::Whole(left), Number::Whole(right)) => Ok(left.cmp(&right)),
-        (Number::Float(left), Number::Float(right)) => left.partial_cmp(&right).ok_or(GuardError::NotANumber),
+        (Number::Float(left), Number::Float(right)) => compare_floats(left, right),
         (Number::Whole(left), Number::Float(right)) => compare_whole(left, right),
         (Number::Float(left), Number::Whole(right)) => compare_whole(right, left).map(Ordering::reverse),
     }
@@ -142,7 +146,7 @@ fn compare_whole(whole: i128, float: f64) -> Result<Ordering, GuardError> {
         return Err(GuardError::NotANumber);
     }
     match whole.cmp(&(float as i128)) {
-        Ordering::Equal => 0.0_f64.partial_cmp(&(float - float.trunc())).ok_or(GuardError::NotANumber),
+        Ordering::Equal => compare_floats(0.0, float - float.trunc()),
         order => Ok(order),
     }
 }

@@ -39,6 +39,7 @@ pub(super) enum Symbol {
     DoubleBar,
     Bar,
     DoubleAmpersand,
+    Ampersand,
     Equal,
     Assign,
     NotEqual,
@@ -54,7 +55,7 @@ pub(super) enum Symbol {
 }
 
 /// The longer of two symbols that begin alike comes first.
-const SYMBOLS: [(&str, Symbol); 23] = [
+const SYMBOLS: [(&str, Symbol); 24] = [
     ("::", Symbol::DoubleColon),
     ("||", Symbol::DoubleBar),
     ("&&", Symbol::DoubleAmpersand),
@@ -70,6 +71,7 @@ const SYMBOLS: [(&str, Symbol); 23] = [
     (",", Symbol::Comma),
     (";", Symbol::Semicolon),
     ("|", Symbol::Bar),
+    ("&", Symbol::Ampersand),
     ("=", Symbol::Assign),
     ("!", Symbol::Bang),
     ("<", Symbol::Less),

@@ -148,6 +148,13 @@ pub(super) enum Test {
     Any(Box<[Test]>),
     Not(Box<Test>),
     Compare(Term, Comparison, Term),
+    /// The usual comparison, of a field with a constant, without a detour.
+    FieldIs {
+        source: MessageSource,
+        path: Box<[FieldId]>,
+        comparison: Comparison,
+        literal: Literal,
+    },
     Absent(MessageSource),
     Over {
         timer: TimerId,
@@ -160,6 +167,18 @@ pub(super) enum Test {
 }
 
 impl Test {
+    pub(super) fn compare(left: Term, comparison: Comparison, right: Term) -> Test {
+        match (left, right) {
+            (Term::Field(source, path), Term::Literal(literal)) => {
+                Test::FieldIs { source, path, comparison, literal }
+            }
+            (Term::Literal(literal), Term::Field(source, path)) => {
+                Test::FieldIs { source, path, comparison: comparison.mirrored(), literal }
+            }
+            (left, right) => Test::Compare(left, comparison, right),
+        }
+    }
+
     pub(super) fn evaluate(&self, facts: &impl Facts) -> Result<Truth, GuardError> {
         Ok(match self {
             Test::Literal(value) => Truth::from(*value),
@@ -168,6 +187,9 @@ impl Test {
             Test::Not(test) => test.evaluate(facts)?.negated(),
             Test::Compare(left, comparison, right) => {
                 Truth::from(compare(left.evaluate(facts)?, *comparison, right.evaluate(facts)?)?)
+            }
+            Test::FieldIs { source, path, comparison, literal } => {
+                Truth::from(compare(facts.field(source, path), *comparison, literal.value())?)
             }
             Test::Absent(source) => Truth::from(matches!(facts.message(source), Value::Missing)),
             Test::Over { timer, when_unset } => Truth::from(match facts.timer(*timer) {
@@ -210,15 +232,35 @@ fn any(tests: &[Test], facts: &impl Facts) -> Result<Truth, GuardError> {
     Ok(truth)
 }
 
-/// What has a value.
+/// A value that is known beforehand.
 #[derive(Clone, PartialEq, Debug)]
-pub(super) enum Term {
+pub(super) enum Literal {
     Bool(bool),
     Int(i64),
     Uint(u64),
     Float(f64),
     Text(Box<str>),
     Enum(i32),
+}
+
+impl Literal {
+    #[inline]
+    fn value(&self) -> Value<'_> {
+        match self {
+            Literal::Bool(value) => Value::Bool(*value),
+            Literal::Int(value) => Value::Int(*value),
+            Literal::Uint(value) => Value::Uint(*value),
+            Literal::Float(value) => Value::Float(*value),
+            Literal::Text(value) => Value::Text(value),
+            Literal::Enum(value) => Value::Enum(*value),
+        }
+    }
+}
+
+/// What has a value.
+#[derive(Clone, PartialEq, Debug)]
+pub(super) enum Term {
+    Literal(Literal),
     Field(MessageSource, Box<[FieldId]>),
     Message(MessageSource),
     Call(FunctionId, Box<[Term]>),
@@ -231,12 +273,7 @@ pub(super) enum Term {
 impl Term {
     pub(super) fn evaluate<'a>(&'a self, facts: &'a impl Facts) -> Result<Value<'a>, GuardError> {
         Ok(match self {
-            Term::Bool(value) => Value::Bool(*value),
-            Term::Int(value) => Value::Int(*value),
-            Term::Uint(value) => Value::Uint(*value),
-            Term::Float(value) => Value::Float(*value),
-            Term::Text(value) => Value::Text(value),
-            Term::Enum(value) => Value::Enum(*value),
+            Term::Literal(literal) => literal.value(),
             Term::Field(source, path) => facts.field(source, path),
             Term::Message(source) => facts.message(source),
             Term::Call(function, arguments) => call(*function, arguments, facts)?,

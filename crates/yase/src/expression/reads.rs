@@ -31,7 +31,7 @@ impl Reads {
                 self.of_term(left);
                 self.of_term(right);
             }
-            Test::Absent(source) => drop(self.topics.insert(source.topic)),
+            Test::FieldIs { source, .. } | Test::Absent(source) => drop(self.topics.insert(source.topic)),
             Test::Over { timer, .. } => drop(self.timers.insert(*timer)),
             Test::Holds(term) => self.of_term(term),
         }
@@ -39,8 +39,7 @@ impl Reads {
 
     pub(super) fn of_term(&mut self, term: &Term) {
         match term {
-            Term::Bool(_) | Term::Int(_) | Term::Uint(_) | Term::Float(_) | Term::Text(_) | Term::Enum(_) => {
-            }
+            Term::Literal(_) => {}
             Term::Field(source, _) | Term::Message(source) => drop(self.topics.insert(source.topic)),
             Term::Call(_, arguments) => arguments.iter().for_each(|term| self.of_term(term)),
             Term::Negative(term) => self.of_term(term),

@@ -39,7 +39,10 @@ pub(super) enum Phase {
 
 impl Activities {
     pub(super) fn new(count: usize) -> Activities {
-        Activities { slots: vec![Slot { phase: Phase::Idle, number: 0, cancelled: false }; count].into(), count: 0 }
+        Activities {
+            slots: vec![Slot { phase: Phase::Idle, number: 0, cancelled: false }; count].into(),
+            count: 0,
+        }
     }
 
     pub(super) fn reset(&mut self) {
@@ -85,11 +88,17 @@ impl Run {
     fn current(&self, chart: &Chart, activation: Activation) -> Option<(Place, usize)> {
         let place = chart.layout.place(activation.node)?;
         let activity = chart.states[place.index()].activity?;
-        let is_current = self.status == Status::Running && self.activities.slot(activity).number == activation.number;
+        let is_current =
+            self.status == Status::Running && self.activities.slot(activity).number == activation.number;
         is_current.then_some((place, activity))
     }
 
-    pub(super) fn activity_returned(&mut self, chart: &Chart, activation: Activation, outcome: Outcome) -> bool {
+    pub(super) fn activity_returned(
+        &mut self,
+        chart: &Chart,
+        activation: Activation,
+        outcome: Outcome,
+    ) -> bool {
         let Some((place, activity)) = self.current(chart, activation) else { return false };
         let slot = self.activities.slot_mut(activity);
         if slot.phase != Phase::Running {

@@ -60,13 +60,41 @@ impl Bound {
         self.taken += 1;
     }
 
-    /// The transitions that were taken again and again, as far back as is remembered: the shortest row that, repeated, gives them all.
+    /// The transitions that were taken again and again: the shortest row whose repetition makes up the last half of what is remembered,
+    /// or all of it.
     pub(super) fn cycle(&self) -> Vec<CompoundId> {
         let known = self.taken.min(MEMORY);
         let last: Vec<CompoundId> =
             (self.taken - known..self.taken).map(|index| self.recent[index % MEMORY]).collect();
-        let repeats = |&period: &usize| last.iter().zip(last.iter().skip(period)).all(|(a, b)| a == b);
-        let period = (1..known).find(repeats).unwrap_or(known);
+        let repeats = |&period: &usize| {
+            let recent = &last[known - (2 * period).max(known / 2)..];
+            recent.iter().zip(&recent[period..]).all(|(a, b)| a == b)
+        };
+        let period = (1..=known / 2).find(repeats).unwrap_or(known);
         last[known - period..].to_vec()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cycle_of(numbers: &[u32]) -> Vec<u32> {
+        let mut bound = Bound::new();
+        for &number in numbers {
+            bound.remember(CompoundId(number));
+        }
+        bound.cycle().into_iter().map(|compound| compound.0).collect()
+    }
+
+    #[test]
+    fn a_cycle_is_the_shortest_row_that_repeats_to_the_end() {
+        assert_eq!(cycle_of(&[]), []);
+        assert_eq!(cycle_of(&[7]), [7]);
+        assert_eq!(cycle_of(&[9, 1, 1, 1, 1]), [1]);
+        assert_eq!(cycle_of(&[9, 8, 1, 2, 2, 1, 2, 2]), [1, 2, 2]);
+        assert_eq!(cycle_of(&[1, 2, 3, 4]), [1, 2, 3, 4]);
+        let long: Vec<u32> = (0..1000).map(|number| number % 5).collect();
+        assert_eq!(cycle_of(&long), [0, 1, 2, 3, 4]);
     }
 }

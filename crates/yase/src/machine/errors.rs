@@ -18,7 +18,9 @@ impl MachineError {
         let limit = semantics.limit;
         let what = match kind {
             MachineErrorKind::NeverRests => format!("the chart does not come to rest in {limit} micro-steps"),
-            MachineErrorKind::NeverAdvances => format!("the chart makes more than {limit} steps at one moment"),
+            MachineErrorKind::NeverAdvances => {
+                format!("the chart makes more than {limit} steps at one moment")
+            }
         };
         let text = format!("{what}: it repeats {}", names.join(", "));
         MachineError { kind, cycle: segments, text }

@@ -28,7 +28,8 @@ impl<H: Host> Step<'_, H> {
 
     /// Fires the oldest interrupting transition whose activities have all returned.
     pub(super) fn fire_pending(&mut self) -> Result<bool, MachineError> {
-        let ready = self.run.pending.iter().position(|pending| !self.leaves_running(self.compound(pending.compound)));
+        let ready =
+            self.run.pending.iter().position(|pending| !self.leaves_running(self.compound(pending.compound)));
         let Some(index) = ready else { return Ok(false) };
         self.admit()?;
         let pending = self.run.pending.remove(index);
@@ -45,7 +46,8 @@ impl<H: Host> Step<'_, H> {
     fn forget_left(&mut self) {
         let chart = self.chart;
         let (active, pending) = (&self.run.active, &mut self.run.pending);
-        pending.retain(|pending| active.contains(chart.compounds[pending.compound.0 as usize].source.index()));
+        pending
+            .retain(|pending| active.contains(chart.compounds[pending.compound.0 as usize].source.index()));
         self.run.queues.release(|_| true);
     }
 
@@ -184,7 +186,11 @@ impl<H: Host> Step<'_, H> {
     ) -> Result<(), ActionError> {
         let mut text = std::mem::take(&mut self.run.text);
         let view = View { chart: self.chart, run: self.run, host: self.host, region };
-        let result = match operand.evaluate(&view).map_err(ActionError::from).and_then(|value| detach(value, &mut text)) {
+        let result = match operand
+            .evaluate(&view)
+            .map_err(ActionError::from)
+            .and_then(|value| detach(value, &mut text))
+        {
             Ok(value) => self.host.assign(region, topic, field, value).map_err(ActionError::from),
             Err(error) => Err(error),
         };

@@ -113,7 +113,9 @@ impl<H: Host> Step<'_, H> {
     fn meets(&self, branch: &Branch, place: Place, occurrence: Option<&Occurrence>) -> bool {
         match (branch.condition, occurrence) {
             (Condition::None, _) => true,
-            (Condition::Trigger(trigger), Some(occurrence)) => matches(&self.chart.triggers[trigger], occurrence),
+            (Condition::Trigger(trigger), Some(occurrence)) => {
+                matches(&self.chart.triggers[trigger], occurrence)
+            }
             (Condition::Completed, None) if self.semantics.eventless == Eventless::AsWritten => {
                 self.is_complete(place)
             }
@@ -129,7 +131,9 @@ impl<H: Host> Step<'_, H> {
             NodeKind::Or => state.children.iter().any(|&child| {
                 self.chart.states[child.index()].kind == NodeKind::End && self.run.is_active(child)
             }),
-            _ => state.activity.is_none_or(|activity| self.run.activities.slot(activity).phase == Phase::Done),
+            _ => {
+                state.activity.is_none_or(|activity| self.run.activities.slot(activity).phase == Phase::Done)
+            }
         }
     }
 
@@ -159,7 +163,8 @@ impl<H: Host> Step<'_, H> {
                 if !self.run.erred.iter().any(|erred| erred.guard == guard) {
                     self.run.erred.push(ErredGuard { guard, stale: false });
                     self.run.queues.raise(self.chart.errors.guard);
-                    self.host.report(self.chart, Report::GuardFailed { transition: *transition, error: &error });
+                    self.host
+                        .report(self.chart, Report::GuardFailed { transition: *transition, error: &error });
                 }
                 false
             }
@@ -173,7 +178,8 @@ impl<H: Host> Step<'_, H> {
             return true;
         }
         let region = self.chart.states[place.index()].region;
-        !compound.interrupts && (self.run.running_regions.contains(region.index()) || self.leaves_running(compound))
+        !compound.interrupts
+            && (self.run.running_regions.contains(region.index()) || self.leaves_running(compound))
     }
 
     pub(super) fn leaves_running(&self, compound: &Compound) -> bool {
@@ -202,7 +208,8 @@ impl<H: Host> Step<'_, H> {
         let (chart, selection) = (self.chart, &mut self.run.selection);
         let compound = |id: CompoundId| &chart.compounds[id.0 as usize];
         for &candidate in &selection.candidates {
-            let loses = selection.selected.iter().any(|&other| compound(other).conflicts_with(compound(candidate)));
+            let loses =
+                selection.selected.iter().any(|&other| compound(other).conflicts_with(compound(candidate)));
             if loses { &mut selection.preempted } else { &mut selection.selected }.push(candidate);
         }
         selection.selected.sort_unstable_by_key(|&id| compound(id).key);

@@ -21,7 +21,12 @@ pub(super) struct Step<'a, H> {
 }
 
 impl<'a, H: Host> Step<'a, H> {
-    pub(super) fn new(chart: &'a Chart, semantics: Semantics, run: &'a mut Run, host: &'a mut H) -> Step<'a, H> {
+    pub(super) fn new(
+        chart: &'a Chart,
+        semantics: Semantics,
+        run: &'a mut Run,
+        host: &'a mut H,
+    ) -> Step<'a, H> {
         run.log.wanted = host.wants_trace();
         Step { chart, semantics, run, host, summary: StepSummary::default() }
     }
@@ -230,7 +235,9 @@ impl<'a, H: Host> Step<'a, H> {
         }
         let (starts, last) = (&self.chart.masks.starts, self.chart.layout.len());
         let mut from = 0;
-        while let Some(index) = self.run.active.next_common_without(starts, &self.run.waiting_starts, from, last) {
+        while let Some(index) =
+            self.run.active.next_common_without(starts, &self.run.waiting_starts, from, last)
+        {
             from = index + 1;
             let place = Place(index as u32);
             if !self.is_frozen(place) {

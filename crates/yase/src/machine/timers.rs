@@ -48,7 +48,8 @@ impl Timers {
     /// Notices the earliest expiry up to now that was not noticed; of several at one moment, that of the first timer.
     pub(super) fn expire(&mut self, now: Moment) -> Option<usize> {
         let due = |slot: &Option<Deadline>| {
-            slot.filter(|deadline| !deadline.expired && deadline.moment <= now).map(|deadline| deadline.moment)
+            slot.filter(|deadline| !deadline.expired && deadline.moment <= now)
+                .map(|deadline| deadline.moment)
         };
         let (_, timer) =
             self.slots.iter().enumerate().filter_map(|(timer, slot)| Some((due(slot)?, timer))).min()?;

@@ -6,8 +6,8 @@ use std::time::Duration;
 use yase::expression::{CallError, MessageSource};
 use yase::vocabulary::{FieldEntry, FunctionEntry, MessageEntry, TopicEntry, TopicKind, ValueType};
 use yase::{
-    Activation, Chart, FieldId, FunctionId, Host, Moment, Outcome, RegionId, Report, TopicId, TraceRecord, Value,
-    Vocabulary,
+    Activation, Chart, FieldId, FunctionId, Host, Moment, Outcome, RegionId, Report, TopicId, TraceRecord,
+    Value, Vocabulary,
 };
 
 pub const TOPICS: [&str; 3] = ["A", "B", "C"];

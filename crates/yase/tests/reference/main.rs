@@ -30,7 +30,11 @@ fn machine_and_reference_write_the_same_lines() {
         let (chart, script) = random::case(&mut random::Choices::new(&bytes));
         let (expected, found) = (by_reference(&chart, &script), by_machine(&chart, &script));
         histogram.borrow_mut().count(&chart, &expected);
-        if expected == found { Ok(()) } else { Err(TestCaseError::fail(difference(&chart, &script, &expected, &found))) }
+        if expected == found {
+            Ok(())
+        } else {
+            Err(TestCaseError::fail(difference(&chart, &script, &expected, &found)))
+        }
     });
     match result {
         Ok(()) => histogram.borrow().assert_rich(),
@@ -62,7 +66,12 @@ fn difference(chart: &Statechart, script: &Script, expected: &[String], found: &
     let same = expected.iter().zip(found).take_while(|(a, b)| a == b).count();
     let context = expected[same.saturating_sub(12)..same].join("\n");
     let one = |log: &[String]| log.get(same).cloned().unwrap_or_else(|| "(nothing)".into());
-    format!("{}{script:?}\n\n{context}\nexpected {}\nfound    {}\n", describe(chart), one(expected), one(found))
+    format!(
+        "{}{script:?}\n\n{context}\nexpected {}\nfound    {}\n",
+        describe(chart),
+        one(expected),
+        one(found)
+    )
 }
 
 fn describe(chart: &Statechart) -> String {
@@ -124,20 +133,35 @@ impl Histogram {
 
     fn count(&mut self, chart: &Statechart, log: &[String]) {
         let kinds = |wanted: NodeKind| chart.nodes().any(|(_, node)| node.kind == wanted);
-        for (row, kind) in [("CONDITION", NodeKind::Condition), ("JUNCTION", NodeKind::Junction), ("TERMINATE", NodeKind::Terminate)] {
+        for (row, kind) in [
+            ("CONDITION", NodeKind::Condition),
+            ("JUNCTION", NodeKind::Junction),
+            ("TERMINATE", NodeKind::Terminate),
+        ] {
             self.add(row, kinds(kind));
         }
         let depth = |kind: NodeKind| chart.nodes().map(|(id, _)| depth(chart, id, kind)).max().unwrap_or(0);
         self.add("OR depth 2", depth(NodeKind::Or) >= 3);
         self.add("AND depth 2", depth(NodeKind::And) >= 2);
-        self.add("a duration", chart.nodes().any(|(_, node)| node.duration.is_some_and(|time| !time.is_zero())));
+        self.add(
+            "a duration",
+            chart.nodes().any(|(_, node)| node.duration.is_some_and(|time| !time.is_zero())),
+        );
         for (row, part) in OCCURRENCES {
             self.add(row, log.iter().any(|line| line.contains(part)));
         }
-        for (row, event) in [("timer event", " v"), ("message event", " a:"), ("eventless", " -:"), ("raised error", " error.")] {
+        for (row, event) in [
+            ("timer event", " v"),
+            ("message event", " a:"),
+            ("eventless", " -:"),
+            ("raised error", " error."),
+        ] {
             self.add(row, log.iter().any(|line| line.contains(&format!(" s{event}"))));
         }
-        self.add("both in one AND", log.iter().any(|line| line.split("; ").next().is_some_and(|head| head.contains(", "))));
+        self.add(
+            "both in one AND",
+            log.iter().any(|line| line.split("; ").next().is_some_and(|head| head.contains(", "))),
+        );
         self.add("never rests", log.iter().any(|line| line == "error"));
         self.add("runs on", !log.iter().any(|line| line == "error"));
         self.add("long", log.len() > 60);

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
+use yase::TopicId;
 use yase::expression::{parse_actions, parse_transition};
 use yase::statechart::{Node, NodeId, NodeKind, Statechart, Transition};
-use yase::TopicId;
 
 use crate::kit::script::{Input, Script};
 
@@ -224,7 +224,8 @@ impl Maker<'_, '_> {
         if connector && chart.node(source).parent != chart.node(target).parent {
             return false;
         }
-        let inside = |node: NodeId, outer: NodeId| node == outer || chart.ancestors(node).any(|above| above == outer);
+        let inside =
+            |node: NodeId, outer: NodeId| node == outer || chart.ancestors(node).any(|above| above == outer);
         let common = chart.ancestors(source).find(|&above| target != above && inside(target, above));
         let across = common.is_some_and(|common| chart.node(common).kind == NodeKind::And);
         !across || inside(source, target) || inside(target, source)
@@ -274,7 +275,9 @@ impl Maker<'_, '_> {
         let named: Vec<NodeId> = self
             .chart
             .nodes()
-            .filter(|(_, node)| matches!(node.kind, NodeKind::Basic | NodeKind::Or | NodeKind::And) && node.name != "c")
+            .filter(|(_, node)| {
+                matches!(node.kind, NodeKind::Basic | NodeKind::Or | NodeKind::And) && node.name != "c"
+            })
             .map(|(id, _)| id)
             .collect();
         let node = self.choices.pick(&named);

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 use yase::expression::{
-    Action, ActionKind, Comparison, Expression, ExpressionKind, Trigger, TransitionExpression,
+    Action, ActionKind, Comparison, Expression, ExpressionKind, TransitionExpression, Trigger,
 };
 use yase::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 use yase::{Activation, FieldId, Host, Moment, Outcome, RegionId, TopicId, Value};
@@ -151,7 +151,8 @@ impl<'c> Stepper<'c> {
     /// R19: the blackboard of a node: that of the nearest region around it, itself included.
     fn region(&self, node: NodeId) -> RegionId {
         let regions = self.region_nodes();
-        let owner = std::iter::once(node).chain(self.chart.ancestors(node)).find(|node| regions.contains(node));
+        let owner =
+            std::iter::once(node).chain(self.chart.ancestors(node)).find(|node| regions.contains(node));
         RegionId(regions.iter().position(|&region| Some(region) == owner).unwrap() as u32)
     }
 
@@ -166,8 +167,12 @@ impl<'c> Stepper<'c> {
     // --- R2, R3, R6: ways -----------------------------------------------------------------------------------------
 
     fn outgoing(&self, node: NodeId) -> Vec<TransitionId> {
-        let mut out: Vec<TransitionId> =
-            self.chart.transitions().filter(|(_, transition)| transition.source == node).map(|(id, _)| id).collect();
+        let mut out: Vec<TransitionId> = self
+            .chart
+            .transitions()
+            .filter(|(_, transition)| transition.source == node)
+            .map(|(id, _)| id)
+            .collect();
         out.sort_by_key(|&id| {
             let transition = self.chart.transition(id);
             (-transition.priority, u8::from(transition.expression.guard.is_none()), id)
@@ -281,7 +286,12 @@ impl<'c> Stepper<'c> {
     }
 
     /// True, false, or unknown.
-    fn truth(&self, expression: &Expression, region: RegionId, world: &World) -> Result<Option<bool>, String> {
+    fn truth(
+        &self,
+        expression: &Expression,
+        region: RegionId,
+        world: &World,
+    ) -> Result<Option<bool>, String> {
         Ok(match &expression.kind {
             ExpressionKind::Bool(value) => Some(*value),
             ExpressionKind::And(parts) => {
@@ -330,7 +340,12 @@ impl<'c> Stepper<'c> {
         })
     }
 
-    fn number(&self, expression: &Expression, region: RegionId, world: &World) -> Result<Option<i64>, String> {
+    fn number(
+        &self,
+        expression: &Expression,
+        region: RegionId,
+        world: &World,
+    ) -> Result<Option<i64>, String> {
         Ok(match &expression.kind {
             ExpressionKind::Integer(value) => Some(*value as i64),
             ExpressionKind::Variable(path) => self.message(&path.segments[0].text, region, world),
@@ -388,8 +403,11 @@ impl<'c> Stepper<'c> {
         if self.is_leaf(source) || !guarded || source == target {
             return self.is_complete(source);
         }
-        let inside: Vec<NodeId> =
-            self.active_in_document_order().into_iter().filter(|&node| self.is_inside(node, source)).collect();
+        let inside: Vec<NodeId> = self
+            .active_in_document_order()
+            .into_iter()
+            .filter(|&node| self.is_inside(node, source))
+            .collect();
         !inside.iter().any(|&node| self.runs(node)) && !self.can_step_inside(source, &inside, world)
     }
 
@@ -643,7 +661,9 @@ impl<'c> Stepper<'c> {
         let has_word = |text: String| text.split(|c: char| !c.is_alphanumeric()).any(|other| other == word);
         self.chart
             .transitions()
-            .filter(|(_, transition)| transition.expression.guard.as_ref().is_some_and(|guard| has_word(guard.to_string())))
+            .filter(|(_, transition)| {
+                transition.expression.guard.as_ref().is_some_and(|guard| has_word(guard.to_string()))
+            })
             .map(|(id, _)| id)
             .collect()
     }
@@ -675,7 +695,8 @@ impl<'c> Stepper<'c> {
 
     fn raise(&mut self, event: &str) {
         self.count += 1;
-        let occurrence = Occurrence { event: event.to_owned(), number: self.count, raised: true, expiry: None };
+        let occurrence =
+            Occurrence { event: event.to_owned(), number: self.count, raised: true, expiry: None };
         self.raised.push(occurrence);
     }
 
@@ -726,13 +747,16 @@ impl<'c> Stepper<'c> {
     /// Whether a trigger names an event or a state defers it; `anywhere`: also `raise` and `not`.
     fn is_named(&self, event: &str, anywhere: bool) -> bool {
         let raised = |actions: &[Action]| {
-            actions.iter().any(|action| matches!(&action.kind, ActionKind::Raise(name) if name.text() == event))
+            actions
+                .iter()
+                .any(|action| matches!(&action.kind, ActionKind::Raise(name) if name.text() == event))
         };
-        let triggered = self.chart.transitions().any(|(_, transition)| match &transition.expression.trigger {
-            Some(Trigger::OneOf(names)) => names.iter().any(|name| name.text() == event),
-            Some(Trigger::Not(name)) => anywhere && name.text() == event,
-            _ => false,
-        });
+        let triggered =
+            self.chart.transitions().any(|(_, transition)| match &transition.expression.trigger {
+                Some(Trigger::OneOf(names)) => names.iter().any(|name| name.text() == event),
+                Some(Trigger::Not(name)) => anywhere && name.text() == event,
+                _ => false,
+            });
         let raises = self.chart.transitions().any(|(_, transition)| raised(&transition.expression.actions))
             || self.chart.nodes().any(|(_, node)| raised(&node.entry) || raised(&node.exit));
         let defers = self.chart.nodes().any(|(_, node)| node.defer.iter().any(|name| name == event));
@@ -771,8 +795,12 @@ impl<'c> Stepper<'c> {
             return Ok(true);
         }
         // deferred events come back before newer ones
-        let recalled: Vec<Occurrence> =
-            self.deferred.iter().filter(|occurrence| self.deferring(&occurrence.event).is_none()).cloned().collect();
+        let recalled: Vec<Occurrence> = self
+            .deferred
+            .iter()
+            .filter(|occurrence| self.deferring(&occurrence.event).is_none())
+            .cloned()
+            .collect();
         self.deferred.retain(|occurrence| !recalled.contains(occurrence));
         for occurrence in recalled {
             if occurrence.raised { &mut self.raised } else { &mut self.arrived }.push(occurrence);
@@ -1024,7 +1052,8 @@ impl Interpreter for Stepper<'_> {
         let mut held = std::mem::take(&mut self.held);
         for (_, ways, offer) in &mut held {
             let in_the_way = |way: &Way| {
-                self.exits(way).contains(&activation.node) || self.region(self.source(way)) == activation.region
+                self.exits(way).contains(&activation.node)
+                    || self.region(self.source(way)) == activation.region
             };
             *offer |= ways.iter().any(in_the_way);
         }
@@ -1062,7 +1091,8 @@ impl Interpreter for Stepper<'_> {
     }
 
     fn needs_step(&self, now: Moment) -> bool {
-        let waiting = !self.raised.is_empty() || !self.arrived.is_empty() || self.held.iter().any(|held| held.2);
+        let waiting =
+            !self.raised.is_empty() || !self.arrived.is_empty() || self.held.iter().any(|held| held.2);
         self.running_chart
             && (self.due || waiting || self.next_deadline().is_some_and(|deadline| deadline <= now))
     }

@@ -184,7 +184,7 @@ fn r06_all_of_a_compound_transition_happens_or_none() {
         B
         c/START -> A
         A -> c1 : e / raise(one)
-        c1 -> j / raise(two)
+        c1 -> j : / raise(two)
         j -> B : [A.n > 0] / raise(three)
         ",
         "1 e; 2 A=1; 3 e; 4",
@@ -230,7 +230,10 @@ fn r06_connectors_that_multiply_beyond_measure_are_refused() {
         text += &format!("? n{number}\nn{} -> n{number}\nn{} -> n{number}\n", number - 1, number - 1);
     }
     text += "n23 -> A";
-    assert_eq!(refusal(&text), "error[M06]: more than 1000000 compound transitions, up to those out of `c/START`");
+    assert_eq!(
+        refusal(&text),
+        "error[M06]: more than 1000000 compound transitions, up to those out of `c/START`"
+    );
 }
 
 const NESTED: &str = "
@@ -311,7 +314,8 @@ fn r08_else_the_smaller_key_wins() {
 
 #[test]
 fn r08_what_stays_inside_conflicts_with_nothing_and_fires_first() {
-    let chart = format!("{CONFLICT}    A -> X : e / publish_all\n    C -> C {{internal}} : e / process_messages");
+    let chart =
+        format!("{CONFLICT}    A -> X : e / publish_all\n    C -> C {{internal}} : e / process_messages");
     compare(
         &[last(&chart)],
         "0.001 s e: both/two/C -> both/two/C, both/one/A -> X; \

@@ -103,7 +103,8 @@ fn r01_what_stands_where_it_cannot_is_refused() {
     chart.connect(Transition::new(start, a));
     chart.connect(Transition::new(a, NodeId(99)));
     chart.connect(Transition { weight: Some(0.5), ..Transition::new(a, a) });
-    let found: Vec<String> = chart.compile(&vocabulary()).unwrap_err().iter().map(ToString::to_string).collect();
+    let found: Vec<String> =
+        chart.compile(&vocabulary()).unwrap_err().iter().map(ToString::to_string).collect();
     assert_eq!(
         found,
         [

@@ -4,7 +4,7 @@ use super::message::describe;
 use super::scope::{Scope, Typed};
 use super::{Checked, both, collect};
 use crate::diagnostic::{Diagnostic, Span};
-use crate::expression::program::{MAX_ARGUMENTS, Term, Test};
+use crate::expression::program::{Literal, MAX_ARGUMENTS, Term, Test};
 use crate::expression::syntax::{Comparison, Expression, ExpressionKind, Name, Path};
 use crate::vocabulary::{FunctionEntry, ValueType};
 
@@ -73,7 +73,7 @@ impl Scope<'_> {
             return Err(vec![diagnostic.with_hint(comparison_hint(&a.kind, &b.kind))]);
         }
         refuse_order(&a.kind, comparison, span)?;
-        Ok(Test::Compare(a.term, comparison, b.term))
+        Ok(Test::compare(a.term, comparison, b.term))
     }
 
     /// The type of an operand as far as it is plain before its neighbour is known: bare names of enumerations
@@ -90,10 +90,10 @@ impl Scope<'_> {
 
     fn term(&self, expression: &Expression, expected: Option<&ValueType>) -> Checked<Typed> {
         match &expression.kind {
-            ExpressionKind::Integer(value) => Ok(number(Term::Uint(*value))),
-            ExpressionKind::Decimal(value) => Ok(number(Term::Float(*value))),
+            ExpressionKind::Integer(value) => Ok(number(Term::Literal(Literal::Uint(*value)))),
+            ExpressionKind::Decimal(value) => Ok(number(Term::Literal(Literal::Float(*value)))),
             ExpressionKind::Text(text) => {
-                Ok(Typed { term: Term::Text(text.as_str().into()), kind: ValueType::Text })
+                Ok(Typed { term: Term::Literal(Literal::Text(text.as_str().into())), kind: ValueType::Text })
             }
             ExpressionKind::Variable(path) => self.variable(path, expected),
             ExpressionKind::Call(function, arguments) => self.call(function, arguments, expression.span()),
@@ -106,7 +106,9 @@ impl Scope<'_> {
                 let (first, rest) = both(self.number(first), self.chain(rest))?;
                 Ok(number(Term::Product(Box::new(first), rest)))
             }
-            ExpressionKind::Bool(value) => Ok(Typed { term: Term::Bool(*value), kind: ValueType::Bool }),
+            ExpressionKind::Bool(value) => {
+                Ok(Typed { term: Term::Literal(Literal::Bool(*value)), kind: ValueType::Bool })
+            }
             _ => Ok(Typed { term: Term::Truth(Box::new(self.test(expression)?)), kind: ValueType::Bool }),
         }
     }
@@ -172,11 +174,10 @@ fn number(term: Term) -> Typed {
 /// A negative constant is a constant.
 fn negated(term: Term) -> Term {
     match term {
-        Term::Float(value) => Term::Float(-value),
-        Term::Uint(value) => match i64::try_from(value) {
-            Ok(value) => Term::Int(-value),
-            Err(_) => Term::Negative(Box::new(Term::Uint(value))),
-        },
+        Term::Literal(Literal::Float(value)) => Term::Literal(Literal::Float(-value)),
+        Term::Literal(Literal::Uint(value)) if i64::try_from(value).is_ok() => {
+            Term::Literal(Literal::Int(-(value as i64)))
+        }
         other => Term::Negative(Box::new(other)),
     }
 }

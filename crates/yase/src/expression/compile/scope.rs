@@ -5,7 +5,7 @@ use super::message::{describe, unknown};
 use crate::diagnostic::Diagnostic;
 use crate::expression::facts::TimerId;
 use crate::expression::names::Names;
-use crate::expression::program::{Term, Test};
+use crate::expression::program::{Literal, Term, Test};
 use crate::expression::syntax::{Name, Path};
 use crate::statechart::{Constant, ConstantValue, NodeId};
 use crate::vocabulary::{Enumeration, FunctionEntry, ValueType, Vocabulary};
@@ -198,15 +198,19 @@ fn value_of(enumeration: &Enumeration, name: &str) -> Option<Meaning> {
     let (_, number) = enumeration.values.iter().find(|(value, _)| value == name)?;
     let kind = ValueType::Enumeration(enumeration.name.clone());
     let what = format!("a value of the enumeration `{}`", enumeration.name);
-    Some(Meaning { what, typed: Typed { term: Term::Enum(*number), kind } })
+    Some(Meaning { what, typed: Typed { term: Term::Literal(Literal::Enum(*number)), kind } })
 }
 
 fn constant_value(value: &ConstantValue) -> Typed {
     match value {
-        ConstantValue::Bool(value) => Typed { term: Term::Bool(*value), kind: ValueType::Bool },
-        ConstantValue::Number(value) => Typed { term: Term::Float(*value), kind: ValueType::Number },
+        ConstantValue::Bool(value) => {
+            Typed { term: Term::Literal(Literal::Bool(*value)), kind: ValueType::Bool }
+        }
+        ConstantValue::Number(value) => {
+            Typed { term: Term::Literal(Literal::Float(*value)), kind: ValueType::Number }
+        }
         ConstantValue::Text(value) => {
-            Typed { term: Term::Text(value.as_str().into()), kind: ValueType::Text }
+            Typed { term: Term::Literal(Literal::Text(value.as_str().into())), kind: ValueType::Text }
         }
     }
 }

@@ -3,7 +3,8 @@
 
 use super::cursor::{Cursor, Parsed};
 use crate::diagnostic::{Diagnostic, Span};
-XX
+use crate::expression::lexer::{Symbol, TokenKind};
+use crate::expression::syntax::{Additive, Comparison, Expression, ExpressionKind, Multiplicative};
 
 /// Parentheses, calls and signs may be nested this deep; deeper trees could not be walked by recursion.
 const MAX_DEPTH: usize = 256;
@@ -30,7 +31,7 @@ impl Cursor<'_> {
     fn conjunction(&mut self) -> Parsed<Expression> {
         let start = self.span().start;
         let mut operands = vec![self.comparison()?];
-        while self.accept_logic(Symbol::DoubleAmpersand, Symbol::DoubleAmpersand, "and", "&&") {
+        while self.accept_logic(Symbol::DoubleAmpersand, Symbol::Ampersand, "and", "&&") {
             operands.push(self.comparison()?);
         }
         Ok(self.joined(start, operands, ExpressionKind::And))
@@ -56,7 +57,7 @@ impl Cursor<'_> {
         if self.accept(symbol) || self.accept_word(word) {
             return true;
         }
-        let slip = self.at(single) || (spelling == "&&" && self.here() == "&");
+        let slip = self.at(single);
         if slip {
             let message = format!("{} is no operator of conditions", self.found());
             self.report(

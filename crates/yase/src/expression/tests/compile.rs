@@ -8,7 +8,7 @@ use super::world::{
 };
 use crate::expression::{
     CompiledTransition, CompiledTrigger, Effect, EventId, EventTable, Names, Origin, TimerId,
-    compile_actions, parse_actions,
+    compile_actions, parse_actions, parse_condition,
 };
 use crate::vocabulary::{FieldId, Value};
 
@@ -92,8 +92,7 @@ fn a_timer_may_have_dots() {
 #[test]
 fn triggers_name_events_and_arrivals_of_messages() {
     let mut events = EventTable::new();
-    let trigger =
-        |text: &str, events: &mut EventTable| compile_with(text, events).unwrap().trigger.unwrap();
+    let trigger = |text: &str, events: &mut EventTable| compile_with(text, events).unwrap().trigger.unwrap();
     let kick = events.intern("kick");
     assert_eq!(trigger("*", &mut events), CompiledTrigger::Any);
     assert_eq!(trigger("kick", &mut events), CompiledTrigger::OneOf([kick].into()));
@@ -211,4 +210,14 @@ fn only_the_literal_is_literally_false() {
     assert!(!guard("debug").is_literally_false());
     assert!(!guard("TimeoutCheck(never)").is_literally_false());
     assert!(!guard("true").is_literally_false());
+}
+
+/// The deepest tree that is read can be compiled, evaluated, copied, printed and dropped.
+#[test]
+fn the_deepest_tree_is_handled() {
+    let opening = "!(false || true && 1 < 2 + 3 * abs(1.0) && ".repeat(127);
+    let text = format!("{opening}true{}", ")".repeat(127));
+    assert_eq!(guard(&text).clone().evaluate(&World::new()), Ok(false));
+    let tree = parse_condition(&text).0.unwrap();
+    assert_eq!(tree.clone().to_string(), text);
 }

@@ -129,9 +129,15 @@ fn numbers_compare_by_value_whatever_their_width() {
         let world = World::new().with(BALL, &[DISTANCE], left);
         let condition = format!("Ball.distance {comparison} {right}");
         assert_eq!(world.holds(&condition), Ok(expected), "{left:?} {comparison} {right}");
-        let mirrored = format!("!({right} {comparison} Ball.distance)");
-        if matches!(comparison, "==" | "!=") {
-            assert_eq!(world.holds(&mirrored), Ok(!expected), "{right} {comparison} {left:?}");
+        let mirrored = match comparison.strip_prefix('<') {
+            Some(rest) => format!(">{rest}"),
+            None => comparison.replace('>', "<"),
+        };
+        let condition = format!("{right} {mirrored} Ball.distance");
+        assert_eq!(world.holds(&condition), Ok(expected), "{condition} of {left:?}");
+        let condition = format!("Ball.distance {comparison} {right} * Ball.distance / Ball.distance");
+        if matches!(left, Value::Float(float) if float.is_finite() && float != 0.0) {
+            assert_eq!(world.holds(&condition), Ok(expected), "{condition} of {left:?}");
         }
     }
 }

@@ -6,9 +6,9 @@ mod parsing;
 use std::collections::BTreeSet;
 
 use super::world::{compile_with, said};
+use crate::expression::{EventTable, parse_condition, parse_transition};
 use compiling::COMPILING;
 use parsing::PARSING;
-use crate::expression::{EventTable, parse_condition, parse_transition};
 
 type Table = &'static [(&'static str, &'static [&'static str])];
 

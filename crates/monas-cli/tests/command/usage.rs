@@ -1,10 +1,8 @@
 //! The command line itself: help, version, completions, mistakes, and how results leave.
 
-mod kit;
-
 use std::process::Stdio;
 
-use kit::{command, monas};
+use crate::kit::{command, monas};
 
 #[test]
 fn version_names_itself() {
@@ -45,7 +43,7 @@ fn usage_mistakes_end_with_2_and_say_what_was_meant() {
 fn nothing_is_coloured_where_nobody_watches() {
     for arguments in [&["--help"][..], &["rum"], &["model", "check", "nowhere.srm"]] {
         let plain = monas(arguments);
-        let asked: kit::Answer =
+        let asked: crate::kit::Answer =
             command(arguments).env("NO_COLOR", "1").output().expect("the command starts").into();
         assert!(!plain.out.contains('\x1b') && !plain.err.contains('\x1b'), "{plain:?}");
         assert_eq!((plain.out, plain.err), (asked.out, asked.err));
@@ -69,6 +67,6 @@ fn a_reader_that_leaves_is_no_failure() {
         .spawn()
         .expect("it starts");
     drop(child.stdout.take());
-    let answer: kit::Answer = child.wait_with_output().expect("it ends").into();
+    let answer: crate::kit::Answer = child.wait_with_output().expect("it ends").into();
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
 }

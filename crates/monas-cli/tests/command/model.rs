@@ -1,11 +1,9 @@
 //! `monas model` on the project's own roles, and on what a person may get wrong.
 
-mod kit;
-
 use std::fs;
 use std::path::Path;
 
-use kit::monas;
+use crate::kit::monas;
 use serde_json::Value;
 
 const ROLES: [&str; 2] = ["models/goalie.srm", "models/attacker.srm"];

@@ -1,13 +1,11 @@
 //! `monas run` and `monas config check` with the project's own match, for a few simulated seconds.
 
-mod kit;
-
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use kit::{command, monas, root};
+use crate::kit::{command, monas, root};
 use serde_json::Value;
 
 const MATCH: &str = "config/match.xml";
@@ -91,7 +89,7 @@ fn an_interrupted_match_ends_with_its_figures_so_far() {
     let killed =
         Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("there is a kill");
     assert!(killed.success());
-    let answer: kit::Answer = child.wait_with_output().expect("it ends").into();
+    let answer: crate::kit::Answer = child.wait_with_output().expect("it ends").into();
     assert_eq!(answer.code, Some(130), "{answer:?}");
     assert!(answer.out.contains("possession"), "{answer:?}");
     hash_of(&answer.out);

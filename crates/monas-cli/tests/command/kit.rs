@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// The workspace.
-pub fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the workspace is there")
 }
 
 /// The command with arguments, ready to be started.
-pub fn command(arguments: &[&str]) -> Command {
+pub(crate) fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_monas"));
     command.args(arguments).current_dir(root()).env_remove("MONAS_LOG").env_remove("NO_COLOR");
     command
@@ -17,10 +17,10 @@ pub fn command(arguments: &[&str]) -> Command {
 
 /// What it printed and how it ended.
 #[derive(Debug)]
-pub struct Answer {
-    pub code: Option<i32>,
-    pub out: String,
-    pub err: String,
+pub(crate) struct Answer {
+    pub(crate) code: Option<i32>,
+    pub(crate) out: String,
+    pub(crate) err: String,
 }
 
 impl From<Output> for Answer {
@@ -31,6 +31,6 @@ impl From<Output> for Answer {
 }
 
 /// Runs the command to its end.
-pub fn monas(arguments: &[&str]) -> Answer {
+pub(crate) fn monas(arguments: &[&str]) -> Answer {
     command(arguments).output().expect("the command starts").into()
 }

@@ -1,0 +1,150 @@
+//! What was published is read.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
+
+mod ball;
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use ball::*;
+use monas_tape::{ErrorKind, Recording, Tape, read};
+use narukom::prost::Message as _;
+
+/// Host, publisher, topic, sequence, milliseconds and distance of a message.
+type Line = (String, String, String, u32, u64, f64);
+
+fn lines(recording: &Recording) -> Vec<Line> {
+    let messages = recording.messages().unwrap().map(|message| message.unwrap());
+    messages
+        .map(|message| {
+            let channel = message.channel;
+            let millis = message.published.as_nanos() / 1_000_000;
+            let ball = Ball::decode(&*message.bytes).unwrap();
+            let (host, publisher, topic) = (&channel.host, &channel.publisher, &channel.topic);
+            (host.clone(), publisher.clone(), topic.clone(), message.sequence, millis, ball.distance)
+        })
+        .collect()
+}
+
+fn line(host: &str, publisher: &str, topic: &str, sequence: u32, millis: u64) -> Line {
+    (host.into(), publisher.into(), topic.into(), sequence, millis, f64::from(sequence))
+}
+
+#[test]
+fn every_message_is_read_in_order_of_publication() {
+    let recording = Recording::from_bytes(recorded(2));
+    let mut expected = Vec::new();
+    for number in 1..=2 {
+        for host in ["robot_1", "robot_2"] {
+            let millis = 100 * u64::from(number);
+            expected.push(line(host, "vision", "soccer/ball", number, millis));
+            expected.push(line(host, "vision", "soccer/sighting", number, millis));
+            expected.push(line(host, "body", "soccer/ball", number, millis + 50));
+        }
+    }
+    assert_eq!(lines(&recording), expected);
+    assert!(recording.is_finished());
+}
+
+#[test]
+fn channels_carry_kind_and_schema() {
+    let recording = Recording::from_bytes(recorded(1));
+    let messages: Vec<_> = recording.messages().unwrap().map(|message| message.unwrap()).collect();
+    let kinds: Vec<_> = messages.iter().map(|message| &*message.channel.kind).collect();
+    assert_eq!(kinds[..3], ["state", "data", "state"]);
+    for message in &messages {
+        assert_eq!(message.channel.message_type, "tape.test.Ball");
+        assert_eq!(message.channel.schema, SCHEMA);
+        assert_eq!(message.received, message.published);
+    }
+}
+
+/// The tests' own schema is what it is meant to be.
+#[test]
+fn the_schema_describes_the_ball() {
+    let set = prost_types::FileDescriptorSet::decode(SCHEMA).unwrap();
+    assert_eq!(set.encode_to_vec(), SCHEMA);
+    let file = &set.file[0];
+    assert_eq!((file.package(), file.message_type[0].name()), ("tape.test", "Ball"));
+    assert_eq!(file.message_type[0].field[0].name(), "distance");
+}
+
+#[test]
+fn two_recordings_of_one_run_are_equal() {
+    assert!(recorded(30) == recorded(30));
+    assert!(recorded(30) != recorded(31));
+}
+
+#[test]
+fn a_file_is_written_and_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.mcap");
+    let tape = Tape::create(&path).unwrap();
+    let hub = hub("robot");
+    hub.observe(Box::new(tape.clone()));
+    play(std::slice::from_ref(&hub), 3);
+    assert_eq!(tape.finish().unwrap(), 9);
+    assert_eq!(lines(&read(&path).unwrap()).len(), 9);
+}
+
+#[test]
+fn files_that_cannot_be_opened_are_named() {
+    let error = read("/nowhere/run.mcap").unwrap_err();
+    assert_eq!((error.kind(), error.to_string().contains("/nowhere/run.mcap")), (ErrorKind::File, true));
+    let error = Tape::create("/nowhere/run.mcap").unwrap_err();
+    assert_eq!((error.kind(), error.to_string().contains("/nowhere/run.mcap")), (ErrorKind::File, true));
+}
+
+#[test]
+fn facts_and_files_are_part_of_the_tape() {
+    let output = Shared::default();
+    let tape = Tape::to_writer(output.clone()).unwrap();
+    tape.describe("run", &BTreeMap::from([("seed".to_owned(), "7".to_owned())])).unwrap();
+    tape.attach("match.xml", "text/xml", b"<match/>").unwrap();
+    tape.finish().unwrap();
+    let bytes = output.bytes();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    let facts = mcap::read::metadata(&bytes, &summary.metadata_indexes[0]).unwrap();
+    assert_eq!((&*facts.name, &*facts.metadata["seed"]), ("run", "7"));
+    let file = mcap::read::attachment(&bytes, &summary.attachment_indexes[0]).unwrap();
+    assert_eq!((&*file.name, &*file.media_type, &*file.data), ("match.xml", "text/xml", &b"<match/>"[..]));
+}
+
+#[test]
+fn a_finished_tape_takes_nothing() {
+    let output = Shared::default();
+    let tape = Tape::to_writer(output.clone()).unwrap();
+    let hub = hub("robot");
+    hub.observe(Box::new(tape.clone()));
+    tape.finish().unwrap();
+    let bytes = output.bytes();
+    play(&[hub], 3);
+    assert_eq!(output.bytes(), bytes);
+    assert_eq!(tape.finish().unwrap_err().kind(), ErrorKind::Finished);
+    assert_eq!(tape.attach("a", "b", b"").unwrap_err().kind(), ErrorKind::Finished);
+}
+
+/// Takes a number of bytes, then nothing more: a disk that is full.
+struct Full(usize);
+
+impl Write for Full {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 = self.0.checked_sub(bytes.len()).ok_or(io::ErrorKind::StorageFull)?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_full_disk_stops_the_recording_and_not_the_run() {
+    let tape = Tape::to_writer(Full(2000)).unwrap();
+    let hub = hub("robot");
+    hub.observe(Box::new(tape.clone()));
+    play(std::slice::from_ref(&hub), 100);
+    assert_eq!(hub.subscriber("soccer/ball").unwrap().next_sample().unwrap().header.sequence, 100);
+    let error = tape.finish().unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::File);
+}

@@ -1,0 +1,218 @@
+//! Runs in real time: a thread for each list, each chart and each body, and a pool for the activities of each agent's charts.
+
+use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::{self, JoinHandle};
+
+use super::Talws;
+use super::body::Body;
+use super::chart_thread::ChartThread;
+use super::clock::Clock;
+use super::deadlines::Deadlines;
+use super::list_thread::ListThread;
+use super::mailbox::Mailbox;
+use super::pool::Pool;
+use super::setup::{Environment, Member, Stage, Station, tick};
+use super::stopper::Stopper;
+use crate::error::{Error, ErrorKind};
+use crate::statistics::{AgentStatistics, Average, Statistics};
+
+/// A run in real time. It ends when it is [stopped](Running::stop) or its [stopper](Running::stopper) says so; dropping it leaves its
+/// threads running.
+pub struct Running {
+    stopper: Stopper,
+    clock: Clock,
+    mailboxes: Vec<Arc<Mailbox>>,
+    /// The threads of agents, those of one agent next to each other.
+    agents: Vec<JoinHandle<AgentStatistics>>,
+    others: Vec<JoinHandle<()>>,
+}
+
+/// What stops all that belongs to one agent.
+pub(super) struct Switch {
+    off: AtomicBool,
+    mailboxes: Vec<Arc<Mailbox>>,
+    /// Set when the body of the host is to stand still.
+    rests: Arc<AtomicBool>,
+}
+
+impl Switch {
+    /// Why an agent stops when nothing is wrong.
+    pub(super) const ENDED: &str = "the run has ended";
+
+    pub(super) fn stop(&self, reason: &str) {
+        if !self.off.swap(true, Ordering::SeqCst) && reason != Switch::ENDED {
+            tracing::error!("an agent has stopped: {reason}");
+        }
+        self.mailboxes.iter().for_each(|mailbox| mailbox.stop());
+    }
+
+    pub(super) fn is_off(&self) -> bool {
+        self.off.load(Ordering::SeqCst)
+    }
+
+    pub(super) fn rest_body(&self) {
+        self.rests.store(true, Ordering::SeqCst);
+    }
+}
+
+impl Running {
+    /// Sets everything up, then starts the threads.
+    pub(super) fn start(talws: Talws, seed: u64) -> Result<Running, Error> {
+        let Stage { world, stations } = Stage::new(talws, seed)?;
+        let mut running = Running {
+            stopper: Stopper::new(),
+            clock: Clock::start(),
+            mailboxes: Vec::new(),
+            agents: Vec::new(),
+            others: Vec::new(),
+        };
+        let mut launched = world.map_or(Ok(()), |world| running.launch_world(world));
+        for station in stations {
+            launched = launched.and_then(|()| running.launch_station(station));
+        }
+        match launched {
+            Ok(()) => Ok(running),
+            Err(error) => {
+                running.stop();
+                Err(error)
+            }
+        }
+    }
+
+    /// What ends the run, from any thread.
+    pub fn stopper(&self) -> Stopper {
+        self.stopper.clone()
+    }
+
+    /// Waits until the run is stopped, and tells what agents have done.
+    pub fn wait(self) -> Statistics {
+        self.stopper.wait();
+        self.stop()
+    }
+
+    /// Ends the run: agents finish the cycle they are in. Tells what they have done.
+    pub fn stop(self) -> Statistics {
+        self.stopper.stop();
+        self.mailboxes.iter().for_each(|mailbox| mailbox.stop());
+        let mut agents: Vec<AgentStatistics> = Vec::new();
+        for thread in self.agents {
+            match (thread.join(), agents.last_mut()) {
+                (Ok(part), Some(agent)) if (&agent.host, &agent.agent) == (&part.host, &part.agent) => {
+                    agent.add(part)
+                }
+                (Ok(part), _) => agents.push(part),
+                (Err(_), _) => tracing::error!("the thread of an agent has panicked"),
+            }
+        }
+        for thread in self.others {
+            if thread.join().is_err() {
+                tracing::error!("the thread of a body or the world has panicked");
+            }
+        }
+        Statistics { agents }
+    }
+
+    fn launch_world(&mut self, mut world: Environment) -> Result<(), Error> {
+        let (stopper, clock) = (self.stopper.clone(), self.clock);
+        let thread = spawn("world", move || {
+            while stopper.wait_until(world.due(), &clock) {
+                if let Err(error) = world.advance(world.due()) {
+                    tracing::error!("{error}");
+                    return stopper.stop();
+                }
+            }
+        })?;
+        self.others.push(thread);
+        Ok(())
+    }
+
+    fn launch_station(&mut self, station: Station) -> Result<(), Error> {
+        let Station { hub, body, members } = station;
+        let rests = Arc::new(AtomicBool::new(false));
+        let mut mailboxes = Vec::new();
+        for member in members {
+            let own =
+                member.charts.iter().map(|_| Arc::new(Mailbox::new(hub.topics().len()))).collect::<Vec<_>>();
+            mailboxes.extend(own.iter().cloned());
+            self.mailboxes.extend(own.iter().cloned());
+            let switch = Switch { off: AtomicBool::new(false), mailboxes: own, rests: rests.clone() };
+            self.launch_member(member, hub.host(), Arc::new(switch))?;
+        }
+        hub.set_waker(Arc::new(move |topic| mailboxes.iter().for_each(|mailbox| mailbox.message(topic))));
+        body.map_or(Ok(()), |body| self.launch_body(body, hub.host(), rests))
+    }
+
+    fn launch_member(&mut self, member: Member, host: &str, switch: Arc<Switch>) -> Result<(), Error> {
+        let Member { name, policy, frequency, statistics_every, list, charts, teller } = member;
+        let wanted = charts.iter().map(|runner| runner.max_activities()).sum();
+        let pool = Arc::new(Mutex::new(Pool::new(&name, wanted)));
+        for (runner, mailbox) in charts.into_iter().zip(&switch.mailboxes) {
+            let thread = ChartThread {
+                agent: name.clone(),
+                runner,
+                policy,
+                frequency,
+                mailbox: mailbox.clone(),
+                pool: pool.clone(),
+                teller: teller.another()?,
+                switch: switch.clone(),
+                clock: self.clock,
+                ticks: 0,
+                steps: 0,
+            };
+            self.agents.push(spawn(&name, move || thread.run())?);
+        }
+        if let (Some(list), Some(frequency)) = (list, frequency) {
+            let thread = ListThread {
+                host: host.into(),
+                agent: name.clone(),
+                list,
+                deadlines: Deadlines::new(frequency),
+                statistics_every,
+                teller,
+                switch,
+                stopper: self.stopper.clone(),
+                clock: self.clock,
+                cycles: 0,
+                cycle_time: Average::default(),
+            };
+            self.agents.push(spawn(&name, move || thread.run())?);
+        }
+        Ok(())
+    }
+
+    /// Hands the newest commands to a body and publishes what it senses, in each of its cycles.
+    fn launch_body(&mut self, mut body: Body, host: &str, rests: Arc<AtomicBool>) -> Result<(), Error> {
+        let (stopper, clock, host) = (self.stopper.clone(), self.clock, host.to_owned());
+        let thread = spawn(&format!("{host} body"), move || {
+            let mut next = 0;
+            while stopper.wait_until(tick(body.period(), next), &clock) {
+                next += 1;
+                let now = clock.now();
+                let acted = if rests.load(Ordering::SeqCst) { body.rest(now) } else { body.act(now) };
+                if let Err(error) = acted.and_then(|()| body.sense(now)) {
+                    tracing::error!(%host, "{error}");
+                }
+            }
+        })?;
+        self.others.push(thread);
+        Ok(())
+    }
+}
+
+impl fmt::Debug for Running {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Running").field("stopper", &self.stopper).finish_non_exhaustive()
+    }
+}
+
+fn spawn<T: Send + 'static>(
+    name: &str,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Result<JoinHandle<T>, Error> {
+    thread::Builder::new().name(name.into()).spawn(work).map_err(|error| {
+        Error::new(ErrorKind::Thread, format!("no thread for `{name}`: {error}")).caused_by(error)
+    })
+}

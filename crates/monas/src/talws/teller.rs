@@ -1,0 +1,40 @@
+//! Counts the cycles of an agent and publishes a record of each.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use narukom::{Moment, Narukom, Publisher};
+
+use crate::error::Error;
+use crate::records::{self, CYCLE, Delivery};
+
+/// Tells of the cycles of an agent; several count together when the list and the charts run on threads of their own.
+pub(super) struct Teller {
+    hub: Narukom,
+    agent: String,
+    number: Arc<AtomicU64>,
+    cycles: Publisher<records::Cycle>,
+}
+
+impl Teller {
+    pub(super) fn new(hub: &Narukom, agent: &str) -> Result<Teller, Error> {
+        let cycles = hub.publisher(CYCLE, agent).map_err(Error::hub)?;
+        Ok(Teller { hub: hub.clone(), agent: agent.into(), number: Arc::default(), cycles })
+    }
+
+    /// Another one for the same agent.
+    pub(super) fn another(&self) -> Result<Teller, Error> {
+        Ok(Teller { number: self.number.clone(), ..Teller::new(&self.hub, &self.agent)? })
+    }
+
+    /// A cycle has begun, and brought this.
+    pub(super) fn tell(&mut self, now: Moment, delivered: Vec<Delivery>) {
+        let number = self.number.fetch_add(1, Ordering::Relaxed) + 1;
+        self.cycles.publish(records::Cycle { number, time: now.as_nanos(), delivered }, now);
+    }
+
+    /// How many cycles there were.
+    pub(super) fn number(&self) -> u64 {
+        self.number.load(Ordering::Relaxed)
+    }
+}
