@@ -35,6 +35,9 @@ pub const DICE: Variant = Variant { name: "dice", file: "tests/season/dice.xml" 
 /// Blue has no goalie.
 pub const NO_GOALIE: Variant = Variant { name: "no_goalie", file: "tests/season/no_goalie.xml" };
 
+/// Every variant.
+pub const VARIANTS: [Variant; 4] = [MATCH, STANDING, DICE, NO_GOALIE];
+
 /// The root of the project.
 pub fn root() -> std::path::PathBuf {
     std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

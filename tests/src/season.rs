@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::time::Duration;
 
-use crate::{DICE, MATCH, NO_GOALIE, Row, STANDING, Variant, play};
+use crate::{DICE, MATCH, NO_GOALIE, Row, STANDING, VARIANTS, Variant, play};
 
 /// How long a match of the season is.
 pub const SEASON_LENGTH: Duration = Duration::from_secs(600);
@@ -15,8 +15,6 @@ pub const SEASON_SEEDS: std::ops::RangeInclusive<u64> = 1..=20;
 pub const SHORT_LENGTH: Duration = Duration::from_secs(120);
 /// The seeds of those.
 pub const SHORT_SEEDS: std::ops::RangeInclusive<u64> = 1..=2;
-
-const VARIANTS: [Variant; 4] = [MATCH, STANDING, DICE, NO_GOALIE];
 
 /// The rows of a season.
 #[derive(Clone, PartialEq, Debug)]

@@ -46,16 +46,16 @@ pub(crate) struct RunArguments {
     /// A match (`<match>`) or a file of agents (`<agents>`).
     #[arg(default_value = DEFAULT_CONFIGURATION, value_hint = ValueHint::FilePath)]
     pub(crate) config: PathBuf,
-    /// The seed of everything random; the same seed gives the same run.
-    #[arg(long, default_value_t = 0)]
-    pub(crate) seed: u64,
+    /// The seed of everything random in a match; the same seed gives the same match. 0 if not given.
+    #[arg(long)]
+    pub(crate) seed: Option<u64>,
     /// Stop after this much time, for example 600s, 10min or 500ms.
     #[arg(long = "for", value_name = "DURATION", value_parser = duration::parse)]
     pub(crate) length: Option<Duration>,
     /// Record every message into this MCAP file.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) record: Option<PathBuf>,
-    /// Let simulated time pass no faster than real time.
+    /// Let simulated time pass no faster than real time. Agents without a match run in real time anyway.
     #[arg(long)]
     pub(crate) realtime: bool,
     #[command(flatten)]
@@ -136,7 +136,7 @@ mod tests {
     fn run_has_defaults() {
         let Command::Run(run) = Arguments::parse_from(["monas", "run"]).command else { panic!("not a run") };
         assert_eq!(run.config, PathBuf::from(DEFAULT_CONFIGURATION));
-        assert_eq!((run.seed, run.length, run.record, run.realtime), (0, None, None, false));
+        assert_eq!((run.seed, run.length, run.record, run.realtime), (None, None, None, false));
         assert_eq!(run.format.value, Format::Text);
     }
 
@@ -145,7 +145,7 @@ mod tests {
         let line = "monas run m.xml --seed 7 --for 1.5s --record t.mcap --realtime --format json";
         let Command::Run(run) = Arguments::parse_from(line.split(' ')).command else { panic!("not a run") };
         assert_eq!(run.config, PathBuf::from("m.xml"));
-        assert_eq!((run.seed, run.length), (7, Some(Duration::from_millis(1500))));
+        assert_eq!((run.seed, run.length), (Some(7), Some(Duration::from_millis(1500))));
         assert_eq!(run.record, Some(PathBuf::from("t.mcap")));
         assert!(run.realtime);
         assert_eq!(run.format.value, Format::Json);

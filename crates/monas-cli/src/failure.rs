@@ -1,5 +1,6 @@
 //! Why a command did not do what it was asked for.
 
+use std::fmt::Display;
 use std::io;
 
 use serde_json::json;
@@ -15,6 +16,8 @@ use crate::report;
 pub(crate) enum Failure {
     /// A text that a person wrote is wrong.
     Invalid(Format, Vec<Diagnostic>),
+    /// What the command line asks for cannot be had together.
+    Usage(String),
     /// It could not be done.
     Failed(Format, String),
     /// Standard output or standard error does not take what is written.
@@ -22,12 +25,18 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
+    /// It could not be done because of an error below.
+    pub(crate) fn failed(format: Format, error: impl Display) -> Failure {
+        Failure::Failed(format, error.to_string())
+    }
+
     /// Tells it on standard error.
     pub(crate) fn report(self, console: &mut Console<'_>) -> Exit {
         let (told, exit) = match self {
             Failure::Invalid(format, diagnostics) => {
                 (report::write(console, format, &diagnostics), Exit::Invalid)
             }
+            Failure::Usage(message) => (tell(console, Format::Text, &message), Exit::Usage),
             Failure::Failed(format, message) => (tell(console, format, &message), Exit::Failure),
             Failure::Output(error) if error.kind() == io::ErrorKind::BrokenPipe => (Ok(()), Exit::Success),
             Failure::Output(error) => (tell(console, Format::Text, &error.to_string()), Exit::Failure),

@@ -2,6 +2,7 @@
 
 mod coverage;
 mod interrupt;
+mod live;
 mod pace;
 mod play;
 mod scoreboard;
@@ -30,7 +31,7 @@ pub(crate) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Re
         .map_err(|unread| Failure::Invalid(arguments.format.value, vec![*unread]))?
     {
         Kind::Match => play::execute(arguments, console),
-        Kind::Agents => unreachable!(),
+        Kind::Agents => live::execute(arguments, console),
     }
 }
 

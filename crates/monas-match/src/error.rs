@@ -33,6 +33,11 @@ impl Error {
         Error { kind: ErrorKind::Agents, message, source: Some(error.into()) }
     }
 
+    pub(crate) fn recording(path: &std::path::Path, error: monas_tape::Error) -> Error {
+        let message = format!("cannot record to `{}`: {error}", path.display());
+        Error { kind: ErrorKind::Recording, message, source: Some(error.into()) }
+    }
+
     /// What has gone wrong.
     pub fn kind(&self) -> ErrorKind {
         self.kind

@@ -238,7 +238,7 @@ mod tests {
         );
         assert_eq!(found.len(), 3, "{found:#?}");
         assert!(found[0].starts_with("match.xml:1:8: error[E0304]") && found[0].contains("did you mean `half`?"));
-        assert!(found[1].starts_with("match.xml:2:38: error") && found[1].contains("did you mean `blue`?"));
+        assert!(found[1].starts_with("match.xml:2:36: error") && found[1].contains("did you mean `blue`?"));
         assert!(found[2].starts_with("match.xml:3:4: error[E0305]") && found[2].contains("`role`"));
     }
 

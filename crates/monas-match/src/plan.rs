@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use monas::{Agent, HostConfig, Registry, RunHash, Talws};
+use monas::{Agent, ChartListener, HostConfig, Registry, RunHash, Talws};
 use monas_sim::{FieldGeometry, Physics, Pitch, Rules, Setup, TeamSetup, World};
+use monas_tape::Tape;
 use yase::Diagnostic;
 
 use crate::error::Error;
@@ -64,7 +65,6 @@ fn slug(name: &str) -> String {
 }
 
 /// A match that was read and found to be right.
-#[derive(Debug)]
 pub struct MatchPlan {
     geometry: FieldGeometry,
     physics: Physics,
@@ -72,6 +72,13 @@ pub struct MatchPlan {
     teams: [TeamSetup; 2],
     robots: Vec<RobotPlan>,
     registry: Registry,
+    listeners: Vec<Box<dyn ChartListener>>,
+}
+
+impl std::fmt::Debug for MatchPlan {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("MatchPlan").field("teams", &self.teams).field("robots", &self.robots).finish_non_exhaustive()
+    }
 }
 
 /// A robot of a match and what runs on it.
@@ -106,7 +113,14 @@ impl MatchPlan {
             teams,
             robots,
             registry,
+            listeners: Vec::new(),
         })
+    }
+
+    /// Lets a listener see every micro-step of every chart.
+    pub fn listen(mut self, listener: Box<dyn ChartListener>) -> MatchPlan {
+        self.listeners.push(listener);
+        self
     }
 
     /// How long the match takes, in simulated time.
@@ -136,9 +150,20 @@ impl MatchPlan {
             talws.host(HostConfig { name: host, team: team.into(), number: number.into(), body, agents });
         }
         talws.world(Box::new(Stage::new(pitch.clone())));
+        for listener in self.listeners {
+            talws.listen(listener);
+        }
         let hash = RunHash::new();
         talws.observe(Box::new(hash.clone()));
+        let tape = options.record.map(|path| {
+            let tape = Tape::create(&path).map_err(|error| Error::recording(&path, error))?;
+            Ok((tape, path))
+        });
+        let tape = tape.transpose()?;
+        if let Some((tape, _)) = &tape {
+            talws.observe(Box::new(tape.clone()));
+        }
         let simulation = talws.simulate(options.seed).map_err(Error::agents)?;
-        Ok(RunningMatch::new(simulation, pitch, hash, length))
+        Ok(RunningMatch::new(simulation, pitch, hash, tape, length))
     }
 }

@@ -1,9 +1,11 @@
 //! A match that is being played.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use monas::{Moment, RunHash, Simulation};
 use monas_sim::{Pitch, TeamColour, World};
+use monas_tape::Tape;
 
 use crate::error::Error;
 use crate::incidents;
@@ -14,6 +16,7 @@ pub struct RunningMatch {
     simulation: Simulation,
     pitch: Pitch,
     hash: RunHash,
+    tape: Option<(Tape, PathBuf)>,
     length: Duration,
     events: Vec<MatchEvent>,
     seen_events: usize,
@@ -24,9 +27,10 @@ impl RunningMatch {
         simulation: Simulation,
         pitch: Pitch,
         hash: RunHash,
-            length: Duration,
+        tape: Option<(Tape, PathBuf)>,
+        length: Duration,
     ) -> RunningMatch {
-        RunningMatch { simulation, pitch, hash, length, events: Vec::new(), seen_events: 0 }
+        RunningMatch { simulation, pitch, hash, tape, length, events: Vec::new(), seen_events: 0 }
     }
 
     /// Plays on until so much time has passed since the beginning.
@@ -99,6 +103,9 @@ impl RunningMatch {
     pub fn finish(mut self) -> Result<Summary, Error> {
         self.simulation.stop();
         let (hash, messages) = self.hash.finish();
+        if let Some((tape, path)) = self.tape.take() {
+            tape.finish().map_err(|error| Error::recording(&path, error))?;
+        }
         let touch = self.pitch.look(|world| world.statistics().time_to_first_touch());
         Ok(Summary {
             hash,

@@ -91,7 +91,13 @@ impl OtherRobot {
 impl GameState {
     /// The field that is played on.
     pub fn field(&self) -> Field {
-        Field { length: self.field_length, width: self.field_width, goal_width: self.goal_width }
+        Field {
+            length: self.field_length,
+            width: self.field_width,
+            goal_width: self.goal_width,
+            area_depth: self.area_depth,
+            area_width: self.area_width,
+        }
     }
 
     /// The goal of a colour.

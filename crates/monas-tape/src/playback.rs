@@ -1,6 +1,7 @@
 //! Reading tapes.
 
 use std::borrow::Cow;
+use std::fmt;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -107,6 +108,12 @@ impl<'a> Iterator for Messages<'a> {
     }
 }
 
+impl fmt::Debug for Messages<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Messages")
+    }
+}
+
 impl Messages<'_> {
     fn channel(&mut self, id: u16) -> Option<Arc<Channel>> {
         let index = usize::from(id);
@@ -132,11 +139,5 @@ impl Channel {
             message_type: schema.map(|schema| schema.name.clone()).unwrap_or_default(),
             schema: schema.map(|schema| schema.data.to_vec()).unwrap_or_default(),
         }
-    }
-}
-
-impl std::fmt::Debug for Messages<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Messages")
     }
 }

@@ -18,10 +18,12 @@ mod teller;
 
 use monas_robot::Robot;
 use narukom::{Blackboard, Moment, Observer};
+use std::path::Path;
 use std::time::Duration;
 
 use crate::activity::BoxError;
 use crate::agent::Agent;
+use crate::config;
 use crate::error::Error;
 use crate::listener::ChartListener;
 use crate::registry::Registry;
@@ -113,6 +115,19 @@ impl Talws {
     /// No hosts, and everything that is linked into the program.
     pub fn new() -> Talws {
         Talws::default()
+    }
+
+    /// The agents of a configuration file, on the host [`LOCAL`](Talws::LOCAL), with the registry that they are taken from.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Invalid`](crate::ErrorKind::Invalid) with every diagnostic of the file and of the models it names.
+    pub fn from_config(path: impl AsRef<Path>, registry: Registry) -> Result<Talws, Error> {
+        let (agents, diagnostics) = config::load(path, &registry);
+        if diagnostics.iter().any(|diagnostic| diagnostic.is_error()) {
+            return Err(Error::invalid(diagnostics));
+        }
+        diagnostics.iter().for_each(|diagnostic| tracing::warn!("{diagnostic}"));
+        Ok(agents.into_iter().fold(Talws::new().registry(registry), Talws::agent))
     }
 
     /// Takes activities and functions from this registry instead of the linked ones.

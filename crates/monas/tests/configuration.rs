@@ -5,7 +5,9 @@ mod kit;
 
 use std::fs;
 
-use monas::{Activity, Agent, Blackboard, BoxError, Parameters, Policy, Progress, Registry, config};
+use monas::{
+    Activity, Agent, Blackboard, BoxError, ErrorKind, Parameters, Policy, Progress, Registry, Talws, config,
+};
 use yase::Source;
 
 #[derive(Default)]
@@ -188,7 +190,7 @@ fn two_agents_of_one_name_are_said() {
     let agent = "<agent thread_frequency='1'><name>a</name><activity>Vision</activity></agent>\n";
     check(&agent.repeat(2), &["agents.xml:2:35: error[E0311]: another agent is named `a`"]);
     let provider = "<provider thread_frequency='1'>Vision</provider>";
-    check(&provider.repeat(2), &["agents.xml:1:81: error[E0311]: another agent is named `Vision`"]);
+    check(&provider.repeat(2), &["agents.xml:1:80: error[E0311]: another agent is named `Vision`"]);
 }
 
 #[test]
@@ -287,4 +289,58 @@ fn mistakes_in_a_model_are_said_with_their_place_in_it() {
             "models/m.srm:1:5: error[E0318]: no activity `Vsion` is registered for the state `m/Vsion` (did you mean `Vision`?)",
         ],
     );
+}
+
+#[test]
+fn mistakes_in_formulas_and_expressions_are_said_with_their_place_in_the_model() {
+    check_model(
+        "m = Vision . . Behavior",
+        &[
+            "models/m.srm:1:14: error[E0205]: there is nothing to the left of `.` (an operator stands between two terms)",
+        ],
+    );
+    check_model(
+        "m = a\na = b . Vision\nb = a",
+        &[
+            "models/m.srm:3:5: error[E0214]: `a` is part of what it consists of: a -> b -> a (repetition is written `x~`, \
+           `x*` or `x+`)",
+        ],
+    );
+    check_model(
+        &refined("Vision -> Behavior : [ball.x >]"),
+        &[
+            "models/m.srm:4:31: error[E0106]: an operand is expected, not `]` (an operand is a name, a number, a \"text\", \
+           `true`, `false` or a call)",
+        ],
+    );
+    check_model(&refined("Vision -> Behavior : [ball.fuond]"), &[UNKNOWN_FIELD]);
+}
+
+const UNKNOWN_FIELD: &str = "models/m.srm:4:28: error[E0134]: the message `Ball` has no field `fuond` (from `m/Vision` to \
+                             `m/Behavior`) (did you mean `found`?)";
+
+fn refined(entries: &str) -> String {
+    format!("Liveness:\nm = Vision . Behavior\nTransitions:\n{entries}")
+}
+
+#[test]
+fn a_wrong_entry_does_not_hide_what_is_wrong_elsewhere_in_the_model() {
+    let entries = "Vision -> Behavior : [ball.fuond]\nVsion -> Behavior : [false]";
+    let unknown_path = "models/m.srm:5:1: error[E0250]: `Vsion -> Behavior : [false]` names no transition of the chart (did \
+                        you mean `Vision`?)";
+    check_model(&refined(entries), &[unknown_path, UNKNOWN_FIELD]);
+}
+
+#[test]
+fn a_configuration_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("agents.xml");
+    fs::write(&path, LISTING).unwrap();
+    let mut simulation = Talws::from_config(&path, registry()).unwrap().simulate(1).unwrap();
+    simulation.run_until(monas::Moment::from_secs_f64(1.0)).unwrap();
+    assert_eq!(simulation.statistics().calls(Talws::LOCAL, "Vision"), 10);
+    fs::write(&path, LISTING.replace("Vision", "Vsion")).unwrap();
+    let error = Talws::from_config(&path, registry()).unwrap_err();
+    assert_eq!((error.kind(), error.diagnostics().len()), (ErrorKind::Invalid, 1));
+    assert!(error.to_string().ends_with("unknown activity `Vsion` (did you mean `Vision`?)"), "{error}");
 }

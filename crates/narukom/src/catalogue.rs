@@ -1,6 +1,9 @@
 //! The topics of a hub: checked once at start, found by hash or path ever after.
 
+use std::any::TypeId;
+
 use crate::error::{Error, ErrorKind};
+use crate::message::Message as _;
 use crate::sample::TopicSlot;
 use crate::topic::{Keep, Topic, TopicDeclaration, is_topic_path};
 
@@ -56,7 +59,7 @@ impl Catalogue {
     pub(crate) fn checked<K: Keep>(&self, topic: Topic<K>) -> Result<TopicSlot, Error> {
         let slot = self.by_hash(topic.hash()).ok_or_else(|| self.undeclared(topic.path()))?;
         let declared = &self.topics[slot.index()];
-        if declared.message_type() == std::any::TypeId::of::<K::Message>() {
+        if declared.message_type() == TypeId::of::<K::Message>() {
             Ok(slot)
         } else {
             Err(wrong_type(declared, K::Message::DESCRIPTOR.full_name))
@@ -88,8 +91,6 @@ impl Catalogue {
         Error::new(ErrorKind::UndeclaredTopic, format!("nobody declared the topic `{path}`{hint}"))
     }
 }
-
-use crate::message::Message as _;
 
 /// The declarations sorted by path, each path once.
 fn merge(mut declarations: Vec<TopicDeclaration>) -> Result<Vec<TopicDeclaration>, Error> {
@@ -156,4 +157,34 @@ pub(crate) fn wrong_type(topic: &TopicDeclaration, given: &str) -> Error {
         topic.module()
     );
     Error::new(ErrorKind::WrongType, text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::example::Ball;
+    use crate::topic::State;
+
+    fn declared(path: &'static str, hash: u64) -> TopicDeclaration {
+        TopicDeclaration::new::<State<Ball>>(path, "test").with_hash(hash)
+    }
+
+    #[test]
+    fn topics_of_one_hash_are_refused_with_both_names() {
+        let error = Catalogue::new(vec![declared("ball", 7), declared("goal", 7)]).err().unwrap();
+        assert_eq!(error.kind(), ErrorKind::HashCollision);
+        assert!(error.to_string().contains("`ball`") && error.to_string().contains("`goal`"), "{error}");
+    }
+
+    #[test]
+    fn topics_that_want_one_place_get_two() {
+        // All three want place 5 of the table of 8.
+        let topics = [("a", 5), ("b", 13), ("c", 21)];
+        let catalogue = Catalogue::new(topics.map(|(path, hash)| declared(path, hash)).into()).unwrap();
+        for (path, hash) in topics {
+            assert_eq!(catalogue.by_hash(hash), catalogue.by_path(path));
+            assert!(catalogue.by_path(path).is_some());
+        }
+        assert_eq!(catalogue.by_hash(29), None);
+    }
 }

@@ -21,14 +21,12 @@ impl Pool {
         Pool { made: VecDeque::new(), limit: depth + SPARE }
     }
 
-    /// Puts `message` behind a reference count.
+    /// Puts `message` behind a reference count. It is to be remembered when it is published.
     pub(crate) fn wrap<M: Message>(&mut self, message: M) -> Arc<dyn AnyMessage> {
-        let message = match self.vacant() {
+        match self.vacant() {
             Some(vacant) => refill(vacant, message),
             None => Arc::new(message),
-        };
-        self.remember(&message);
-        message
+        }
     }
 
     /// The memory of a message that nobody holds any more.

@@ -2,7 +2,6 @@
 
 use std::fmt;
 use std::marker::PhantomData;
-use std::sync::Arc;
 
 use crate::hub::{Narukom, Outgoing, Sender};
 use crate::message::Message;
@@ -28,7 +27,8 @@ impl<M: Message> Publisher<M> {
 
     /// Publishes a message.
     pub fn publish(&mut self, message: M, now: Moment) {
-        let message: Arc<_> = self.pool.wrap(message);
+        let message = self.pool.wrap(message);
+        self.pool.remember(&message);
         let header = Header {
             host: HostId::LOCAL,
             publisher: self.sender.publisher,

@@ -93,6 +93,13 @@ impl Reading {
         self.samples.insert(self.samples.len() - later, sample);
     }
 
+    /// Becomes what another blackboard has of the topic; whether it is read here remains.
+    pub(crate) fn take_over(&mut self, other: &Reading) {
+        self.cursor = other.cursor;
+        self.lost = other.lost;
+        self.samples.clone_from(&other.samples);
+    }
+
     /// Ends a cycle: signals are gone.
     pub(crate) fn close(&mut self) {
         if self.kind == Kind::Signal {

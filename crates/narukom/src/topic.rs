@@ -184,6 +184,12 @@ impl TopicDeclaration {
         self.hash
     }
 
+    /// The declaration as if its name had another hash.
+    #[cfg(test)]
+    pub(crate) fn with_hash(self, hash: u64) -> TopicDeclaration {
+        TopicDeclaration { hash, ..self }
+    }
+
     pub(crate) fn message_type(&self) -> TypeId {
         (self.message_type)()
     }

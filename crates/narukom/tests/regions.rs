@@ -4,7 +4,7 @@
 mod messages;
 
 use messages::*;
-use narukom::{AnyMessage, Blackboard, ErrorKind, FieldValue, Narukom, TopicSlot};
+use narukom::{Blackboard, ErrorKind, FieldValue, Narukom, TopicSlot};
 
 fn slot(hub: &Narukom, path: &str) -> TopicSlot {
     hub.topic(path).unwrap()

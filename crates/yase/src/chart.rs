@@ -66,8 +66,6 @@ pub(crate) struct State {
     pub(crate) region: RegionId,
     /// Whether it is the region itself: entering it fills a blackboard.
     pub(crate) is_region: bool,
-    /// Whether some compound transition out of it is marked `interrupts`.
-    pub(crate) interrupts: bool,
     /// Whether it is the END of the root.
     pub(crate) finishes: bool,
     /// Its number among the activities.
@@ -114,6 +112,8 @@ pub(crate) enum Condition {
     Completed,
     /// That nothing inside its source can step or runs.
     Quiescent,
+    /// That nothing inside its source can step; what runs there will be interrupted.
+    NoStepInside,
     /// An event that a trigger matches.
     Trigger(usize),
 }

@@ -104,7 +104,7 @@ pub struct Transition {
     pub priority: i32,
     /// Weight of a probabilistic branch.
     pub weight: Option<f64>,
-    /// Whether it may leave a state whose activity still runs.
+    /// Whether it may leave states whose activities still run: they are asked to return, and it happens when they have.
     pub interrupts: bool,
     /// Whether it happens inside its source, without leaving it.
     pub internal: bool,

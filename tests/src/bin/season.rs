@@ -1,15 +1,19 @@
 //! Plays a season and writes or checks its golden table: see `cargo xtask season`.
+//!
+//! `season row VARIANT SEED SECONDS` plays one match of it and prints its row.
 
 use std::process::ExitCode;
+use std::time::Duration;
 
-use monas_tests::{root, season, short_rows};
+use monas_tests::{Row, VARIANTS, play, root, season, short_rows};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         [] => write(),
         ["--check"] => check(),
-        _ => Err("usage: season [--check]".into()),
+        ["row", variant, seed, seconds] => row(variant, seed, seconds),
+        _ => Err("usage: season [--check | row VARIANT SEED SECONDS]".into()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -18,6 +22,15 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+fn row(variant: &str, seed: &str, seconds: &str) -> Result<(), String> {
+    let known = VARIANTS.iter().find(|known| known.name == variant);
+    let variant = known.ok_or_else(|| format!("no variant `{variant}`"))?;
+    let seed = seed.parse().map_err(|_| format!("`{seed}` is no seed"))?;
+    let seconds = seconds.parse().map_err(|_| format!("`{seconds}` is no number of seconds"))?;
+    println!("{}\n{}", Row::HEADER, play(variant, seed, Duration::from_secs(seconds))?);
+    Ok(())
 }
 
 fn played() -> Result<String, String> {

@@ -20,12 +20,11 @@ pub(super) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Re
     let format = arguments.format.value;
     let plan = Match::load(&arguments.config, &monas::Registry::linked())
         .map_err(|diagnostics| Failure::Invalid(format, diagnostics))?;
-    let interrupt = if console.catches_signals { Interrupt::on_signals() } else { Ok(Interrupt::default()) };
-    let interrupt = interrupt.map_err(|error| Failure::Failed(format, error.to_string()))?;
+    let interrupt = Interrupt::for_console(console).map_err(|error| Failure::failed(format, error))?;
     let clock = WallClock::start();
     let running = play(plan, arguments, &interrupt, clock, console)?;
     let wall = clock.elapsed();
-    let summary = running.finish().map_err(|error| Failure::Failed(format, error.to_string()))?;
+    let summary = running.finish().map_err(|error| Failure::failed(format, error))?;
     table::write(console.out, format, &summary, wall)?;
     Ok(if interrupt.is_requested() { Exit::Interrupted } else { Exit::Success })
 }
@@ -38,9 +37,9 @@ fn play(
     clock: WallClock,
     console: &mut Console<'_>,
 ) -> Result<RunningMatch, Failure> {
-    let failed = |error: monas_match::Error| Failure::Failed(arguments.format.value, error.to_string());
+    let failed = |error: monas_match::Error| Failure::failed(arguments.format.value, error);
     let length = arguments.length.unwrap_or_else(|| plan.length());
-    let options = Options { seed: arguments.seed, record: arguments.record.clone() };
+    let options = Options { seed: arguments.seed.unwrap_or_default(), record: arguments.record.clone() };
     let mut running = plan.start(options).map_err(failed)?;
     let mut scoreboard = scoreboard::for_console(console, length);
     scoreboard.show(&running)?;

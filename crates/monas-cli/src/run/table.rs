@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::time::Duration;
 
-use comfy_table::{CellAlignment, Table};
+use comfy_table::{Cell, CellAlignment, Table};
 use monas_match::{AgentSummary, Summary, TeamSummary};
 use serde_json::{Value, json};
 
@@ -62,11 +62,9 @@ fn teams(teams: &[TeamSummary]) -> Table {
         }),
     ];
     let header = std::iter::once(String::new()).chain(teams.iter().map(|team| team.name.clone()));
-    let mut table = with_header(header);
-    for (name, figure) in figures {
-        table.add_row(std::iter::once(name.to_string()).chain(teams.iter().map(figure)));
-    }
-    numbers_to_the_right(table, 1)
+    let row =
+        |(name, figure): (&str, Figure)| std::iter::once(name.to_string()).chain(teams.iter().map(figure));
+    of_numbers(header, 1, figures.into_iter().map(row))
 }
 
 fn percentage(share: f64) -> String {
@@ -88,26 +86,26 @@ fn return_time(team: &TeamSummary) -> Option<f64> {
 }
 
 fn agents(agents: &[AgentSummary]) -> Table {
-    let mut table = with_header(["host", "agent", "cycles", "overruns", "micro-steps", "activity calls"]);
-    for agent in agents {
+    let row = |agent: &AgentSummary| {
         let counts = [agent.cycles, agent.overruns, agent.micro_steps, agent.activity_calls];
-        table.add_row(
-            [agent.host.clone(), agent.agent.clone()]
-                .into_iter()
-                .chain(counts.map(|count| count.to_string())),
-        );
-    }
-    numbers_to_the_right(table, 2)
+        [agent.host.clone(), agent.agent.clone()].into_iter().chain(counts.map(|count| count.to_string()))
+    };
+    let header = ["host", "agent", "cycles", "overruns", "micro-steps", "activity calls"];
+    of_numbers(header, 2, agents.iter().map(row))
 }
 
-fn with_header(header: impl IntoIterator<Item: Into<comfy_table::Cell>>) -> Table {
+/// A table in which numbers, which begin at column `first_number`, stand to the right.
+pub(super) fn of_numbers<Row: IntoIterator<Item = String>>(
+    header: impl IntoIterator<Item: Into<Cell>>,
+    first_number: usize,
+    rows: impl IntoIterator<Item = Row>,
+) -> Table {
     let mut table = Table::new();
     table.load_style(comfy_table::presets::UTF8_FULL_CONDENSED).set_header(header);
-    table
-}
-
-fn numbers_to_the_right(mut table: Table, first: usize) -> Table {
-    for column in table.column_iter_mut().skip(first) {
+    for row in rows {
+        table.add_row(row);
+    }
+    for column in table.column_iter_mut().skip(first_number) {
         column.set_cell_alignment(CellAlignment::Right);
     }
     table

@@ -106,17 +106,17 @@ fn the_projects_match_is_without_findings() {
     );
 }
 
-/// The project's configuration and models in another folder, with one text replaced by another.
-fn changed(file: &str, text: &str, replacement: &str) -> tempfile::TempDir {
+/// The project's configuration and models in another folder, with one text replaced by another; and the line of it.
+fn changed(file: &str, text: &str, replacement: &str) -> (tempfile::TempDir, usize) {
     let folder = tempfile::tempdir().expect("a folder");
     for part in ["config", "models"] {
         copy(&root().join(part), &folder.path().join(part));
     }
     let path = folder.path().join(file);
     let original = fs::read_to_string(&path).expect("the file is there");
-    assert!(original.contains(text), "{file} does not hold {text}");
+    let line = original.lines().position(|line| line.contains(text)).expect("the file holds the text");
     fs::write(&path, original.replacen(text, replacement, 1)).expect("the folder takes files");
-    folder
+    (folder, line + 1)
 }
 
 fn copy(from: &Path, to: &Path) {
@@ -134,26 +134,32 @@ fn copy(from: &Path, to: &Path) {
 #[test]
 fn each_mistake_is_found_before_anything_runs() {
     let cases = [
-        (MATCH, "half=", "hlaf=", "match.xml:4", "`half`"),
-        (MATCH, "roles/goalie.xml", "roles/golie.xml", "match.xml:6", "goalie.xml"),
-        ("config/roles/goalie.xml", "priority", "pirority", "goalie.xml:4", "`priority`"),
+        (MATCH, "half=", "hlaf=", "`half`"),
+        (MATCH, "roles/goalie.xml", "roles/golie.xml", "goalie.xml"),
+        ("config/roles/goalie.xml", "priority", "pirority", "`priority`"),
+        ("config/roles/attacker.xml", "models/attacker.srm", "models/atacker.srm", "attacker.srm"),
+        ("models/attacker.srm", "( WalkTowardsBall", "( WalkTowardBall", "`WalkTowardsBall`"),
+        ("models/attacker.srm", "kickBall = LeftKick", "kickBall = player", "`player`"),
         (
-            "config/roles/attacker.xml",
-            "models/attacker.srm",
-            "models/atacker.srm",
-            "attacker.xml:6",
-            "attacker.srm",
+            "models/goalie.srm",
+            "CONDITION -> SearchBall : [!Ball.found]",
+            "CONDITION -> SearchBall : [!Ball.fuond]",
+            "`found`",
         ),
-        ("models/attacker.srm", "WalkTowardsBall", "WalkTowardBall", "attacker.srm:", "`WalkTowardsBall`"),
-        ("models/goalie.srm", "Ball.found", "Ball.fuond", "goalie.srm:", "`found`"),
+        (
+            "models/goalie.srm",
+            "CONDITION -> SearchBall : [!Ball.found]",
+            "CONDITION -> SearchBall : [!(Ball.found]",
+            "`)`",
+        ),
     ];
-    for (file, text, replacement, place, hint) in cases {
-        let folder = changed(file, text, replacement);
+    for (file, text, replacement, hint) in cases {
+        let (folder, line) = changed(file, text, replacement);
         let config = folder.path().join(MATCH).display().to_string();
         for arguments in [&["run", &config][..], &["config", "check", &config]] {
             let answer = monas(arguments);
             assert_eq!((answer.code, answer.out.as_str()), (Some(3), ""), "{replacement}: {answer:?}");
-            for part in [place, hint] {
+            for part in [&format!("{file}:{line}:"), hint] {
                 assert!(answer.err.contains(part), "{replacement}: no {part} in\n{}", answer.err);
             }
         }
@@ -165,4 +171,26 @@ fn a_missing_configuration_is_named() {
     let answer = monas(&["run", "config/mtach.xml"]);
     assert_eq!(answer.code, Some(3));
     assert!(answer.err.contains("config/mtach.xml") && answer.err.contains("match.xml"), "{}", answer.err);
+}
+
+#[test]
+fn agents_without_a_match_run_in_real_time() {
+    let answer = monas(&["run", "config/roles/goalie.xml", "--for", "300ms"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert!(answer.out.contains("Goalie") && answer.out.contains("mean cycle"), "{}", answer.out);
+
+    let answer = monas(&["run", "config/roles/goalie.xml", "--for", "300ms", "--format", "json"]);
+    let agent: Value = serde_json::from_str(&answer.out).expect("one object");
+    assert_eq!(
+        (&agent["kind"], &agent["agent"], &agent["stopped"]),
+        (&"agent".into(), &"Goalie".into(), &Value::Null)
+    );
+    assert!(agent["cycles"].as_u64().is_some_and(|cycles| cycles >= 3), "{agent}");
+}
+
+#[test]
+fn a_seed_is_refused_where_time_is_real() {
+    let answer = monas(&["run", "config/roles/goalie.xml", "--seed", "7"]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.err.contains("--seed is for simulated time"), "{}", answer.err);
 }

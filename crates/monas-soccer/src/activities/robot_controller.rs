@@ -4,15 +4,18 @@ use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
 use monas_robot::{Announcement, topics as body};
 use narukom::{Header, PublisherId};
 
+use crate::functionality::field::Field;
 use crate::functionality::game::Game;
 use crate::{GameState, PlayerState, convert, topics};
 
 /// Says what the player knows of the game: follows the referee's announcements and the presses of the chest button.
 ///
-/// Parameter `goalkeeper`: the number of the player that keeps the goal; 1, as in the rules of the league.
+/// Parameters are what the rules of the league say and the referee does not: `goalkeeper`, the number of the player that keeps the goal;
+/// `area_depth` and `area_width` (m), the size of a goal's area. They are those of 2010.
 #[derive(Clone, Debug)]
 pub struct RobotController {
     goalkeeper: u32,
+    area: (f64, f64),
     game: Game,
     heard: Option<(PublisherId, u64)>,
     button: Button,
@@ -28,8 +31,10 @@ struct Button {
 
 impl Default for RobotController {
     fn default() -> RobotController {
+        let Field { area_depth, area_width, .. } = Field::LEAGUE_2010;
         RobotController {
             goalkeeper: 1,
+            area: (area_depth, area_width),
             game: Game::default(),
             heard: None,
             button: Button::default(),
@@ -43,6 +48,8 @@ impl Activity for RobotController {
         if let Some(number) = parameters.read("goalkeeper", "a player's number", |text| text.parse().ok()) {
             self.goalkeeper = number;
         }
+        self.area.0 = parameters.number("area_depth").unwrap_or(self.area.0);
+        self.area.1 = parameters.number("area_width").unwrap_or(self.area.1);
     }
 
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
@@ -110,6 +117,8 @@ impl RobotController {
             field_length: said.field_length,
             field_width: said.field_width,
             goal_width: said.goal_width,
+            area_depth: self.area.0,
+            area_width: self.area.1,
         }
     }
 }
@@ -159,7 +168,8 @@ mod tests {
         let (mut stage, mut activity) = (Stage::new(), RobotController::default());
         activity.configure(&Parameters::new().with("goalkeeper", "2"));
         stage.tell(body::ANNOUNCEMENT, announcement(monas_robot::GamePhase::Ready, false)).run(&mut activity);
-        assert!(stage.said(topics::GAME_STATE).unwrap().goalkeeper);
+        let game = stage.said(topics::GAME_STATE).unwrap();
+        assert!(game.goalkeeper && game.field().area_depth == 0.6);
         let parameters = Parameters::new().with("goalkeeper", "first");
         activity.configure(&parameters);
         assert_eq!(parameters.faults().len(), 1);

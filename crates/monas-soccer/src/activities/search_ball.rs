@@ -3,11 +3,12 @@
 use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
 use nalgebra::Point2;
 
-use super::shot::ground;
+use super::shot::{Ground, ground};
 use super::wishes::{request_scan, request_stand, request_walk};
+use crate::functionality::avoidance::keep_out;
 use crate::functionality::guard::Guard;
 use crate::functionality::walk::{Walk, stride_to};
-use crate::topics;
+use crate::{Ball, topics};
 
 /// Looks for the ball with the head and, after a sweep, by turning towards where the ball was seen last; a whole turn in vain
 /// makes the robot walk to the centre of the field. The goalkeeper looks for it from between its posts.
@@ -62,12 +63,18 @@ impl SearchBall {
         if ball.age < self.look {
             return None;
         }
+        let walk = self.roam(ball, ground.as_ref());
+        Some(ground.map_or(walk, |ground| keep_out(walk, &ground.field, &ground.field_from_robot)))
+    }
+
+    /// Turns towards where the ball went; after a turn in vain, walks to the centre of the field and turns there.
+    fn roam(&self, ball: &Ball, ground: Option<&Ground>) -> Walk {
         let centre = ground.map(|ground| ground.field_from_robot.inverse_transform_point(&Point2::origin()));
         match centre {
             Some(centre) if ball.age > self.wander && centre.coords.norm() > 0.5 => {
-                Some(stride_to(centre, centre.coords.norm()))
+                stride_to(centre, centre.coords.norm())
             }
-            _ => Some(Walk::turning(self.turn_speed.copysign(ball.bearing))),
+            _ => Walk::turning(self.turn_speed.copysign(ball.bearing)),
         }
     }
 }
@@ -78,7 +85,7 @@ monas::activity!(SearchBall);
 mod tests {
     use super::*;
     use crate::activities::stage::Stage;
-    use crate::{Ball, GameState, HeadMode, MotionKind, Pose};
+    use crate::{GameState, HeadMode, MotionKind, Pose};
 
     fn lost(age: f64, bearing: f64) -> Ball {
         Ball { age, bearing, ..Ball::default() }

@@ -3,7 +3,7 @@
 use monas::Blackboard;
 use nalgebra::{Isometry2, Point2};
 
-use crate::functionality::aim::shot_target;
+use crate::functionality::aim::{kick_target, shot_target};
 use crate::functionality::field::Field;
 use crate::{Ball, OtherRobot, topics};
 
@@ -28,7 +28,8 @@ pub(super) fn target(blackboard: &Blackboard, ball: &Ball, ground: Option<&Groun
         .filter(|robot| !robot.team_mate)
         .map(|robot| field_from_robot * robot.position())
         .collect();
-    let target = shot_target(field, field_from_robot * ball.position(), &opponents);
+    let ball = field_from_robot * ball.position();
+    let target = kick_target(field, ball, shot_target(field, ball, &opponents));
     field_from_robot.inverse_transform_point(&target)
 }
 

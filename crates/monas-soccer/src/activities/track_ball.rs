@@ -122,9 +122,9 @@ mod tests {
     #[test]
     fn the_goalkeeper_goes_between_ball_and_goal() {
         let home = Pose { x: -2.65, confidence: 1.0, ..Pose::default() };
-        let (_, motion) = run(ball(1.0, 0.6), true, home);
+        let (_, motion) = run(ball(2.5, 1.5), true, home);
         assert!(motion.unwrap().vy > 0.05, "{motion:?}");
-        let (_, motion) = run(ball(1.0, 0.0), true, home);
+        let (_, motion) = run(ball(2.5, 0.0), true, home);
         assert_eq!(motion.map(|walk| (walk.vx, walk.vy, walk.wz)), Some((0.0, 0.0, 0.0)));
     }
 

@@ -1,29 +1,20 @@
 //! Going to the ball.
 
-use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
+use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 use nalgebra::Point2;
 
 use super::shot::{Ground, ground, others, target};
 use super::wishes::request_walk;
 use crate::functionality::approach::{Approach, support_place};
-use crate::functionality::avoidance::avoid;
+use crate::functionality::avoidance::{avoid, keep_out};
 use crate::functionality::walk::{Walk, stride_to, turn_to};
 use crate::{Ball, topics};
 
 /// Walks behind the ball, so that it lies between the robot and the opponents' goal, round other robots and not through the own
 /// goal's area. While a team mate is nearer to the ball it keeps the place behind that one's back.
-///
-/// Parameters `area_depth` and `area_width` (m): the own goal's area, in which the rules allow the goalkeeper only.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct WalkTowardsBall {
     approach: Approach,
-    area: (f64, f64),
-}
-
-impl Default for WalkTowardsBall {
-    fn default() -> WalkTowardsBall {
-        WalkTowardsBall { approach: Approach::default(), area: (0.6, 2.2) }
-    }
 }
 
 /// How much nearer to the ball a team mate has to be to have it, metres.
@@ -31,14 +22,9 @@ const NEARER: f64 = 0.15;
 /// How far from the ball the one without it stays, metres.
 const SUPPORT: f64 = 1.0;
 /// How far from the goal's area a field player stays, metres.
-const FROM_AREA: f64 = 0.1;
+const FROM_AREA: f64 = 0.15;
 
 impl Activity for WalkTowardsBall {
-    fn configure(&mut self, parameters: &Parameters) {
-        self.area.0 = parameters.number("area_depth").unwrap_or(self.area.0);
-        self.area.1 = parameters.number("area_width").unwrap_or(self.area.1);
-    }
-
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let Some(ball) = blackboard.read(topics::BALL).copied() else { return Ok(Progress::Done) };
         let walk = self.walk(blackboard, &ball);
@@ -57,39 +43,36 @@ impl WalkTowardsBall {
         let ground = ground(blackboard);
         let target = target(blackboard, ball, ground.as_ref());
         let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
-        if let Some(place) = self.place_to_wait(blackboard, ball, target, ground.as_ref()) {
-            return wait_at(place, ball, &obstacles);
-        }
-        self.approach.walk(ball.position(), target, &obstacles)
+        let walk = match place_to_wait(blackboard, ball, target, ground.as_ref()) {
+            Some(place) => wait_at(place, ball, &obstacles),
+            None => self.approach.walk(ball.position(), target, &obstacles),
+        };
+        ground.map_or(walk, |ground| keep_out(walk, &ground.field, &ground.field_from_robot))
     }
+}
 
-    /// A place other than the ball, if a team mate has the ball or it lies where only the goalkeeper may go.
-    fn place_to_wait(
-        &self,
-        blackboard: &Blackboard,
-        ball: &Ball,
-        target: Point2<f64>,
-        ground: Option<&Ground>,
-    ) -> Option<Point2<f64>> {
-        let nearer = |distance: f64| distance < ball.distance - NEARER;
-        let mates = others(blackboard).filter(|robot| robot.team_mate);
-        let has_it = mates.map(|mate| (mate.position() - ball.position()).norm()).any(nearer);
-        let support = has_it.then(|| support_place(ball.position(), target, SUPPORT));
-        let Some(ground) = ground else { return support };
-        if let Some(place) = support {
-            return Some(self.outside_area(ground, place).unwrap_or(place));
-        }
-        self.outside_area(ground, ball.position())
+/// A place other than the ball, if a team mate has the ball or it lies where only the goalkeeper may go.
+fn place_to_wait(
+    blackboard: &Blackboard,
+    ball: &Ball,
+    target: Point2<f64>,
+    ground: Option<&Ground>,
+) -> Option<Point2<f64>> {
+    let nearer = |distance: f64| distance < ball.distance - NEARER;
+    let mates = others(blackboard).filter(|robot| robot.team_mate);
+    let has_it = mates.map(|mate| (mate.position() - ball.position()).norm()).any(nearer);
+    if has_it {
+        return Some(support_place(ball.position(), target, SUPPORT));
     }
+    before_area(ground?, ball.position())
+}
 
-    /// The nearest place before the own goal's area, if a place lies in it. Both in the robot's frame.
-    fn outside_area(&self, ground: &Ground, place: Point2<f64>) -> Option<Point2<f64>> {
-        let in_field = ground.field_from_robot * place;
-        let front = self.area.0 - ground.field.length / 2.0;
-        let inside = in_field.x < front && in_field.y.abs() < self.area.1 / 2.0;
-        let before = Point2::new(front + FROM_AREA, in_field.y);
-        inside.then(|| ground.field_from_robot.inverse_transform_point(&before))
-    }
+/// The nearest place before the own goal's area, if a place lies in it. Both in the robot's frame.
+fn before_area(ground: &Ground, place: Point2<f64>) -> Option<Point2<f64>> {
+    let in_field = ground.field_from_robot * place;
+    let before = Point2::new(ground.field.area_front() + FROM_AREA, in_field.y);
+    let inside = ground.field.in_own_area(in_field, 0.0);
+    inside.then(|| ground.field_from_robot.inverse_transform_point(&before))
 }
 
 /// Walks to a place and stays there, facing the ball.
@@ -108,7 +91,14 @@ mod tests {
 
     fn run(ball: (f64, f64), pose: Option<Pose>, robots: &[OtherRobot]) -> MotionRequest {
         let (mut stage, mut activity) = (Stage::new(), WalkTowardsBall::default());
-        let game = GameState { field_length: 6.0, field_width: 4.0, goal_width: 1.4, ..GameState::default() };
+        let game = GameState {
+            field_length: 6.0,
+            field_width: 4.0,
+            goal_width: 1.4,
+            area_depth: 0.6,
+            area_width: 2.2,
+            ..GameState::default()
+        };
         let ball = Ball {
             x: ball.0,
             y: ball.1,
@@ -160,8 +150,8 @@ mod tests {
 
     #[test]
     fn the_own_goals_area_is_left_to_the_goalkeeper() {
-        let before_area = Pose { x: -2.2, heading: std::f64::consts::PI, ..Pose::default() };
-        let walk = run((0.6, 0.0), Some(before_area), &[]);
+        let before_area = Pose { x: -2.25, heading: std::f64::consts::PI, ..Pose::default() };
+        let walk = run((0.5, 0.0), Some(before_area), &[]);
         assert!(walk.vx.abs() < 1e-9, "{walk:?}");
     }
 }

@@ -1,6 +1,6 @@
-//! Where to shoot.
+//! Where to kick the ball.
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 use super::field::{Field, Goal};
 
@@ -20,6 +20,20 @@ pub fn shot_target(field: &Field, ball: Point2<f64>, opponents: &[Point2<f64>]) 
     let gap = widest_gap(-reach, reach, &shadows);
     Point2::new(goal.x, gap.map_or(goal.y, |(low, high)| (low + high) / 2.0))
 }
+
+/// Where a field player kicks the ball, given where a shot should go: there, or, if it had to stand in its own goal's area for that,
+/// along the area towards the nearer touch line. All in the field frame.
+pub fn kick_target(field: &Field, ball: Point2<f64>, shot: Point2<f64>) -> Point2<f64> {
+    let direction = (shot - ball).try_normalize(1e-6).unwrap_or(Vector2::x());
+    if field.in_own_area(ball - direction * BEHIND_BALL, 0.0) {
+        Point2::new(ball.x, (field.width / 2.0 + 1.0).copysign(ball.y))
+    } else {
+        shot
+    }
+}
+
+/// How far behind the ball a robot stands to kick it, metres, with some leave.
+const BEHIND_BALL: f64 = 0.3;
 
 /// The part of the goal line that a robot covers from a ball: from, to.
 fn shadow(goal_x: f64, ball: Point2<f64>, robot: Point2<f64>) -> Option<(f64, f64)> {
@@ -52,6 +66,14 @@ mod tests {
     use super::*;
 
     const FIELD: Field = Field::LEAGUE_2010;
+
+    #[test]
+    fn a_ball_at_the_own_area_is_kicked_along_it() {
+        let shot = Point2::new(3.0, 0.0);
+        assert_eq!(kick_target(&FIELD, Point2::new(0.0, 0.0), shot), shot);
+        assert_eq!(kick_target(&FIELD, Point2::new(-2.3, -0.5), shot), Point2::new(-2.3, -3.0));
+        assert_eq!(kick_target(&FIELD, Point2::new(-2.3, 1.9), shot), shot, "beside the area");
+    }
 
     #[test]
     fn an_empty_goal_is_shot_at_in_the_middle() {

@@ -1,8 +1,10 @@
-//! Walking round what is in the way.
+//! Walking round what is in the way, and not where the rules forbid.
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Isometry2, Point2, Vector2};
 
+use super::field::Field;
 use super::geometry::distance_to_segment;
+use super::walk::Walk;
 
 /// How near the middle of another robot may come to the middle of this one on its way, metres: two robots and a hand between.
 pub const CLEARANCE: f64 = 0.45;
@@ -29,9 +31,52 @@ fn beside(obstacle: Point2<f64>, place: Point2<f64>) -> Point2<f64> {
     obstacle + left * (side * CLEARANCE * 1.1)
 }
 
+/// How far from the area a field player stays, metres, and how far ahead it looks for that, seconds.
+const AREA_MARGIN: f64 = 0.05;
+const AREA_FORESIGHT: f64 = 0.4;
+
+/// The same walk, but not into the own goal's area: along its border instead, and out of it from within.
+pub fn keep_out(walk: Walk, field: &Field, field_from_robot: &Isometry2<f64>) -> Walk {
+    let here = Point2::from(field_from_robot.translation.vector);
+    let mut velocity = field_from_robot.rotation * walk.velocity();
+    if !field.in_own_area(here + velocity * AREA_FORESIGHT, AREA_MARGIN) {
+        return walk;
+    }
+    if here.x >= field.area_front() + AREA_MARGIN {
+        velocity.x = 0.0;
+    } else if here.y.abs() >= field.area_width / 2.0 + AREA_MARGIN {
+        velocity.y = 0.0;
+    } else {
+        velocity = Vector2::new(LEAVING, 0.0);
+    }
+    Walk::along(field_from_robot.rotation.inverse() * velocity, walk.turn)
+}
+
+/// Speed with which the area is left, m/s.
+const LEAVING: f64 = 0.3;
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::functionality::geometry::pose;
+
+    #[test]
+    fn the_own_area_is_not_walked_into() {
+        let field = Field::LEAGUE_2010;
+        let ahead = Walk { ahead: 0.3, left: 0.1, turn: 0.2 };
+        let outside = pose(-1.0, 0.0, std::f64::consts::PI);
+        assert_eq!(keep_out(ahead, &field, &outside), ahead);
+        let before = pose(-2.3, 0.0, std::f64::consts::PI);
+        let along = keep_out(ahead, &field, &before);
+        assert!(
+            along.ahead.abs() < 1e-9 && (along.left - 0.1).abs() < 1e-9 && along.turn == 0.2,
+            "{along:?}"
+        );
+        let beside = pose(-2.8, 1.2, -std::f64::consts::FRAC_PI_2);
+        assert!(keep_out(ahead, &field, &beside).ahead.abs() < 1e-9);
+        let within = pose(-2.6, 0.0, std::f64::consts::PI);
+        assert!(keep_out(Walk::STILL, &field, &within).ahead < -0.2, "backwards out of it");
+    }
 
     #[test]
     fn a_free_way_is_kept() {

@@ -12,6 +12,10 @@ pub struct Field {
     pub width: f64,
     /// Between the middles of a goal's posts, metres.
     pub goal_width: f64,
+    /// A goal's area before the goal line, metres.
+    pub area_depth: f64,
+    /// A goal's area along the goal line, metres.
+    pub area_width: f64,
 }
 
 /// One of the two goals.
@@ -24,8 +28,9 @@ pub enum Goal {
 }
 
 impl Field {
-    /// The field of the league in 2010: 6 m by 4 m, goals of 1.4 m.
-    pub const LEAGUE_2010: Field = Field { length: 6.0, width: 4.0, goal_width: 1.4 };
+    /// The field of the league in 2010: 6 m by 4 m, goals of 1.4 m, areas of 0.6 m by 2.2 m.
+    pub const LEAGUE_2010: Field =
+        Field { length: 6.0, width: 4.0, goal_width: 1.4, area_depth: 0.6, area_width: 2.2 };
 
     /// The middle of a goal.
     pub fn goal(&self, goal: Goal) -> Point2<f64> {
@@ -39,6 +44,16 @@ impl Field {
             Goal::Opponent => [Point2::new(x, half), Point2::new(x, -half)],
             Goal::Own => [Point2::new(x, -half), Point2::new(x, half)],
         }
+    }
+
+    /// Whether a place is in the own goal's area, or within a margin of it.
+    pub fn in_own_area(&self, place: Point2<f64>, margin: f64) -> bool {
+        place.x < self.area_front() + margin && place.y.abs() < self.area_width / 2.0 + margin
+    }
+
+    /// Where the own goal's area ends towards the field: its x.
+    pub fn area_front(&self) -> f64 {
+        self.goal_line(Goal::Own) + self.area_depth
     }
 
     fn goal_line(&self, goal: Goal) -> f64 {
@@ -59,5 +74,17 @@ mod tests {
         assert_eq!(field.posts(Goal::Opponent), [Point2::new(3.0, 0.7), Point2::new(3.0, -0.7)]);
         assert_eq!(field.posts(Goal::Own), [Point2::new(-3.0, -0.7), Point2::new(-3.0, 0.7)]);
         assert_eq!(field.goal(Goal::Own), Point2::new(-3.0, 0.0));
+    }
+
+    #[test]
+    fn the_own_area_is_before_the_own_goal() {
+        let field = Field::LEAGUE_2010;
+        assert!(field.in_own_area(Point2::new(-2.5, 1.0), 0.0));
+        assert!(
+            !field.in_own_area(Point2::new(-2.3, 1.0), 0.0) && field.in_own_area(Point2::new(-2.3, 1.0), 0.2)
+        );
+        assert!(
+            !field.in_own_area(Point2::new(-2.5, 1.2), 0.0) && !field.in_own_area(Point2::new(2.5, 0.0), 0.0)
+        );
     }
 }

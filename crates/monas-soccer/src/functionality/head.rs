@@ -84,7 +84,7 @@ mod tests {
         let head = Head::default();
         let gazes: Vec<Gaze> = (0..60).map(|step| head.scan(Duration::from_millis(100 * step))).collect();
         let yaw = |pick: fn(f64, f64) -> f64| gazes.iter().map(|gaze| gaze.yaw).fold(0.0, pick);
-        assert!(yaw(f64::max) > 1.5 && yaw(f64::min) < -1.5);
+        assert!(yaw(f64::max) > 1.4 && yaw(f64::min) < -1.4);
         assert!(gazes[..30].iter().all(|gaze| gaze.pitch < 0.0));
         assert!(gazes[30..].iter().all(|gaze| gaze.pitch > 0.3));
         let jump = gazes.windows(2).map(|pair| (pair[1].yaw - pair[0].yaw).abs()).fold(0.0, f64::max);

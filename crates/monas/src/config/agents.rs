@@ -198,9 +198,10 @@ impl Reader<'_> {
             }
         };
         let (chart, diagnostics) = model::load(&found);
-        let usable = !diagnostics.iter().any(Diagnostic::is_error);
+        // Without its formulas a chart is not the one that was meant, and nothing more can be said of it.
+        let is_known = !diagnostics.iter().any(model::is_about_formulas);
         self.diagnostics.extend(diagnostics);
-        let (chart, source) = chart.filter(|_| usable)?;
+        let (chart, source) = chart.filter(|_| is_known)?;
         let bound = match Binder::new(self.registry) {
             Ok(binder) => binder.check(&chart, Some(&source)),
             Err(error) => vec![element.error("E0318", element.text_span(), error.to_string())],

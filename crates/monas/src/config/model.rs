@@ -17,3 +17,8 @@ pub fn load(path: &Path) -> (Option<(Statechart, Arc<Source>)>, Vec<Diagnostic>)
         Err(diagnostic) => (None, vec![*diagnostic]),
     }
 }
+
+/// Whether a finding is about formulas rather than what refines them.
+pub(super) fn is_about_formulas(diagnostic: &Diagnostic) -> bool {
+    diagnostic.is_error() && ("E0200".."E0220").contains(&diagnostic.code)
+}

@@ -39,9 +39,9 @@ impl Repaired {
 
     /// The place in the original that a place in the repaired text stands for.
     pub(super) fn original_span(&self, start: usize, end: usize) -> Span {
-        let last = self.original(end.saturating_sub(1));
-        let start = self.original(start);
-        Span::new(start, (last + 1).max(start))
+        let first = self.original(start);
+        let end = if end > start { self.original(end - 1) + 1 } else { first };
+        Span::new(first, end.max(first))
     }
 }
 
@@ -51,6 +51,7 @@ pub(super) fn repair(source: &str) -> Repaired {
         source,
         at: 0,
         open: Vec::new(),
+        too_deep: 0,
         out: Repaired { text: String::with_capacity(source.len() + 64), diagnostics: vec![], pieces: vec![] },
     };
     writer.insert(&format!("<{ROOT}>"));
@@ -67,6 +68,8 @@ struct Writer<'a> {
     at: usize,
     /// Name of each open element, and the place of its tag's name.
     open: Vec<(&'a str, Span)>,
+    /// How many elements within these are left out and not closed yet.
+    too_deep: usize,
     out: Repaired,
 }
 
@@ -163,16 +166,34 @@ impl<'a> Writer<'a> {
         let start = self.at + 2;
         let name = name_at(&self.source[start..]);
         let span = Span::new(start, start + name.len());
+        if self.too_deep > 0 {
+            self.too_deep -= 1;
+            return self.skip_to(">", "this tag is not closed");
+        }
         match self.open.iter().rposition(|(open, _)| *open == name) {
             Some(depth) => {
                 self.close_down_to(depth + 1);
                 self.open.pop();
-                self.insert(&format!("</{name}>"));
+                self.copy_to(span.end);
+                self.end_of_closing_tag(name, span);
             }
-            None => self.stray_closing_tag(name, span),
+            None => {
+                self.stray_closing_tag(name, span);
+                self.at = span.end;
+                self.skip_to(">", "this tag is not closed");
+            }
         }
-        self.at = span.end;
-        self.skip_to(">", "this tag is not closed");
+    }
+
+    fn end_of_closing_tag(&mut self, name: &str, span: Span) {
+        let rest = self.rest().trim_start();
+        if rest.starts_with('>') {
+            self.at = self.source.len() - rest.len();
+            self.copy_to(self.at + 1);
+        } else {
+            self.say(span, format!("the tag `</{name}` has no `>`"));
+            self.insert(">");
+        }
     }
 
     /// A closing tag that fits no open element is taken for the innermost one if it is a slip of its name.
@@ -204,12 +225,22 @@ impl<'a> Writer<'a> {
         let name = name_at(&self.source[tag + 1..]);
         let span = Span::new(tag + 1, tag + 1 + name.len());
         if self.open.len() >= DEPTH {
-            let message = format!("`<{name}>` is nested more than {DEPTH} levels deep");
-            self.out.diagnostics.push(Diagnostic::error("E0302", span, message));
-            return self.skip_to(">", "this tag is not closed");
+            return self.leave_out(name, span);
         }
         self.copy_to(span.end);
         self.attributes(name, span);
+    }
+
+    /// Leaves out an element that is nested too deep, and all within it; said once.
+    fn leave_out(&mut self, name: &str, span: Span) {
+        if self.too_deep == 0 {
+            let message = format!("`<{name}>` is nested more than {DEPTH} levels deep");
+            self.out.diagnostics.push(Diagnostic::error("E0302", span, message));
+        }
+        self.skip_to(">", "this tag is not closed");
+        if !self.source[..self.at].ends_with("/>") {
+            self.too_deep += 1;
+        }
     }
 
     /// Attributes, up to and with the end of the tag.
@@ -292,8 +323,8 @@ impl<'a> Writer<'a> {
         let line = inner.find(['\n', '>']).unwrap_or(inner.len());
         self.at = start + 1;
         match end {
-            // A quote that closes only behind the next tag's beginning is the next value's.
-            Some(end) if !inner[..end].contains(['<', '\n']) || !inner[..end].contains('=') => {
+            // A quote that closes only on another line, behind the beginning of a tag, is that tag's.
+            Some(end) if !inner[..end].contains('\n') || !inner[..end].contains('<') => {
                 self.enclosed(start + 1 + end);
                 self.at += 1;
             }

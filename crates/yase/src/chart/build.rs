@@ -197,7 +197,6 @@ impl<'a> Builder<'a> {
                 activities += 1;
             }
             let ways = &ways[self.layout.node(place).0 as usize];
-            state.interrupts = ways.iter().any(|way| self.interrupts(way));
             state.eventless = self.tree(ways, true);
             state.triggered = self.tree(ways, false);
             states.push(state);
@@ -217,7 +216,6 @@ impl<'a> Builder<'a> {
             region,
             finishes: node.kind == NodeKind::End && node.parent == Some(Statechart::ROOT),
             is_region: node.parent.is_some_and(|parent| chart.node(parent).kind == NodeKind::And),
-            interrupts: false,
             activity: None,
             children: chart.children(id).iter().map(|&child| self.layout.place_of(child)).collect(),
             entry,

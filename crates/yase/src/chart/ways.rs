@@ -148,10 +148,12 @@ impl Search<'_> {
     fn condition(&self, source: NodeId, target: NodeId, trail: &[TransitionId]) -> Option<Condition> {
         let first = &self.chart.transition(*trail.first()?).expression;
         let composite = matches!(self.chart.node(source).kind, NodeKind::Or | NodeKind::And);
+        let interrupts = trail.iter().any(|&id| self.chart.transition(id).interrupts);
         match &first.trigger {
             Some(_) => None,
-            None if composite && first.guard.is_some() && source != target => Some(Condition::Quiescent),
-            None => Some(Condition::Completed),
+            None if !composite || first.guard.is_none() || source == target => Some(Condition::Completed),
+            None if interrupts => Some(Condition::NoStepInside),
+            None => Some(Condition::Quiescent),
         }
     }
 }

@@ -33,23 +33,13 @@ impl<H: Host> Step<'_, H> {
     }
 
     fn consider(&mut self, place: Place, occurrence: Option<&Occurrence>) {
-        let contributes = match occurrence {
-            Some(_) => true,
-            None => !self.is_locked(place) && !self.is_frozen(place),
-        };
-        if !contributes || !self.is_open(place) {
+        if occurrence.is_none() && self.is_frozen(place) || !self.is_open(place) {
             return;
         }
         if let Some(compound) = self.best(place, occurrence) {
             self.run.selection.candidates.push(compound);
             self.close(place);
         }
-    }
-
-    /// Whether its region runs an activity that none of its transitions interrupts.
-    fn is_locked(&self, place: Place) -> bool {
-        let state = &self.chart.states[place.index()];
-        !state.interrupts && self.run.running_regions.contains(state.region.index())
     }
 
     /// Whether it is about to be left, by an interrupting transition or for a held event: then nothing of it happens without an event.
@@ -119,7 +109,10 @@ impl<H: Host> Step<'_, H> {
             (Condition::Completed, None) if self.semantics.eventless == Eventless::AsWritten => {
                 self.is_complete(place)
             }
-            (Condition::Completed | Condition::Quiescent, None) => self.is_quiescent(place),
+            (Condition::Completed | Condition::Quiescent, None) => {
+                !self.runs_inside(place) && !self.can_step_inside(place)
+            }
+            (Condition::NoStepInside, None) => !self.can_step_inside(place),
             _ => false,
         }
     }
@@ -137,12 +130,14 @@ impl<H: Host> Step<'_, H> {
         }
     }
 
-    /// Whether nothing inside can step, and nothing inside runs. Candidates from inside, if any, are the latest.
-    fn is_quiescent(&self, place: Place) -> bool {
+    fn runs_inside(&self, place: Place) -> bool {
+        self.run.running.any_in(self.chart.layout.first(place).index(), place.index())
+    }
+
+    /// Candidates from inside, if any, are the latest.
+    fn can_step_inside(&self, place: Place) -> bool {
         let first = self.chart.layout.first(place);
-        let can_step =
-            self.run.selection.candidates.last().is_some_and(|&last| self.compound(last).source >= first);
-        !can_step && !self.run.running.any_in(first.index(), place.index())
+        self.run.selection.candidates.last().is_some_and(|&last| self.compound(last).source >= first)
     }
 
     /// Reads a guard. One without a value counts as false and raises an error event, once until it has succeeded or what it reads has

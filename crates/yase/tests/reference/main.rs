@@ -1,5 +1,7 @@
 //! The machine against a naive interpreter of the same rules: on random charts and scripts both must do the same.
 
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // the functions around the tests are tests too
+
 #[path = "../kit/mod.rs"]
 mod kit;
 mod random;

@@ -12,12 +12,12 @@ use crate::kit::script::{Input, Script};
 const MANY: usize = 25;
 
 /// Random choices out of bytes; when they have run out, always the first.
-pub struct Choices<'a> {
+pub(crate) struct Choices<'a> {
     bytes: std::slice::Iter<'a, u8>,
 }
 
 impl<'a> Choices<'a> {
-    pub fn new(bytes: &'a [u8]) -> Choices<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Choices<'a> {
         Choices { bytes: bytes.iter() }
     }
 
@@ -36,7 +36,7 @@ impl<'a> Choices<'a> {
 }
 
 /// A chart and what happens to it.
-pub fn case(choices: &mut Choices<'_>) -> (Statechart, Script) {
+pub(crate) fn case(choices: &mut Choices<'_>) -> (Statechart, Script) {
     let script = script(choices);
     let mut maker = Maker { chart: Statechart::new("c"), choices, names: 0, timers: 0 };
     maker.composite(Statechart::ROOT, 0);
@@ -153,7 +153,7 @@ impl Maker<'_, '_> {
     fn out_of_start(&mut self, start: NodeId) {
         let all = self.siblings(start, |kind| match kind {
             NodeKind::Start | NodeKind::Terminate => false,
-            NodeKind::End => self.choices.bytes.len() % 8 == 0,
+            NodeKind::End => self.choices.bytes.len().is_multiple_of(8),
             _ => true,
         });
         if self.choices.percent(25) {

@@ -14,7 +14,7 @@ use crate::kit::script::Interpreter;
 use crate::kit::world::{TOPICS, World};
 
 /// How many micro-steps, and steps at one moment, are allowed.
-pub const LIMIT: u32 = 40;
+pub(crate) const LIMIT: u32 = 40;
 
 /// One way out of a state: its segments.
 type Way = Vec<TransitionId>;
@@ -57,7 +57,7 @@ struct Line {
     entries: Vec<NodeId>,
 }
 
-pub struct Stepper<'c> {
+pub(crate) struct Stepper<'c> {
     chart: &'c Statechart,
     running_chart: bool,
     now: Moment,
@@ -84,7 +84,7 @@ pub struct Stepper<'c> {
 }
 
 impl<'c> Stepper<'c> {
-    pub fn new(chart: &'c Statechart) -> Stepper<'c> {
+    pub(crate) fn new(chart: &'c Statechart) -> Stepper<'c> {
         Stepper {
             chart,
             running_chart: false,
@@ -408,7 +408,8 @@ impl<'c> Stepper<'c> {
             .into_iter()
             .filter(|&node| self.is_inside(node, source))
             .collect();
-        !inside.iter().any(|&node| self.runs(node)) && !self.can_step_inside(source, &inside, world)
+        (self.interrupts(way) || !inside.iter().any(|&node| self.runs(node)))
+            && !self.can_step_inside(source, &inside, world)
     }
 
     fn can_step_inside(&mut self, composite: NodeId, inside: &[NodeId], world: &mut World) -> bool {
@@ -445,12 +446,7 @@ impl<'c> Stepper<'c> {
             return (None, None);
         }
         let locked = self.region_runs(self.region(node));
-        let ways = self.ways(node);
-        let any_interrupts = ways.iter().any(|way| self.interrupts(way));
-        if occurrence.is_none() && locked && !any_interrupts {
-            return (None, None);
-        }
-        for way in ways {
+        for way in self.ways(node) {
             if !self.is_triggered(&way, occurrence)
                 || occurrence.is_none() && !self.is_ready(&way, world)
                 || !self.guards_hold(&way, world)

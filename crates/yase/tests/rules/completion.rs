@@ -355,7 +355,7 @@ fn r17_a_chart_that_never_rests_stops_with_an_error_that_names_the_cycle() {
     assert_eq!(machine.status(), Status::Stopped);
     assert_eq!(world.log.iter().filter(|line| line.contains("exit")).count(), 11, "START and ten more");
     // the configuration before the micro-step that would have been one too many
-    assert!(machine.is_active(crate::kit::chart::find(&chart, "B")), "{:?}", machine.configuration());
+    assert!(machine.is_active(chart::find(&chart, "B")), "{:?}", machine.configuration());
     assert_eq!(machine.run_to_completion(Moment::ZERO, &mut world).unwrap().micro_steps, 0);
 }
 

@@ -279,6 +279,6 @@ fn r13_stop_cancels_and_what_returns_later_is_not_for_the_next_run() {
     assert!(machine.activity_returned(second, yase::Outcome::Done));
     assert!(!machine.activity_returned(second, yase::Outcome::Done));
     machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
-    assert!(machine.is_active(crate::kit::chart::find(&chart, "B")));
+    assert!(machine.is_active(chart::find(&chart, "B")));
     world.cancel(first);
 }

@@ -1,5 +1,7 @@
 //! One test and more for each rule of the machine, named after it: a chart, what happens to it, and every line of its trace.
 
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // the functions around the tests are tests too
+
 #[path = "../kit/mod.rs"]
 mod kit;
 

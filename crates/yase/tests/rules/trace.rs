@@ -3,9 +3,9 @@
 use yase::statechart::TransitionId;
 use yase::{ActionPlace, Activation, Chart, Host, Machine, Moment, NodeId, Occasion, Semantics, TraceRecord};
 
+use crate::compare;
 use crate::kit::world::World;
 use crate::kit::{chart, script};
-use crate::{compare, kit};
 
 const CHART: &str = "
     START
@@ -59,7 +59,7 @@ fn r23_a_record_names_what_was_taken_left_done_and_entered() {
     );
     let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
     let mut listener = Listener::default();
-    let node = |path: &str| kit::chart::find(&chart, path);
+    let node = |path: &str| chart::find(&chart, path);
     machine.start(Moment::from_millis(3), &mut listener);
     machine.dispatch_name("e");
     machine.run_to_completion(Moment::from_millis(5), &mut listener).unwrap();

@@ -1,0 +1,113 @@
+//! Agents of one host in real time, until somebody interrupts or the time asked for has passed.
+
+use std::io::Write;
+use std::time::Duration;
+
+use monas::{AgentStatistics, Registry, Talws};
+use monas_tape::Tape;
+use serde_json::{Value, json};
+use yase::Diagnostic;
+
+use super::interrupt::Interrupt;
+use super::pace::WallClock;
+use super::table;
+use crate::arguments::{Format, RunArguments};
+use crate::console::Console;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::report;
+
+pub(super) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
+    let format = arguments.format.value;
+    if arguments.seed.is_some() {
+        return Err(Failure::Usage("--seed is for simulated time; these agents run in real time".into()));
+    }
+    let mut talws = talws(arguments, console)?;
+    let tape = arguments.record.as_ref().map(Tape::create).transpose();
+    let tape = tape.map_err(|error| Failure::failed(format, error))?;
+    if let Some(tape) = &tape {
+        talws.observe(Box::new(tape.clone()));
+    }
+    let interrupt = Interrupt::for_console(console).map_err(|error| Failure::failed(format, error))?;
+    let running = talws.start().map_err(|error| Failure::failed(format, error))?;
+    writeln!(console.err, "running, Ctrl-C stops")?;
+    WallClock::start().wait_until(arguments.length.unwrap_or(Duration::MAX), &interrupt);
+    let agents = running.stop().agents;
+    let recorded =
+        tape.map(|tape| tape.finish()).transpose().map_err(|error| Failure::failed(format, error))?;
+    write(console.out, format, &agents, recorded)?;
+    Ok(match interrupt.is_requested() {
+        true => Exit::Interrupted,
+        false if agents.iter().any(|agent| agent.stopped.is_some()) => Exit::Failure,
+        false => Exit::Success,
+    })
+}
+
+/// The agents of the configuration, ready to run.
+fn talws(arguments: &RunArguments, console: &mut Console<'_>) -> Result<Talws, Failure> {
+    let format = arguments.format.value;
+    let (agents, diagnostics) = monas::config::load(&arguments.config, &Registry::linked());
+    if diagnostics.iter().any(Diagnostic::is_error) {
+        return Err(Failure::Invalid(format, diagnostics));
+    }
+    report::write(console, format, &diagnostics)?;
+    Ok(agents.into_iter().fold(Talws::new(), Talws::agent))
+}
+
+fn write(
+    out: &mut dyn Write,
+    format: Format,
+    agents: &[AgentStatistics],
+    recorded: Option<u64>,
+) -> Result<(), Failure> {
+    if format == Format::Json {
+        agents.iter().try_for_each(|agent| writeln!(out, "{}", object(agent)))?;
+        return Ok(());
+    }
+    let header =
+        ["agent", "cycles", "overruns", "micro-steps", "activity calls", "mean cycle", "longest cycle"];
+    writeln!(out, "{}", table::of_numbers(header, 1, agents.iter().map(row)))?;
+    for agent in agents {
+        if let Some(reason) = &agent.stopped {
+            writeln!(out, "{} has stopped: {reason}", agent.agent)?;
+        }
+    }
+    if let Some(messages) = recorded {
+        writeln!(out, "messages recorded: {messages}")?;
+    }
+    Ok(())
+}
+
+fn row(agent: &AgentStatistics) -> [String; 7] {
+    let time = |time: Option<Duration>| {
+        time.map_or_else(|| "-".into(), |time| format!("{:.3} ms", time.as_secs_f64() * 1e3))
+    };
+    [
+        agent.agent.clone(),
+        agent.cycles.to_string(),
+        agent.overruns.to_string(),
+        agent.micro_steps.to_string(),
+        calls(agent).to_string(),
+        time(agent.cycle_time.map(|average| average.mean())),
+        time(agent.cycle_time.map(|average| average.longest())),
+    ]
+}
+
+fn calls(agent: &AgentStatistics) -> u64 {
+    agent.activities.iter().map(|activity| activity.calls).sum()
+}
+
+fn object(agent: &AgentStatistics) -> Value {
+    json!({
+        "kind": "agent",
+        "host": agent.host,
+        "agent": agent.agent,
+        "cycles": agent.cycles,
+        "overruns": agent.overruns,
+        "micro_steps": agent.micro_steps,
+        "activity_calls": calls(agent),
+        "mean_cycle_seconds": agent.cycle_time.map(|average| average.mean().as_secs_f64()),
+        "longest_cycle_seconds": agent.cycle_time.map(|average| average.longest().as_secs_f64()),
+        "stopped": agent.stopped,
+    })
+}

@@ -1,0 +1,196 @@
+//! XML as people write it: whatever the text, it is read without failing, and every place that is named is one of the text.
+#![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
+
+use std::time::Duration;
+
+use monas::config::xml::{self, Attributes, Element};
+use proptest::prelude::*;
+use yase::{Diagnostic, Source, Span};
+
+fn parse(text: &str) -> (Vec<Element>, Vec<Diagnostic>) {
+    xml::parse(&Source::new("a.xml", text))
+}
+
+/// The elements of a text that is in order, or at least meant to be.
+fn read(text: &str) -> Vec<Element> {
+    let (elements, diagnostics) = parse(text);
+    assert_eq!(diagnostics, []);
+    elements
+}
+
+fn at(text: &str, span: Span) -> &str {
+    &text[span.start..span.end]
+}
+
+#[test]
+fn places_are_those_of_the_text_as_it_was_written() {
+    let text = "<?xml version='1.0'?>\n<a x=1 y = 'p &amp; q' z='r & s'>\n  ün\n  <!-- no -->\n  <b/> </a>";
+    let elements = read(text);
+    let a = &elements[0];
+    assert_eq!((a.name(), at(text, a.name_span())), ("a", "a"));
+    assert_eq!((a.text(), at(text, a.text_span())), ("ün", "ün"));
+    assert!(at(text, a.span()).starts_with("<a x=1") && at(text, a.span()).ends_with("</a>"));
+    let attributes: Vec<(&str, &str, &str, &str)> = a
+        .attributes()
+        .iter()
+        .map(|given| (&*given.name, at(text, given.name_span), &*given.value, at(text, given.value_span)))
+        .collect();
+    let expected = [("x", "x", "1", "1"), ("y", "y", "p & q", "p &amp; q"), ("z", "z", "r & s", "r & s")];
+    assert_eq!(attributes, expected);
+    assert_eq!(at(text, a.children()[0].span()), "<b/>");
+}
+
+#[test]
+fn values_without_quotes_end_at_blanks_and_at_the_end_of_the_tag() {
+    let elements = read("<a x=1 y=b/><c z=../file.xml>t</c>");
+    assert_eq!(elements[0].attributes()[1].value, "b");
+    assert_eq!(elements[1].attributes()[0].value, "../file.xml");
+}
+
+#[test]
+fn texts_are_joined_and_entities_replaced() {
+    let elements = read("<a> one &lt; <![CDATA[<two>]]> <!-- not this --> three </a>");
+    assert_eq!(elements[0].text(), "one < <two>  three");
+}
+
+#[test]
+fn typed_attributes_are_read_or_said() {
+    let text = "<a n='1.5' i='-3' yes='1' no='false' half='300s' tick='10ms' word='left' odd='x'/>";
+    let elements = read(text);
+    let mut diagnostics = Vec::new();
+    let mut attributes = Attributes::new(&elements[0], &mut diagnostics);
+    assert_eq!(attributes.number("n"), Some(1.5));
+    assert_eq!(attributes.integer::<i8>("i"), Some(-3));
+    assert_eq!(attributes.integer::<u8>("i"), None);
+    assert_eq!((attributes.flag("yes"), attributes.flag("no")), (Some(true), Some(false)));
+    assert_eq!(attributes.duration("half"), Some(Duration::from_secs(300)));
+    assert_eq!(attributes.duration("tick"), Some(Duration::from_millis(10)));
+    assert_eq!(attributes.one_of("word", &[("left", 1), ("right", 2)]), Some(1));
+    assert_eq!(attributes.number_from("n", 2.0), None);
+    assert_eq!(attributes.required("gone"), None);
+    attributes.finish();
+    let said: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
+    let expected = [
+        "a.xml:1:15: error[E0306]: `i` is `-3`, expected a whole number",
+        "a.xml:1:7: error[E0306]: `n` is `1.5`, expected a number of at least 2",
+        "a.xml:1:2: error[E0305]: `a` has no attribute `gone`",
+        "a.xml:1:74: error[E0304]: unknown attribute `odd` of `a`",
+    ];
+    assert_eq!(said, expected);
+}
+
+#[test]
+fn a_missing_attribute_that_was_misspelt_is_said_so() {
+    let elements = read("<team colr='blue'/>");
+    let mut diagnostics = Vec::new();
+    assert_eq!(Attributes::new(&elements[0], &mut diagnostics).required("color"), None);
+    let said = "a.xml:1:2: error[E0305]: `team` has no attribute `color` (is `colr` meant to be `color`?)";
+    assert_eq!(diagnostics[0].to_string(), said);
+}
+
+#[test]
+fn only_child_finds_one_and_says_none_and_several() {
+    let elements = read("<a><name>x</name></a><a/><a><name>x</name><name>y</name></a>");
+    let mut diagnostics = Vec::new();
+    let found: Vec<Option<&str>> =
+        elements.iter().map(|a| a.only_child("name", &mut diagnostics).map(Element::text)).collect();
+    assert_eq!(found, [Some("x"), None, Some("x")]);
+    let codes: Vec<&str> = diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
+    assert_eq!(codes, ["E0305", "E0307"]);
+}
+
+#[test]
+fn an_unclosed_value_ends_with_its_line() {
+    let (elements, diagnostics) = parse("<a>\n<b x=\"1>t</b>\n<c y=\"2\"/>\n</a>");
+    assert_eq!(diagnostics[0].to_string(), "a.xml:2:6: error[E0301]: the value of `x` is not closed");
+    assert_eq!(diagnostics.len(), 1, "{diagnostics:#?}");
+    assert_eq!(elements[0].children()[1].attributes()[0].value, "2");
+}
+
+#[test]
+fn a_value_in_quotes_may_hold_signs_of_tags() {
+    assert_eq!(read("<a x=\"b > c\" y='d < e'/>")[0].attributes()[1].value, "d < e");
+}
+
+#[test]
+fn nesting_beyond_any_use_is_refused_once() {
+    let deep = "<a>".repeat(100_000) + &"</a>".repeat(100_000);
+    let (elements, diagnostics) = parse(&deep);
+    assert_eq!(elements.len(), 1);
+    assert_eq!(diagnostics.iter().filter(|diagnostic| diagnostic.code == "E0302").count(), 1);
+}
+
+/// Pieces that XML is made of, in any order.
+fn pieces() -> impl Strategy<Value = String> {
+    let piece = prop_oneof![
+        Just("<a>"),
+        Just("</a>"),
+        Just("<b x=1 "),
+        Just("/>"),
+        Just(">"),
+        Just("<"),
+        Just("="),
+        Just("\""),
+        Just("'"),
+        Just("&"),
+        Just("&amp;"),
+        Just("&#x41;"),
+        Just("&#0;"),
+        Just("<!--"),
+        Just("-->"),
+        Just("<![CDATA["),
+        Just("]]>"),
+        Just("<?"),
+        Just("?>"),
+        Just("<!D"),
+        Just("x='ü'"),
+        Just("xmlns"),
+        Just("xml:a=1"),
+        Just(" "),
+        Just("\n"),
+        Just("ω"),
+        Just("\u{0}"),
+        Just("]]"),
+    ];
+    prop::collection::vec(piece, 0..40).prop_map(|pieces| pieces.concat())
+}
+
+fn check_places(text: &str) {
+    let (elements, diagnostics) = parse(text);
+    let spans = diagnostics.iter().map(|diagnostic| diagnostic.span);
+    for span in spans.chain(elements.iter().flat_map(all_spans)) {
+        assert!(
+            span.start <= span.end && span.end <= text.len() + 1,
+            "{span:?} of {} in {text:?}",
+            text.len()
+        );
+    }
+}
+
+fn all_spans(element: &Element) -> Vec<Span> {
+    let own = [element.span(), element.name_span(), element.text_span()];
+    let attributes = element.attributes().iter().flat_map(|given| [given.name_span, given.value_span]);
+    own.into_iter().chain(attributes).chain(element.children().iter().flat_map(all_spans)).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_text_is_read_without_failing(text in ".*") {
+        check_places(&text);
+    }
+
+    #[test]
+    fn any_pieces_of_xml_are_read_without_failing(text in pieces()) {
+        check_places(&text);
+    }
+
+    #[test]
+    fn any_value_in_quotes_is_read_back(value in "[^\"&\n\r\t\u{0}-\u{1f}\u{fffe}\u{ffff}]*") {
+        let text = format!("<a x=\"{value}\"/>");
+        let elements = parse(&text).0;
+        prop_assert_eq!(&elements[0].attributes()[0].value, &value);
+        prop_assert_eq!(at(&text, elements[0].attributes()[0].value_span), &value);
+    }
+}
