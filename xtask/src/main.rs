@@ -1,7 +1,10 @@
 //! The project's own chores, started with `cargo xtask NAME`. Each is a module; none is needed to use Monas.
 //!
 //! - `tidy` holds the house to what ARCHITECTURE.md and STYLE.md promise.
+//! - `season` plays a season and writes its golden table; with `--check` it compares.
+//! - `picture` draws the match that README.md shows.
 
+mod play;
 mod tidy;
 
 use std::path::{Path, PathBuf};
@@ -10,13 +13,19 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 cargo xtask NAME
 
-  tidy    check layers, absences, dependencies, texts and documents";
+  tidy            check layers, absences, dependencies, texts and documents
+  season          play a season and write its golden table (tests/golden)
+  season --check  play a season and compare it with its golden table
+  picture         draw docs/match.svg";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let result = match arguments[..] {
         ["tidy"] => tidy::run(&root()),
+        ["season"] => play::season(&root(), &[]),
+        ["season", "--check"] => play::season(&root(), &["--check"]),
+        ["picture"] => play::season(&root(), &["picture", "docs/match.svg"]),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

@@ -23,6 +23,8 @@ pub enum ErrorKind {
     Finished,
     /// A file is not a tape, or is damaged.
     Damaged,
+    /// A file is compressed; tapes are not.
+    Compressed,
 }
 
 impl Error {
@@ -40,9 +42,13 @@ impl Error {
         Error { kind: ErrorKind::Finished, text: "the tape is finished".to_owned(), source: None }
     }
 
-    pub(crate) fn damaged(source: mcap::McapError) -> Error {
-        let text = "the tape is damaged".to_owned();
-        Error { kind: ErrorKind::Damaged, text, source: Some(source.into()) }
+    pub(crate) fn damaged(what: &str) -> Error {
+        Error { kind: ErrorKind::Damaged, text: format!("the tape is damaged: {what}"), source: None }
+    }
+
+    pub(crate) fn compressed(with: &str) -> Error {
+        let text = format!("the tape is compressed ({with}), which is not supported");
+        Error { kind: ErrorKind::Compressed, text, source: None }
     }
 
     /// What kind of error it is.

@@ -49,6 +49,7 @@
 mod error;
 mod playback;
 mod recorder;
+mod records;
 mod tape;
 
 pub use error::{Error, ErrorKind};

@@ -1,18 +1,22 @@
 //! Reading tapes.
 
-use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use mcap::McapError;
-use mcap::read::{Options, RawMessageStream};
 use narukom::Moment;
 
 use crate::error::Error;
+use crate::records::{
+    self, Bytes, CHANNEL, CHUNK, ChannelRecord, Chunk, DATA_END, MAGIC, MESSAGE, Record, SCHEMA,
+};
 
 /// Reads the tape at `path`; the short form of [`Recording::open`].
+///
+/// # Errors
+/// The file cannot be read.
 pub fn read(path: impl AsRef<Path>) -> Result<Recording, Error> {
     Recording::open(path)
 }
@@ -25,6 +29,9 @@ pub struct Recording {
 
 impl Recording {
     /// Reads a file.
+    ///
+    /// # Errors
+    /// The file cannot be read.
     pub fn open(path: impl AsRef<Path>) -> Result<Recording, Error> {
         let bytes = fs::read(path.as_ref()).map_err(|error| Error::file(path.as_ref(), error))?;
         Ok(Recording::from_bytes(bytes))
@@ -35,22 +42,24 @@ impl Recording {
         Recording { bytes }
     }
 
-    /// The messages in the order of publication. Of a file that was cut off, those before the cut.
+    /// The messages in the order of publication. Of a file that was cut off, those before the cut; where a file is damaged, an
+    /// error ends them.
+    ///
+    /// # Errors
+    /// The file is no MCAP file.
     pub fn messages(&self) -> Result<Messages<'_>, Error> {
-        let stream = RawMessageStream::new_with_options(&self.bytes, Options::IgnoreEndMagic.into());
-        Ok(Messages { stream: stream.map_err(Error::damaged)?, channels: Vec::new() })
+        let rest = self
+            .bytes
+            .strip_prefix(MAGIC)
+            .ok_or_else(|| Error::damaged("it does not begin as an MCAP file"))?;
+        let (schemas, channels) = (BTreeMap::new(), BTreeMap::new());
+        Ok(Messages { rest: Bytes(rest), chunk: Bytes::default(), schemas, channels })
     }
 
     /// Whether the recording was finished: whether nothing is missing at its end.
     pub fn is_finished(&self) -> bool {
-        self.bytes.len() > mcap::MAGIC.len() && self.bytes.ends_with(mcap::MAGIC)
+        self.bytes.len() > MAGIC.len() && self.bytes.ends_with(MAGIC)
     }
-}
-
-/// The messages of a [`Recording`].
-pub struct Messages<'a> {
-    stream: RawMessageStream<'a>,
-    channels: Vec<Option<Arc<Channel>>>,
 }
 
 /// A recorded message.
@@ -65,7 +74,7 @@ pub struct Message<'a> {
     /// When it came to the hub that was recorded.
     pub received: Moment,
     /// Its protobuf encoding.
-    pub bytes: Cow<'a, [u8]>,
+    pub bytes: &'a [u8],
 }
 
 /// What the messages of one host, topic and publisher have in common.
@@ -85,59 +94,104 @@ pub struct Channel {
     pub schema: Vec<u8>,
 }
 
+/// The messages of a [`Recording`].
+pub struct Messages<'a> {
+    /// What is left of the file.
+    rest: Bytes<'a>,
+    /// What is left of the chunk that is being read.
+    chunk: Bytes<'a>,
+    schemas: BTreeMap<u16, records::Schema<'a>>,
+    channels: BTreeMap<u16, Arc<Channel>>,
+}
+
 impl<'a> Iterator for Messages<'a> {
     type Item = Result<Message<'a>, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let raw = match self.stream.next()? {
-            Ok(raw) => raw,
-            Err(McapError::UnexpectedEof | McapError::UnexpectedEoc) => return None,
-            Err(error) => return Some(Err(Error::damaged(error))),
-        };
-        let header = raw.header;
-        let Some(channel) = self.channel(header.channel_id) else {
-            return Some(Err(Error::damaged(McapError::UnknownChannel(header.sequence, header.channel_id))));
-        };
-        Some(Ok(Message {
-            channel,
-            sequence: header.sequence,
-            published: Moment::from_nanos(header.publish_time),
-            received: Moment::from_nanos(header.log_time),
-            bytes: raw.data,
-        }))
+        let next = self.next_message().transpose()?;
+        if next.is_err() {
+            (self.rest, self.chunk) = Default::default();
+        }
+        Some(next)
+    }
+}
+
+impl<'a> Messages<'a> {
+    fn next_message(&mut self) -> Result<Option<Message<'a>>, Error> {
+        while let Some(record) = self.chunk.record().or_else(|| self.rest.record()) {
+            match record.kind {
+                CHUNK => self.chunk = records_of(record.body)?,
+                // A record that was cut is the last of its surroundings: nothing else stands after it.
+                _ if !record.is_whole => {}
+                SCHEMA => self.learn_schema(record.body)?,
+                CHANNEL => self.learn_channel(record.body)?,
+                MESSAGE => return self.message(&record).map(Some),
+                DATA_END => return Ok(None),
+                _ => {}
+            }
+        }
+        Ok(None)
+    }
+
+    fn learn_schema(&mut self, body: Bytes<'a>) -> Result<(), Error> {
+        let schema = body.schema().ok_or_else(|| Error::damaged("a schema is incomplete"))?;
+        self.schemas.insert(schema.id, schema);
+        Ok(())
+    }
+
+    fn learn_channel(&mut self, body: Bytes<'a>) -> Result<(), Error> {
+        let record = body.channel().ok_or_else(|| Error::damaged("a channel is incomplete"))?;
+        let schema = self.schemas.get(&record.schema);
+        let schema = schema.ok_or_else(|| Error::damaged("a channel has an unknown schema"))?;
+        self.channels.insert(record.id, Arc::new(Channel::new(&record, schema)));
+        Ok(())
+    }
+
+    fn message(&self, record: &Record<'a>) -> Result<Message<'a>, Error> {
+        let message = record.body.message().ok_or_else(|| Error::damaged("a message is incomplete"))?;
+        let channel = self.channels.get(&message.channel);
+        let channel = channel.ok_or_else(|| Error::damaged("a message has an unknown channel"))?;
+        Ok(Message {
+            channel: channel.clone(),
+            sequence: message.sequence,
+            published: Moment::from_nanos(message.publish_time),
+            received: Moment::from_nanos(message.log_time),
+            bytes: message.data,
+        })
+    }
+}
+
+/// The records of a chunk; of one that was cut off, those that are there.
+fn records_of(body: Bytes<'_>) -> Result<Bytes<'_>, Error> {
+    let Some(Chunk { crc, compression, records, is_whole }) = body.chunk() else {
+        return Ok(Bytes::default());
+    };
+    if !compression.is_empty() {
+        return Err(Error::compressed(compression));
+    }
+    if is_whole && crc != 0 && records::crc32(records) != crc {
+        return Err(Error::damaged("the checksum of a chunk is wrong"));
+    }
+    Ok(Bytes(records))
+}
+
+impl Channel {
+    fn new(record: &ChannelRecord<'_>, schema: &records::Schema<'_>) -> Channel {
+        let fact = |key| record.fact(key).unwrap_or_default().to_owned();
+        Channel {
+            host: fact("host"),
+            publisher: fact("publisher"),
+            // Tapes of others have no such fact; there the channel's name is all there is.
+            topic: record.fact("topic").unwrap_or(record.topic).to_owned(),
+            kind: fact("kind"),
+            message_type: schema.name.to_owned(),
+            schema: schema.data.to_vec(),
+        }
     }
 }
 
 impl fmt::Debug for Messages<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Messages")
-    }
-}
-
-impl Messages<'_> {
-    fn channel(&mut self, id: u16) -> Option<Arc<Channel>> {
-        let index = usize::from(id);
-        if self.channels.len() <= index {
-            self.channels.resize(index + 1, None);
-        }
-        if self.channels[index].is_none() {
-            self.channels[index] = Some(Arc::new(Channel::new(&*self.stream.get_channel(id)?)));
-        }
-        self.channels[index].clone()
-    }
-}
-
-impl Channel {
-    fn new(channel: &mcap::Channel<'_>) -> Channel {
-        let of = |key: &str| channel.metadata.get(key).cloned().unwrap_or_default();
-        let schema = channel.schema.as_deref();
-        Channel {
-            host: of("host"),
-            publisher: of("publisher"),
-            topic: channel.metadata.get("topic").unwrap_or(&channel.topic).clone(),
-            kind: of("kind"),
-            message_type: schema.map(|schema| schema.name.clone()).unwrap_or_default(),
-            schema: schema.map(|schema| schema.data.to_vec()).unwrap_or_default(),
-        }
+        write!(f, "Messages({} bytes left)", self.rest.0.len())
     }
 }

@@ -4,7 +4,7 @@
 mod ball;
 
 use ball::*;
-use monas_tape::{Recording, Tape};
+use monas_tape::{ErrorKind, Recording, Tape};
 use proptest::prelude::*;
 
 /// How many messages are read before the end or the first error.
@@ -40,6 +40,56 @@ fn a_cut_anywhere_leaves_what_stands_before_it() {
         before = count;
     }
     assert_eq!(before, whole);
+}
+
+#[test]
+fn damage_inside_a_chunk_is_noticed() {
+    let bytes = recorded(3);
+    let whole = readable(bytes.clone());
+    // The text stands in the schema at the beginning of the first chunk.
+    let place = bytes.windows(9).position(|text| text == b"tape.test").unwrap();
+    let mut damaged = bytes;
+    damaged[place] ^= 1;
+    let recording = Recording::from_bytes(damaged);
+    let mut messages = recording.messages().unwrap();
+    let error = messages.next().unwrap().unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Damaged);
+    assert!(error.to_string().contains("checksum"), "{error}");
+    assert!(messages.next().is_none(), "after {whole} messages in the whole tape");
+}
+
+#[test]
+fn what_is_no_tape_is_refused() {
+    for bytes in [&b""[..], b"<match/>", &mcap::MAGIC[..7]] {
+        let error = Recording::from_bytes(bytes.to_vec()).messages().unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Damaged);
+    }
+}
+
+#[test]
+fn tapes_of_others_are_read_whether_in_chunks_or_not() {
+    for chunks in [true, false] {
+        let mut output = std::io::Cursor::new(Vec::new());
+        let options = mcap::WriteOptions::new().compression(None).use_chunks(chunks);
+        let mut writer = options.create(&mut output).unwrap();
+        let schema = writer.add_schema("a.Ball", "protobuf", b"schema").unwrap();
+        let channel = writer.add_channel(schema, "/ball", "protobuf", &Default::default()).unwrap();
+        let header =
+            mcap::records::MessageHeader { channel_id: channel, sequence: 7, log_time: 9, publish_time: 8 };
+        writer.write_to_known_channel(&header, b"ball").unwrap();
+        writer.finish().unwrap();
+        drop(writer);
+        let recording = Recording::from_bytes(output.into_inner());
+        let messages: Vec<_> = recording.messages().unwrap().map(|message| message.unwrap()).collect();
+        let [message] = &messages[..] else { panic!("one message: {messages:?}") };
+        let channel = &message.channel;
+        assert_eq!(
+            (&*channel.topic, &*channel.message_type, &*channel.schema),
+            ("/ball", "a.Ball", &b"schema"[..])
+        );
+        assert_eq!((message.sequence, message.bytes), (7, &b"ball"[..]));
+        assert_eq!((message.published.as_nanos(), message.received.as_nanos()), (8, 9));
+    }
 }
 
 proptest! {

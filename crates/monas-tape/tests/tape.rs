@@ -19,7 +19,7 @@ fn lines(recording: &Recording) -> Vec<Line> {
         .map(|message| {
             let channel = message.channel;
             let millis = message.published.as_nanos() / 1_000_000;
-            let ball = Ball::decode(&*message.bytes).unwrap();
+            let ball = Ball::decode(message.bytes).unwrap();
             let (host, publisher, topic) = (&channel.host, &channel.publisher, &channel.topic);
             (host.clone(), publisher.clone(), topic.clone(), message.sequence, millis, ball.distance)
         })

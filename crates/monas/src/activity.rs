@@ -16,8 +16,8 @@ pub type BoxError = Box<dyn std::error::Error + Send + Sync>;
 pub enum Progress {
     /// The work is finished; a state that runs the activity is complete.
     Done,
-    /// The work goes on: call again after this delay, or earlier when a message arrives on a topic that the activity has
-    /// read. In an agent's list every activity is called once a cycle, whatever it says.
+    /// The work goes on: call again after this delay (at least 1 ms), or earlier when somebody else's message arrives on a topic that
+    /// the activity has read. In an agent's list every activity is called once a cycle, whatever it says.
     Ongoing(Duration),
 }
 

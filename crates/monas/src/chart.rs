@@ -7,6 +7,7 @@ mod desk;
 mod post;
 mod values;
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use narukom::{Moment, Narukom, TopicSlot};
@@ -18,6 +19,7 @@ use crate::call::{self, Failure};
 use crate::coverage::ChartCoverage;
 use crate::error::Error;
 use crate::listener::Listeners;
+use crate::origin::{self, Origin};
 use crate::statistics::ActivityStatistics;
 use crate::talws::component_seed;
 
@@ -27,11 +29,17 @@ pub(crate) use post::{Assignment, Posts, Returned};
 
 /// How long the first pause is of an activity that is restarted; each further one in a row is twice as long, up to 64 times.
 const FIRST_PAUSE: Duration = Duration::from_millis(10);
+/// An activity that goes on is not called again earlier than this, but for messages.
+const SHORTEST_DELAY: Duration = Duration::from_millis(1);
+/// How many runners there have been.
+static RUNNERS: AtomicU64 = AtomicU64::new(0);
 /// How often the pause doubles at most.
 const DOUBLINGS: u32 = 6;
 
 /// One statechart of an agent.
 pub(crate) struct Runner {
+    /// Unlike every other runner's in this program.
+    number: u64,
     machine: Machine,
     desk: Desk,
     posts: Posts,
@@ -63,7 +71,8 @@ impl Runner {
         let desk = Desk::new(&chart, home, functions, blackboards.collect())?;
         let posts = Posts::new(&chart, activities);
         let machine = Machine::new(chart, Semantics::yase());
-        Ok(Runner { machine, desk, posts, micro_steps: 0 })
+        let number = RUNNERS.fetch_add(1, Ordering::Relaxed);
+        Ok(Runner { number, machine, desk, posts, micro_steps: 0 })
     }
 
     /// Enters the root. The first transitions are those of the first step.
@@ -72,13 +81,14 @@ impl Runner {
         self.machine.start(yase_moment(now), &mut self.desk);
     }
 
-    /// Takes note of a message.
-    pub(crate) fn message_arrived(&mut self, topic: TopicSlot, now: Moment) {
+    /// Takes note of a message, and of the activity that published it, if one of a chart did.
+    pub(crate) fn message_arrived(&mut self, topic: TopicSlot, origin: Option<Origin>, now: Moment) {
         let id = TopicId(topic.number());
         if self.machine.reads_topic(id) {
             self.machine.message_arrived(id, 1);
         }
-        self.posts.message_arrived(topic, now);
+        let own = origin.filter(|origin| origin.runner == self.number).map(|origin| origin.activation);
+        self.posts.message_arrived(topic, own, now);
     }
 
     /// Takes note of an event from outside. False if no expression names it.
@@ -157,7 +167,8 @@ impl Runner {
     pub(crate) fn returned(&mut self, returned: Returned, restart: bool, now: Moment) -> Result<(), Failure> {
         let Returned { activation, result } = returned;
         if let Some(blackboard) = self.desk.blackboard_mut(activation.region) {
-            blackboard.publish_all(now);
+            let origin = Origin { runner: self.number, activation };
+            origin::publish_as(origin, || blackboard.publish_all(now));
             for event in blackboard.take_events() {
                 self.machine.dispatch_name(&event);
             }
@@ -172,7 +183,7 @@ impl Runner {
             Ok(Progress::Done) => self.posts.finished(activation),
             Ok(Progress::Ongoing(delay)) if current => {
                 let topics = self.topics_read(activation);
-                self.posts.wait(activation, now + delay, topics);
+                self.posts.wait(activation, now + delay.max(SHORTEST_DELAY), topics);
             }
             Ok(Progress::Ongoing(_)) => self.posts.finished(activation),
             Err(failure) => {

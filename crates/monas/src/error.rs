@@ -25,6 +25,8 @@ pub enum ErrorKind {
     AmbiguousFunction,
     /// Two hosts, or two agents of a host, have one name.
     DuplicateName,
+    /// An agent has activities, but nothing says how often they run.
+    NoFrequency,
     /// Something people wrote cannot be used; [`Error::diagnostics`] says what.
     Invalid,
     /// A part of the hub refuses to be set up.

@@ -75,6 +75,7 @@ mod frequency;
 mod function;
 mod list;
 mod listener;
+mod origin;
 mod parameters;
 pub mod records;
 mod registry;

@@ -217,6 +217,48 @@ fn a_message_on_a_topic_it_has_not_read_leaves_it_alone() {
 }
 
 #[test]
+fn what_an_activity_publishes_itself_does_not_call_it_early() {
+    let (calls, note) = recorder();
+    let echo = move || {
+        let note = note.clone();
+        move |b: &mut Blackboard| -> Result<Progress, BoxError> {
+            note(b.now().as_nanos() / 1_000_000);
+            let x = b.read(BALL).map_or(0.0, |ball| ball.x);
+            b.publish(BALL, Ball { x: x + 1.0, ..Ball::default() })?;
+            Ok(Progress::after(Duration::from_millis(40)))
+        }
+    };
+    let registry = Registry::empty().with("A", echo);
+    let talws = Talws::new().registry(registry).agent(Agent::statechart("m", chart("m = A")));
+    talws.simulate(1).unwrap().run_until(at(100)).unwrap();
+    assert_eq!(calls.taken(), [0, 40, 80]);
+}
+
+#[test]
+fn a_delay_of_nothing_lets_time_go_on() {
+    let registry = Registry::empty().with("A", || |_: &mut Blackboard| Progress::after(Duration::ZERO));
+    let mut simulation = simulate(registry, "m = A");
+    simulation.run_until(at(10)).unwrap();
+    assert_eq!(simulation.statistics().calls("local", "A"), 10);
+}
+
+#[test]
+fn activities_that_wake_each_other_for_ever_at_one_moment_stop_their_agent() {
+    let echo = || {
+        |b: &mut Blackboard| -> Result<Progress, BoxError> {
+            let x = b.read(BALL).map_or(0.0, |ball| ball.x);
+            b.publish(BALL, Ball { x, ..Ball::default() })?;
+            Ok(Progress::ongoing())
+        }
+    };
+    let registry = Registry::empty().with("A", echo).with("B", echo);
+    let mut simulation = simulate(registry, "m = A || B");
+    simulation.run_until(at(10)).unwrap();
+    let stopped = simulation.statistics().agents[0].stopped.clone().unwrap();
+    assert!(stopped.ends_with("is called at one moment after 10000 other calls"), "{stopped}");
+}
+
+#[test]
 fn an_ongoing_activity_whose_state_is_left_is_stopped() {
     let text = "Liveness:\nm = in . B\nin = A~\nTransitions:\nin -> B : [ball.found]\nA -> A : [false]";
     let called = patient(100, 30, false, text, 100);

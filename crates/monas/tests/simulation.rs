@@ -180,6 +180,14 @@ fn two_of_one_name_are_refused() {
     assert_eq!(talws.simulate(1).unwrap_err().to_string(), "two hosts are named `red`");
 }
 
+#[test]
+fn a_list_without_a_frequency_is_refused() {
+    let chart = yase::Statechart::new("m");
+    let error = Talws::new().agent(Agent::statechart("a", chart).activity(hello)).simulate(1).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::NoFrequency);
+    assert_eq!(error.to_string(), "agent `a` has activities, but nothing says how often they run");
+}
+
 /// A world that counts, shared with the body in it.
 struct Counting(Arc<Mutex<Vec<String>>>);
 

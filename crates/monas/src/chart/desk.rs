@@ -229,6 +229,7 @@ impl Desk {
             selected: segments(record.selected),
             preempted: segments(record.preempted),
             held: segments(record.held),
+            deferred: record.deferred.map_or(0, |node| node.0 + 1),
             exits: nodes(record.exits),
             entries: nodes(record.entries),
         }

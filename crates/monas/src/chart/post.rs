@@ -183,9 +183,10 @@ impl Posts {
         post.activity.as_deref_mut().filter(|_| waited)
     }
 
-    pub(crate) fn message_arrived(&mut self, topic: TopicSlot, now: Moment) {
+    /// Calls those early that wait for a message on a topic, but for the one that has published it itself.
+    pub(crate) fn message_arrived(&mut self, topic: TopicSlot, own: Option<Activation>, now: Moment) {
         for waiting in self.posts.iter_mut().filter_map(|post| post.waits.as_mut()) {
-            if waiting.topics.contains(&topic) {
+            if waiting.topics.contains(&topic) && own != Some(waiting.activation) {
                 waiting.at = waiting.at.min(now);
             }
         }

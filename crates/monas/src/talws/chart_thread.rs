@@ -61,7 +61,7 @@ impl ChartThread {
             return Err(Switch::ENDED.into());
         }
         let now = self.clock.now();
-        mail.topics.drain(..).for_each(|topic| self.runner.message_arrived(topic, now));
+        mail.messages.drain(..).for_each(|(topic, origin)| self.runner.message_arrived(topic, origin, now));
         for (assignment, returned) in mail.returned.drain(..) {
             self.runner.take_back(assignment);
             self.returned(returned, now)?;
@@ -112,7 +112,7 @@ impl ChartThread {
             .filter(|topic| self.mailbox.follow(**topic))
             .copied()
             .collect();
-        news.into_iter().for_each(|topic| self.runner.message_arrived(topic, now));
+        news.into_iter().for_each(|topic| self.runner.message_arrived(topic, None, now));
         let Err(failure) = result else { return Ok(()) };
         let activity = self.runner.activity_name(activation);
         let cycle = self.teller.number();

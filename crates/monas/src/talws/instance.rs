@@ -9,6 +9,7 @@ use crate::agent::Policy;
 use crate::coverage::ChartCoverage;
 use crate::frequency::Frequency;
 use crate::list::{List, Outcome};
+use crate::origin::Origin;
 use crate::records::Delivery;
 use crate::statistics::AgentStatistics;
 
@@ -48,8 +49,8 @@ impl Instance {
     }
 
     /// Takes note that a message was published on a topic of its host.
-    pub(super) fn message_arrived(&mut self, topic: TopicSlot, now: Moment) {
-        self.charts.iter_mut().for_each(|chart| chart.message_arrived(topic, now));
+    pub(super) fn message_arrived(&mut self, topic: TopicSlot, origin: Option<Origin>, now: Moment) {
+        self.charts.iter_mut().for_each(|chart| chart.message_arrived(topic, origin, now));
     }
 
     /// Does what is due: a cycle of its list, then the steps of each chart until it rests.

@@ -7,6 +7,7 @@ use narukom::{Moment, TopicSlot};
 
 use super::clock::Clock;
 use crate::chart::{Assignment, Returned};
+use crate::origin::{self, Origin};
 
 /// Filled from any thread, emptied by one. Whatever is put in before it is looked into is found, so that no wake-up is lost.
 pub(super) struct Mailbox {
@@ -19,14 +20,14 @@ pub(super) struct Mailbox {
 /// What has come.
 #[derive(Default)]
 pub(super) struct Mail {
-    pub(super) topics: Vec<TopicSlot>,
+    pub(super) messages: Vec<(TopicSlot, Option<Origin>)>,
     pub(super) returned: Vec<(Assignment, Returned)>,
     pub(super) stop: bool,
 }
 
 impl Mail {
     fn is_empty(&self) -> bool {
-        self.topics.is_empty() && self.returned.is_empty() && !self.stop
+        self.messages.is_empty() && self.returned.is_empty() && !self.stop
     }
 }
 
@@ -47,7 +48,7 @@ impl Mailbox {
     pub(super) fn message(&self, topic: TopicSlot) {
         let interest = self.of_interest.get(topic.number() as usize);
         if interest.is_some_and(|interest| interest.load(Ordering::SeqCst)) {
-            self.lock().topics.push(topic);
+            self.lock().messages.push((topic, origin::publishing()));
             self.filled.notify_one();
         }
     }

@@ -18,8 +18,7 @@ use super::stopper::Stopper;
 use crate::error::{Error, ErrorKind};
 use crate::statistics::{AgentStatistics, Average, Statistics};
 
-/// A run in real time. It ends when it is [stopped](Running::stop) or its [stopper](Running::stopper) says so; dropping it leaves its
-/// threads running.
+/// A run in real time. It ends when it is [stopped](Running::stop) or dropped, or when its [stopper](Running::stopper) says so.
 pub struct Running {
     stopper: Stopper,
     clock: Clock,
@@ -72,13 +71,7 @@ impl Running {
         for station in stations {
             launched = launched.and_then(|()| running.launch_station(station));
         }
-        match launched {
-            Ok(()) => Ok(running),
-            Err(error) => {
-                running.stop();
-                Err(error)
-            }
-        }
+        launched.map(|()| running)
     }
 
     /// What ends the run, from any thread.
@@ -93,11 +86,15 @@ impl Running {
     }
 
     /// Ends the run: agents finish the cycle they are in. Tells what they have done.
-    pub fn stop(self) -> Statistics {
+    pub fn stop(mut self) -> Statistics {
+        self.end()
+    }
+
+    fn end(&mut self) -> Statistics {
         self.stopper.stop();
         self.mailboxes.iter().for_each(|mailbox| mailbox.stop());
         let mut agents: Vec<AgentStatistics> = Vec::new();
-        for thread in self.agents {
+        for thread in self.agents.drain(..) {
             match (thread.join(), agents.last_mut()) {
                 (Ok(part), Some(agent)) if (&agent.host, &agent.agent) == (&part.host, &part.agent) => {
                     agent.add(part)
@@ -106,7 +103,7 @@ impl Running {
                 (Err(_), _) => tracing::error!("the thread of an agent has panicked"),
             }
         }
-        for thread in self.others {
+        for thread in self.others.drain(..) {
             if thread.join().is_err() {
                 tracing::error!("the thread of a body or the world has panicked");
             }
@@ -199,6 +196,12 @@ impl Running {
         })?;
         self.others.push(thread);
         Ok(())
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.end();
     }
 }
 

@@ -7,6 +7,7 @@ use crate::agent::Policy;
 use crate::chart::{Assignment, Returned, Runner};
 use crate::coverage::ChartCoverage;
 use crate::frequency::Frequency;
+use crate::origin::Origin;
 use crate::statistics::ActivityStatistics;
 
 /// A chart and the activities that are under way.
@@ -17,7 +18,13 @@ pub(super) struct SimulatedChart {
     /// Wakes it beside what happens.
     frequency: Option<Frequency>,
     ticks: u64,
+    /// How many calls there were at the moment of the last one.
+    calls: u32,
+    instant: Moment,
 }
+
+/// More calls than this at one moment are taken for calls without end.
+const MOST_CALLS: u32 = 10_000;
 
 struct UnderWay {
     until: Moment,
@@ -27,7 +34,7 @@ struct UnderWay {
 impl SimulatedChart {
     pub(super) fn new(mut runner: Runner, frequency: Option<Frequency>) -> SimulatedChart {
         runner.start(Moment::ZERO);
-        SimulatedChart { runner, under_way: Vec::new(), frequency, ticks: 0 }
+        SimulatedChart { runner, under_way: Vec::new(), frequency, ticks: 0, calls: 0, instant: Moment::ZERO }
     }
 
     pub(super) fn due(&self, now: Moment) -> Moment {
@@ -42,8 +49,8 @@ impl SimulatedChart {
         self.frequency.map_or(Moment::MAX, |frequency| frequency.due(self.ticks))
     }
 
-    pub(super) fn message_arrived(&mut self, topic: TopicSlot, now: Moment) {
-        self.runner.message_arrived(topic, now);
+    pub(super) fn message_arrived(&mut self, topic: TopicSlot, origin: Option<Origin>, now: Moment) {
+        self.runner.message_arrived(topic, origin, now);
     }
 
     pub(super) fn raise(&mut self, event: &str) -> bool {
@@ -65,13 +72,13 @@ impl SimulatedChart {
     ) -> Result<(), String> {
         while !self.runner.is_over() {
             if let Some(assignment) = self.runner.next_started() {
-                self.call(assignment, now);
+                self.call(assignment, now)?;
             } else if self.runner.needs_step(now) || self.tick() <= now {
                 self.step(now, teller)?;
             } else if let Some(returned) = self.next_return(now) {
                 self.returned(returned, now, agent, policy, teller.number())?;
             } else if let Some(assignment) = self.runner.next_waiting(now) {
-                self.call(assignment, now);
+                self.call(assignment, now)?;
             } else {
                 break;
             }
@@ -79,11 +86,27 @@ impl SimulatedChart {
         Ok(())
     }
 
-    fn call(&mut self, mut assignment: Assignment, now: Moment) {
+    /// Calls an activity.
+    ///
+    /// # Errors
+    /// The chart's activities wake each other for ever, and time would never go on.
+    fn call(&mut self, mut assignment: Assignment, now: Moment) -> Result<(), String> {
+        if self.instant != now {
+            (self.instant, self.calls) = (now, 0);
+        }
+        self.calls += 1;
+        if self.calls > MOST_CALLS {
+            let activity = self.runner.activity_name(assignment.activation);
+            self.runner.take_back(assignment);
+            return Err(format!(
+                "activity `{activity}` is called at one moment after {MOST_CALLS} other calls"
+            ));
+        }
         let until = now + assignment.duration;
         let returned = assignment.call();
         self.runner.take_back(assignment);
         self.under_way.push(UnderWay { until, returned });
+        Ok(())
     }
 
     fn step(&mut self, now: Moment, teller: &mut Teller) -> Result<(), String> {

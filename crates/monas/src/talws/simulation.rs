@@ -13,6 +13,7 @@ use super::stopper::Stopper;
 use crate::coverage::ChartCoverage;
 use crate::error::Error;
 use crate::list::Outcome;
+use crate::origin::{self, Origin};
 use crate::statistics::Statistics;
 
 /// A run in simulated time.
@@ -31,7 +32,7 @@ struct Host {
     hub: Narukom,
     moved: Arc<Moved>,
     /// Where the topics that moved are looked through; kept for its memory.
-    looked_through: Vec<TopicSlot>,
+    looked_through: Vec<News>,
     body: Option<(Body, u64)>,
     instances: Vec<Instance>,
 }
@@ -39,8 +40,11 @@ struct Host {
 /// The topics on which something was published since somebody looked.
 #[derive(Default)]
 struct Moved {
-    topics: Mutex<Vec<TopicSlot>>,
+    news: Mutex<Vec<News>>,
 }
+
+/// A message was published: its topic, and the activity of a chart that did it, if one did.
+type News = (TopicSlot, Option<Origin>);
 
 impl Simulation {
     pub(super) fn new(talws: Talws, seed: u64) -> Result<Simulation, Error> {
@@ -201,8 +205,8 @@ impl Host {
     /// Tells every agent which topics have moved.
     fn wake(&mut self, now: Moment) {
         self.moved.take(&mut self.looked_through);
-        for topic in self.looked_through.drain(..) {
-            self.instances.iter_mut().for_each(|instance| instance.message_arrived(topic, now));
+        for (topic, origin) in self.looked_through.drain(..) {
+            self.instances.iter_mut().for_each(|instance| instance.message_arrived(topic, origin, now));
         }
     }
 
@@ -214,12 +218,12 @@ impl Host {
 
 impl Moved {
     fn note(&self, topic: TopicSlot) {
-        self.topics.lock().unwrap_or_else(PoisonError::into_inner).push(topic);
+        self.news.lock().unwrap_or_else(PoisonError::into_inner).push((topic, origin::publishing()));
     }
 
     /// Swaps what was noted for an empty list.
-    fn take(&self, into: &mut Vec<TopicSlot>) {
+    fn take(&self, into: &mut Vec<News>) {
         into.clear();
-        std::mem::swap(&mut *self.topics.lock().unwrap_or_else(PoisonError::into_inner), into);
+        std::mem::swap(&mut *self.news.lock().unwrap_or_else(PoisonError::into_inner), into);
     }
 }

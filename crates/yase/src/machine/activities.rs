@@ -10,6 +10,8 @@ use crate::machine::run::Run;
 pub(super) struct Activities {
     slots: Box<[Slot]>,
     count: u64,
+    /// Whether one has been queued since it was asked last.
+    queued: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -39,16 +41,19 @@ pub(super) enum Phase {
 
 impl Activities {
     pub(super) fn new(count: usize) -> Activities {
-        Activities {
-            slots: vec![Slot { phase: Phase::Idle, number: 0, cancelled: false }; count].into(),
-            count: 0,
-        }
+        let slot = Slot { phase: Phase::Idle, number: 0, cancelled: false };
+        Activities { slots: vec![slot; count].into(), count: 0, queued: false }
     }
 
     pub(super) fn reset(&mut self) {
         for slot in &mut self.slots {
             slot.phase = Phase::Idle;
         }
+    }
+
+    /// Whether activities wait to be started, as far as is known since this was asked last.
+    pub(super) fn take_queued(&mut self) -> bool {
+        std::mem::take(&mut self.queued)
     }
 
     pub(super) fn slot(&self, activity: usize) -> Slot {
@@ -64,6 +69,7 @@ impl Run {
     /// The state of an activity was entered: from now on its region is locked.
     pub(super) fn enqueue_activity(&mut self, chart: &Chart, place: Place, activity: usize) {
         self.activities.count += 1;
+        self.activities.queued = true;
         let number = self.activities.count;
         *self.activities.slot_mut(activity) = Slot { phase: Phase::Queued, number, cancelled: false };
         self.lock(chart, place);

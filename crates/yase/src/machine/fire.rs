@@ -6,7 +6,7 @@ use crate::host::{ActionError, ActionPlace, Host, Report};
 use crate::machine::activities::Phase;
 use crate::machine::step::Step;
 use crate::machine::view::View;
-use crate::machine::{MachineError, Status};
+use crate::machine::{MachineErrorKind, Status};
 use crate::statechart::NodeKind;
 use crate::trace::Occasion;
 use crate::vocabulary::{FieldId, TopicId, Value};
@@ -27,7 +27,7 @@ impl<H: Host> Step<'_, H> {
     }
 
     /// Fires the oldest interrupting transition whose activities have all returned.
-    pub(super) fn fire_pending(&mut self) -> Result<bool, MachineError> {
+    pub(super) fn fire_pending(&mut self) -> Result<bool, MachineErrorKind> {
         let ready =
             self.run.pending.iter().position(|pending| !self.leaves_running(self.compound(pending.compound)));
         let Some(index) = ready else { return Ok(false) };

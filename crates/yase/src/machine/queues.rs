@@ -15,7 +15,7 @@ pub(super) struct Occurrence {
     number: u64,
     raised: bool,
     /// The timer whose expiry it is.
-    pub(super) expiry: Option<usize>,
+    pub(super) expiry: Option<u32>,
 }
 
 /// An occurrence that waits for running activities.
@@ -56,12 +56,12 @@ impl Queues {
         self.raised.push_back(occurrence);
     }
 
-    pub(super) fn arrive(&mut self, event: EventId, expiry: Option<usize>) {
+    pub(super) fn arrive(&mut self, event: EventId, expiry: Option<u32>) {
         let occurrence = self.occurrence(event, false, expiry);
         self.arrived.push_back(occurrence);
     }
 
-    fn occurrence(&mut self, event: EventId, raised: bool, expiry: Option<usize>) -> Occurrence {
+    fn occurrence(&mut self, event: EventId, raised: bool, expiry: Option<u32>) -> Occurrence {
         self.count += 1;
         Occurrence { event, number: self.count, raised, expiry }
     }
@@ -85,6 +85,10 @@ impl Queues {
         self.held.insert(index, Held { occurrence, compounds: compounds.into(), offer: false });
     }
 
+    pub(super) fn has_deferred(&self) -> bool {
+        !self.deferred.is_empty()
+    }
+
     pub(super) fn defer(&mut self, occurrence: Occurrence) {
         insert(&mut self.deferred, occurrence);
     }
@@ -104,7 +108,7 @@ impl Queues {
 
     /// Forgets the expiry of a timer that is set again.
     pub(super) fn withdraw(&mut self, timer: usize) {
-        let other = |occurrence: &Occurrence| occurrence.expiry != Some(timer);
+        let other = |occurrence: &Occurrence| occurrence.expiry != Some(timer as u32);
         self.arrived.retain(other);
         self.deferred.retain(other);
         self.held.retain(|held| other(&held.occurrence));

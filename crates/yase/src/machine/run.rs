@@ -72,16 +72,23 @@ pub(super) struct Selection {
     pub(super) closed: BitSet,
     /// The active leaves for which a transition was found that would be enabled but for running activities.
     pub(super) noted: BitSet,
+    /// Whether there are any.
+    pub(super) has_noted: bool,
 }
 
 impl Selection {
     pub(super) fn clear(&mut self) {
-        self.candidates.clear();
+        if !self.candidates.is_empty() {
+            self.closed.clear();
+            self.candidates.clear();
+        }
+        if self.has_noted {
+            self.noted.clear();
+            self.has_noted = false;
+        }
         self.selected.clear();
         self.preempted.clear();
         self.held.clear();
-        self.closed.clear();
-        self.noted.clear();
     }
 }
 
@@ -130,6 +137,7 @@ impl Run {
                 held: Vec::with_capacity(regions),
                 closed: BitSet::new(places),
                 noted: BitSet::new(places),
+                has_noted: false,
             },
             log: Log::default(),
             text: String::new(),

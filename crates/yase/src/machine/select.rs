@@ -193,6 +193,7 @@ impl<H: Host> Step<'_, H> {
             next = run.active.next_common_without(leaves, &run.selection.noted, index + 1, place.index());
         }
         if is_new {
+            run.selection.has_noted = true;
             run.selection.held.push(compound);
         }
     }
@@ -207,7 +208,9 @@ impl<H: Host> Step<'_, H> {
                 selection.selected.iter().any(|&other| compound(other).conflicts_with(compound(candidate)));
             if loses { &mut selection.preempted } else { &mut selection.selected }.push(candidate);
         }
-        selection.selected.sort_unstable_by_key(|&id| compound(id).key);
+        if selection.selected.len() > 1 {
+            selection.selected.sort_unstable_by_key(|&id| compound(id).key);
+        }
     }
 
     /// Sets selected transitions aside that would leave running activities, and asks those to return.

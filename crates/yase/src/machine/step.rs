@@ -38,9 +38,10 @@ impl<'a, H: Host> Step<'a, H> {
             match self.micro_step() {
                 Ok(true) => {}
                 Ok(false) => break,
-                Err(error) => {
+                Err(kind) => {
                     self.halt(Status::Stopped);
-                    return Err(error);
+                    let cycle = self.run.bound.cycle();
+                    return Err(MachineError::new(kind, self.chart, &self.semantics, &cycle));
                 }
             }
         }
@@ -61,7 +62,7 @@ impl<'a, H: Host> Step<'a, H> {
         while let Some(timer) = self.run.timers.expire(self.run.now) {
             self.run.timer_changed(self.chart, timer);
             if let Some(event) = self.chart.timers[timer].event {
-                self.run.queues.arrive(event, Some(timer));
+                self.run.queues.arrive(event, Some(timer as u32));
             }
         }
     }
@@ -83,14 +84,18 @@ impl<'a, H: Host> Step<'a, H> {
 
     /// The next micro-step, if there is one: a cancelled state is left at last; what was held is offered; then what needs no event,
     /// then raised events, then arrived ones.
-    fn micro_step(&mut self) -> Result<bool, MachineError> {
+    fn micro_step(&mut self) -> Result<bool, MachineErrorKind> {
         if self.run.status != Status::Running {
             return Ok(false);
         }
         Ok(self.fire_pending()? || self.offer_held()? || self.eventless()? || self.offer_next()?)
     }
 
-    fn eventless(&mut self) -> Result<bool, MachineError> {
+    fn eventless(&mut self) -> Result<bool, MachineErrorKind> {
+        let (sources, last) = (&self.chart.masks.eventless, self.chart.layout.len());
+        if self.run.active.next_common(sources, 0, last).is_none() {
+            return Ok(false);
+        }
         self.select(None);
         if self.run.selection.candidates.is_empty() {
             return Ok(false);
@@ -100,16 +105,18 @@ impl<'a, H: Host> Step<'a, H> {
         Ok(true)
     }
 
-    fn offer_held(&mut self) -> Result<bool, MachineError> {
+    fn offer_held(&mut self) -> Result<bool, MachineErrorKind> {
         match self.run.queues.next_held() {
             Some(occurrence) => self.offer(occurrence),
             None => Ok(false),
         }
     }
 
-    fn offer_next(&mut self) -> Result<bool, MachineError> {
-        let (chart, active) = (self.chart, &self.run.active);
-        self.run.queues.recall(|event| deferring(chart, active, event).is_some());
+    fn offer_next(&mut self) -> Result<bool, MachineErrorKind> {
+        if self.run.queues.has_deferred() {
+            let (chart, active) = (self.chart, &self.run.active);
+            self.run.queues.recall(|event| deferring(chart, active, event).is_some());
+        }
         if let Some(occurrence) = self.run.queues.next_raised() {
             return self.offer(occurrence);
         }
@@ -121,7 +128,7 @@ impl<'a, H: Host> Step<'a, H> {
     }
 
     /// Offers one event to the configuration.
-    fn offer(&mut self, occurrence: Occurrence) -> Result<bool, MachineError> {
+    fn offer(&mut self, occurrence: Occurrence) -> Result<bool, MachineErrorKind> {
         self.admit()?;
         self.select(Some(&occurrence));
         let occasion = Occasion::Event(occurrence.event);
@@ -158,18 +165,17 @@ impl<'a, H: Host> Step<'a, H> {
     }
 
     /// Counts one more micro-step.
-    pub(super) fn admit(&mut self) -> Result<(), MachineError> {
+    pub(super) fn admit(&mut self) -> Result<(), MachineErrorKind> {
         let (limit, bound) = (self.semantics.limit, &mut self.run.bound);
-        let kind = if !bound.allows_micro_step(limit) {
-            MachineErrorKind::NeverRests
-        } else if self.summary.micro_steps == 0 && !bound.allows_step(limit) {
-            MachineErrorKind::NeverAdvances
-        } else {
-            bound.count_micro_step();
-            self.summary.micro_steps += 1;
-            return Ok(());
-        };
-        Err(MachineError::new(kind, self.chart, &self.semantics, &self.run.bound.cycle()))
+        if !bound.allows_micro_step(limit) {
+            return Err(MachineErrorKind::NeverRests);
+        }
+        if self.summary.micro_steps == 0 && !bound.allows_step(limit) {
+            return Err(MachineErrorKind::NeverAdvances);
+        }
+        bound.count_micro_step();
+        self.summary.micro_steps += 1;
+        Ok(())
     }
 
     pub(super) fn emit(&mut self, occasion: Occasion, deferred: Option<Place>) {
@@ -194,14 +200,19 @@ impl<'a, H: Host> Step<'a, H> {
 
     /// The chart is at rest: what was written is published, and the activities of entered states start.
     fn finish(&mut self) {
-        for region in self.chart.regions() {
-            if self.run.written.contains(region.index()) {
-                self.host.publish_all(region);
-            }
+        self.publish_written();
+        if self.run.activities.take_queued() {
+            self.start_activities();
         }
-        self.run.written.clear();
-        self.start_activities();
         self.report_waiting_starts();
+    }
+
+    fn publish_written(&mut self) {
+        let last = self.chart.regions.len();
+        while let Some(index) = self.run.written.next(0, last) {
+            self.run.written.remove(index);
+            self.host.publish_all(RegionId(index as u32));
+        }
     }
 
     fn start_activities(&mut self) {

@@ -7,6 +7,8 @@ use crate::moment::Moment;
 #[derive(Clone, Debug)]
 pub(super) struct Timers {
     slots: Box<[Option<Deadline>]>,
+    /// The earliest deadline whose expiry has not been noticed.
+    next: Option<Moment>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -18,17 +20,19 @@ struct Deadline {
 
 impl Timers {
     pub(super) fn new(count: usize) -> Timers {
-        Timers { slots: vec![None; count].into() }
+        Timers { slots: vec![None; count].into(), next: None }
     }
 
     pub(super) fn reset(&mut self) {
         self.slots.fill(None);
+        self.next = None;
     }
 
     /// Sets a deadline, and says whether the expiry of the one before had been noticed.
     pub(super) fn set(&mut self, timer: usize, moment: Moment) -> bool {
         let Some(slot) = self.slots.get_mut(timer) else { return false };
         let before = slot.replace(Deadline { moment, expired: false });
+        self.next = self.earliest().map(|(moment, _)| moment);
         before.is_some_and(|before| before.expired)
     }
 
@@ -42,18 +46,21 @@ impl Timers {
 
     /// The earliest deadline whose expiry has not been noticed.
     pub(super) fn next_deadline(&self) -> Option<Moment> {
-        self.slots.iter().flatten().filter(|deadline| !deadline.expired).map(|deadline| deadline.moment).min()
+        self.next
     }
 
     /// Notices the earliest expiry up to now that was not noticed; of several at one moment, that of the first timer.
     pub(super) fn expire(&mut self, now: Moment) -> Option<usize> {
-        let due = |slot: &Option<Deadline>| {
-            slot.filter(|deadline| !deadline.expired && deadline.moment <= now)
-                .map(|deadline| deadline.moment)
-        };
-        let (_, timer) =
-            self.slots.iter().enumerate().filter_map(|(timer, slot)| Some((due(slot)?, timer))).min()?;
+        self.next.filter(|&next| next <= now)?;
+        let (_, timer) = self.earliest()?;
         self.slots[timer].as_mut()?.expired = true;
+        self.next = self.earliest().map(|(moment, _)| moment);
         Some(timer)
+    }
+
+    fn earliest(&self) -> Option<(Moment, usize)> {
+        let waiting = |slot: &Option<Deadline>| slot.filter(|deadline| !deadline.expired);
+        let deadlines = self.slots.iter().enumerate();
+        deadlines.filter_map(|(timer, slot)| Some((waiting(slot)?.moment, timer))).min()
     }
 }

@@ -1,0 +1,139 @@
+//! What is true: R4, R5 and the meaning of expressions.
+
+use yase::RegionId;
+use yase::expression::{Comparison, Expression, ExpressionKind, TransitionExpression, Trigger};
+use yase::statechart::TransitionId;
+
+use super::{Occurrence, Stepper, Way, topic};
+use crate::kit::world::World;
+
+impl Stepper<'_> {
+    pub(super) fn expression(&self, id: TransitionId) -> &TransitionExpression {
+        &self.chart.transition(id).expression
+    }
+
+    /// R4
+    pub(super) fn is_triggered(&self, way: &Way, occurrence: Option<&Occurrence>) -> bool {
+        match (&self.expression(way[0]).trigger, occurrence) {
+            (None, None) => true,
+            (Some(Trigger::OneOf(names)), Some(occurrence)) => {
+                names.iter().any(|name| name.text() == occurrence.event)
+            }
+            (Some(_), Some(occurrence)) if occurrence.expiry.is_some() => false,
+            (Some(Trigger::Any), Some(_)) => true,
+            (Some(Trigger::Not(name)), Some(occurrence)) => name.text() != occurrence.event,
+            _ => false,
+        }
+    }
+
+    /// R5
+    pub(super) fn guards_hold(&mut self, way: &Way, world: &mut World) -> bool {
+        let region = self.region(self.scope(way));
+        for &id in way {
+            let Some(guard) = self.expression(id).guard.clone() else { continue };
+            match self.truth(&guard, region, world) {
+                Ok(value) => {
+                    self.erred.remove(&(id, region));
+                    if value != Some(true) {
+                        return false;
+                    }
+                }
+                Err(error) => {
+                    if self.erred.insert((id, region)) {
+                        self.stale.remove(&(id, region));
+                        self.raise("error.guard");
+                        world.say(format!("  guard failed: {error}"));
+                    }
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// True, false, or unknown.
+    pub(super) fn truth(
+        &self,
+        expression: &Expression,
+        region: RegionId,
+        world: &World,
+    ) -> Result<Option<bool>, String> {
+        Ok(match &expression.kind {
+            ExpressionKind::Bool(value) => Some(*value),
+            ExpressionKind::And(parts) => {
+                let mut unknown = false;
+                for part in parts {
+                    match self.truth(part, region, world)? {
+                        Some(false) => return Ok(Some(false)),
+                        Some(true) => {}
+                        None => unknown = true,
+                    }
+                }
+                if unknown { None } else { Some(true) }
+            }
+            ExpressionKind::Or(parts) => {
+                let mut unknown = false;
+                for part in parts {
+                    match self.truth(part, region, world)? {
+                        Some(true) => return Ok(Some(true)),
+                        Some(false) => {}
+                        None => unknown = true,
+                    }
+                }
+                if unknown { None } else { Some(false) }
+            }
+            ExpressionKind::Not(part) => self.truth(part, region, world)?.map(|value| !value),
+            ExpressionKind::Compare(left, comparison, right) => {
+                let (left, right) = (self.number(left, region, world)?, self.number(right, region, world)?);
+                match (left, right) {
+                    (Some(left), Some(right)) => Some(match comparison {
+                        Comparison::Equal => left == right,
+                        Comparison::NotEqual => left != right,
+                        Comparison::Less => left < right,
+                        Comparison::LessOrEqual => left <= right,
+                        Comparison::Greater => left > right,
+                        Comparison::GreaterOrEqual => left >= right,
+                    }),
+                    _ => None,
+                }
+            }
+            ExpressionKind::Absent(path) => Some(self.message(&path.text(), region, world).is_none()),
+            ExpressionKind::Present(path) => Some(self.message(&path.text(), region, world).is_some()),
+            ExpressionKind::Variable(path) => Some(self.is_over(&path.text(), region).unwrap_or(true)),
+            ExpressionKind::TimeoutCheck(path) => Some(self.is_over(&path.text(), region).unwrap_or(false)),
+            ExpressionKind::In(name) => Some(self.active.contains(&self.chart.find(&name.text).unwrap())),
+            other => panic!("the generator makes no {other:?}"),
+        })
+    }
+
+    pub(super) fn number(
+        &self,
+        expression: &Expression,
+        region: RegionId,
+        world: &World,
+    ) -> Result<Option<i64>, String> {
+        Ok(match &expression.kind {
+            ExpressionKind::Integer(value) => Some(*value as i64),
+            ExpressionKind::Variable(path) => self.message(&path.segments[0].text, region, world),
+            ExpressionKind::Sum(first, rest) => {
+                let mut sum = self.number(first, region, world)?;
+                for (_, part) in rest {
+                    sum = sum.zip(self.number(part, region, world)?).map(|(a, b)| a + b);
+                }
+                sum
+            }
+            ExpressionKind::Call(name, arguments) if name.text == "fail" && arguments.is_empty() => {
+                return Err("the function failed: it always fails".to_owned());
+            }
+            other => panic!("the generator makes no {other:?}"),
+        })
+    }
+
+    pub(super) fn message(&self, name: &str, region: RegionId, world: &World) -> Option<i64> {
+        world.number(region, topic(name).unwrap())
+    }
+
+    pub(super) fn is_over(&self, timer: &str, region: RegionId) -> Option<bool> {
+        self.timers.get(&(region, timer.to_owned())).map(|deadline| deadline.moment <= self.now)
+    }
+}

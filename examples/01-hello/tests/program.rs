@@ -1,0 +1,31 @@
+//! The program as it is run: in real time.
+
+use std::error::Error;
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
+
+/// The moments of the first greetings, in seconds.
+fn greetings(count: usize) -> Result<Vec<f64>, Box<dyn Error>> {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_example-hello")).stdout(Stdio::piped()).spawn()?;
+    let output = program.stdout.take().ok_or("the program has no output")?;
+    let lines: Result<Vec<String>, _> = BufReader::new(output).lines().take(count).collect();
+    program.kill()?;
+    program.wait()?;
+    lines?.iter().map(|line| second_of(line).ok_or_else(|| format!("`{line}` is no greeting").into())).collect()
+}
+
+/// The moment that a greeting tells: 0.1 of `hello at 0.100000000 s`.
+fn second_of(line: &str) -> Option<f64> {
+    line.strip_prefix("hello at ")?.strip_suffix(" s")?.parse().ok()
+}
+
+#[test]
+fn it_greets_ten_times_a_second() -> Result<(), Box<dyn Error>> {
+    let seconds = greetings(4)?;
+    assert_eq!(seconds.len(), 4, "{seconds:?}");
+    // No greeting comes before it is due; how much later it comes is the machine's affair.
+    for (number, second) in seconds.iter().enumerate() {
+        assert!(*second >= number as f64 / 10.0, "{seconds:?}");
+    }
+    Ok(())
+}

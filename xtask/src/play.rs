@@ -1,0 +1,13 @@
+//! The chores that play matches: they run the package of whole matches, built for speed.
+
+use std::path::Path;
+use std::process::{Command, ExitCode};
+
+/// Runs the program of the season with these arguments.
+pub(crate) fn season(root: &Path, arguments: &[&str]) -> Result<ExitCode, String> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.current_dir(root).args(["run", "--release", "--quiet", "--package", "monas-tests", "--bin", "season", "--"]);
+    let status = command.args(arguments).status().map_err(|error| format!("cargo does not start: {error}"))?;
+    Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
