@@ -6,10 +6,14 @@ use monas_robot::{GamePhase, Skill};
 use monas_soccer as _;
 use nalgebra::{Isometry2, Point2, Vector2};
 
-use toy::Shared;
+use toy::{Shared, World};
 
 fn at(x: f64, y: f64, heading: f64) -> Isometry2<f64> {
     Isometry2::new(Vector2::new(x, y), heading)
+}
+
+fn is_goal(world: &World) -> bool {
+    world.ball.x > 3.0 && world.ball.y.abs() < 0.7
 }
 
 #[test]
@@ -23,7 +27,7 @@ fn it_scores_wherever_robot_and_ball_are() {
     for (robot, ball) in cases {
         let world = Shared::new(2, robot, ball);
         let mut simulation = world.play("attacker.xml");
-        let scored = world.until(&mut simulation, 90.0, |world| world.is_goal());
+        let scored = world.until(&mut simulation, 90.0, is_goal);
         let kicks = world.lock().performed.clone();
         assert!(scored.is_some(), "from {robot} with the ball at {ball}: {kicks:?}");
         assert!(kicks.iter().all(|skill| matches!(skill, Skill::KickLeft | Skill::KickRight)), "{kicks:?}");

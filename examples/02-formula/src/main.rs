@@ -1,1 +1,24 @@
-fn main() {}
+//! A statechart from two formulas, run in simulated time.
+//!
+//! Run it with `cargo run -p example-formula`; it prints which activity runs when. What is done is written in `patrol.srm`: the
+//! role walks and looks for ever (`(Walk . look)~`), and a look is one of two (`Left | Right`). Two lines of refinement say which.
+//! `cargo run -- model draw examples/02-formula/patrol.srm -o patrol.svg` draws the chart that comes of it.
+//!
+//! The formulas name three activities; here each is a closure that prints its name, put into a `Registry` by hand. A program with
+//! activities of its own registers them where they are written, with `monas::activity!`. Nothing in the program says what comes
+//! after what: change the model and run it again.
+
+use monas::{Agent, Blackboard, Moment, Registry, Talws};
+use yase::Source;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let model = Source::new("patrol.srm", include_str!("../patrol.srm"));
+    let (patrol, findings) = aseme::statechart_of(&model);
+    findings.iter().for_each(|finding| eprintln!("{finding}"));
+    let registry = ["Walk", "Left", "Right"].into_iter().fold(Registry::linked(), |registry, name| {
+        registry.with(name, move || move |blackboard: &mut Blackboard| println!("{} {name}", blackboard.now()))
+    });
+    let talws = Talws::new().registry(registry).agent(Agent::statechart("guard", patrol));
+    talws.simulate(7)?.run_until(Moment::from_secs_f64(6.0))?;
+    Ok(())
+}

@@ -1,5 +1,7 @@
 //! A world small enough to be surveyed: one robot, one ball, no noise. Its body steps itself, 20 ms each time it is asked what it senses.
 
+#![expect(clippy::unwrap_used, reason = "a part of tests")]
+
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
@@ -16,24 +18,24 @@ const DT: f64 = 0.02;
 const DECELERATION: f64 = 0.3;
 
 /// What is true.
-pub struct World {
+pub(crate) struct World {
     start: Isometry2<f64>,
-    pub field_from_robot: Isometry2<f64>,
-    pub ball: Point2<f64>,
-    pub ball_velocity: Vector2<f64>,
-    pub phase: GamePhase,
-    pub number: u32,
-    pub posture: Posture,
+    pub(crate) field_from_robot: Isometry2<f64>,
+    pub(crate) ball: Point2<f64>,
+    pub(crate) ball_velocity: Vector2<f64>,
+    pub(crate) phase: GamePhase,
+    pub(crate) number: u32,
+    pub(crate) posture: Posture,
     /// The skills that were performed, in order.
-    pub performed: Vec<Skill>,
+    pub(crate) performed: Vec<Skill>,
 }
 
 /// A world that the test and the body share.
 #[derive(Clone)]
-pub struct Shared(Arc<Mutex<World>>);
+pub(crate) struct Shared(Arc<Mutex<World>>);
 
 impl Shared {
-    pub fn new(number: u32, field_from_robot: Isometry2<f64>, ball: Point2<f64>) -> Shared {
+    pub(crate) fn new(number: u32, field_from_robot: Isometry2<f64>, ball: Point2<f64>) -> Shared {
         Shared(Arc::new(Mutex::new(World {
             start: field_from_robot,
             field_from_robot,
@@ -46,12 +48,12 @@ impl Shared {
         })))
     }
 
-    pub fn lock(&self) -> MutexGuard<'_, World> {
+    pub(crate) fn lock(&self) -> MutexGuard<'_, World> {
         self.0.lock().unwrap()
     }
 
     /// A simulation of one robot with the agents of a role of this repository.
-    pub fn play(&self, role: &str) -> Simulation {
+    pub(crate) fn play(&self, role: &str) -> Simulation {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config/roles").join(role);
         let (agents, diagnostics) = monas::config::load(&file, &Registry::linked());
         let errors: Vec<_> = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).collect();
@@ -64,7 +66,12 @@ impl Shared {
     }
 
     /// Plays on until something is true, and answers when that was; nothing if it was not by `limit` seconds.
-    pub fn until(&self, simulation: &mut Simulation, limit: f64, is: impl Fn(&World) -> bool) -> Option<f64> {
+    pub(crate) fn until(
+        &self,
+        simulation: &mut Simulation,
+        limit: f64,
+        is: impl Fn(&World) -> bool,
+    ) -> Option<f64> {
         while simulation.now().as_secs_f64() < limit {
             simulation.run_until(simulation.now() + Duration::from_millis(100)).unwrap();
             if is(&self.lock()) {
@@ -76,11 +83,6 @@ impl Shared {
 }
 
 impl World {
-    /// Whether the ball lies in the goal to score in.
-    pub fn is_goal(&self) -> bool {
-        self.ball.x > 3.0 && self.ball.y.abs() < 0.7
-    }
-
     fn ball_in_robot(&self) -> Point2<f64> {
         self.field_from_robot.inverse_transform_point(&self.ball)
     }
@@ -198,7 +200,7 @@ impl Robot for Body {
     fn act(&mut self, _now: Moment, actuators: &Actuators) -> Result<(), Error> {
         let is_new =
             actuators.skill_number != self.command.skill_number && actuators.skill() != Skill::NoSkill;
-        self.command = actuators.clone();
+        self.command = *actuators;
         if is_new && self.skill.is_none() {
             self.skill = Some((actuators.skill(), actuators.skill_number, 0.0));
             let mut world = self.shared.lock();

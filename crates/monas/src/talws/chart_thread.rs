@@ -11,7 +11,6 @@ use super::real_time::Switch;
 use super::teller::Teller;
 use crate::agent::Policy;
 use crate::chart::{Assignment, Returned, Runner};
-use crate::error::Error;
 use crate::frequency::Frequency;
 use crate::statistics::AgentStatistics;
 
@@ -29,6 +28,8 @@ pub(super) struct ChartThread {
     /// When it is woken beside what happens, counted from 0.
     pub(super) ticks: u64,
     pub(super) steps: u64,
+    /// How many activities are being called, or wait for it on the pool.
+    pub(super) out: usize,
 }
 
 impl ChartThread {
@@ -46,8 +47,26 @@ impl ChartThread {
         if let Some(reason) = &stopped {
             self.switch.stop(reason);
         }
-        self.runner.stop(self.clock.now());
+        self.wind_up(&mut mail);
         self.statistics(stopped)
+    }
+
+    /// Lets the activities that are being called finish, and ends the chart.
+    fn wind_up(&mut self, mail: &mut Mail) {
+        loop {
+            let now = self.clock.now();
+            for (assignment, returned) in mail.returned.drain(..) {
+                self.out -= 1;
+                self.runner.take_back(assignment);
+                if let Err(failure) = self.runner.returned(returned, false, now) {
+                    tracing::error!(agent = %self.agent, "activity failed: {failure}");
+                }
+            }
+            if self.out == 0 {
+                return self.runner.stop(now);
+            }
+            self.mailbox.wait(Moment::MAX, &self.clock, mail);
+        }
     }
 
     /// Takes the mail, and steps until the chart rests.
@@ -62,7 +81,8 @@ impl ChartThread {
         }
         let now = self.clock.now();
         mail.messages.drain(..).for_each(|(topic, origin)| self.runner.message_arrived(topic, origin, now));
-        for (assignment, returned) in mail.returned.drain(..) {
+        while let Some((assignment, returned)) = mail.returned.pop_front() {
+            self.out -= 1;
             self.runner.take_back(assignment);
             self.returned(returned, now)?;
             self.rest(now)?;
@@ -98,7 +118,9 @@ impl ChartThread {
 
     fn submit(&mut self, assignment: Assignment) -> Result<(), String> {
         let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
-        pool.submit(assignment, self.mailbox.clone()).map_err(|error: Error| error.to_string())
+        pool.submit(assignment, self.mailbox.clone()).map_err(|error| error.to_string())?;
+        self.out += 1;
+        Ok(())
     }
 
     fn returned(&mut self, returned: Returned, now: Moment) -> Result<(), String> {

@@ -1,5 +1,6 @@
 //! What wakes the thread of a chart: messages, and activities that have returned.
 
+use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
@@ -21,7 +22,7 @@ pub(super) struct Mailbox {
 #[derive(Default)]
 pub(super) struct Mail {
     pub(super) messages: Vec<(TopicSlot, Option<Origin>)>,
-    pub(super) returned: Vec<(Assignment, Returned)>,
+    pub(super) returned: VecDeque<(Assignment, Returned)>,
     pub(super) stop: bool,
 }
 
@@ -55,7 +56,7 @@ impl Mailbox {
 
     /// An activity has returned.
     pub(super) fn returned(&self, assignment: Assignment, returned: Returned) {
-        self.lock().returned.push((assignment, returned));
+        self.lock().returned.push_back((assignment, returned));
         self.filled.notify_one();
     }
 

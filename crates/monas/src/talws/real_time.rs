@@ -128,16 +128,20 @@ impl Running {
     fn launch_station(&mut self, station: Station) -> Result<(), Error> {
         let Station { hub, body, members } = station;
         let rests = Arc::new(AtomicBool::new(false));
-        let mut mailboxes = Vec::new();
-        for member in members {
-            let own =
-                member.charts.iter().map(|_| Arc::new(Mailbox::new(hub.topics().len()))).collect::<Vec<_>>();
-            mailboxes.extend(own.iter().cloned());
-            self.mailboxes.extend(own.iter().cloned());
-            let switch = Switch { off: AtomicBool::new(false), mailboxes: own, rests: rests.clone() };
-            self.launch_member(member, hub.host(), Arc::new(switch))?;
-        }
+        let mailbox = || Arc::new(Mailbox::new(hub.topics().len()));
+        let switch = |member: &Member| {
+            let mailboxes = member.charts.iter().map(|_| mailbox()).collect();
+            Arc::new(Switch { off: AtomicBool::new(false), mailboxes, rests: rests.clone() })
+        };
+        let switches: Vec<Arc<Switch>> = members.iter().map(switch).collect();
+        let mailboxes: Vec<Arc<Mailbox>> =
+            switches.iter().flat_map(|s| s.mailboxes.iter().cloned()).collect();
+        self.mailboxes.extend(mailboxes.iter().cloned());
+        // Before anybody publishes, so that nobody misses anything.
         hub.set_waker(Arc::new(move |topic| mailboxes.iter().for_each(|mailbox| mailbox.message(topic))));
+        for (member, switch) in members.into_iter().zip(switches) {
+            self.launch_member(member, hub.host(), switch)?;
+        }
         body.map_or(Ok(()), |body| self.launch_body(body, hub.host(), rests))
     }
 
@@ -158,6 +162,7 @@ impl Running {
                 clock: self.clock,
                 ticks: 0,
                 steps: 0,
+                out: 0,
             };
             self.agents.push(spawn(&name, move || thread.run())?);
         }
