@@ -7,7 +7,16 @@ use std::process::{Command, ExitCode};
 pub(crate) fn season(root: &Path, arguments: &[&str]) -> Result<ExitCode, Box<dyn std::error::Error>> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
-    command.current_dir(root).args(["run", "--release", "--quiet", "--package", "monas-tests", "--bin", "season", "--"]);
+    command.current_dir(root).args([
+        "run",
+        "--release",
+        "--quiet",
+        "--package",
+        "monas-tests",
+        "--bin",
+        "season",
+        "--",
+    ]);
     let status = command.args(arguments).status()?;
     Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

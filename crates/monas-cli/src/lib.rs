@@ -105,3 +105,8 @@ fn completions(shell: clap_complete::Shell, console: &mut Console<'_>) -> io::Re
     console.out.write_all(&script)?;
     Ok(Exit::Success)
 }
+
+/// The code in the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

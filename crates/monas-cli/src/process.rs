@@ -30,13 +30,20 @@ pub(crate) fn main() -> Exit {
 
 /// Warnings and errors, or what MONAS_LOG asks for, above whatever bars there are.
 fn log_to_standard_error(bars: &MultiProgress) {
-    let filter = EnvFilter::try_from_env("MONAS_LOG").unwrap_or_else(|_| EnvFilter::new("warn"));
+    let asked = std::env::var("MONAS_LOG").unwrap_or_else(|_| "warn".into());
+    let (filter, mistake) = match EnvFilter::try_new(asked) {
+        Ok(filter) => (filter, None),
+        Err(mistake) => (EnvFilter::new("warn"), Some(mistake)),
+    };
     let bars = bars.clone();
     let writer = move || AboveBars(bars.clone());
     let log =
         tracing_subscriber::fmt().with_env_filter(filter).with_writer(writer).with_ansi(false).without_time();
     // It fails only where a program that calls this library has chosen a log of its own: that one stays.
     let _ = log.try_init();
+    if let Some(mistake) = mistake {
+        tracing::warn!("MONAS_LOG is not understood, warnings and errors are logged: {mistake}");
+    }
 }
 
 /// Standard error, with bars taken away while something is written and put back after it.

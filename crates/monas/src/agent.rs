@@ -112,7 +112,8 @@ impl Agent {
         self
     }
 
-    /// Says how urgent it is, and whether the system's real-time scheduling is wanted for it.
+    /// Says how urgent it is, and whether the system's real-time scheduling is wanted for it. Threads are still left to ordinary
+    /// scheduling.
     pub fn urgency(mut self, priority: i32, real_time: bool) -> Agent {
         (self.priority, self.real_time) = (priority, real_time);
         self

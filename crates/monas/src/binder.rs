@@ -126,3 +126,26 @@ fn place_of(name: &str, text: &str) -> Span {
     });
     found.map_or(Span::default(), |(at, _)| Span::new(at, at + name.len()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::place_of;
+
+    fn found(name: &str, text: &str) -> (usize, String) {
+        let span = place_of(name, text);
+        (span.start, text[span.start..span.end].to_owned())
+    }
+
+    #[test]
+    fn a_name_is_found_where_it_stands_alone() {
+        let text = "# Vision first\nm = Sensors\u{3c9} || VisionLoop || XVision || Vision\u{3c9}";
+        let (start, word) = found("Vision", text);
+        assert_eq!((word.as_str(), &text[start - 3..start]), ("Vision", "|| "));
+        assert_eq!(found("Sensors", text).0, text.find("Sensors").unwrap());
+    }
+
+    #[test]
+    fn a_name_that_does_not_stand_there_is_at_the_beginning() {
+        assert_eq!(found("Gone", "m = a"), (0, String::new()));
+    }
+}

@@ -66,6 +66,8 @@ impl Runner {
                 chart.region_node(region).map(|node| chart.statechart().path(node)).unwrap_or_default();
             let path = format!("{}/{}/{}/{region}", home.hub.host(), home.agent, home.number);
             blackboard.set_random(component_seed(home.seed, &path));
+            // What guards read is delivered, and recorded, from the first step on.
+            chart.reads().iter().for_each(|topic| blackboard.interest(TopicSlot::new(topic.0)));
             Some(blackboard)
         });
         let desk = Desk::new(&chart, home, functions, blackboards.collect())?;
@@ -110,7 +112,7 @@ impl Runner {
         self.machine.needs_step(yase_moment(now))
     }
 
-    /// Makes one run-to-completion step. Then [`Runner::next_assignment`] gives the activities that it started.
+    /// Makes one run-to-completion step. Then [`Runner::next_started`] gives the activities that it started.
     ///
     /// # Errors
     /// The chart never comes to rest; it has stopped.

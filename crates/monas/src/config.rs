@@ -16,7 +16,7 @@
 //! | attribute of `agent` and `provider` | means |
 //! |---|---|
 //! | `thread_frequency` | cycles a second; needed by a list of activities |
-//! | `priority`, `is_real_time` | how urgent its thread is, and whether real-time scheduling is wanted |
+//! | `priority`, `is_real_time` | how urgent it is, and whether real-time scheduling is wanted; kept with the agent, while threads are still left to the system's ordinary scheduling |
 //! | `stats_cycle` | after how many cycles its times are written to the log; 0 for never |
 //! | `enable` | `0` leaves it out |
 //! | `on_failure` | what happens when an activity fails: `restart`, `skip`, `stop-agent`, `safe-state` |

@@ -205,3 +205,55 @@ fn max(a: f64, b: f64) -> f64 {
 crate::function!(abs(f64) -> f64);
 crate::function!(min(f64, f64) -> f64);
 crate::function!(max(f64, f64) -> f64);
+
+#[cfg(test)]
+mod tests {
+    use monas_robot::Sensors;
+
+    use super::*;
+
+    fn mixed(sensors: &Sensors, limit: f64, count: i64, strict: bool, name: &str) -> bool {
+        sensors.head_yaw > limit && count > 1 && strict && name == "head"
+    }
+    crate::function!(mixed(&Sensors, f64, i64, bool, &str) -> bool as "function_test_mixed");
+
+    fn declaration() -> &'static FunctionDeclaration {
+        FUNCTIONS.iter().find(|function| function.name == "function_test_mixed").unwrap()
+    }
+
+    #[test]
+    fn arguments_of_every_type_are_passed() {
+        let sensors = Sensors { head_yaw: 0.5, ..Sensors::default() };
+        let call = |limit, count| {
+            let values = [Value::Message(&sensors), limit, count, Value::Bool(true), Value::Text("head")];
+            match (declaration().call)(&values) {
+                Some(Value::Bool(truth)) => Some(truth),
+                _ => None,
+            }
+        };
+        assert_eq!(call(Value::Float(0.4), Value::Int(2)), Some(true));
+        assert_eq!(call(Value::Int(1), Value::Uint(2)), Some(false));
+        assert_eq!(call(Value::Float(0.4), Value::Float(2.0)), Some(true));
+        assert_eq!(call(Value::Float(0.4), Value::Float(2.5)), None, "no whole number");
+        assert_eq!(call(Value::Missing, Value::Int(2)), None);
+        assert_eq!(call(Value::Bool(true), Value::Int(2)), None);
+    }
+
+    #[test]
+    fn too_few_arguments_are_no_call() {
+        assert!((declaration().call)(&[]).is_none());
+    }
+
+    #[test]
+    fn types_are_declared() {
+        let expected = [
+            ValueType::Message("Sensors".into()),
+            ValueType::Number,
+            ValueType::Number,
+            ValueType::Bool,
+            ValueType::Text,
+        ];
+        assert_eq!((declaration().parameters)(), expected);
+        assert_eq!((declaration().result)(), ValueType::Bool);
+    }
+}

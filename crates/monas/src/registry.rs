@@ -215,3 +215,62 @@ fn only(name: &str, same: &[FunctionDeclaration]) -> Result<FunctionDeclaration,
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use narukom::Blackboard;
+
+    use super::*;
+
+    fn stand(_: &mut Blackboard) {}
+    crate::activity!(fn stand as "RegistryTestStand");
+
+    /// A registry as two crates would fill it.
+    fn of_two_crates() -> Registry {
+        let mut registry = Registry::empty();
+        for (module, name) in [("red::legs", "Walk"), ("blue", "Walk"), ("blue", "Kick")] {
+            let qualified = format!("{}::{name}", package(module));
+            registry.insert(qualified, module, Arc::new(|| Box::new(stand)));
+            registry.insert(name.into(), module, Arc::new(|| Box::new(stand)));
+        }
+        registry
+    }
+
+    #[test]
+    fn what_is_registered_is_linked() {
+        let registry = Registry::linked();
+        assert!(registry.activity_names().any(|name| name == "RegistryTestStand"));
+        for name in ["abs", "max", "min"] {
+            assert!(registry.function_names().any(|known| known == name), "{name}");
+        }
+        assert_eq!(registry.functions().unwrap().len(), registry.function_names().count());
+    }
+
+    #[test]
+    fn an_unknown_name_comes_with_the_nearest() {
+        let error = of_two_crates().activity("Kik").err().unwrap();
+        assert_eq!((error.kind(), error.hint()), (ErrorKind::UnknownActivity, Some("did you mean `Kick`?")));
+        assert_eq!(error.to_string(), "unknown activity `Kik`");
+    }
+
+    #[test]
+    fn a_name_of_two_crates_needs_the_crate() {
+        let registry = of_two_crates();
+        let error = registry.activity("Walk").err().unwrap();
+        assert_eq!(error.kind(), ErrorKind::AmbiguousActivity);
+        assert_eq!(error.to_string(), "activity `Walk` is registered in red::legs and in blue");
+        assert_eq!(error.hint(), Some("write `red::Walk`"));
+        assert!(registry.activity("red::Walk").is_ok() && registry.activity("blue::Walk").is_ok());
+        assert_eq!(registry.activity_names().collect::<Vec<_>>(), ["Kick", "blue::Walk", "red::Walk"]);
+    }
+
+    #[test]
+    fn two_functions_of_one_name_are_refused() {
+        let mut registry = Registry::linked();
+        let twin = FunctionDeclaration { module: "elsewhere", ..registry.functions["abs"][0] };
+        registry.functions.entry("abs".into()).or_default().push(twin);
+        let error = registry.functions().err().unwrap();
+        assert_eq!(error.kind(), ErrorKind::AmbiguousFunction);
+        assert_eq!(error.to_string(), "function `abs` is registered in monas::function and in elsewhere");
+    }
+}

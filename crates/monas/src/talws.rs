@@ -35,6 +35,9 @@ pub(crate) use seeds::component_seed;
 pub use simulation::Simulation;
 pub use stopper::Stopper;
 
+/// Why an agent stops when nothing is wrong.
+const ENDED: &str = "the run has ended";
+
 /// A host: a robot or a computer, with a hub of its own, the agents that run on it, and its body if it has one.
 #[derive(Default)]
 pub struct HostConfig {

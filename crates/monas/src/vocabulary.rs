@@ -116,3 +116,42 @@ impl Types {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use narukom::TOPICS;
+
+    use super::*;
+
+    #[test]
+    fn topics_are_numbered_as_in_every_hub() {
+        let words = vocabulary(TOPICS, &[]);
+        let hub = narukom::Narukom::with_linked_topics("a").unwrap();
+        let paths: Vec<&str> = words.topics.iter().map(|topic| topic.path.as_str()).collect();
+        assert_eq!(paths, hub.topics().iter().map(|topic| topic.path()).collect::<Vec<_>>());
+        for topic in &words.topics {
+            assert_eq!(hub.topic(&topic.path).map(|slot| slot.number()), Some(topic.id.0));
+        }
+    }
+
+    #[test]
+    fn fields_and_enumerations_are_those_of_the_messages() {
+        let words = vocabulary(TOPICS, &[]);
+        let sensors = words.messages.iter().find(|message| message.name == "Sensors").unwrap();
+        let field = |name: &str| sensors.fields.iter().find(|field| field.name == name).unwrap();
+        assert_eq!(field("head_yaw").kind, ValueType::Number);
+        assert_eq!(field("chest_button").kind, ValueType::Bool);
+        assert_eq!(field("posture").kind, ValueType::Enumeration("Posture".into()));
+        let descriptor = <monas_robot::Sensors as narukom::Message>::DESCRIPTOR;
+        assert_eq!(descriptor.field_index("posture"), Some(field("posture").id.0 as usize));
+        let posture = words.enumerations.iter().find(|enumeration| enumeration.name == "Posture").unwrap();
+        assert!(posture.values.contains(&("FALLEN".into(), 4)));
+    }
+
+    #[test]
+    fn lists_have_no_place_in_expressions() {
+        let words = vocabulary(TOPICS, &[]);
+        let sightings = words.messages.iter().find(|message| message.name == "Sightings").unwrap();
+        assert!(sightings.fields.iter().all(|field| field.name != "objects"));
+    }
+}

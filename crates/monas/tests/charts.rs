@@ -217,6 +217,24 @@ fn a_message_on_a_topic_it_has_not_read_leaves_it_alone() {
 }
 
 #[test]
+fn the_end_of_a_run_stops_what_goes_on() {
+    let (calls, note) = recorder();
+    let registry = Registry::empty().with("A", move || Patient {
+        calls: 0,
+        again: 100,
+        delay: Duration::from_millis(30),
+        reads: false,
+        note: note.clone(),
+    });
+    let mut simulation = simulate(registry, "m = A");
+    simulation.run_until(at(50)).unwrap();
+    simulation.stop();
+    simulation.run_until(at(100)).unwrap();
+    assert_eq!(calls.taken(), ["call 0 None", "call 30 None", "stop 30"]);
+    assert_eq!(simulation.statistics().agents[0].stopped, None, "nothing was wrong");
+}
+
+#[test]
 fn what_an_activity_publishes_itself_does_not_call_it_early() {
     let (calls, note) = recorder();
     let echo = move || {
@@ -405,6 +423,86 @@ fn a_changed_constant_in_a_guard_changes_the_hash() {
     };
     assert_eq!(run("0.005"), run("0.005"));
     assert_ne!(run("0.005").0, run("0.015").0);
+}
+
+#[test]
+fn a_region_that_is_entered_takes_over_the_values_it_lies_in_and_then_has_its_own() {
+    let (seen, note) = recorder();
+    let reading = |name: &'static str| {
+        let note = note.clone();
+        move || {
+            let note = note.clone();
+            move |b: &mut Blackboard| note(format!("{name} {:?}", b.read(BALL).map(|ball| ball.x)))
+        }
+    };
+    let registry = Registry::empty().with("A", reading("A")).with("B", reading("B")).with("C", reading("C"));
+    // B's loop writes; C, in another region, sees it from its next step on.
+    let text = "Liveness:\nm = A . both\nboth = B~ || C~\nTransitions:\nA -> both : / ball.x = 3\n\
+                B -> B : [ball.x == 3] / ball.x = 4\nC -> C : [ball.x == 4] / ball.x = 5";
+    simulate(registry, text).run_until(at(10)).unwrap();
+    assert_eq!(seen.taken(), ["A None", "B Some(3.0)", "C Some(3.0)", "B Some(4.0)", "C Some(5.0)"]);
+}
+
+#[test]
+fn a_signal_is_seen_by_the_activity_that_its_step_starts() {
+    let (seen, note) = recorder();
+    let registry = Registry::empty().with("A", || |_: &mut Blackboard| {}).with("B", move || {
+        let note = note.clone();
+        move |b: &mut Blackboard| note((b.now(), b.signals(NEWS).count()))
+    });
+    let text = "Liveness:\nm = A . B~\nTransitions:\nA -> B~ : news\nB -> B : [t] / StartTimeout(t, 100ms)";
+    let talws = Talws::new().registry(registry).agent(Agent::statechart("m", chart(text)));
+    talws.agent(balls(&[10])).simulate(1).unwrap().run_until(at(100)).unwrap();
+    assert_eq!(seen.taken()[0], (at(10), 1));
+}
+
+#[test]
+fn the_records_name_what_happens() {
+    let records = Arc::new(Mutex::new(Vec::new()));
+    let written = records.clone();
+    let (_, registry) = noting();
+    let text = "Liveness:\nm = A . B\nTransitions:\nA -> B : news [ball.x > 0]";
+    let mut talws = Talws::new().registry(registry).agent(Agent::statechart("m", chart(text)));
+    talws.observe(Box::new(move |publication: narukom::Publication<'_>| {
+        if publication.publisher != "z" && publication.topic.path().starts_with("monas/") {
+            written.lock().unwrap().push(format!(
+                "{} {:?}",
+                publication.topic.path(),
+                publication.sample.message
+            ));
+        }
+    }));
+    let mut simulation = talws.agent(balls(&[10])).simulate(1).unwrap();
+    simulation.run_until(at(100)).unwrap();
+    let slot = |path: &str| simulation.hub("local").unwrap().topic(path).unwrap().number();
+    let (ball, news) = (slot("test/ball"), slot("test/news"));
+    let records = records.lock().unwrap();
+    assert!(
+        records[0].starts_with(
+            "monas/host Host { name: \"local\", team: 0, number: 0, topics: [\"body/actuators\""
+        )
+    );
+    assert_eq!(
+        records[1],
+        "monas/model Model { chart: 0, name: \"m\", nodes: [\"m\", \"m/START\", \"m/A\", \"m/B\", \"m/END\"], \
+         transitions: [\"START -> A\", \"A -> B\", \"B -> END\"], events: [\"error.guard\", \"error.action\", \
+         \"error.activity\", \"?\", \"test/news\"] }"
+    );
+    let fired = records.iter().find(|record| record.contains("selected: [1]")).unwrap();
+    assert_eq!(
+        fired,
+        "monas/chart Chart { chart: 0, time: 10000000, event: 5, selected: [1], preempted: [], held: [], deferred: 0, \
+         exits: [2], entries: [3] }"
+    );
+    let cycle =
+        records.iter().find(|record| record.starts_with("monas/cycle") && record.contains("time: 10000000"));
+    let delivery = |topic| format!("Delivery {{ topic: {topic}, sequence: 1, region: 0 }}");
+    let expected = format!(
+        "monas/cycle Cycle {{ number: 3, time: 10000000, delivered: [{}, {}] }}",
+        delivery(ball),
+        delivery(news)
+    );
+    assert_eq!(cycle.unwrap(), &expected);
 }
 
 /// Fails so many times, then does its work.

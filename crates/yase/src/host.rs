@@ -8,11 +8,14 @@ use crate::vocabulary::{FieldId, FunctionId, TopicId, Value};
 
 /// The world of a [`Machine`](crate::Machine): blackboards, activities and listeners.
 ///
-/// The machine calls these methods during [`start`](crate::Machine::start) and
+/// The machine calls these methods during [`start`](crate::Machine::start), [`stop`](crate::Machine::stop) and
 /// [`run_to_completion`](crate::Machine::run_to_completion), never otherwise, and always on the caller's thread. What has a body here
 /// answers for a world without messages, functions or listeners; whoever has blackboards replaces all of it.
 pub trait Host {
     /// A field of the latest message of a source on a blackboard; [`Value::Missing`] if none has arrived.
+    ///
+    /// A blackboard is also read while the activity of its region runs, to see whether an event is one to be held: it shows then what it
+    /// showed when the activity began.
     fn field(&self, region: RegionId, source: &MessageSource, path: &[FieldId]) -> Value<'_> {
         let _ = (region, source, path);
         Value::Missing

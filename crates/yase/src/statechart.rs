@@ -170,6 +170,9 @@ impl Statechart {
     pub const ROOT: NodeId = NodeId(0);
 
     /// Adds a node as the last child of `parent`.
+    ///
+    /// # Panics
+    /// If `parent` is not one of this chart.
     pub fn add(&mut self, parent: NodeId, mut node: Node) -> NodeId {
         let id = NodeId(self.nodes.len() as u32);
         node.parent = Some(parent);
@@ -199,26 +202,41 @@ impl Statechart {
     }
 
     /// A node.
+    ///
+    /// # Panics
+    /// If the node is not one of this chart.
     pub fn node(&self, id: NodeId) -> &Node {
         &self.nodes[id.0 as usize]
     }
 
     /// A node, to be refined.
+    ///
+    /// # Panics
+    /// If the node is not one of this chart.
     pub fn node_mut(&mut self, id: NodeId) -> &mut Node {
         &mut self.nodes[id.0 as usize]
     }
 
     /// A transition.
+    ///
+    /// # Panics
+    /// If the transition is not one of this chart.
     pub fn transition(&self, id: TransitionId) -> &Transition {
         &self.transitions[id.0 as usize]
     }
 
     /// A transition, to be refined.
+    ///
+    /// # Panics
+    /// If the transition is not one of this chart.
     pub fn transition_mut(&mut self, id: TransitionId) -> &mut Transition {
         &mut self.transitions[id.0 as usize]
     }
 
     /// The children of a node, in order.
+    ///
+    /// # Panics
+    /// If the node is not one of this chart.
     pub fn children(&self, id: NodeId) -> &[NodeId] {
         &self.children[id.0 as usize]
     }
@@ -275,5 +293,49 @@ impl Statechart {
             NodeKind::Condition => "CONDITION".into(),
             _ => number.to_string(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn nested() -> (Statechart, NodeId, NodeId) {
+        let mut chart = Statechart::new("c");
+        let and = chart.add(Statechart::ROOT, Node::new(NodeKind::And, "both"));
+        let first = chart.add(and, Node::new(NodeKind::Or, ""));
+        let second = chart.add(and, Node::new(NodeKind::Or, ""));
+        chart.add(first, Node::new(NodeKind::Basic, "A"));
+        chart.add(second, Node::new(NodeKind::Basic, "A"));
+        let start = chart.add(second, Node::new(NodeKind::Start, ""));
+        (chart, second, start)
+    }
+
+    #[test]
+    fn a_path_names_what_has_no_name_by_its_number_or_kind() {
+        let (chart, second, start) = nested();
+        assert_eq!(chart.path(Statechart::ROOT), "c");
+        assert_eq!(chart.path(second), "c/both/2");
+        assert_eq!(chart.path(start), "c/both/2/START");
+    }
+
+    #[test]
+    fn a_node_is_found_by_as_much_of_its_path_as_makes_it_the_only_one() {
+        let (chart, second, start) = nested();
+        assert_eq!(chart.find("START"), Some(start));
+        assert_eq!(chart.find("both/2"), Some(second));
+        assert_eq!(chart.find("A"), None, "there are two");
+        assert_eq!(chart.find("2/A").map(|node| chart.path(node)), Some("c/both/2/A".into()));
+        assert_eq!(chart.find("x/2/A"), None);
+        assert_eq!(chart.find("c/both/2/A/more"), None);
+        assert_eq!(chart.find(""), None);
+    }
+
+    #[test]
+    fn labels_number_children_from_one() {
+        let (chart, second, start) = nested();
+        let labels = chart.labels();
+        assert_eq!(labels[second.0 as usize], "0.1.2");
+        assert_eq!(labels[start.0 as usize], "0.1.2.2");
     }
 }

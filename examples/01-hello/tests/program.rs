@@ -8,10 +8,14 @@ use std::process::{Command, Stdio};
 fn greetings(count: usize) -> Result<Vec<f64>, Box<dyn Error>> {
     let mut program = Command::new(env!("CARGO_BIN_EXE_example-hello")).stdout(Stdio::piped()).spawn()?;
     let output = program.stdout.take().ok_or("the program has no output")?;
-    let lines: Result<Vec<String>, _> = BufReader::new(output).lines().take(count).collect();
+    let mut output = BufReader::new(output).lines();
+    let lines: Result<Vec<String>, _> = output.by_ref().take(count).collect();
     program.kill()?;
     program.wait()?;
-    lines?.iter().map(|line| second_of(line).ok_or_else(|| format!("`{line}` is no greeting").into())).collect()
+    lines?
+        .iter()
+        .map(|line| second_of(line).ok_or_else(|| format!("`{line}` is no greeting").into()))
+        .collect()
 }
 
 /// The moment that a greeting tells: 0.1 of `hello at 0.100000000 s`.

@@ -14,9 +14,12 @@ use yase::Source;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = Source::new("patrol.srm", include_str!("../patrol.srm"));
     let (patrol, findings) = aseme::statechart_of(&model);
-    findings.iter().for_each(|finding| eprintln!("{finding}"));
-    let registry = ["Walk", "Left", "Right"].into_iter().fold(Registry::linked(), |registry, name| {
-        registry.with(name, move || move |blackboard: &mut Blackboard| println!("{} {name}", blackboard.now()))
+    if let Some(finding) = findings.first() {
+        return Err(finding.to_string().into());
+    }
+    let registry = ["Walk", "Left", "Right"].into_iter().fold(Registry::empty(), |registry, name| {
+        registry
+            .with(name, move || move |blackboard: &mut Blackboard| println!("{} {name}", blackboard.now()))
     });
     let talws = Talws::new().registry(registry).agent(Agent::statechart("guard", patrol));
     talws.simulate(7)?.run_until(Moment::from_secs_f64(6.0))?;

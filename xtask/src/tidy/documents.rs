@@ -27,7 +27,8 @@ const FOLDERS: [&str; 9] =
 pub(super) fn check(workspace: &Workspace) -> Vec<Finding> {
     let mut findings = Vec::new();
     findings.extend(missing_documents(workspace));
-    findings.extend(workspace.crates.iter().filter_map(|member| opening(workspace, member)));
+    let crates = workspace.crates.iter().filter(|member| member.folder.starts_with("crates"));
+    findings.extend(crates.filter_map(|member| opening(workspace, member)));
     findings.extend(unnamed_crates(workspace));
     let documents =
         workspace.files.iter().filter(|file| file.path.extension().is_some_and(|end| end == "md"));

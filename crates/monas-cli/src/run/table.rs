@@ -33,7 +33,7 @@ fn write_text(out: &mut dyn Write, summary: &Summary, wall: Duration) -> io::Res
     let (simulated, taken) = (summary.simulated.as_secs_f64(), wall.as_secs_f64());
     writeln!(
         out,
-        "{simulated:.1} s of play in {taken:.1} s: {:.1} simulated seconds a second",
+        "{simulated:.1} s of play in {taken:.1} s: {:.1} simulated seconds per wall second",
         speed(summary, wall)
     )?;
     writeln!(out, "messages: {}", summary.messages)?;

@@ -22,7 +22,9 @@ fn a_short_match_ends_with_its_figures_and_hash() {
     assert_eq!(answer.code, Some(0), "{}", answer.err);
     let figures =
         ["goals", "shots", "saves", "falls", "penalties", "possession", "cycles", "overruns", "micro-steps"];
-    for figure in figures.into_iter().chain(["activity calls", "simulated seconds a second", "messages: "]) {
+    for figure in
+        figures.into_iter().chain(["activity calls", "simulated seconds per wall second", "messages: "])
+    {
         assert!(answer.out.contains(figure), "{figure} is not in\n{}", answer.out);
     }
     assert!(answer.out.contains("Goalie") && answer.out.contains("Attacker"), "{}", answer.out);
@@ -193,4 +195,25 @@ fn a_seed_is_refused_where_time_is_real() {
     let answer = monas(&["run", "config/roles/goalie.xml", "--seed", "7"]);
     assert_eq!(answer.code, Some(2));
     assert!(answer.err.contains("--seed is for simulated time"), "{}", answer.err);
+}
+
+#[test]
+fn two_mistakes_in_two_files_are_two_diagnostics() {
+    let (folder, _) = changed(MATCH, "half=", "hlaf=");
+    let role = folder.path().join("config/roles/goalie.xml");
+    let text = fs::read_to_string(&role).expect("the role is there");
+    fs::write(&role, text.replacen("priority", "pirority", 1)).expect("the folder takes files");
+    let config = folder.path().join(MATCH).display().to_string();
+    let answer = monas(&["config", "check", &config, "--format", "json"]);
+    assert_eq!((answer.code, answer.err.lines().count()), (Some(3), 2), "{}", answer.err);
+    assert!(answer.err.contains("`hlaf`") && answer.err.contains("`pirority`"), "{}", answer.err);
+}
+
+#[test]
+fn real_time_holds_a_match_back() {
+    let answer = monas(&["run", MATCH, "--for", "300ms", "--realtime", "--format", "json"]);
+    let run: Value =
+        answer.out.lines().last().and_then(|line| serde_json::from_str(line).ok()).expect("the run");
+    assert_eq!(run["simulated_seconds"], 0.3);
+    assert!(run["wall_seconds"].as_f64().is_some_and(|wall| wall >= 0.3), "{run}");
 }

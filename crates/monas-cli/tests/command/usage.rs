@@ -70,3 +70,12 @@ fn a_reader_that_leaves_is_no_failure() {
     let answer: crate::kit::Answer = child.wait_with_output().expect("it ends").into();
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
 }
+
+#[test]
+fn a_log_filter_that_is_not_understood_is_named() {
+    let filter = "monas=loud";
+    let answer: crate::kit::Answer =
+        command(&["--version"]).env("MONAS_LOG", filter).output().expect("the command starts").into();
+    assert_eq!(answer.code, Some(0));
+    assert!(answer.err.contains("MONAS_LOG is not understood"), "{}", answer.err);
+}

@@ -90,7 +90,8 @@ impl Desk {
         }
     }
 
-    /// The newest message of a source.
+    /// The newest message of a source. A blackboard keeps one newest message for each topic: if that is not by the publisher that is
+    /// meant, or if another host is meant, of which nothing arrives on this hub, there is none.
     fn newest(&self, region: RegionId, source: &MessageSource) -> Option<&dyn narukom::AnyMessage> {
         let blackboard = self.blackboard(region)?;
         let sample = blackboard.latest_sample(slot(source.topic))?;

@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use narukom::{Moment, TopicSlot};
 
+use super::ENDED;
 use super::clock::Clock;
 use super::mailbox::{Mail, Mailbox};
 use super::pool::Pool;
@@ -77,7 +78,7 @@ impl ChartThread {
         let until = self.runner.due(self.clock.now()).min(self.tick());
         self.mailbox.wait(until, &self.clock, mail);
         if mail.stop {
-            return Err(Switch::ENDED.into());
+            return Err(ENDED.into());
         }
         let now = self.clock.now();
         mail.messages.drain(..).for_each(|(topic, origin)| self.runner.message_arrived(topic, origin, now));
@@ -161,7 +162,7 @@ impl ChartThread {
             cycles: self.steps,
             micro_steps: self.runner.micro_steps(),
             activities: self.runner.activity_statistics().collect(),
-            stopped: stopped.filter(|reason| reason != Switch::ENDED),
+            stopped: stopped.filter(|reason| reason != ENDED),
             ..AgentStatistics::default()
         }
     }

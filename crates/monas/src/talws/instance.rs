@@ -2,6 +2,7 @@
 
 use narukom::{Moment, TopicSlot};
 
+use super::ENDED;
 use super::setup::Member;
 use super::simulated_chart::SimulatedChart;
 use super::teller::Teller;
@@ -104,7 +105,7 @@ impl Instance {
             cycles: self.teller.number(),
             micro_steps: self.charts.iter().map(SimulatedChart::micro_steps).sum(),
             activities: listed.chain(charted).collect(),
-            stopped: self.stopped.clone(),
+            stopped: self.stopped.clone().filter(|reason| reason != ENDED),
             ..AgentStatistics::default()
         }
     }

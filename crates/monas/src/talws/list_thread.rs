@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use narukom::Moment;
 
+use super::ENDED;
 use super::clock::Clock;
 use super::deadlines::Deadlines;
 use super::real_time::Switch;
@@ -44,7 +45,7 @@ impl ListThread {
                 break;
             }
         }
-        self.list.stop(Switch::ENDED);
+        self.list.stop(ENDED);
         self.statistics()
     }
 
@@ -83,7 +84,7 @@ impl ListThread {
             overruns: self.deadlines.overruns(),
             activities: self.list.activity_statistics().collect(),
             cycle_time: Some(self.cycle_time),
-            stopped: self.list.stopped().filter(|reason| *reason != Switch::ENDED).map(str::to_owned),
+            stopped: self.list.stopped().filter(|reason| *reason != ENDED).map(str::to_owned),
             ..AgentStatistics::default()
         }
     }

@@ -66,8 +66,9 @@ impl Mailbox {
         self.filled.notify_one();
     }
 
-    /// Swaps the mail for an empty one, when there is some or the moment has come.
+    /// Swaps the mail for `into`, whose lists are empty, when there is some or the moment has come.
     pub(super) fn wait(&self, until: Moment, clock: &Clock, into: &mut Mail) {
+        into.stop = false;
         let mut mail = self.lock();
         while mail.is_empty() {
             let now = clock.now();

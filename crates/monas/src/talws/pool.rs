@@ -30,7 +30,7 @@ struct Shared {
 
 #[derive(Default)]
 struct State {
-    waiting: BinaryHeap<Job>,
+    waiting: BinaryHeap<Waiting<Job>>,
     idle: usize,
     submitted: u64,
     closed: bool,
@@ -38,10 +38,16 @@ struct State {
 
 /// An activity to be called, and whom to tell.
 struct Job {
-    priority: i32,
-    number: Reverse<u64>,
     assignment: Box<Assignment>,
     mailbox: Arc<Mailbox>,
+}
+
+/// Something that waits for its turn: the greatest comes first.
+struct Waiting<T> {
+    priority: i32,
+    /// The earlier of two of equal priority is the greater.
+    number: Reverse<u64>,
+    what: T,
 }
 
 impl Pool {
@@ -65,7 +71,8 @@ impl Pool {
             let mut state = self.shared.lock();
             state.submitted += 1;
             let (priority, number) = (assignment.priority, Reverse(state.submitted));
-            state.waiting.push(Job { priority, number, assignment: Box::new(assignment), mailbox });
+            let what = Job { assignment: Box::new(assignment), mailbox };
+            state.waiting.push(Waiting { priority, number, what });
             state.waiting.len() > state.idle
         };
         self.shared.ready.notify_one();
@@ -109,7 +116,7 @@ impl Shared {
     }
 
     fn work(&self) {
-        while let Some(Job { mut assignment, mailbox, .. }) = self.next() {
+        while let Some(Job { mut assignment, mailbox }) = self.next() {
             let returned = assignment.call();
             mailbox.returned(*assignment, returned);
         }
@@ -122,8 +129,8 @@ impl Shared {
             if state.closed {
                 return None;
             }
-            if let Some(job) = state.waiting.pop() {
-                return Some(job);
+            if let Some(waiting) = state.waiting.pop() {
+                return Some(waiting.what);
             }
             state.idle += 1;
             state = self.ready.wait(state).unwrap_or_else(PoisonError::into_inner);
@@ -132,28 +139,45 @@ impl Shared {
     }
 }
 
-impl Job {
+impl<T> Waiting<T> {
     fn urgency(&self) -> (i32, Reverse<u64>) {
         (self.priority, self.number)
     }
 }
 
-impl PartialEq for Job {
-    fn eq(&self, other: &Job) -> bool {
+impl<T> PartialEq for Waiting<T> {
+    fn eq(&self, other: &Waiting<T>) -> bool {
         self.urgency() == other.urgency()
     }
 }
 
-impl Eq for Job {}
+impl<T> Eq for Waiting<T> {}
 
-impl PartialOrd for Job {
-    fn partial_cmp(&self, other: &Job) -> Option<Ordering> {
+impl<T> PartialOrd for Waiting<T> {
+    fn partial_cmp(&self, other: &Waiting<T>) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Job {
-    fn cmp(&self, other: &Job) -> Ordering {
+impl<T> Ord for Waiting<T> {
+    fn cmp(&self, other: &Waiting<T>) -> Ordering {
         self.urgency().cmp(&other.urgency())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_most_urgent_comes_first_and_of_equals_the_one_that_came_first() {
+        let came = [("a", 0), ("b", 5), ("c", 0), ("d", -1), ("e", 5)];
+        let mut heap: BinaryHeap<Waiting<&str>> = came
+            .into_iter()
+            .zip(0..)
+            .map(|((what, priority), number)| Waiting { priority, number: Reverse(number), what })
+            .collect();
+        let order: Vec<&str> = std::iter::from_fn(|| heap.pop()).map(|waiting| waiting.what).collect();
+        assert_eq!(order, ["b", "e", "a", "c", "d"]);
     }
 }

@@ -5,7 +5,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 
-use super::Talws;
 use super::body::Body;
 use super::chart_thread::ChartThread;
 use super::clock::Clock;
@@ -15,6 +14,7 @@ use super::mailbox::Mailbox;
 use super::pool::Pool;
 use super::setup::{Environment, Member, Stage, Station, tick};
 use super::stopper::Stopper;
+use super::{ENDED, Talws};
 use crate::error::{Error, ErrorKind};
 use crate::statistics::{AgentStatistics, Average, Statistics};
 
@@ -37,11 +37,8 @@ pub(super) struct Switch {
 }
 
 impl Switch {
-    /// Why an agent stops when nothing is wrong.
-    pub(super) const ENDED: &str = "the run has ended";
-
     pub(super) fn stop(&self, reason: &str) {
-        if !self.off.swap(true, Ordering::SeqCst) && reason != Switch::ENDED {
+        if !self.off.swap(true, Ordering::SeqCst) && reason != ENDED {
             tracing::error!("an agent has stopped: {reason}");
         }
         self.mailboxes.iter().for_each(|mailbox| mailbox.stop());

@@ -4,12 +4,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use narukom::{Moment, Narukom, TopicSlot};
 
-use super::Talws;
 use super::body::Body;
 use super::clock::Clock;
 use super::instance::Instance;
 use super::setup::{Environment, Stage, Station, tick};
 use super::stopper::Stopper;
+use super::{ENDED, Talws};
 use crate::coverage::ChartCoverage;
 use crate::error::Error;
 use crate::list::Outcome;
@@ -109,7 +109,7 @@ impl Simulation {
     /// Stops all agents; their activities are told so.
     pub fn stop(&mut self) {
         let instances = self.hosts.iter_mut().flat_map(|host| &mut host.instances);
-        instances.for_each(|instance| instance.stop("the run has ended", self.now));
+        instances.for_each(|instance| instance.stop(ENDED, self.now));
     }
 
     /// Which states and transitions of each chart there was use of.

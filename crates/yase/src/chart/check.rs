@@ -9,12 +9,28 @@ use crate::statechart::{NodeId, NodeKind, Statechart, Transition, TransitionId};
 const MAX_SEGMENTS: usize = 256;
 
 impl Statechart {
-    /// Checks the structure: composites and their STARTs (`M01`), the ends of transitions (`M02`, `M03`), connectors (`M06`), and
-    /// what the machine does not run (`E0301`). Each finding names states by their path.
+    /// Checks the structure. Each finding names states by their path; whether a chart can run is decided by its errors.
+    ///
+    /// | code | finding |
+    /// |---|---|
+    /// | `M01` | a composite without exactly one START; an AND without regions, or with something else in it; a START that leads out of its composite; a START that may have no open way (a warning) |
+    /// | `M02` | a transition into START or out of END; a trigger where no event is waited for |
+    /// | `M03` | a transition whose ends do not exist, or whose source or target cannot be one: the root, a sibling region, the outside of an internal transition's source |
+    /// | `M06` | connectors that lead in a circle, nowhere, or on without measure |
+    /// | `E0301` | what the machine does not run: CHOICE, FORK, JOIN, history, entry and exit points, weights |
+    /// | `E0302` | something inside what cannot hold states |
+    /// | `E0303` | an activity of what is no BASIC state |
+    /// | `E0304` | a root that is no OR; a node whose parent is not the node that holds it |
+    ///
+    /// Transitions between sibling regions and chains of connectors that multiply beyond measure are found by
+    /// [`compile`](Statechart::compile) only.
     pub fn check(&self) -> Vec<Diagnostic> {
         let mut check = Check { chart: self, found: Vec::new() };
-        check.nodes();
-        check.transitions();
+        check.tree();
+        if check.found.is_empty() {
+            check.nodes();
+            check.transitions();
+        }
         if check.found.is_empty() {
             check.connectors();
         }
@@ -44,6 +60,25 @@ impl Check<'_> {
 
     fn path(&self, node: NodeId) -> String {
         self.chart.path(node)
+    }
+
+    /// Nodes can be refined in place; their parents must still be the nodes that hold them. Paths make no sense before this is known.
+    fn tree(&mut self) {
+        let chart = self.chart;
+        let root = chart.node(Statechart::ROOT);
+        if root.kind != NodeKind::Or || root.parent.is_some() {
+            self.error("E0304", format!("the root of `{}` is not an OR without parent", chart.name));
+        }
+        for (id, _) in chart.nodes() {
+            for &child in chart.children(id) {
+                if chart.node(child).parent != Some(id) {
+                    self.error(
+                        "E0304",
+                        format!("node {} lies in node {}, which is not its parent", child.0, id.0),
+                    );
+                }
+            }
+        }
     }
 
     fn nodes(&mut self) {

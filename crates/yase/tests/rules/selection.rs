@@ -152,6 +152,45 @@ fn r05_a_guard_that_errs_is_false_and_says_so_once_until_its_input_changes() {
 }
 
 #[test]
+fn r05_a_guard_that_has_succeeded_since_says_again_that_it_errs() {
+    check(
+        "
+        START
+        & both
+          one
+            START
+            A
+          two
+            START
+            X
+            Y
+        c/START -> both
+        one/START -> A
+        two/START -> X
+        A -> A {internal} : e [In(Y) || fail() > 0]
+        X -> Y : to
+        Y -> X : fro
+        ",
+        "1 e; 2 e; 3 to; 4 e; 5 fro; 6 e; 7",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> both; exit START; enter both, both/one, both/one/START, both/two, both/two/START
+        0.000 s -: both/one/START -> both/one/A, both/two/START -> both/two/X; exit both/one/START, both/two/START; enter both/one/A, both/two/X
+        guard failed: the function failed: it always fails
+        0.001 s e: dropped
+        0.001 s error.guard: dropped
+        0.002 s e: dropped
+        0.003 s to: both/two/X -> both/two/Y; exit both/two/X; enter both/two/Y
+        0.004 s e: both/one/A -> both/one/A
+        0.005 s fro: both/two/Y -> both/two/X; exit both/two/Y; enter both/two/X
+        guard failed: the function failed: it always fails
+        0.006 s e: dropped
+        0.006 s error.guard: dropped
+        ",
+    );
+}
+
+#[test]
 fn r05_a_message_that_has_not_arrived_is_unknown_and_does_not_fire() {
     check(
         "

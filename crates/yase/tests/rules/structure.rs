@@ -118,6 +118,23 @@ fn r01_what_stands_where_it_cannot_is_refused() {
 }
 
 #[test]
+fn r01_a_chart_that_is_no_tree_is_refused() {
+    let refused = |spoil: fn(&mut Statechart)| {
+        let mut chart = chart("START\nP\n  START\n  A\nc/START -> P\nP/START -> A\n");
+        spoil(&mut chart);
+        chart.compile(&vocabulary()).unwrap_err().iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        refused(|chart| chart.node_mut(Statechart::ROOT).kind = NodeKind::And),
+        ["error[E0304]: the root of `c` is not an OR without parent"]
+    );
+    assert_eq!(
+        refused(|chart| chart.node_mut(NodeId(2)).parent = Some(NodeId(4))),
+        ["error[E0304]: node 2 lies in node 0, which is not its parent"]
+    );
+}
+
+#[test]
 fn r02_the_scope_is_the_lowest_or_that_properly_contains_both_ends() {
     check(
         "

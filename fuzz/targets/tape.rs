@@ -1,0 +1,82 @@
+//! Tapes: any bytes, and a real tape of which some bytes have changed or the end is missing.
+#![no_main]
+
+use std::io::{self, Write};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+
+use libfuzzer_sys::fuzz_target;
+use monas_robot::{Announcement, Sensors, topics};
+use monas_tape::{Recording, Tape};
+use narukom::{Moment, Narukom};
+
+static WHOLE: LazyLock<Vec<u8>> = LazyLock::new(|| recorded().expect("a tape is recorded in memory"));
+
+fuzz_target!(|data: &[u8]| {
+    read(data.to_vec());
+    read(damaged(data));
+});
+
+fn read(bytes: Vec<u8>) {
+    let recording = Recording::from_bytes(bytes);
+    let _ = recording.is_finished();
+    let Ok(messages) = recording.messages() else { return };
+    // Who meets an error does not read on.
+    for message in messages.map_while(Result::ok) {
+        assert!(!message.channel.topic.starts_with('/'));
+    }
+}
+
+/// The whole tape after some edits: two bytes say where, the third what stands there from now on. Two bytes that remain say
+/// where the tape ends.
+fn damaged(edits: &[u8]) -> Vec<u8> {
+    let mut bytes = WHOLE.clone();
+    let length = bytes.len();
+    let place = |low: u8, high: u8| usize::from(u16::from_le_bytes([low, high])) % length;
+    let chunks = edits.chunks_exact(3);
+    let rest = chunks.remainder();
+    for edit in chunks {
+        bytes[place(edit[0], edit[1])] = edit[2];
+    }
+    if let [low, high] = rest {
+        bytes.truncate(place(*low, *high));
+    }
+    bytes
+}
+
+/// A tape of some messages on two topics.
+fn recorded() -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+    let memory = Memory::default();
+    let tape = Tape::to_writer(memory.clone())?;
+    let hub = Narukom::with_linked_topics("robot")?;
+    hub.observe(Box::new(tape.clone()));
+    let mut referee = hub.publisher(topics::ANNOUNCEMENT, "referee")?;
+    let mut body = hub.publisher(topics::SENSORS, "body")?;
+    for number in 0..8 {
+        let now = Moment::from_nanos(400_000_000 * number);
+        referee.publish(Announcement { team: 3, seconds_left: 600.0, ..Announcement::default() }, now);
+        body.publish(Sensors { head_yaw: 0.5, ..Sensors::default() }, now);
+    }
+    tape.finish()?;
+    Ok(memory.bytes())
+}
+
+/// A file in memory.
+#[derive(Clone, Default)]
+struct Memory(Arc<Mutex<Vec<u8>>>);
+
+impl Memory {
+    fn bytes(&self) -> Vec<u8> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+impl Write for Memory {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

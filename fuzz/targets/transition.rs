@@ -1,0 +1,76 @@
+//! Transition expressions: findings fit, the canonical text reads back as itself, and compiling gives an answer.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use monas_fuzz::assert_findings_fit;
+use yase::expression::{EventTable, Names, parse_actions, parse_condition, parse_transition};
+use yase::statechart::{Constant, ConstantValue};
+use yase::vocabulary::{
+    Enumeration, FieldEntry, FieldId, FunctionEntry, FunctionId, MessageEntry, TopicEntry, TopicId, TopicKind,
+    ValueType, Vocabulary,
+};
+
+fuzz_target!(|text: &str| {
+    assert_findings_fit(text, &parse_condition(text).1);
+    assert_findings_fit(text, &parse_actions(text).1);
+    let (transition, findings) = parse_transition(text);
+    assert_findings_fit(text, &findings);
+    if findings.is_empty() {
+        let canonical = transition.to_string();
+        let (again, findings) = parse_transition(&canonical);
+        assert_eq!(findings, [], "{canonical}");
+        assert_eq!(again.to_string(), canonical);
+    }
+    let timers: Vec<String> = transition.started_timers().collect();
+    let mut events = EventTable::new();
+    let compiled = transition.compile(&mut Names {
+        vocabulary: &vocabulary(),
+        constants: &[Constant { name: "near".into(), value: ConstantValue::Number(0.25) }],
+        timers: &timers,
+        events: &mut events,
+        states: &|_| None,
+    });
+    if let Err(findings) = compiled {
+        assert!(!findings.is_empty());
+        assert_findings_fit(text, &findings);
+    }
+});
+
+/// The words of a ball and a game, so that some of what is written can be compiled.
+fn vocabulary() -> Vocabulary {
+    let field = |id, name: &str, kind| FieldEntry { id: FieldId(id), name: name.into(), kind };
+    let topic = |id, path: &str, kind, message: &str| TopicEntry {
+        id: TopicId(id),
+        path: path.into(),
+        kind,
+        message: message.into(),
+    };
+    let ball = vec![
+        field(0, "found", ValueType::Bool),
+        field(1, "x", ValueType::Number),
+        field(2, "name", ValueType::Text),
+        field(3, "owner", ValueType::Message("Game".into())),
+    ];
+    let game = vec![field(0, "phase", ValueType::Enumeration("Phase".into()))];
+    Vocabulary {
+        topics: vec![
+            topic(0, "soccer/ball", TopicKind::State, "Ball"),
+            topic(1, "soccer/game", TopicKind::Signal, "Game"),
+            topic(2, "soccer/old_game", TopicKind::Data, "Game"),
+        ],
+        messages: vec![
+            MessageEntry { name: "Ball".into(), fields: ball },
+            MessageEntry { name: "Game".into(), fields: game },
+        ],
+        enumerations: vec![Enumeration {
+            name: "Phase".into(),
+            values: vec![("READY".into(), 0), ("PLAYING".into(), 1)],
+        }],
+        functions: vec![FunctionEntry {
+            id: FunctionId(0),
+            name: "abs".into(),
+            parameters: vec![ValueType::Number],
+            result: ValueType::Number,
+        }],
+    }
+}
