@@ -1,9 +1,8 @@
 //! Random input for every parser: whatever a person or a disk may hold, Monas answers with findings, never with a panic.
 //!
 //! Each file in `targets` hands libFuzzer's bytes to one parser, and checks what its page promises: that a finding lies within the
-//! text it speaks of, that what is printed reads back as the same. `seeds` and the project's own models and
-//! configurations are where the fuzzer begins, `dictionaries` the words that it tries; what it finds on its way it keeps in
-//! `corpus`, which is not part of the project.
+//! text it speaks of, that what is printed reads back as the same. `seeds` are where the fuzzer begins, `dictionaries` the words that
+//! it tries; what it finds on its way it keeps in `corpus`, which is not part of the project.
 //!
 //! ```text
 //! cargo install cargo-fuzz          # once; and a nightly toolchain with a C++ compiler

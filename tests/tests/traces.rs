@@ -1,33 +1,40 @@
-//! What the charts of both roles do in the first simulated second is written in golden files. `MONAS_BLESS=1` writes them anew.
+//! What the charts of both roles do in the first simulated second, and in the first second of play, is written in golden files.
+//! `MONAS_BLESS=1` writes them anew.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use aseme::path::shortest_path;
 use monas::MicroStep;
 use monas_match::{Match, Options};
 use monas_tests::{MATCH, root};
 
-/// The trace of the chart on a host in the first second of a match.
-fn trace_of(host: &'static str) -> String {
+/// When the first kick-off is.
+const KICK_OFF: Duration = Duration::from_secs(6);
+const SECOND: Duration = Duration::from_secs(1);
+
+/// The trace of the chart on a host in the second of a match that begins at `from`.
+fn trace_of(host: &'static str, from: Duration) -> String {
     let lines = Arc::new(Mutex::new(String::new()));
     let written = lines.clone();
     let plan = Match::load(root().join(MATCH.file), &monas::Registry::linked()).unwrap();
     let plan = plan.listen(Box::new(move |step: MicroStep<'_>| {
-        if step.host == host {
+        if step.host == host && Duration::from_nanos(step.record.time.as_nanos()) >= from {
+            let name = |node| shortest_path(step.chart.statechart(), node);
             let mut lines = written.lock().unwrap();
-            lines.push_str(&step.record.display(step.chart).to_string());
+            lines.push_str(&step.record.display_with(step.chart, name).to_string());
             lines.push('\n');
         }
     }));
     let mut running = plan.start(Options { seed: 7, record: None }).unwrap();
-    running.advance(Duration::from_secs(1)).unwrap();
+    running.advance(from + SECOND).unwrap();
     let text = lines.lock().unwrap().clone();
     text
 }
 
-fn check(host: &'static str, file: &str) {
+fn check(host: &'static str, from: Duration, file: &str) {
     let path = root().join("tests/golden").join(file);
-    let trace = trace_of(host);
+    let trace = trace_of(host, from);
     assert!(trace.lines().count() > 10, "{trace}");
     if std::env::var_os("MONAS_BLESS").is_some() {
         std::fs::write(&path, &trace).unwrap();
@@ -37,10 +44,20 @@ fn check(host: &'static str, file: &str) {
 
 #[test]
 fn the_goalies_first_second() {
-    check("blue-1", "goalie.trace");
+    check("blue-1", Duration::ZERO, "goalie.trace");
+}
+
+#[test]
+fn the_goalies_first_second_of_play() {
+    check("blue-1", KICK_OFF, "goalie-play.trace");
 }
 
 #[test]
 fn the_attackers_first_second() {
-    check("blue-2", "attacker.trace");
+    check("blue-2", Duration::ZERO, "attacker.trace");
+}
+
+#[test]
+fn the_attackers_first_second_of_play() {
+    check("blue-2", KICK_OFF, "attacker-play.trace");
 }

@@ -146,7 +146,13 @@ fn misfit<Id>(wish: &Wish<'_, Id>, text_of: impl Fn(&Id) -> String) -> Unmatched
 }
 
 fn hint(candidates: &[String]) -> Option<String> {
-    let quoted: Vec<String> = candidates.iter().map(|candidate| format!("`{candidate}`")).collect();
+    let mut quoted: Vec<String> = Vec::new();
+    for candidate in candidates.iter().map(|candidate| format!("`{candidate}`")) {
+        // A loop's two ends are near the same name.
+        if !quoted.contains(&candidate) {
+            quoted.push(candidate);
+        }
+    }
     match quoted.as_slice() {
         [] => None,
         [one] => Some(format!("did you mean {one}?")),

@@ -15,4 +15,5 @@ pub mod lights;
 pub mod localisation;
 pub mod motion;
 pub mod obstacles;
+pub mod support;
 pub mod walk;

@@ -7,7 +7,7 @@ use narukom::Message;
 use yase::Value;
 use yase::vocabulary::ValueType;
 
-/// A function as [`function!`](crate::function) registers it.
+/// A function as [`function!`](crate::function!) registers it.
 #[derive(Clone, Copy)]
 pub struct FunctionDeclaration {
     /// Its name in expressions.

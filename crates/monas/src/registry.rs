@@ -9,7 +9,7 @@ use crate::activity::Activity;
 use crate::error::{Error, ErrorKind};
 use crate::function::{FUNCTIONS, FunctionDeclaration};
 
-/// An activity as [`activity!`](crate::activity) registers it.
+/// An activity as [`activity!`](crate::activity!) registers it.
 #[derive(Clone, Copy, Debug)]
 pub struct ActivityDeclaration {
     /// The name that configurations and models use.
@@ -100,7 +100,7 @@ impl Registry {
         Registry::default()
     }
 
-    /// Everything that [`activity!`](crate::activity) and [`function!`](crate::function) registered in this program.
+    /// Everything that [`activity!`](crate::activity!) and [`function!`](crate::function!) registered in this program.
     pub fn linked() -> Registry {
         let mut registry = Registry::empty();
         for declaration in ACTIVITIES {

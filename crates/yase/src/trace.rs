@@ -50,16 +50,26 @@ pub enum Occasion {
 impl<'a> TraceRecord<'a> {
     /// The record in one line, with the names of its chart.
     pub fn display(&self, chart: &'a Chart) -> impl fmt::Display + 'a {
-        Line { record: *self, chart }
+        self.display_with(chart, |node| chart.short_path(node))
+    }
+
+    /// The record in one line, with names of the caller's choice for the nodes.
+    pub fn display_with(
+        &self,
+        chart: &'a Chart,
+        name: impl Fn(NodeId) -> String + 'a,
+    ) -> impl fmt::Display + 'a {
+        Line { record: *self, chart, name }
     }
 }
 
-struct Line<'a> {
+struct Line<'a, N> {
     record: TraceRecord<'a>,
     chart: &'a Chart,
+    name: N,
 }
 
-impl fmt::Display for Line<'_> {
+impl<N: Fn(NodeId) -> String> fmt::Display for Line<'_, N> {
     /// `0.100 s kick: a -> b; exit a; do a -> b; enter b; read a -> b = true`; what is empty is left out.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let record = &self.record;
@@ -69,7 +79,7 @@ impl fmt::Display for Line<'_> {
             Occasion::Event(event) => write!(f, "{} {}:", record.time, self.chart.events().name(event))?,
         }
         let compounds = |list: &[CompoundId]| join(list, |&compound| self.compound(compound));
-        let nodes = |list: &[NodeId]| join(list, |&node| self.chart.short_path(node));
+        let nodes = |list: &[NodeId]| join(list, |&node| (self.name)(node));
         match record.selected.is_empty() {
             false => write!(f, " {}", compounds(record.selected))?,
             true if record.is_dropped() => write!(f, " dropped")?,
@@ -78,7 +88,7 @@ impl fmt::Display for Line<'_> {
         }
         part(f, "preempt", &compounds(record.preempted))?;
         part(f, "hold", &compounds(record.held))?;
-        part(f, "defer in", &record.deferred.map(|node| self.chart.short_path(node)).unwrap_or_default())?;
+        part(f, "defer in", &record.deferred.map(&self.name).unwrap_or_default())?;
         part(f, "exit", &nodes(record.exits))?;
         part(f, "do", &join(record.effects, |&place| self.effect(place)))?;
         part(f, "enter", &nodes(record.entries))?;
@@ -96,18 +106,18 @@ impl TraceRecord<'_> {
     }
 }
 
-impl Line<'_> {
+impl<N: Fn(NodeId) -> String> Line<'_, N> {
     /// `a -> CONDITION -> b`
     fn compound(&self, compound: CompoundId) -> String {
         let statechart = self.chart.statechart();
         let segments = self.chart.segments(compound);
         let mut text = segments
             .first()
-            .map(|&first| self.chart.short_path(statechart.transition(first).source))
+            .map(|&first| (self.name)(statechart.transition(first).source))
             .unwrap_or_default();
         for &segment in segments {
             text += " -> ";
-            text += &self.chart.short_path(statechart.transition(segment).target);
+            text += &(self.name)(statechart.transition(segment).target);
         }
         text
     }
@@ -116,8 +126,8 @@ impl Line<'_> {
         let transition = self.chart.statechart().transition(id);
         format!(
             "{} -> {}",
-            self.chart.short_path(transition.source),
-            self.chart.short_path(transition.target)
+            (self.name)(transition.source),
+            (self.name)(transition.target)
         )
     }
 
@@ -126,10 +136,10 @@ impl Line<'_> {
         let (actions, at) = match place {
             ActionPlace::Transition(id) => (&statechart.transition(id).expression.actions, self.segment(id)),
             ActionPlace::Entry(id) => {
-                (&statechart.node(id).entry, format!("entry {}", self.chart.short_path(id)))
+                (&statechart.node(id).entry, format!("entry {}", (self.name)(id)))
             }
             ActionPlace::Exit(id) => {
-                (&statechart.node(id).exit, format!("exit {}", self.chart.short_path(id)))
+                (&statechart.node(id).exit, format!("exit {}", (self.name)(id)))
             }
         };
         format!("{} ({at})", join(actions, |action| action.to_string()))

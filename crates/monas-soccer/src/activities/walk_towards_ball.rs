@@ -5,22 +5,21 @@ use nalgebra::Point2;
 
 use super::shot::{Ground, ground, others, target};
 use super::wishes::request_walk;
-use crate::functionality::approach::{Approach, support_place};
+use crate::functionality::approach::Approach;
 use crate::functionality::avoidance::{avoid, keep_out};
+use crate::functionality::support::support_place;
 use crate::functionality::walk::{Walk, stride_to, turn_to};
 use crate::{Ball, topics};
 
 /// Walks behind the ball, so that it lies between the robot and the opponents' goal, round other robots and not through the own
-/// goal's area. While a team mate is nearer to the ball it keeps the place behind that one's back.
+/// goal's area. While a team mate is nearer to the ball it waits ahead of it, to its side.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WalkTowardsBall {
     approach: Approach,
 }
 
 /// How much nearer to the ball a team mate has to be to have it, metres.
-const NEARER: f64 = 0.15;
-/// How far from the ball the one without it stays, metres.
-const SUPPORT: f64 = 1.0;
+const NEARER: f64 = 0.3;
 /// How far from the goal's area a field player stays, metres.
 const FROM_AREA: f64 = 0.15;
 
@@ -40,31 +39,28 @@ impl Activity for WalkTowardsBall {
 
 impl WalkTowardsBall {
     fn walk(&self, blackboard: &Blackboard, ball: &Ball) -> Walk {
+        let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
         let ground = ground(blackboard);
         let target = target(blackboard, ball, ground.as_ref());
-        let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
-        let walk = match place_to_wait(blackboard, ball, target, ground.as_ref()) {
+        let Some(ground) = ground else { return self.approach.walk(ball.position(), target, &obstacles) };
+        let walk = match place_to_wait(blackboard, ball, &ground) {
             Some(place) => wait_at(place, ball, &obstacles),
             None => self.approach.walk(ball.position(), target, &obstacles),
         };
-        ground.map_or(walk, |ground| keep_out(walk, &ground.field, &ground.field_from_robot))
+        keep_out(walk, &ground.field, &ground.field_from_robot)
     }
 }
 
-/// A place other than the ball, if a team mate has the ball or it lies where only the goalkeeper may go.
-fn place_to_wait(
-    blackboard: &Blackboard,
-    ball: &Ball,
-    target: Point2<f64>,
-    ground: Option<&Ground>,
-) -> Option<Point2<f64>> {
+/// A place other than the ball, if a team mate has the ball or it lies where only the goalkeeper may go. In the robot's frame.
+fn place_to_wait(blackboard: &Blackboard, ball: &Ball, ground: &Ground) -> Option<Point2<f64>> {
     let nearer = |distance: f64| distance < ball.distance - NEARER;
-    let mates = others(blackboard).filter(|robot| robot.team_mate);
-    let has_it = mates.map(|mate| (mate.position() - ball.position()).norm()).any(nearer);
-    if has_it {
-        return Some(support_place(ball.position(), target, SUPPORT));
+    let mut mates = others(blackboard).filter(|robot| robot.team_mate);
+    if !mates.any(|mate| nearer((mate.position() - ball.position()).norm())) {
+        return before_area(ground, ball.position());
     }
-    before_area(ground?, ball.position())
+    let here = Point2::from(ground.field_from_robot.translation.vector);
+    let place = support_place(&ground.field, ground.field_from_robot * ball.position(), here);
+    Some(ground.field_from_robot.inverse_transform_point(&place))
 }
 
 /// The nearest place before the own goal's area, if a place lies in it. Both in the robot's frame.
@@ -75,10 +71,14 @@ fn before_area(ground: &Ground, place: Point2<f64>) -> Option<Point2<f64>> {
     inside.then(|| ground.field_from_robot.inverse_transform_point(&before))
 }
 
-/// Walks to a place and stays there, facing the ball.
+/// Walks to a place, round robots and ball, and stays there, facing the ball.
 fn wait_at(place: Point2<f64>, ball: &Ball, obstacles: &[Point2<f64>]) -> Walk {
     let way = place.coords.norm();
-    if way < 0.2 { Walk::turning(turn_to(ball.bearing)) } else { stride_to(avoid(place, obstacles), way) }
+    if way < 0.2 {
+        return Walk::turning(turn_to(ball.bearing));
+    }
+    let obstacles: Vec<Point2<f64>> = obstacles.iter().copied().chain([ball.position()]).collect();
+    stride_to(avoid(place, &obstacles), way)
 }
 
 monas::activity!(WalkTowardsBall);
@@ -135,17 +135,17 @@ mod tests {
     #[test]
     fn robots_in_the_way_are_passed() {
         assert!(run((2.0, 0.0), Some(Pose::default()), &[robot(0.8, 0.1, false)]).wz < -0.1);
-        assert!(run((2.0, 0.0), Some(Pose::default()), &[robot(0.8, 0.1, true)]).wz < -0.1);
+        assert!(run((2.0, 0.0), None, &[robot(0.8, 0.1, true)]).wz < -0.1);
     }
 
     #[test]
     fn a_team_mate_at_the_ball_keeps_it() {
-        let free = run((0.6, 0.0), Some(Pose::default()), &[]);
-        assert!(free.vx > 0.0);
-        let walk = run((0.6, 0.0), Some(Pose::default()), &[robot(0.6, -0.25, true)]);
-        assert!(walk.vx < 0.05, "it does not go nearer: {walk:?}");
-        let opponent = run((0.6, 0.0), Some(Pose::default()), &[robot(0.6, -0.7, false)]);
-        assert_eq!(opponent.vx, free.vx);
+        let free = run((0.8, 0.0), Some(Pose::default()), &[robot(0.8, -0.8, true)]);
+        assert!(free.vx > 0.2 && free.wz.abs() < 0.1, "{free:?}");
+        let waits = run((0.8, 0.0), Some(Pose::default()), &[robot(0.8, -0.2, true)]);
+        assert!(waits.wz > 0.5, "it goes to the ball's left: {waits:?}");
+        let opponent = run((0.8, 0.0), Some(Pose::default()), &[robot(1.0, -0.2, false)]);
+        assert!(opponent.wz < waits.wz, "an opponent is no reason to wait: {opponent:?}");
     }
 
     #[test]

@@ -42,7 +42,7 @@ impl Default for Alignment {
 /// Gain from metres off to metres a second.
 const GAIN: f64 = 1.5;
 /// Gain from radians off to radians a second.
-const TURN_GAIN: f64 = 2.5;
+const TURN_GAIN: f64 = 1.5;
 
 impl Alignment {
     /// The walk that brings the ball to a foot, facing `target`; both in the robot's frame.

@@ -5,7 +5,7 @@
 //! needed of the way is only its next point, so that nothing is remembered between two calls: whoever pushes the robot away only makes
 //! its way longer.
 
-use std::f64::consts::{FRAC_PI_4, TAU};
+use std::f64::consts::TAU;
 
 use nalgebra::{Point2, Vector2};
 
@@ -78,15 +78,6 @@ impl Approach {
 /// How many metres of way turning by a radian is worth.
 const TURN_COST: f64 = 0.3;
 
-/// A place behind the ball from which a team mate's play is supported: `distance` metres back from it, towards the own goal.
-pub fn support_place(ball: Point2<f64>, target: Point2<f64>, distance: f64) -> Point2<f64> {
-    let shot = (target - ball).try_normalize(1e-6).unwrap_or(Vector2::x());
-    let aside = rotation(FRAC_PI_4) * -shot;
-    let other = rotation(-FRAC_PI_4) * -shot;
-    let places = [ball + aside * distance, ball + other * distance];
-    if places[0].coords.norm() <= places[1].coords.norm() { places[0] } else { places[1] }
-}
-
 #[cfg(test)]
 mod tests {
     use std::f64::consts::PI;
@@ -150,12 +141,5 @@ mod tests {
         assert!(free.left.abs() < 1e-9 && free.turn.abs() < 1e-9);
         let blocked = Approach::default().walk(ball, target, &[Point2::new(1.0, 0.05)]);
         assert!(blocked.turn < -0.1);
-    }
-
-    #[test]
-    fn the_supporting_place_is_behind_the_ball_on_the_robots_side() {
-        let place = support_place(Point2::new(2.0, 0.0), Point2::new(5.0, 0.5), 0.8);
-        assert!((place - Point2::new(2.0, 0.0)).norm() - 0.8 < 1e-9);
-        assert!(place.x < 1.6);
     }
 }

@@ -53,9 +53,18 @@ impl Switch {
     }
 }
 
+/// Real-time scheduling is not asked of the system yet; whoever wants it is told once and runs on.
+fn say_what_is_not_granted(talws: &Talws) {
+    let agents = talws.hosts.iter().flat_map(|host| &host.agents);
+    for agent in agents.filter(|agent| agent.scheduling().1) {
+        tracing::warn!(agent = %agent.name(), "real-time scheduling is not granted: its thread is scheduled like any other");
+    }
+}
+
 impl Running {
     /// Sets everything up, then starts the threads.
     pub(super) fn start(talws: Talws, seed: u64) -> Result<Running, Error> {
+        say_what_is_not_granted(&talws);
         let Stage { world, stations } = Stage::new(talws, seed)?;
         let mut running = Running {
             stopper: Stopper::new(),

@@ -115,14 +115,10 @@ impl Crew<'_> {
     }
 
     fn member(&self, agent: Agent, hub: &Narukom) -> Result<Member, Error> {
-        let Agent { name, policy, frequency, activities, charts, statistics_every, real_time, priority } =
-            agent;
+        let Agent { name, policy, frequency, activities, charts, statistics_every, .. } = agent;
         if frequency.is_none() && !activities.is_empty() {
             let message = format!("agent `{name}` has activities, but nothing says how often they run");
             return Err(Error::new(ErrorKind::NoFrequency, message).with_hint("say so with `every`"));
-        }
-        if real_time || priority != 0 {
-            tracing::debug!(agent = %name, real_time, priority, "threads are left to the system's ordinary scheduling");
         }
         let charts = charts.iter().zip(0..).map(|(chart, number)| {
             let home = Home { hub, agent: &name, number, seed: self.seed, listeners: &self.listeners };
