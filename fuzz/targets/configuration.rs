@@ -20,7 +20,8 @@ fuzz_target!(|text: &str| {
 
 fn assert_spans_fit(text: &str, element: &xml::Element) {
     let spans = [element.span(), element.name_span(), element.text_span()];
-    let values = element.attributes().iter().flat_map(|attribute| [attribute.name_span, attribute.value_span]);
+    let values =
+        element.attributes().iter().flat_map(|attribute| [attribute.name_span, attribute.value_span]);
     for span in spans.into_iter().chain(values) {
         assert!(text.get(span.start..span.end).is_some(), "{span:?} of <{}>", element.name());
     }

@@ -6,8 +6,8 @@ use monas_fuzz::assert_findings_fit;
 use yase::expression::{EventTable, Names, parse_actions, parse_condition, parse_transition};
 use yase::statechart::{Constant, ConstantValue};
 use yase::vocabulary::{
-    Enumeration, FieldEntry, FieldId, FunctionEntry, FunctionId, MessageEntry, TopicEntry, TopicId, TopicKind,
-    ValueType, Vocabulary,
+    Enumeration, FieldEntry, FieldId, FunctionEntry, FunctionId, MessageEntry, TopicEntry, TopicId,
+    TopicKind, ValueType, Vocabulary,
 };
 
 fuzz_target!(|text: &str| {

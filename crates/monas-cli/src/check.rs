@@ -16,7 +16,10 @@ use crate::run::{Kind, kind_of};
 pub(crate) fn execute(config: &Path, format: Format, console: &mut Console<'_>) -> Result<Exit, Failure> {
     let registry = Registry::linked();
     let diagnostics = match kind_of(config) {
-        Ok(Kind::Match) => Match::load(config, &registry).err().unwrap_or_default(),
+        Ok(Kind::Match) => match Match::load(config, &registry) {
+            Ok(plan) => plan.warnings().to_vec(),
+            Err(diagnostics) => diagnostics,
+        },
         Ok(Kind::Agents) => monas::config::load(config, &registry).1,
         Err(unread) => vec![*unread],
     };

@@ -203,6 +203,18 @@ fn check(file: &MatchFile, root: &Element, diagnostics: &mut Vec<Diagnostic>) {
     if let Err(error) = monas_sim::check_lineup(&setups, &file.lineup()) {
         diagnostics.push(root.error("E0406", root.name_span(), error.to_string()));
     }
+    if let [first, second] = &setups[..]
+        && host_name(&first.name) == host_name(&second.name)
+    {
+        let message = format!("`{}` and `{}` are too alike: their robots would have one name", first.name, second.name);
+        diagnostics.push(root.error("E0407", root.name_span(), message));
+    }
+}
+
+/// What the hosts of a team are named after: its name in lower case, with hyphens for all but letters and digits.
+pub(crate) fn host_name(team: &str) -> String {
+    let letters = team.trim().chars().map(|c| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '-' });
+    letters.collect()
 }
 
 impl MatchFile {
@@ -252,5 +264,14 @@ mod tests {
     fn two_teams_have_to_play() {
         let found = diagnostics_of("<match><team number='1' name='A' colour='blue' side='left'/></match>");
         assert_eq!(found, ["match.xml:1:2: error[E0406]: a match needs two teams, not 1"]);
+    }
+
+    #[test]
+    fn teams_have_names_that_differ() {
+        let found = diagnostics_of(
+            "<match><team number='1' name='A b' colour='blue' side='left'/>\n<team number='2' name='a-B' colour='red' side='right'/></match>",
+        );
+        assert_eq!(found.len(), 1, "{found:#?}");
+        assert!(found[0].starts_with("match.xml:1:2: error[E0407]: `A b` and `a-B` are too alike"), "{found:#?}");
     }
 }

@@ -28,7 +28,10 @@ impl Match {
         let robots = file.iter().flat_map(|file| robots(file, registry, &mut diagnostics)).collect();
         let once = each_once(diagnostics);
         match file.filter(|_| !once.iter().any(Diagnostic::is_error)) {
-            Some(file) => MatchPlan::new(file, robots, registry.clone()).ok_or(once),
+            Some(file) => match MatchPlan::new(file, robots, registry.clone()) {
+                Some(plan) => Ok(MatchPlan { warnings: once, ..plan }),
+                None => Err(once),
+            },
             None => Err(once),
         }
     }
@@ -41,7 +44,7 @@ fn robots(file: &MatchFile, registry: &Registry, diagnostics: &mut Vec<Diagnosti
         for robot in &team.robots {
             let (agents, found) = monas::config::load(&robot.role, registry);
             diagnostics.extend(found);
-            let host = format!("{}-{}", slug(&team.setup.name), robot.number);
+            let host = format!("{}-{}", file::host_name(&team.setup.name), robot.number);
             robots.push(RobotPlan { team: team.setup.number, number: robot.number, host, agents });
         }
     }
@@ -58,12 +61,6 @@ fn each_once(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     })
 }
 
-/// A name that a host may have: lower case letters, digits and hyphens.
-fn slug(name: &str) -> String {
-    let letters = name.trim().chars().map(|c| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '-' });
-    letters.collect()
-}
-
 /// A match that was read and found to be right.
 pub struct MatchPlan {
     geometry: FieldGeometry,
@@ -73,6 +70,7 @@ pub struct MatchPlan {
     robots: Vec<RobotPlan>,
     registry: Registry,
     listeners: Vec<Box<dyn ChartListener>>,
+    warnings: Vec<Diagnostic>,
 }
 
 impl std::fmt::Debug for MatchPlan {
@@ -114,7 +112,13 @@ impl MatchPlan {
             robots,
             registry,
             listeners: Vec::new(),
+            warnings: Vec::new(),
         })
+    }
+
+    /// What is odd about the files, though they can be used.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
     }
 
     /// Lets a listener see every micro-step of every chart.

@@ -18,8 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Err(finding.to_string().into());
     }
     let registry = ["Walk", "Left", "Right"].into_iter().fold(Registry::empty(), |registry, name| {
-        registry
-            .with(name, move || move |blackboard: &mut Blackboard| println!("{} {name}", blackboard.now()))
+        registry.with(name, move || move |board: &mut Blackboard| println!("{} {name}", board.now()))
     });
     let talws = Talws::new().registry(registry).agent(Agent::statechart("guard", patrol));
     talws.simulate(7)?.run_until(Moment::from_secs_f64(6.0))?;

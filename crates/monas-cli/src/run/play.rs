@@ -12,6 +12,7 @@ use crate::arguments::RunArguments;
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::report;
 
 /// How much simulated time passes between two looks at the match.
 const LOOK: Duration = Duration::from_millis(100);
@@ -20,6 +21,7 @@ pub(super) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Re
     let format = arguments.format.value;
     let plan = Match::load(&arguments.config, &monas::Registry::linked())
         .map_err(|diagnostics| Failure::Invalid(format, diagnostics))?;
+    report::write(console, format, plan.warnings())?;
     let interrupt = Interrupt::for_console(console).map_err(|error| Failure::failed(format, error))?;
     let clock = WallClock::start();
     let running = play(plan, arguments, &interrupt, clock, console)?;

@@ -24,7 +24,8 @@ const CHARTS: u32 = 500;
 
 #[test]
 fn machine_and_reference_write_the_same_lines() {
-    let config = Config { cases: CHARTS, failure_persistence: None, ..Config::default() };
+    let config =
+        Config { cases: CHARTS, failure_persistence: None, max_shrink_iters: 200, ..Config::default() };
     let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
     let histogram = RefCell::new(Histogram::default());
     let bytes = vec(any::<u8>(), 200..2000);

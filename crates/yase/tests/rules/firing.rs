@@ -301,3 +301,16 @@ fn r13_stop_cancels_and_what_returns_later_is_not_for_the_next_run() {
     assert!(machine.is_active(chart::find(&chart, "B")));
     world.cancel(first);
 }
+
+#[test]
+fn r13_what_has_been_asked_to_return_is_not_asked_again() {
+    let chart = chart("START\nA | run | for=50ms\nX\nc/START -> A\nA -> X {interrupts} : e\n");
+    let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+    let mut world = World::new(&chart);
+    machine.start(Moment::ZERO, &mut world);
+    machine.dispatch_name("e");
+    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    machine.stop(&mut world);
+    machine.stop(&mut world);
+    assert_eq!(world.log.iter().filter(|line| line.contains("cancel A")).count(), 1, "{:?}", world.log);
+}

@@ -345,6 +345,32 @@ fn r09_an_interrupting_transition_needs_no_event() {
 }
 
 #[test]
+fn r09_an_activity_that_is_interrupted_before_it_starts_is_asked_to_return_when_it_has() {
+    check(
+        "
+        START
+        S
+        A | run | for=50ms
+        X
+        c/START -> S
+        S -> A : e
+        A -> X {interrupts} : f
+        ",
+        "1 e; 1 f; 10",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> S; exit START; enter S
+        0.001 s e: S -> A; exit S; enter A
+        0.001 s f: nothing; hold A -> X
+        start A
+        cancel A
+        A returns Done
+        0.002 s f: A -> X; exit A; enter X
+        ",
+    );
+}
+
+#[test]
 fn r09_what_happens_to_an_interrupted_state_meanwhile_is_held() {
     check(
         "
