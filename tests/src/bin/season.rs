@@ -35,11 +35,14 @@ fn row(variant: &str, seed: &str, seconds: &str) -> Result<(), String> {
     Ok(())
 }
 
+/// A match with a goal in the first half, so that blue is blue in its picture.
+const PICTURE_SEED: u64 = 3;
+
 /// Draws the match of the quick start two seconds before its first goal.
 fn picture(file: &str) -> Result<(), String> {
     let start = || {
         let plan = Match::load(root().join(MATCH.file), &monas::Registry::linked()).map_err(|found| found[0].to_string())?;
-        plan.start(Options { seed: 7, record: None }).map_err(|error| error.to_string())
+        plan.start(Options { seed: PICTURE_SEED, record: None }).map_err(|error| error.to_string())
     };
     let mut running = start()?;
     let second = Duration::from_secs(1);

@@ -146,7 +146,8 @@ impl<H: Host> Step<'_, H> {
         let ScopedGuard { transition, region, guard: program } = &self.chart.guards[guard];
         let view = View { chart: self.chart, run: self.run, host: self.host, region: *region };
         let result = program.evaluate(&view);
-        if self.run.log.wanted {
+        // The word `false` reads nothing.
+        if self.run.log.wanted && !program.is_literally_false() {
             self.run.log.guards.push((*transition, result.as_ref().ok().copied()));
         }
         match result {
