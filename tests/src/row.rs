@@ -71,8 +71,7 @@ impl Row {
     }
 
     /// The names over the columns.
-    pub const HEADER: &'static str =
-        "variant    seed  goals  kicks    shots    saves    falls    penalties  to ball  returns        touch  hash";
+    pub const HEADER: &'static str = "variant    seed  goals  kicks    shots    saves    falls    penalties  to ball  returns        touch  hash";
 }
 
 impl fmt::Display for Row {
@@ -82,7 +81,14 @@ impl fmt::Display for Row {
         let touch = self.first_touch.map_or("never".into(), |seconds| format!("{seconds:.1} s"));
         let side = format!("{}/{}", self.actions[1], self.actions[0]);
         let hash = self.hash.get(..16).unwrap_or(&self.hash);
-        write!(f, "{:<10} {:>4}  {:<5}  {:<7}  ", self.variant, self.seed, pair(self.goals), pair(self.kicks))?;
+        write!(
+            f,
+            "{:<10} {:>4}  {:<5}  {:<7}  ",
+            self.variant,
+            self.seed,
+            pair(self.goals),
+            pair(self.kicks)
+        )?;
         write!(f, "{:<7}  {:<7}  {:<7}  ", pair(self.shots), pair(self.saves), pair(self.falls))?;
         write!(f, "{:<9}  {side:<7}  {returns:<13}  {touch:<5}  {hash}", pair(self.penalties))
     }

@@ -108,14 +108,34 @@ impl Table {
         let returns = self.sum(&MATCH, |row| row.returns.0.into());
         let return_time = self.sum(&MATCH, |row| row.returns.1) / returns.max(1.0);
         vec![
-            at_least("goals of both teams in a match", self.mean(&MATCH, |row| f64::from(row.goals[0] + row.goals[1])), 2.0),
+            at_least(
+                "goals of both teams in a match",
+                self.mean(&MATCH, |row| f64::from(row.goals[0] + row.goals[1])),
+                2.0,
+            ),
             at_least("goals against a team that stands still", standing, 5.0),
-            at_most("the same by a team that decides by dice, as a part of that", self.mean(&DICE, |row| row.goals[0].into()) / standing.max(1e-9), 0.5),
-            at_least("goals conceded without a goalie, as a multiple of those with one", unguarded / conceded.max(1e-9), 1.5),
+            at_most(
+                "the same by a team that decides by dice, as a part of that",
+                self.mean(&DICE, |row| row.goals[0].into()) / standing.max(1e-9),
+                0.5,
+            ),
+            at_least(
+                "goals conceded without a goalie, as a multiple of those with one",
+                unguarded / conceded.max(1e-9),
+                1.5,
+            ),
             at_least("part of dives and falls that go to the ball's side", to_ball / actions.max(1.0), 0.9),
-            at_least("part of dives and falls after which the goalie came back", returns / actions.max(1.0), 0.8),
+            at_least(
+                "part of dives and falls after which the goalie came back",
+                returns / actions.max(1.0),
+                0.8,
+            ),
             at_most("seconds until the goalie is back between its posts", return_time, 15.0),
-            at_most("seconds to the first touch of the ball", self.mean(&MATCH, |row| row.first_touch.unwrap_or(600.0)), 20.0),
+            at_most(
+                "seconds to the first touch of the ball",
+                self.mean(&MATCH, |row| row.first_touch.unwrap_or(600.0)),
+                20.0,
+            ),
         ]
     }
 

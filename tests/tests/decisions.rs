@@ -1,5 +1,7 @@
 //! The chart decides, and nobody else: what it forbids does not happen, what it allows all happens.
 
+#![allow(clippy::unwrap_used)] // a test fails by panicking
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -44,7 +46,9 @@ fn nobody_kicks_when_the_chart_never_takes_that_branch() {
         let (summary, statistics) = played(&path, seed, 60);
         let kicks: u32 = summary.teams.iter().map(|team| team.kicks).sum();
         assert_eq!(kicks, 0, "seed {seed}");
-        let calls = |activity| statistics.agents.iter().map(|agent| statistics.calls(&agent.host, activity)).sum::<u64>();
+        let calls = |activity| {
+            statistics.agents.iter().map(|agent| statistics.calls(&agent.host, activity)).sum::<u64>()
+        };
         assert_eq!(calls("LeftKick") + calls("RightKick"), 0, "seed {seed}");
         assert!(calls("AlignWithBall") > 0, "seed {seed}: the ball was never near");
     }
@@ -54,14 +58,11 @@ fn nobody_kicks_when_the_chart_never_takes_that_branch() {
 fn nobody_looks_before_the_game_is_on() {
     let folder = tempfile::tempdir().unwrap();
     let before = "<initial_duration>1</initial_duration>";
-    let path = changed(
-        folder.path(),
-        "config/simulator.xml",
-        before,
-        "<initial_duration>200</initial_duration>",
-    );
+    let path =
+        changed(folder.path(), "config/simulator.xml", before, "<initial_duration>200</initial_duration>");
     let (_, statistics) = played(&path, 7, 120);
-    let calls = |activity| statistics.agents.iter().map(|agent| statistics.calls(&agent.host, activity)).sum::<u64>();
+    let calls =
+        |activity| statistics.agents.iter().map(|agent| statistics.calls(&agent.host, activity)).sum::<u64>();
     assert_eq!((calls("Vision"), calls("Sensors"), calls("WaitForBallMessage")), (0, 0, 0));
     assert!(calls("RobotController") > 6000, "the parts that always run do run");
 }

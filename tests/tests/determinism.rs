@@ -1,5 +1,7 @@
 //! The same files and the same seed give the same bytes: again, on one core, in another order. Anything else gives others.
 
+#![allow(clippy::unwrap_used)] // a test fails by panicking
+
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -88,7 +90,9 @@ fn match_text(teams: [usize; 2], robots: [usize; 3]) -> String {
     let players = robots.map(robot).concat();
     let team = |(number, name, side): (usize, &str, &str)| {
         let colour = name.to_lowercase();
-        format!("  <team number=\"{number}\" name=\"{name}\" colour=\"{colour}\" side=\"{side}\">\n{players}  </team>\n")
+        format!(
+            "  <team number=\"{number}\" name=\"{name}\" colour=\"{colour}\" side=\"{side}\">\n{players}  </team>\n"
+        )
     };
     let both = [team((1, "Blue", "left")), team((2, "Red", "right"))];
     let listed = teams.map(|index| both[index].as_str()).concat();

@@ -1,5 +1,7 @@
 //! Two short matches come to exactly what their golden rows say. `MONAS_BLESS=1` writes the rows anew.
 
+#![allow(clippy::unwrap_used)] // a test fails by panicking
+
 use monas_tests::{root, short_rows};
 
 #[test]

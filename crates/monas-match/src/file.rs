@@ -15,8 +15,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use monas::config::xml::{self, Attribute, Attributes, Element};
 use monas::config;
+use monas::config::xml::{self, Attribute, Attributes, Element};
 use monas_sim::{FieldGeometry, FieldSide, Physics, Rules, TeamColour, TeamSetup};
 use yase::{Diagnostic, Source, Span};
 
@@ -67,11 +67,17 @@ pub(crate) fn read(path: &Path, diagnostics: &mut Vec<Diagnostic>) -> Option<Mat
 }
 
 /// The file that an attribute names; none, and why, if there is no such file.
-fn named(path: &Path, element: &Element, attribute: &Attribute, diagnostics: &mut Vec<Diagnostic>) -> Option<PathBuf> {
+fn named(
+    path: &Path,
+    element: &Element,
+    attribute: &Attribute,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<PathBuf> {
     match config::locate(path, &attribute.value) {
         Ok(found) => Some(found),
         Err(near) => {
-            let diagnostic = element.error("E0403", attribute.value_span, format!("no file `{}`", attribute.value));
+            let diagnostic =
+                element.error("E0403", attribute.value_span, format!("no file `{}`", attribute.value));
             diagnostics.push(match near {
                 Some(near) => diagnostic.with_hint(format!("did you mean `{near}`?")),
                 None => diagnostic,
@@ -105,7 +111,11 @@ fn root(source: &Arc<Source>, name: &str, diagnostics: &mut Vec<Diagnostic>) -> 
             None
         }
         (Some(_), Some(second)) => {
-            diagnostics.push(second.error("E0404", second.name_span(), format!("expected one `<{name}>` and no more")));
+            diagnostics.push(second.error(
+                "E0404",
+                second.name_span(),
+                format!("expected one `<{name}>` and no more"),
+            ));
             None
         }
         (None, _) => {
@@ -177,7 +187,8 @@ fn read_team(team: &Element, path: &Path, diagnostics: &mut Vec<Diagnostic>) -> 
     let plays = attributes.one_of("side", &SIDES);
     attributes.finish();
     team.expect_children(&["robot"], diagnostics);
-    let robots = team.children_named("robot").filter_map(|robot| read_robot(robot, path, diagnostics)).collect();
+    let robots =
+        team.children_named("robot").filter_map(|robot| read_robot(robot, path, diagnostics)).collect();
     let setup = TeamSetup { number: number?, name: name?, colour: colour?, plays: plays? };
     Some(TeamFile { setup, robots })
 }
@@ -206,7 +217,8 @@ fn check(file: &MatchFile, root: &Element, diagnostics: &mut Vec<Diagnostic>) {
     if let [first, second] = &setups[..]
         && host_name(&first.name) == host_name(&second.name)
     {
-        let message = format!("`{}` and `{}` are too alike: their robots would have one name", first.name, second.name);
+        let message =
+            format!("`{}` and `{}` are too alike: their robots would have one name", first.name, second.name);
         diagnostics.push(root.error("E0407", root.name_span(), message));
     }
 }
@@ -249,7 +261,9 @@ mod tests {
             "<match haf='300s'>\n <team number='1' name='A' colour='bleu' side='left'>\n  <robot number='1'/>\n </team>\n</match>",
         );
         assert_eq!(found.len(), 3, "{found:#?}");
-        assert!(found[0].starts_with("match.xml:1:8: error[E0304]") && found[0].contains("did you mean `half`?"));
+        assert!(
+            found[0].starts_with("match.xml:1:8: error[E0304]") && found[0].contains("did you mean `half`?")
+        );
         assert!(found[1].starts_with("match.xml:2:36: error") && found[1].contains("did you mean `blue`?"));
         assert!(found[2].starts_with("match.xml:3:4: error[E0305]") && found[2].contains("`role`"));
     }
@@ -272,6 +286,9 @@ mod tests {
             "<match><team number='1' name='A b' colour='blue' side='left'/>\n<team number='2' name='a-B' colour='red' side='right'/></match>",
         );
         assert_eq!(found.len(), 1, "{found:#?}");
-        assert!(found[0].starts_with("match.xml:1:2: error[E0407]: `A b` and `a-B` are too alike"), "{found:#?}");
+        assert!(
+            found[0].starts_with("match.xml:1:2: error[E0407]: `A b` and `a-B` are too alike"),
+            "{found:#?}"
+        );
     }
 }

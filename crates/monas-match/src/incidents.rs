@@ -35,7 +35,9 @@ fn text(world: &World, event: &EventKind) -> Option<String> {
         }
         EventKind::Shot { robot: index } => format!("shot by {}", robot(*index)),
         EventKind::Save { robot: index } => format!("save by {}", robot(*index)),
-        EventKind::Penalty { robot: index, offence } => format!("penalty for {}: {}", robot(*index), offence_name(*offence)),
+        EventKind::Penalty { robot: index, offence } => {
+            format!("penalty for {}: {}", robot(*index), offence_name(*offence))
+        }
         EventKind::DropBall { .. } => "nobody gets at the ball: it is dropped".into(),
         _ => return None,
     })

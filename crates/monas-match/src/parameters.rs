@@ -35,9 +35,12 @@ pub(crate) fn from_children(
             Ok(number) => set(child.name(), number),
             Err(Mistake::Name(message)) => {
                 let diagnostic = child.error("E0401", child.name_span(), message);
-                diagnostics.push(diagnostic.with_nearest(child.name(), known.iter().map(|parameter| parameter.key)));
+                diagnostics
+                    .push(diagnostic.with_nearest(child.name(), known.iter().map(|parameter| parameter.key)));
             }
-            Err(Mistake::Value(message)) => diagnostics.push(child.error("E0402", child.text_span(), message)),
+            Err(Mistake::Value(message)) => {
+                diagnostics.push(child.error("E0402", child.text_span(), message))
+            }
         }
     }
 }

@@ -75,7 +75,10 @@ pub struct MatchPlan {
 
 impl std::fmt::Debug for MatchPlan {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("MatchPlan").field("teams", &self.teams).field("robots", &self.robots).finish_non_exhaustive()
+        f.debug_struct("MatchPlan")
+            .field("teams", &self.teams)
+            .field("robots", &self.robots)
+            .finish_non_exhaustive()
     }
 }
 
@@ -138,7 +141,8 @@ impl MatchPlan {
     /// The recording cannot be written, or a part refuses to be set up.
     pub fn start(self, options: Options) -> Result<RunningMatch, Error> {
         let length = self.length();
-        let lineup = self.robots.iter().map(|robot| monas_sim::RobotSetup { team: robot.team, number: robot.number });
+        let lineup =
+            self.robots.iter().map(|robot| monas_sim::RobotSetup { team: robot.team, number: robot.number });
         let setup = Setup {
             field: self.geometry,
             physics: self.physics,

@@ -16,7 +16,7 @@ pub fn check(robot: &mut dyn Robot) {
     let mut percepts = Percepts::default();
     for command in commands() {
         for _ in 0..200 {
-            now = now + cycle;
+            now += cycle;
             sense(robot, now, &mut percepts);
             if let Err(error) = robot.act(now, &command) {
                 panic!("{command:?} was refused: {error}");
@@ -46,10 +46,22 @@ fn sense(robot: &mut dyn Robot, now: Moment, percepts: &mut Percepts) {
     let (sensors, anatomy) = (&percepts.sensors, robot.anatomy());
     assert!(sensors.measured_at <= now.as_nanos(), "a measurement lies in the future: {sensors:?}");
     assert!(anatomy.head_yaw.contains(sensors.head_yaw), "the head's yaw is beyond its limits: {sensors:?}");
-    assert!(anatomy.head_pitch.contains(sensors.head_pitch), "the head's pitch is beyond its limits: {sensors:?}");
-    let felt = [sensors.torso_roll, sensors.torso_pitch, sensors.odometry_x, sensors.odometry_y, sensors.odometry_turn];
+    assert!(
+        anatomy.head_pitch.contains(sensors.head_pitch),
+        "the head's pitch is beyond its limits: {sensors:?}"
+    );
+    let felt = [
+        sensors.torso_roll,
+        sensors.torso_pitch,
+        sensors.odometry_x,
+        sensors.odometry_y,
+        sensors.odometry_turn,
+    ];
     assert!(felt.iter().all(|value| value.is_finite()), "a sensor is no number: {sensors:?}");
     for sighting in percepts.sightings.iter().flat_map(|sightings| &sightings.objects) {
-        assert!(sighting.distance >= 0.0 && sighting.bearing.abs() <= 3.2, "a sighting is nowhere: {sighting:?}");
+        assert!(
+            sighting.distance >= 0.0 && sighting.bearing.abs() <= 3.2,
+            "a sighting is nowhere: {sighting:?}"
+        );
     }
 }

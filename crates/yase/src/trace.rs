@@ -124,23 +124,15 @@ impl<N: Fn(NodeId) -> String> Line<'_, N> {
 
     fn segment(&self, id: TransitionId) -> String {
         let transition = self.chart.statechart().transition(id);
-        format!(
-            "{} -> {}",
-            (self.name)(transition.source),
-            (self.name)(transition.target)
-        )
+        format!("{} -> {}", (self.name)(transition.source), (self.name)(transition.target))
     }
 
     fn effect(&self, place: ActionPlace) -> String {
         let statechart = self.chart.statechart();
         let (actions, at) = match place {
             ActionPlace::Transition(id) => (&statechart.transition(id).expression.actions, self.segment(id)),
-            ActionPlace::Entry(id) => {
-                (&statechart.node(id).entry, format!("entry {}", (self.name)(id)))
-            }
-            ActionPlace::Exit(id) => {
-                (&statechart.node(id).exit, format!("exit {}", (self.name)(id)))
-            }
+            ActionPlace::Entry(id) => (&statechart.node(id).entry, format!("entry {}", (self.name)(id))),
+            ActionPlace::Exit(id) => (&statechart.node(id).exit, format!("exit {}", (self.name)(id))),
         };
         format!("{} ({at})", join(actions, |action| action.to_string()))
     }

@@ -41,7 +41,8 @@ const PICTURE_SEED: u64 = 3;
 /// Draws the match of the quick start two seconds before its first goal.
 fn picture(file: &str) -> Result<(), String> {
     let start = || {
-        let plan = Match::load(root().join(MATCH.file), &monas::Registry::linked()).map_err(|found| found[0].to_string())?;
+        let plan = Match::load(root().join(MATCH.file), &monas::Registry::linked())
+            .map_err(|found| found[0].to_string())?;
         plan.start(Options { seed: PICTURE_SEED, record: None }).map_err(|error| error.to_string())
     };
     let mut running = start()?;
@@ -74,13 +75,16 @@ fn write() -> Result<(), String> {
 }
 
 fn check() -> Result<(), String> {
-    let golden = std::fs::read_to_string(root().join("tests/golden/season.txt")).map_err(|error| error.to_string())?;
+    let golden =
+        std::fs::read_to_string(root().join("tests/golden/season.txt")).map_err(|error| error.to_string())?;
     let text = played()?;
     let differs = |(now, before): &(&str, &str)| now != before;
     let first = text.lines().zip(golden.lines()).find(differs);
     match first {
         Some((now, before)) => Err(format!("the season differs:\n  was {before}\n  is  {now}")),
-        None if text.len() != golden.len() => Err("the season has more or fewer lines than its golden table".into()),
+        None if text.len() != golden.len() => {
+            Err("the season has more or fewer lines than its golden table".into())
+        }
         None => {
             print!("{text}");
             println!("\nthe season is as its golden table says");
