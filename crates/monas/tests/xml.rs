@@ -194,3 +194,56 @@ proptest! {
         prop_assert_eq!(at(&text, elements[0].attributes()[0].value_span), &value);
     }
 }
+
+/// Whether every place that is spoken of lies in the text, on whole characters.
+fn places_lie_in(text: &str) -> Result<(), String> {
+    let source = Source::new("any.xml", text);
+    let (elements, diagnostics) = xml::parse(&source);
+    let spans =
+        elements.iter().flat_map(spans_of).chain(diagnostics.iter().map(|diagnostic| diagnostic.span));
+    for span in spans {
+        if text.get(span.start..span.end).is_none() {
+            return Err(format!("{span:?} is no place in {text:?}: {diagnostics:?}"));
+        }
+    }
+    Ok(())
+}
+
+fn spans_of(element: &xml::Element) -> Vec<yase::Span> {
+    let own = [element.name_span(), element.span(), element.text_span()];
+    let attributes = element.attributes().iter().flat_map(|one| [one.name_span, one.value_span]);
+    own.into_iter().chain(attributes).chain(element.children().iter().flat_map(spans_of)).collect()
+}
+
+#[test]
+fn places_lie_in_the_text_even_where_it_is_cut_off() {
+    for text in [
+        "<agents>",
+        "<agent",
+        "<agent na",
+        "</",
+        "<agent>]]>",
+        "<a>é",
+        "<!--",
+        "<![CDATA[",
+        "<a b=\"é",
+        "<?é",
+    ] {
+        places_lie_in(text).unwrap();
+    }
+}
+
+#[test]
+fn what_is_no_xml_is_told_without_a_place_in_the_repaired_text() {
+    let source = Source::new("b.xml", "<agent>]]></agent>");
+    let (_, diagnostics) = xml::parse(&source);
+    assert!(diagnostics[0].message.starts_with("not XML: "), "{diagnostics:?}");
+    assert!(!diagnostics[0].message.contains(" at "), "{diagnostics:?}");
+}
+
+proptest::proptest! {
+    #[test]
+    fn places_lie_in_any_text(text in "[<>/=\"'&a-c!\\[\\]?é \n-]{0,60}") {
+        proptest::prop_assert_eq!(places_lie_in(&text), Ok(()));
+    }
+}

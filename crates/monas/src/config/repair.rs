@@ -40,9 +40,32 @@ impl Repaired {
     /// The place in the original that a place in the repaired text stands for.
     pub(super) fn original_span(&self, start: usize, end: usize) -> Span {
         let first = self.original(start);
-        let end = if end > start { self.original(end - 1) + 1 } else { first };
+        let end = if end > start { self.original_end(end - 1) } else { first };
         Span::new(first, end.max(first))
     }
+
+    /// Where the original goes on behind a byte of the repaired text. What was inserted stands for what it replaced, if anything.
+    fn original_end(&self, byte: usize) -> usize {
+        let index = self.pieces.partition_point(|piece| piece.start <= byte);
+        match (index.checked_sub(1).map(|index| &self.pieces[index]), self.pieces.get(index)) {
+            (Some(piece), _) if piece.copied => piece.original + (byte - piece.start) + 1,
+            (Some(_), Some(next)) => next.original,
+            _ => self.original(byte),
+        }
+    }
+}
+
+/// The span as far as it lies in the text, widened to whole characters.
+pub(super) fn within(text: &str, span: Span) -> Span {
+    let mut start = span.start.min(text.len());
+    while !text.is_char_boundary(start) {
+        start -= 1;
+    }
+    let mut end = span.end.clamp(start, text.len());
+    while !text.is_char_boundary(end) {
+        end += 1;
+    }
+    Span::new(start, end)
 }
 
 /// Repairs a text.
@@ -100,6 +123,7 @@ impl<'a> Writer<'a> {
     }
 
     fn say(&mut self, span: impl Into<Span>, message: impl Into<String>) {
+        let span = within(self.source, span.into());
         self.out.diagnostics.push(Diagnostic::error("E0301", span, message));
     }
 

@@ -28,7 +28,7 @@ use std::time::Duration;
 
 use yase::{Diagnostic, Source, Span};
 
-use super::repair::{Repaired, repair};
+use super::repair::{Repaired, repair, within};
 
 /// An element with what stands in it. Comments are not kept.
 #[derive(Clone, Debug)]
@@ -64,11 +64,25 @@ pub fn parse(source: &Arc<Source>) -> (Vec<Element>, Vec<Diagnostic>) {
         Ok(document) => children(document.root_element(), &repaired, source),
         Err(error) => {
             let at = repaired.original(byte_of(&repaired.text, error.pos()));
-            diagnostics.push(Diagnostic::error("E0301", at..at + 1, format!("not XML: {error}")));
+            let span = within(&source.text, (at..at + 1).into());
+            diagnostics.push(Diagnostic::error(
+                "E0301",
+                span,
+                format!("not XML: {}", without_position(&error)),
+            ));
             Vec::new()
         }
     };
     (elements, diagnostics.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect())
+}
+
+/// What is wrong; where it is in the repaired text means nothing to whoever wrote the original.
+fn without_position(error: &roxmltree::Error) -> String {
+    let text = error.to_string();
+    match text.rsplit_once(" at ") {
+        Some((what, _)) => what.to_owned(),
+        None => text,
+    }
 }
 
 fn byte_of(text: &str, position: roxmltree::TextPos) -> usize {
