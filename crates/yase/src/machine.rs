@@ -166,7 +166,7 @@ impl Machine {
     }
 
     /// Notes that an activity that was [`Ongoing`](Outcome::Ongoing) or [failed](Outcome::Failed) is called again, which locks its region. Says
-    /// whether it may: not if its state has been left, then it must not be called.
+    /// whether it may: if its state has been left or is about to be, it must not be called again.
     pub fn activity_resumed(&mut self, activation: Activation) -> bool {
         self.run.activity_resumed(&self.chart, activation)
     }

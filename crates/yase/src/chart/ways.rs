@@ -124,14 +124,11 @@ impl Search<'_> {
         if self.chart.node(common).kind != NodeKind::And {
             return Some(common);
         }
-        let across = source != target && !self.nested(source, target);
-        if across {
-            None
-        } else {
-            self.chart.ancestors(common).find(|&above| self.chart.node(above).kind == NodeKind::Or)
-        }
+        // an AND lies in an OR, always
+        if self.nested(source, target) { self.chart.node(common).parent } else { None }
     }
 
+    /// Whether one is the other or lies in it.
     fn nested(&self, one: NodeId, other: NodeId) -> bool {
         let (one, other) = (self.layout.place_of(one), self.layout.place_of(other));
         self.layout.contains(one, other) || self.layout.contains(other, one)

@@ -135,12 +135,11 @@ impl Run {
 
     pub(super) fn activity_resumed(&mut self, chart: &Chart, activation: Activation) -> bool {
         let Some((place, activity)) = self.current(chart, activation) else { return false };
-        let slot = self.activities.slot_mut(activity);
-        if !matches!(slot.phase, Phase::Ongoing | Phase::Failed) {
+        let slot = self.activities.slot(activity);
+        if !matches!(slot.phase, Phase::Ongoing | Phase::Failed) || self.is_being_left(chart, place) {
             return false;
         }
-        slot.phase = Phase::Running;
-        slot.cancelled = false;
+        self.activities.slot_mut(activity).phase = Phase::Running;
         self.lock(chart, place);
         true
     }

@@ -51,7 +51,8 @@ impl<H: Host> Step<'_, H> {
         self.run.queues.release(|_| true);
     }
 
-    /// Fires the selected transitions one after the other. What another has left, or what comes after the end, does not fire.
+    /// Fires the selected transitions one after the other. What comes after the end does not fire, nor a way to TERMINATE whose source
+    /// another has left: it leaves nothing itself, so it is in conflict with none.
     pub(super) fn fire_selected(&mut self) {
         let mut index = 0;
         while let Some(&id) = self.run.selection.selected.get(index) {

@@ -187,6 +187,11 @@ impl Run {
         });
     }
 
+    /// Whether an interrupting transition that leaves it waits for activities to return.
+    pub(super) fn is_being_left(&self, chart: &Chart, place: Place) -> bool {
+        self.pending.iter().any(|pending| chart.compounds[pending.compound.0 as usize].leaves(place))
+    }
+
     pub(super) fn is_active(&self, place: Place) -> bool {
         self.active.contains(place.index())
     }

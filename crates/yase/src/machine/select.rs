@@ -45,12 +45,8 @@ impl<H: Host> Step<'_, H> {
     /// Whether it is about to be left, by an interrupting transition or for a held event: then nothing of it happens without an event.
     pub(super) fn is_frozen(&self, place: Place) -> bool {
         let leaves = |compound: CompoundId| self.compound(compound).leaves(place);
-        self.is_being_left(place)
+        self.run.is_being_left(self.chart, place)
             || self.run.queues.held.iter().any(|held| held.compounds.iter().copied().any(leaves))
-    }
-
-    fn is_being_left(&self, place: Place) -> bool {
-        self.run.pending.iter().any(|pending| self.compound(pending.compound).leaves(place))
     }
 
     /// Whether some active leaf inside has no candidate yet.
@@ -170,7 +166,7 @@ impl<H: Host> Step<'_, H> {
     /// Whether running activities forbid a transition: one in its own region, or one in a state it would leave. An interrupting one is
     /// forbidden only by another that is already waiting.
     fn is_blocked(&self, compound: &Compound, place: Place) -> bool {
-        if self.is_being_left(place) {
+        if self.run.is_being_left(self.chart, place) {
             return true;
         }
         let region = self.chart.states[place.index()].region;

@@ -179,8 +179,10 @@ fn advance(interpreter: &mut impl Interpreter, now: Moment, world: &mut World, i
     let job = &mut world.jobs[index];
     let activation = job.activation;
     if job.waits {
-        assert!(interpreter.resumed(activation));
-        (job.waits, job.due, job.calls) = (false, now + job.duration, job.calls + 1);
+        match interpreter.resumed(activation) {
+            true => (job.waits, job.due, job.calls) = (false, now + job.duration, job.calls + 1),
+            false => job.due = Moment::from_nanos(u64::MAX), // its state is about to be left
+        }
         return;
     }
     let outcome = World::outcome(job);

@@ -186,10 +186,13 @@ impl Interpreter for Stepper<'_> {
     }
 
     fn resumed(&mut self, activation: Activation) -> bool {
+        let about_to_be_left = self.pending.iter().any(|(way, _)| self.would_leave(way, activation.node));
         let job = self.jobs.get_mut(&activation.node).unwrap();
         assert_eq!((job.number, job.phase), (activation.number, Phase::Ongoing));
+        if about_to_be_left {
+            return false;
+        }
         job.phase = Phase::Running;
-        job.cancelled = false;
         true
     }
 

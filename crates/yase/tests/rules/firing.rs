@@ -259,6 +259,22 @@ fn r13_terminate_stops_without_exits_and_cancels() {
 }
 
 #[test]
+fn r13_after_terminate_nothing_fires_nor_terminate_where_another_has_left() {
+    let last = |ways: &str| {
+        let text = format!(
+            "START\n& both\n  one\n    START\n    A\n  two\n    START\n    B\n    C\nX\nx stop\n\
+             c/START -> both\none/START -> A\ntwo/START -> B\n{ways}\n"
+        );
+        script::play(&chart(&text), "1 e; 2").pop().unwrap()
+    };
+    assert_eq!(last("A -> stop : e\nB -> C : e"), "0.001 s e: both/one/A -> stop");
+    assert_eq!(
+        last("A -> X : e\nB -> stop : e"),
+        "0.001 s e: both/one/A -> X; exit both/one/A, both/one, both/two/B, both/two, both; enter X"
+    );
+}
+
+#[test]
 fn r13_at_root_end_a_chart_is_finished_and_idles_until_started_again() {
     let chart = chart("START\nA\nEND\nc/START -> A\nA -> c/END : e / raise(never)\n");
     let mut machine = Machine::new(script::compile(&chart), Semantics::yase());

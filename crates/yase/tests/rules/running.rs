@@ -397,3 +397,38 @@ fn r09_what_happens_to_an_interrupted_state_meanwhile_is_held() {
         ",
     );
 }
+
+#[test]
+fn r09_an_ongoing_activity_is_not_called_again_when_its_state_is_about_to_be_left() {
+    check(
+        "
+        START
+        & both
+          one
+            START
+            A | run | for=50ms
+          two
+            START
+            ongoing | run
+        X
+        c/START -> both
+        one/START -> A
+        two/START -> ongoing
+        both -> X {interrupts} : e
+        ",
+        "9 e; 60",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> both; exit START; enter both, both/one, both/one/START, both/two, both/two/START
+        0.000 s -: both/one/START -> both/one/A, both/two/START -> both/two/ongoing; exit both/one/START, both/two/START; enter both/one/A, both/two/ongoing
+        start A
+        start ongoing
+        ongoing returns Ongoing
+        cancel A
+        0.009 s e: nothing; hold both -> X
+        A returns Done
+        stop ongoing
+        0.010 s e: both -> X; exit both/one/A, both/one, both/two/ongoing, both/two, both; enter X
+        ",
+    );
+}

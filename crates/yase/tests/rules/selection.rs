@@ -191,6 +191,44 @@ fn r05_a_guard_that_has_succeeded_since_says_again_that_it_errs() {
 }
 
 #[test]
+fn r05_a_timer_that_a_failing_guard_reads_makes_it_say_so_again() {
+    // the guard on the left reads a timer of its own blackboard; that on the right has the same number on another
+    check(
+        "
+        START
+        & both
+          one
+            START
+            A
+            A2
+          two
+            START
+            B
+        c/START -> both
+        one/START -> A
+        two/START -> B
+        A -> A2 : [fail() > 0 || v]
+        A -> A {internal} : own / StartTimeout(v, 10ms)
+        B -> B {internal} : other / StartTimeout(w, 30ms)
+        ",
+        "1 other; 5 own; 40",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> both; exit START; enter both, both/one, both/one/START, both/two, both/two/START
+        0.000 s -: both/one/START -> both/one/A, both/two/START -> both/two/B; exit both/one/START, both/two/START; enter both/one/A, both/two/B
+        guard failed: the function failed: it always fails
+        0.000 s error.guard: dropped
+        0.001 s other: both/two/B -> both/two/B; do StartTimeout(w, 30ms) (both/two/B -> both/two/B)
+        0.005 s own: both/one/A -> both/one/A; do StartTimeout(v, 10ms) (both/one/A -> both/one/A)
+        guard failed: the function failed: it always fails
+        0.005 s error.guard: dropped
+        guard failed: the function failed: it always fails
+        0.015 s error.guard: dropped
+        ",
+    );
+}
+
+#[test]
 fn r05_a_message_that_has_not_arrived_is_unknown_and_does_not_fire() {
     check(
         "

@@ -221,3 +221,42 @@ fn r21_a_bare_name_that_nothing_sets_on_its_blackboard_is_an_error() {
     let found = refusal(&text.replace("[vv]", "[vv] / StartTimeout(vv, 0ms)"));
     assert!(found.contains("too short"), "{found}");
 }
+
+#[test]
+fn r21_a_deferred_expiry_is_withdrawn_too() {
+    check(
+        "
+        START
+        S | entry=StartTimeout(v, 10ms) | defer=v
+        T
+        c/START -> S
+        S -> S {internal} : e / StartTimeout(v, 50ms)
+        S -> T : f
+        T -> T {internal} : v
+        ",
+        "20 e; 30 f; 90",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> S; exit START; do StartTimeout(v, 10ms) (entry S); enter S
+        0.010 s v: nothing; defer in S
+        0.020 s e: S -> S; do StartTimeout(v, 50ms) (S -> S)
+        0.030 s f: S -> T; exit S; enter T
+        0.070 s v: T -> T
+        ",
+    );
+}
+
+#[test]
+fn r21_the_clock_never_runs_backwards() {
+    use yase::{Machine, Moment, Semantics};
+
+    use crate::kit::{World, chart, script};
+
+    let chart = chart("START\nS\nc/START -> S\nS -> S {internal} : e / StartTimeout(v, 10ms)\n");
+    let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+    let mut world = World::new(&chart);
+    machine.start(Moment::from_millis(20), &mut world);
+    machine.dispatch_name("e");
+    machine.run_to_completion(Moment::from_millis(5), &mut world).unwrap();
+    assert_eq!(machine.next_deadline(), Some(Moment::from_millis(30)));
+}
