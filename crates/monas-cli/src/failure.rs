@@ -81,6 +81,6 @@ mod tests {
         let failed = |format| Failure::Failed(format, "no room".into());
         assert_eq!(told(failed(Format::Text)), (Exit::Failure, "error: no room\n".into()));
         let (_, line) = told(failed(Format::Json));
-        assert_eq!(line, "{\"message\":\"no room\",\"severity\":\"error\"}\n");
+        assert_eq!(line, "{\"severity\":\"error\",\"message\":\"no room\"}\n");
     }
 }

@@ -104,7 +104,7 @@ fn two_mistakes_are_two_objects() {
     assert!(lines.contains(&2) && lines.contains(&3), "{}", answer.err);
     for finding in found {
         let keys: Vec<&str> = finding.as_object().expect("an object").keys().map(String::as_str).collect();
-        assert_eq!(keys, ["code", "column", "file", "hint", "line", "message", "severity"]);
+        assert_eq!(keys, ["code", "severity", "message", "file", "line", "column", "hint"]);
         assert_eq!(finding["file"], path);
     }
 }
