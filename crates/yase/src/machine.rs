@@ -78,7 +78,7 @@ pub struct MachineError {
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum MachineErrorKind {
-    /// More micro-steps followed one another without a new event than [`Semantics::limit`] allows.
+    /// A step had more micro-steps than [`Semantics::limit`] allows.
     NeverRests,
     /// More steps did something at one moment than [`Semantics::limit`] allows.
     NeverAdvances,

@@ -14,8 +14,8 @@ pub struct Semantics {
     pub delivery: Delivery,
     /// Whether states keep the events they defer.
     pub deferral: Deferral,
-    /// How many micro-steps may follow one another in a step without a new event, and how many steps that do something may
-    /// happen at one moment, before the chart is stopped as one that never rests. A thousand by default.
+    /// How many micro-steps a step may have, and how many steps that do something may happen at one moment, before the chart is stopped
+    /// as one that never rests. A thousand by default; a chart that is to take more events than that in one go needs more.
     pub limit: NonZeroU32,
 }
 

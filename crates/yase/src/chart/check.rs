@@ -17,10 +17,10 @@ impl Statechart {
     /// | `M02` | a transition into START or out of END; a trigger where no event is waited for |
     /// | `M03` | a transition whose ends do not exist, or whose source or target cannot be one: the root, a sibling region, the outside of an internal transition's source |
     /// | `M06` | connectors that lead in a circle, nowhere, or on without measure |
-    /// | `E0301` | what the machine does not run: CHOICE, FORK, JOIN, history, entry and exit points, weights |
-    /// | `E0302` | something inside what cannot hold states |
-    /// | `E0303` | an activity of what is no BASIC state |
-    /// | `E0304` | a root that is no OR; a node whose parent is not the node that holds it |
+    /// | `E0501` | what the machine does not run: CHOICE, FORK, JOIN, history, entry and exit points, weights |
+    /// | `E0502` | something inside what cannot hold states |
+    /// | `E0503` | an activity of what is no BASIC state |
+    /// | `E0504` | a root that is no OR; a node whose parent is not the node that holds it |
     ///
     /// Transitions between sibling regions and chains of connectors that multiply beyond measure are found by
     /// [`compile`](Statechart::compile) only.
@@ -67,13 +67,13 @@ impl Check<'_> {
         let chart = self.chart;
         let root = chart.node(Statechart::ROOT);
         if root.kind != NodeKind::Or || root.parent.is_some() {
-            self.error("E0304", format!("the root of `{}` is not an OR without parent", chart.name));
+            self.error("E0504", format!("the root of `{}` is not an OR without parent", chart.name));
         }
         for (id, _) in chart.nodes() {
             for &child in chart.children(id) {
                 if chart.node(child).parent != Some(id) {
                     self.error(
-                        "E0304",
+                        "E0504",
                         format!("node {} lies in node {}, which is not its parent", child.0, id.0),
                     );
                 }
@@ -89,19 +89,19 @@ impl Check<'_> {
                 NodeKind::And => self.orthogonal(id),
                 kind if !is_run(kind) => {
                     let message = format!("`{}` is a {}, which is not run", self.path(id), kind_name(kind));
-                    self.error("E0301", message);
+                    self.error("E0501", message);
                 }
                 kind if !chart.children(id).is_empty() => {
                     let message =
                         format!("`{}` is a {} and cannot hold states", self.path(id), kind_name(kind));
-                    self.error("E0302", message);
+                    self.error("E0502", message);
                 }
                 _ => {}
             }
             if node.activity.is_some() && node.kind != NodeKind::Basic {
                 let message =
                     format!("`{}` is a {} and cannot have an activity", self.path(id), kind_name(node.kind));
-                self.error("E0303", message);
+                self.error("E0503", message);
             }
         }
     }
@@ -182,7 +182,7 @@ impl Check<'_> {
         if transition.weight.is_some() {
             let message =
                 format!("the transition out of `{}` has a weight, which is not run", self.path(source));
-            self.error("E0301", message);
+            self.error("E0501", message);
         }
     }
 

@@ -8,7 +8,7 @@ use crate::moment::Moment;
 /// So many of the last transitions are remembered, to name a cycle.
 const MEMORY: usize = 64;
 
-/// Counts micro-steps since the last event that came from outside (of which there are finitely many), and steps at one moment.
+/// Counts the micro-steps of a step, and the steps at one moment.
 #[derive(Clone, Debug)]
 pub(super) struct Bound {
     micro_steps: u32,
@@ -34,11 +34,6 @@ impl Bound {
         if self.instant != now {
             (self.instant, self.steps, self.taken) = (now, 0, 0);
         }
-    }
-
-    /// An event that came from outside is looked at.
-    pub(super) fn new_event(&mut self) {
-        self.micro_steps = 0;
     }
 
     pub(super) fn count_micro_step(&mut self) {

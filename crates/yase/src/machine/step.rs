@@ -120,7 +120,6 @@ impl<'a, H: Host> Step<'a, H> {
         if let Some(occurrence) = self.run.queues.next_raised() {
             return self.offer(occurrence);
         }
-        self.run.bound.new_event();
         match self.run.queues.next_arrived() {
             Some(occurrence) => self.offer(occurrence),
             None => Ok(false),

@@ -216,7 +216,7 @@ fn r12_what_reads_guards_on_the_way_or_joins_ways_is_refused_by_name() {
         chart.add(Statechart::ROOT, Node::new(kind, "n"));
         let found = chart.compile(&vocabulary()).unwrap_err();
         assert_eq!(found.len(), 1);
-        assert_eq!(found[0].to_string(), format!("error[E0301]: `c/n` is a {name}, which is not run"));
+        assert_eq!(found[0].to_string(), format!("error[E0501]: `c/n` is a {name}, which is not run"));
     }
 }
 

@@ -108,11 +108,11 @@ fn r01_what_stands_where_it_cannot_is_refused() {
     assert_eq!(
         found,
         [
-            "error[E0302]: `c/START` is a START and cannot hold states",
-            "error[E0303]: `c/START` is a START and cannot have an activity",
-            "error[E0301]: `c/h` is a deep HISTORY, which is not run",
+            "error[E0502]: `c/START` is a START and cannot hold states",
+            "error[E0503]: `c/START` is a START and cannot have an activity",
+            "error[E0501]: `c/h` is a deep HISTORY, which is not run",
             "error[M03]: transition 1 names a node that does not exist",
-            "error[E0301]: the transition out of `c/A` has a weight, which is not run",
+            "error[E0501]: the transition out of `c/A` has a weight, which is not run",
         ]
     );
 }
@@ -126,11 +126,11 @@ fn r01_a_chart_that_is_no_tree_is_refused() {
     };
     assert_eq!(
         refused(|chart| chart.node_mut(Statechart::ROOT).kind = NodeKind::And),
-        ["error[E0304]: the root of `c` is not an OR without parent"]
+        ["error[E0504]: the root of `c` is not an OR without parent"]
     );
     assert_eq!(
         refused(|chart| chart.node_mut(NodeId(2)).parent = Some(NodeId(4))),
-        ["error[E0304]: node 2 lies in node 0, which is not its parent"]
+        ["error[E0504]: node 2 lies in node 0, which is not its parent"]
     );
 }
 

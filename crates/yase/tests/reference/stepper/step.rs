@@ -126,7 +126,6 @@ impl Stepper<'_> {
             let occurrence = self.raised.remove(0);
             return self.offer(occurrence, world);
         }
-        self.micro_steps = 0;
         if !self.arrived.is_empty() {
             let occurrence = self.arrived.remove(0);
             return self.offer(occurrence, world);
