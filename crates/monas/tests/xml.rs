@@ -209,7 +209,7 @@ fn places_lie_in(text: &str) -> Result<(), String> {
     Ok(())
 }
 
-fn spans_of(element: &xml::Element) -> Vec<yase::Span> {
+fn spans_of(element: &Element) -> Vec<Span> {
     let own = [element.name_span(), element.span(), element.text_span()];
     let attributes = element.attributes().iter().flat_map(|one| [one.name_span, one.value_span]);
     own.into_iter().chain(attributes).chain(element.children().iter().flat_map(spans_of)).collect()
