@@ -167,6 +167,7 @@ pub(crate) struct Region {
 /// A timer of a blackboard.
 #[derive(Clone, Debug)]
 pub(crate) struct Timer {
+    pub(crate) name: Box<str>,
     pub(crate) region: RegionId,
     /// Its number on its blackboard.
     pub(crate) number: usize,
@@ -263,6 +264,11 @@ impl Chart {
         let place = self.layout.place(node)?;
         self.states[place.index()].activity?;
         Some(self.activity_entry(place))
+    }
+
+    /// Every timer that some action starts: the blackboard it lies on, and its name.
+    pub fn timers(&self) -> impl ExactSizeIterator<Item = (RegionId, &str)> {
+        self.timers.iter().map(|timer| (timer.region, timer.name.as_ref()))
     }
 
     /// The largest number of activities that can be active at once: how many threads can be of use.

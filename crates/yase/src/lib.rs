@@ -90,7 +90,7 @@ pub mod vocabulary;
 pub use chart::{ActivityEntry, Chart, CompoundId, RegionId};
 pub use diagnostic::{Diagnostic, Severity, Source, Span};
 pub use host::{ActionError, ActionPlace, Activation, Host, Outcome, Report};
-pub use machine::{Machine, MachineError, MachineErrorKind, Status, StepSummary};
+pub use machine::{Machine, MachineError, MachineErrorKind, MicroStep, Status, StepSummary};
 pub use moment::Moment;
 pub use semantics::{Deferral, Delivery, Eventless, Semantics};
 pub use statechart::{Node, NodeId, NodeKind, Statechart, Transition, TransitionId};

@@ -65,6 +65,15 @@ pub struct StepSummary {
     pub started: u32,
 }
 
+/// What [`Machine::micro_step`] did.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum MicroStep {
+    /// It made a micro-step: the run-to-completion step is under way.
+    Made,
+    /// There was nothing to be taken any more: the step has ended, and did this in all.
+    AtRest(StepSummary),
+}
+
 /// Why a machine stopped by itself.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 #[error("{text}")]
@@ -124,6 +133,7 @@ impl Machine {
     /// Ends everything without leaving any state: running activities get a cancellation request, waiting ones are stopped.
     /// The configuration stays to be looked at.
     pub fn stop(&mut self, host: &mut impl Host) {
+        self.run.under_way = None;
         if self.run.status == Status::Running {
             self.step(host).halt(Status::Stopped);
         }
@@ -185,15 +195,48 @@ impl Machine {
         now: Moment,
         host: &mut impl Host,
     ) -> Result<StepSummary, MachineError> {
+        if self.advance_to(now) { self.step(host).run() } else { Ok(StepSummary::default()) }
+    }
+
+    /// Makes one micro-step of a run-to-completion step: the first, or the next of the step that is under way. The call that finds
+    /// nothing more to be taken ends the step. So a step is
+    /// `while machine.micro_step(now, host)? == MicroStep::Made {}`, and [`run_to_completion`](Machine::run_to_completion) takes what is left
+    /// of one in one go.
+    ///
+    /// Time stands still while a step is under way: only the first call's `now` counts. It is meant for debuggers, which look at the
+    /// machine between the calls; events and returns of activities are better told to it when the step has ended.
+    ///
+    /// # Errors
+    /// As [`run_to_completion`](Machine::run_to_completion).
+    pub fn micro_step(&mut self, now: Moment, host: &mut impl Host) -> Result<MicroStep, MachineError> {
+        match self.advance_to(now) {
+            true => self.step(host).run_one(),
+            false => Ok(MicroStep::AtRest(StepSummary::default())),
+        }
+    }
+
+    /// Whether a step has begun with [`micro_step`](Machine::micro_step) and not ended.
+    pub fn is_mid_step(&self) -> bool {
+        self.run.under_way.is_some()
+    }
+
+    /// Brings the time of a new step to the machine; says whether there is a step to be made.
+    fn advance_to(&mut self, now: Moment) -> bool {
+        if self.is_mid_step() {
+            return true;
+        }
         if self.run.status != Status::Running {
-            return Ok(StepSummary::default());
+            return false;
         }
         self.run.now = self.run.now.max(now);
-        self.step(host).run()
+        true
     }
 
     /// Whether a step now could do anything.
     pub fn needs_step(&self, now: Moment) -> bool {
+        if self.is_mid_step() {
+            return true;
+        }
         let due = || {
             self.run.due
                 || self.run.queues.is_waiting()

@@ -279,7 +279,8 @@ impl Statechart {
         path.rsplit('/').all(|segment| nodes.next().is_some_and(|node| self.segment(node) == segment))
     }
 
-    fn segment(&self, id: NodeId) -> String {
+    /// The last part of its path.
+    pub(crate) fn segment(&self, id: NodeId) -> String {
         let node = self.node(id);
         if !node.name.is_empty() {
             return node.name.clone();

@@ -169,7 +169,8 @@ impl<'a> Builder<'a> {
             regions[index].timers = timers.len();
             for (number, name) in names.iter().enumerate() {
                 let event = self.events.find(name).filter(|event| awaited.contains(event));
-                timers.push(Timer { region: RegionId(index as u32), number, event });
+                let (name, region) = (name.as_str().into(), RegionId(index as u32));
+                timers.push(Timer { name, region, number, event });
             }
         }
         timers.into()

@@ -4,11 +4,11 @@ use crate::bits::BitSet;
 use crate::chart::{Chart, CompoundId, Place, RegionId};
 use crate::expression::EventId;
 use crate::host::ActionPlace;
-use crate::machine::Status;
 use crate::machine::activities::Activities;
 use crate::machine::bound::Bound;
 use crate::machine::queues::Queues;
 use crate::machine::timers::Timers;
+use crate::machine::{Status, StepSummary};
 use crate::moment::Moment;
 use crate::statechart::{NodeId, TransitionId};
 use crate::vocabulary::TopicId;
@@ -19,6 +19,8 @@ pub(super) struct Run {
     pub(super) now: Moment,
     /// Whether something happened that a step may answer to, other than events and timers.
     pub(super) due: bool,
+    /// What a step has done that is taken one micro-step at a time and has not ended.
+    pub(super) under_way: Option<StepSummary>,
     /// The configuration, by place.
     pub(super) active: BitSet,
     /// The BASIC states whose activity runs, by place.
@@ -119,6 +121,7 @@ impl Run {
             status: Status::Idle,
             now: Moment::ZERO,
             due: false,
+            under_way: None,
             active: BitSet::new(places),
             running: BitSet::new(places),
             running_regions: BitSet::new(regions),
@@ -149,6 +152,7 @@ impl Run {
         self.status = Status::Running;
         self.now = now;
         self.due = true;
+        self.under_way = None;
         self.active.clear();
         self.running.clear();
         self.running_regions.clear();

@@ -7,7 +7,7 @@ use crate::host::{Host, Report};
 use crate::machine::activities::Phase;
 use crate::machine::queues::Occurrence;
 use crate::machine::run::Run;
-use crate::machine::{MachineError, MachineErrorKind, Status, StepSummary};
+use crate::machine::{MachineError, MachineErrorKind, MicroStep, Status, StepSummary};
 use crate::semantics::{Deferral, Delivery, Semantics};
 use crate::trace::{Occasion, TraceRecord};
 
@@ -33,20 +33,37 @@ impl<'a, H: Host> Step<'a, H> {
 
     /// Takes transitions until none is enabled.
     pub(super) fn run(mut self) -> Result<StepSummary, MachineError> {
-        self.begin();
-        loop {
-            match self.micro_step() {
-                Ok(true) => {}
-                Ok(false) => break,
-                Err(kind) => {
-                    self.halt(Status::Stopped);
-                    let cycle = self.run.bound.cycle();
-                    return Err(MachineError::new(kind, self.chart, &self.semantics, &cycle));
-                }
-            }
-        }
+        self.open();
+        while self.advance()? {}
         self.finish();
         Ok(self.summary)
+    }
+
+    /// Takes the next micro-step, or ends the step if there is none.
+    pub(super) fn run_one(mut self) -> Result<MicroStep, MachineError> {
+        self.open();
+        if self.advance()? {
+            self.run.under_way = Some(self.summary);
+            return Ok(MicroStep::Made);
+        }
+        self.finish();
+        Ok(MicroStep::AtRest(self.summary))
+    }
+
+    /// Begins a step, or goes on with the one under way.
+    fn open(&mut self) {
+        match self.run.under_way.take() {
+            Some(summary) => self.summary = summary,
+            None => self.begin(),
+        }
+    }
+
+    fn advance(&mut self) -> Result<bool, MachineError> {
+        self.micro_step().map_err(|kind| {
+            self.halt(Status::Stopped);
+            let cycle = self.run.bound.cycle();
+            MachineError::new(kind, self.chart, &self.semantics, &cycle)
+        })
     }
 
     fn begin(&mut self) {

@@ -1,0 +1,8 @@
+//! What a machine is doing, looked at, kept and brought back: one micro-step at a time, by name, and as text.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // the functions around the tests are tests too
+
+#[path = "../kit/mod.rs"]
+mod kit;
+
+mod micro_steps;
