@@ -7,6 +7,7 @@ mod write;
 use std::cell::{OnceCell, RefCell};
 use std::fmt;
 
+use crate::cancellation::Cancellation;
 use crate::hub::{Narukom, Outgoing, Sender};
 use crate::message::AnyMessage;
 use crate::moment::Moment;
@@ -49,6 +50,7 @@ pub struct Blackboard {
     now: Moment,
     random: Random,
     events: Vec<String>,
+    cancellation: Cancellation,
 }
 
 /// What a blackboard has of one topic.
@@ -80,6 +82,7 @@ impl Blackboard {
             now: Moment::ZERO,
             random,
             events: Vec::new(),
+            cancellation: Cancellation::default(),
         }
     }
 
@@ -196,6 +199,13 @@ impl Blackboard {
         self.newest(slot)
     }
 
+    /// As [`latest_sample`](Blackboard::latest_sample), for those who only look on: that is no read, so it makes the blackboard no
+    /// reader of the topic, and an own signal that nobody else has looked at still comes back.
+    pub fn shown(&self, slot: TopicSlot) -> Option<&AnySample> {
+        let reading = self.places.get(slot.index())?.reading.get()?;
+        self.peek(slot, reading)
+    }
+
     /// As [`latest`](Blackboard::latest), for a topic known by its path.
     pub fn read_by_name(&self, path: &str) -> Option<&dyn AnyMessage> {
         self.latest(self.slot(path)?)
@@ -225,6 +235,20 @@ impl Blackboard {
     pub fn lost_at(&self, slot: TopicSlot) -> u64 {
         let reading = self.places.get(slot.index()).and_then(|place| place.reading.get());
         reading.map_or(0, |reading| reading.lost())
+    }
+}
+
+/// Requests to whoever works on it.
+impl Blackboard {
+    /// Whether whoever works on it is asked to return soon: the state whose activity it is waits to be left, or the run ends. Work
+    /// that takes long looks here now and then.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancellation.is_requested()
+    }
+
+    /// What asks, and takes requests back.
+    pub fn cancellation(&self) -> &Cancellation {
+        &self.cancellation
     }
 }
 

@@ -83,6 +83,7 @@
 //! ```
 
 mod blackboard;
+mod cancellation;
 mod catalogue;
 mod descriptor;
 mod error;
@@ -107,6 +108,7 @@ mod topic;
 mod writing;
 
 pub use blackboard::{Blackboard, OUTBOX_LIMIT};
+pub use cancellation::Cancellation;
 pub use descriptor::{EnumDescriptor, FieldDescriptor, FieldKind, MessageDescriptor};
 pub use error::{Error, ErrorKind};
 pub use hub::Narukom;

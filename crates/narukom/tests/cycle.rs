@@ -207,3 +207,14 @@ fn chance_belongs_to_the_seed_or_else_to_the_names() {
     assert_eq!(seeded(1), seeded(1));
     assert_ne!(seeded(1), seeded(2));
 }
+
+#[test]
+fn a_request_to_return_is_seen_until_it_is_taken_back() {
+    let robot = hub().blackboard("robot");
+    let cancellation = robot.cancellation().clone();
+    assert!(!robot.is_cancelled());
+    cancellation.request();
+    assert!(robot.is_cancelled() && cancellation.is_requested());
+    robot.cancellation().withdraw();
+    assert!(!robot.is_cancelled());
+}

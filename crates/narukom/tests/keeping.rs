@@ -72,6 +72,19 @@ fn an_own_signal_that_nobody_read_comes_with_the_next_delivery() {
 }
 
 #[test]
+fn an_own_signal_that_was_only_looked_at_comes_with_the_next_delivery() {
+    let mut robot = hub().blackboard("robot");
+    let slot = robot.slot("test/signal").unwrap();
+    assert!(robot.shown(slot).is_none(), "nobody reads the topic");
+    robot.interest(slot);
+    signal(&mut robot, 1);
+    assert_eq!(robot.shown(slot).and_then(|sample| sample.downcast::<Mark>()).unwrap().number, 1);
+    robot.publish_all(at(1));
+    robot.process_messages(at(2));
+    assert_eq!(signals(&robot), [1]);
+}
+
+#[test]
 fn of_own_signals_only_those_written_after_the_last_read_come_again() {
     let mut robot = hub().blackboard("robot");
     signal(&mut robot, 1);
