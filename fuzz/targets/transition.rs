@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use monas_fuzz::assert_findings_fit;
-use yase::expression::{EventTable, Names, parse_actions, parse_condition, parse_transition};
+use yase::expression::{EventTable, Names, ScriptTable, parse_actions, parse_condition, parse_transition};
 use yase::statechart::{Constant, ConstantValue};
 use yase::vocabulary::{
     Enumeration, FieldEntry, FieldId, FunctionEntry, FunctionId, MessageEntry, TopicEntry, TopicId,
@@ -28,6 +28,7 @@ fuzz_target!(|text: &str| {
         constants: &[Constant { name: "near".into(), value: ConstantValue::Number(0.25) }],
         timers: &timers,
         events: &mut events,
+        scripts: &mut ScriptTable::new(),
         states: &|_| None,
     });
     if let Err(findings) = compiled {
@@ -53,6 +54,7 @@ fn vocabulary() -> Vocabulary {
     ];
     let game = vec![field(0, "phase", ValueType::Enumeration("Phase".into()))];
     Vocabulary {
+        scripts: true,
         topics: vec![
             topic(0, "soccer/ball", TopicKind::State, "Ball"),
             topic(1, "soccer/game", TopicKind::Signal, "Game"),

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use narukom::{Moment, Narukom, TopicSlot};
-use yase::{Activation, Machine, MachineError, Outcome, Semantics, Status, TopicId};
+use yase::{Activation, Machine, MachineError, Outcome, Status, TopicId};
 
 use crate::activity::Progress;
 use crate::binder::BoundChart;
@@ -72,7 +72,7 @@ impl Runner {
         });
         let desk = Desk::new(&chart, home, functions, blackboards.collect())?;
         let posts = Posts::new(&chart, activities);
-        let machine = Machine::new(chart, Semantics::yase());
+        let machine = Machine::new(chart);
         let number = RUNNERS.fetch_add(1, Ordering::Relaxed);
         Ok(Runner { number, machine, desk, posts, micro_steps: 0 })
     }

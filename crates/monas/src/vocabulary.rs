@@ -21,6 +21,7 @@ pub(crate) fn vocabulary<'a>(
     let mut types = Types::default();
     topics.values().for_each(|topic| types.collect(topic.descriptor()));
     Vocabulary {
+        scripts: false,
         topics: topics.values().enumerate().map(|(number, topic)| types.topic(number, topic)).collect(),
         messages: types.messages.values().map(|message| types.message(message)).collect(),
         enumerations: types.enumerations.values().map(|enumeration| types.enumeration(enumeration)).collect(),

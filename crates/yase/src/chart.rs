@@ -2,18 +2,23 @@
 
 mod build;
 mod check;
+mod events;
 mod layout;
+mod scripts;
 mod ways;
 
 use std::time::Duration;
 
 use crate::bits::BitSet;
 use crate::diagnostic::Diagnostic;
-use crate::expression::{CompiledTrigger, Effect, EventId, EventTable, Guard};
+use crate::expression::{Effect, EventId, EventTable, Guard, MessageSource, ScriptId, ScriptTable};
+use crate::semantics::{EventMatching, Semantics};
 use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 use crate::vocabulary::{TopicId, Vocabulary};
 
+pub(crate) use events::Trigger;
 pub(crate) use layout::{Layout, Place};
+pub use scripts::{ScriptEntry, ScriptPlace};
 
 /// A blackboard of a running chart: number 0 is the root's, and each region of an AND has one of its own. Composites within a
 /// region share it.
@@ -40,12 +45,15 @@ pub struct CompoundId(pub(crate) u32);
 #[derive(Clone, Debug)]
 pub struct Chart {
     statechart: Statechart,
+    semantics: Semantics,
     events: EventTable,
+    scripts: ScriptTable,
+    script_places: Box<[Box<[ScriptPlace]>]>,
     pub(crate) layout: Layout,
     pub(crate) states: Box<[State]>,
     pub(crate) regions: Box<[Region]>,
     pub(crate) branches: Box<[Branch]>,
-    pub(crate) triggers: Box<[CompiledTrigger]>,
+    pub(crate) triggers: Box<[Trigger]>,
     pub(crate) guards: Box<[ScopedGuard]>,
     pub(crate) compounds: Box<[Compound]>,
     pub(crate) activities: Box<[Place]>,
@@ -55,6 +63,7 @@ pub struct Chart {
     /// The event that stands for all that no expression names.
     pub(crate) unnamed: EventId,
     reads: Box<[TopicId]>,
+    sources: Box<[MessageSource]>,
     max_activities: usize,
 }
 
@@ -209,12 +218,24 @@ pub struct ActivityEntry<'a> {
 }
 
 impl Statechart {
-    /// Checks the chart and makes it ready to run with the words of a vocabulary.
+    /// Checks the chart and makes it ready to run with the words of a vocabulary, read as [`Semantics::yase`] does.
     ///
     /// # Errors
     /// Everything that is wrong with its structure ([`check`](Statechart::check)), or else with its expressions.
     pub fn compile(&self, vocabulary: &Vocabulary) -> Result<Chart, Vec<Diagnostic>> {
-        build::build(self, vocabulary)
+        self.compile_with(vocabulary, Semantics::yase())
+    }
+
+    /// Checks the chart and makes it ready to run, read in one of the ways in which dialects read charts.
+    ///
+    /// # Errors
+    /// Everything that is wrong with its structure ([`check`](Statechart::check)), or else with its expressions.
+    pub fn compile_with(
+        &self,
+        vocabulary: &Vocabulary,
+        semantics: Semantics,
+    ) -> Result<Chart, Vec<Diagnostic>> {
+        build::build(self, vocabulary, semantics)
     }
 }
 
@@ -222,6 +243,28 @@ impl Chart {
     /// The statechart it was made from; every [`NodeId`] and [`TransitionId`] is one of it.
     pub fn statechart(&self) -> &Statechart {
         &self.statechart
+    }
+
+    /// How it is read.
+    pub fn semantics(&self) -> Semantics {
+        self.semantics
+    }
+
+    pub(crate) fn semantics_ref(&self) -> &Semantics {
+        &self.semantics
+    }
+
+    /// The event that an occurrence of that name is, and whether any expression names it so: else it is, if names match
+    /// [by tokens](EventMatching::TokenPrefix), the event that the longest row of its first tokens names, or else `?`.
+    pub fn event(&self, name: &str) -> (EventId, bool) {
+        if let Some(event) = self.events.find(name) {
+            return (event, true);
+        }
+        let prefix = match self.semantics.matching {
+            EventMatching::Exact => None,
+            EventMatching::TokenPrefix => self.events.find_prefix(name),
+        };
+        (prefix.unwrap_or(self.unnamed), false)
     }
 
     /// The events that its expressions name.
@@ -279,6 +322,24 @@ impl Chart {
     /// The topics that guards or triggers read, in order: a message on any other changes nothing that the chart can see.
     pub fn reads(&self) -> &[TopicId] {
         &self.reads
+    }
+
+    /// The messages that guards, the values of assignments or triggers read, in order, each once.
+    pub fn sources(&self) -> impl ExactSizeIterator<Item = &MessageSource> {
+        self.sources.iter()
+    }
+
+    /// The text of a script; empty for one of another chart.
+    pub fn script(&self, script: ScriptId) -> &str {
+        self.scripts.text(script)
+    }
+
+    /// The scripts of its conditions and actions, and where each stands.
+    pub fn scripts(&self) -> impl ExactSizeIterator<Item = ScriptEntry<'_>> {
+        self.script_places.iter().enumerate().map(|(id, places)| {
+            let id = ScriptId(id as u32);
+            ScriptEntry { id, text: self.scripts.text(id), places }
+        })
     }
 
     /// A node's path without the root's name, as traces show it; the root's own name for the root.

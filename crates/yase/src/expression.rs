@@ -49,11 +49,13 @@
 //! let limit = Constant { name: "limit".into(), value: ConstantValue::Number(0.25) };
 //! let timers: Vec<String> = transition.started_timers().collect();
 //! let mut events = EventTable::new();
+//! let mut scripts = ScriptTable::new();
 //! let compiled = transition.compile(&mut Names {
 //!     vocabulary: &vocabulary,
 //!     constants: &[limit],
 //!     timers: &timers,
 //!     events: &mut events,
+//!     scripts: &mut scripts,
 //!     states: &|_| None,
 //! });
 //! let guard = compiled.expect("every name is known").guard.expect("it has a guard");
@@ -100,11 +102,11 @@
 //! product    = signed { ("*" | "/") signed }
 //! signed     = ("!" | "-") signed | operand              also: not
 //! operand    = number | "text" | "true" | "false" | path | function "(" [ condition { "," condition } ] ")"
-//!            | "TimeoutCheck(" path ")" | "In(" state ")" | "(" condition ")"
+//!            | "TimeoutCheck(" path ")" | "In(" state ")" | "script(" "text" ")" | "(" condition ")"
 //! action     = path "=" condition | path ".set_" field "(" condition ")"
 //!            | "publish." path [ ".set_" field "(" condition ")" ] | "raise(" event ")"
 //!            | "StartTimeout(" path "," delay ")" | "TimeoutAction." path "." milliseconds
-//!            | "process_messages" | "publish_all"
+//!            | "script(" "text" ")" | "process_messages" | "publish_all"
 //! path       = name { "." name [ "()" ] }
 //! name       = letters, digits and "_", or anything in backquotes
 //! delay      = number ("ms" | "s")
@@ -126,6 +128,9 @@
 //! and a field is one of these, a dot and its name, and so on into messages within messages. A bare name is a
 //! timer of the chart, a value of the enumeration it is compared with, a constant of the model, or a function
 //! without arguments; two of these at once are an error.
+//!
+//! A script is a condition or an action in a language of the host's own, for embeddings that have one
+//! ([`Vocabulary::scripts`](crate::Vocabulary::scripts)): the chart keeps its text, the host gives it a meaning.
 //!
 //! In a trigger, `Message.M`, `M`, `topic.Kind.M`, a signal's topic and a whole path mean the arrival of a
 //! message; any other path is the name of an event.
@@ -163,6 +168,7 @@
 //! | E0120 | something follows a complete part |
 //! | E0121 | a setter cannot be read |
 //! | E0122 | a single bar or ampersand stands for two |
+//! | E0123 | a script is no text |
 //! | E0130 | a bare name is not known |
 //! | E0131 | a name has several meanings |
 //! | E0132 | a message or topic is not known |
@@ -180,6 +186,7 @@
 //! | E0144 | a message is raised |
 //! | E0145 | a whole message is assigned, or a field published |
 //! | E0146 | a trigger names a field or another host's message |
+//! | E0147 | a script stands where there are none |
 
 mod arithmetic;
 mod compile;
@@ -194,7 +201,7 @@ mod syntax;
 
 pub use compile::{CompiledTransition, CompiledTrigger, Effect, compile_actions};
 pub use facts::{CallError, Facts, MessageSource, Origin, TimerId, TimerState};
-pub use names::{EventId, EventTable, Names};
+pub use names::{EventId, EventTable, Names, ScriptId, ScriptTable};
 pub use parser::{parse_actions, parse_actions_at, parse_condition, parse_transition, parse_transition_at};
 pub use program::{Guard, GuardError, Operand};
 pub use syntax::{

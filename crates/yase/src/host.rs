@@ -1,7 +1,8 @@
 //! What a machine knows of its world.
 
 use crate::chart::{Chart, RegionId};
-use crate::expression::{CallError, GuardError, MessageSource};
+use crate::expression::{CallError, EventId, GuardError, MessageSource, ScriptId};
+use crate::machine::{Performance, States};
 use crate::statechart::{NodeId, TransitionId};
 use crate::trace::TraceRecord;
 use crate::vocabulary::{FieldId, FunctionId, TopicId, Value};
@@ -34,6 +35,38 @@ pub trait Host {
     fn call(&self, function: FunctionId, arguments: &[Value<'_>]) -> Result<Value<'_>, CallError> {
         let _ = (function, arguments);
         Err(CallError::new("this host has no functions"))
+    }
+
+    /// What a condition in the host's own language says; asked only if the vocabulary says that there are
+    /// [scripts](crate::Vocabulary::scripts). Its text is that of [`Chart::script`].
+    ///
+    /// # Errors
+    /// Whatever keeps it from having a value: the guard then counts as false.
+    fn condition(&self, script: ScriptId, region: RegionId, states: &States<'_>) -> Result<bool, CallError> {
+        let _ = (script, region, states);
+        Err(CallError::new("this host has no scripts"))
+    }
+
+    /// Does what an action in the host's own language says.
+    ///
+    /// # Errors
+    /// Whatever keeps it from being done.
+    fn perform(
+        &mut self,
+        script: ScriptId,
+        region: RegionId,
+        performance: &mut Performance<'_>,
+    ) -> Result<(), CallError> {
+        let _ = (script, region, performance);
+        Err(CallError::new("this host has no scripts"))
+    }
+
+    /// An event is about to be offered to the configuration, before guards are read: once for each micro-step with an event. `is_known` is
+    /// false if no expression names it: then it is the event of the first tokens of its name that one does name
+    /// ([`EventMatching::TokenPrefix`](crate::EventMatching::TokenPrefix)), or `?`. The token is that of
+    /// [`dispatch_with`](crate::Machine::dispatch_with) or [`Performance::raise`], 0 for whatever came otherwise.
+    fn offered(&mut self, event: EventId, is_known: bool, token: u64) {
+        let _ = (event, is_known, token);
     }
 
     /// Brings the messages that have arrived to a blackboard. At the beginning of a step this happens on every blackboard whose own region
@@ -176,4 +209,7 @@ pub enum ActionError {
     /// The host refused the assignment.
     #[error("the value cannot be assigned: {0}")]
     Refused(#[from] CallError),
+    /// The host could not do what a script says.
+    #[error("the script failed: {0}")]
+    Script(#[source] CallError),
 }

@@ -22,7 +22,7 @@
 //!   whole or not at all.
 //!
 //! One call of [`Machine::run_to_completion`] is a transaction: messages are delivered, transitions are taken until none is enabled, what was
-//! written is published, activities start. Where dialects differ, [`Semantics`] says which reading is meant.
+//! written is published, activities start. Where dialects differ, the [`Semantics`] that a chart is compiled for says which reading is meant.
 //!
 //! # Example
 //!
@@ -31,7 +31,7 @@
 //! ```
 //! use std::sync::Arc;
 //! use yase::expression::parse_transition;
-//! use yase::{Activation, Host, Machine, Moment, Node, NodeKind, Outcome, Semantics, Statechart, Transition, Vocabulary};
+//! use yase::{Activation, Host, Machine, Moment, Node, NodeKind, Outcome, Statechart, Transition, Vocabulary};
 //!
 //! let mut lamp = Statechart::new("lamp");
 //! let start = lamp.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));
@@ -58,7 +58,7 @@
 //! }
 //!
 //! let chart = lamp.compile(&Vocabulary::default()).expect("the chart is in order");
-//! let mut machine = Machine::new(Arc::new(chart), Semantics::yase());
+//! let mut machine = Machine::new(Arc::new(chart));
 //! let mut room = Room::default();
 //! machine.start(Moment::ZERO, &mut room);
 //! machine.run_to_completion(Moment::ZERO, &mut room)?;
@@ -87,12 +87,18 @@ pub mod statechart;
 mod trace;
 pub mod vocabulary;
 
-pub use chart::{ActivityEntry, Chart, CompoundId, RegionId};
+pub use chart::{ActivityEntry, Chart, CompoundId, RegionId, ScriptEntry, ScriptPlace};
 pub use diagnostic::{Diagnostic, Severity, Source, Span};
 pub use host::{ActionError, ActionPlace, Activation, Host, Outcome, Report};
-pub use machine::{Machine, MachineError, MachineErrorKind, MicroStep, Status, StepSummary};
+pub use machine::{
+    Chooser, Machine, MachineError, MachineErrorKind, MicroStep, Performance, States, Status, StepSummary,
+};
 pub use moment::Moment;
-pub use semantics::{Deferral, Delivery, Eventless, Semantics};
+pub use semantics::{
+    ActiveAncestor, ConflictChoice, Deferral, Delivery, EventMatching, EventPool, Eventless, ExitOrder,
+    FailureEvents, Firing, Joining, RootEnd, RunningOnExit, SegmentOrder, Semantics, Sharing, StartRest,
+    TimerScope,
+};
 pub use statechart::{Node, NodeId, NodeKind, Statechart, Transition, TransitionId};
 pub use trace::{Occasion, TraceRecord};
 pub use vocabulary::{FieldId, FunctionId, TopicId, Value, Vocabulary};

@@ -2,10 +2,12 @@
 
 mod activities;
 mod bound;
+mod chooser;
 mod errors;
 mod fire;
 mod queues;
 mod run;
+mod script;
 mod select;
 mod step;
 mod timers;
@@ -21,8 +23,12 @@ use crate::semantics::Semantics;
 use crate::statechart::{NodeId, TransitionId};
 use crate::vocabulary::TopicId;
 
+use queues::Incoming;
 use run::Run;
 use step::Step;
+
+pub use chooser::Chooser;
+pub use script::{Performance, States};
 
 /// A [`Chart`] that runs.
 ///
@@ -35,7 +41,6 @@ use step::Step;
 #[derive(Clone, Debug)]
 pub struct Machine {
     chart: Arc<Chart>,
-    semantics: Semantics,
     run: Run,
 }
 
@@ -107,9 +112,9 @@ impl MachineError {
 
 impl Machine {
     /// A machine that has not been started.
-    pub fn new(chart: Arc<Chart>, semantics: Semantics) -> Machine {
+    pub fn new(chart: Arc<Chart>) -> Machine {
         let run = Run::new(&chart);
-        Machine { chart, semantics, run }
+        Machine { chart, run }
     }
 
     /// The chart it runs.
@@ -119,7 +124,17 @@ impl Machine {
 
     /// How it reads the chart.
     pub fn semantics(&self) -> Semantics {
-        self.semantics
+        self.chart.semantics()
+    }
+
+    /// Who decides what the chart leaves open.
+    pub fn chooser(&self) -> &Chooser {
+        &self.run.chooser
+    }
+
+    /// Lets another decide what the chart leaves open.
+    pub fn set_chooser(&mut self, chooser: Chooser) {
+        self.run.chooser = chooser;
     }
 
     /// Enters the root and its START, from scratch: what ran before is [stopped](Machine::stop), timers and events are forgotten. The first
@@ -141,17 +156,27 @@ impl Machine {
 
     /// Notes an event. Events that nobody takes are dropped when their turn comes; so are all while the chart does not run.
     pub fn dispatch(&mut self, event: EventId) {
+        self.arrive(event.into());
+    }
+
+    fn arrive(&mut self, event: Incoming) {
         if self.run.status == Status::Running {
-            self.run.queues.arrive(event, None);
+            self.run.queues.arrive(event);
         }
     }
 
     /// Notes an event by its name, and says whether any expression of the chart names it. One that none names can still be taken by
-    /// `*` and `not e`; traces call it `?`.
+    /// `*` and `not e` (traces call it `?`), or by what names the first tokens of its name ([`Chart::event`]).
     pub fn dispatch_name(&mut self, name: &str) -> bool {
-        let event = self.chart.events().find(name);
-        self.dispatch(event.unwrap_or(self.chart.unnamed));
-        event.is_some()
+        self.dispatch_with(name, 0)
+    }
+
+    /// Notes an event by its name like [`dispatch_name`](Machine::dispatch_name), with a number of the caller's own, which
+    /// [`Host::offered`] is told when the event's turn has come.
+    pub fn dispatch_with(&mut self, name: &str, token: u64) -> bool {
+        let (event, is_known) = self.chart.event(name);
+        self.arrive(Incoming { event, expiry: None, token, is_known });
+        is_known
     }
 
     /// Notes that messages have arrived on a topic: each is one occurrence for triggers that name the message, and guards that read
@@ -164,7 +189,7 @@ impl Machine {
         self.run.topic_changed(&self.chart, topic, None);
         if let Some(event) = self.chart.events().message(topic) {
             for _ in 0..count {
-                self.run.queues.arrive(event, None);
+                self.run.queues.arrive(event.into());
             }
         }
     }
@@ -286,6 +311,6 @@ impl Machine {
     }
 
     fn step<'a, H: Host>(&'a mut self, host: &'a mut H) -> Step<'a, H> {
-        Step::new(&self.chart, self.semantics, &mut self.run, host)
+        Step::new(&self.chart, &mut self.run, host)
     }
 }

@@ -30,6 +30,9 @@ pub struct TraceRecord<'a> {
     pub exits: &'a [NodeId],
     /// The actions that were done, in order.
     pub effects: &'a [ActionPlace],
+    /// The segments that were decided on only while the micro-step happened, in the order in which they were taken: those behind a CHOICE,
+    /// out of HISTORY, and, where composites do not rest there, out of START.
+    pub taken: &'a [TransitionId],
     /// The nodes that were entered, in order.
     pub entries: &'a [NodeId],
     /// The guards that were read, in order; none for one that has no value.
@@ -45,6 +48,8 @@ pub enum Occasion {
     Eventless,
     /// One occurrence of an event.
     Event(EventId),
+    /// The root has reached END, and everything is left.
+    Finish,
 }
 
 impl<'a> TraceRecord<'a> {
@@ -76,6 +81,7 @@ impl<N: Fn(NodeId) -> String> fmt::Display for Line<'_, N> {
         match record.occasion {
             Occasion::Start => write!(f, "{} start", record.time)?,
             Occasion::Eventless => write!(f, "{} -:", record.time)?,
+            Occasion::Finish => write!(f, "{} finish", record.time)?,
             Occasion::Event(event) => write!(f, "{} {}:", record.time, self.chart.events().name(event))?,
         }
         let compounds = |list: &[CompoundId]| join(list, |&compound| self.compound(compound));
@@ -83,13 +89,14 @@ impl<N: Fn(NodeId) -> String> fmt::Display for Line<'_, N> {
         match record.selected.is_empty() {
             false => write!(f, " {}", compounds(record.selected))?,
             true if record.is_dropped() => write!(f, " dropped")?,
-            true if record.occasion == Occasion::Start => {}
+            true if matches!(record.occasion, Occasion::Start | Occasion::Finish) => {}
             true => write!(f, " nothing")?,
         }
         part(f, "preempt", &compounds(record.preempted))?;
         part(f, "hold", &compounds(record.held))?;
         part(f, "defer in", &record.deferred.map(&self.name).unwrap_or_default())?;
         part(f, "exit", &nodes(record.exits))?;
+        part(f, "then", &self.chain(record.taken))?;
         part(f, "do", &join(record.effects, |&place| self.effect(place)))?;
         part(f, "enter", &nodes(record.entries))?;
         part(f, "read", &join(record.guards, |&(transition, value)| self.guard(transition, value)))
@@ -107,17 +114,24 @@ impl TraceRecord<'_> {
 }
 
 impl<N: Fn(NodeId) -> String> Line<'_, N> {
-    /// `a -> CONDITION -> b`
     fn compound(&self, compound: CompoundId) -> String {
+        self.chain(self.chart.segments(compound))
+    }
+
+    /// `a -> CONDITION -> b`; where a segment does not go on from the one before, `a -> FORK -> b + FORK -> c`.
+    fn chain(&self, segments: &[TransitionId]) -> String {
         let statechart = self.chart.statechart();
-        let segments = self.chart.segments(compound);
-        let mut text = segments
-            .first()
-            .map(|&first| (self.name)(statechart.transition(first).source))
-            .unwrap_or_default();
+        let mut text = String::new();
+        let mut at = None;
         for &segment in segments {
+            let transition = statechart.transition(segment);
+            if at != Some(transition.source) {
+                text += if text.is_empty() { "" } else { " + " };
+                text += &(self.name)(transition.source);
+            }
             text += " -> ";
-            text += &(self.name)(statechart.transition(segment).target);
+            text += &(self.name)(transition.target);
+            at = Some(transition.target);
         }
         text
     }

@@ -30,6 +30,8 @@ pub struct Vocabulary {
     pub enumerations: Vec<Enumeration>,
     /// Every function.
     pub functions: Vec<FunctionEntry>,
+    /// Whether the host has a language of its own for conditions and actions: `script("text")`.
+    pub scripts: bool,
 }
 
 /// A topic that expressions may read and assign.

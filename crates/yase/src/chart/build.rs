@@ -6,17 +6,23 @@ use crate::bits::BitSet;
 use crate::chart::ways::{self, Way};
 use crate::chart::{
     Branch, Branches, Chart, Compound, CompoundId, Condition, ErrorEvents, Layout, Masks, Place, Region,
-    RegionId, ScopedGuard, State, Timer,
+    RegionId, ScopedGuard, State, Timer, Trigger, events, scripts,
 };
 use crate::diagnostic::Diagnostic;
 use crate::expression::{
-    CompiledTransition, CompiledTrigger, Effect, EventId, EventTable, Names, compile_actions, started_timers,
+    CompiledTransition, CompiledTrigger, Effect, EventId, EventTable, MessageSource, Names, Origin,
+    ScriptTable, compile_actions, started_timers,
 };
+use crate::semantics::{FailureEvents, Semantics};
 use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 use crate::vocabulary::{TopicId, Vocabulary};
 
 /// Checks a statechart and makes it ready to run.
-pub(super) fn build(chart: &Statechart, vocabulary: &Vocabulary) -> Result<Chart, Vec<Diagnostic>> {
+pub(super) fn build(
+    chart: &Statechart,
+    vocabulary: &Vocabulary,
+    semantics: Semantics,
+) -> Result<Chart, Vec<Diagnostic>> {
     let mut found = chart.check();
     found.retain(Diagnostic::is_error);
     if !found.is_empty() {
@@ -26,7 +32,7 @@ pub(super) fn build(chart: &Statechart, vocabulary: &Vocabulary) -> Result<Chart
     let (region_of, regions) = regions(chart, &layout);
     let ways = ways::find(chart, &layout, &region_of)?;
     let timers = timer_names(chart, &ways, &region_of, regions.len());
-    Builder::new(chart, vocabulary, layout, region_of, timers).finish(ways, regions)
+    Builder::new(chart, vocabulary, semantics, layout, region_of, timers).finish(ways, regions)
 }
 
 /// The blackboard of each node, and the blackboards in the order of the document.
@@ -81,10 +87,12 @@ fn unreached(chart: &Statechart, ways: &[Vec<Way>]) -> Vec<TransitionId> {
 struct Builder<'a> {
     chart: &'a Statechart,
     vocabulary: &'a Vocabulary,
+    semantics: Semantics,
     layout: Layout,
     region_of: Vec<RegionId>,
     timer_names: Vec<Vec<String>>,
     events: EventTable,
+    scripts: ScriptTable,
     segments: BTreeMap<(TransitionId, RegionId), Segment>,
     branches: Vec<Branch>,
     triggers: Vec<CompiledTrigger>,
@@ -105,6 +113,7 @@ impl<'a> Builder<'a> {
     fn new(
         chart: &'a Statechart,
         vocabulary: &'a Vocabulary,
+        semantics: Semantics,
         layout: Layout,
         region_of: Vec<RegionId>,
         timer_names: Vec<Vec<String>>,
@@ -112,10 +121,12 @@ impl<'a> Builder<'a> {
         Builder {
             chart,
             vocabulary,
+            semantics,
             layout,
             region_of,
             timer_names,
             events: EventTable::new(),
+            scripts: ScriptTable::new(),
             segments: BTreeMap::new(),
             branches: Vec::new(),
             triggers: Vec::new(),
@@ -126,25 +137,26 @@ impl<'a> Builder<'a> {
     }
 
     fn finish(mut self, ways: Vec<Vec<Way>>, mut regions: Vec<Region>) -> Result<Chart, Vec<Diagnostic>> {
-        let errors = ErrorEvents {
-            guard: self.events.intern("error.guard"),
-            action: self.events.intern("error.action"),
-            activity: self.events.intern("error.activity"),
-        };
+        let errors = self.error_events();
         let unnamed = self.events.intern("?");
-        let states = self.states(&ways);
+        let mut states = self.states(&ways);
         for segment in unreached(self.chart, &ways) {
             self.segment(segment, self.region_of[self.chart.transition(segment).source.0 as usize]);
         }
-        let timers = self.timers(&mut regions, &states);
         if !self.found.is_empty() {
             return Err(self.found);
         }
+        let triggers = self.match_events(&mut states);
+        let timers = self.timers(&mut regions, &states, &triggers);
         let activities: Box<[Place]> =
             self.layout.places().filter(|place| states[place.index()].activity.is_some()).collect();
         Ok(Chart {
             masks: masks(&states),
-            reads: self.reads(),
+            reads: self.reads(&triggers),
+            sources: self.sources(&states, &triggers),
+            script_places: scripts::places(self.chart, &self.scripts),
+            scripts: self.scripts,
+            semantics: self.semantics,
             max_activities: max_activities(&states),
             statechart: self.chart.clone(),
             events: self.events,
@@ -152,7 +164,7 @@ impl<'a> Builder<'a> {
             states: states.into(),
             regions: regions.into(),
             branches: self.branches.into(),
-            triggers: self.triggers.into(),
+            triggers,
             guards: self.guards.into(),
             compounds: self.compounds.into(),
             activities,
@@ -162,8 +174,31 @@ impl<'a> Builder<'a> {
         })
     }
 
-    fn timers(&self, regions: &mut [Region], states: &[State]) -> Box<[Timer]> {
-        let awaited = self.awaited(states);
+    /// The events that failures are.
+    fn error_events(&mut self) -> ErrorEvents {
+        let (guard, action) = match self.semantics.failures {
+            FailureEvents::ByCause => ("error.guard", "error.action"),
+            FailureEvents::EveryTime => ("error.execution", "error.execution"),
+        };
+        ErrorEvents {
+            guard: self.events.intern(guard),
+            action: self.events.intern(action),
+            activity: self.events.intern("error.activity"),
+        }
+    }
+
+    /// Now that every event has its number: which of them triggers wait for and states defer.
+    fn match_events(&self, states: &mut [State]) -> Box<[Trigger]> {
+        let matching = self.semantics.matching;
+        for state in states.iter_mut().filter(|state| !state.defer.is_empty()) {
+            let all = || self.events.ids().collect();
+            state.defer = events::named(&state.defer, &self.events, matching).unwrap_or_else(all);
+        }
+        self.triggers.iter().map(|trigger| Trigger::new(trigger, &self.events, matching)).collect()
+    }
+
+    fn timers(&self, regions: &mut [Region], states: &[State], triggers: &[Trigger]) -> Box<[Timer]> {
+        let awaited = awaited(states, triggers);
         let mut timers = Vec::new();
         for (index, names) in self.timer_names.iter().enumerate() {
             regions[index].timers = timers.len();
@@ -174,16 +209,6 @@ impl<'a> Builder<'a> {
             }
         }
         timers.into()
-    }
-
-    /// The events that triggers name or states defer.
-    fn awaited(&self, states: &[State]) -> BTreeSet<EventId> {
-        let deferred = states.iter().flat_map(|state| state.defer.iter().copied());
-        let named = self.triggers.iter().flat_map(|trigger| match trigger {
-            CompiledTrigger::OneOf(events) => events.iter().copied(),
-            _ => [].iter().copied(),
-        });
-        deferred.chain(named).collect()
     }
 
     /// The states by place, with the ways out of each as branches.
@@ -240,6 +265,7 @@ impl<'a> Builder<'a> {
             constants: &chart.constants,
             timers: &self.timer_names[region.index()],
             events: &mut self.events,
+            scripts: &mut self.scripts,
             states: &|path| chart.find(path),
         };
         compile(&mut names).unwrap_or_else(|found| {
@@ -347,19 +373,42 @@ impl<'a> Builder<'a> {
     }
 
     /// The topics that guards read or triggers wait for.
-    fn reads(&self) -> Box<[TopicId]> {
+    fn reads(&self, triggers: &[Trigger]) -> Box<[TopicId]> {
         let mut topics: BTreeSet<TopicId> =
             self.guards.iter().flat_map(|guard| guard.guard.reads().iter().copied()).collect();
-        for trigger in &self.triggers {
-            let events = match trigger {
-                CompiledTrigger::OneOf(events) => events.as_ref(),
-                CompiledTrigger::Not(event) => std::slice::from_ref(event),
-                CompiledTrigger::Any => &[],
-            };
-            topics.extend(events.iter().filter_map(|&event| self.events.topic(event)));
-        }
+        topics.extend(self.arrivals(triggers));
         topics.into_iter().collect()
     }
+
+    /// The topics whose messages triggers wait for.
+    fn arrivals<'t>(&'t self, triggers: &'t [Trigger]) -> impl Iterator<Item = TopicId> + 't {
+        let events = triggers.iter().flat_map(|trigger| trigger.events().iter());
+        events.filter_map(|&event| self.events.topic(event))
+    }
+
+    fn sources(&self, states: &[State], triggers: &[Trigger]) -> Box<[MessageSource]> {
+        let arrivals = self.arrivals(triggers).map(|topic| MessageSource { topic, origin: Origin::Own });
+        let mut sources: BTreeSet<MessageSource> = arrivals.collect();
+        sources.extend(self.guards.iter().flat_map(|guard| guard.guard.sources()).cloned());
+        let segments = self.segments.values().map(|segment| &segment.effects);
+        let states = states.iter().flat_map(|state| [&state.entry, &state.exit]);
+        for effect in segments.chain(states).flat_map(|effects| effects.iter()) {
+            if let Effect::Assign { value, .. } = effect {
+                sources.extend(value.sources().iter().cloned());
+            }
+        }
+        sources.into_iter().collect()
+    }
+}
+
+/// The events that triggers name or states defer.
+fn awaited(states: &[State], triggers: &[Trigger]) -> BTreeSet<EventId> {
+    let deferred = states.iter().flat_map(|state| state.defer.iter().copied());
+    let named = triggers.iter().flat_map(|trigger| match trigger {
+        Trigger::OneOf(events) => events.iter().copied(),
+        _ => [].iter().copied(),
+    });
+    deferred.chain(named).collect()
 }
 
 /// Appends, and says at which place.

@@ -8,7 +8,7 @@ mod scope;
 use std::time::Duration;
 
 use super::facts::{Origin, TimerId};
-use super::names::{EventId, EventTable, Names};
+use super::names::{EventId, EventTable, Names, ScriptId};
 use super::program::{Guard, Operand};
 use super::syntax::{Action, ActionKind, Expression, Path, TransitionExpression, Trigger};
 use crate::diagnostic::Diagnostic;
@@ -87,6 +87,11 @@ pub enum Effect {
         /// The event.
         event: EventId,
     },
+    /// Do what a text in the host's own language says.
+    Script {
+        /// The text.
+        script: ScriptId,
+    },
 }
 
 impl TransitionExpression {
@@ -96,10 +101,16 @@ impl TransitionExpression {
     /// Everything that is wrong, each with its place.
     pub fn compile(&self, names: &mut Names<'_>) -> Result<CompiledTransition, Vec<Diagnostic>> {
         let scope = Scope::new(names);
+        let compiled = self.compile_in(&scope, names.events);
+        scope.close(names);
+        compiled
+    }
+
+    fn compile_in(&self, scope: &Scope<'_>, events: &mut EventTable) -> Checked<CompiledTransition> {
         let trigger =
-            self.trigger.as_ref().map(|trigger| compile_trigger(trigger, &scope, names.events)).transpose();
-        let guard = self.guard.as_ref().map(|guard| compile_guard(guard, &scope)).transpose();
-        let effects = collect(self.actions.iter().map(|action| effect(action, &scope, names.events)));
+            self.trigger.as_ref().map(|trigger| compile_trigger(trigger, scope, events)).transpose();
+        let guard = self.guard.as_ref().map(|guard| compile_guard(guard, scope)).transpose();
+        let effects = collect(self.actions.iter().map(|action| effect(action, scope, events)));
         let ((trigger, guard), effects) = both(both(trigger, guard), effects)?;
         Ok(CompiledTransition { trigger, guard, effects: effects.into() })
     }
@@ -113,6 +124,7 @@ impl TransitionExpression {
 pub fn compile_actions(actions: &[Action], names: &mut Names<'_>) -> Result<Box<[Effect]>, Vec<Diagnostic>> {
     let scope = Scope::new(names);
     let effects = collect(actions.iter().map(|action| effect(action, &scope, names.events)));
+    scope.close(names);
     Ok(effects?.into())
 }
 
@@ -143,6 +155,7 @@ fn effect(action: &Action, scope: &Scope<'_>, events: &mut EventTable) -> Checke
         ActionKind::PublishAll => Ok(Effect::PublishAll),
         ActionKind::StartTimeout { timer, delay, .. } => start_timeout(timer, *delay, action, scope),
         ActionKind::Raise(event) => Ok(Effect::Raise { event: scope.raised_event(event, events)? }),
+        ActionKind::Script(text) => Ok(Effect::Script { script: scope.script(text, action.place.0)? }),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::names::ScriptId;
 use crate::statechart::NodeId;
 use crate::vocabulary::{FieldId, FunctionId, TopicId, Value};
 
@@ -29,6 +30,15 @@ pub trait Facts {
 
     /// Whether a state is active.
     fn is_active(&self, state: NodeId) -> bool;
+
+    /// What a condition in the host's own language says.
+    ///
+    /// # Errors
+    /// Whatever keeps it from having a value; without a body of its own, that there is no such language.
+    fn script(&self, script: ScriptId) -> Result<bool, CallError> {
+        let _ = script;
+        Err(CallError::new("there are no scripts here"))
+    }
 }
 
 /// Whose messages of a topic are meant.

@@ -16,8 +16,59 @@ pub struct Names<'a> {
     pub timers: &'a [String],
     /// The events of the chart; names that are new are added.
     pub events: &'a mut EventTable,
+    /// The scripts of the chart; those that are new are added.
+    pub scripts: &'a mut ScriptTable,
     /// Finds the state that a path (blanks removed, `~` for forever) names.
     pub states: &'a dyn Fn(&str) -> Option<NodeId>,
+}
+
+/// A script, by its place in a [`ScriptTable`].
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct ScriptId(pub u32);
+
+/// The texts in a language of the host's own that a chart holds, each once.
+#[derive(Clone, Debug, Default)]
+pub struct ScriptTable {
+    texts: Vec<String>,
+    by_text: BTreeMap<String, ScriptId>,
+}
+
+impl ScriptTable {
+    /// A table without scripts.
+    pub fn new() -> ScriptTable {
+        ScriptTable::default()
+    }
+
+    /// The script of a text, added if it is new.
+    pub fn intern(&mut self, text: &str) -> ScriptId {
+        if let Some(&id) = self.by_text.get(text) {
+            return id;
+        }
+        let id = ScriptId(self.texts.len() as u32);
+        self.texts.push(text.to_owned());
+        self.by_text.insert(text.to_owned(), id);
+        id
+    }
+
+    /// The script of a text.
+    pub fn find(&self, text: &str) -> Option<ScriptId> {
+        self.by_text.get(text).copied()
+    }
+
+    /// The text of a script; empty for one of another table.
+    pub fn text(&self, script: ScriptId) -> &str {
+        self.texts.get(script.0 as usize).map_or("", String::as_str)
+    }
+
+    /// How many scripts there are; their numbers run from 0.
+    pub fn len(&self) -> usize {
+        self.texts.len()
+    }
+
+    /// Whether there is no script.
+    pub fn is_empty(&self) -> bool {
+        self.texts.is_empty()
+    }
 }
 
 /// An event, by its place in an [`EventTable`].
@@ -74,6 +125,31 @@ impl EventTable {
     /// The event of a name; arrivals of messages are not found by name.
     pub fn find(&self, name: &str) -> Option<EventId> {
         self.by_name.get(name).copied()
+    }
+
+    /// The event that the longest row of a name's first tokens (`a.b` of `a.b.c`) names.
+    pub fn find_prefix(&self, name: &str) -> Option<EventId> {
+        let mut prefix = name;
+        while let Some((shorter, _)) = prefix.rsplit_once('.') {
+            prefix = shorter;
+            if let Some(event) = self.find(prefix) {
+                return Some(event);
+            }
+        }
+        None
+    }
+
+    /// Every event, in the order of their numbers.
+    pub fn ids(&self) -> impl ExactSizeIterator<Item = EventId> + use<> {
+        (0..self.entries.len() as u32).map(EventId)
+    }
+
+    /// The events whose names begin with the tokens of a name: `a` and `a.b` with those of `a`.
+    pub fn beginning_with(&self, name: &str) -> impl Iterator<Item = EventId> {
+        let longer = format!("{name}.");
+        let first = longer.clone();
+        let others = self.by_name.range(first..).take_while(move |(other, _)| other.starts_with(&longer));
+        self.find(name).into_iter().chain(others.map(|(_, &event)| event))
     }
 
     /// The event that is each arrival on a topic, if some trigger names it.

@@ -65,7 +65,7 @@ fn is_plain(word: &str) -> bool {
 fn is_special(word: &str) -> bool {
     const LEADING: [&str; 7] =
         ["In", "TimeoutCheck", "StartTimeout", "TimeoutAction", "publish", "process_messages", "publish_all"];
-    word == "raise" || LEADING.contains(&word) || RESERVED.contains(&word)
+    word == "raise" || word == "script" || LEADING.contains(&word) || RESERVED.contains(&word)
 }
 
 impl Display for Expression {
@@ -102,6 +102,7 @@ impl Display for Expression {
             }
             ExpressionKind::TimeoutCheck(timer) => write!(f, "TimeoutCheck({timer})"),
             ExpressionKind::In(state) => write!(f, "In({})", state.text),
+            ExpressionKind::Script(text) => script(f, text),
         }
     }
 }
@@ -213,6 +214,7 @@ impl Display for Action {
                 write!(f, "TimeoutAction.{timer}.{}", Milliseconds(*delay))
             }
             ActionKind::Raise(event) => write!(f, "raise({event})"),
+            ActionKind::Script(text) => script(f, text),
         }
     }
 }
@@ -227,6 +229,12 @@ impl Display for Milliseconds {
             rest => write!(f, ".{}", format!("{rest:06}").trim_end_matches('0')),
         }
     }
+}
+
+fn script(f: &mut Formatter<'_>, text: &str) -> fmt::Result {
+    f.write_str("script(")?;
+    quoted(f, text)?;
+    f.write_char(')')
 }
 
 fn quoted(f: &mut Formatter<'_>, text: &str) -> fmt::Result {

@@ -5,6 +5,7 @@
 
 use super::arithmetic::{Operator, arithmetic, compare, negative};
 use super::facts::{CallError, Facts, MessageSource, TimerId, TimerState};
+use super::names::ScriptId;
 use super::reads::Reads;
 use super::syntax::{Additive, Comparison, Multiplicative};
 use crate::statechart::NodeId;
@@ -18,6 +19,7 @@ pub(super) const MAX_ARGUMENTS: usize = 8;
 pub struct Guard {
     test: Test,
     reads: Box<[TopicId]>,
+    sources: Box<[MessageSource]>,
     timers: Box<[TimerId]>,
 }
 
@@ -25,7 +27,7 @@ impl Guard {
     pub(super) fn new(test: Test) -> Guard {
         let mut reads = Reads::default();
         reads.of_test(&test);
-        Guard { test, reads: reads.topics(), timers: reads.timers() }
+        Guard { test, reads: reads.topics(), sources: reads.sources(), timers: reads.timers() }
     }
 
     /// Whether the guard holds. Unknown, which is what reads a message that has not arrived, is not holding.
@@ -39,6 +41,11 @@ impl Guard {
     /// The topics it reads, each once, in order.
     pub fn reads(&self) -> &[TopicId] {
         &self.reads
+    }
+
+    /// The sources it reads messages of, each once, in order.
+    pub fn sources(&self) -> &[MessageSource] {
+        &self.sources
     }
 
     /// The timers it reads, each once, in order.
@@ -57,13 +64,14 @@ impl Guard {
 pub struct Operand {
     term: Term,
     reads: Box<[TopicId]>,
+    sources: Box<[MessageSource]>,
 }
 
 impl Operand {
     pub(super) fn new(term: Term) -> Operand {
         let mut reads = Reads::default();
         reads.of_term(&term);
-        Operand { term, reads: reads.topics() }
+        Operand { term, reads: reads.topics(), sources: reads.sources() }
     }
 
     /// The value; [`Value::Missing`] if it depends on a message that has not arrived.
@@ -77,6 +85,11 @@ impl Operand {
     /// The topics it reads, each once, in order.
     pub fn reads(&self) -> &[TopicId] {
         &self.reads
+    }
+
+    /// The sources it reads messages of, each once, in order.
+    pub fn sources(&self) -> &[MessageSource] {
+        &self.sources
     }
 }
 
@@ -163,6 +176,7 @@ pub(super) enum Test {
     /// `TimeoutCheck` of a timer that nothing starts.
     NeverStarted,
     Active(NodeId),
+    Script(ScriptId),
     Holds(Term),
 }
 
@@ -199,6 +213,7 @@ impl Test {
             }),
             Test::NeverStarted => Truth::False,
             Test::Active(state) => Truth::from(facts.is_active(*state)),
+            Test::Script(script) => Truth::from(facts.script(*script)?),
             Test::Holds(term) => match term.evaluate(facts)? {
                 Value::Bool(value) => Truth::from(value),
                 Value::Missing => Truth::Unknown,

@@ -164,6 +164,8 @@ pub enum ExpressionKind {
     TimeoutCheck(Path),
     /// `In(state)`: the state of that path is active. Blanks are removed, `ω` is `~`.
     In(Name),
+    /// `script("text")`: a condition in a language of the host's own.
+    Script(String),
 }
 
 /// How two values are compared.
@@ -250,6 +252,8 @@ pub enum ActionKind {
     },
     /// `raise(event)`.
     Raise(Path),
+    /// `script("text")`: in a language of the host's own.
+    Script(String),
 }
 
 /// The two ways to write the start of a timer; they mean the same.

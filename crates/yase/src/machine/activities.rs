@@ -118,7 +118,7 @@ impl Run {
         self.unlock(chart, place);
         self.release_held(chart, place);
         if outcome == Outcome::Failed {
-            self.queues.arrive(chart.errors.activity, None);
+            self.queues.arrive(chart.errors.activity.into());
         }
         self.due = true;
         true

@@ -2,20 +2,14 @@
 
 use crate::chart::{Chart, CompoundId};
 use crate::machine::{MachineError, MachineErrorKind};
-use crate::semantics::Semantics;
 use crate::statechart::TransitionId;
 
 impl MachineError {
-    pub(super) fn new(
-        kind: MachineErrorKind,
-        chart: &Chart,
-        semantics: &Semantics,
-        cycle: &[CompoundId],
-    ) -> MachineError {
+    pub(super) fn new(kind: MachineErrorKind, chart: &Chart, cycle: &[CompoundId]) -> MachineError {
         let segments: Box<[TransitionId]> =
             cycle.iter().flat_map(|&compound| chart.segments(compound)).copied().collect();
         let names: Vec<String> = segments.iter().map(|&segment| name(chart, segment)).collect();
-        let limit = semantics.limit;
+        let limit = chart.semantics().limit;
         let what = match kind {
             MachineErrorKind::NeverRests => format!("the chart does not come to rest in {limit} micro-steps"),
             MachineErrorKind::NeverAdvances => {

@@ -4,6 +4,7 @@ use crate::chart::{CompoundId, Place, RegionId};
 use crate::expression::{Effect, GuardError, Operand};
 use crate::host::{ActionError, ActionPlace, Host, Report};
 use crate::machine::activities::Phase;
+use crate::machine::script::Performance;
 use crate::machine::step::Step;
 use crate::machine::view::View;
 use crate::machine::{MachineErrorKind, Status};
@@ -148,7 +149,7 @@ impl<H: Host> Step<'_, H> {
         }
         for (index, effect) in effects.iter().enumerate() {
             if let Err(error) = self.act(effect, region) {
-                self.run.queues.raise(self.chart.errors.action);
+                self.run.raise(self.chart, self.chart.errors.action, true, 0);
                 self.host.report(self.chart, Report::ActionFailed { place, index, error: &error });
             }
         }
@@ -173,7 +174,11 @@ impl<H: Host> Step<'_, H> {
                 }
                 self.run.timer_changed(self.chart, timer);
             }
-            Effect::Raise { event } => self.run.queues.raise(*event),
+            Effect::Raise { event } => self.run.raise(self.chart, *event, true, 0),
+            Effect::Script { script } => {
+                let mut performance = Performance { chart: self.chart, run: self.run };
+                self.host.perform(*script, region, &mut performance).map_err(ActionError::Script)?;
+            }
         }
         Ok(())
     }

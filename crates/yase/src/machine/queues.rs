@@ -6,6 +6,7 @@ use smallvec::SmallVec;
 
 use crate::chart::CompoundId;
 use crate::expression::EventId;
+use crate::semantics::EventPool;
 
 /// An event that happened.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +17,26 @@ pub(super) struct Occurrence {
     raised: bool,
     /// The timer whose expiry it is.
     pub(super) expiry: Option<u32>,
+    /// A number that the host gave it.
+    pub(super) token: u64,
+    /// Whether an expression names it as it was named.
+    pub(super) is_known: bool,
+}
+
+/// An event that is to be queued.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Incoming {
+    pub(super) event: EventId,
+    pub(super) expiry: Option<u32>,
+    pub(super) token: u64,
+    pub(super) is_known: bool,
+}
+
+impl From<EventId> for Incoming {
+    /// An event of the chart, without a token.
+    fn from(event: EventId) -> Incoming {
+        Incoming { event, expiry: None, token: 0, is_known: true }
+    }
 }
 
 /// An occurrence that waits for running activities.
@@ -51,19 +72,22 @@ impl Queues {
         !self.raised.is_empty() || !self.arrived.is_empty() || self.held.iter().any(|held| held.offer)
     }
 
-    pub(super) fn raise(&mut self, event: EventId) {
-        let occurrence = self.occurrence(event, true, None);
-        self.raised.push_back(occurrence);
+    /// An event that was raised waits before those that have arrived or, in one pool, behind them.
+    pub(super) fn raise(&mut self, source: Incoming, pool: EventPool) {
+        let raised = pool == EventPool::RaisedFirst;
+        let occurrence = self.occurrence(source, raised);
+        if raised { &mut self.raised } else { &mut self.arrived }.push_back(occurrence);
     }
 
-    pub(super) fn arrive(&mut self, event: EventId, expiry: Option<u32>) {
-        let occurrence = self.occurrence(event, false, expiry);
+    pub(super) fn arrive(&mut self, source: Incoming) {
+        let occurrence = self.occurrence(source, false);
         self.arrived.push_back(occurrence);
     }
 
-    fn occurrence(&mut self, event: EventId, raised: bool, expiry: Option<u32>) -> Occurrence {
+    fn occurrence(&mut self, source: Incoming, raised: bool) -> Occurrence {
         self.count += 1;
-        Occurrence { event, number: self.count, raised, expiry }
+        let Incoming { event, expiry, token, is_known } = source;
+        Occurrence { event, number: self.count, raised, expiry, token, is_known }
     }
 
     pub(super) fn next_raised(&mut self) -> Option<Occurrence> {

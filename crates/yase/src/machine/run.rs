@@ -4,13 +4,14 @@ use crate::bits::BitSet;
 use crate::chart::{Chart, CompoundId, Place, RegionId};
 use crate::expression::EventId;
 use crate::host::ActionPlace;
-use crate::machine::activities::Activities;
+use crate::machine::activities::{Activities, Phase};
 use crate::machine::bound::Bound;
-use crate::machine::queues::Queues;
+use crate::machine::chooser::Chooser;
+use crate::machine::queues::{Incoming, Queues};
 use crate::machine::timers::Timers;
 use crate::machine::{Status, StepSummary};
 use crate::moment::Moment;
-use crate::statechart::{NodeId, TransitionId};
+use crate::statechart::{NodeId, NodeKind, TransitionId};
 use crate::vocabulary::TopicId;
 
 #[derive(Clone, Debug)]
@@ -39,6 +40,7 @@ pub(super) struct Run {
     /// The active STARTs of which it was told that they wait.
     pub(super) waiting_starts: BitSet,
     pub(super) bound: Bound,
+    pub(super) chooser: Chooser,
     pub(super) selection: Selection,
     pub(super) log: Log,
     /// Where texts that are assigned are copied to.
@@ -100,6 +102,7 @@ pub(super) struct Log {
     pub(super) wanted: bool,
     pub(super) exits: Vec<NodeId>,
     pub(super) effects: Vec<ActionPlace>,
+    pub(super) taken: Vec<TransitionId>,
     pub(super) entries: Vec<NodeId>,
     pub(super) guards: Vec<(TransitionId, Option<bool>)>,
 }
@@ -108,6 +111,7 @@ impl Log {
     pub(super) fn clear(&mut self) {
         self.exits.clear();
         self.effects.clear();
+        self.taken.clear();
         self.entries.clear();
         self.guards.clear();
     }
@@ -133,6 +137,7 @@ impl Run {
             written: BitSet::new(regions),
             waiting_starts: BitSet::new(places),
             bound: Bound::new(),
+            chooser: Chooser::declared(),
             selection: Selection {
                 candidates: Vec::with_capacity(regions),
                 selected: Vec::with_capacity(regions),
@@ -194,6 +199,24 @@ impl Run {
     /// Whether an interrupting transition that leaves it waits for activities to return.
     pub(super) fn is_being_left(&self, chart: &Chart, place: Place) -> bool {
         self.pending.iter().any(|pending| chart.compounds[pending.compound.0 as usize].leaves(place))
+    }
+
+    pub(super) fn raise(&mut self, chart: &Chart, event: EventId, is_known: bool, token: u64) {
+        let incoming = Incoming { event, expiry: None, token, is_known };
+        self.queues.raise(incoming, chart.semantics().pool);
+    }
+
+    /// Whether an active state has completed.
+    pub(super) fn is_complete(&self, chart: &Chart, place: Place) -> bool {
+        let state = &chart.states[place.index()];
+        match state.kind {
+            NodeKind::And => state.children.iter().all(|&region| self.is_complete(chart, region)),
+            NodeKind::Or => state
+                .children
+                .iter()
+                .any(|&child| chart.states[child.index()].kind == NodeKind::End && self.is_active(child)),
+            _ => state.activity.is_none_or(|activity| self.activities.slot(activity).phase == Phase::Done),
+        }
     }
 
     pub(super) fn is_active(&self, place: Place) -> bool {

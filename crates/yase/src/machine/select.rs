@@ -1,15 +1,13 @@
 //! Which transitions are enabled, and which of them win.
 
-use crate::chart::{Branch, Compound, CompoundId, Condition, Place, ScopedGuard};
-use crate::expression::CompiledTrigger;
+use crate::chart::{Branch, Compound, CompoundId, Condition, Place, ScopedGuard, Trigger};
 use crate::host::{Host, Report};
 use crate::machine::activities::Phase;
 use crate::machine::queues::Occurrence;
 use crate::machine::run::{ErredGuard, Pending};
 use crate::machine::step::Step;
 use crate::machine::view::View;
-use crate::semantics::Eventless;
-use crate::statechart::NodeKind;
+use crate::semantics::{Eventless, FailureEvents};
 use crate::trace::Occasion;
 
 impl<H: Host> Step<'_, H> {
@@ -102,27 +100,14 @@ impl<H: Host> Step<'_, H> {
             (Condition::Trigger(trigger), Some(occurrence)) => {
                 matches(&self.chart.triggers[trigger], occurrence)
             }
-            (Condition::Completed, None) if self.semantics.eventless == Eventless::AsWritten => {
-                self.is_complete(place)
+            (Condition::Completed, None) if self.semantics().eventless == Eventless::AsWritten => {
+                self.run.is_complete(self.chart, place)
             }
             (Condition::Completed | Condition::Quiescent, None) => {
                 !self.runs_inside(place) && !self.can_step_inside(place)
             }
             (Condition::NoStepInside, None) => !self.can_step_inside(place),
             _ => false,
-        }
-    }
-
-    fn is_complete(&self, place: Place) -> bool {
-        let state = &self.chart.states[place.index()];
-        match state.kind {
-            NodeKind::And => state.children.iter().all(|&region| self.is_complete(region)),
-            NodeKind::Or => state.children.iter().any(|&child| {
-                self.chart.states[child.index()].kind == NodeKind::End && self.run.is_active(child)
-            }),
-            _ => {
-                state.activity.is_none_or(|activity| self.run.activities.slot(activity).phase == Phase::Done)
-            }
         }
     }
 
@@ -152,9 +137,12 @@ impl<H: Host> Step<'_, H> {
                 value
             }
             Err(error) => {
-                if !self.run.erred.iter().any(|erred| erred.guard == guard) {
-                    self.run.erred.push(ErredGuard { guard, stale: false });
-                    self.run.queues.raise(self.chart.errors.guard);
+                let every_time = self.semantics().failures == FailureEvents::EveryTime;
+                if every_time || !self.run.erred.iter().any(|erred| erred.guard == guard) {
+                    if !every_time {
+                        self.run.erred.push(ErredGuard { guard, stale: false });
+                    }
+                    self.run.raise(self.chart, self.chart.errors.guard, true, 0);
                     self.host
                         .report(self.chart, Report::GuardFailed { transition: *transition, error: &error });
                 }
@@ -258,9 +246,9 @@ impl<H: Host> Step<'_, H> {
 }
 
 /// The expiry of a timer matches only triggers that name it.
-fn matches(trigger: &CompiledTrigger, occurrence: &Occurrence) -> bool {
+fn matches(trigger: &Trigger, occurrence: &Occurrence) -> bool {
     match trigger {
-        CompiledTrigger::Any | CompiledTrigger::Not(_) if occurrence.expiry.is_some() => false,
+        Trigger::Any | Trigger::NoneOf(_) if occurrence.expiry.is_some() => false,
         trigger => trigger.matches(occurrence.event),
     }
 }

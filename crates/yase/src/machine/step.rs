@@ -5,7 +5,7 @@ use crate::chart::{Chart, Place, RegionId};
 use crate::expression::EventId;
 use crate::host::{Host, Report};
 use crate::machine::activities::Phase;
-use crate::machine::queues::Occurrence;
+use crate::machine::queues::{Incoming, Occurrence};
 use crate::machine::run::Run;
 use crate::machine::{MachineError, MachineErrorKind, MicroStep, Status, StepSummary};
 use crate::semantics::{Deferral, Delivery, Semantics};
@@ -14,21 +14,19 @@ use crate::trace::{Occasion, TraceRecord};
 /// A step under way.
 pub(super) struct Step<'a, H> {
     pub(super) chart: &'a Chart,
-    pub(super) semantics: Semantics,
     pub(super) run: &'a mut Run,
     pub(super) host: &'a mut H,
     pub(super) summary: StepSummary,
 }
 
 impl<'a, H: Host> Step<'a, H> {
-    pub(super) fn new(
-        chart: &'a Chart,
-        semantics: Semantics,
-        run: &'a mut Run,
-        host: &'a mut H,
-    ) -> Step<'a, H> {
+    pub(super) fn new(chart: &'a Chart, run: &'a mut Run, host: &'a mut H) -> Step<'a, H> {
         run.log.wanted = host.wants_trace();
-        Step { chart, semantics, run, host, summary: StepSummary::default() }
+        Step { chart, run, host, summary: StepSummary::default() }
+    }
+
+    pub(super) fn semantics(&self) -> &'a Semantics {
+        self.chart.semantics_ref()
     }
 
     /// Takes transitions until none is enabled.
@@ -62,7 +60,7 @@ impl<'a, H: Host> Step<'a, H> {
         self.micro_step().map_err(|kind| {
             self.halt(Status::Stopped);
             let cycle = self.run.bound.cycle();
-            MachineError::new(kind, self.chart, &self.semantics, &cycle)
+            MachineError::new(kind, self.chart, &cycle)
         })
     }
 
@@ -70,16 +68,16 @@ impl<'a, H: Host> Step<'a, H> {
         self.run.due = false;
         self.run.bound.begin(self.run.now);
         self.expire_timers();
-        if self.semantics.delivery == Delivery::EachStep {
+        if self.semantics().delivery == Delivery::EachStep {
             self.deliver_to_all();
         }
     }
 
     fn expire_timers(&mut self) {
-        while let Some(timer) = self.run.timers.expire(self.run.now) {
+        while let Some(timer) = self.run.timers.expire(self.run.now, &mut self.run.chooser) {
             self.run.timer_changed(self.chart, timer);
             if let Some(event) = self.chart.timers[timer].event {
-                self.run.queues.arrive(event, Some(timer as u32));
+                self.run.queues.arrive(Incoming { expiry: Some(timer as u32), ..event.into() });
             }
         }
     }
@@ -146,6 +144,7 @@ impl<'a, H: Host> Step<'a, H> {
     /// Offers one event to the configuration.
     fn offer(&mut self, occurrence: Occurrence) -> Result<bool, MachineErrorKind> {
         self.admit()?;
+        self.host.offered(occurrence.event, occurrence.is_known, occurrence.token);
         self.select(Some(&occurrence));
         let occasion = Occasion::Event(occurrence.event);
         if !self.run.selection.candidates.is_empty() {
@@ -159,12 +158,13 @@ impl<'a, H: Host> Step<'a, H> {
 
     /// What nobody took is held, deferred (by the state that is returned) or dropped.
     fn keep(&mut self, occurrence: Occurrence) -> Option<Place> {
+        let deferral = self.semantics().deferral;
         let run = &mut *self.run;
         if !run.selection.held.is_empty() {
             run.queues.hold(occurrence, &run.selection.held);
             return None;
         }
-        if self.semantics.deferral == Deferral::Off {
+        if deferral == Deferral::Off {
             return None;
         }
         let place = deferring(self.chart, &run.active, occurrence.event)?;
@@ -182,7 +182,7 @@ impl<'a, H: Host> Step<'a, H> {
 
     /// Counts one more micro-step.
     pub(super) fn admit(&mut self) -> Result<(), MachineErrorKind> {
-        let (limit, bound) = (self.semantics.limit, &mut self.run.bound);
+        let (limit, bound) = (self.semantics().limit, &mut self.run.bound);
         if !bound.allows_micro_step(limit) {
             return Err(MachineErrorKind::NeverRests);
         }
@@ -208,6 +208,7 @@ impl<'a, H: Host> Step<'a, H> {
             deferred: deferred.map(|place| self.chart.layout.node(place)),
             exits: &run.log.exits,
             effects: &run.log.effects,
+            taken: &run.log.taken,
             entries: &run.log.entries,
             guards: &run.log.guards,
         };

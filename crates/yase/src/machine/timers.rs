@@ -1,6 +1,7 @@
 //! Deadlines.
 
 use crate::expression::TimerState;
+use crate::machine::chooser::Chooser;
 use crate::moment::Moment;
 
 /// The timers of a chart, by their number in it.
@@ -49,10 +50,16 @@ impl Timers {
         self.next
     }
 
-    /// Notices the earliest expiry up to now that was not noticed; of several at one moment, that of the first timer.
-    pub(super) fn expire(&mut self, now: Moment) -> Option<usize> {
-        self.next.filter(|&next| next <= now)?;
-        let (_, timer) = self.earliest()?;
+    /// Notices the earliest expiry up to now that was not noticed; of several at one moment, that of the first timer or as is chosen.
+    pub(super) fn expire(&mut self, now: Moment, chooser: &mut Chooser) -> Option<usize> {
+        let next = self.next.filter(|&next| next <= now)?;
+        let is_due = |slot: &Option<Deadline>| slot.is_some_and(|at| !at.expired && at.moment == next);
+        let chosen = match chooser.is_declared() {
+            true => 0,
+            false => chooser.choose(self.slots.iter().filter(|slot| is_due(slot)).count()),
+        };
+        let mut due = (0..self.slots.len()).filter(|&timer| is_due(&self.slots[timer]));
+        let timer = due.nth(chosen)?;
         self.slots[timer].as_mut()?.expired = true;
         self.next = self.earliest().map(|(moment, _)| moment);
         Some(timer)

@@ -1,9 +1,10 @@
 //! The world as an expression of a chart sees it.
 
 use crate::chart::{Chart, RegionId};
-use crate::expression::{CallError, Facts, MessageSource, TimerId, TimerState};
+use crate::expression::{CallError, Facts, MessageSource, ScriptId, TimerId, TimerState};
 use crate::host::Host;
 use crate::machine::run::Run;
+use crate::machine::script::States;
 use crate::statechart::NodeId;
 use crate::vocabulary::{FieldId, FunctionId, Value};
 
@@ -31,6 +32,11 @@ impl<H: Host> Facts for View<'_, H> {
     fn timer(&self, timer: TimerId) -> TimerState {
         let first = self.chart.regions[self.region.index()].timers;
         self.run.timers.state(first + timer.0 as usize, self.run.now)
+    }
+
+    fn script(&self, script: ScriptId) -> Result<bool, CallError> {
+        let states = States { chart: self.chart, active: &self.run.active };
+        self.host.condition(script, self.region, &states)
     }
 
     fn is_active(&self, state: NodeId) -> bool {

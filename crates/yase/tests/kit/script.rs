@@ -97,7 +97,11 @@ impl Script {
 
 /// Compiles a chart with the words of the tests.
 pub fn compile(chart: &Statechart) -> Arc<Chart> {
-    match chart.compile(&vocabulary()) {
+    compile_with(chart, Semantics::yase())
+}
+
+pub fn compile_with(chart: &Statechart, semantics: Semantics) -> Arc<Chart> {
+    match chart.compile_with(&vocabulary(), semantics) {
         Ok(chart) => Arc::new(chart),
         Err(found) => panic!("{}", found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")),
     }
@@ -109,7 +113,7 @@ pub fn play(chart: &Statechart, script: &str) -> Vec<String> {
 }
 
 pub fn play_with(chart: &Statechart, script: &str, semantics: Semantics) -> Vec<String> {
-    let mut machine = Machine::new(compile(chart), semantics);
+    let mut machine = Machine::new(compile_with(chart, semantics));
     let mut world = World::new(chart);
     run(&mut machine, &Script::parse(script), &mut world);
     world.log

@@ -22,6 +22,7 @@ pub fn vocabulary() -> Vocabulary {
         result: ValueType::Number,
     };
     Vocabulary {
+        scripts: false,
         topics: TOPICS
             .iter()
             .zip(0..)

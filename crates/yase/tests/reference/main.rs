@@ -56,7 +56,7 @@ fn by_machine(chart: &Statechart, script: &Script) -> Vec<String> {
     let mut semantics = Semantics::yase();
     semantics.limit = NonZeroU32::new(stepper::LIMIT).unwrap();
     let mut world = World { verbose: true, ..World::new(chart) };
-    script::run(&mut Machine::new(script::compile(chart), semantics), script, &mut world);
+    script::run(&mut Machine::new(script::compile_with(chart, semantics)), script, &mut world);
     normal(world.log)
 }
 

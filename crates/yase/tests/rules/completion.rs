@@ -342,7 +342,7 @@ fn limited(limit: u32) -> Semantics {
 #[test]
 fn r17_a_chart_that_never_rests_stops_with_an_error_that_names_the_cycle() {
     let chart = chart("START\nS\nA\nB\nc/START -> S\nS -> A : e\nA -> B\nB -> A : [true]\n");
-    let mut machine = Machine::new(script::compile(&chart), limited(10));
+    let mut machine = Machine::new(script::compile_with(&chart, limited(10)));
     let mut world = World::new(&chart);
     machine.start(Moment::ZERO, &mut world);
     machine.run_to_completion(Moment::ZERO, &mut world).unwrap();

@@ -9,7 +9,7 @@ use crate::{check, check_with, compare};
 /// Plays a script and gives every line, with those of the blackboards, of a chart whose text begins at margin zero.
 fn verbose(text: &str, script: &str, semantics: Semantics) -> Vec<String> {
     let chart = chart(text);
-    let mut machine = yase::Machine::new(script::compile(&chart), semantics);
+    let mut machine = yase::Machine::new(script::compile_with(&chart, semantics));
     let mut world = World { verbose: true, ..World::new(&chart) };
     script::run(&mut machine, &script::Script::parse(script), &mut world);
     world.log
@@ -312,7 +312,7 @@ fn r20_stop_is_called_when_the_state_of_an_ongoing_activity_is_left() {
 fn r20_a_failing_activity_releases_the_lock_and_can_run_again() {
     use yase::{Machine, Moment, Outcome};
     let chart = chart("START\nS | run\nT\nc/START -> S\nS -> T\nS -> S {internal} : error.activity\n");
-    let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+    let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);
     machine.start(Moment::ZERO, &mut world);
     machine.run_to_completion(Moment::ZERO, &mut world).unwrap();

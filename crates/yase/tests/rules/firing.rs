@@ -1,6 +1,6 @@
 //! R10 to R13: leaving, acting, entering, and the end.
 
-use yase::{Activation, Host, Machine, Moment, Node, NodeKind, Semantics, Statechart, Status};
+use yase::{Activation, Host, Machine, Moment, Node, NodeKind, Statechart, Status};
 
 use crate::kit::world::{World, vocabulary};
 use crate::kit::{chart, script};
@@ -157,7 +157,7 @@ fn r10_a_region_that_another_transition_has_left_does_not_fire() {
 #[test]
 fn r10_entering_stops_at_start_whose_way_out_is_the_next_micro_step_of_the_same_step() {
     let chart = chart("START\nP\n  START\n  A\nB\nc/START -> B\nB -> P : e\nP/START -> A\n");
-    let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+    let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);
     machine.start(Moment::ZERO, &mut world);
     machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
@@ -277,7 +277,7 @@ fn r13_after_terminate_nothing_fires_nor_terminate_where_another_has_left() {
 #[test]
 fn r13_at_root_end_a_chart_is_finished_and_idles_until_started_again() {
     let chart = chart("START\nA\nEND\nc/START -> A\nA -> c/END : e / raise(never)\n");
-    let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+    let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);
     assert_eq!((machine.status(), machine.needs_step(Moment::ZERO)), (Status::Idle, false));
     for _ in 0..2 {
@@ -299,7 +299,7 @@ fn r13_at_root_end_a_chart_is_finished_and_idles_until_started_again() {
 #[test]
 fn r13_stop_cancels_and_what_returns_later_is_not_for_the_next_run() {
     let chart = chart("START\nA | run\nB\nc/START -> A\nA -> B\n");
-    let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+    let mut machine = Machine::new(script::compile(&chart));
     let mut world = World { activities: World::new(&chart).activities, ..World::default() };
     machine.start(Moment::ZERO, &mut world);
     machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
@@ -321,7 +321,7 @@ fn r13_stop_cancels_and_what_returns_later_is_not_for_the_next_run() {
 #[test]
 fn r13_what_has_been_asked_to_return_is_not_asked_again() {
     let chart = chart("START\nA | run | for=50ms\nX\nc/START -> A\nA -> X {interrupts} : e\n");
-    let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+    let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);
     machine.start(Moment::ZERO, &mut world);
     machine.dispatch_name("e");

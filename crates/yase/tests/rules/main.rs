@@ -10,6 +10,7 @@ mod data;
 mod firing;
 mod pool;
 mod running;
+mod scripts;
 mod selection;
 mod structure;
 mod timers;

@@ -1,7 +1,7 @@
 //! R1 to R3: nodes, scopes, order.
 
 use yase::statechart::{Node, NodeKind, Statechart, Transition};
-use yase::{Machine, Moment, NodeId, Semantics};
+use yase::{Machine, Moment, NodeId};
 
 use crate::kit::world::{World, vocabulary};
 use crate::kit::{chart, script};
@@ -26,7 +26,7 @@ const REGIONS: &str = "
 #[test]
 fn r01_a_configuration_is_closed_and_has_one_child_for_each_or_and_all_for_each_and() {
     let chart = chart(REGIONS);
-    let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+    let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);
     machine.start(Moment::ZERO, &mut world);
     for _ in 0..3 {

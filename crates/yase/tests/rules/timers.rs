@@ -248,15 +248,39 @@ fn r21_a_deferred_expiry_is_withdrawn_too() {
 
 #[test]
 fn r21_the_clock_never_runs_backwards() {
-    use yase::{Machine, Moment, Semantics};
+    use yase::{Machine, Moment};
 
     use crate::kit::{World, chart, script};
 
     let chart = chart("START\nS\nc/START -> S\nS -> S {internal} : e / StartTimeout(v, 10ms)\n");
-    let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+    let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);
     machine.start(Moment::from_millis(20), &mut world);
     machine.dispatch_name("e");
     machine.run_to_completion(Moment::from_millis(5), &mut world).unwrap();
     assert_eq!(machine.next_deadline(), Some(Moment::from_millis(30)));
+}
+
+#[test]
+fn r22_of_timers_that_expire_at_one_moment_the_chooser_says_which_is_first() {
+    use crate::kit::{World, script};
+    use yase::{Chooser, Machine};
+    let chart = crate::kit::chart(
+        "
+        START
+        A | entry=StartTimeout(u, 5ms); StartTimeout(v, 5ms); StartTimeout(w, 5ms)
+        START -> A
+        A -> A {internal} : u | v | w
+        ",
+    );
+    let order = |chooser| {
+        let mut machine = Machine::new(script::compile(&chart));
+        machine.set_chooser(chooser);
+        let mut world = World::new(&chart);
+        script::run(&mut machine, &script::Script::parse("9"), &mut world);
+        let events = world.log.iter().filter_map(|line| line.strip_prefix("0.005 s ")?.split(':').next());
+        (events.collect::<String>(), machine.chooser().choices().to_vec())
+    };
+    assert_eq!(order(Chooser::declared()), ("uvw".into(), vec![]));
+    assert_eq!(order(Chooser::scripted(vec![2, 1])), ("wvu".into(), vec![(2, 3), (1, 2)]));
 }

@@ -1,7 +1,7 @@
 //! R23: a record for every micro-step.
 
 use yase::statechart::TransitionId;
-use yase::{ActionPlace, Activation, Chart, Host, Machine, Moment, NodeId, Occasion, Semantics, TraceRecord};
+use yase::{ActionPlace, Activation, Chart, Host, Machine, Moment, NodeId, Occasion, TraceRecord};
 
 use crate::compare;
 use crate::kit::world::World;
@@ -57,7 +57,7 @@ fn r23_a_record_names_what_was_taken_left_done_and_entered() {
     let chart = chart(
         &CHART.replace("on the way", "through").replace("[A.n > 0]", "").replace("[A.n > 5]", "[A == NULL]"),
     );
-    let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+    let mut machine = Machine::new(script::compile(&chart));
     let mut listener = Listener::default();
     let node = |path: &str| chart::find(&chart, path);
     machine.start(Moment::from_millis(3), &mut listener);
@@ -87,7 +87,7 @@ fn r23_a_record_names_what_was_taken_left_done_and_entered() {
 #[test]
 fn r23_a_record_shows_the_guards_that_were_read() {
     let chart = chart(&CHART.replace("on the way", "through"));
-    let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+    let mut machine = Machine::new(script::compile(&chart));
     let mut world = World { reads: true, ..World::new(&chart) };
     script::run(&mut machine, &script::Script::parse("1 A=0; 2 e; 2 A=3; 3 e; 4"), &mut world);
     compare(
@@ -113,7 +113,7 @@ fn r23_nothing_is_written_down_for_a_host_that_does_not_want_it() {
         }
     }
     let chart = chart(&CHART.replace("on the way", "through"));
-    let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+    let mut machine = Machine::new(script::compile(&chart));
     machine.start(Moment::ZERO, &mut Deaf);
     machine.dispatch_name("e");
     assert_eq!(machine.run_to_completion(Moment::ZERO, &mut Deaf).unwrap().micro_steps, 2);

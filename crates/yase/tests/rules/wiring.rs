@@ -1,7 +1,7 @@
 //! R18: what wakes a chart.
 
 use yase::expression::EventId;
-use yase::{Host, Machine, Moment, Outcome, RegionId, Semantics, TopicId};
+use yase::{Host, Machine, Moment, Outcome, RegionId, TopicId};
 
 use crate::check;
 use crate::kit::world::World;
@@ -13,7 +13,7 @@ const C: TopicId = TopicId(2);
 
 fn machine(text: &str) -> (Machine, World) {
     let chart = chart(text);
-    let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+    let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);
     machine.start(Moment::ZERO, &mut world);
     assert!(machine.needs_step(Moment::ZERO), "a start is a reason to step");

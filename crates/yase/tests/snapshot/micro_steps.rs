@@ -20,7 +20,7 @@ const RELAY: &str = "
 fn begun(semantics: Semantics) -> (Machine, World) {
     let chart = kit::chart(RELAY);
     let mut world = World::new(&chart);
-    let mut machine = Machine::new(kit::script::compile(&chart), semantics);
+    let mut machine = Machine::new(kit::script::compile_with(&chart, semantics));
     machine.start(Moment::ZERO, &mut world);
     (machine, world)
 }

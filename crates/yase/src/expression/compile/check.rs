@@ -21,6 +21,7 @@ impl Scope<'_> {
             ExpressionKind::Bool(value) => Ok(Test::Literal(*value)),
             ExpressionKind::TimeoutCheck(timer) => Ok(self.timeout_check(timer)),
             ExpressionKind::In(state) => Ok(Test::Active(self.state(state)?)),
+            ExpressionKind::Script(text) => Ok(Test::Script(self.script(text, expression.span())?)),
             _ => match self.term_of(expression, &ValueType::Bool)? {
                 Term::Truth(test) => Ok(*test),
                 term => Ok(Test::Holds(term)),

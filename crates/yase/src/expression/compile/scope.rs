@@ -1,10 +1,12 @@
 //! What a name means where the expression stands.
 
+use std::cell::RefCell;
+
 use super::Checked;
 use super::message::{describe, unknown};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Span};
 use crate::expression::facts::TimerId;
-use crate::expression::names::Names;
+use crate::expression::names::{Names, ScriptId, ScriptTable};
 use crate::expression::program::{Literal, Term, Test};
 use crate::expression::syntax::{Name, Path};
 use crate::statechart::{Constant, ConstantValue, NodeId};
@@ -16,6 +18,8 @@ pub(super) struct Scope<'a> {
     constants: &'a [Constant],
     timers: &'a [String],
     states: &'a dyn Fn(&str) -> Option<NodeId>,
+    /// Lent by the names for as long as one expression is compiled.
+    scripts: RefCell<ScriptTable>,
 }
 
 /// A compiled operand and its type.
@@ -31,13 +35,28 @@ struct Meaning {
 }
 
 impl<'a> Scope<'a> {
-    pub(super) fn new(names: &Names<'a>) -> Scope<'a> {
+    pub(super) fn new(names: &mut Names<'a>) -> Scope<'a> {
         Scope {
             vocabulary: names.vocabulary,
             constants: names.constants,
             timers: names.timers,
             states: names.states,
+            scripts: RefCell::new(std::mem::take(names.scripts)),
         }
+    }
+
+    /// Gives the scripts back.
+    pub(super) fn close(self, names: &mut Names<'_>) {
+        *names.scripts = self.scripts.into_inner();
+    }
+
+    /// A script of the host's own language, where the vocabulary says that there is one.
+    pub(super) fn script(&self, text: &str, span: Span) -> Checked<ScriptId> {
+        if self.vocabulary.scripts {
+            return Ok(self.scripts.borrow_mut().intern(text));
+        }
+        let diagnostic = Diagnostic::error("E0147", span, "what runs this chart has no scripts");
+        Err(vec![diagnostic.with_hint("write it as a condition or an action, or as a registered function")])
     }
 
     /// The timer of a name, if some action starts it on this blackboard.

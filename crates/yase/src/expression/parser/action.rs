@@ -50,6 +50,10 @@ impl Cursor<'_> {
             }
             (Some("TimeoutAction"), TokenKind::Symbol(Symbol::Dot)) => self.timeout_action(actions)?,
             (Some("raise"), TokenKind::Symbol(Symbol::OpenParenthesis)) => self.raise(actions)?,
+            (Some("script"), TokenKind::Symbol(Symbol::OpenParenthesis)) => {
+                let (start, text) = self.script()?;
+                self.push(start, ActionKind::Script(text), actions);
+            }
             (Some("publish"), TokenKind::Symbol(Symbol::Dot) | TokenKind::Word | TokenKind::Quoted) => {
                 self.publish(actions)?;
             }

@@ -11,7 +11,7 @@ impl Cursor<'_> {
     pub(super) fn operand(&mut self) -> Parsed<Expression> {
         match self.kind() {
             TokenKind::Integer | TokenKind::Decimal => self.number(),
-            TokenKind::Text => self.text(),
+            TokenKind::Text => self.text_operand(),
             TokenKind::Word => self.word_operand(),
             TokenKind::Quoted => self.named_operand(),
             TokenKind::Symbol(Symbol::OpenParenthesis) => self.group(),
@@ -51,7 +51,26 @@ impl Cursor<'_> {
         }
     }
 
-    fn text(&mut self) -> Parsed<Expression> {
+    /// `script("text")`: where it begins, and its text.
+    pub(super) fn script(&mut self) -> Parsed<(usize, String)> {
+        let start = self.advance().span.start;
+        let open = self.advance().span;
+        if self.kind() != TokenKind::Text {
+            return self.refuse_here("E0123", "a text", "write `script(\"text\")`");
+        }
+        let text = self.text()?;
+        self.expect_close_parenthesis(open)?;
+        Ok((start, text))
+    }
+
+    fn text_operand(&mut self) -> Parsed<Expression> {
+        let start = self.span().start;
+        let text = self.text()?;
+        Ok(self.expression(start, ExpressionKind::Text(text)))
+    }
+
+    /// The text that stands here, without its quotes and escapes.
+    fn text(&mut self) -> Parsed<String> {
         let token = self.advance();
         let quoted = self.source(token.span);
         let mut text = String::new();
@@ -63,7 +82,7 @@ impl Cursor<'_> {
                 _ => text.push(character),
             }
         }
-        Ok(self.expression(token.span.start, ExpressionKind::Text(text)))
+        Ok(text)
     }
 
     fn escaped(&mut self, backslash: usize, escaped: Option<(usize, char)>) -> Parsed<char> {
@@ -90,6 +109,10 @@ impl Cursor<'_> {
             "false" | "FALSE" => self.literal(start, false),
             "TimeoutCheck" if called => self.timeout_check(),
             "In" if called => self.in_state(),
+            "script" if called => {
+                let (start, text) = self.script()?;
+                Ok(self.expression(start, ExpressionKind::Script(text)))
+            }
             _ if self.at_null() => self.refuse_null(self.span()),
             word if RESERVED.contains(&word) => self.refuse_operand(),
             _ => self.named_operand(),

@@ -7,7 +7,7 @@ use super::world::{
     compiled, constants, guard, state_of, timers, vocabulary,
 };
 use crate::expression::{
-    CompiledTransition, CompiledTrigger, Effect, EventId, EventTable, Names, Origin, TimerId,
+    CompiledTransition, CompiledTrigger, Effect, EventId, EventTable, Names, Origin, ScriptTable, TimerId,
     compile_actions, parse_actions, parse_condition,
 };
 use crate::vocabulary::{FieldId, Value};
@@ -187,7 +187,10 @@ fn actions_compile_without_a_transition() {
     let (vocabulary, constants, timers) = (vocabulary(), constants(), timers());
     let mut events = EventTable::new();
     let (vocabulary, states) = (&vocabulary, &state_of);
-    let mut names = Names { vocabulary, constants: &constants, timers: &timers, events: &mut events, states };
+    let mut scripts = ScriptTable::new();
+    let (constants, timers) = (&constants, &timers);
+    let mut names =
+        Names { vocabulary, constants, timers, events: &mut events, scripts: &mut scripts, states };
     let (actions, _) = parse_actions("raise(entered)");
     assert_eq!(compile_actions(&actions, &mut names), Ok([Effect::Raise { event: EventId(0) }].into()));
     let (actions, _) = parse_actions("Ball.x = 1; Ball.y = 2");

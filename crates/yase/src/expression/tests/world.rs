@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::diagnostic::Diagnostic;
 use crate::expression::{
     CallError, CompiledTransition, EventTable, Facts, Guard, GuardError, MessageSource, Names, Origin,
-    TimerId, TimerState, parse_transition,
+    ScriptTable, TimerId, TimerState, parse_transition,
 };
 use crate::statechart::{Constant, ConstantValue, NodeId};
 use crate::vocabulary::{
@@ -53,6 +53,7 @@ pub(super) fn vocabulary() -> Vocabulary {
     let player_state = ValueType::Enumeration("PlayerState".into());
     let phase = ValueType::Enumeration("Phase".into());
     Vocabulary {
+        scripts: false,
         topics: vec![
             topic(BALL, "soccer/ball", TopicKind::State, "Ball"),
             topic(GAME, "game/state", TopicKind::State, "GameState"),
@@ -144,6 +145,7 @@ pub(super) fn compile_with(
         constants: &constants,
         timers: &timers,
         events,
+        scripts: &mut ScriptTable::new(),
         states: &state_of,
     })
 }

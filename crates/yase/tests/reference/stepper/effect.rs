@@ -100,6 +100,7 @@ impl Stepper<'_> {
     ) -> Result<(), String> {
         match &action.kind {
             ActionKind::Raise(event) => self.raise(&event.text()),
+            ActionKind::Script(_) => panic!("the tests have no scripts"),
             ActionKind::ProcessMessages => self.deliver(region, world),
             ActionKind::PublishAll => {
                 world.publish_all(region);

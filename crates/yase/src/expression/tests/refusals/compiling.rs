@@ -331,6 +331,12 @@ pub(super) const COMPILING: Table = &[
         ],
     ),
     (
+        "[script(\"x\")]",
+        &[
+            "E0147 <script(\"x\")>: what runs this chart has no scripts (write it as a condition or an action, or as a registered function)",
+        ],
+    ),
+    (
         "ball.State.Ball.found",
         &[
             "E0146 <found>: `found` is a field; a trigger names a message (read it in a condition, in brackets)",

@@ -217,6 +217,7 @@ pub(super) const PARSING: Table = &[
         &["E0121 <A.x>: `A.x` is no setter (write `Message.set_field(value)` or `Message.field = value`)"],
     ),
     ("[a | b]", &["E0122 <|>: `|` is no operator of conditions (write `||`)"]),
+    ("[script(x)]", &["E0123 <x>: a text is expected, not `x` (write `script(\"text\")`)"]),
     ("[a & b]", &["E0122 <&>: `&` is no operator of conditions (write `&&`)"]),
     ("/ x.y = #", &["E0101 <#>: `#` has no meaning here (names are letters, digits and `_`)"]),
     ("#", &["E0101 <#>: `#` has no meaning here (names are letters, digits and `_`)"]),

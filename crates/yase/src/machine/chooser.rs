@@ -1,0 +1,109 @@
+//! Who decides where a chart leaves something open.
+
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// Decides what a chart leaves open: which of several timers that expire at one moment comes first, which probabilistic branch is taken, and,
+/// under [`ConflictChoice::Random`](crate::ConflictChoice::Random), which of two conflicting transitions wins.
+///
+/// It is asked only where there are two options or more. The same chooser, asked the same, answers the same.
+#[derive(Clone, Debug)]
+pub struct Chooser {
+    policy: Policy,
+}
+
+#[derive(Clone, Debug)]
+enum Policy {
+    Declared,
+    Seeded { seed: u64, generator: Box<Pcg64> },
+    Scripted { choices: Vec<u32>, log: Vec<(u32, u32)> },
+}
+
+impl Default for Chooser {
+    fn default() -> Chooser {
+        Chooser::declared()
+    }
+}
+
+impl Chooser {
+    /// Takes what the model declares first.
+    pub const fn declared() -> Chooser {
+        Chooser { policy: Policy::Declared }
+    }
+
+    /// Draws from a generator.
+    pub fn seeded(seed: u64) -> Chooser {
+        Chooser { policy: Policy::Seeded { seed, generator: Box::new(Pcg64::seed_from_u64(seed)) } }
+    }
+
+    /// Takes the given options one after the other (the last one there is, if a number is too high), then always the first, and notes each
+    /// choice: for those who explore what a chart can do.
+    pub fn scripted(choices: Vec<u32>) -> Chooser {
+        Chooser { policy: Policy::Scripted { choices, log: Vec::new() } }
+    }
+
+    /// Whether it takes what is declared first, so that nothing has to be asked.
+    pub fn is_declared(&self) -> bool {
+        matches!(self.policy, Policy::Declared)
+    }
+
+    /// The seed, if it was made from one.
+    pub fn seed(&self) -> Option<u64> {
+        match self.policy {
+            Policy::Seeded { seed, .. } => Some(seed),
+            _ => None,
+        }
+    }
+
+    /// What a scripted chooser has chosen so far: which option, and of how many.
+    pub fn choices(&self) -> &[(u32, u32)] {
+        match &self.policy {
+            Policy::Scripted { log, .. } => log,
+            _ => &[],
+        }
+    }
+
+    /// One of so many options, all alike.
+    pub(super) fn choose(&mut self, options: usize) -> usize {
+        self.decide(options, |generator| {
+            let (number, count) = (u128::from(generator.next_u64()), options as u128);
+            ((number * count) >> 64) as usize
+        })
+    }
+
+    fn decide(&mut self, options: usize, drawn: impl FnOnce(&mut Pcg64) -> usize) -> usize {
+        if options < 2 {
+            return 0;
+        }
+        match &mut self.policy {
+            Policy::Declared => 0,
+            Policy::Seeded { generator, .. } => drawn(generator),
+            Policy::Scripted { choices, log } => {
+                let wanted = choices.get(log.len()).copied().unwrap_or(0);
+                let chosen = wanted.min(options as u32 - 1);
+                log.push((chosen, options as u32));
+                chosen as usize
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scripted_chooser_replays_and_notes_what_it_chose() {
+        let mut chooser = Chooser::scripted(vec![1, 7]);
+        let chosen = [chooser.choose(2), chooser.choose(1), chooser.choose(3), chooser.choose(2)];
+        assert_eq!(chosen, [1, 0, 2, 0]);
+        assert_eq!(chooser.choices(), [(1, 2), (2, 3), (0, 2)]);
+    }
+
+    #[test]
+    fn a_declared_chooser_takes_the_first() {
+        let mut chooser = Chooser::declared();
+        assert_eq!([chooser.choose(5), chooser.choose(2)], [0, 0]);
+        assert!(chooser.is_declared() && chooser.seed().is_none() && chooser.choices().is_empty());
+    }
+}

@@ -1,0 +1,205 @@
+//! Conditions and actions in a language of the host's own, and events with a number of the host's.
+
+use std::sync::Arc;
+
+use yase::expression::{CallError, EventId, ScriptId, parse_actions, parse_transition};
+use yase::{
+    ActionPlace, Activation, Chart, Host, Machine, Moment, NodeId, Performance, RegionId, ScriptPlace,
+    Semantics, Statechart, States, TransitionId, Vocabulary,
+};
+
+use crate::kit::chart;
+use crate::kit::chart::find;
+
+/// Understands `in PATH` as a condition, `fail` as both, and `raise NAME TOKEN` as an action.
+struct Reader {
+    chart: Arc<Chart>,
+    lines: Vec<String>,
+}
+
+impl Reader {
+    fn node(&self, path: &str) -> NodeId {
+        find(self.chart.statechart(), path)
+    }
+}
+
+impl Host for Reader {
+    fn condition(&self, script: ScriptId, _: RegionId, states: &States<'_>) -> Result<bool, CallError> {
+        match self.chart.script(script).split_once(' ') {
+            Some(("in", path)) => Ok(states.is_active(self.node(path))),
+            _ => Err(CallError::new("it always fails")),
+        }
+    }
+
+    fn perform(
+        &mut self,
+        script: ScriptId,
+        region: RegionId,
+        performance: &mut Performance<'_>,
+    ) -> Result<(), CallError> {
+        let words: Vec<&str> = self.chart.script(script).split(' ').collect();
+        match words.as_slice() {
+            ["raise", name, token] => {
+                let known = performance.raise(name, token.parse().unwrap());
+                self.lines.push(format!(
+                    "raised {name} at {} on {}, known: {known}",
+                    performance.now(),
+                    region.0
+                ));
+                Ok(())
+            }
+            ["look", path] => {
+                let node = self.node(path);
+                let (active, complete) = (performance.is_active(node), performance.is_complete(node));
+                self.lines.push(format!("{path} active: {active}, complete: {complete}"));
+                Ok(())
+            }
+            _ => Err(CallError::new("it always fails")),
+        }
+    }
+
+    fn offered(&mut self, event: EventId, is_known: bool, token: u64) {
+        self.lines.push(format!("offered {} known: {is_known} {token}", self.chart.events().name(event)));
+    }
+
+    fn start(&mut self, _: Activation) {}
+    fn cancel(&mut self, _: Activation) {}
+    fn stop(&mut self, _: Activation) {}
+}
+
+fn machine(chart: &Statechart, semantics: Semantics) -> (Machine, Reader) {
+    let vocabulary = Vocabulary { scripts: true, ..Vocabulary::default() };
+    let chart = Arc::new(chart.compile_with(&vocabulary, semantics).unwrap());
+    (Machine::new(chart.clone()), Reader { chart, lines: vec![] })
+}
+
+#[test]
+fn scripts_are_written_and_read_back() {
+    let (expression, found) = parse_transition("e [script( \"a < \\\"b\\\"\" ) && In(x)]/script(\"go\")");
+    assert!(found.is_empty(), "{found:?}");
+    let text = r#"e [script("a < \"b\"") && In(x)] / script("go")"#;
+    assert_eq!(expression.to_string(), text);
+    assert_eq!(parse_transition(text).0, expression);
+    for (text, code) in [("script(go)", "E0123"), ("script(\"go\"", "E0109"), ("script()", "E0123")] {
+        assert_eq!(parse_actions(text).1[0].code, code, "{text}");
+    }
+    assert_eq!(
+        parse_actions("`script` = 1").0[0].to_string(),
+        "`script` = 1",
+        "a name in backquotes is a name"
+    );
+}
+
+#[test]
+fn scripts_are_refused_where_there_are_none() {
+    let text = "
+        START
+        A
+        START -> A : [script(\"x\")] / script(\"y\")
+    ";
+    let found = chart(text).compile(&Vocabulary::default()).unwrap_err();
+    assert_eq!(found.iter().map(|found| found.code).collect::<Vec<_>>(), ["E0147", "E0147"]);
+}
+
+#[test]
+fn scripts_know_where_they_stand_and_what_is_active() {
+    let text = "
+        START
+        A | entry=script(\"look A\"); script(\"raise f 7\")
+        B
+        START -> A
+        A -> B : f [script(\"in A\")] / script(\"look A\"); script(\"raise g.h 8\")
+    ";
+    let (mut machine, mut reader) = machine(&chart(text), Semantics::yase());
+    let scripts: Vec<_> =
+        machine.chart().scripts().map(|script| (script.text, script.places.to_vec())).collect();
+    let a = reader.node("A");
+    let action = |place, index| ScriptPlace::Action(place, index);
+    let (entry, way) = (ActionPlace::Entry(a), ActionPlace::Transition(TransitionId(1)));
+    assert_eq!(
+        scripts,
+        [
+            ("look A", vec![action(way, 0), action(entry, 0)]),
+            ("raise f 7", vec![action(entry, 1)]),
+            ("in A", vec![ScriptPlace::Guard(TransitionId(1))]),
+            ("raise g.h 8", vec![action(way, 1)]),
+        ]
+    );
+    machine.start(Moment::ZERO, &mut reader);
+    machine.run_to_completion(Moment::from_millis(3), &mut reader).unwrap();
+    assert_eq!(
+        reader.lines,
+        [
+            "A active: true, complete: true",
+            "raised f at 0.003 s on 0, known: true",
+            "offered f known: true 7",
+            "A active: false, complete: false",
+            "raised g.h at 0.003 s on 0, known: false",
+            "offered ? known: false 8",
+        ]
+    );
+}
+
+#[test]
+fn names_match_by_tokens_where_that_is_meant_and_tokens_come_along() {
+    let text = "
+        START
+        A
+        START -> A
+        A -> A {internal} : a.b / raise(seen.b)
+        A -> A {internal,!-1} : a / raise(seen.a)
+        A -> A {internal} : `c.*` | d
+        A -> A {internal} : not `seen` [false]
+    ";
+    let offered = |semantics, names: &[&str]| -> Vec<String> {
+        let (mut machine, mut reader) = machine(&chart(text), semantics);
+        machine.start(Moment::ZERO, &mut reader);
+        for (name, token) in names.iter().zip(1..) {
+            machine.dispatch_with(name, token);
+        }
+        machine.run_to_completion(Moment::ZERO, &mut reader).unwrap();
+        reader.lines
+    };
+    let mut tokens = Semantics::yase();
+    tokens.matching = yase::EventMatching::TokenPrefix;
+    assert_eq!(
+        offered(tokens, &["a.b.c", "a.bc", "x", "ab"]),
+        [
+            "offered a.b known: false 1",
+            "offered seen.b known: true 0",
+            "offered a known: false 2",
+            "offered seen.a known: true 0",
+            "offered ? known: false 3",
+            "offered ? known: false 4",
+        ]
+    );
+    assert_eq!(
+        offered(Semantics::yase(), &["a.b.c", "a"]),
+        ["offered ? known: false 1", "offered a known: true 2", "offered seen.a known: true 0",]
+    );
+}
+
+#[test]
+fn failures_are_events_by_their_cause_or_every_time() {
+    let text = "
+        START
+        A
+        START -> A
+        A -> A {internal,!1} : e / script(\"fail\")
+        A -> A {internal} : * [script(\"fail\")]
+    ";
+    let offered = |semantics| -> Vec<String> {
+        let (mut machine, mut reader) = machine(&chart(text), semantics);
+        machine.start(Moment::ZERO, &mut reader);
+        for event in ["x", "x", "e"] {
+            machine.dispatch_name(event);
+            machine.run_to_completion(Moment::ZERO, &mut reader).ok();
+        }
+        reader.lines.iter().map(|line| line.split(' ').nth(1).unwrap().to_owned()).collect()
+    };
+    assert_eq!(offered(Semantics::yase()), ["?", "error.guard", "?", "e", "error.action"]);
+    let mut every = Semantics::yase();
+    every.failures = yase::FailureEvents::EveryTime;
+    every.limit = std::num::NonZeroU32::new(4).unwrap();
+    assert_eq!(offered(every), ["?", "error.execution", "error.execution"], "until the limit");
+}
