@@ -1,0 +1,58 @@
+//! What a step costs, beside what others need for the same: `cargo bench -p yase`.
+//!
+//! Three charts, the same for everybody: **flat**, A and B that change places on an event; **hier**, two branches four deep, where the
+//! outermost state answers the event and leads to the innermost of the other branch (4 exits, 4 entries); **ortho**, three regions that
+//! each do what flat does (3 transitions an event). Every state counts its entries and exits, and the counts are asserted. All take turns in
+//! one run, on the thread's own processor time, so that what disturbs one disturbs all; what counts are the ratios.
+//!
+//! Who is compared:
+//!
+//! - a `match` written by hand, which is what the best compiler of charts could reach,
+//! - a table interpreter written by hand: the floor for a chart that is only known at run time. It has no guards, queue, history or activities,
+//! - `statig`, whose charts are compiled, without regions, history or models at run time,
+//! - YASE, with all that it is.
+//!
+//! Further tables: what guards, traces and deep transitions cost, and how long it takes to make charts ready. Run by `cargo test` without
+//! `--bench`, each contestant only shows that it counts right.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a bench that cannot go on ends")]
+
+mod allocations;
+mod building;
+mod by_hand;
+mod counts;
+mod features;
+mod harness;
+mod ours;
+mod peers;
+mod table;
+
+use counts::{FLAT, HIER, ORTHO, Toggle};
+use harness::{Contestant, Race, Racer};
+
+fn main() {
+    let race = Race::from_arguments();
+    let [flat, hier, ortho] = [FLAT, HIER, ORTHO];
+    engines(&race, "flat", flat, by_hand::Flat::default(), peers::flat(), &ours::flat());
+    engines(&race, "hier", hier, by_hand::Hier::default(), peers::hier(), &ours::hier());
+    engines(&race, "ortho", ortho, by_hand::Ortho::default(), peers::ortho(), &ours::ortho());
+    features::run(&race);
+    building::run(&race);
+}
+
+/// One chart and everybody who runs it.
+fn engines(
+    race: &Race,
+    title: &str,
+    side: usize,
+    by_hand: impl Toggle + 'static,
+    peer: impl Toggle + 'static,
+    chart: &yase::Statechart,
+) {
+    let mut contestants: Vec<Box<dyn Contestant>> = vec![
+        Box::new(Racer::new("table interpreter", side, table::Machine::new(chart))),
+        Box::new(Racer::new("match by hand", side, by_hand)),
+        Box::new(Racer::new("statig", side, peer)),
+        Box::new(Racer::new("yase", side, ours::Ours::new(chart))),
+    ];
+    race.run(&format!("{title}, ns an event"), &mut contestants);
+}
