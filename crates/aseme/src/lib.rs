@@ -66,7 +66,6 @@ mod outline;
 pub mod path;
 pub mod refine;
 pub mod srm;
-mod svg;
 mod text;
 pub mod transform;
 
@@ -74,8 +73,8 @@ pub use json::to_json;
 pub use liveness::Liveness;
 pub use outline::to_text;
 pub use srm::{Srm, SrmFile};
-pub use svg::to_svg;
 pub use transform::{liveness_to_statechart, srm_to_iac};
+pub use yase::export::to_svg;
 
 use std::sync::Arc;
 

@@ -74,10 +74,30 @@
 //! assert!(machine.is_active(off));
 //! # Ok::<(), yase::MachineError>(())
 //! ```
+//!
+//! # Pictures
+//!
+//! [`export`] draws a chart as SVG and writes it for XState, Mermaid, PlantUML and Graphviz, with a list of what these cannot say:
+//!
+//! ```
+//! use yase::{Node, NodeKind, Statechart, Transition, export};
+//!
+//! let mut chart = Statechart::new("short");
+//! let start = chart.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));
+//! let end = chart.add(Statechart::ROOT, Node::new(NodeKind::Terminate, "enough"));
+//! chart.connect(Transition::new(start, end));
+//!
+//! assert!(export::to_svg(&chart).contains(">enough</text>"));
+//! let mermaid = export::to_mermaid(&chart);
+//! assert!(mermaid.text.contains("[*] --> s_enough"));
+//! let lost = "`short/enough` is of the kind TERMINATE; for Mermaid it is a state";
+//! assert_eq!(mermaid.lost[0].message, lost);
+//! ```
 
 mod bits;
 mod chart;
 pub mod diagnostic;
+pub mod export;
 pub mod expression;
 mod host;
 mod machine;

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use yase::{NodeId, NodeKind, Statechart};
-
 use super::layout::{Arrow, Layout, MARGIN, Point, Shape};
 use super::lettering::{LABEL_LINE, LABEL_SIZE, NAME_LINE, NAME_SIZE, escaped};
-use crate::json::depth_first;
+use crate::export::notation::depth_first;
+use crate::export::outline::is_region;
+use crate::statechart::{NodeId, NodeKind, Statechart};
 
 const STYLE: &str = "\
 text{font-family:system-ui,-apple-system,'Segoe UI','Liberation Sans','DejaVu Sans',sans-serif;fill:#1f2430}\
@@ -16,7 +16,7 @@ text{font-family:system-ui,-apple-system,'Segoe UI','Liberation Sans','DejaVu Sa
 .and{fill:#f2f6fd;stroke:#6d87b8}.and-head{fill:#d5e2f7;stroke:#6d87b8}\
 .region{fill:none;stroke:#6d87b8;stroke-dasharray:6 4}\
 .basic{fill:#dcf3dc;stroke:#4d8a50}\
-.connector{fill:#fff;stroke:#1f2430}.dot{fill:#1f2430}\
+.connector{fill:#fff;stroke:#1f2430}.dot{fill:#1f2430}.cross{fill:none;stroke:#1f2430;stroke-width:1.6}\
 .arrow{fill:none;stroke:#3b4252;stroke-width:1.2}.unused{fill:none;stroke:#b6bbc4;stroke-width:1.2}\
 .ground{fill:#fff;fill-opacity:.88}";
 
@@ -64,18 +64,39 @@ impl Page {
 
     fn node(&mut self, chart: &Statechart, id: NodeId, shape: &Shape) {
         match chart.node(id).kind {
-            NodeKind::Or if shape.title.is_empty() => self.rectangle("region", shape.at, shape.size, 4.0),
+            NodeKind::Or if shape.title.is_empty() || is_region(chart, id) => {
+                self.rectangle("region", shape.at, shape.size, 4.0);
+                self.lettering(shape, "title", 4.0);
+            }
             NodeKind::Or => self.composite("or", "head", shape),
             NodeKind::And => self.composite("and", "and-head", shape),
             NodeKind::Basic => {
                 self.rectangle("basic", shape.at, shape.size, 10.0);
                 self.lettering(shape, "name", 7.5);
             }
+            kind => {
+                self.sign(kind, shape);
+                self.beside(shape);
+            }
+        }
+    }
+
+    /// The sign of a connector.
+    fn sign(&mut self, kind: NodeKind, shape: &Shape) {
+        match kind {
             NodeKind::Fork | NodeKind::Join => self.rectangle("dot", shape.at, shape.size, 1.0),
             NodeKind::Start => self.circle("dot", shape, 7.0),
             NodeKind::End => {
                 self.circle("connector", shape, 9.0);
                 self.circle("dot", shape, 5.0);
+            }
+            NodeKind::Junction => self.circle("dot", shape, 6.0),
+            NodeKind::Choice => self.diamond(shape),
+            NodeKind::Terminate => self.cross(shape, 9.0),
+            NodeKind::EntryPoint => self.circle("connector", shape, 8.0),
+            NodeKind::ExitPoint => {
+                self.circle("connector", shape, 8.0);
+                self.cross(shape, 5.5);
             }
             kind => {
                 self.circle("connector", shape, 10.0);
@@ -84,10 +105,34 @@ impl Page {
         }
     }
 
+    fn diamond(&mut self, shape: &Shape) {
+        let ((x, y), (half_width, half_height)) = (center(shape), (shape.size.0 / 2.0, shape.size.1 / 2.0));
+        let (left, right, top, bottom) = (x - half_width, x + half_width, y - half_height, y + half_height);
+        self.line(format_args!(
+            "<path class=\"connector\" d=\"M{x:.1} {top:.1} {right:.1} {y:.1} {x:.1} {bottom:.1} {left:.1} {y:.1}z\"/>"
+        ));
+    }
+
+    fn cross(&mut self, shape: &Shape, half: f64) {
+        let (x, y) = center(shape);
+        let (left, right, top, bottom) = (x - half, x + half, y - half, y + half);
+        self.line(format_args!(
+            "<path class=\"cross\" d=\"M{left:.1} {top:.1} {right:.1} {bottom:.1}M{left:.1} {bottom:.1} {right:.1} {top:.1}\"/>"
+        ));
+    }
+
+    /// The name of a connector, to its right and a little higher, so that a line from its side runs below.
+    fn beside(&mut self, shape: &Shape) {
+        let (x, mut y) = (shape.at.0 + shape.size.0 + shape.beside / 2.0, center(shape).1 - 7.0);
+        for line in shape.title.iter().chain(&shape.notes) {
+            self.text("label", (x, y), line);
+            y += LABEL_LINE;
+        }
+    }
+
     fn composite(&mut self, body: &str, head: &str, shape: &Shape) {
         self.rectangle(body, shape.at, shape.size, 4.0);
-        let lines = NAME_LINE * shape.title.len() as f64 + LABEL_LINE * shape.notes.len() as f64;
-        self.rectangle(head, shape.at, (shape.size.0, lines + 8.0), 4.0);
+        self.rectangle(head, shape.at, (shape.size.0, shape.head()), 4.0);
         self.lettering(shape, "title", 4.0);
     }
 
@@ -158,10 +203,6 @@ fn letter(kind: NodeKind) -> &'static str {
         NodeKind::Condition => "C",
         NodeKind::ShallowHistory => "H",
         NodeKind::DeepHistory => "H*",
-        NodeKind::Choice => "?",
-        NodeKind::Terminate => "×",
-        NodeKind::EntryPoint => "in",
-        NodeKind::ExitPoint => "out",
         _ => "",
     }
 }

@@ -1,12 +1,13 @@
 //! Where everything stands: first the size of each box from the inside out, then places from the outside in.
 
-use yase::{Node, NodeId, NodeKind, Statechart, Transition};
-
-use super::flow;
 use super::lettering::{
     LABEL_LINE, LABEL_SIZE, NAME_LINE, NAME_SIZE, formula_text, widest, wrap, wrap_condition,
 };
-use crate::outline::{modifiers, refinements};
+use super::rectangle::Rectangle;
+use super::{flow, route};
+use crate::export::notation::{inscription, refinements};
+use crate::export::outline::sound_transitions;
+use crate::statechart::{Node, NodeId, NodeKind, Statechart, Transition};
 
 /// Between a border and what is inside.
 const PADDING: f64 = 14.0;
@@ -35,6 +36,25 @@ pub(super) struct Shape {
     pub(super) title: Vec<String>,
     /// Lines below the name: what else is said of it.
     pub(super) notes: Vec<String>,
+    /// The width of what stands to the right of a connector: its name.
+    pub(super) beside: f64,
+}
+
+impl Shape {
+    /// The height of a composite's title.
+    pub(super) fn head(&self) -> f64 {
+        let lines = NAME_LINE * self.title.len() as f64 + LABEL_LINE * self.notes.len() as f64;
+        if lines > 0.0 { lines + 8.0 } else { 0.0 }
+    }
+
+    /// Where the name of a connector stands: beside it, and above the line through its middle.
+    pub(super) fn name(&self) -> Option<Rectangle> {
+        let middle = self.at.1 + self.size.1 / 2.0;
+        let lines = (self.title.len() + self.notes.len()) as f64;
+        let (left, top) = (self.at.0 + self.size.0 + 2.0, middle - LABEL_LINE);
+        let height = LABEL_LINE * lines - 1.0;
+        (self.beside > 0.0).then(|| Rectangle::new((left, top), (self.beside - 2.0, height)))
+    }
 }
 
 /// The drawn shape of a transition.
@@ -60,7 +80,7 @@ pub(super) struct Label {
 
 impl Label {
     pub(super) fn of(transition: &Transition) -> Label {
-        let text = format!("{} {}", modifiers(transition), transition.expression);
+        let text = inscription(transition);
         Label {
             lines: wrap_condition(&text, LABEL_SIZE, LABEL_WIDTH),
             never: transition.expression.is_never(),
@@ -98,20 +118,25 @@ impl Layout {
 pub(super) fn layout(chart: &Statechart) -> Layout {
     let shapes = chart.nodes().map(|(_, node)| lettered(node)).collect();
     let mut layout = Layout { shapes, arrows: Vec::new() };
-    let inside = transitions_inside(chart);
+    let (inside, leads) = (transitions_inside(chart), leads(chart));
     let outside_in: Vec<NodeId> = chart.nodes().map(|(id, _)| id).collect();
     for id in outside_in.into_iter().rev() {
         match chart.node(id).kind {
             NodeKind::Or => {
-                let content = flow::rows(chart, id, &inside[id.0 as usize], &mut layout);
+                let (drawn, leads) = (&inside[id.0 as usize], &leads[id.0 as usize]);
+                let content = flow::rows(chart, id, drawn, leads, &mut layout);
                 enclose(layout.shape_mut(id), content);
             }
             NodeKind::And => shelves(chart, id, &mut layout),
-            kind => layout.shape_mut(id).size = leaf_size(kind, layout.shape(id)),
+            kind => {
+                let shape = layout.shape_mut(id);
+                shape.size = leaf_size(kind, shape);
+                shape.beside = if kind == NodeKind::Basic { 0.0 } else { beside(shape) };
+            }
         }
     }
     place_on_page(chart, &mut layout);
-    across_borders(chart, &mut layout);
+    route::across_borders(chart, &mut layout);
     layout
 }
 
@@ -125,7 +150,7 @@ fn lettered(node: &Node) -> Shape {
 /// For each OR the transitions between its children.
 fn transitions_inside(chart: &Statechart) -> Vec<Vec<&Transition>> {
     let mut inside = vec![Vec::new(); chart.nodes().len()];
-    for (_, transition) in chart.transitions() {
+    for transition in sound_transitions(chart) {
         if let Some(parent) = common_parent(chart, transition) {
             inside[parent.0 as usize].push(transition);
         }
@@ -133,7 +158,29 @@ fn transitions_inside(chart: &Statechart) -> Vec<Vec<&Transition>> {
     inside
 }
 
-fn common_parent(chart: &Statechart, transition: &Transition) -> Option<NodeId> {
+/// For each OR which of its children lead to which by transitions from within or to within.
+fn leads(chart: &Statechart) -> Vec<Vec<(NodeId, NodeId)>> {
+    let mut leads = vec![Vec::new(); chart.nodes().len()];
+    for transition in sound_transitions(chart).filter(|it| common_parent(chart, it).is_none()) {
+        let line =
+            |end: NodeId| -> Vec<NodeId> { std::iter::once(end).chain(chart.ancestors(end)).collect() };
+        let (from, to) = (line(transition.source), line(transition.target));
+        let shared = from.iter().rev().zip(to.iter().rev()).take_while(|(a, b)| a == b).count();
+        if let (Some(from), Some(to)) = (nth_from_root(&from, shared), nth_from_root(&to, shared))
+            && let Some(parent) = chart.node(from).parent
+        {
+            leads[parent.0 as usize].push((from, to));
+        }
+    }
+    leads
+}
+
+fn nth_from_root(line: &[NodeId], index: usize) -> Option<NodeId> {
+    line.iter().rev().nth(index).copied()
+}
+
+/// The OR of which both ends of a transition are children.
+pub(super) fn common_parent(chart: &Statechart, transition: &Transition) -> Option<NodeId> {
     let parent = chart.node(transition.source).parent?;
     let is_or = chart.node(parent).kind == NodeKind::Or;
     (is_or && chart.node(transition.target).parent == Some(parent)).then_some(parent)
@@ -152,6 +199,12 @@ fn leaf_size(kind: NodeKind, shape: &Shape) -> Point {
     }
 }
 
+/// Room for the name of a connector, in the letters of labels.
+fn beside(shape: &Shape) -> f64 {
+    let width = widest(&shape.title, LABEL_SIZE).max(widest(&shape.notes, LABEL_SIZE));
+    if width > 0.0 { width + 8.0 } else { 0.0 }
+}
+
 fn lettering_width(shape: &Shape) -> f64 {
     widest(&shape.title, NAME_SIZE).max(widest(&shape.notes, LABEL_SIZE))
 }
@@ -159,8 +212,7 @@ fn lettering_width(shape: &Shape) -> f64 {
 /// Sizes a composite around its content; its title is broken into lines of the content's width.
 fn enclose(shape: &mut Shape, content: Point) {
     shape.title = wrap(&shape.title.join(" "), NAME_SIZE, content.0.max(TITLE_WIDTH));
-    let lines = NAME_LINE * shape.title.len() as f64 + LABEL_LINE * shape.notes.len() as f64;
-    let head = if lines > 0.0 { lines + 8.0 } else { 0.0 };
+    let head = shape.head();
     let width = content.0.max(lettering_width(shape));
     shape.size = (width + 2.0 * PADDING, head + content.1 + 2.0 * PADDING);
     shape.inset = (PADDING + (width - content.0) / 2.0, head + PADDING);
@@ -234,28 +286,6 @@ fn content_origin(shape: &Shape) -> Point {
     moved(shape.at, shape.inset)
 }
 
-pub(super) fn moved(point: Point, by: Point) -> Point {
+fn moved(point: Point, by: Point) -> Point {
     (point.0 + by.0, point.1 + by.1)
-}
-
-/// Transitions between composites: a straight line each, over whatever lies between.
-fn across_borders(chart: &Statechart, layout: &mut Layout) {
-    for (_, transition) in chart.transitions() {
-        if common_parent(chart, transition).is_some() {
-            continue;
-        }
-        let (source, target) = (layout.shape(transition.source), layout.shape(transition.target));
-        let (from, to) = match source.at.1 + source.size.1 < target.at.1 {
-            true => (edge(source, 0.5, 1.0), edge(target, 0.5, 0.0)),
-            false => (edge(source, 1.0, 0.5), edge(target, 1.0, 0.5)),
-        };
-        let label_at = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0);
-        let label = Label::of(transition);
-        layout.arrows.push(Arrow { frame: Statechart::ROOT, points: vec![from, to], label, label_at });
-    }
-}
-
-/// A point of a shape, by parts of its width and height.
-fn edge(shape: &Shape, across: f64, down: f64) -> Point {
-    moved(shape.at, (shape.size.0 * across, shape.size.1 * down))
 }

@@ -6,10 +6,9 @@
 
 use std::collections::BTreeMap;
 
-use yase::{NodeId, Statechart, Transition};
-
 use super::layout::{Arrow, Label, Layout, Point};
 use super::ranks::{Course, ranks};
+use crate::statechart::{NodeId, NodeKind, Statechart, Transition};
 
 /// Between what stands side by side.
 const GAP: f64 = 22.0;
@@ -21,25 +20,31 @@ const HEAD: f64 = 14.0;
 const LABEL_GAP: f64 = 6.0;
 /// How far a loop stands out.
 const LOOP: f64 = 18.0;
+/// Between the ends of arrows at one side of a box.
+const END_GAP: f64 = 8.0;
 /// The height of a loop.
 const LOOP_HEIGHT: f64 = 16.0;
 
-/// Arranges the children of an OR from (0, 0) on, draws the transitions between them, and returns the size of it all.
+/// Arranges the children of an OR from (0, 0) on, draws the transitions between them, and returns the size of it all. What leads to what by
+/// transitions drawn elsewhere is told, since it stands below.
 pub(super) fn rows(
     chart: &Statechart,
     id: NodeId,
     transitions: &[&Transition],
+    leads: &[(NodeId, NodeId)],
     layout: &mut Layout,
 ) -> Point {
     let children = chart.children(id);
-    let mut flow = Flow::new(children, transitions, layout);
+    let mut flow = Flow::new(chart, children, transitions, leads, layout);
     flow.reserve_labels();
     flow.place_columns();
     flow.place_rows();
     let arrows: Vec<Drawn> = (0..flow.edges.len()).map(|index| flow.draw(index)).collect();
     let shift = -flow.left;
     for (&child, cell) in children.iter().zip(&flow.cells) {
-        layout.shape_mut(child).at = (cell.axis - cell.size.0 / 2.0 + shift, cell.top);
+        let shape = layout.shape_mut(child);
+        shape.at = (cell.axis - cell.size.0 / 2.0 + shift, cell.top);
+        shape.size = cell.size;
     }
     let size = (flow.right - flow.left, flow.height);
     for (edge, drawn) in flow.edges.into_iter().zip(arrows) {
@@ -63,11 +68,47 @@ struct Cell {
     below: f64,
     /// The height of the box and its loops.
     height: f64,
+    /// The height of the loops alone.
+    loops: f64,
+    /// Whether there are several loops.
+    is_stacked: bool,
+    /// Whether it may be made higher, to have room for arrows at its sides.
+    grows: bool,
+    /// How many arrows begin or end at its left side and its right, and how many of them are drawn.
+    ends: [Ends; 2],
     axis: f64,
     top: f64,
 }
 
+/// The ends of arrows at a side.
+#[derive(Clone, Copy, Default)]
+struct Ends {
+    count: usize,
+    drawn: usize,
+}
+
 impl Cell {
+    /// Where the next arrow at a side ends: those at the right side below the loops, spread evenly.
+    fn next_end(&mut self, side: usize) -> f64 {
+        let above = if side == 1 && self.grows { self.loops } else { 0.0 };
+        self.ends[side].drawn += 1;
+        let Ends { count, drawn } = self.ends[side];
+        let part = if self.grows { drawn as f64 / (count + 1) as f64 } else { 0.5 };
+        self.top + above + (self.size.1 - above) * part
+    }
+
+    /// Makes the box high enough for all arrows at its sides, and for several loops.
+    fn grow(&mut self) {
+        let [left, right] = self.ends.map(|ends| END_GAP * (ends.count + 1) as f64);
+        let has_ends = self.ends.iter().any(|ends| ends.count > 0);
+        if self.grows && (has_ends || self.is_stacked) {
+            let below_loops = if self.ends[1].count > 0 { self.loops + right } else { 0.0 };
+            let loops = if self.is_stacked { self.loops } else { 0.0 };
+            self.size.1 = self.size.1.max(left).max(below_loops).max(loops);
+            self.height = self.height.max(self.size.1);
+        }
+    }
+
     fn keep_width(&mut self, width: f64) {
         self.left = self.left.max(width / 2.0);
         self.right = self.right.max(width / 2.0);
@@ -110,18 +151,27 @@ struct Flow {
 }
 
 impl Flow {
-    fn new(children: &[NodeId], transitions: &[&Transition], layout: &Layout) -> Flow {
+    fn new(
+        chart: &Statechart,
+        children: &[NodeId],
+        transitions: &[&Transition],
+        leads: &[(NodeId, NodeId)],
+        layout: &Layout,
+    ) -> Flow {
         let places: BTreeMap<NodeId, usize> =
             children.iter().enumerate().map(|(place, &child)| (child, place)).collect();
         let place = |node: NodeId| places.get(&node).copied().unwrap_or(0);
+        let drawn = transitions.iter().map(|it| (it.source, it.target));
         let ends: Vec<(usize, usize)> =
-            transitions.iter().map(|it| (place(it.source), place(it.target))).collect();
+            drawn.chain(leads.iter().copied()).map(|(from, to)| (place(from), place(to))).collect();
         let (row_of, courses) = ranks(children.len(), &ends);
         let mut rows = vec![Vec::new(); row_of.iter().max().map_or(0, |last| last + 1)];
         row_of.iter().enumerate().for_each(|(place, &row)| rows[row].push(place));
         let cell = |(&child, row): (&NodeId, usize)| {
-            let size = layout.shape(child).size;
-            Cell { size, row, left: size.0 / 2.0, right: size.0 / 2.0, height: size.1, ..Cell::default() }
+            let (size, beside) = (layout.shape(child).size, layout.shape(child).beside);
+            let (left, right) = (size.0 / 2.0, size.0 / 2.0 + beside);
+            let grows = matches!(chart.node(child).kind, NodeKind::Basic | NodeKind::Or | NodeKind::And);
+            Cell { size, row, left, right, height: size.1, grows, ..Cell::default() }
         };
         let cells = children.iter().zip(row_of).map(cell).collect();
         let edge = |((&transition, &(source, target)), course): ((&&Transition, &(usize, usize)), Course)| {
@@ -149,13 +199,20 @@ impl Flow {
                 }
                 Course::Loop => {
                     let cell = &mut self.cells[edge.source];
-                    edge.offset = if cell.height > cell.size.1 { cell.height } else { 0.0 };
-                    cell.height = cell.height.max(edge.offset + height.max(LOOP_HEIGHT + 8.0) + 4.0);
+                    edge.offset = cell.loops;
+                    cell.is_stacked = edge.offset > 0.0;
+                    cell.loops = edge.offset + height.max(LOOP_HEIGHT + 8.0) + 4.0;
+                    cell.height = cell.height.max(cell.loops);
                     cell.right = cell.right.max(cell.size.0 / 2.0 + LOOP + width);
                 }
-                Course::Skip | Course::Back => {}
+                Course::Skip | Course::Back => {
+                    let side = usize::from(edge.course == Course::Back);
+                    self.cells[edge.source].ends[side].count += 1;
+                    self.cells[edge.target].ends[side].count += 1;
+                }
             }
         }
+        self.cells.iter_mut().for_each(Cell::grow);
     }
 
     /// Sets the axes: a child alone in its row stands on the middle line, several are centred about it.
@@ -234,12 +291,15 @@ impl Flow {
     /// Around the rows: to the left of all that is drawn so far for -1, to the right for 1.
     fn draw_around(&mut self, index: usize, side: f64) -> Drawn {
         let Edge { source, target, label, .. } = &self.edges[index];
-        let (source, target) = (&self.cells[*source], &self.cells[*target]);
+        let (source, target) = (*source, *target);
         let room = (label.size().0 / 2.0).max(4.0);
         let border = if side < 0.0 { self.left } else { self.right };
         let lane = border + side * (TURN + room);
-        let from = (source.axis + side * source.size.0 / 2.0, source.middle());
-        let to = (target.axis + side * target.size.0 / 2.0, target.middle());
+        let mut end = |cell: usize| {
+            let cell = &mut self.cells[cell];
+            (cell.axis + side * cell.size.0 / 2.0, cell.next_end(usize::from(side > 0.0)))
+        };
+        let (from, to) = (end(source), end(target));
         let drawn = Drawn {
             points: vec![from, (lane, from.1), (lane, to.1), to],
             label_at: (lane, (from.1 + to.1) / 2.0),

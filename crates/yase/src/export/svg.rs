@@ -2,20 +2,26 @@
 //!
 //! Formulas make series-parallel charts, and those are drawn as boxes in boxes: what follows each other stands below each other,
 //! what is chosen from stands side by side, regions have dashed borders. The same layout by ranks draws charts of other origin, less finely:
-//! transitions that lead back or across borders go around the boxes. States bear the names they have in the formula.
+//! transitions that lead back go around the boxes of their composite, those across borders look for a way of their own. States bear the
+//! names they have in the formula.
 
 mod draw;
 mod flow;
+mod grid;
 mod layout;
-mod lettering;
+pub(in crate::export) mod lettering;
 mod ranks;
+mod rectangle;
+mod route;
 
-use yase::Statechart;
+use crate::statechart::Statechart;
 
 /// The chart as an SVG document.
 ///
 /// OR states are titled yellow boxes, AND states blue boxes of dashed regions, BASIC states green boxes with round corners; START is a dot, END a
-/// dot in a ring, CONDITION a circle with a C. Transitions whose guard is `[false]` are grey.
+/// dot in a ring, CONDITION a circle with a C, JUNCTION a small dot, CHOICE a diamond, FORK and JOIN are bars, histories circles with H and H*,
+/// TERMINATE is a cross, a point of entry a circle, one of exit a circle with a cross. Transitions whose guard is `[false]` are grey. One
+/// whose ends do not exist is not drawn.
 pub fn to_svg(chart: &Statechart) -> String {
     draw::document(chart, &layout::layout(chart))
 }

@@ -3,7 +3,7 @@
 /// Size of the letters of names, in pixels.
 pub(super) const NAME_SIZE: f64 = 13.0;
 /// Size of the letters of everything else.
-pub(super) const LABEL_SIZE: f64 = 11.0;
+pub(in crate::export) const LABEL_SIZE: f64 = 11.0;
 /// From one line of a label to the next.
 pub(super) const LABEL_LINE: f64 = 14.0;
 /// From one line of a title to the next.
@@ -31,7 +31,7 @@ pub(super) fn wrap(text: &str, size: f64, max_width: f64) -> Vec<String> {
 }
 
 /// A transition expression in lines of at most this width, broken before `&&`, `||` and `/` if that is enough.
-pub(super) fn wrap_condition(text: &str, size: f64, max_width: f64) -> Vec<String> {
+pub(in crate::export) fn wrap_condition(text: &str, size: f64, max_width: f64) -> Vec<String> {
     let mut parts: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match parts.last_mut() {

@@ -1,0 +1,55 @@
+//! Areas of the page.
+
+use super::layout::Point;
+
+/// An area; y grows downwards.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rectangle {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) right: f64,
+    pub(super) bottom: f64,
+}
+
+impl Rectangle {
+    /// From its upper left corner on.
+    pub(super) fn new(at: Point, size: Point) -> Rectangle {
+        Rectangle { left: at.0, top: at.1, right: at.0 + size.0, bottom: at.1 + size.1 }
+    }
+
+    /// Around its middle.
+    pub(super) fn around(middle: Point, size: Point) -> Rectangle {
+        Rectangle::new((middle.0 - size.0 / 2.0, middle.1 - size.1 / 2.0), size)
+    }
+
+    /// What a line of right angles covers.
+    pub(super) fn between(from: Point, to: Point) -> Rectangle {
+        Rectangle {
+            left: from.0.min(to.0),
+            top: from.1.min(to.1),
+            right: from.0.max(to.0),
+            bottom: from.1.max(to.1),
+        }
+    }
+
+    /// Larger by this on each side.
+    pub(super) fn grown(self, by: f64) -> Rectangle {
+        let Rectangle { left, top, right, bottom } = self;
+        Rectangle { left: left - by, top: top - by, right: right + by, bottom: bottom + by }
+    }
+
+    pub(super) fn centre(&self) -> Point {
+        ((self.left + self.right) / 2.0, (self.top + self.bottom) / 2.0)
+    }
+
+    pub(super) fn area(&self) -> f64 {
+        (self.right - self.left) * (self.bottom - self.top)
+    }
+
+    /// How much two areas share.
+    pub(super) fn shared(&self, other: &Rectangle) -> f64 {
+        let width = self.right.min(other.right) - self.left.max(other.left);
+        let height = self.bottom.min(other.bottom) - self.top.max(other.top);
+        width.max(0.0) * height.max(0.0)
+    }
+}
