@@ -110,6 +110,7 @@ pub mod vocabulary;
 pub use chart::{ActivityEntry, Chart, CompoundId, RegionId, ScriptEntry, ScriptPlace};
 pub use diagnostic::{Diagnostic, Severity, Source, Span};
 pub use host::{ActionError, ActionPlace, Activation, Host, Outcome, Report};
+pub use machine::snapshot;
 pub use machine::{
     Chooser, Machine, MachineError, MachineErrorKind, MicroStep, Performance, States, Status, StepSummary,
 };

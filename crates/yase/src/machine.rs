@@ -9,11 +9,14 @@ mod queues;
 mod run;
 mod script;
 mod select;
+pub mod snapshot;
 mod step;
 mod timers;
 mod view;
 
 use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
 
 use crate::chart::{Chart, RegionId};
 use crate::expression::EventId;
@@ -45,7 +48,8 @@ pub struct Machine {
 }
 
 /// What a machine is doing.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Status {
     /// It has not been started.
@@ -59,7 +63,8 @@ pub enum Status {
 }
 
 /// What a run-to-completion step did.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct StepSummary {
     /// How many micro-steps were made: those that took a transition, and those that offered an event in vain.

@@ -4,8 +4,11 @@ use std::fmt;
 use std::ops::Add;
 use std::time::Duration;
 
-/// A moment on whatever clock the host hands in: nanoseconds since a beginning of its choice.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
+use serde::{Deserialize, Serialize};
+
+/// A moment on whatever clock the host hands in: nanoseconds since a beginning of its choice. As text it is that number.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default, Serialize, Deserialize)]
+#[serde(transparent)]
 pub struct Moment(u64);
 
 impl Moment {

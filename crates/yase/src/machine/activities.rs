@@ -9,9 +9,9 @@ use crate::machine::run::Run;
 #[derive(Clone, Debug)]
 pub(super) struct Activities {
     slots: Box<[Slot]>,
-    count: u64,
+    pub(super) count: u64,
     /// Whether one has been queued since it was asked last.
-    queued: bool,
+    pub(super) queued: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +75,7 @@ impl Run {
         self.lock(chart, place);
     }
 
-    fn lock(&mut self, chart: &Chart, place: Place) {
+    pub(super) fn lock(&mut self, chart: &Chart, place: Place) {
         self.running.insert(place.index());
         self.running_regions.insert(chart.states[place.index()].region.index());
     }

@@ -6,14 +6,14 @@ use crate::chart::CompoundId;
 use crate::moment::Moment;
 
 /// So many of the last transitions are remembered, to name a cycle.
-const MEMORY: usize = 64;
+pub(super) const MEMORY: usize = 64;
 
 /// Counts the micro-steps of a step, and the steps at one moment.
 #[derive(Clone, Debug)]
 pub(super) struct Bound {
-    micro_steps: u32,
-    instant: Moment,
-    steps: u32,
+    pub(super) micro_steps: u32,
+    pub(super) instant: Moment,
+    pub(super) steps: u32,
     recent: Box<[CompoundId]>,
     taken: usize,
 }
@@ -55,12 +55,17 @@ impl Bound {
         self.taken += 1;
     }
 
+    /// What is remembered, oldest first.
+    pub(super) fn last(&self) -> Vec<CompoundId> {
+        let known = self.taken.min(MEMORY);
+        (self.taken - known..self.taken).map(|index| self.recent[index % MEMORY]).collect()
+    }
+
     /// The transitions that were taken again and again: the shortest row whose repetition makes up the last half of what is remembered,
     /// or all of it.
     pub(super) fn cycle(&self) -> Vec<CompoundId> {
-        let known = self.taken.min(MEMORY);
-        let last: Vec<CompoundId> =
-            (self.taken - known..self.taken).map(|index| self.recent[index % MEMORY]).collect();
+        let last = self.last();
+        let known = last.len();
         let repeats = |&period: &usize| {
             let recent = &last[known - (2 * period).max(known / 2)..];
             recent.iter().zip(&recent[period..]).all(|(a, b)| a == b)

@@ -13,8 +13,9 @@ use crate::semantics::EventPool;
 pub(super) struct Occurrence {
     pub(super) event: EventId,
     /// Counts the occurrences: less is older.
-    number: u64,
-    raised: bool,
+    pub(super) number: u64,
+    /// Whether an action raised it.
+    pub(super) raised: bool,
     /// The timer whose expiry it is.
     pub(super) expiry: Option<u32>,
     /// A number that the host gave it.
@@ -42,7 +43,7 @@ impl From<EventId> for Incoming {
 /// An occurrence that waits for running activities.
 #[derive(Clone, Debug)]
 pub(super) struct Held {
-    occurrence: Occurrence,
+    pub(super) occurrence: Occurrence,
     /// The transitions it would enable.
     pub(super) compounds: SmallVec<[CompoundId; 4]>,
     /// Whether an activity that was in the way has returned.
@@ -52,10 +53,10 @@ pub(super) struct Held {
 /// Every queue is ordered by age.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Queues {
-    count: u64,
-    raised: VecDeque<Occurrence>,
-    arrived: VecDeque<Occurrence>,
-    deferred: VecDeque<Occurrence>,
+    pub(super) count: u64,
+    pub(super) raised: VecDeque<Occurrence>,
+    pub(super) arrived: VecDeque<Occurrence>,
+    pub(super) deferred: VecDeque<Occurrence>,
     pub(super) held: Vec<Held>,
 }
 
@@ -65,6 +66,12 @@ impl Queues {
         self.arrived.clear();
         self.deferred.clear();
         self.held.clear();
+    }
+
+    /// Everything in them.
+    pub(super) fn all(&self) -> impl Iterator<Item = &Occurrence> {
+        let held = self.held.iter().map(|held| &held.occurrence);
+        self.raised.iter().chain(&self.arrived).chain(&self.deferred).chain(held)
     }
 
     /// Whether some event can be offered now.

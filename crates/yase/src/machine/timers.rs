@@ -7,16 +7,16 @@ use crate::moment::Moment;
 /// The timers of a chart, by their number in it.
 #[derive(Clone, Debug)]
 pub(super) struct Timers {
-    slots: Box<[Option<Deadline>]>,
+    pub(super) slots: Box<[Option<Deadline>]>,
     /// The earliest deadline whose expiry has not been noticed.
     next: Option<Moment>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Deadline {
-    moment: Moment,
+pub(super) struct Deadline {
+    pub(super) moment: Moment,
     /// Whether its expiry has been noticed.
-    expired: bool,
+    pub(super) expired: bool,
 }
 
 impl Timers {
@@ -33,7 +33,7 @@ impl Timers {
     pub(super) fn set(&mut self, timer: usize, moment: Moment) -> bool {
         let Some(slot) = self.slots.get_mut(timer) else { return false };
         let before = slot.replace(Deadline { moment, expired: false });
-        self.next = self.earliest().map(|(moment, _)| moment);
+        self.look_again();
         before.is_some_and(|before| before.expired)
     }
 
@@ -61,8 +61,13 @@ impl Timers {
         let mut due = (0..self.slots.len()).filter(|&timer| is_due(&self.slots[timer]));
         let timer = due.nth(chosen)?;
         self.slots[timer].as_mut()?.expired = true;
-        self.next = self.earliest().map(|(moment, _)| moment);
+        self.look_again();
         Some(timer)
+    }
+
+    /// Some deadlines have changed.
+    pub(super) fn look_again(&mut self) {
+        self.next = self.earliest().map(|(moment, _)| moment);
     }
 
     fn earliest(&self) -> Option<(Moment, usize)> {

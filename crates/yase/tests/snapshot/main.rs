@@ -4,5 +4,8 @@
 
 #[path = "../kit/mod.rs"]
 mod kit;
+#[path = "../reference/random.rs"]
+mod random;
 
+mod every_step;
 mod micro_steps;

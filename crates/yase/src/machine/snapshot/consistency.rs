@@ -1,0 +1,250 @@
+//! What must hold between the parts of a snapshot.
+
+use std::collections::BTreeSet;
+
+use crate::chart::{CompoundId, Place};
+use crate::machine::Status;
+use crate::machine::queues::Occurrence;
+use crate::machine::snapshot::restore::Restoring;
+use crate::machine::snapshot::{MisfitKind, Snapshot};
+use crate::statechart::NodeKind;
+
+/// Finds what could not be in any machine of the chart. All names have been understood, or it has been said that they were not.
+pub(super) fn check(restoring: &mut Restoring<'_>, snapshot: &Snapshot) {
+    restoring.configuration_is_closed();
+    restoring.starts_wait_where_they_are();
+    restoring.activities_are_those_of_active_states(snapshot);
+    restoring.occurrences_are_in_order(snapshot);
+    restoring.expiries_are_of_expired_timers();
+    restoring.held_events_wait_for_something();
+    restoring.pending_transitions_interrupt();
+    restoring.nothing_goes_on_unless_running(snapshot);
+}
+
+impl Restoring<'_> {
+    fn wrong(&mut self, field: impl Into<String>, text: impl Into<String>) {
+        self.misfit(MisfitKind::Contradiction, field, text);
+    }
+
+    fn is_active(&self, place: Place) -> bool {
+        self.run.is_active(place)
+    }
+
+    fn active(&self) -> Vec<Place> {
+        let places = self.chart.layout.places();
+        places.filter(|&place| self.is_active(place)).collect()
+    }
+
+    fn configuration_is_closed(&mut self) {
+        let active = self.active();
+        let may_be_empty = matches!(self.run.status, Status::Idle | Status::Finished);
+        if active.is_empty() && may_be_empty {
+            return;
+        }
+        if self.run.status == Status::Idle {
+            self.unclosed("a machine that has not been started has no active nodes".into());
+        }
+        if !self.is_active(self.chart.layout.root()) {
+            self.unclosed("the root is not active".into());
+        }
+        for place in active {
+            self.parent_is_active(place);
+            self.children_fit(place);
+        }
+    }
+
+    fn unclosed(&mut self, text: String) {
+        self.misfit(MisfitKind::Configuration, "configuration", text);
+    }
+
+    fn parent_is_active(&mut self, place: Place) {
+        let Some(parent) = self.chart.statechart().node(self.chart.layout.node(place)).parent else { return };
+        let parent = self.chart.layout.place_of(parent);
+        if !self.is_active(parent) {
+            let (path, around) = (self.path(place), self.path(parent));
+            self.unclosed(format!("`{path}` is active, but `{around}` around it is not"));
+        }
+    }
+
+    fn children_fit(&mut self, place: Place) {
+        let path = self.path(place);
+        let children = &self.chart.states[place.index()].children;
+        match self.kind(place) {
+            NodeKind::Or => {
+                let active: Vec<String> = children
+                    .iter()
+                    .filter(|&&child| self.is_active(child))
+                    .map(|&child| format!("`{}`", self.path(child)))
+                    .collect();
+                match active.len() {
+                    0 => self.unclosed(format!("`{path}` is active, but nothing in it")),
+                    1 => {}
+                    _ => self.unclosed(format!("in `{path}` one child is active, not {}", active.join(", "))),
+                }
+            }
+            NodeKind::And => {
+                for &region in children {
+                    if !self.is_active(region) {
+                        let region = self.path(region);
+                        self.unclosed(format!("`{path}` is active, but its region `{region}` is not"));
+                    }
+                }
+            }
+            NodeKind::Basic | NodeKind::Start | NodeKind::End => {}
+            _ => self.unclosed(format!("`{path}` is a connector and never active")),
+        }
+    }
+
+    fn starts_wait_where_they_are(&mut self) {
+        for place in self.chart.layout.places() {
+            let waits = self.run.waiting_starts.contains(place.index());
+            if waits && !(self.is_active(place) && self.kind(place) == NodeKind::Start) {
+                let text = format!("`{}` is no active START", self.path(place));
+                self.wrong("waiting_starts", text);
+            }
+        }
+    }
+
+    fn activities_are_those_of_active_states(&mut self, snapshot: &Snapshot) {
+        let mut numbers = BTreeSet::new();
+        for (index, record) in snapshot.activities.iter().enumerate() {
+            let field = format!("activities[{index}].number");
+            if record.number == 0 || record.number > snapshot.activations {
+                let text = format!("{} is not from 1 to {}", record.number, snapshot.activations);
+                self.wrong(&field, text);
+            }
+            if !numbers.insert(record.number) {
+                self.wrong(field, format!("{} is that of another activity", record.number));
+            }
+            if !snapshot.is_active(&record.state) {
+                let text = format!("`{}` is not active", record.state);
+                self.wrong(format!("activities[{index}].state"), text);
+            }
+        }
+        if snapshot.status == Status::Running {
+            self.active_states_have_their_activities(snapshot);
+        }
+    }
+
+    fn active_states_have_their_activities(&mut self, snapshot: &Snapshot) {
+        for &place in &self.chart.activities {
+            let path = self.path(place);
+            if self.is_active(place) && snapshot.activity(&path).is_none() {
+                self.wrong("activities", format!("`{path}` is active, and nothing is said of its activity"));
+            }
+        }
+    }
+
+    fn occurrences_are_in_order(&mut self, snapshot: &Snapshot) {
+        let held: Vec<u64> = snapshot.held.iter().map(|held| held.occurrence.number).collect();
+        let numbers = |records: &[crate::snapshot::OccurrenceRecord]| -> Vec<u64> {
+            records.iter().map(|record| record.number).collect()
+        };
+        let queues = [
+            ("raised", numbers(&snapshot.raised)),
+            ("arrived", numbers(&snapshot.arrived)),
+            ("deferred", numbers(&snapshot.deferred)),
+            ("held", held),
+        ];
+        let mut all = BTreeSet::new();
+        for (field, numbers) in queues {
+            if !numbers.is_sorted() {
+                self.wrong(field, "older events, of lesser number, come first");
+            }
+            for number in numbers {
+                self.number_is_new(field, number, snapshot.occurrences, &mut all);
+            }
+        }
+        for (field, records, raised) in
+            [("raised", &snapshot.raised, true), ("arrived", &snapshot.arrived, false)]
+        {
+            if records.iter().any(|record| record.raised != raised) {
+                self.wrong(field, format!("`raised` is {raised} for all of these events"));
+            }
+        }
+    }
+
+    fn number_is_new(&mut self, field: &str, number: u64, count: u64, all: &mut BTreeSet<u64>) {
+        if number == 0 || number > count {
+            self.wrong(field, format!("the number {number} is not from 1 to {count}"));
+        }
+        if !all.insert(number) {
+            self.wrong(field, format!("the number {number} is that of another event"));
+        }
+    }
+
+    fn expiries_are_of_expired_timers(&mut self) {
+        let wrong: Vec<u32> = self
+            .run
+            .queues
+            .all()
+            .filter_map(|occurrence| Some((occurrence, occurrence.expiry?)))
+            .filter(|(occurrence, timer)| !self.has_expired(occurrence, *timer))
+            .map(|(_, timer)| timer)
+            .collect();
+        for timer in wrong {
+            let name = &self.chart.timers[timer as usize].name;
+            let text = format!(
+                "an expiry of `{name}` waits, but that timer is not set, has not expired or is no such event"
+            );
+            self.wrong("timers", text);
+        }
+    }
+
+    fn has_expired(&self, occurrence: &Occurrence, timer: u32) -> bool {
+        let deadline = self.run.timers.slots[timer as usize];
+        deadline.is_some_and(|deadline| deadline.expired)
+            && self.chart.timers[timer as usize].event == Some(occurrence.event)
+    }
+
+    /// What waits for nothing would be forgotten.
+    fn held_events_wait_for_something(&mut self) {
+        for index in 0..self.run.queues.held.len() {
+            let held = &self.run.queues.held[index];
+            let waits = held.offer || held.compounds.iter().any(|&compound| self.is_in_the_way(compound));
+            if !waits {
+                self.wrong(format!("held[{index}]"), "nothing that it waits for runs, and it is not offered");
+            }
+        }
+    }
+
+    fn is_in_the_way(&self, compound: CompoundId) -> bool {
+        let compound = &self.chart.compounds[compound.0 as usize];
+        let region = self.chart.states[compound.source.index()].region;
+        self.run.running_regions.contains(region.index())
+            || self.run.is_being_left(self.chart, compound.source)
+            || compound
+                .exits
+                .is_some_and(|(first, last)| self.run.running.any_in(first.index(), last.index()))
+    }
+
+    fn pending_transitions_interrupt(&mut self) {
+        for index in 0..self.run.pending.len() {
+            let pending = &self.run.pending[index];
+            let compound = &self.chart.compounds[pending.compound.0 as usize];
+            if !compound.interrupts {
+                self.wrong(format!("pending[{index}]"), "the transition does not interrupt");
+            } else if !self.is_active(compound.source) {
+                let text = format!("its source `{}` is not active", self.path(compound.source));
+                self.wrong(format!("pending[{index}]"), text);
+            }
+        }
+    }
+
+    fn nothing_goes_on_unless_running(&mut self, snapshot: &Snapshot) {
+        if snapshot.status == Status::Running {
+            return;
+        }
+        let rows = [
+            ("raised", snapshot.raised.is_empty()),
+            ("arrived", snapshot.arrived.is_empty()),
+            ("deferred", snapshot.deferred.is_empty()),
+            ("held", snapshot.held.is_empty()),
+            ("pending", snapshot.pending.is_empty()),
+            ("activities", snapshot.activities.is_empty()),
+        ];
+        for (field, _) in rows.into_iter().filter(|(_, is_empty)| !is_empty) {
+            self.wrong(field, "the machine does not run, so there is nothing");
+        }
+    }
+}
