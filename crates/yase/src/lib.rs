@@ -104,6 +104,7 @@ mod machine;
 mod moment;
 mod semantics;
 pub mod statechart;
+pub mod swap;
 mod trace;
 pub mod vocabulary;
 

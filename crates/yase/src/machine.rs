@@ -5,6 +5,7 @@ mod bound;
 mod chooser;
 mod errors;
 mod fire;
+mod newcomers;
 mod queues;
 mod run;
 mod script;

@@ -46,6 +46,8 @@ pub enum Occasion {
     Start,
     /// Transitions without a trigger.
     Eventless,
+    /// The chart was swapped: regions that are new are entered.
+    Swap,
     /// One occurrence of an event.
     Event(EventId),
     /// The root has reached END, and everything is left.
@@ -80,6 +82,7 @@ impl<N: Fn(NodeId) -> String> fmt::Display for Line<'_, N> {
         let record = &self.record;
         match record.occasion {
             Occasion::Start => write!(f, "{} start", record.time)?,
+            Occasion::Swap => write!(f, "{} swap", record.time)?,
             Occasion::Eventless => write!(f, "{} -:", record.time)?,
             Occasion::Finish => write!(f, "{} finish", record.time)?,
             Occasion::Event(event) => write!(f, "{} {}:", record.time, self.chart.events().name(event))?,
@@ -89,7 +92,7 @@ impl<N: Fn(NodeId) -> String> fmt::Display for Line<'_, N> {
         match record.selected.is_empty() {
             false => write!(f, " {}", compounds(record.selected))?,
             true if record.is_dropped() => write!(f, " dropped")?,
-            true if matches!(record.occasion, Occasion::Start | Occasion::Finish) => {}
+            true if matches!(record.occasion, Occasion::Start | Occasion::Swap | Occasion::Finish) => {}
             true => write!(f, " nothing")?,
         }
         part(f, "preempt", &compounds(record.preempted))?;

@@ -118,7 +118,7 @@ impl<H: Host> Step<'_, H> {
         self.run.activities.slot_mut(activity).phase = Phase::Idle;
     }
 
-    fn enter(&mut self, place: Place) {
+    pub(super) fn enter(&mut self, place: Place) {
         let state = &self.chart.states[place.index()];
         let node = self.chart.layout.node(place);
         self.run.active.insert(place.index());

@@ -7,6 +7,7 @@ use crate::host::ActionPlace;
 use crate::machine::activities::{Activities, Phase};
 use crate::machine::bound::Bound;
 use crate::machine::chooser::Chooser;
+use crate::machine::newcomers::Newcomers;
 use crate::machine::queues::{Incoming, Queues};
 use crate::machine::timers::Timers;
 use crate::machine::{Status, StepSummary};
@@ -39,6 +40,7 @@ pub(super) struct Run {
     pub(super) written: BitSet,
     /// The active STARTs of which it was told that they wait.
     pub(super) waiting_starts: BitSet,
+    pub(super) newcomers: Newcomers,
     pub(super) bound: Bound,
     pub(super) chooser: Chooser,
     pub(super) selection: Selection,
@@ -136,6 +138,7 @@ impl Run {
             erred: Vec::new(),
             written: BitSet::new(regions),
             waiting_starts: BitSet::new(places),
+            newcomers: Newcomers::default(),
             bound: Bound::new(),
             chooser: Chooser::declared(),
             selection: Selection {
@@ -168,6 +171,7 @@ impl Run {
         self.erred.clear();
         self.written.clear();
         self.waiting_starts.clear();
+        self.newcomers = Newcomers::default();
         self.bound.reset(now);
     }
 

@@ -84,7 +84,7 @@ use crate::machine::{Status, StepSummary};
 use crate::moment::Moment;
 
 pub use error::{Misfit, MisfitKind, RestoreError};
-pub(crate) use paths::{Paths, event_name, find_event};
+pub(crate) use paths::{Paths, event_name, find_event, ways};
 
 /// The version of the format that this crate writes and reads.
 pub const VERSION: u32 = 1;
@@ -111,6 +111,10 @@ pub struct Snapshot {
     pub step: Option<StepSummary>,
     /// The active nodes in the order of the document, composites before what is in them.
     pub configuration: Vec<String>,
+    /// Regions of active ANDs that are entered when the next step begins, since a [swap](crate::swap) has brought them.
+    pub to_enter: Vec<String>,
+    /// Active regions whose blackboard is filled when the next step begins, since a [swap](crate::swap) has brought them.
+    pub to_inherit: Vec<String>,
     /// The active STARTs of which it has been reported that they wait.
     pub waiting_starts: Vec<String>,
     /// The timers that are set.

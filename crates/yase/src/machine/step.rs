@@ -67,6 +67,9 @@ impl<'a, H: Host> Step<'a, H> {
     fn begin(&mut self) {
         self.run.due = false;
         self.run.bound.begin(self.run.now);
+        if !self.run.newcomers.is_empty() {
+            self.welcome();
+        }
         self.expire_timers();
         if self.semantics().delivery == Delivery::EachStep {
             self.deliver_to_all();

@@ -12,6 +12,7 @@ use crate::statechart::NodeKind;
 /// Finds what could not be in any machine of the chart. All names have been understood, or it has been said that they were not.
 pub(super) fn check(restoring: &mut Restoring<'_>, snapshot: &Snapshot) {
     restoring.configuration_is_closed();
+    restoring.newcomers_have_a_place();
     restoring.starts_wait_where_they_are();
     restoring.activities_are_those_of_active_states(snapshot);
     restoring.occurrences_are_in_order(snapshot);
@@ -84,7 +85,7 @@ impl Restoring<'_> {
             }
             NodeKind::And => {
                 for &region in children {
-                    if !self.is_active(region) {
+                    if !self.is_active(region) && !self.run.is_to_enter(region) {
                         let region = self.path(region);
                         self.unclosed(format!("`{path}` is active, but its region `{region}` is not"));
                     }
@@ -93,6 +94,33 @@ impl Restoring<'_> {
             NodeKind::Basic | NodeKind::Start | NodeKind::End => {}
             _ => self.unclosed(format!("`{path}` is a connector and never active")),
         }
+    }
+
+    fn newcomers_have_a_place(&mut self) {
+        for index in 0..self.run.newcomers.regions.len() {
+            let place = self.run.newcomers.regions[index];
+            let path = self.path(place);
+            if !self.chart.states[place.index()].is_region {
+                self.wrong("to_enter", format!("`{path}` is no region"));
+            } else if self.is_active(place) {
+                self.wrong("to_enter", format!("`{path}` is active already"));
+            } else if !self.is_around_active(place) {
+                self.wrong("to_enter", format!("the AND around `{path}` is not active"));
+            }
+        }
+        for index in 0..self.run.newcomers.blackboards.len() {
+            let region = self.run.newcomers.blackboards[index];
+            let root = self.chart.regions[region.index()].root;
+            if !self.is_active(root) {
+                let text = format!("`{}` is not active", self.path(root));
+                self.wrong("to_inherit", text);
+            }
+        }
+    }
+
+    fn is_around_active(&self, place: Place) -> bool {
+        let node = self.chart.statechart().node(self.chart.layout.node(place));
+        node.parent.is_some_and(|parent| self.is_active(self.chart.layout.place_of(parent)))
     }
 
     fn starts_wait_where_they_are(&mut self) {

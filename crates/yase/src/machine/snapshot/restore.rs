@@ -10,10 +10,9 @@ use crate::machine::activities::{Phase, Slot};
 use crate::machine::bound::MEMORY;
 use crate::machine::queues::{Held, Occurrence};
 use crate::machine::run::{ErredGuard, Pending, Run};
-use crate::machine::snapshot::paths::ways;
 use crate::machine::snapshot::{
     ActivityPhase, ActivityRecord, EventName, HeldRecord, Misfit, MisfitKind, OccurrenceRecord, Paths,
-    RestoreError, Snapshot, TimerName, VERSION, Way, consistency, find_event,
+    RestoreError, Snapshot, TimerName, VERSION, Way, consistency, find_event, ways,
 };
 use crate::machine::timers::Deadline;
 use crate::semantics::Semantics;
@@ -54,6 +53,7 @@ impl<'a> Restoring<'a> {
         self.origin(snapshot);
         self.clock(snapshot);
         self.states(snapshot);
+        self.newcomers(snapshot);
         self.activities(snapshot);
         self.timers(snapshot);
         self.queues(snapshot);
@@ -104,6 +104,21 @@ impl<'a> Restoring<'a> {
             let Some(region) = self.region(&field, path) else { continue };
             self.once(self.run.written.contains(region.index()), &field, path);
             self.run.written.insert(region.index());
+        }
+    }
+
+    fn newcomers(&mut self, snapshot: &Snapshot) {
+        for (index, path) in snapshot.to_enter.iter().enumerate() {
+            let field = format!("to_enter[{index}]");
+            let Some(place) = self.place(&field, path) else { continue };
+            self.once(self.run.is_to_enter(place), &field, path);
+            self.run.newcomers.regions.push(place);
+        }
+        for (index, path) in snapshot.to_inherit.iter().enumerate() {
+            let field = format!("to_inherit[{index}]");
+            let Some(region) = self.region(&field, path) else { continue };
+            self.once(self.run.newcomers.blackboards.contains(&region), &field, path);
+            self.run.newcomers.blackboards.push(region);
         }
     }
 

@@ -62,6 +62,13 @@ impl Taking<'_> {
             due: run.due,
             step: run.under_way,
             configuration: configuration.collect(),
+            to_enter: run.newcomers.regions.iter().map(|&place| self.paths.place(chart, place)).collect(),
+            to_inherit: run
+                .newcomers
+                .blackboards
+                .iter()
+                .map(|&region| self.paths.region(chart, region))
+                .collect(),
             waiting_starts: self.nodes(&run.waiting_starts),
             timers: self.timers(),
             activations: run.activities.count,

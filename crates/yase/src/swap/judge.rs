@@ -1,0 +1,315 @@
+//! From what a machine is doing to what it would be doing under the new chart.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::chart::{Chart, CompoundId};
+use crate::expression::CompiledTrigger;
+use crate::machine::snapshot::{
+    ActivityPhase, ActivityRecord, ErredGuardRecord, EventName, HeldRecord, OccurrenceRecord, PendingRecord,
+    Snapshot, TimerName, TimerRecord, Way, event_name, find_event, ways,
+};
+use crate::statechart::{NodeId, NodeKind, TransitionId};
+use crate::swap::matching::Match;
+use crate::swap::plan::Plan;
+use crate::swap::report::{Finding, Objection, Report, Subject, Verdict};
+
+/// A snapshot on its way from one chart to another.
+pub(super) struct Judging<'a> {
+    plan: &'a Plan,
+    /// The new one.
+    chart: &'a Chart,
+    ways: BTreeMap<&'a [TransitionId], CompoundId>,
+    pub(super) report: Report,
+    pub(super) objections: Vec<Objection>,
+}
+
+impl<'a> Judging<'a> {
+    pub(super) fn new(plan: &'a Plan) -> Judging<'a> {
+        Judging {
+            plan,
+            chart: &plan.new,
+            ways: ways(&plan.new),
+            report: Report::default(),
+            objections: Vec::new(),
+        }
+    }
+
+    /// The snapshot with the names of the new chart. What it would lose without the caller's consent is objected to.
+    pub(super) fn translate(&mut self, old: &Snapshot) -> Snapshot {
+        let mut new = old.clone();
+        new.chart = self.chart.statechart().name.clone();
+        new.due |= !self.plan.is_same();
+        let active = self.active(old);
+        self.enter(&active, &mut new);
+        new.configuration = self.in_document_order(active);
+        new.activities = old.activities.iter().filter_map(|record| self.activity(record)).collect();
+        self.unheard_activities(old, &new);
+        new.timers = old.timers.iter().filter_map(|record| self.timer(record)).collect();
+        self.events(old, &mut new);
+        new.pending = old.pending.iter().filter_map(|record| self.pending(record)).collect();
+        self.notes(old, &mut new);
+        self.object_to_losses();
+        new
+    }
+
+    /// The counterpart of what an old path names.
+    fn node(&self, path: &str) -> Option<(NodeId, NodeId)> {
+        let old = self.plan.old_paths.find_node(path)?;
+        Some((old, self.plan.node(old)?))
+    }
+
+    fn path(&self, path: &str) -> Option<String> {
+        self.node(path).map(|(_, node)| self.plan.new_paths.node(node).to_owned())
+    }
+
+    fn region(&self, path: &str) -> Option<String> {
+        let (_, node) = self.node(path)?;
+        let region = self.chart.region_of(node)?;
+        let found = self.chart.region_node(region) == Some(node);
+        found.then(|| self.plan.new_paths.node(node).to_owned())
+    }
+
+    /// The counterparts of all active nodes, with what is around them.
+    fn active(&mut self, old: &Snapshot) -> BTreeSet<NodeId> {
+        let mut active = BTreeSet::new();
+        for path in &old.configuration {
+            let Some(node) = self.plan.old_paths.find_node(path) else { continue };
+            let verdict = self.plan.verdict(node);
+            match (self.plan.node(node), &verdict) {
+                (Some(found), _) => {
+                    active.insert(found);
+                }
+                (None, Verdict::Lost(why)) => {
+                    self.objections.push(Objection::StateGone { state: path.clone(), why });
+                }
+                _ => {}
+            }
+            self.report.add(Subject::State, path, verdict);
+        }
+        self.add_around(&mut active);
+        active
+    }
+
+    fn add_around(&mut self, active: &mut BTreeSet<NodeId>) {
+        let statechart = self.chart.statechart();
+        let around: BTreeSet<NodeId> = active.iter().flat_map(|&node| statechart.ancestors(node)).collect();
+        for node in around {
+            if active.insert(node) {
+                self.report.add(Subject::State, self.plan.new_paths.node(node), Verdict::Added);
+            }
+        }
+    }
+
+    /// Regions of active ANDs that are new, and the blackboards of active regions that had none.
+    fn enter(&mut self, active: &BTreeSet<NodeId>, new: &mut Snapshot) {
+        (new.to_enter, new.to_inherit) = (Vec::new(), Vec::new());
+        let chart = self.chart;
+        let known: BTreeSet<_> =
+            self.plan.old.regions().filter_map(|region| self.plan.region(region)).collect();
+        for region in chart.regions() {
+            let Some(node) = chart.region_node(region) else { continue };
+            let Some(parent) = chart.statechart().node(node).parent else { continue };
+            let path = self.plan.new_paths.node(node).to_owned();
+            if !active.contains(&parent) {
+                continue;
+            } else if !active.contains(&node) {
+                self.report.to_enter.push(path.clone());
+                new.to_enter.push(path);
+            } else if !known.contains(&region) {
+                new.to_inherit.push(path);
+            }
+        }
+    }
+
+    fn in_document_order(&self, active: BTreeSet<NodeId>) -> Vec<String> {
+        let layout = &self.chart.layout;
+        let mut nodes: Vec<NodeId> = active.into_iter().collect();
+        nodes.sort_by_key(|&node| layout.rank(layout.place_of(node)));
+        nodes.into_iter().map(|node| self.plan.new_paths.node(node).to_owned()).collect()
+    }
+
+    fn activity(&mut self, record: &ActivityRecord) -> Option<ActivityRecord> {
+        let name = format!("{}: {}", record.state, record.activity);
+        let found = self.node(&record.state);
+        let activity = found.and_then(|(_, node)| self.chart.activity(node)).map(|entry| entry.name);
+        if activity == Some(record.activity.as_str()) {
+            let state = self.path(&record.state)?;
+            let verdict = self.renamed(&record.state, &state, &state);
+            self.report.add(Subject::Activity, name, verdict);
+            return Some(ActivityRecord { state, ..record.clone() });
+        }
+        let is_done = record.phase == ActivityPhase::Done;
+        match activity {
+            _ if !is_done => self.objections.push(Objection::ActivityGone {
+                state: record.state.clone(),
+                activity: record.activity.clone(),
+            }),
+            // its state is told to have another one
+            Some(_) => {}
+            None => self.report.add(Subject::Activity, name, Verdict::Kept),
+        }
+        None
+    }
+
+    /// Active states with an activity that has not run.
+    fn unheard_activities(&mut self, old: &Snapshot, new: &Snapshot) {
+        if new.status != crate::Status::Running {
+            return;
+        }
+        let told: BTreeSet<&str> = new.activities.iter().map(|record| record.state.as_str()).collect();
+        let objected: BTreeSet<String> = old
+            .activities
+            .iter()
+            .filter(|record| record.phase != ActivityPhase::Done)
+            .filter_map(|record| self.path(&record.state))
+            .collect();
+        for entry in self.chart.activities() {
+            let path = self.plan.new_paths.node(entry.node);
+            if new.is_active(path) && !told.contains(path) && !objected.contains(path) {
+                let (state, new) = (path.to_owned(), entry.name.to_owned());
+                self.objections.push(Objection::ActivityChanged { state, new });
+            }
+        }
+    }
+
+    /// Whether something is called as it was, once the new root's name is read for the old one's.
+    fn renamed(&self, old: &str, new: &str, to: &str) -> Verdict {
+        match self.plan.old_paths.find_node(old).map(|node| self.plan.matches[node.0 as usize]) {
+            Some(Match::Kept(node)) if self.plan.new_paths.node(node) == new => Verdict::Kept,
+            _ => Verdict::Moved(to.to_owned()),
+        }
+    }
+
+    fn timer(&mut self, record: &TimerRecord) -> Option<TimerRecord> {
+        let name = format!("{}: {}", record.timer.region, record.timer.name);
+        let Some(timer) = self.timer_name(&record.timer) else {
+            let why = "no action starts such a timer there";
+            self.report.add(Subject::Timer, name, Verdict::Lost(why));
+            return None;
+        };
+        let to = format!("{}: {}", timer.region, timer.name);
+        let verdict = self.renamed(&record.timer.region, &timer.region, &to);
+        self.report.add(Subject::Timer, name, verdict);
+        Some(TimerRecord { timer, ..record.clone() })
+    }
+
+    fn timer_name(&self, timer: &TimerName) -> Option<TimerName> {
+        let found = TimerName { region: self.region(&timer.region)?, name: timer.name.clone() };
+        self.plan.new_paths.find_timer(self.chart, &found).map(|_| found)
+    }
+
+    fn events(&mut self, old: &Snapshot, new: &mut Snapshot) {
+        new.raised = self.occurrences(Subject::Event, &old.raised);
+        new.arrived = self.occurrences(Subject::Event, &old.arrived);
+        new.deferred = self.occurrences(Subject::DeferredEvent, &old.deferred);
+        new.held = old.held.iter().filter_map(|held| self.held(held)).collect();
+    }
+
+    fn occurrences(&mut self, subject: Subject, queue: &[OccurrenceRecord]) -> Vec<OccurrenceRecord> {
+        queue.iter().filter_map(|record| self.occurrence(subject, record)).collect()
+    }
+
+    fn occurrence(&mut self, subject: Subject, record: &OccurrenceRecord) -> Option<OccurrenceRecord> {
+        let (EventName::Name(name) | EventName::Message(name)) = &record.event;
+        let (found, verdict) = match self.event(record) {
+            Ok(found) if found.event == record.event => (Some(found), Verdict::Kept),
+            Ok(found) => (Some(found), Verdict::Moved("?".into())),
+            Err(why) => (None, Verdict::Lost(why)),
+        };
+        self.report.add(subject, name, verdict);
+        found
+    }
+
+    /// An event that the new chart does not name is one that it can still take with `*` and `not e`, if it has such triggers.
+    fn event(&self, record: &OccurrenceRecord) -> Result<OccurrenceRecord, &'static str> {
+        let chart = self.chart;
+        let expiry = match &record.expiry {
+            Some(timer) => Some(self.timer_name(timer).ok_or("no action starts that timer")?),
+            None => None,
+        };
+        let Some(event) = find_event(chart, &record.event) else {
+            let takes_any =
+                chart.triggers.iter().any(|trigger| !matches!(trigger, CompiledTrigger::OneOf(_)));
+            let is_name = matches!(record.event, EventName::Name(_));
+            return match is_name && takes_any && expiry.is_none() {
+                true => Ok(OccurrenceRecord { event: event_name(chart, chart.unnamed), ..record.clone() }),
+                false => Err("nothing waits for it"),
+            };
+        };
+        let timer = expiry.as_ref().and_then(|timer| self.plan.new_paths.find_timer(chart, timer));
+        if timer.is_some_and(|timer| chart.timers[timer].event != Some(event)) {
+            return Err("nothing waits for it");
+        }
+        Ok(OccurrenceRecord { expiry, ..record.clone() })
+    }
+
+    /// Under another chart what is held is offered again: only that tells what it waits for now.
+    fn held(&mut self, held: &HeldRecord) -> Option<HeldRecord> {
+        let occurrence = self.occurrence(Subject::HeldEvent, &held.occurrence)?;
+        let ways = held.ways.iter().filter_map(|way| self.way(way)).collect();
+        Some(HeldRecord { occurrence, ways, offer: held.offer || !self.plan.is_same() })
+    }
+
+    fn pending(&mut self, record: &PendingRecord) -> Option<PendingRecord> {
+        let name = record.way.join(", ");
+        let is_known = record.event.as_ref().is_none_or(|event| find_event(self.chart, event).is_some());
+        let Some(way) = self.way(&record.way).filter(|_| is_known) else {
+            self.objections.push(Objection::PendingGone(name));
+            return None;
+        };
+        let verdict = if way == record.way { Verdict::Kept } else { Verdict::Moved(way.join(", ")) };
+        self.report.add(Subject::PendingTransition, name, verdict);
+        Some(PendingRecord { way, event: record.event.clone() })
+    }
+
+    fn way(&self, way: &Way) -> Option<Way> {
+        let segments: Option<Vec<TransitionId>> = way.iter().map(|segment| self.segment(segment)).collect();
+        let segments = segments?;
+        self.ways.get(segments.as_slice())?;
+        Some(segments.iter().map(|&segment| self.plan.new_paths.segment(segment).to_owned()).collect())
+    }
+
+    fn segment(&self, segment: &str) -> Option<TransitionId> {
+        let old = self.plan.old_paths.find_segment(segment)?;
+        self.plan.segments[old.0 as usize]
+    }
+
+    /// What only saves a report or names a cycle goes on as far as it has a name.
+    fn notes(&self, old: &Snapshot, new: &mut Snapshot) {
+        let chart = self.chart;
+        let is_start = |path: &String| {
+            let node = self.plan.new_paths.find_node(path);
+            node.is_some_and(|node| chart.statechart().node(node).kind == NodeKind::Start)
+        };
+        let starts = old.waiting_starts.iter().filter_map(|path| self.path(path)).filter(is_start);
+        new.waiting_starts = starts.filter(|path| new.is_active(path)).collect();
+        new.written = old.written.iter().filter_map(|path| self.region(path)).collect();
+        new.bound.recent = old.bound.recent.iter().filter_map(|way| self.way(way)).collect();
+        new.erred_guards = old.erred_guards.iter().filter_map(|record| self.erred_guard(record)).collect();
+        let inherit = old.to_inherit.iter().filter_map(|path| self.region(path));
+        new.to_inherit.extend(inherit);
+        new.to_inherit.sort_by_key(|path| self.plan.new_paths.find_region(chart, path));
+    }
+
+    fn erred_guard(&self, record: &ErredGuardRecord) -> Option<ErredGuardRecord> {
+        let (segment, region) = (self.segment(&record.segment)?, self.region(&record.region)?);
+        let region_id = self.plan.new_paths.find_region(self.chart, &region)?;
+        let is_it =
+            |guard: &crate::chart::ScopedGuard| guard.transition == segment && guard.region == region_id;
+        self.chart.guards.iter().any(is_it).then(|| ErredGuardRecord {
+            segment: self.plan.new_paths.segment(segment).to_owned(),
+            region,
+            stale: record.stale,
+        })
+    }
+
+    fn object_to_losses(&mut self) {
+        if self.plan.accepts_losses {
+            return;
+        }
+        let is_state = |finding: &&Finding| finding.subject != Subject::State;
+        let losses: Vec<Objection> =
+            self.report.losses().filter(is_state).cloned().map(Objection::Loss).collect();
+        self.objections.extend(losses);
+    }
+}

@@ -1,0 +1,13 @@
+//! A running machine takes a changed chart.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // the functions around the tests are tests too
+
+#[path = "../kit/mod.rs"]
+mod kit;
+#[path = "../reference/random.rs"]
+mod random;
+
+mod refusals;
+mod same;
+mod verdicts;
+mod world;
