@@ -7,5 +7,8 @@ mod kit;
 #[path = "../reference/random.rs"]
 mod random;
 
+mod editing;
 mod every_step;
 mod micro_steps;
+mod misfits;
+mod stage;
