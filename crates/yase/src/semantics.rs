@@ -2,6 +2,8 @@
 
 use std::num::NonZeroU32;
 
+use serde::{Deserialize, Serialize};
+
 /// How a [`Chart`](crate::Chart) is read where dialects of statecharts differ.
 ///
 /// A chart is compiled for one semantics ([`Statechart::compile_with`](crate::Statechart::compile_with)). Each field is one point; they
@@ -27,7 +29,8 @@ use std::num::NonZeroU32;
 ///
 /// [`delivery`](Semantics::delivery) (each step), [`timers`](Semantics::timers) (the chart's), [`conflict`](Semantics::conflict) (declared)
 /// and [`limit`](Semantics::limit) (1,000) are the same in all of them.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub struct Semantics {
     /// When a transition without a trigger may be taken.
@@ -141,7 +144,8 @@ impl Default for Semantics {
 }
 
 /// When a transition without a trigger may be taken.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Eventless {
     /// Out of a BASIC state once it has completed. Out of a composite without a guard, or back to itself, once it has completed.
@@ -157,7 +161,8 @@ pub enum Eventless {
 }
 
 /// Whether a composite rests at its START.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum StartRest {
     /// START is a place: its way out is the next micro-step.
@@ -167,7 +172,8 @@ pub enum StartRest {
 }
 
 /// In which order the segments that leave one node are tried; a higher priority comes first in any case.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum SegmentOrder {
     /// Those with a guard before those without, so that one without is the "else"; then as in the model.
@@ -177,7 +183,8 @@ pub enum SegmentOrder {
 }
 
 /// How the transitions of one micro-step happen.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Firing {
     /// One after the other: each leaves, acts and enters before the next does.
@@ -187,7 +194,8 @@ pub enum Firing {
 }
 
 /// In which order states are left; inner ones before outer ones in any case.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum ExitOrder {
     /// Regions in the order of the document.
@@ -197,7 +205,8 @@ pub enum ExitOrder {
 }
 
 /// Whether raised events come before arrived ones.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum EventPool {
     /// What was raised is offered before what has arrived.
@@ -207,7 +216,8 @@ pub enum EventPool {
 }
 
 /// Which events a trigger names.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum EventMatching {
     /// The event of that name.
@@ -217,7 +227,8 @@ pub enum EventMatching {
 }
 
 /// What a running activity means for a transition that would leave its state.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum RunningOnExit {
     /// The transition waits, and so does all else in the region of the activity.
@@ -227,7 +238,8 @@ pub enum RunningOnExit {
 }
 
 /// What a transition to an active ancestor of its source does.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum ActiveAncestor {
     /// The ancestor is left and entered again.
@@ -237,7 +249,8 @@ pub enum ActiveAncestor {
 }
 
 /// How the transitions into a JOIN are taken.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Joining {
     /// As one transition, when all sources have completed.
@@ -247,7 +260,8 @@ pub enum Joining {
 }
 
 /// When other blackboards see what an action writes.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Sharing {
     /// At the beginning of the next step.
@@ -257,7 +271,8 @@ pub enum Sharing {
 }
 
 /// What happens when the root reaches its END.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum RootEnd {
     /// The chart idles in its last configuration.
@@ -267,7 +282,8 @@ pub enum RootEnd {
 }
 
 /// How long a timer lives.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum TimerScope {
     /// Until it is set again.
@@ -277,7 +293,8 @@ pub enum TimerScope {
 }
 
 /// Which of two transitions wins that leave common states, neither nested in the other.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum ConflictChoice {
     /// The one whose source comes first in the model.
@@ -287,7 +304,8 @@ pub enum ConflictChoice {
 }
 
 /// Which events the failures of guards and actions are.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum FailureEvents {
     /// `error.guard`, once until the guard has succeeded or what it reads has changed, and `error.action`.
@@ -297,7 +315,8 @@ pub enum FailureEvents {
 }
 
 /// When blackboards receive messages.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Delivery {
     /// At the beginning of each step, where no activity runs; and where an action says `process_messages`.
@@ -307,7 +326,8 @@ pub enum Delivery {
 }
 
 /// Whether states keep the events they defer.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Deferral {
     /// An event that nobody takes waits while an active state defers it.

@@ -37,7 +37,7 @@
 //! use std::sync::Arc;
 //! use yase::expression::parse_transition;
 //! use yase::swap::plan;
-//! use yase::{Activation, Chart, Host, Machine, Moment, Node, NodeKind, Semantics, Statechart, Transition, Vocabulary};
+//! use yase::{Activation, Chart, Host, Machine, Moment, Node, NodeKind, Statechart, Transition, Vocabulary};
 //!
 //! fn lamp(with: impl FnOnce(&mut Statechart)) -> Arc<Chart> {
 //!     let mut lamp = Statechart::new("lamp");
@@ -71,7 +71,7 @@
 //!     lamp.connect(Transition::new(start, bright));
 //! });
 //!
-//! let mut machine = Machine::new(steady.clone(), Semantics::yase());
+//! let mut machine = Machine::new(steady.clone());
 //! machine.start(Moment::ZERO, &mut Dark);
 //! machine.dispatch_name("button");
 //! machine.run_to_completion(Moment::ZERO, &mut Dark)?;
@@ -99,6 +99,7 @@ use std::sync::Arc;
 
 use crate::chart::Chart;
 use crate::machine::Machine;
+use crate::semantics::Semantics;
 
 use judge::Judging;
 
@@ -135,7 +136,7 @@ impl Machine {
         let snapshot = judging.translate(&self.snapshot());
         let Judging { mut report, objections, .. } = judging;
         refuse(objections)?;
-        let machine = Machine::restore(plan.new.clone(), self.semantics(), &snapshot).map_err(|error| {
+        let machine = Machine::restore(plan.new.clone(), &snapshot).map_err(|error| {
             let misfits = error.misfits().iter().map(|misfit| Objection::NotClosed(misfit.to_string()));
             Refusal::of(misfits.collect())
         })?;
@@ -150,6 +151,10 @@ impl Machine {
         let mut objections = Vec::new();
         if !Arc::ptr_eq(self.chart(), &plan.old) {
             objections.push(Objection::OtherChart);
+        }
+        let limit = self.semantics().limit;
+        if (Semantics { limit, ..plan.new.semantics() }) != self.semantics() {
+            objections.push(Objection::OtherSemantics);
         }
         if self.is_mid_step() {
             objections.push(Objection::MidStep);

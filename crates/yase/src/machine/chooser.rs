@@ -3,6 +3,8 @@
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
+use crate::machine::snapshot::ChooserRecord;
+
 /// Decides what a chart leaves open: which of several timers that expire at one moment comes first, which probabilistic branch is taken, and,
 /// under [`ConflictChoice::Random`](crate::ConflictChoice::Random), which of two conflicting transitions wins.
 ///
@@ -15,7 +17,7 @@ pub struct Chooser {
 #[derive(Clone, Debug)]
 enum Policy {
     Declared,
-    Seeded { seed: u64, generator: Box<Pcg64> },
+    Seeded { seed: u64, drawn: u64, generator: Box<Pcg64> },
     Scripted { choices: Vec<u32>, log: Vec<(u32, u32)> },
 }
 
@@ -33,7 +35,8 @@ impl Chooser {
 
     /// Draws from a generator.
     pub fn seeded(seed: u64) -> Chooser {
-        Chooser { policy: Policy::Seeded { seed, generator: Box::new(Pcg64::seed_from_u64(seed)) } }
+        let generator = Box::new(Pcg64::seed_from_u64(seed));
+        Chooser { policy: Policy::Seeded { seed, drawn: 0, generator } }
     }
 
     /// Takes the given options one after the other (the last one there is, if a number is too high), then always the first, and notes each
@@ -65,19 +68,45 @@ impl Chooser {
 
     /// One of so many options, all alike.
     pub(super) fn choose(&mut self, options: usize) -> usize {
-        self.decide(options, |generator| {
-            let (number, count) = (u128::from(generator.next_u64()), options as u128);
-            ((number * count) >> 64) as usize
-        })
+        self.decide(options, |number| ((u128::from(number) * options as u128) >> 64) as usize)
     }
 
-    fn decide(&mut self, options: usize, drawn: impl FnOnce(&mut Pcg64) -> usize) -> usize {
+    /// All that its coming choices depend on.
+    pub(super) fn record(&self) -> ChooserRecord {
+        match &self.policy {
+            Policy::Declared => ChooserRecord::Declared,
+            Policy::Seeded { seed, drawn, .. } => ChooserRecord::Seeded { seed: *seed, drawn: *drawn },
+            Policy::Scripted { choices, log } => {
+                ChooserRecord::Scripted { choices: choices.clone(), made: log.clone() }
+            }
+        }
+    }
+
+    pub(super) fn restored(record: &ChooserRecord) -> Chooser {
+        let policy = match record {
+            ChooserRecord::Declared => Policy::Declared,
+            ChooserRecord::Seeded { seed, drawn } => {
+                let mut generator = Box::new(Pcg64::seed_from_u64(*seed));
+                generator.advance(u128::from(*drawn));
+                Policy::Seeded { seed: *seed, drawn: *drawn, generator }
+            }
+            ChooserRecord::Scripted { choices, made } => {
+                Policy::Scripted { choices: choices.clone(), log: made.clone() }
+            }
+        };
+        Chooser { policy }
+    }
+
+    fn decide(&mut self, options: usize, option: impl FnOnce(u64) -> usize) -> usize {
         if options < 2 {
             return 0;
         }
         match &mut self.policy {
             Policy::Declared => 0,
-            Policy::Seeded { generator, .. } => drawn(generator),
+            Policy::Seeded { drawn, generator, .. } => {
+                *drawn += 1;
+                option(generator.next_u64())
+            }
             Policy::Scripted { choices, log } => {
                 let wanted = choices.get(log.len()).copied().unwrap_or(0);
                 let chosen = wanted.min(options as u32 - 1);

@@ -28,7 +28,7 @@
 //! use std::sync::Arc;
 //! use yase::expression::parse_transition;
 //! use yase::snapshot::Snapshot;
-//! use yase::{Activation, Host, Machine, Moment, Node, NodeKind, Semantics, Statechart, Transition, Vocabulary};
+//! use yase::{Activation, Host, Machine, Moment, Node, NodeKind, Statechart, Transition, Vocabulary};
 //!
 //! let mut lamp = Statechart::new("lamp");
 //! let start = lamp.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));
@@ -51,7 +51,7 @@
 //! }
 //!
 //! let chart = Arc::new(lamp.compile(&Vocabulary::default()).expect("the chart is in order"));
-//! let mut machine = Machine::new(chart.clone(), Semantics::yase());
+//! let mut machine = Machine::new(chart.clone());
 //! machine.start(Moment::ZERO, &mut Dark);
 //! machine.dispatch_name("button");
 //! machine.run_to_completion(Moment::ZERO, &mut Dark)?;
@@ -61,13 +61,13 @@
 //! assert_eq!(snapshot.configuration, ["lamp", "lamp/on"]);
 //! assert!(snapshot.set_timer("lamp", "enough", Moment::from_millis(500)));
 //!
-//! let mut machine = Machine::restore(chart.clone(), Semantics::yase(), &snapshot)?;
+//! let mut machine = Machine::restore(chart.clone(), &snapshot)?;
 //! machine.run_to_completion(Moment::from_millis(500), &mut Dark)?;
 //! assert!(machine.is_active(off));
 //!
 //! // no state `dim`, and two states at once
 //! snapshot.configuration.extend(["lamp/dim".to_owned(), "lamp/off".to_owned()]);
-//! let error = Machine::restore(chart, Semantics::yase(), &snapshot).expect_err("it does not fit");
+//! let error = Machine::restore(chart, &snapshot).expect_err("it does not fit");
 //! assert_eq!(error.misfits().len(), 2);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -82,6 +82,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::machine::{Status, StepSummary};
 use crate::moment::Moment;
+use crate::semantics::Semantics;
 
 pub use error::{Misfit, MisfitKind, RestoreError};
 pub(crate) use paths::{Paths, event_name, find_event, ways};
@@ -101,6 +102,8 @@ pub struct Snapshot {
     pub version: u32,
     /// The name of the chart.
     pub chart: String,
+    /// How the machine reads the chart.
+    pub semantics: Semantics,
     /// What the machine is doing.
     pub status: Status,
     /// The time of its last step.
@@ -141,6 +144,8 @@ pub struct Snapshot {
     pub written: Vec<String>,
     /// What is counted to notice a chart that never rests.
     pub bound: BoundRecord,
+    /// Who decides what the chart leaves open, and what it has decided.
+    pub chooser: ChooserRecord,
 }
 
 /// A compound transition: its segments, each as `source -> target`, with a number (`#2`) from the second between the same nodes on.
@@ -222,6 +227,10 @@ pub struct OccurrenceRecord {
     pub raised: bool,
     /// The timer whose expiry it is.
     pub expiry: Option<TimerName>,
+    /// The number that the host gave it.
+    pub token: u64,
+    /// Whether an expression names it as it was named.
+    pub known: bool,
 }
 
 /// An event that waits for running activities.
@@ -270,6 +279,28 @@ pub struct BoundRecord {
     pub steps: u32,
     /// The transitions that were taken last, to name a cycle.
     pub recent: Vec<Way>,
+}
+
+/// Who decides what a chart leaves open.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum ChooserRecord {
+    /// [`Chooser::declared`](crate::Chooser::declared).
+    Declared,
+    /// [`Chooser::seeded`](crate::Chooser::seeded).
+    Seeded {
+        /// The seed.
+        seed: u64,
+        /// How many numbers it has drawn.
+        drawn: u64,
+    },
+    /// [`Chooser::scripted`](crate::Chooser::scripted).
+    Scripted {
+        /// The options that it was given.
+        choices: Vec<u32>,
+        /// Which option it has taken, and of how many.
+        made: Vec<(u32, u32)>,
+    },
 }
 
 impl Snapshot {

@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::chart::{Chart, CompoundId};
-use crate::expression::CompiledTrigger;
 use crate::machine::snapshot::{
     ActivityPhase, ActivityRecord, ErredGuardRecord, EventName, HeldRecord, OccurrenceRecord, PendingRecord,
     Snapshot, TimerName, TimerRecord, Way, event_name, find_event, ways,
@@ -38,6 +37,7 @@ impl<'a> Judging<'a> {
     pub(super) fn translate(&mut self, old: &Snapshot) -> Snapshot {
         let mut new = old.clone();
         new.chart = self.chart.statechart().name.clone();
+        new.semantics = self.chart.semantics();
         new.due |= !self.plan.is_same();
         let active = self.active(old);
         self.enter(&active, &mut new);
@@ -228,11 +228,14 @@ impl<'a> Judging<'a> {
             None => None,
         };
         let Some(event) = find_event(chart, &record.event) else {
-            let takes_any =
-                chart.triggers.iter().any(|trigger| !matches!(trigger, CompiledTrigger::OneOf(_)));
+            let takes_any = chart.triggers.iter().any(|trigger| trigger.matches(chart.unnamed));
             let is_name = matches!(record.event, EventName::Name(_));
             return match is_name && takes_any && expiry.is_none() {
-                true => Ok(OccurrenceRecord { event: event_name(chart, chart.unnamed), ..record.clone() }),
+                true => Ok(OccurrenceRecord {
+                    event: event_name(chart, chart.unnamed),
+                    known: false,
+                    ..record.clone()
+                }),
                 false => Err("nothing waits for it"),
             };
         };

@@ -90,6 +90,9 @@ pub enum Objection {
     /// The plan is for a machine that runs another chart.
     #[error("the plan is not for the chart that runs")]
     OtherChart,
+    /// The new chart was compiled for another semantics.
+    #[error("the new chart is read in another way")]
+    OtherSemantics,
     /// A step is under way.
     #[error("a step is under way: a chart is swapped between steps")]
     MidStep,

@@ -1,7 +1,7 @@
 //! A snapshot is looked at, changed, and brought back.
 
-use yase::Moment;
 use yase::snapshot::{ActivityPhase, EventName, Snapshot};
+use yase::{Chooser, Moment};
 
 use crate::stage::Stage;
 
@@ -23,10 +23,20 @@ fn a_snapshot_is_text_that_a_person_can_read() {
     let mut stage = Stage::new(LAMP, &["e", "g"]);
     stage.machine.dispatch_name("x");
     let found = serde_json::to_value(stage.machine.snapshot()).unwrap();
-    let occurrence = |name: &str, number: u64| serde_json::json!({ "event": { "name": name }, "number": number, "raised": false, "expiry": null });
+    let occurrence = |name: &str, number: u64| {
+        serde_json::json!({
+            "event": { "name": name },
+            "number": number,
+            "raised": false,
+            "expiry": null,
+            "token": 0,
+            "known": name != "?",
+        })
+    };
     let expected = serde_json::json!({
         "version": 1,
         "chart": "c",
+        "semantics": stage.machine.semantics(),
         "status": "running",
         "now": 0,
         "due": false,
@@ -52,6 +62,7 @@ fn a_snapshot_is_text_that_a_person_can_read() {
             "steps": 3,
             "recent": [["c/START -> c/off"], ["c/off -> c/on"]],
         },
+        "chooser": "declared",
     });
     assert_eq!(found, expected);
 }
@@ -122,7 +133,8 @@ fn a_deferred_event_is_dropped_or_put_in() {
     stage.edit(|snapshot| {
         snapshot.occurrences += 1;
         let text = serde_json::json!(
-            { "event": { "name": "g" }, "number": snapshot.occurrences, "raised": false, "expiry": null }
+            { "event": { "name": "g" }, "number": snapshot.occurrences, "raised": false, "expiry": null,
+              "token": 0, "known": true }
         );
         snapshot.deferred.push(serde_json::from_value(text).unwrap());
         assert_eq!(snapshot.deferred[0].event, EventName::Name("g".into()));
@@ -173,13 +185,57 @@ fn siblings_of_one_name_are_told_apart() {
         chart.transition_mut(yase::TransitionId(transition)).target = *twin;
     }
     let mut world = crate::kit::World::new(&chart);
-    let mut machine = yase::Machine::new(crate::kit::script::compile(&chart), yase::Semantics::yase());
+    let mut machine = yase::Machine::new(crate::kit::script::compile(&chart));
     machine.start(Moment::ZERO, &mut world);
     machine.dispatch_name("f");
     machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
     let snapshot: Snapshot = machine.snapshot();
     assert_eq!(snapshot.configuration, ["c", "c/a#2"]);
     assert_eq!(snapshot.bound.recent, [["c/START -> c/b"], ["c/b -> c/a#2"]]);
-    let restored = yase::Machine::restore(machine.chart().clone(), machine.semantics(), &snapshot).unwrap();
+    let restored = yase::Machine::restore(machine.chart().clone(), &snapshot).unwrap();
     assert!(restored.is_active(twins[1]));
+}
+
+/// Two timers that expire at one moment: the chooser says which is first.
+const RACE: &str = "
+    START
+    a
+    b
+    START -> a : / StartTimeout(v, 10ms), StartTimeout(w, 10ms)
+    a -> b : v / StartTimeout(v, 10ms), StartTimeout(w, 10ms)
+    a -> b : w / StartTimeout(v, 10ms), StartTimeout(w, 10ms)
+    b -> a : v / StartTimeout(v, 10ms), StartTimeout(w, 10ms)
+    b -> a : w / StartTimeout(v, 10ms), StartTimeout(w, 10ms)
+";
+
+#[test]
+fn a_chooser_goes_on_choosing_where_it_was() {
+    for chooser in [Chooser::seeded(7), Chooser::scripted(vec![1, 0, 1, 1, 0, 0, 1, 0]), Chooser::declared()]
+    {
+        let play = |cut: bool| {
+            let mut stage = Stage::new(RACE, &[]);
+            stage.machine.set_chooser(chooser.clone());
+            for time in 1..=30 {
+                stage.step(10 * time);
+                if cut {
+                    let text = serde_json::to_string(&stage.machine.snapshot()).unwrap();
+                    stage.machine = stage.restore(&serde_json::from_str(&text).unwrap()).unwrap();
+                }
+            }
+            (stage.world.log, stage.machine.chooser().choices().to_vec())
+        };
+        assert_eq!(play(true), play(false));
+    }
+}
+
+#[test]
+fn tokens_and_unknown_names_are_kept() {
+    let mut stage = Stage::new(LAMP, &[]);
+    stage.machine.dispatch_with("x", 7);
+    stage.machine.dispatch_with("e", 8);
+    let kept: Vec<_> =
+        stage.machine.snapshot().arrived.iter().map(|event| (event.token, event.known)).collect();
+    assert_eq!(kept, [(7, false), (8, true)]);
+    let restored = stage.restore(&stage.machine.snapshot()).unwrap();
+    assert_eq!(restored.snapshot(), stage.machine.snapshot());
 }

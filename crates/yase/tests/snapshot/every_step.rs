@@ -46,7 +46,7 @@ fn a_machine_that_is_restored_at_every_micro_step_writes_the_same_lines() {
 fn machine(chart: &Statechart) -> Machine {
     let mut semantics = Semantics::yase();
     semantics.limit = LIMIT;
-    Machine::new(script::compile(chart), semantics)
+    Machine::new(script::compile_with(chart, semantics))
 }
 
 fn run(interpreter: &mut impl Interpreter, chart: &Statechart, script: &Script) -> Vec<String> {
@@ -76,8 +76,7 @@ impl Cut {
         let read: Snapshot = serde_json::from_str(&text).unwrap();
         assert_eq!(read, snapshot, "nothing is lost in the text");
         let chart = self.machine.chart().clone();
-        let restored = Machine::restore(chart, self.machine.semantics(), &read)
-            .unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let restored = Machine::restore(chart, &read).unwrap_or_else(|error| panic!("{error}\n{text}"));
         assert_eq!(restored.snapshot(), snapshot, "the restored machine is as the one before");
         assert!(restored.activations().eq(self.machine.activations()));
         self.snapshots += 1;

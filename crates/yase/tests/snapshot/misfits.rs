@@ -49,6 +49,17 @@ fn another_chart() {
 }
 
 #[test]
+fn another_semantics_but_for_the_bound() {
+    let other = yase::TimerScope::State;
+    let wrong = found(|snapshot| snapshot.semantics.timers = other);
+    assert_eq!(wrong, "semantics: the chart is read in another way");
+    let stage = Stage::new(CHART, &[]);
+    let mut snapshot = stage.machine.snapshot();
+    snapshot.semantics.limit = std::num::NonZeroU32::MIN;
+    assert_eq!(stage.restore(&snapshot).unwrap().semantics(), stage.machine.semantics());
+}
+
+#[test]
 fn nodes_that_the_chart_does_not_have_or_has_once() {
     assert_eq!(
         found(|snapshot| {

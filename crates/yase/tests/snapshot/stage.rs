@@ -1,7 +1,7 @@
 //! A machine in the kit's world.
 
 use yase::snapshot::{RestoreError, Snapshot};
-use yase::{Machine, Moment, Outcome, Semantics};
+use yase::{Machine, Moment, Outcome};
 
 use crate::kit;
 use crate::kit::world::World;
@@ -16,7 +16,7 @@ impl Stage {
     pub(crate) fn new(chart: &str, events: &[&str]) -> Stage {
         let chart = kit::chart(chart);
         let mut world = World::new(&chart);
-        let mut machine = Machine::new(kit::script::compile(&chart), Semantics::yase());
+        let mut machine = Machine::new(kit::script::compile(&chart));
         machine.start(Moment::ZERO, &mut world);
         let mut stage = Stage { machine, world };
         stage.step(0);
@@ -44,7 +44,7 @@ impl Stage {
     }
 
     pub(crate) fn restore(&self, snapshot: &Snapshot) -> Result<Machine, RestoreError> {
-        Machine::restore(self.machine.chart().clone(), self.machine.semantics(), snapshot)
+        Machine::restore(self.machine.chart().clone(), snapshot)
     }
 
     /// Goes on with a snapshot of it that was changed.

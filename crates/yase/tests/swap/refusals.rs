@@ -1,7 +1,10 @@
 //! What stands against a swap. Each test sees that nothing has changed.
 
-use yase::MicroStep;
+use std::num::NonZeroU32;
 
+use yase::{MicroStep, Semantics, TimerScope};
+
+use crate::kit::script::compile_with;
 use crate::world::Stage;
 
 const TWO: &str = "
@@ -146,6 +149,21 @@ fn a_plan_for_another_chart() {
     let mut stage = Stage::new(TWO, &[]);
     let plan = Stage::new(TWO, &[]).plan(TWO);
     assert_eq!(stage.refusal(&plan), "the plan is not for the chart that runs");
+}
+
+#[test]
+fn a_chart_that_is_read_in_another_way() {
+    let mut stage = Stage::new(TWO, &[]);
+    let mut semantics = Semantics::yase();
+    semantics.timers = TimerScope::State;
+    let other = compile_with(&crate::kit::chart(TWO), semantics);
+    let plan = yase::swap::plan(stage.machine.chart(), &other);
+    assert_eq!(stage.refusal(&plan), "the new chart is read in another way");
+    let mut semantics = Semantics::yase();
+    semantics.limit = NonZeroU32::MIN;
+    let other = compile_with(&crate::kit::chart(TWO), semantics);
+    let plan = yase::swap::plan(stage.machine.chart(), &other);
+    assert!(stage.machine.swap(&plan).is_ok());
 }
 
 #[test]

@@ -29,11 +29,11 @@ fn swapping_a_chart_for_itself_or_a_renumbered_copy_at_every_stable_point_change
     let swaps = std::cell::Cell::new(0);
     let result = runner.run(&vec(any::<u8>(), 200..2000), |bytes| {
         let (chart, script) = random::case(&mut random::Choices::new(&bytes));
-        let compiled = script::compile(&chart);
-        let expected = run(&mut machine(compiled.clone()), &chart, &script);
+        let compiled = compile(&chart);
+        let expected = run(&mut Machine::new(compiled.clone()), &chart, &script);
         for other in [chart.clone(), renumbered(&chart)] {
-            let charts = [compiled.clone(), script::compile(&other)];
-            let mut swapping = Swapping { machine: machine(compiled.clone()), charts, swaps: 0 };
+            let charts = [compiled.clone(), compile(&other)];
+            let mut swapping = Swapping { machine: Machine::new(compiled.clone()), charts, swaps: 0 };
             let found = run(&mut swapping, &chart, &script);
             swaps.set(swaps.get() + swapping.swaps);
             if expected != found {
@@ -57,16 +57,16 @@ fn a_renumbered_copy_numbers_otherwise() {
     let chart = crate::kit::chart(
         "& both\n  one\n    START\n    A\n    both/one/START -> both/one/A\nSTART\nSTART -> both",
     );
-    let chart = plan(&script::compile(&chart), &script::compile(&renumbered(&chart)));
+    let chart = plan(&compile(&chart), &compile(&renumbered(&chart)));
     let a = NodeId(4);
     assert!(chart.is_same());
     assert_ne!(chart.node(a), Some(a));
 }
 
-fn machine(chart: Arc<Chart>) -> Machine {
+fn compile(chart: &Statechart) -> Arc<Chart> {
     let mut semantics = Semantics::yase();
     semantics.limit = LIMIT;
-    Machine::new(chart, semantics)
+    script::compile_with(chart, semantics)
 }
 
 fn run(interpreter: &mut impl Interpreter, chart: &Statechart, script: &Script) -> Vec<String> {

@@ -156,7 +156,7 @@ fn a_new_region_of_an_active_and_is_entered_by_its_start_in_the_next_step() {
     let kept = stage.machine.snapshot();
     assert_eq!(kept.to_enter, ["c/both/more"]);
     let chart = stage.machine.chart().clone();
-    stage.machine = yase::Machine::restore(chart, stage.machine.semantics(), &kept).unwrap();
+    stage.machine = yase::Machine::restore(chart, &kept).unwrap();
     stage.lines();
     stage.step(7);
     assert_eq!(
@@ -406,7 +406,7 @@ fn a_name_is_looked_for_inside_the_nearest_composite_around_it() {
 fn a_machine_that_was_not_started_takes_any_chart() {
     let chart = crate::kit::script::compile(&crate::kit::chart(TWO));
     let other = crate::kit::script::compile(&crate::kit::chart(WORK));
-    let mut machine = yase::Machine::new(chart.clone(), yase::Semantics::yase());
+    let mut machine = yase::Machine::new(chart.clone());
     let report = machine.swap(&yase::swap::plan(&chart, &other)).unwrap();
     assert_eq!(report.findings, []);
     assert!(std::sync::Arc::ptr_eq(machine.chart(), &other));

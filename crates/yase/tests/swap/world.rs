@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use yase::swap::{Plan, Refusal, Report, plan};
-use yase::{Chart, Machine, Moment, Outcome, Semantics};
+use yase::{Chart, Machine, Moment, Outcome};
 
 use crate::kit;
 use crate::kit::script;
@@ -21,7 +21,7 @@ impl Stage {
     pub(crate) fn new(chart: &str, events: &[&str]) -> Stage {
         let chart = kit::chart(chart);
         let mut world = World::new(&chart);
-        let mut machine = Machine::new(script::compile(&chart), Semantics::yase());
+        let mut machine = Machine::new(script::compile(&chart));
         machine.start(Moment::ZERO, &mut world);
         let mut stage = Stage { machine, world };
         stage.step(0);

@@ -24,6 +24,8 @@ pub enum MisfitKind {
     Version,
     /// It is of another chart.
     Chart,
+    /// The chart is read in another way.
+    Semantics,
     /// The chart has nothing of that name.
     Unknown,
     /// Something is there twice.

@@ -8,6 +8,7 @@ use crate::expression::EventId;
 use crate::machine::Machine;
 use crate::machine::activities::{Phase, Slot};
 use crate::machine::bound::MEMORY;
+use crate::machine::chooser::Chooser;
 use crate::machine::queues::{Held, Occurrence};
 use crate::machine::run::{ErredGuard, Pending, Run};
 use crate::machine::snapshot::{
@@ -24,13 +25,9 @@ impl Machine {
     /// # Errors
     /// If the snapshot is of an unknown version or another chart, names what the chart does not have, or could not have been taken of any
     /// machine: the error lists all of it.
-    pub fn restore(
-        chart: Arc<Chart>,
-        semantics: Semantics,
-        snapshot: &Snapshot,
-    ) -> Result<Machine, RestoreError> {
+    pub fn restore(chart: Arc<Chart>, snapshot: &Snapshot) -> Result<Machine, RestoreError> {
         let run = Restoring::new(&chart).run(snapshot)?;
-        Ok(Machine { chart, semantics, run })
+        Ok(Machine { chart, run })
     }
 }
 
@@ -78,12 +75,18 @@ impl<'a> Restoring<'a> {
             let text = format!("it is of the chart `{}`, this is `{name}`", snapshot.chart);
             self.misfit(MisfitKind::Chart, "chart", text);
         }
+        // how long a machine may go on without rest is no part of what it is doing
+        let limit = self.chart.semantics().limit;
+        if (Semantics { limit, ..snapshot.semantics }) != self.chart.semantics() {
+            self.misfit(MisfitKind::Semantics, "semantics", "the chart is read in another way");
+        }
     }
 
     fn clock(&mut self, snapshot: &Snapshot) {
         let run = &mut self.run;
         (run.status, run.now, run.due) = (snapshot.status, snapshot.now, snapshot.due);
         run.under_way = snapshot.step;
+        run.chooser = Chooser::restored(&snapshot.chooser);
     }
 
     fn states(&mut self, snapshot: &Snapshot) {
@@ -184,7 +187,14 @@ impl<'a> Restoring<'a> {
             Some(timer) => Some(self.timer(&format!("{field}.expiry"), timer)? as u32),
             None => None,
         };
-        Some(Occurrence { event: event?, number: record.number, raised: record.raised, expiry })
+        Some(Occurrence {
+            event: event?,
+            number: record.number,
+            raised: record.raised,
+            expiry,
+            token: record.token,
+            is_known: record.known,
+        })
     }
 
     fn held(&mut self, field: &str, record: &HeldRecord) {

@@ -57,6 +57,7 @@ impl Taking<'_> {
         Snapshot {
             version: VERSION,
             chart: chart.statechart().name.clone(),
+            semantics: chart.semantics(),
             status: run.status,
             now: run.now,
             due: run.due,
@@ -82,6 +83,7 @@ impl Taking<'_> {
             erred_guards: self.erred_guards(),
             written: self.regions(&run.written),
             bound: self.bound(&run.bound),
+            chooser: run.chooser.record(),
         }
     }
 
@@ -132,6 +134,8 @@ impl Taking<'_> {
             number: occurrence.number,
             raised: occurrence.raised,
             expiry: occurrence.expiry.map(|timer| self.paths.timer(self.chart, timer as usize)),
+            token: occurrence.token,
+            known: occurrence.is_known,
         }
     }
 
