@@ -43,14 +43,15 @@ impl<H: Host> Step<'_, H> {
 
     /// Enters a node, and what is entered with it: an OR up to its START, an AND with all its regions.
     fn enter_by_default(&mut self, outer: Place) {
-        let chart = self.chart;
+        let (chart, layout) = (self.chart, &self.chart.layout);
         let mut open = vec![outer];
         while let Some(place) = open.pop() {
             self.enter(place);
-            let state = &chart.states[place.index()];
-            let entered = state.children.iter().rev().filter(|child| {
+            let is_and = chart.states[place.index()].kind == NodeKind::And;
+            let children = chart.statechart().children(layout.node(place)).iter().rev();
+            let entered = children.map(|&child| layout.place_of(child)).filter(|child| {
                 let child = &chart.states[child.index()];
-                if state.kind == NodeKind::And { child.is_region } else { child.kind == NodeKind::Start }
+                if is_and { child.is_region } else { child.kind == NodeKind::Start }
             });
             open.extend(entered);
         }

@@ -68,31 +68,40 @@ impl Restoring<'_> {
     }
 
     fn children_fit(&mut self, place: Place) {
-        let path = self.path(place);
-        let children = &self.chart.states[place.index()].children;
         match self.kind(place) {
-            NodeKind::Or => {
-                let active: Vec<String> = children
-                    .iter()
-                    .filter(|&&child| self.is_active(child))
-                    .map(|&child| format!("`{}`", self.path(child)))
-                    .collect();
-                match active.len() {
-                    0 => self.unclosed(format!("`{path}` is active, but nothing in it")),
-                    1 => {}
-                    _ => self.unclosed(format!("in `{path}` one child is active, not {}", active.join(", "))),
-                }
-            }
-            NodeKind::And => {
-                for &region in children {
-                    if !self.is_active(region) && !self.run.is_to_enter(region) {
-                        let region = self.path(region);
-                        self.unclosed(format!("`{path}` is active, but its region `{region}` is not"));
-                    }
-                }
-            }
+            NodeKind::Or => self.one_child_is_active(place),
+            NodeKind::And => self.all_regions_are_active(place),
             NodeKind::Basic | NodeKind::Start | NodeKind::End => {}
-            _ => self.unclosed(format!("`{path}` is a connector and never active")),
+            _ => self.unclosed(format!("`{}` is a connector and never active", self.path(place))),
+        }
+    }
+
+    fn children(&self, place: Place) -> impl Iterator<Item = Place> + use<'_> {
+        let layout = &self.chart.layout;
+        let children = self.chart.statechart().children(layout.node(place));
+        children.iter().map(|&child| layout.place_of(child))
+    }
+
+    fn one_child_is_active(&mut self, place: Place) {
+        let active = self.children(place).filter(|&child| self.is_active(child));
+        let active: Vec<String> = active.map(|child| format!("`{}`", self.path(child))).collect();
+        let path = self.path(place);
+        match active.len() {
+            0 => self.unclosed(format!("`{path}` is active, but nothing in it")),
+            1 => {}
+            _ => self.unclosed(format!("in `{path}` one child is active, not {}", active.join(", "))),
+        }
+    }
+
+    fn all_regions_are_active(&mut self, place: Place) {
+        let missing: Vec<Place> = self
+            .children(place)
+            .filter(|child| self.chart.states[child.index()].is_region)
+            .filter(|&region| !self.is_active(region) && !self.run.is_to_enter(region))
+            .collect();
+        for region in missing {
+            let (path, region) = (self.path(place), self.path(region));
+            self.unclosed(format!("`{path}` is active, but its region `{region}` is not"));
         }
     }
 
