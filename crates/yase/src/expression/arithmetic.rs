@@ -109,6 +109,11 @@ pub(super) fn compare(
     let order = match (left, right) {
         (Value::Missing, _) | (_, Value::Missing) => return Ok(None),
         (Value::Float(left), Value::Float(right)) => compare_floats(left, right)?,
+        // what follows for whole numbers would be right, but takes longer
+        (Value::Int(left), Value::Int(right)) => left.cmp(&right),
+        (Value::Uint(left), Value::Uint(right)) => left.cmp(&right),
+        (Value::Int(left), Value::Uint(right)) => compare_signs(left, right),
+        (Value::Uint(left), Value::Int(right)) => compare_signs(right, left).reverse(),
         (Value::Enum(left), Value::Enum(right)) => left.cmp(&right),
         (Value::Bool(left), Value::Bool(right)) => left.cmp(&right),
         (Value::Text(left), Value::Text(right)) => left.cmp(right),
@@ -122,6 +127,11 @@ pub(super) fn compare(
         Comparison::Greater => order.is_gt(),
         Comparison::GreaterOrEqual => order.is_ge(),
     }))
+}
+
+#[inline]
+fn compare_signs(signed: i64, unsigned: u64) -> Ordering {
+    u64::try_from(signed).map_or(Ordering::Less, |signed| signed.cmp(&unsigned))
 }
 
 #[inline]
