@@ -1,5 +1,5 @@
 //! The charts in `statig`. It has no regions: three machines stand for them.
-#![allow(missing_docs, unreachable_pub, clippy::pedantic, reason = "statig's macro writes public types")]
+#![allow(unreachable_pub, reason = "statig's macro writes public types")]
 
 use crate::counts::{Counts, Event, FLAT, ORTHO, Toggle};
 
