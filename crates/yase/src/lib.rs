@@ -102,6 +102,7 @@ pub mod expression;
 mod host;
 mod machine;
 mod moment;
+pub mod scxml;
 mod semantics;
 pub mod statechart;
 pub mod swap;

@@ -160,6 +160,13 @@ impl Machine {
         }
     }
 
+    /// Ends everything by leaving all states, innermost first, with their exit actions.
+    pub fn leave(&mut self, host: &mut impl Host) {
+        if self.run.status == Status::Running {
+            self.step(host).leave_all();
+        }
+    }
+
     /// Notes an event. Events that nobody takes are dropped when their turn comes; so are all while the chart does not run.
     pub fn dispatch(&mut self, event: EventId) {
         self.arrive(event.into());
@@ -182,6 +189,16 @@ impl Machine {
     pub fn dispatch_with(&mut self, name: &str, token: u64) -> bool {
         let (event, is_known) = self.chart.event(name);
         self.arrive(Incoming { event, expiry: None, token, is_known });
+        is_known
+    }
+
+    /// Raises an event from outside a step, as an action does within: the next step offers it before what has arrived. The number is the
+    /// caller's own, as with [`dispatch_with`](Machine::dispatch_with).
+    pub fn raise_with(&mut self, name: &str, token: u64) -> bool {
+        let (event, is_known) = self.chart.event(name);
+        if self.run.status == Status::Running {
+            self.run.raise(&self.chart, event, is_known, token);
+        }
         is_known
     }
 

@@ -93,6 +93,13 @@ impl<H: Host> Step<'_, H> {
         }
     }
 
+    /// Leaves every state.
+    pub(super) fn leave_all(&mut self) {
+        let root = self.chart.layout.root();
+        self.leave_between(Place(0), root);
+        self.halt(Status::Stopped);
+    }
+
     fn leave(&mut self, place: Place) {
         let state = &self.chart.states[place.index()];
         if let Some(activity) = state.activity {

@@ -1,0 +1,106 @@
+//! XML: where things stand, and text that reads back as it was.
+
+use roxmltree::Node;
+
+use crate::diagnostic::Span;
+
+/// The namespace of SCXML.
+pub(super) const NAMESPACE: &str = "http://www.w3.org/2005/07/scxml";
+
+/// Whether an element is one of SCXML; a document without any namespace is taken for one.
+pub(super) fn is_scxml(node: Node<'_, '_>) -> bool {
+    matches!(node.tag_name().namespace(), None | Some(NAMESPACE))
+}
+
+/// Where the name of an element stands.
+pub(super) fn tag(node: Node<'_, '_>) -> Span {
+    let range = node.range();
+    let text = node.document().input_text().get(range.clone()).unwrap_or_default();
+    let name = text.find(|character: char| character.is_whitespace() || "/>".contains(character));
+    let end = range.start + name.filter(|&end| end > 1).unwrap_or(text.len());
+    Span::new((range.start + 1).min(end), end)
+}
+
+/// The elements in an element.
+pub(super) fn elements<'a, 'input>(node: Node<'a, 'input>) -> impl Iterator<Item = Node<'a, 'input>> {
+    node.children().filter(|child| child.is_element())
+}
+
+/// The text in an element, that of elements inside left out.
+pub(super) fn text_of(node: Node<'_, '_>) -> String {
+    node.children().filter(|child| child.is_text()).filter_map(|child| child.text()).collect()
+}
+
+/// An element with all that is in it, as text that needs no surroundings.
+pub(super) fn markup(node: Node<'_, '_>) -> String {
+    let mut text = String::new();
+    write_element(node, None, &mut text);
+    text
+}
+
+fn write_element(node: Node<'_, '_>, outer: Option<&str>, text: &mut String) {
+    let (name, namespace) = (node.tag_name().name(), node.tag_name().namespace());
+    text.push('<');
+    text.push_str(name);
+    if namespace != outer {
+        attribute(text, "xmlns", namespace.unwrap_or_default());
+    }
+    for (index, given) in node.attributes().enumerate() {
+        match given.namespace() {
+            None => attribute(text, given.name(), given.value()),
+            Some("http://www.w3.org/XML/1998/namespace") => {
+                attribute(text, &format!("xml:{}", given.name()), given.value());
+            }
+            Some(foreign) => {
+                attribute(text, &format!("xmlns:n{index}"), foreign);
+                attribute(text, &format!("n{index}:{}", given.name()), given.value());
+            }
+        }
+    }
+    if !node.children().any(|child| child.is_element() || child.is_text()) {
+        text.push_str("/>");
+        return;
+    }
+    text.push('>');
+    for child in node.children() {
+        match child.text().filter(|_| child.is_text()) {
+            Some(part) => escape(part, false, text),
+            None if child.is_element() => write_element(child, namespace, text),
+            None => {}
+        }
+    }
+    text.push_str("</");
+    text.push_str(name);
+    text.push('>');
+}
+
+/// Adds ` name="value"`.
+pub(super) fn attribute(text: &mut String, name: &str, value: &str) {
+    text.push(' ');
+    text.push_str(name);
+    text.push_str("=\"");
+    escape(value, true, text);
+    text.push('"');
+}
+
+/// Adds a text so that it reads back the same. In attributes, blanks other than a space would read back as spaces.
+pub(super) fn escape(value: &str, in_attribute: bool, text: &mut String) {
+    for character in value.chars() {
+        match character {
+            '<' => text.push_str("&lt;"),
+            '>' => text.push_str("&gt;"),
+            '&' => text.push_str("&amp;"),
+            '"' if in_attribute => text.push_str("&quot;"),
+            '\n' if in_attribute => text.push_str("&#10;"),
+            '\t' if in_attribute => text.push_str("&#9;"),
+            '\r' => text.push_str("&#13;"),
+            other => text.push(other),
+        }
+    }
+}
+
+/// Whether a text can stand in XML at all.
+pub(super) fn is_xml(text: &str) -> bool {
+    let control = |character: char| u32::from(character) < 0x20 && !"\t\n\r".contains(character);
+    !text.contains(|character| control(character) || matches!(character, '\u{fffe}' | '\u{ffff}'))
+}
