@@ -1,0 +1,21 @@
+//! SCXML: what is read and written, how sessions behave, and what third-party suites say.
+
+#![allow(clippy::unwrap_used)] // the functions around the tests are tests too
+
+mod irp;
+mod reading;
+mod round_trip;
+mod session;
+mod suites;
+
+#[test]
+fn the_w3c_tests_pass_that_are_on_record() {
+    let Some(folder) = suites::folder("irp") else {
+        println!("the W3C's suite is not there: nothing was run");
+        return;
+    };
+    let report = irp::run(&folder);
+    println!("{report}");
+    let counts = (report.null().0, report.mandatory().0);
+    assert_eq!(counts, (suites::recorded("irp null"), suites::recorded("irp mandatory")));
+}
