@@ -4,7 +4,7 @@
 
 #[path = "../kit/mod.rs"]
 mod kit;
-#[path = "../reference/random.rs"]
+#[path = "../kit/random.rs"]
 mod random;
 
 mod refusals;

@@ -1,26 +1,36 @@
-//! A naive interpreter of statecharts, written from the rules, slow and obvious: no numbering, no tables, no bits. Everything is
-//! searched for again whenever it is needed.
+//! A naive interpreter of statecharts, written from the rules, slow and obvious: sets of nodes, recursion and clones. Whatever can be
+//! searched for again is searched for again whenever it is needed.
 
-mod choice;
-mod effect;
+mod act;
+mod enter;
+mod fire;
 mod lines;
+mod select;
 mod step;
 mod tree;
 mod truth;
+mod ways;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use yase::statechart::{NodeId, Statechart, TransitionId};
-use yase::{Activation, Moment, Outcome, RegionId, TopicId};
+use yase::{Activation, Moment, Outcome, RegionId, Semantics, TopicId};
 
 use crate::kit::script::Interpreter;
 use crate::kit::world::{TOPICS, World};
+use crate::oracle::chance::Chance;
+use select::Judgement;
+use tree::Tree;
+use ways::Way;
 
-/// How many micro-steps, and steps at one moment, are allowed.
-pub(crate) const LIMIT: u32 = 40;
-
-/// One way out of a state: its segments.
-type Way = Vec<TransitionId>;
+/// Something that stops the chart.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Failure {
+    /// No branch of that CHOICE is open.
+    NoBranch(NodeId),
+    /// Too many micro-steps, or steps at one moment.
+    Endless,
+}
 
 #[derive(Clone, Debug, PartialEq)]
 struct Occurrence {
@@ -28,6 +38,14 @@ struct Occurrence {
     number: u32,
     raised: bool,
     expiry: Option<(RegionId, String)>,
+}
+
+/// An event that waits for activities: what it would take, and whether it is to be offered again.
+#[derive(Clone, Debug)]
+struct Held {
+    occurrence: Occurrence,
+    ways: Vec<Way>,
+    offer: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,18 +68,25 @@ struct Job {
 struct Deadline {
     moment: Moment,
     announced: bool,
+    /// The state it is bound to.
+    bound: Option<NodeId>,
 }
 
 /// What happens in a micro-step, for its line.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 struct Line {
     exits: Vec<NodeId>,
     effects: Vec<String>,
+    taken: Vec<TransitionId>,
     entries: Vec<NodeId>,
+    reads: Vec<(TransitionId, Option<bool>)>,
 }
 
 pub(crate) struct Stepper<'c> {
     chart: &'c Statechart,
+    tree: Tree,
+    semantics: Semantics,
+    pub(crate) chance: Chance,
     running_chart: bool,
     now: Moment,
     due: bool,
@@ -69,27 +94,46 @@ pub(crate) struct Stepper<'c> {
     jobs: BTreeMap<NodeId, Job>,
     job_count: u64,
     timers: BTreeMap<(RegionId, String), Deadline>,
+    timer_numbers: Vec<(RegionId, String)>,
+    /// Timers that the effects of the compound in hand have started, to be bound to its target.
+    unbound: Vec<(RegionId, String)>,
+    records: BTreeMap<NodeId, Vec<NodeId>>,
+    arrivals: BTreeSet<TransitionId>,
+    completions: Vec<NodeId>,
     count: u32,
     raised: Vec<Occurrence>,
     arrived: Vec<Occurrence>,
     deferred: Vec<Occurrence>,
-    held: Vec<(Occurrence, Vec<Way>, bool)>,
+    held: Vec<Held>,
     pending: Vec<(Way, Option<String>)>,
     erred: BTreeSet<(TransitionId, RegionId)>,
     stale: BTreeSet<(TransitionId, RegionId)>,
     written: BTreeSet<RegionId>,
     waiting: BTreeSet<NodeId>,
+    judged: BTreeMap<NodeId, Judgement>,
     line: Line,
     micro_steps: u32,
     did_something: bool,
     instant: Moment,
     steps_at_instant: u32,
+    /// The root has reached its END and what is active is still to be left.
+    ended: bool,
+    before: BTreeSet<NodeId>,
 }
 
 impl<'c> Stepper<'c> {
-    pub(crate) fn new(chart: &'c Statechart) -> Stepper<'c> {
+    /// `timer_numbers` are the timers in the order of their numbers, which rules leave to whoever compiles the chart.
+    pub(crate) fn new(
+        chart: &'c Statechart,
+        semantics: Semantics,
+        chance: Chance,
+        timer_numbers: Vec<(RegionId, String)>,
+    ) -> Stepper<'c> {
         Stepper {
             chart,
+            tree: Tree::new(chart, semantics.order),
+            semantics,
+            chance,
             running_chart: false,
             now: Moment::ZERO,
             due: false,
@@ -97,6 +141,11 @@ impl<'c> Stepper<'c> {
             jobs: BTreeMap::new(),
             job_count: 0,
             timers: BTreeMap::new(),
+            timer_numbers,
+            unbound: vec![],
+            records: BTreeMap::new(),
+            arrivals: BTreeSet::new(),
+            completions: vec![],
             count: 0,
             raised: vec![],
             arrived: vec![],
@@ -107,31 +156,33 @@ impl<'c> Stepper<'c> {
             stale: BTreeSet::new(),
             written: BTreeSet::new(),
             waiting: BTreeSet::new(),
+            judged: BTreeMap::new(),
             line: Line::default(),
             micro_steps: 0,
             did_something: false,
             instant: Moment::ZERO,
             steps_at_instant: 0,
+            ended: false,
+            before: BTreeSet::new(),
         }
+    }
+
+    pub(crate) fn is_active(&self, node: NodeId) -> bool {
+        self.active.contains(&node)
     }
 }
 
 fn topic(name: &str) -> Option<TopicId> {
     TOPICS.iter().position(|other| *other == name).map(|index| TopicId(index as u32))
 }
+
 impl Interpreter for Stepper<'_> {
     fn start(&mut self, now: Moment, world: &mut World) {
         self.now = now;
         self.instant = now;
         self.running_chart = true;
         self.due = true;
-        self.enter(Statechart::ROOT, world);
-        self.enter_inside(Statechart::ROOT, Statechart::ROOT, world);
-        let mut text = format!("{now} start");
-        if !self.line.effects.is_empty() {
-            text += &format!("; do {}", self.line.effects.join(", "));
-        }
-        world.say(format!("{text}; enter {}", self.names(&self.line.entries)));
+        self.begin_chart(world);
     }
 
     fn event(&mut self, name: &str) {
@@ -159,27 +210,29 @@ impl Interpreter for Stepper<'_> {
     }
 
     fn returned(&mut self, activation: Activation, outcome: Outcome) -> bool {
-        if !self.running_chart {
+        let Some(job) = self.jobs.get_mut(&activation.node) else { return false };
+        if !self.running_chart || job.number != activation.number {
             return false;
         }
-        let job = self.jobs.get_mut(&activation.node).unwrap();
-        assert_eq!((job.number, job.phase), (activation.number, Phase::Running));
+        assert_eq!(job.phase, Phase::Running);
         job.phase = match outcome {
             Outcome::Done => Phase::Done,
             Outcome::Ongoing => Phase::Ongoing,
             Outcome::Failed => Phase::Failed,
         };
         let mut held = std::mem::take(&mut self.held);
-        for (_, ways, offer) in &mut held {
+        for Held { ways, offer, .. } in &mut held {
             let in_the_way = |way: &Way| {
-                self.exits(way).contains(&activation.node)
-                    || self.region(self.source(way)) == activation.region
+                self.exit_set(way).contains(&activation.node)
+                    || way.sources.iter().any(|&source| self.region(source) == activation.region)
             };
             *offer |= ways.iter().any(in_the_way);
         }
         self.held = held;
-        if outcome == Outcome::Failed {
-            self.arrive("error.activity", None);
+        match outcome {
+            Outcome::Failed => self.arrive("error.activity", None),
+            Outcome::Done => self.completed(activation.node),
+            Outcome::Ongoing => {}
         }
         self.due = true;
         true
@@ -187,7 +240,7 @@ impl Interpreter for Stepper<'_> {
 
     fn resumed(&mut self, activation: Activation) -> bool {
         let about_to_be_left = self.pending.iter().any(|(way, _)| self.would_leave(way, activation.node));
-        let job = self.jobs.get_mut(&activation.node).unwrap();
+        let Some(job) = self.jobs.get_mut(&activation.node) else { return false };
         assert_eq!((job.number, job.phase), (activation.number, Phase::Ongoing));
         if about_to_be_left {
             return false;
@@ -198,24 +251,18 @@ impl Interpreter for Stepper<'_> {
 
     fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
         self.now = now;
-        self.begin(world);
-        loop {
-            match self.micro_step(world) {
-                Ok(true) => {}
-                Ok(false) => break,
-                Err(error) => {
-                    self.halt(world);
-                    return Err(error);
-                }
+        match self.whole_step(world) {
+            Ok(()) => Ok(()),
+            Err(failure) => {
+                self.halt(world);
+                Err(self.describe(&failure))
             }
         }
-        self.finish(world);
-        Ok(())
     }
 
     fn needs_step(&self, now: Moment) -> bool {
         let waiting =
-            !self.raised.is_empty() || !self.arrived.is_empty() || self.held.iter().any(|held| held.2);
+            !self.raised.is_empty() || !self.arrived.is_empty() || self.held.iter().any(|held| held.offer);
         self.running_chart
             && (self.due || waiting || self.next_deadline().is_some_and(|deadline| deadline <= now))
     }
@@ -228,6 +275,6 @@ impl Interpreter for Stepper<'_> {
     }
 
     fn regions(&self) -> usize {
-        self.region_nodes().len()
+        self.tree.regions.len()
     }
 }

@@ -1,8 +1,8 @@
 //! What is true: R4, R5 and the meaning of expressions.
 
-use yase::RegionId;
 use yase::expression::{Comparison, Expression, ExpressionKind, TransitionExpression, Trigger};
 use yase::statechart::TransitionId;
+use yase::{EventMatching, RegionId};
 
 use super::{Occurrence, Stepper, Way, topic};
 use crate::kit::world::World;
@@ -13,42 +13,61 @@ impl Stepper<'_> {
     }
 
     /// R4
-    pub(super) fn is_triggered(&self, way: &Way, occurrence: Option<&Occurrence>) -> bool {
-        match (&self.expression(way[0]).trigger, occurrence) {
+    pub(super) fn is_triggered(&self, id: TransitionId, occurrence: Option<&Occurrence>) -> bool {
+        match (&self.expression(id).trigger, occurrence) {
             (None, None) => true,
             (Some(Trigger::OneOf(names)), Some(occurrence)) => {
-                names.iter().any(|name| name.text() == occurrence.event)
+                names.iter().any(|name| self.matches(&name.text(), &occurrence.event))
             }
             (Some(_), Some(occurrence)) if occurrence.expiry.is_some() => false,
             (Some(Trigger::Any), Some(_)) => true,
-            (Some(Trigger::Not(name)), Some(occurrence)) => name.text() != occurrence.event,
+            (Some(Trigger::Not(name)), Some(occurrence)) => !self.matches(&name.text(), &occurrence.event),
             _ => false,
         }
     }
 
-    /// R5
+    /// Whether an event is what a name means.
+    pub(super) fn matches(&self, name: &str, event: &str) -> bool {
+        let tokens = self.semantics.matching == EventMatching::TokenPrefix;
+        name == event || tokens && event.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'))
+    }
+
+    /// R5: on the blackboard of the scope.
     pub(super) fn guards_hold(&mut self, way: &Way, world: &mut World) -> bool {
         let region = self.region(self.scope(way));
-        for &id in way {
-            let Some(guard) = self.expression(id).guard.clone() else { continue };
-            match self.truth(&guard, region, world) {
-                Ok(value) => {
-                    self.erred.remove(&(id, region));
-                    if value != Some(true) {
-                        return false;
-                    }
+        self.all_hold(&way.segments, region, world)
+    }
+
+    pub(super) fn all_hold(
+        &mut self,
+        segments: &[TransitionId],
+        region: RegionId,
+        world: &mut World,
+    ) -> bool {
+        segments.iter().all(|&id| self.holds(id, region, world))
+    }
+
+    fn holds(&mut self, id: TransitionId, region: RegionId, world: &mut World) -> bool {
+        let Some(guard) = self.expression(id).guard.clone() else { return true };
+        if self.expression(id).is_never() {
+            return false; // nothing is read
+        }
+        match self.truth(&guard, region, world) {
+            Ok(value) => {
+                self.erred.remove(&(id, region));
+                self.line.reads.push((id, Some(value == Some(true))));
+                value == Some(true)
+            }
+            Err(error) => {
+                self.line.reads.push((id, None));
+                if self.erred.insert((id, region)) || self.raises_every_error() {
+                    self.stale.remove(&(id, region));
+                    self.raise(self.error_event("error.guard"));
+                    world.say(format!("  guard failed: {error}"));
                 }
-                Err(error) => {
-                    if self.erred.insert((id, region)) {
-                        self.stale.remove(&(id, region));
-                        self.raise("error.guard");
-                        world.say(format!("  guard failed: {error}"));
-                    }
-                    return false;
-                }
+                false
             }
         }
-        true
     }
 
     /// True, false, or unknown.

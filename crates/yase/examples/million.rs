@@ -1,0 +1,83 @@
+//! The machine against the reference interpreter of `tests/reference`, on as many random charts as wanted:
+//!
+//! ```text
+//! cargo run --release -p yase --example million -- 1000000 [first]
+//! ```
+//!
+//! Progress goes to stderr, what occurred in how many charts to stdout. The first chart on which the two differ is made small and
+//! printed, and the exit code is 1.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // it shares its code with a test
+
+#[path = "../tests/kit/mod.rs"]
+mod kit;
+#[path = "../tests/reference/oracle/mod.rs"]
+mod oracle;
+
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use oracle::many::{self, Found};
+
+/// How many charts are played between two looks at whether somebody else has found a difference.
+const BATCH: u64 = 1000;
+
+fn main() -> ExitCode {
+    let mut arguments = std::env::args().skip(1);
+    let mut number = |default: u64| match arguments.next().map(|text| text.parse()) {
+        None => Some(default),
+        Some(number) => number.ok(),
+    };
+    let (Some(charts), Some(first)) = (number(1_000_000), number(0)) else {
+        eprintln!("usage: million [charts] [first]");
+        return ExitCode::from(2);
+    };
+    report(&run(first, first.saturating_add(charts)), charts)
+}
+
+/// All charts of these numbers, on all processors.
+fn run(first: u64, end: u64) -> Found {
+    let next = AtomicU64::new(first);
+    let workers = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|threads| {
+        let handles: Vec<_> = (0..workers).map(|_| threads.spawn(|| work(&next, end))).collect();
+        let mut all = Found::default();
+        for handle in handles {
+            all.join(handle.join().expect("it does not panic"));
+        }
+        all
+    })
+}
+
+fn work(next: &AtomicU64, end: u64) -> Found {
+    let mut all = Found::default();
+    loop {
+        let from = next.fetch_add(BATCH, Ordering::Relaxed);
+        if from >= end {
+            return all;
+        }
+        all.join(many::compare(from..end.min(from + BATCH)));
+        if all.difference.is_some() {
+            next.fetch_max(end, Ordering::Relaxed);
+        }
+        if from.is_multiple_of(10 * BATCH) {
+            eprintln!("{from} of {end}");
+        }
+    }
+}
+
+fn report(found: &Found, charts: u64) -> ExitCode {
+    println!("{}", found.histogram.text());
+    for why in found.refused.iter().take(5) {
+        println!("refused: {why}");
+    }
+    for row in found.histogram.missing() {
+        println!("never: {row}");
+    }
+    println!("{} of {charts} charts come to rest", found.histogram.row("R17 comes to rest"));
+    match &found.difference {
+        Some(difference) => println!("{difference}"),
+        None => println!("no difference in {charts} charts, {} of them refused", found.refused.len()),
+    }
+    ExitCode::from(u8::from(found.difference.is_some() || !found.refused.is_empty()))
+}

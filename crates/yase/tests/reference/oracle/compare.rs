@@ -1,0 +1,215 @@
+//! Both interpreters play one case, and what they write down is compared.
+//!
+//! Everything a trace record says is compared, and so are all that the host is asked to do, the reports, the configuration after each
+//! step and the error a chart ends with. Two things are not, since the rules leave them open: in which order guards are read within a
+//! micro-step, and how often each; and the words an endless chart is described with.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use yase::statechart::{NodeId, Statechart};
+use yase::{Activation, Chooser, Machine, Moment, Outcome, RegionId, TopicId};
+
+use crate::kit::script::{self, Interpreter};
+use crate::kit::world::{World, vocabulary};
+use crate::oracle::chance::{Chance, Freedom};
+use crate::oracle::random::Case;
+use crate::oracle::stepper::Stepper;
+
+/// What came of a case.
+pub(crate) enum Verdict {
+    /// The lines of both.
+    Same(Vec<String>),
+    Different(Difference),
+    /// The chart is not one.
+    Refused(String),
+}
+
+pub(crate) struct Difference {
+    pub expected: Vec<String>,
+    pub found: Vec<String>,
+}
+
+pub(crate) fn judge(case: &Case) -> Verdict {
+    let chart = match case.chart.compile_with(&vocabulary(), case.semantics) {
+        Ok(chart) => Arc::new(chart),
+        Err(found) => {
+            return Verdict::Refused(found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"));
+        }
+    };
+    let timers = chart.timers().map(|(region, name)| (region, name.to_owned())).collect();
+    let expected = by_reference(case, timers);
+    let mut machine = Machine::new(chart);
+    machine.set_chooser(chooser(&case.freedom));
+    let found = by_machine(case, machine);
+    match expected == found {
+        true => Verdict::Same(expected),
+        false => Verdict::Different(Difference { expected, found }),
+    }
+}
+
+fn world(case: &Case) -> World {
+    World { verbose: true, reads: true, ..World::new(&case.chart) }
+}
+
+fn by_reference(case: &Case, timers: Vec<(RegionId, String)>) -> Vec<String> {
+    let mut world = world(case);
+    let chance = Chance::new(case.freedom.clone());
+    let mut watched =
+        Watched { inner: Stepper::new(&case.chart, case.semantics, chance, timers), chart: &case.chart };
+    script::run(&mut watched, &case.script, &mut world);
+    world.say(format!("asked {:?}", watched.inner.chance.told()));
+    normal(world.log)
+}
+
+fn by_machine(case: &Case, machine: Machine) -> Vec<String> {
+    let mut world = world(case);
+    let mut watched = Watched { inner: machine, chart: &case.chart };
+    script::run(&mut watched, &case.script, &mut world);
+    world.say(format!("asked {:?}", watched.inner.chooser().choices()));
+    normal(world.log)
+}
+
+fn chooser(freedom: &Freedom) -> Chooser {
+    match freedom {
+        Freedom::Declared => Chooser::declared(),
+        Freedom::Seeded(seed) => Chooser::seeded(*seed),
+        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
+    }
+}
+
+/// An interpreter that also shows its configuration after each step.
+struct Watched<'c, I> {
+    inner: I,
+    chart: &'c Statechart,
+}
+
+trait Configured: Interpreter {
+    fn has(&self, node: NodeId) -> bool;
+}
+
+impl Configured for Stepper<'_> {
+    fn has(&self, node: NodeId) -> bool {
+        self.is_active(node)
+    }
+}
+
+impl Configured for Machine {
+    fn has(&self, node: NodeId) -> bool {
+        self.is_active(node)
+    }
+}
+
+impl<I: Configured> Watched<'_, I> {
+    fn show(&self, world: &mut World) {
+        let active = self.chart.nodes().filter(|(id, _)| self.inner.has(*id));
+        let numbers: Vec<String> = active.map(|(id, _)| id.0.to_string()).collect();
+        world.say(format!("  active {}", numbers.join(" ")));
+    }
+}
+
+impl<I: Configured> Interpreter for Watched<'_, I> {
+    fn start(&mut self, now: Moment, world: &mut World) {
+        self.inner.start(now, world);
+        self.show(world);
+    }
+
+    fn event(&mut self, name: &str) {
+        self.inner.event(name);
+    }
+
+    fn message(&mut self, topic: TopicId) {
+        self.inner.message(topic);
+    }
+
+    fn returned(&mut self, activation: Activation, outcome: Outcome) -> bool {
+        self.inner.returned(activation, outcome)
+    }
+
+    fn resumed(&mut self, activation: Activation) -> bool {
+        self.inner.resumed(activation)
+    }
+
+    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+        let result = self.inner.step(now, world);
+        self.show(world);
+        result
+    }
+
+    fn needs_step(&self, now: Moment) -> bool {
+        self.inner.needs_step(now)
+    }
+
+    fn next_deadline(&self) -> Option<Moment> {
+        self.inner.next_deadline()
+    }
+
+    fn regions(&self) -> usize {
+        self.inner.regions()
+    }
+}
+
+fn normal(log: Vec<String>) -> Vec<String> {
+    log.into_iter().map(normal_line).collect()
+}
+
+fn normal_line(line: String) -> String {
+    if let Some(error) = line.strip_prefix("error: ") {
+        let branch = error.contains("branch");
+        return if branch { format!("error: {}", error.to_lowercase()) } else { "error: endless".into() };
+    }
+    match line.split_once("; read ") {
+        None => line,
+        Some((rest, reads)) => {
+            let reads: BTreeSet<&str> = reads.split(", ").collect();
+            format!("{rest}; read {}", reads.into_iter().collect::<Vec<_>>().join(", "))
+        }
+    }
+}
+
+/// A case and where the two part.
+pub(crate) fn describe(case: &Case, difference: &Difference) -> String {
+    let Difference { expected, found } = difference;
+    let same = expected.iter().zip(found).take_while(|(a, b)| a == b).count();
+    let one = |log: &[String]| log.get(same).cloned().unwrap_or_else(|| "(nothing)".into());
+    format!(
+        "{:?} {:?}\n{:?}\n{}{:?}\n\n{}\nexpected {}\nfound    {}\n",
+        case.variant,
+        case.freedom,
+        case.semantics,
+        chart_text(&case.chart),
+        case.script,
+        expected[same.saturating_sub(14)..same].join("\n"),
+        one(expected),
+        one(found)
+    )
+}
+
+fn chart_text(chart: &Statechart) -> String {
+    let mut text = String::new();
+    for (id, node) in chart.nodes() {
+        text += &format!("{} {:?}", chart.path(id), node.kind);
+        for (title, actions) in [("entry", &node.entry), ("exit", &node.exit)] {
+            for action in actions {
+                text += &format!(" | {title} {action}");
+            }
+        }
+        if !node.defer.is_empty() {
+            text += &format!(" | defer {:?}", node.defer);
+        }
+        if let Some(activity) = &node.activity {
+            text += &format!(" | {activity} {:?}", node.duration);
+        }
+        text.push('\n');
+    }
+    for (_, transition) in chart.transitions() {
+        let flags = [(transition.interrupts, " interrupts"), (transition.internal, " internal")];
+        text += &format!("{} -> {}", chart.path(transition.source), chart.path(transition.target));
+        text.extend(flags.iter().filter(|(set, _)| *set).map(|(_, name)| *name));
+        if let Some(weight) = transition.weight {
+            text += &format!(" weight {weight}");
+        }
+        text += &format!(" !{} : {}\n", transition.priority, transition.expression);
+    }
+    text
+}

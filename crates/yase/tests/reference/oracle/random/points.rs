@@ -1,0 +1,119 @@
+//! How a chart is read: a profile, a profile with one point changed, or any mix.
+
+use std::num::NonZeroU32;
+
+use yase::{
+    ActiveAncestor, ConflictChoice, Deferral, Delivery, EventMatching, EventPool, Eventless, ExitOrder,
+    FailureEvents, Firing, Joining, RootEnd, RunningOnExit, SegmentOrder, Semantics, Sharing, StartRest,
+    TimerScope,
+};
+
+use super::Choices;
+
+/// How many micro-steps, and steps at one moment, are allowed.
+const LIMIT: u32 = 40;
+
+/// What the semantics of a case is made of.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) enum Variant {
+    /// `yase`, `uml` or `scxml`.
+    Profile(&'static str),
+    /// A profile with one point changed, by its number in [`POINTS`].
+    Flipped(&'static str, usize),
+    Mixed,
+}
+
+/// A value of one configuration point.
+pub(crate) type Point = (&'static str, fn(&mut Semantics));
+
+/// Every value that a point can have.
+pub(crate) const POINTS: [Point; 38] = [
+    ("eventless as written", |it| it.eventless = Eventless::AsWritten),
+    ("eventless quiescent", |it| it.eventless = Eventless::Quiescent),
+    ("eventless once", |it| it.eventless = Eventless::Once),
+    ("eventless always", |it| it.eventless = Eventless::Always),
+    ("START a place", |it| it.start = StartRest::Place),
+    ("START in the same step", |it| it.start = StartRest::SameStep),
+    ("guarded first", |it| it.order = SegmentOrder::GuardedFirst),
+    ("segments as modelled", |it| it.order = SegmentOrder::AsModelled),
+    ("firing each transition", |it| it.firing = Firing::EachTransition),
+    ("firing in phases", |it| it.firing = Firing::Phases),
+    ("exits forward", |it| it.exits = ExitOrder::Forward),
+    ("exits reverse", |it| it.exits = ExitOrder::ReverseDocument),
+    ("raised first", |it| it.pool = EventPool::RaisedFirst),
+    ("one pool", |it| it.pool = EventPool::One),
+    ("events exact", |it| it.matching = EventMatching::Exact),
+    ("events by prefix", |it| it.matching = EventMatching::TokenPrefix),
+    ("running blocks", |it| it.on_exit = RunningOnExit::Blocks),
+    ("running interrupted", |it| it.on_exit = RunningOnExit::Interrupted),
+    ("ancestor re-entered", |it| it.ancestor = ActiveAncestor::Reentered),
+    ("ancestor completed", |it| it.ancestor = ActiveAncestor::Completed),
+    ("join together", |it| it.join = Joining::Together),
+    ("join each", |it| it.join = Joining::Each),
+    ("seen next step", |it| it.sharing = Sharing::NextStep),
+    ("seen at once", |it| it.sharing = Sharing::AtOnce),
+    ("root END idle", |it| it.root_end = RootEnd::Idle),
+    ("root END exits all", |it| it.root_end = RootEnd::ExitsAll),
+    ("timers of the chart", |it| it.timers = TimerScope::Chart),
+    ("timers of states", |it| it.timers = TimerScope::State),
+    ("conflict declared", |it| it.conflict = ConflictChoice::Declared),
+    ("conflict random", |it| it.conflict = ConflictChoice::Random),
+    ("completion events off", |it| it.completion_events = false),
+    ("completion events on", |it| it.completion_events = true),
+    ("delivery each step", |it| it.delivery = Delivery::EachStep),
+    ("delivery explicit", |it| it.delivery = Delivery::Explicit),
+    ("failures by cause", |it| it.failures = FailureEvents::ByCause),
+    ("failures every time", |it| it.failures = FailureEvents::EveryTime),
+    ("deferral on", |it| it.deferral = Deferral::On),
+    ("deferral off", |it| it.deferral = Deferral::Off),
+];
+
+pub(super) fn semantics(choices: &mut Choices<'_>) -> (Semantics, Variant) {
+    let (name, mut semantics) = profile(choices);
+    semantics.limit = NonZeroU32::new(LIMIT).unwrap();
+    match choices.below(10) {
+        0..3 => (semantics, Variant::Profile(name)),
+        3..8 => {
+            let first = choices.below(POINTS.len());
+            let index =
+                (first..POINTS.len()).chain(0..first).find(|&index| differs(semantics, index)).unwrap();
+            POINTS[index].1(&mut semantics);
+            (semantics, Variant::Flipped(name, index))
+        }
+        _ => {
+            for _ in 0..12 {
+                choices.pick(&POINTS).1(&mut semantics);
+            }
+            (semantics, Variant::Mixed)
+        }
+    }
+}
+
+fn profile(choices: &mut Choices<'_>) -> (&'static str, Semantics) {
+    match choices.below(4) {
+        0 => ("uml", Semantics::uml()),
+        1 => ("scxml", Semantics::scxml()),
+        _ => ("yase", Semantics::yase()),
+    }
+}
+
+fn differs(semantics: Semantics, point: usize) -> bool {
+    let mut changed = semantics;
+    POINTS[point].1(&mut changed);
+    changed != semantics
+}
+
+/// Whether a value of a point is another than that of some profile.
+pub(crate) fn differs_somewhere(point: usize) -> bool {
+    [Semantics::yase(), Semantics::uml(), Semantics::scxml()].into_iter().any(|it| differs(it, point))
+}
+
+/// `yase`, with those points that the machine looks at so far.
+pub(super) fn run_so_far(semantics: Semantics) -> Semantics {
+    let mut known = Semantics::yase();
+    if semantics.eventless == Eventless::Quiescent {
+        known.eventless = Eventless::Quiescent;
+    }
+    (known.delivery, known.deferral, known.limit) = (semantics.delivery, semantics.deferral, semantics.limit);
+    known
+}

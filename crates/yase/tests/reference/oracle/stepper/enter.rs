@@ -1,0 +1,174 @@
+//! Entering: R10, R11, R14, and what is remembered.
+
+use yase::statechart::{NodeId, NodeKind};
+use yase::{Eventless, Host, RootEnd, StartRest, Statechart};
+
+use super::{Failure, Job, Phase, Stepper, Way};
+use crate::kit::world::World;
+
+impl Stepper<'_> {
+    /// Enters what of an active composite leads to targets, and what must be entered with it.
+    pub(super) fn enter_below(
+        &mut self,
+        composite: NodeId,
+        targets: &[NodeId],
+        world: &mut World,
+    ) -> Result<(), Failure> {
+        let remembered = targets.iter().copied().find(|&target| {
+            let history = matches!(self.kind(target), NodeKind::ShallowHistory | NodeKind::DeepHistory);
+            history && self.parent(target) == composite
+        });
+        if let Some(history) = remembered {
+            return self.enter_remembered(history, world);
+        }
+        let inner: Vec<NodeId> =
+            targets.iter().copied().filter(|&target| self.is_inside(target, composite)).collect();
+        match (self.kind(composite), inner.first()) {
+            (NodeKind::And, _) => self.enter_regions(composite, &inner, world),
+            (NodeKind::Or, None) => self.enter_start(composite, world),
+            (NodeKind::Or, Some(&target)) => {
+                let child = self.child_towards(composite, target);
+                self.enter_whole(child, &inner, world)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn enter_whole(&mut self, node: NodeId, targets: &[NodeId], world: &mut World) -> Result<(), Failure> {
+        self.enter(node, world);
+        self.enter_below(node, targets, world)
+    }
+
+    fn enter_regions(&mut self, and: NodeId, targets: &[NodeId], world: &mut World) -> Result<(), Failure> {
+        for &child in self.chart.children(and) {
+            if self.is_region(child) {
+                self.enter_whole(child, targets, world)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Entering stops at START, or goes on at once.
+    fn enter_start(&mut self, composite: NodeId, world: &mut World) -> Result<(), Failure> {
+        let mut children = self.chart.children(composite).iter().copied();
+        let Some(start) = children.find(|&child| self.kind(child) == NodeKind::Start) else { return Ok(()) };
+        if self.semantics.start == StartRest::SameStep
+            && let Some(way) = self.open_way(start, world)
+        {
+            return self.go_on(&way, composite, world);
+        }
+        self.enter(start, world);
+        Ok(())
+    }
+
+    /// The way out of START or HISTORY that is open now.
+    fn open_way(&mut self, connector: NodeId, world: &mut World) -> Option<Way> {
+        let out = self.outgoing(connector);
+        self.first_way(connector, &out, &mut |me, way| me.guards_hold(way, world))
+    }
+
+    fn go_on(&mut self, way: &Way, composite: NodeId, world: &mut World) -> Result<(), Failure> {
+        let outer = std::mem::take(&mut self.unbound);
+        self.line.taken.extend(&way.segments);
+        let region = self.region(self.scope(way));
+        self.effects(&way.segments, region, world);
+        let targets = self.choose(&way.ends, region, world)?;
+        self.bind_timers(targets.first().copied());
+        self.unbound = outer;
+        if targets.iter().any(|&target| self.kind(target) == NodeKind::Terminate) {
+            self.halt(world);
+            return Ok(());
+        }
+        self.enter_below(composite, &targets, world)
+    }
+
+    fn enter_remembered(&mut self, history: NodeId, world: &mut World) -> Result<(), Failure> {
+        let owner = self.parent(history);
+        let Some(record) = self.records.get(&history).cloned() else {
+            return match self.open_way(history, world) {
+                Some(way) => self.go_on(&way, owner, world),
+                None => self.enter_below(owner, &[], world),
+            };
+        };
+        match (self.kind(history), self.kind(owner)) {
+            (NodeKind::DeepHistory, _) => self.enter_recorded(&record, world),
+            (_, NodeKind::And) => self.enter_regions(owner, &[], world),
+            _ => match record[..] {
+                [child] if self.kind(child) == NodeKind::Start => self.enter_start(owner, world),
+                [child] => self.enter_whole(child, &[], world),
+                _ => Ok(()),
+            },
+        }
+    }
+
+    /// All that was active, outermost first.
+    fn enter_recorded(&mut self, record: &[NodeId], world: &mut World) -> Result<(), Failure> {
+        for &node in record {
+            match self.kind(node) {
+                NodeKind::Start => self.enter_start(self.parent(node), world)?,
+                _ => self.enter(node, world),
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn enter(&mut self, node: NodeId, world: &mut World) {
+        self.active.insert(node);
+        self.line.entries.push(node);
+        if self.is_region(node) {
+            world.inherit(self.region(node), self.region(self.parent(node)));
+        }
+        let actions = self.chart.node(node).entry.clone();
+        let before = std::mem::take(&mut self.unbound);
+        self.act(&actions, self.region(node), &format!("entry {}", self.name(node)), world);
+        self.bind_timers(Some(node));
+        self.unbound = before;
+        match self.kind(node) {
+            NodeKind::Basic if self.chart.node(node).activity.is_some() => {
+                self.job_count += 1;
+                let job = Job { phase: Phase::Queued, number: self.job_count, cancelled: false };
+                self.jobs.insert(node, job);
+            }
+            NodeKind::Basic => self.completed(node),
+            NodeKind::End => self.reached(node, world),
+            _ => {}
+        }
+    }
+
+    fn reached(&mut self, end: NodeId, world: &mut World) {
+        let composite = self.parent(end);
+        if composite == Statechart::ROOT {
+            match self.semantics.root_end {
+                RootEnd::ExitsAll => self.ended = true,
+                _ => self.halt(world),
+            }
+            return;
+        }
+        self.completed(composite);
+        if self.semantics.completion_events {
+            self.raise_done(composite);
+            let around = self.parent(composite);
+            if self.kind(around) == NodeKind::And && self.is_complete(around) {
+                self.raise_done(around);
+            }
+        }
+    }
+
+    fn raise_done(&mut self, node: NodeId) {
+        self.raise(&format!("done.state.{}", self.chart.node(node).name));
+    }
+
+    /// A state has completed, and the ANDs around it that complete with it.
+    pub(super) fn completed(&mut self, node: NodeId) {
+        if self.semantics.eventless != Eventless::Once || node == Statechart::ROOT {
+            return;
+        }
+        if !self.completions.contains(&node) {
+            self.completions.push(node);
+        }
+        let around = self.parent(node);
+        if self.kind(around) == NodeKind::And && self.is_complete(around) {
+            self.completed(around);
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! What a micro-step does: R10, R12, R13.
+
+use std::collections::BTreeSet;
+
+use yase::statechart::{NodeId, NodeKind, TransitionId};
+use yase::{Host, RegionId, RootEnd, RunningOnExit, Statechart};
+
+use super::{Failure, Phase, Stepper, Way};
+use crate::kit::world::World;
+
+impl Stepper<'_> {
+    /// One transition after the other; those whose source another one has left do not fire.
+    pub(super) fn fire_each(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
+        let mut fired = vec![];
+        for way in ways {
+            if self.running_chart && !self.ended && self.may_fire(&way) {
+                self.fire(&way, world)?;
+                fired.push(way);
+            }
+        }
+        Ok(fired)
+    }
+
+    /// Sources are active still, or those from which all have arrived at a JOIN.
+    pub(super) fn may_fire(&self, way: &Way) -> bool {
+        let first = self.transition(way.segments[0]).source;
+        match self.kind(first) {
+            NodeKind::Join => self.incoming(first).iter().all(|id| self.arrivals.contains(id)),
+            _ => way.sources.iter().all(|source| self.active.contains(source)),
+        }
+    }
+
+    pub(super) fn fire(&mut self, way: &Way, world: &mut World) -> Result<(), Failure> {
+        let exits = self.exit_set(way);
+        self.leave_all(&exits, world);
+        let targets = self.effects_and_targets(way, world)?;
+        self.enter_targets(way, &targets, world)
+    }
+
+    /// All exits, then all effects, then all entries.
+    pub(super) fn fire_phases(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
+        let exits: BTreeSet<NodeId> = ways.iter().flat_map(|way| self.exit_set(way)).collect();
+        self.leave_all(&exits, world);
+        let mut entering = vec![];
+        for way in &ways {
+            if self.running_chart {
+                let targets = self.effects_and_targets(way, world)?;
+                entering.push((way.clone(), targets));
+            }
+        }
+        entering.sort_by_key(|(way, _)| self.position(self.scope(way)));
+        for (way, targets) in entering {
+            if self.running_chart {
+                self.enter_targets(&way, &targets, world)?;
+            }
+        }
+        Ok(ways)
+    }
+
+    fn leave_all(&mut self, exits: &BTreeSet<NodeId>, world: &mut World) {
+        self.record_histories(exits);
+        for node in self.in_order_of_exit(exits) {
+            self.leave(node, world);
+        }
+    }
+
+    fn record_histories(&mut self, exits: &BTreeSet<NodeId>) {
+        for &owner in exits {
+            for &child in self.chart.children(owner) {
+                let record = match self.kind(child) {
+                    NodeKind::ShallowHistory => self.active_children(owner),
+                    NodeKind::DeepHistory => self.active_inside(owner),
+                    _ => continue,
+                };
+                self.records.insert(child, record);
+            }
+        }
+    }
+
+    pub(super) fn leave(&mut self, node: NodeId, world: &mut World) {
+        if let Some(job) = self.jobs.remove(&node) {
+            match job.phase {
+                Phase::Ongoing => world.stop(self.activation(node, job.number)),
+                Phase::Running if self.semantics.on_exit == RunningOnExit::Interrupted => {
+                    world.cancel(self.activation(node, job.number));
+                }
+                _ => {}
+            }
+        }
+        let actions = self.chart.node(node).exit.clone();
+        let before = self.unbound.clone();
+        self.act(&actions, self.region(node), &format!("exit {}", self.name(node)), world);
+        self.unbound = before; // what an exit action starts belongs to no state
+        self.active.remove(&node);
+        self.waiting.remove(&node);
+        self.completions.retain(|&other| other != node);
+        self.forget_arrivals(node);
+        self.unset_timers_of(node);
+        self.line.exits.push(node);
+    }
+
+    /// An AND that is left forgets who has arrived at the JOINs behind it.
+    fn forget_arrivals(&mut self, node: NodeId) {
+        let chart = self.chart;
+        let inside =
+            |id: &TransitionId| chart.ancestors(chart.transition(*id).source).any(|above| above == node);
+        if self.kind(node) == NodeKind::And {
+            self.arrivals.retain(|id| !inside(id));
+        }
+    }
+
+    /// The effects of the whole compound, its CHOICEs looked at on the way; gives where it leads to.
+    fn effects_and_targets(&mut self, way: &Way, world: &mut World) -> Result<Vec<NodeId>, Failure> {
+        let region = self.region(self.scope(way));
+        self.effects(&way.segments, region, world);
+        let targets = self.choose(&way.ends, region, world)?;
+        self.bind_timers(targets.first().copied());
+        Ok(targets)
+    }
+
+    pub(super) fn effects(&mut self, segments: &[TransitionId], region: RegionId, world: &mut World) {
+        for &id in segments {
+            let transition = self.transition(id);
+            let place = format!("{} -> {}", self.name(transition.source), self.name(transition.target));
+            self.act(&transition.expression.actions, region, &place, world);
+        }
+    }
+
+    /// R12: CHOICEs are looked at now, until none is left.
+    pub(super) fn choose(
+        &mut self,
+        ends: &[NodeId],
+        region: RegionId,
+        world: &mut World,
+    ) -> Result<Vec<NodeId>, Failure> {
+        let mut targets = vec![];
+        for &end in ends {
+            if self.kind(end) != NodeKind::Choice {
+                targets.push(end);
+                continue;
+            }
+            let out = self.outgoing(end);
+            let found = self.first_way(end, &out, &mut |me, way| me.all_hold(&way.segments, region, world));
+            let Some(way) = found else { return Err(Failure::NoBranch(end)) };
+            self.line.taken.extend(&way.segments);
+            self.effects(&way.segments, region, world);
+            targets.extend(self.choose(&way.ends, region, world)?);
+        }
+        Ok(targets)
+    }
+
+    fn enter_targets(&mut self, way: &Way, targets: &[NodeId], world: &mut World) -> Result<(), Failure> {
+        if targets.iter().any(|&target| self.kind(target) == NodeKind::Terminate) {
+            self.halt(world);
+            return Ok(());
+        }
+        let vacated = self.vacates(way);
+        if self.kind(way.ends[0]) == NodeKind::Join {
+            self.arrivals.extend(&way.segments);
+        }
+        for &node in &vacated {
+            self.completed(node);
+        }
+        if vacated.is_empty() && !self.is_targetless(way) {
+            self.enter_below(self.scope(way), targets, world)?;
+        }
+        Ok(())
+    }
+
+    /// What is left to do when the root has reached its END.
+    pub(super) fn end(&mut self, world: &mut World) {
+        if !self.ended {
+            return;
+        }
+        self.ended = false;
+        if self.semantics.root_end == RootEnd::ExitsAll {
+            for node in self.active_in_document_order().into_iter().rev() {
+                self.leave(node, world);
+            }
+            self.print_finish(world);
+        }
+        self.halt(world);
+    }
+
+    /// R13, and what is left to do when a chart ends.
+    pub(super) fn halt(&mut self, world: &mut World) {
+        for node in self.tree.document.clone() {
+            let Some(job) = self.jobs.get(&node).cloned() else { continue };
+            match job.phase {
+                Phase::Running if !job.cancelled => world.cancel(self.activation(node, job.number)),
+                Phase::Ongoing => world.stop(self.activation(node, job.number)),
+                _ => {}
+            }
+        }
+        self.jobs.clear();
+        self.raised.clear();
+        self.arrived.clear();
+        self.deferred.clear();
+        self.held.clear();
+        self.pending.clear();
+        self.completions.clear();
+        self.running_chart = false;
+    }
+
+    pub(super) fn begin_chart(&mut self, world: &mut World) {
+        self.line = super::Line::default();
+        self.enter(Statechart::ROOT, world);
+        let begun = self.enter_below(Statechart::ROOT, &[], world);
+        self.print_start(world);
+        self.end(world);
+        if begun.is_err() {
+            self.halt(world);
+        }
+    }
+}

@@ -1,0 +1,302 @@
+//! What is enabled and who wins: R7 to R9, R14, R15.
+
+use std::collections::BTreeSet;
+
+use yase::statechart::{NodeId, NodeKind, TransitionId};
+use yase::{ConflictChoice, Eventless, Firing, RegionId, RunningOnExit};
+
+use super::{Held, Occurrence, Phase, Stepper, Way};
+use crate::kit::world::World;
+
+/// What a micro-step is about.
+#[derive(Clone, Copy)]
+pub(super) enum Offer<'a> {
+    Nothing,
+    /// The state has completed, which is offered once.
+    Completion,
+    Event(&'a Occurrence),
+}
+
+impl<'a> Offer<'a> {
+    pub(super) fn event(self) -> Option<&'a Occurrence> {
+        match self {
+            Offer::Event(occurrence) => Some(occurrence),
+            _ => None,
+        }
+    }
+}
+
+/// The best enabled way out of a state; and, if there is an event, the first that would be but for running activities.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Judgement {
+    pub found: Option<Way>,
+    pub blocked: Option<Way>,
+}
+
+impl<'c> Stepper<'c> {
+    pub(super) fn runs(&self, node: NodeId) -> bool {
+        self.jobs.get(&node).is_some_and(|job| matches!(job.phase, Phase::Queued | Phase::Running))
+    }
+
+    pub(super) fn region_runs(&self, region: RegionId) -> bool {
+        self.jobs.keys().any(|&node| self.runs(node) && self.region(node) == region)
+    }
+
+    /// Whether running activities are in the way of a way.
+    pub(super) fn leaves_running(&self, way: &Way) -> bool {
+        self.semantics.on_exit == RunningOnExit::Blocks
+            && self.exit_set(way).into_iter().any(|node| self.runs(node))
+    }
+
+    fn is_locked(&self, way: &Way) -> bool {
+        self.semantics.on_exit == RunningOnExit::Blocks
+            && way.sources.iter().any(|&source| self.region_runs(self.region(source)))
+    }
+
+    /// R14
+    pub(super) fn is_complete(&self, node: NodeId) -> bool {
+        if !self.active.contains(&node) {
+            return false;
+        }
+        match self.kind(node) {
+            NodeKind::And => {
+                let mut regions = self.chart.children(node).iter().filter(|&&child| self.is_region(child));
+                regions.all(|&region| self.is_complete(region))
+            }
+            NodeKind::Or => {
+                let inside = self.active_children(node);
+                inside.iter().all(|&child| self.kind(child) == NodeKind::End)
+            }
+            _ => self.jobs.get(&node).is_none_or(|job| job.phase == Phase::Done),
+        }
+    }
+
+    /// R15
+    fn is_ready(&mut self, way: &Way, world: &mut World) -> bool {
+        let source = way.sources[0];
+        if way.sources.len() > 1 {
+            let sources = way.sources.clone();
+            return sources.iter().all(|&source| self.is_complete(source))
+                && sources.iter().all(|&source| self.is_reached(source, world));
+        }
+        let leaf = !matches!(self.kind(source), NodeKind::Or | NodeKind::And);
+        let guarded = self.expression(way.segments[0]).guard.is_some();
+        match self.semantics.eventless {
+            Eventless::AsWritten if leaf || !guarded || way.ends == way.sources => self.is_complete(source),
+            Eventless::AsWritten | Eventless::Quiescent => self.is_quiet(way, source, world),
+            _ => true,
+        }
+    }
+
+    /// Nothing inside can step and nothing inside runs, but for what the guarded exit of a composite may interrupt.
+    fn is_quiet(&mut self, way: &Way, source: NodeId, world: &mut World) -> bool {
+        let inside = self.active_inside(source);
+        let exit = self.expression(way.segments[0]).guard.is_some() && way.ends != way.sources;
+        let composite = matches!(self.kind(source), NodeKind::Or | NodeKind::And);
+        let may_run = exit && composite && self.interrupts(way);
+        let runs = self.runs(source) || inside.iter().any(|&node| self.runs(node));
+        (may_run || !runs)
+            && !inside.iter().any(|&node| self.judge(node, Offer::Nothing, world).found.is_some())
+    }
+
+    /// Whether from an active leaf outward nothing was found before a state.
+    fn is_reached(&mut self, state: NodeId, world: &mut World) -> bool {
+        let below = |leaf: NodeId| leaf == state || self.is_inside(leaf, state);
+        let leaves: Vec<NodeId> = self.active_leaves().into_iter().filter(|&leaf| below(leaf)).collect();
+        leaves.into_iter().any(|leaf| {
+            let inner = self.outward(leaf).into_iter().take_while(|&node| node != state);
+            !inner
+                .collect::<Vec<_>>()
+                .into_iter()
+                .any(|node| self.judge(node, Offer::Nothing, world).found.is_some())
+        })
+    }
+
+    /// Whether a pending interruption or, without an event, a held event is about to leave a state.
+    pub(super) fn is_frozen(&self, node: NodeId, with_event: bool) -> bool {
+        let pending = self.pending.iter().any(|(way, _)| self.would_leave(way, node));
+        let held =
+            self.held.iter().any(|Held { ways, .. }| ways.iter().any(|way| self.would_leave(way, node)));
+        pending || !with_event && held
+    }
+
+    /// A state is judged once in a micro-step.
+    pub(super) fn judge(&mut self, node: NodeId, offer: Offer<'_>, world: &mut World) -> Judgement {
+        if let Some(known) = self.judged.get(&node) {
+            return known.clone();
+        }
+        let out = self.outgoing(node);
+        let judgement = match (offer, self.semantics.eventless) {
+            (Offer::Nothing, Eventless::Once) if self.kind(node) != NodeKind::Start => Judgement::default(),
+            _ => self.judge_ways(vec![node], out, offer, world),
+        };
+        self.judged.insert(node, judgement.clone());
+        judgement
+    }
+
+    fn judge_ways(
+        &mut self,
+        sources: Vec<NodeId>,
+        out: Vec<TransitionId>,
+        offer: Offer<'_>,
+        world: &mut World,
+    ) -> Judgement {
+        let mut blocked = None;
+        let event = offer.event();
+        if event.is_none() && sources.iter().any(|&node| self.is_frozen(node, false)) {
+            return Judgement::default();
+        }
+        let matching: Vec<TransitionId> =
+            out.into_iter().filter(|&id| self.is_triggered(id, event)).collect();
+        let found = self.first_way(sources[0], &matching, &mut |me, way| {
+            let joined = sources.len() > 1;
+            let mut way = way.clone();
+            if joined {
+                way.sources = sources.clone();
+            }
+            let frozen = way.sources.iter().any(|&node| me.is_frozen(node, true));
+            let locked = !me.interrupts(&way) && me.is_locked(&way);
+            if event.is_none() && locked {
+                return false; // there is nothing to hold, so nothing is read
+            }
+            if matches!(offer, Offer::Nothing) && !joined && !me.is_ready(&way, world) {
+                return false;
+            }
+            if !me.guards_hold(&way, world) {
+                return false;
+            }
+            if frozen || locked || !me.interrupts(&way) && me.leaves_running(&way) {
+                blocked.get_or_insert(way);
+                return false;
+            }
+            true
+        });
+        let found = found.map(|way| if sources.len() > 1 { Way { sources, ..way } } else { way });
+        Judgement { found, blocked }
+    }
+
+    /// The candidates, and the ways that wait for running activities.
+    pub(super) fn candidates(&mut self, offer: Offer<'_>, world: &mut World) -> (Vec<Way>, Vec<Way>) {
+        let (mut found, mut waiting): (Vec<Way>, Vec<Way>) = (vec![], vec![]);
+        self.judged.clear();
+        if matches!(offer, Offer::Nothing) {
+            found.extend(self.complete_joins(world));
+        }
+        for leaf in self.active_leaves() {
+            let mut noted = false;
+            for node in self.outward(leaf) {
+                let Judgement { found: enabled, blocked } = self.judge(node, offer, world);
+                if let Some(way) = blocked
+                    && offer.event().is_some()
+                    && !noted
+                {
+                    noted = true;
+                    if !waiting.contains(&way) {
+                        waiting.push(way);
+                    }
+                }
+                if let Some(way) = enabled {
+                    if !found.contains(&way) {
+                        found.push(way);
+                    }
+                    break;
+                }
+            }
+        }
+        self.sort_inner_first(&mut waiting);
+        (found, waiting)
+    }
+
+    /// The ways out of the JOINs at which all have arrived, one by one.
+    fn complete_joins(&mut self, world: &mut World) -> Vec<Way> {
+        let joins: Vec<NodeId> =
+            self.tree.document.iter().copied().filter(|&node| self.kind(node) == NodeKind::Join).collect();
+        let mut found = vec![];
+        for join in joins {
+            let into = self.incoming(join);
+            if !into.is_empty() && into.iter().all(|id| self.arrivals.contains(id)) {
+                let sources = into.iter().map(|&id| self.transition(id).source).collect();
+                found.extend(self.judge_ways(sources, self.outgoing(join), Offer::Nothing, world).found);
+            }
+        }
+        found
+    }
+
+    fn is_nested(&self, inner: &Way, outer: &Way) -> bool {
+        inner.sources.iter().any(|&a| outer.sources.iter().any(|&b| self.is_inside(a, b)))
+    }
+
+    pub(super) fn key(&self, way: &Way) -> usize {
+        way.sources.iter().map(|&source| self.position(source)).min().unwrap()
+    }
+
+    /// What is nested before what is around it, else in the order of the document.
+    pub(super) fn sort_inner_first(&self, ways: &mut Vec<Way>) {
+        ways.sort_by_key(|way| self.key(way));
+        let mut sorted: Vec<Way> = vec![];
+        while !ways.is_empty() {
+            let free = |way: &Way| !ways.iter().any(|other| self.is_nested(other, way));
+            let index = ways.iter().position(free).unwrap_or(0);
+            sorted.push(ways.remove(index));
+        }
+        *ways = sorted;
+    }
+
+    /// Winners, in the order they fire, and losers of conflicts.
+    pub(super) fn resolve(&mut self, candidates: Vec<Way>) -> (Vec<Way>, Vec<Way>) {
+        match self.semantics.firing {
+            Firing::Phases => self.remove_conflicting(candidates),
+            _ => self.strongest(candidates),
+        }
+    }
+
+    fn strongest(&mut self, mut candidates: Vec<Way>) -> (Vec<Way>, Vec<Way>) {
+        self.sort_inner_first(&mut candidates);
+        let (mut winners, mut losers): (Vec<Way>, Vec<Way>) = (vec![], vec![]);
+        for way in candidates {
+            let against: Vec<usize> =
+                (0..winners.len()).filter(|&index| self.conflict(&winners[index], &way)).collect();
+            if against.is_empty() {
+                winners.push(way);
+            } else if self.upsets(&way, &against, &winners) {
+                for index in against.into_iter().rev() {
+                    losers.push(winners.remove(index));
+                }
+                winners.push(way);
+            } else {
+                losers.push(way);
+            }
+        }
+        winners.sort_by_key(|way| (!self.is_internal(way), self.key(way)));
+        (winners, losers)
+    }
+
+    /// Whether chance has a later candidate win against earlier ones.
+    fn upsets(&mut self, way: &Way, against: &[usize], winners: &[Way]) -> bool {
+        self.semantics.conflict == ConflictChoice::Random
+            && !against.iter().any(|&index| self.is_nested(&winners[index], way))
+            && self.chance.pick(2) == 1
+    }
+
+    fn conflict(&self, a: &Way, b: &Way) -> bool {
+        !self.exit_set(a).is_disjoint(&self.exit_set(b))
+    }
+
+    /// SCXML's `removeConflictingTransitions`.
+    fn remove_conflicting(&mut self, candidates: Vec<Way>) -> (Vec<Way>, Vec<Way>) {
+        let (mut winners, mut losers): (Vec<Way>, Vec<Way>) = (vec![], vec![]);
+        for way in candidates {
+            let against: BTreeSet<usize> =
+                (0..winners.len()).filter(|&index| self.conflict(&winners[index], &way)).collect();
+            if against.iter().all(|&index| self.is_nested(&way, &winners[index])) {
+                for &index in against.iter().rev() {
+                    losers.push(winners.remove(index));
+                }
+                winners.push(way);
+            } else {
+                losers.push(way);
+            }
+        }
+        (winners, losers)
+    }
+}

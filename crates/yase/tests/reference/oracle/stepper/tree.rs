@@ -1,0 +1,146 @@
+//! The tree and the order of segments: R1, R3, R19.
+
+use yase::statechart::{NodeId, NodeKind, Statechart, TransitionId};
+use yase::{RegionId, SegmentOrder};
+
+use super::Stepper;
+
+/// What does not change, looked up once.
+pub(super) struct Tree {
+    /// Every node, a parent before its children, siblings in order.
+    pub document: Vec<NodeId>,
+    pub position: Vec<usize>,
+    /// The root and every region of an AND, in document order.
+    pub regions: Vec<NodeId>,
+    pub region: Vec<RegionId>,
+    /// The segments that leave a node, in the order of R3.
+    pub outgoing: Vec<Vec<TransitionId>>,
+    pub names: Vec<String>,
+    /// The words in the guard of each segment.
+    pub words: Vec<Vec<String>>,
+}
+
+impl Tree {
+    pub(super) fn new(chart: &Statechart, order: SegmentOrder) -> Tree {
+        let document = document(chart);
+        let mut position = vec![0; document.len()];
+        for (place, node) in document.iter().enumerate() {
+            position[node.0 as usize] = place;
+        }
+        let regions: Vec<NodeId> =
+            document.iter().copied().filter(|&node| owns_blackboard(chart, node)).collect();
+        let owner = |node: NodeId| {
+            let found =
+                std::iter::once(node).chain(chart.ancestors(node)).find(|node| regions.contains(node));
+            regions.iter().position(|&region| Some(region) == found).unwrap()
+        };
+        let region = chart.nodes().map(|(id, _)| RegionId(owner(id) as u32)).collect();
+        let outgoing = chart.nodes().map(|(id, _)| outgoing(chart, id, order)).collect();
+        let names = chart.nodes().map(|(id, _)| name(chart, id)).collect();
+        let words = chart.transitions().map(|(_, it)| words(&it.expression)).collect();
+        Tree { document, position, regions, region, outgoing, names, words }
+    }
+}
+
+fn document(chart: &Statechart) -> Vec<NodeId> {
+    fn visit(chart: &Statechart, node: NodeId, out: &mut Vec<NodeId>) {
+        out.push(node);
+        for &child in chart.children(node) {
+            visit(chart, child, out);
+        }
+    }
+    let mut out = vec![];
+    visit(chart, Statechart::ROOT, &mut out);
+    out
+}
+
+fn owns_blackboard(chart: &Statechart, node: NodeId) -> bool {
+    node == Statechart::ROOT || is_region(chart, node)
+}
+
+/// A child of an AND that is a state.
+fn is_region(chart: &Statechart, node: NodeId) -> bool {
+    let states = [NodeKind::Or, NodeKind::And, NodeKind::Basic];
+    let it = chart.node(node);
+    it.parent.is_some_and(|parent| chart.node(parent).kind == NodeKind::And) && states.contains(&it.kind)
+}
+
+/// R3: priority, then guarded ones, then the order of the model.
+fn outgoing(chart: &Statechart, node: NodeId, order: SegmentOrder) -> Vec<TransitionId> {
+    let leaving = chart.transitions().filter(|(_, transition)| transition.source == node);
+    let mut out: Vec<TransitionId> = leaving.map(|(id, _)| id).collect();
+    out.sort_by_key(|&id| {
+        let transition = chart.transition(id);
+        let guarded_first = order == SegmentOrder::GuardedFirst;
+        (-transition.priority, guarded_first && transition.expression.guard.is_none(), id)
+    });
+    out
+}
+
+fn name(chart: &Statechart, node: NodeId) -> String {
+    let path = chart.path(node);
+    path.split_once('/').map_or(path.clone(), |(_, rest)| rest.to_owned())
+}
+
+fn words(expression: &yase::expression::TransitionExpression) -> Vec<String> {
+    let text = expression.guard.as_ref().map(ToString::to_string).unwrap_or_default();
+    text.split(|c: char| !c.is_alphanumeric()).map(str::to_owned).collect()
+}
+
+impl Stepper<'_> {
+    pub(super) fn kind(&self, node: NodeId) -> NodeKind {
+        self.chart.node(node).kind
+    }
+
+    pub(super) fn parent(&self, node: NodeId) -> NodeId {
+        self.chart.node(node).parent.unwrap()
+    }
+
+    pub(super) fn position(&self, node: NodeId) -> usize {
+        self.tree.position[node.0 as usize]
+    }
+
+    pub(super) fn is_inside(&self, node: NodeId, outer: NodeId) -> bool {
+        self.chart.ancestors(node).any(|ancestor| ancestor == outer)
+    }
+
+    pub(super) fn is_region(&self, node: NodeId) -> bool {
+        is_region(self.chart, node)
+    }
+
+    /// R19: the blackboard of a node: that of the nearest region around it, itself included.
+    pub(super) fn region(&self, node: NodeId) -> RegionId {
+        self.tree.region[node.0 as usize]
+    }
+
+    pub(super) fn active_in_document_order(&self) -> Vec<NodeId> {
+        self.tree.document.iter().copied().filter(|node| self.active.contains(node)).collect()
+    }
+
+    pub(super) fn active_children(&self, node: NodeId) -> Vec<NodeId> {
+        self.chart.children(node).iter().copied().filter(|child| self.active.contains(child)).collect()
+    }
+
+    pub(super) fn active_inside(&self, node: NodeId) -> Vec<NodeId> {
+        self.active_in_document_order().into_iter().filter(|&inner| self.is_inside(inner, node)).collect()
+    }
+
+    /// Active without an active child: a state without children, START, END, or a vacated region.
+    pub(super) fn active_leaves(&self) -> Vec<NodeId> {
+        let leaf = |node: &NodeId| self.active_children(*node).is_empty();
+        self.active_in_document_order().into_iter().filter(leaf).collect()
+    }
+
+    /// From a node to the root.
+    pub(super) fn outward(&self, node: NodeId) -> Vec<NodeId> {
+        std::iter::once(node).chain(self.chart.ancestors(node)).collect()
+    }
+
+    pub(super) fn outgoing(&self, node: NodeId) -> Vec<TransitionId> {
+        self.tree.outgoing[node.0 as usize].clone()
+    }
+
+    pub(super) fn name(&self, node: NodeId) -> String {
+        self.tree.names[node.0 as usize].clone()
+    }
+}

@@ -1,0 +1,270 @@
+//! Compound transitions: R2, R6, and what a compound would leave.
+
+use std::collections::BTreeSet;
+
+use yase::statechart::{NodeId, NodeKind, Transition, TransitionId};
+use yase::{ActiveAncestor, ExitOrder, Joining};
+
+use super::Stepper;
+
+/// The static part of a compound transition: everything up to the first CHOICE, HISTORY or state on each of its paths.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub(super) struct Way {
+    pub sources: Vec<NodeId>,
+    /// In the order of their effects.
+    pub segments: Vec<TransitionId>,
+    pub ends: Vec<NodeId>,
+}
+
+/// What a node is for a compound that leads to it.
+enum Role {
+    /// One of its ways out is taken.
+    Branch,
+    /// All of its ways out are taken.
+    Fork,
+    /// Its other ways in belong to the compound.
+    Join,
+    /// The static part ends.
+    End,
+}
+
+/// Whether a way is taken; what it is asked about is complete.
+pub(super) type Accept<'a, 'c> = &'a mut dyn FnMut(&mut Stepper<'c>, &Way) -> bool;
+
+impl<'c> Stepper<'c> {
+    pub(super) fn transition(&self, id: TransitionId) -> &'c Transition {
+        self.chart.transition(id)
+    }
+
+    fn role(&self, node: NodeId) -> Role {
+        match self.kind(node) {
+            NodeKind::Condition | NodeKind::Junction | NodeKind::ExitPoint => Role::Branch,
+            NodeKind::EntryPoint if self.is_fork(node) => Role::Fork,
+            NodeKind::EntryPoint => Role::Branch,
+            NodeKind::Fork => Role::Fork,
+            NodeKind::Join if self.semantics.join == Joining::Together => Role::Join,
+            _ => Role::End,
+        }
+    }
+
+    /// An ENTRY point of an AND with several ways without guards into different regions.
+    fn is_fork(&self, point: NodeId) -> bool {
+        let around = self.parent(point);
+        let out = self.outgoing(point);
+        let plain = out.iter().all(|&id| self.transition(id).expression.guard.is_none());
+        let holding = |&id: &TransitionId| {
+            let target = self.transition(id).target;
+            self.outward(target).into_iter().find(|&node| self.chart.node(node).parent == Some(around))
+        };
+        let regions: BTreeSet<Option<NodeId>> = out.iter().map(holding).collect();
+        self.kind(around) == NodeKind::And && out.len() > 1 && plain && regions.len() == out.len()
+    }
+
+    /// Tries segments in their order; those with weights are drawn, at the place of the first of them.
+    pub(super) fn try_each(
+        &mut self,
+        list: &[TransitionId],
+        attempt: &mut dyn FnMut(&mut Stepper<'c>, TransitionId) -> bool,
+    ) -> bool {
+        let mut drawn = false;
+        for &id in list {
+            let taken = match self.transition(id).weight {
+                None => attempt(self, id),
+                Some(_) if drawn => false,
+                Some(_) => {
+                    drawn = true;
+                    let weighted = list.iter().copied().filter(|&id| self.transition(id).weight.is_some());
+                    self.draw(weighted.collect(), attempt)
+                }
+            };
+            if taken {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn draw(
+        &mut self,
+        mut rest: Vec<TransitionId>,
+        attempt: &mut dyn FnMut(&mut Stepper<'c>, TransitionId) -> bool,
+    ) -> bool {
+        while !rest.is_empty() {
+            let weights: Vec<f64> = rest.iter().filter_map(|&id| self.transition(id).weight).collect();
+            let id = rest.remove(self.chance.weighted(&weights));
+            if attempt(self, id) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Follows segments to the first complete way that is accepted, depth first; `open` are those still to be followed.
+    pub(super) fn follow(&mut self, way: &Way, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+        let Some((&segment, rest)) = open.split_first() else { return accept(self, way) };
+        let mut way = way.clone();
+        way.segments.push(segment);
+        let target = self.transition(segment).target;
+        match self.role(target) {
+            Role::Branch => self.branch(&way, target, rest, accept),
+            Role::Fork => {
+                let mut all = self.outgoing(target);
+                all.sort();
+                all.extend(rest);
+                self.follow(&way, &all, accept)
+            }
+            Role::Join => {
+                way.segments = self.incoming(target);
+                way.sources = way.segments.iter().map(|&id| self.transition(id).source).collect();
+                self.branch(&way, target, rest, accept)
+            }
+            Role::End => {
+                way.ends.push(target);
+                self.follow(&way, rest, accept)
+            }
+        }
+    }
+
+    fn branch(&mut self, way: &Way, node: NodeId, rest: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+        let out = self.outgoing(node);
+        self.try_each(&out, &mut |me, id| {
+            let open = [&[id], rest].concat();
+            me.follow(way, &open, accept)
+        })
+    }
+
+    /// The first way out of a node that is accepted.
+    pub(super) fn first_way(
+        &mut self,
+        node: NodeId,
+        list: &[TransitionId],
+        accept: Accept<'_, 'c>,
+    ) -> Option<Way> {
+        let start = Way { sources: vec![node], ..Way::default() };
+        let mut found = None;
+        self.try_each(list, &mut |me, id| {
+            me.follow(&start, &[id], &mut |me, way| {
+                let yes = accept(me, way);
+                if yes {
+                    found = Some(way.clone());
+                }
+                yes
+            })
+        });
+        found
+    }
+
+    pub(super) fn incoming(&self, node: NodeId) -> Vec<TransitionId> {
+        let into = self.chart.transitions().filter(|(_, transition)| transition.target == node);
+        into.map(|(id, _)| id).collect()
+    }
+
+    pub(super) fn is_internal(&self, way: &Way) -> bool {
+        way.segments.iter().any(|&id| self.transition(id).internal)
+    }
+
+    pub(super) fn is_targetless(&self, way: &Way) -> bool {
+        self.is_internal(way) && way.ends == way.sources
+    }
+
+    pub(super) fn interrupts(&self, way: &Way) -> bool {
+        way.segments.iter().any(|&id| self.transition(id).interrupts)
+    }
+
+    /// Where a path may lead to in the end, whatever its CHOICEs say.
+    fn final_targets(&self, node: NodeId) -> Vec<NodeId> {
+        match self.kind(node) {
+            NodeKind::Choice
+            | NodeKind::Condition
+            | NodeKind::Junction
+            | NodeKind::Fork
+            | NodeKind::EntryPoint
+            | NodeKind::ExitPoint => {
+                let out = self.outgoing(node);
+                out.into_iter().flat_map(|id| self.final_targets(self.transition(id).target)).collect()
+            }
+            _ => vec![node],
+        }
+    }
+
+    /// R2
+    pub(super) fn scope(&self, way: &Way) -> NodeId {
+        if self.is_internal(way) {
+            return way.sources[0];
+        }
+        let targets = way.ends.iter().flat_map(|&end| self.final_targets(end));
+        let all: Vec<NodeId> = way.sources.iter().copied().chain(targets).collect();
+        self.lowest_around(&all, |kind| kind == NodeKind::Or)
+    }
+
+    fn lowest_around(&self, nodes: &[NodeId], wanted: impl Fn(NodeKind) -> bool) -> NodeId {
+        let around = |outer: &NodeId| nodes.iter().all(|&node| self.is_inside(node, *outer));
+        self.chart.ancestors(nodes[0]).find(|outer| wanted(self.kind(*outer)) && around(outer)).unwrap()
+    }
+
+    /// The composites that stay but lose what is active in them: `uml`'s arrival at a JOIN, and its way to an active ancestor.
+    pub(super) fn vacates(&self, way: &Way) -> Vec<NodeId> {
+        let [end] = way.ends[..] else { return vec![] };
+        let around = if self.kind(end) == NodeKind::Join {
+            let sources: Vec<NodeId> =
+                self.incoming(end).iter().map(|&id| self.transition(id).source).collect();
+            self.lowest_around(&sources, |kind| kind == NodeKind::And)
+        } else if self.completes_ancestor(way, end) {
+            end
+        } else {
+            return vec![];
+        };
+        match self.kind(around) {
+            NodeKind::And => way.sources.iter().map(|&source| self.child_towards(around, source)).collect(),
+            _ => vec![around],
+        }
+    }
+
+    fn completes_ancestor(&self, way: &Way, end: NodeId) -> bool {
+        self.semantics.ancestor == ActiveAncestor::Completed
+            && !self.is_internal(way)
+            && matches!(self.kind(end), NodeKind::Or | NodeKind::And)
+            && way.sources.iter().all(|&source| self.is_inside(source, end))
+    }
+
+    pub(super) fn child_towards(&self, outer: NodeId, inner: NodeId) -> NodeId {
+        self.outward(inner).into_iter().find(|&node| self.chart.node(node).parent == Some(outer)).unwrap()
+    }
+
+    /// The active states a way would leave.
+    pub(super) fn exit_set(&self, way: &Way) -> BTreeSet<NodeId> {
+        let terminates = way.ends.iter().any(|&end| self.kind(end) == NodeKind::Terminate);
+        if self.is_targetless(way) || terminates {
+            return BTreeSet::new();
+        }
+        let mut vacated = self.vacates(way);
+        if vacated.is_empty() {
+            vacated.push(self.scope(way));
+        }
+        vacated.into_iter().flat_map(|outer| self.active_inside(outer)).collect()
+    }
+
+    /// States in the order they are left.
+    pub(super) fn in_order_of_exit(&self, set: &BTreeSet<NodeId>) -> Vec<NodeId> {
+        fn visit(stepper: &Stepper<'_>, node: NodeId, set: &BTreeSet<NodeId>, out: &mut Vec<NodeId>) {
+            for &child in stepper.chart.children(node) {
+                visit(stepper, child, set, out);
+            }
+            if set.contains(&node) {
+                out.push(node);
+            }
+        }
+        match self.semantics.exits {
+            ExitOrder::Forward => {
+                let mut out = vec![];
+                visit(self, yase::Statechart::ROOT, set, &mut out);
+                out
+            }
+            _ => self.tree.document.iter().rev().copied().filter(|node| set.contains(node)).collect(),
+        }
+    }
+
+    pub(super) fn would_leave(&self, way: &Way, node: NodeId) -> bool {
+        self.exit_set(way).contains(&node)
+    }
+}
