@@ -55,6 +55,7 @@ pub struct Agent {
     pub(crate) real_time: bool,
     pub(crate) priority: i32,
     pub(crate) statistics_every: Option<u64>,
+    pub(crate) workers: Option<usize>,
 }
 
 impl Agent {
@@ -79,6 +80,7 @@ impl Agent {
             real_time: false,
             priority: 0,
             statistics_every: None,
+            workers: None,
         }
     }
 
@@ -122,6 +124,13 @@ impl Agent {
     /// Says after how many cycles its times are written to the log.
     pub fn statistics_every(mut self, cycles: u64) -> Agent {
         self.statistics_every = (cycles > 0).then_some(cycles);
+        self
+    }
+
+    /// Says how many threads the activities of its charts have in real time; as many as can be active at once, at most twelve, if it is not
+    /// said.
+    pub fn workers(mut self, workers: std::num::NonZeroUsize) -> Agent {
+        self.workers = Some(workers.get());
         self
     }
 

@@ -4,7 +4,9 @@
 //! in simulated time, on a pool in real time), and brings back what they returned.
 
 mod desk;
+mod lending;
 mod post;
+mod urgency;
 mod values;
 
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -21,7 +23,6 @@ use crate::error::Error;
 use crate::listener::Listeners;
 use crate::origin::{self, Origin};
 use crate::statistics::ActivityStatistics;
-use crate::talws::component_seed;
 
 use desk::Desk;
 pub(crate) use desk::transition_name;
@@ -57,22 +58,26 @@ pub(crate) struct Home<'a> {
     pub(crate) listeners: &'a Listeners,
 }
 
+impl Home<'_> {
+    /// The path of the chart, of which those of its random numbers begin.
+    fn path(&self) -> String {
+        format!("{}/{}/{}", self.hub.host(), self.agent, self.number)
+    }
+
+    /// The seed of what the chart leaves open.
+    fn chance(&self) -> u64 {
+        let seed = component_seed(self.seed, &format!("{}#chooser", self.path()));
+        seed.iter().take(8).fold(0, |number, byte| number << 8 | u64::from(*byte))
+    }
+}
+
 impl Runner {
     pub(crate) fn new(bound: BoundChart, home: Home<'_>) -> Result<Runner, Error> {
         let BoundChart { chart, functions, activities } = bound;
-        let blackboards = chart.regions().map(|region| {
-            let mut blackboard = home.hub.blackboard(home.agent);
-            let region =
-                chart.region_node(region).map(|node| chart.statechart().path(node)).unwrap_or_default();
-            let path = format!("{}/{}/{}/{region}", home.hub.host(), home.agent, home.number);
-            blackboard.set_random(component_seed(home.seed, &path));
-            // What guards read is delivered, and recorded, from the first step on.
-            chart.reads().iter().for_each(|topic| blackboard.interest(TopicSlot::new(topic.0)));
-            Some(blackboard)
-        });
-        let desk = Desk::new(&chart, home, functions, blackboards.collect())?;
-        let posts = Posts::new(&chart, activities);
-        let machine = Machine::new(chart);
+        let desk = Desk::new(&chart, home, functions)?;
+        let posts = Posts::new(&chart, activities, home.hub);
+        let mut machine = Machine::new(chart);
+        machine.set_chooser(Chooser::seeded(home.chance()));
         let number = RUNNERS.fetch_add(1, Ordering::Relaxed);
         Ok(Runner { number, machine, desk, posts, micro_steps: 0 })
     }
@@ -118,9 +123,11 @@ impl Runner {
     /// The chart never comes to rest; it has stopped.
     pub(crate) fn step(&mut self, now: Moment) -> Result<(), MachineError> {
         self.desk.begin_step(now);
+        let known = self.desk.started.len();
         let summary = self.machine.run_to_completion(yase_moment(now), &mut self.desk);
         let summary = summary?;
         self.micro_steps += u64::from(summary.micro_steps);
+        self.desk.started.iter().skip(known).for_each(|activation| self.posts.begin(*activation));
         self.leave(now);
         Ok(())
     }
@@ -128,8 +135,7 @@ impl Runner {
     /// The activities whose state was left while they waited to be called again end.
     fn leave(&mut self, now: Moment) {
         while let Some(activation) = self.desk.left.pop() {
-            let blackboard =
-                self.desk.blackboards.get_mut(activation.region.0 as usize).and_then(Option::as_mut);
+            let blackboard = self.desk.lending.free_mut(activation.region, now);
             let (Some(blackboard), Some(activity)) = (blackboard, self.posts.leave(activation)) else {
                 continue;
             };
@@ -140,11 +146,14 @@ impl Runner {
         }
     }
 
-    /// The next activity that the last step started, with its blackboard.
+    /// The next activity that the last step started, with its blackboard. One whose state is active again before the last call of the
+    /// state's activity has returned has to wait for that: there is one instance.
     pub(crate) fn next_started(&mut self) -> Option<Assignment> {
-        let activation = self.desk.started.pop_front()?;
-        let blackboard = self.desk.take(activation.region)?;
-        self.posts.assign(activation, blackboard)
+        let (machine, posts) = (&self.machine, &self.posts);
+        self.desk.started.retain(|activation| is_current(machine, posts, *activation));
+        let ready = self.desk.started.iter().position(|activation| posts.is_free(*activation))?;
+        let activation = self.desk.started.remove(ready)?;
+        self.assign(activation)
     }
 
     /// The next activity that waited for another call and is due, with its blackboard, to which what arrived is delivered.
@@ -152,46 +161,84 @@ impl Runner {
         loop {
             let activation = self.posts.due(now)?;
             if self.machine.activity_resumed(activation) {
-                let mut blackboard = self.desk.take(activation.region)?;
+                self.desk.now = now;
+                let blackboard = self.desk.lending.free_mut(activation.region, now)?;
+                blackboard.cancellation().withdraw();
                 blackboard.process_messages(now);
-                return self.posts.assign(activation, blackboard);
+                return self.assign(activation);
             }
         }
     }
 
-    /// Takes an activity and its blackboard back from where it was called, but nothing of what it did yet.
-    pub(crate) fn take_back(&mut self, assignment: Assignment) {
-        let (activation, blackboard) = self.posts.take_back(assignment);
-        self.desk.put(activation.region, blackboard);
+    fn assign(&mut self, activation: Activation) -> Option<Assignment> {
+        let priority = self.desk.urgency.of(activation.node);
+        let blackboard = self.desk.lending.lend(activation, self.desk.now)?;
+        self.posts.assign(activation, priority, blackboard)
     }
 
-    /// An activity has returned: what it wrote is published, what it raised is noted, and its state may be complete.
-    pub(crate) fn returned(&mut self, returned: Returned, restart: bool, now: Moment) -> Result<(), Failure> {
-        let Returned { activation, result } = returned;
-        if let Some(blackboard) = self.desk.blackboard_mut(activation.region) {
-            let origin = Origin { runner: self.number, activation };
-            origin::publish_as(origin, || blackboard.publish_all(now));
-            for event in blackboard.take_events() {
-                self.machine.dispatch_name(&event);
+    /// Takes back an activity that was not called.
+    pub(crate) fn put_back(&mut self, assignment: Assignment) {
+        let (activation, blackboard) = self.posts.take_back(assignment, None);
+        self.desk.lending.take_back(activation, blackboard, true);
+    }
+
+    /// An activity has returned from its call: what it wrote is published, what it raised is noted, and its state may be complete.
+    ///
+    /// If its state was left meanwhile, nothing of what it did matters any more.
+    ///
+    /// # Errors
+    /// It failed, and somebody should do something about it.
+    pub(crate) fn returned(
+        &mut self,
+        assignment: Assignment,
+        returned: Returned,
+        took: Option<Duration>,
+        restart: bool,
+        now: Moment,
+    ) -> Result<(), Failure> {
+        let (activation, blackboard) = self.posts.take_back(assignment, took);
+        let current = is_current(&self.machine, &self.posts, activation);
+        let here = self.desk.lending.take_back(activation, blackboard, current);
+        match here.filter(|_| current) {
+            Some(blackboard) => {
+                let origin = Origin { runner: self.number, activation };
+                origin::publish_as(origin, || blackboard.publish_all(now));
+                for event in blackboard.take_events() {
+                    self.machine.dispatch_name(&event);
+                }
+                self.conclude(activation, returned, restart, now)
+            }
+            None => {
+                self.say_late(activation, returned);
+                Ok(())
             }
         }
-        let outcome = match &result {
+    }
+
+    fn conclude(
+        &mut self,
+        activation: Activation,
+        returned: Returned,
+        restart: bool,
+        now: Moment,
+    ) -> Result<(), Failure> {
+        let outcome = match &returned {
             Ok(Progress::Done) => Outcome::Done,
             Ok(Progress::Ongoing(_)) => Outcome::Ongoing,
             Err(_) => Outcome::Failed,
         };
-        let current = self.machine.activity_returned(activation, outcome);
-        match result {
+        self.machine.activity_returned(activation, outcome);
+        match returned {
             Ok(Progress::Done) => self.posts.finished(activation),
-            Ok(Progress::Ongoing(delay)) if current => {
-                let topics = self.topics_read(activation);
-                self.posts.wait(activation, now + delay.max(SHORTEST_DELAY), topics);
+            Ok(Progress::Ongoing(delay)) => {
+                if let Some(blackboard) = self.desk.lending.here(activation.region) {
+                    self.posts.wait(activation, now + delay.max(SHORTEST_DELAY), blackboard);
+                }
             }
-            Ok(Progress::Ongoing(_)) => self.posts.finished(activation),
             Err(failure) => {
                 let pause = self.posts.failed(activation, FIRST_PAUSE, DOUBLINGS);
-                if restart && current {
-                    self.posts.wait(activation, now + pause, Vec::new());
+                if restart {
+                    self.posts.pause(activation, now + pause);
                 }
                 return Err(failure);
             }
@@ -199,21 +246,22 @@ impl Runner {
         Ok(())
     }
 
-    /// The topics whose messages call an activity early: of those that were read on its blackboard, what it says it reads. The chart's
-    /// guards read there too, so of an activity that says nothing their topics do so as well.
-    fn topics_read(&mut self, activation: Activation) -> Vec<TopicSlot> {
-        let Some(blackboard) = self.desk.blackboard_mut(activation.region) else { return Vec::new() };
-        let mut topics = blackboard.topics_read();
-        if let Some(declared) = self.posts.declared(activation) {
-            let path = |slot: &TopicSlot| blackboard.hub().declaration(*slot).map(|topic| topic.path());
-            topics.retain(|slot| path(slot).is_some_and(|path| declared.read_paths().contains(&path)));
+    fn say_late(&mut self, activation: Activation, returned: Returned) {
+        if let Err(failure) = returned {
+            self.posts.failed(activation, FIRST_PAUSE, DOUBLINGS);
+            let activity = self.posts.name(activation);
+            tracing::error!(agent = %self.desk.agent, %activity, "activity failed after its state was left: {failure}");
         }
-        topics
     }
 
-    /// The activations that were asked to return soon since the last call.
-    pub(crate) fn take_cancelled(&mut self) -> Vec<Activation> {
-        std::mem::take(&mut self.desk.cancelled)
+    /// An activation that was asked to return since the last step began.
+    pub(crate) fn next_cancelled(&mut self) -> Option<Activation> {
+        self.desk.cancelled.pop()
+    }
+
+    /// Asks every activity that is being called to return soon.
+    pub(crate) fn cancel_all(&self) {
+        self.desk.lending.cancel_all();
     }
 
     /// Ends everything; activities that wait are told so.
@@ -270,6 +318,11 @@ impl Runner {
     pub(crate) fn max_activities(&self) -> usize {
         self.machine.chart().max_activities()
     }
+}
+
+/// Whether an activation is still that of its state, so that its return matters.
+fn is_current(machine: &Machine, posts: &Posts, activation: Activation) -> bool {
+    machine.status() == Status::Running && machine.is_active(activation.node) && posts.is_newest(activation)
 }
 
 fn yase_moment(moment: Moment) -> yase::Moment {

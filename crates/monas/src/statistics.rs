@@ -52,7 +52,10 @@ impl AgentStatistics {
         self.overruns += part.overruns;
         self.micro_steps += part.micro_steps;
         self.activities.extend(part.activities);
-        self.cycle_time = self.cycle_time.or(part.cycle_time);
+        self.cycle_time = match (self.cycle_time, part.cycle_time) {
+            (Some(one), Some(other)) => Some(one.together(other)),
+            (one, other) => one.or(other),
+        };
         self.stopped = self.stopped.take().or(part.stopped);
     }
 }
@@ -125,6 +128,23 @@ impl Average {
         self.variance = (1.0 - Average::FACTOR) * (self.variance + difference * step);
     }
 
+    /// The averages of two stopwatches, each weighed by the number of its values.
+    fn together(self, other: Average) -> Average {
+        let count = self.count + other.count;
+        if count == 0 {
+            return self;
+        }
+        let share = other.count as f64 / count as f64;
+        let difference = other.mean - self.mean;
+        let within = (1.0 - share) * self.variance + share * other.variance;
+        Average {
+            count,
+            mean: self.mean + share * difference,
+            variance: within + share * (1.0 - share) * difference * difference,
+            longest: self.longest.max(other.longest),
+        }
+    }
+
     /// How many values there were.
     pub fn count(&self) -> u64 {
         self.count
@@ -162,6 +182,21 @@ mod tests {
         assert_eq!(average.mean(), Duration::from_micros(250));
         assert_eq!(average.deviation(), Duration::ZERO);
         assert_eq!(average.count(), 100);
+    }
+
+    #[test]
+    fn two_stopwatches_together_weigh_as_much_as_they_have_values() {
+        let of = |count: usize, millis: u64| {
+            let mut average = Average::default();
+            (0..count).for_each(|_| average.add(Duration::from_millis(millis)));
+            average
+        };
+        let both = of(3, 10).together(of(1, 30));
+        assert_eq!((both.count(), both.mean()), (4, Duration::from_millis(15)));
+        // Three values 5 ms below the mean and one 15 ms above it: 75 ms².
+        assert_eq!(both.deviation(), rounded(libm::sqrt(75e-6)));
+        assert_eq!(both.longest(), Duration::from_millis(30));
+        assert_eq!(of(0, 0).together(of(0, 0)), Average::default());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use narukom::{Blackboard, Moment, Publisher, TopicSlot};
+use narukom::{Moment, Publisher, TopicSlot};
 use yase::expression::{CallError, MessageSource, Origin};
 use yase::{
     Activation, Chart, FieldId, FunctionId, Host, Occasion, RegionId, Report, TopicId, TraceRecord,
@@ -11,6 +11,8 @@ use yase::{
 };
 
 use super::Home;
+use super::lending::Lending;
+use super::urgency::Urgency;
 use super::values;
 use crate::coverage::Counts;
 use crate::error::Error;
@@ -24,11 +26,12 @@ pub(super) struct Desk {
     pub(super) agent: String,
     number: u32,
     pub(super) now: Moment,
-    /// By region; none while an activity has it.
-    pub(super) blackboards: Vec<Option<Blackboard>>,
+    pub(super) lending: Lending,
+    pub(super) urgency: Urgency,
     functions: Arc<[FunctionDeclaration]>,
     /// Activities to be called, in the order in which the machine started them.
     pub(super) started: VecDeque<Activation>,
+    /// Activities that were asked to return.
     pub(super) cancelled: Vec<Activation>,
     /// Activities that waited and whose state was left.
     pub(super) left: Vec<Activation>,
@@ -44,7 +47,6 @@ impl Desk {
         chart: &Chart,
         home: Home<'_>,
         functions: Arc<[FunctionDeclaration]>,
-        blackboards: Vec<Option<Blackboard>>,
     ) -> Result<Desk, Error> {
         home.hub
             .publisher(MODEL, home.agent)
@@ -55,7 +57,8 @@ impl Desk {
             agent: home.agent.into(),
             number: home.number,
             now: Moment::ZERO,
-            blackboards,
+            lending: Lending::new(chart, home),
+            urgency: Urgency::new(chart),
             functions,
             started: VecDeque::new(),
             cancelled: Vec::new(),
@@ -70,45 +73,28 @@ impl Desk {
     pub(super) fn begin_step(&mut self, now: Moment) {
         self.now = now;
         self.delivered.clear();
-    }
-
-    pub(super) fn blackboard_mut(&mut self, region: RegionId) -> Option<&mut Blackboard> {
-        self.blackboards.get_mut(region.0 as usize)?.as_mut()
-    }
-
-    fn blackboard(&self, region: RegionId) -> Option<&Blackboard> {
-        self.blackboards.get(region.0 as usize)?.as_ref()
-    }
-
-    pub(super) fn take(&mut self, region: RegionId) -> Option<Blackboard> {
-        self.blackboards.get_mut(region.0 as usize)?.take()
-    }
-
-    pub(super) fn put(&mut self, region: RegionId, blackboard: Blackboard) {
-        if let Some(place) = self.blackboards.get_mut(region.0 as usize) {
-            *place = Some(blackboard);
-        }
+        self.cancelled.clear();
     }
 
     /// The newest message of a source. A blackboard keeps one newest message for each topic: if that is not by the publisher that is
     /// meant, or if another host is meant, of which nothing arrives on this hub, there is none.
     fn newest(&self, region: RegionId, source: &MessageSource) -> Option<&dyn narukom::AnyMessage> {
-        let blackboard = self.blackboard(region)?;
-        let sample = blackboard.latest_sample(slot(source.topic))?;
+        let sample = self.lending.newest(region, slot(source.topic))?;
         let is_meant = match &source.origin {
             Origin::Own => true,
             Origin::Host(host) => **host == *self.host,
-            Origin::Publisher(publisher) => self.is_published_by(blackboard, sample, publisher),
+            Origin::Publisher(publisher) => self.is_published_by(sample, publisher),
             Origin::HostPublisher { host, publisher } => {
-                **host == *self.host && self.is_published_by(blackboard, sample, publisher)
+                **host == *self.host && self.is_published_by(sample, publisher)
             }
             _ => false,
         };
         is_meant.then_some(&*sample.message)
     }
 
-    fn is_published_by(&self, blackboard: &Blackboard, sample: &narukom::AnySample, publisher: &str) -> bool {
-        blackboard.hub().publisher_name(sample.header.publisher).is_some_and(|name| *name == *publisher)
+    fn is_published_by(&self, sample: &narukom::AnySample, publisher: &str) -> bool {
+        let hub = self.lending.hub();
+        hub.publisher_name(sample.header.publisher).is_some_and(|name| *name == *publisher)
     }
 }
 
@@ -130,18 +116,13 @@ impl Host for Desk {
 
     fn deliver(&mut self, region: RegionId) {
         let now = self.now;
-        let Some(blackboard) = self.blackboards.get_mut(region.0 as usize).and_then(Option::as_mut) else {
-            return;
-        };
+        let Some(blackboard) = self.lending.free_mut(region, now) else { return };
         blackboard.process_messages(now);
         self.delivered.extend(Delivery::all(blackboard, region.0));
     }
 
     fn inherit(&mut self, region: RegionId, from: RegionId) {
-        let places = [region.0 as usize, from.0 as usize];
-        if let Ok([Some(inner), Some(outer)]) = self.blackboards.get_disjoint_mut(places) {
-            inner.adopt(outer);
-        }
+        self.lending.inherit(region, from, self.now);
     }
 
     fn assign(
@@ -151,8 +132,8 @@ impl Host for Desk {
         path: &[FieldId],
         value: Value<'_>,
     ) -> Result<(), CallError> {
-        let blackboard = self.blackboard_mut(region);
-        let blackboard = blackboard.ok_or_else(|| CallError::new("an activity has the blackboard"))?;
+        let blackboard = self.lending.free_mut(region, self.now);
+        let blackboard = blackboard.ok_or_else(|| CallError::new("there is no such region"))?;
         let mut result = Ok(());
         let edited = blackboard.edit(slot(topic), |message| result = values::set_field(message, path, value));
         edited.map_err(|error| CallError::new(error.to_string()))?;
@@ -160,7 +141,7 @@ impl Host for Desk {
     }
 
     fn publish(&mut self, region: RegionId, topic: TopicId) {
-        if let Some(blackboard) = self.blackboard_mut(region)
+        if let Some(blackboard) = self.lending.free_mut(region, self.now)
             && let Err(error) = blackboard.edit(slot(topic), |_| {})
         {
             tracing::error!(agent = %self.agent, "nothing is published: {error}");
@@ -169,16 +150,21 @@ impl Host for Desk {
 
     fn publish_all(&mut self, region: RegionId) {
         let now = self.now;
-        if let Some(blackboard) = self.blackboard_mut(region) {
+        if let Some(blackboard) = self.lending.free_mut(region, now) {
             blackboard.publish_all(now);
         }
     }
 
     fn start(&mut self, activation: Activation) {
+        // Whoever had the blackboard before may have been asked to return; this one is not, so far.
+        if let Some(blackboard) = self.lending.free_mut(activation.region, self.now) {
+            blackboard.cancellation().withdraw();
+        }
         self.started.push_back(activation);
     }
 
     fn cancel(&mut self, activation: Activation) {
+        self.lending.cancel(activation.region);
         self.cancelled.push(activation);
     }
 
@@ -192,6 +178,7 @@ impl Host for Desk {
 
     fn trace(&mut self, chart: &Chart, record: &TraceRecord<'_>) {
         self.coverage.count(chart, record);
+        self.urgency.note(chart, record);
         self.records.publish(self.record(chart, record), self.now);
         self.listeners.tell(&self.host, &self.agent, chart, record);
     }

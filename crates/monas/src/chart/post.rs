@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use narukom::{Blackboard, Moment, TopicSlot};
+use narukom::{Blackboard, Moment, Narukom, TopicSlot};
 use yase::{Activation, Chart, NodeId};
 
 use crate::activity::{Activity, Progress, Topics};
 use crate::call::{self, Failure};
-use crate::statistics::ActivityStatistics;
+use crate::statistics::{ActivityStatistics, Average};
 
 /// One for each BASIC state with an activity, in the order of the document.
 pub(crate) struct Posts {
@@ -19,15 +19,19 @@ pub(crate) struct Posts {
 struct Post {
     node: NodeId,
     name: String,
-    priority: i32,
     duration: Duration,
+    /// The topics it says it reads, in order, if it says so.
+    declared: Option<Box<[TopicSlot]>>,
     /// None while it is being called.
     activity: Option<Box<dyn Activity>>,
     /// Whether `start` has been called since it was made or failed.
     started: bool,
+    /// The newest activation of its state.
+    newest: Option<Activation>,
     /// The activation that waits for its next call, and when that is.
     waits: Option<Waiting>,
     calls: u64,
+    call_time: Option<Average>,
     failures: u64,
     failures_in_a_row: u32,
 }
@@ -48,23 +52,16 @@ pub(crate) struct Assignment {
     post: usize,
     activity: Box<dyn Activity>,
     started: bool,
-    blackboard: Blackboard,
+    blackboard: Box<Blackboard>,
     called: bool,
 }
 
 /// What an activity returned.
-pub(crate) struct Returned {
-    pub(crate) activation: Activation,
-    pub(crate) result: Result<Progress, Failure>,
-}
+pub(crate) type Returned = Result<Progress, Failure>;
 
 impl Assignment {
     /// Calls the activity, where it is.
     pub(crate) fn call(&mut self) -> Returned {
-        Returned { activation: self.activation, result: self.try_call() }
-    }
-
-    fn try_call(&mut self) -> Result<Progress, Failure> {
         if !self.started {
             call::start(self.activity.as_mut(), &mut self.blackboard)?;
             self.started = true;
@@ -76,19 +73,21 @@ impl Assignment {
 
 impl Posts {
     /// `activities` are in the order of [`Chart::activities`].
-    pub(crate) fn new(chart: &Chart, activities: Vec<Box<dyn Activity>>) -> Posts {
+    pub(crate) fn new(chart: &Chart, activities: Vec<Box<dyn Activity>>, hub: &Narukom) -> Posts {
         let mut of_node = vec![None; chart.statechart().nodes().len()];
         let posts = chart.activities().zip(activities).enumerate().map(|(place, (entry, activity))| {
             of_node[entry.node.0 as usize] = Some(place);
             Post {
                 node: entry.node,
                 name: entry.name.into(),
-                priority: entry.priority,
                 duration: entry.duration.unwrap_or_default(),
+                declared: declared(&activity.topics(), hub),
                 activity: Some(activity),
                 started: false,
+                newest: None,
                 waits: None,
                 calls: 0,
+                call_time: None,
                 failures: 0,
                 failures_in_a_row: 0,
             }
@@ -105,29 +104,62 @@ impl Posts {
         self.posts.get_mut(place)
     }
 
-    /// Hands out the activity of an activation; none if it is being called already, which the machine rules out.
-    pub(crate) fn assign(&mut self, activation: Activation, blackboard: Blackboard) -> Option<Assignment> {
+    /// An activation has begun.
+    pub(crate) fn begin(&mut self, activation: Activation) {
+        if let Some(post) = self.post(activation) {
+            post.newest = Some(activation);
+        }
+    }
+
+    /// Whether no activation of its state has begun since.
+    pub(crate) fn is_newest(&self, activation: Activation) -> bool {
+        self.place(activation).is_some_and(|place| self.posts[place].newest == Some(activation))
+    }
+
+    /// Whether its activity is not being called: there is one instance for each state.
+    pub(crate) fn is_free(&self, activation: Activation) -> bool {
+        self.place(activation).is_some_and(|place| self.posts[place].activity.is_some())
+    }
+
+    /// Hands out the activity of an activation, with its blackboard and how urgent it is.
+    pub(crate) fn assign(
+        &mut self,
+        activation: Activation,
+        priority: i32,
+        blackboard: Box<Blackboard>,
+    ) -> Option<Assignment> {
         let place = self.place(activation)?;
         let post = &mut self.posts[place];
+        let activity = post.activity.take()?;
         post.waits = None;
+        post.calls += 1;
         Some(Assignment {
             activation,
-            priority: post.priority,
+            priority,
             duration: post.duration,
             post: place,
-            activity: post.activity.take()?,
+            activity,
             started: post.started,
             blackboard,
             called: false,
         })
     }
 
-    pub(crate) fn take_back(&mut self, assignment: Assignment) -> (Activation, Blackboard) {
+    /// Takes an activity back from where it was called, if it was, and how long that took, if anybody knows. Gives its blackboard.
+    pub(crate) fn take_back(
+        &mut self,
+        assignment: Assignment,
+        took: Option<Duration>,
+    ) -> (Activation, Box<Blackboard>) {
         let Assignment { activation, post, activity, started, blackboard, called, .. } = assignment;
         let post = &mut self.posts[post];
         post.activity = Some(activity);
         post.started = started;
-        post.calls += u64::from(called);
+        match (called, took) {
+            (true, Some(took)) => post.call_time.get_or_insert_default().add(took),
+            (true, None) => {}
+            (false, _) => post.calls -= 1,
+        }
         (activation, blackboard)
     }
 
@@ -138,12 +170,6 @@ impl Posts {
         waiting.map_or(&[], |waiting| &waiting.topics)
     }
 
-    /// What the activity says it reads and publishes, if it says so.
-    pub(crate) fn declared(&self, activation: Activation) -> Option<Topics> {
-        let activity = self.posts[self.place(activation)?].activity.as_ref()?;
-        Some(activity.topics()).filter(Topics::is_declared)
-    }
-
     /// The activation has come to its end.
     pub(crate) fn finished(&mut self, activation: Activation) {
         if let Some(post) = self.post(activation) {
@@ -151,13 +177,22 @@ impl Posts {
         }
     }
 
-    /// The activation is to be called again at `at`, or when a message arrives on one of these topics.
-    pub(crate) fn wait(&mut self, activation: Activation, at: Moment, topics: Vec<TopicSlot>) {
+    /// The activation is to be called again at `at`, or when a message arrives on a topic that was read on its blackboard. The chart's
+    /// guards read there too, so if the activity says what it reads, only that counts.
+    pub(crate) fn wait(&mut self, activation: Activation, at: Moment, blackboard: &Blackboard) {
+        let Some(post) = self.post(activation) else { return };
+        let mut topics = blackboard.topics_read();
+        if let Some(declared) = &post.declared {
+            topics.retain(|topic| declared.binary_search(topic).is_ok());
+        }
+        post.failures_in_a_row = 0;
+        post.waits = Some(Waiting { activation, at, topics });
+    }
+
+    /// The activation failed and is to be called again at `at`, whatever arrives.
+    pub(crate) fn pause(&mut self, activation: Activation, at: Moment) {
         if let Some(post) = self.post(activation) {
-            if !topics.is_empty() {
-                post.failures_in_a_row = 0;
-            }
-            post.waits = Some(Waiting { activation, at, topics });
+            post.waits = Some(Waiting { activation, at, topics: Vec::new() });
         }
     }
 
@@ -218,7 +253,14 @@ impl Posts {
             state: Some(chart.short_path(post.node)),
             calls: post.calls,
             failures: post.failures,
-            call_time: None,
+            call_time: post.call_time,
         })
     }
+}
+
+/// The topics that an activity says it reads, as the hub numbers them, if it says so.
+fn declared(topics: &Topics, hub: &Narukom) -> Option<Box<[TopicSlot]>> {
+    let mut slots: Vec<TopicSlot> = topics.read_paths().iter().filter_map(|path| hub.topic(path)).collect();
+    slots.sort_unstable();
+    topics.is_declared().then(|| slots.into())
 }

@@ -1,19 +1,20 @@
 //! A chart in real time: a thread that steps it, while its activities run on the pool of its agent.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use narukom::{Moment, TopicSlot};
 
 use super::ENDED;
 use super::clock::Clock;
-use super::mailbox::{Mail, Mailbox};
-use super::pool::Pool;
+use super::handover::{Mail, Mailbox};
+use super::pool::{Called, Pool};
 use super::real_time::Switch;
-use super::teller::Teller;
+use super::teller::{self, Teller};
 use crate::agent::Policy;
-use crate::chart::{Assignment, Returned, Runner};
+use crate::call::Failure;
+use crate::chart::{Assignment, Runner};
 use crate::frequency::Frequency;
-use crate::statistics::AgentStatistics;
+use crate::statistics::{AgentStatistics, Average};
 
 /// What the thread of a chart owns.
 pub(super) struct ChartThread {
@@ -21,14 +22,16 @@ pub(super) struct ChartThread {
     pub(super) runner: Runner,
     pub(super) policy: Policy,
     pub(super) frequency: Option<Frequency>,
-    pub(super) mailbox: Arc<Mailbox>,
-    pub(super) pool: Arc<Mutex<Pool>>,
+    pub(super) statistics_every: Option<u64>,
+    pub(super) mailbox: Arc<Mailbox<Called>>,
+    pub(super) pool: Arc<Pool>,
     pub(super) teller: Teller,
     pub(super) switch: Arc<Switch>,
     pub(super) clock: Clock,
     /// When it is woken beside what happens, counted from 0.
     pub(super) ticks: u64,
     pub(super) steps: u64,
+    pub(super) step_time: Average,
     /// How many activities are being called, or wait for it on the pool.
     pub(super) out: usize,
 }
@@ -40,7 +43,7 @@ impl ChartThread {
             self.mailbox.follow(topic);
         }
         self.runner.start(self.clock.now());
-        let mut mail = Mail::default();
+        let mut mail = Mail::<Called>::default();
         let mut stopped = None;
         while stopped.is_none() && !self.runner.is_over() {
             stopped = self.turn(&mut mail).err();
@@ -52,40 +55,47 @@ impl ChartThread {
         self.statistics(stopped)
     }
 
-    /// Lets the activities that are being called finish, and ends the chart.
-    fn wind_up(&mut self, mail: &mut Mail) {
+    /// Asks the activities that are being called to return, waits for them, and ends the chart.
+    fn wind_up(&mut self, mail: &mut Mail<Called>) {
+        self.runner.cancel_all();
         loop {
             let now = self.clock.now();
-            for (assignment, returned) in mail.returned.drain(..) {
-                self.out -= 1;
-                self.runner.take_back(assignment);
-                if let Err(failure) = self.runner.returned(returned, false, now) {
-                    tracing::error!(agent = %self.agent, "activity failed: {failure}");
+            while let Some(called) = mail.returned.pop_front() {
+                let activity = self.runner.activity_name(called.assignment.activation);
+                if let Err(failure) = self.take_back(called, false, now) {
+                    tracing::error!(agent = %self.agent, %activity, "activity failed: {failure}");
                 }
             }
             if self.out == 0 {
                 return self.runner.stop(now);
             }
-            self.mailbox.wait(Moment::MAX, &self.clock, mail);
+            self.wait(Moment::MAX, mail);
         }
+    }
+
+    fn wait(&self, until: Moment, mail: &mut Mail<Called>) {
+        let clock = self.clock;
+        let patience = || {
+            let now = clock.now();
+            (now < until).then(|| until.since(now))
+        };
+        self.mailbox.wait(patience, mail);
     }
 
     /// Takes the mail, and steps until the chart rests.
     ///
     /// # Errors
     /// Why the agent is to stop.
-    fn turn(&mut self, mail: &mut Mail) -> Result<(), String> {
+    fn turn(&mut self, mail: &mut Mail<Called>) -> Result<(), String> {
         let until = self.runner.due(self.clock.now()).min(self.tick());
-        self.mailbox.wait(until, &self.clock, mail);
+        self.wait(until, mail);
         if mail.stop {
             return Err(ENDED.into());
         }
         let now = self.clock.now();
         mail.messages.drain(..).for_each(|(topic, origin)| self.runner.message_arrived(topic, origin, now));
-        while let Some((assignment, returned)) = mail.returned.pop_front() {
-            self.out -= 1;
-            self.runner.take_back(assignment);
-            self.returned(returned, now)?;
+        while let Some(called) = mail.returned.pop_front() {
+            self.returned(called, now)?;
             self.rest(now)?;
         }
         self.rest(now)
@@ -110,23 +120,29 @@ impl ChartThread {
             self.ticks += 1;
         }
         self.steps += 1;
+        let began = self.clock.now();
         let stepped = self.runner.step(now);
         self.teller.tell(now, self.runner.delivered().to_vec());
-        // A running activity cannot be hurried; what it returns is taken when it comes.
-        self.runner.take_cancelled();
+        self.step_time.add(self.clock.now().since(began));
+        self.tell_times();
         stepped.map_err(|error| format!("chart `{}`: {error}", self.runner.name()))
     }
 
     fn submit(&mut self, assignment: Assignment) -> Result<(), String> {
-        let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
-        pool.submit(assignment, self.mailbox.clone()).map_err(|error| error.to_string())?;
+        self.pool.submit(assignment, &self.mailbox).map_err(|error| error.to_string())?;
         self.out += 1;
         Ok(())
     }
 
-    fn returned(&mut self, returned: Returned, now: Moment) -> Result<(), String> {
-        let activation = returned.activation;
-        let result = self.runner.returned(returned, self.policy == Policy::Restart, now);
+    fn take_back(&mut self, called: Called, restart: bool, now: Moment) -> Result<(), Failure> {
+        let Called { assignment, returned, took } = called;
+        self.out -= 1;
+        self.runner.returned(assignment, returned, Some(took), restart, now)
+    }
+
+    fn returned(&mut self, called: Called, now: Moment) -> Result<(), String> {
+        let activation = called.assignment.activation;
+        let result = self.take_back(called, self.policy == Policy::Restart, now);
         // What came on a topic before it was followed has to be assumed.
         let news: Vec<TopicSlot> = self
             .runner
@@ -151,6 +167,13 @@ impl ChartThread {
         }
     }
 
+    /// Writes to the log what steps and calls take, as often as that is wanted.
+    fn tell_times(&self) {
+        if self.statistics_every.is_some_and(|every| self.steps.is_multiple_of(every)) {
+            teller::log_times(&self.agent, self.steps, self.step_time, self.runner.activity_statistics());
+        }
+    }
+
     fn tick(&self) -> Moment {
         self.frequency.map_or(Moment::MAX, |frequency| frequency.due(self.ticks))
     }
@@ -162,6 +185,7 @@ impl ChartThread {
             cycles: self.steps,
             micro_steps: self.runner.micro_steps(),
             activities: self.runner.activity_statistics().collect(),
+            cycle_time: (self.step_time.count() > 0).then_some(self.step_time),
             stopped: stopped.filter(|reason| reason != ENDED),
             ..AgentStatistics::default()
         }

@@ -9,7 +9,7 @@ use super::clock::Clock;
 use super::deadlines::Deadlines;
 use super::real_time::Switch;
 use super::stopper::Stopper;
-use super::teller::Teller;
+use super::teller::{self, Teller};
 use crate::list::{List, Outcome};
 use crate::records::Delivery;
 use crate::statistics::{AgentStatistics, Average};
@@ -62,17 +62,8 @@ impl ListThread {
             tracing::warn!(agent = %self.agent, cycle = self.cycles, "cycle ended {late:?} after the next was due");
         }
         if self.statistics_every.is_some_and(|every| self.cycles.is_multiple_of(every)) {
-            self.tell_times();
-        }
-    }
-
-    fn tell_times(&self) {
-        let (mean, deviation) = (self.cycle_time.mean(), self.cycle_time.deviation());
-        tracing::info!(agent = %self.agent, cycles = self.cycles, ?mean, ?deviation, "a cycle takes");
-        for activity in self.list.activity_statistics() {
-            let (mean, deviation) =
-                (activity.call_time.map(|t| t.mean()), activity.call_time.map(|t| t.deviation()));
-            tracing::info!(agent = %self.agent, activity = %activity.name, ?mean, ?deviation, "a call takes");
+            let activities = self.list.activity_statistics();
+            teller::log_times(&self.agent, self.cycles, self.cycle_time, activities);
         }
     }
 

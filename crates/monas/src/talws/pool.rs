@@ -1,108 +1,98 @@
 //! The threads on which the activities of a statechart agent run.
 //!
-//! As many as the agent's charts can keep busy at once, at most twelve (the thesis's number); each starts when there is work
-//! that no other is free for. Work of higher priority goes first, of equal priority in the order it came.
+//! As many as the agent's charts can keep busy at once, at most twelve (the thesis's number), if the agent does not say how many; each
+//! starts when there is work that no other is free for. Work of higher priority goes first, of equal priority in the order it came.
 
-use std::cmp::{Ordering, Reverse};
-use std::collections::BinaryHeap;
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
+use std::time::Duration;
 
-use super::mailbox::Mailbox;
-use crate::chart::Assignment;
+use super::clock::Clock;
+use super::handover::{Mailbox, Work};
+use crate::chart::{Assignment, Returned};
 use crate::error::{Error, ErrorKind};
 
-/// The largest number of threads of a pool.
+/// The largest number of threads of a pool whose agent does not say how many there are to be.
 const MOST_WORKERS: usize = 12;
 
 /// A fixed number of threads and the work that waits for them.
 pub(super) struct Pool {
     name: String,
-    limit: usize,
-    shared: Arc<Shared>,
-    workers: Vec<JoinHandle<()>>,
-}
-
-struct Shared {
-    state: Mutex<State>,
-    ready: Condvar,
-}
-
-#[derive(Default)]
-struct State {
-    waiting: BinaryHeap<Waiting<Job>>,
-    idle: usize,
-    submitted: u64,
-    closed: bool,
+    clock: Clock,
+    work: Arc<Work<Job>>,
+    workers: Mutex<Vec<JoinHandle<()>>>,
 }
 
 /// An activity to be called, and whom to tell.
 struct Job {
-    assignment: Box<Assignment>,
-    mailbox: Arc<Mailbox>,
+    assignment: Assignment,
+    mailbox: Arc<Mailbox<Called>>,
 }
 
-/// Something that waits for its turn: the greatest comes first.
-struct Waiting<T> {
-    priority: i32,
-    /// The earlier of two of equal priority is the greater.
-    number: Reverse<u64>,
-    what: T,
+/// An activity that was called.
+pub(super) struct Called {
+    pub(super) assignment: Assignment,
+    pub(super) returned: Returned,
+    /// How long the call took.
+    pub(super) took: Duration,
+}
+
+/// How many threads a pool has whose charts have so many activities at once, if its agent does not say.
+pub(super) fn workers(set: Option<usize>, useful: usize) -> usize {
+    set.unwrap_or_else(|| useful.min(MOST_WORKERS)).max(1)
 }
 
 impl Pool {
-    /// A pool without threads yet.
-    pub(super) fn new(name: &str, wanted: usize) -> Pool {
-        let shared = Shared { state: Mutex::default(), ready: Condvar::new() };
-        Pool {
-            name: name.into(),
-            limit: wanted.clamp(1, MOST_WORKERS),
-            shared: Arc::new(shared),
-            workers: vec![],
-        }
+    /// A pool that will have so many threads, without any yet.
+    pub(super) fn new(name: &str, most: usize, clock: Clock) -> Pool {
+        Pool { name: name.into(), clock, work: Arc::new(Work::new(most)), workers: Mutex::default() }
     }
 
     /// Has an activity called; what it returned goes to the mailbox.
     ///
     /// # Errors
     /// The system gives no thread, and there is none yet.
-    pub(super) fn submit(&mut self, assignment: Assignment, mailbox: Arc<Mailbox>) -> Result<(), Error> {
-        let all_busy = {
-            let mut state = self.shared.lock();
-            state.submitted += 1;
-            let (priority, number) = (assignment.priority, Reverse(state.submitted));
-            let what = Job { assignment: Box::new(assignment), mailbox };
-            state.waiting.push(Waiting { priority, number, what });
-            state.waiting.len() > state.idle
-        };
-        self.shared.ready.notify_one();
-        match all_busy && self.workers.len() < self.limit {
+    pub(super) fn submit(&self, assignment: Assignment, mailbox: &Arc<Mailbox<Called>>) -> Result<(), Error> {
+        let job = Job { mailbox: mailbox.clone(), assignment };
+        match self.work.submit(job.assignment.priority, job) {
             true => self.hire(),
             false => Ok(()),
         }
     }
 
-    fn hire(&mut self) -> Result<(), Error> {
-        let shared = self.shared.clone();
-        let name = format!("{} {}", self.name, self.workers.len() + 1);
-        match thread::Builder::new().name(name).spawn(move || shared.work()) {
-            Ok(worker) => self.workers.push(worker),
-            Err(error) if self.workers.is_empty() => {
+    fn hire(&self) -> Result<(), Error> {
+        let mut workers = self.workers.lock().unwrap_or_else(PoisonError::into_inner);
+        let (work, clock) = (self.work.clone(), self.clock);
+        let name = format!("{} {}", self.name, workers.len() + 1);
+        match thread::Builder::new().name(name).spawn(move || run(&work, clock)) {
+            Ok(worker) => workers.push(worker),
+            Err(error) if self.work.one_less() => {
+                tracing::warn!(agent = %self.name, "no further thread for activities: {error}");
+            }
+            Err(error) => {
                 let message = format!("no thread for the activities of `{}`: {error}", self.name);
                 return Err(Error::new(ErrorKind::Thread, message).caused_by(error));
             }
-            Err(error) => tracing::warn!(agent = %self.name, "no further thread for activities: {error}"),
         }
         Ok(())
+    }
+}
+
+/// What a worker does: it calls one activity after the other. A panic of an activity does not get here.
+fn run(work: &Work<Job>, clock: Clock) {
+    while let Some(Job { mut assignment, mailbox }) = work.next() {
+        let began = clock.now();
+        let returned = assignment.call();
+        let took = clock.now().since(began);
+        mailbox.returned(Called { assignment, returned, took });
     }
 }
 
 impl Drop for Pool {
     /// Lets every thread finish the activity it is in; what still waits is not called.
     fn drop(&mut self) {
-        self.shared.lock().closed = true;
-        self.shared.ready.notify_all();
-        for worker in self.workers.drain(..) {
+        self.work.close();
+        for worker in self.workers.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
             if worker.join().is_err() {
                 tracing::error!(agent = %self.name, "a thread for activities has panicked");
             }
@@ -110,74 +100,13 @@ impl Drop for Pool {
     }
 }
 
-impl Shared {
-    fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn work(&self) {
-        while let Some(Job { mut assignment, mailbox }) = self.next() {
-            let returned = assignment.call();
-            mailbox.returned(*assignment, returned);
-        }
-    }
-
-    /// The most urgent job, waited for; none when the pool is closed.
-    fn next(&self) -> Option<Job> {
-        let mut state = self.lock();
-        loop {
-            if state.closed {
-                return None;
-            }
-            if let Some(waiting) = state.waiting.pop() {
-                return Some(waiting.what);
-            }
-            state.idle += 1;
-            state = self.ready.wait(state).unwrap_or_else(PoisonError::into_inner);
-            state.idle -= 1;
-        }
-    }
-}
-
-impl<T> Waiting<T> {
-    fn urgency(&self) -> (i32, Reverse<u64>) {
-        (self.priority, self.number)
-    }
-}
-
-impl<T> PartialEq for Waiting<T> {
-    fn eq(&self, other: &Waiting<T>) -> bool {
-        self.urgency() == other.urgency()
-    }
-}
-
-impl<T> Eq for Waiting<T> {}
-
-impl<T> PartialOrd for Waiting<T> {
-    fn partial_cmp(&self, other: &Waiting<T>) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl<T> Ord for Waiting<T> {
-    fn cmp(&self, other: &Waiting<T>) -> Ordering {
-        self.urgency().cmp(&other.urgency())
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::workers;
 
     #[test]
-    fn the_most_urgent_comes_first_and_of_equals_the_one_that_came_first() {
-        let came = [("a", 0), ("b", 5), ("c", 0), ("d", -1), ("e", 5)];
-        let mut heap: BinaryHeap<Waiting<&str>> = came
-            .into_iter()
-            .zip(0..)
-            .map(|((what, priority), number)| Waiting { priority, number: Reverse(number), what })
-            .collect();
-        let order: Vec<&str> = std::iter::from_fn(|| heap.pop()).map(|waiting| waiting.what).collect();
-        assert_eq!(order, ["b", "e", "a", "c", "d"]);
+    fn there_are_as_many_threads_as_activities_at_once_but_twelve_or_as_many_as_are_set() {
+        assert_eq!([0, 1, 3, 12, 40].map(|useful| workers(None, useful)), [1, 1, 3, 12, 12]);
+        assert_eq!([0, 1, 20].map(|set| workers(Some(set), 3)), [1, 1, 20]);
     }
 }

@@ -1,17 +1,17 @@
 //! Runs in real time: a thread for each list, each chart and each body, and a pool for the activities of each agent's charts.
 
 use std::fmt;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 
 use super::body::Body;
 use super::chart_thread::ChartThread;
 use super::clock::Clock;
 use super::deadlines::Deadlines;
+use super::handover::Mailbox;
 use super::list_thread::ListThread;
-use super::mailbox::Mailbox;
-use super::pool::Pool;
+use super::pool::{self, Called, Pool};
 use super::setup::{Environment, Member, Stage, Station, tick};
 use super::stopper::Stopper;
 use super::{ENDED, Talws};
@@ -22,7 +22,7 @@ use crate::statistics::{AgentStatistics, Average, Statistics};
 pub struct Running {
     stopper: Stopper,
     clock: Clock,
-    mailboxes: Vec<Arc<Mailbox>>,
+    mailboxes: Vec<Arc<Mailbox<Called>>>,
     /// The threads of agents, those of one agent next to each other.
     agents: Vec<JoinHandle<AgentStatistics>>,
     others: Vec<JoinHandle<()>>,
@@ -31,7 +31,7 @@ pub struct Running {
 /// What stops all that belongs to one agent.
 pub(super) struct Switch {
     off: AtomicBool,
-    mailboxes: Vec<Arc<Mailbox>>,
+    mailboxes: Vec<Arc<Mailbox<Called>>>,
     /// Set when the body of the host is to stand still.
     rests: Arc<AtomicBool>,
 }
@@ -140,7 +140,7 @@ impl Running {
             Arc::new(Switch { off: AtomicBool::new(false), mailboxes, rests: rests.clone() })
         };
         let switches: Vec<Arc<Switch>> = members.iter().map(switch).collect();
-        let mailboxes: Vec<Arc<Mailbox>> =
+        let mailboxes: Vec<Arc<Mailbox<Called>>> =
             switches.iter().flat_map(|s| s.mailboxes.iter().cloned()).collect();
         self.mailboxes.extend(mailboxes.iter().cloned());
         // Before anybody publishes, so that nobody misses anything.
@@ -152,15 +152,16 @@ impl Running {
     }
 
     fn launch_member(&mut self, member: Member, host: &str, switch: Arc<Switch>) -> Result<(), Error> {
-        let Member { name, policy, frequency, statistics_every, list, charts, teller } = member;
-        let wanted = charts.iter().map(|runner| runner.max_activities()).sum();
-        let pool = Arc::new(Mutex::new(Pool::new(&name, wanted)));
+        let Member { name, policy, frequency, statistics_every, workers, list, charts, teller } = member;
+        let useful = charts.iter().map(|runner| runner.max_activities()).sum();
+        let pool = Arc::new(Pool::new(&name, pool::workers(workers, useful), self.clock));
         for (runner, mailbox) in charts.into_iter().zip(&switch.mailboxes) {
             let thread = ChartThread {
                 agent: name.clone(),
                 runner,
                 policy,
                 frequency,
+                statistics_every,
                 mailbox: mailbox.clone(),
                 pool: pool.clone(),
                 teller: teller.another()?,
@@ -168,6 +169,7 @@ impl Running {
                 clock: self.clock,
                 ticks: 0,
                 steps: 0,
+                step_time: Average::default(),
                 out: 0,
             };
             self.agents.push(spawn(&name, move || thread.run())?);

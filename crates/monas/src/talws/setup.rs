@@ -39,6 +39,7 @@ pub(super) struct Member {
     pub(super) policy: Policy,
     pub(super) frequency: Option<Frequency>,
     pub(super) statistics_every: Option<u64>,
+    pub(super) workers: Option<usize>,
     pub(super) list: Option<List>,
     pub(super) charts: Vec<Runner>,
     pub(super) teller: Teller,
@@ -115,7 +116,7 @@ impl Crew<'_> {
     }
 
     fn member(&self, agent: Agent, hub: &Narukom) -> Result<Member, Error> {
-        let Agent { name, policy, frequency, activities, charts, statistics_every, .. } = agent;
+        let Agent { name, policy, frequency, activities, charts, statistics_every, workers, .. } = agent;
         if frequency.is_none() && !activities.is_empty() {
             let message = format!("agent `{name}` has activities, but nothing says how often they run");
             return Err(Error::new(ErrorKind::NoFrequency, message).with_hint("say so with `every`"));
@@ -131,7 +132,7 @@ impl Crew<'_> {
             List::new(&name, policy, activities, blackboard)
         });
         let teller = Teller::new(hub, &name)?;
-        Ok(Member { name, policy, frequency, statistics_every, list, charts, teller })
+        Ok(Member { name, policy, frequency, statistics_every, workers, list, charts, teller })
     }
 }
 

@@ -13,7 +13,7 @@ use crate::statistics::ActivityStatistics;
 /// A chart and the activities that are under way.
 pub(super) struct SimulatedChart {
     runner: Runner,
-    /// What activities have done and nobody knows yet, in the order of the calls.
+    /// Activities whose declared duration is not over, in the order of the calls. What they did nobody knows yet.
     under_way: Vec<UnderWay>,
     /// Wakes it beside what happens.
     frequency: Option<Frequency>,
@@ -28,6 +28,7 @@ const MOST_CALLS: u32 = 10_000;
 
 struct UnderWay {
     until: Moment,
+    assignment: Assignment,
     returned: Returned,
 }
 
@@ -75,8 +76,8 @@ impl SimulatedChart {
                 self.call(assignment, now)?;
             } else if self.runner.needs_step(now) || self.tick() <= now {
                 self.step(now, teller)?;
-            } else if let Some(returned) = self.next_return(now) {
-                self.returned(returned, now, agent, policy, teller.number())?;
+            } else if let Some(over) = self.next_return(now) {
+                self.returned(over, now, agent, policy, teller.number())?;
             } else if let Some(assignment) = self.runner.next_waiting(now) {
                 self.call(assignment, now)?;
             } else {
@@ -97,15 +98,14 @@ impl SimulatedChart {
         self.calls += 1;
         if self.calls > MOST_CALLS {
             let activity = self.runner.activity_name(assignment.activation);
-            self.runner.take_back(assignment);
+            self.runner.put_back(assignment);
             return Err(format!(
                 "activity `{activity}` is called at one moment after {MOST_CALLS} other calls"
             ));
         }
         let until = now + assignment.duration;
         let returned = assignment.call();
-        self.runner.take_back(assignment);
-        self.under_way.push(UnderWay { until, returned });
+        self.under_way.push(UnderWay { until, assignment, returned });
         Ok(())
     }
 
@@ -115,30 +115,31 @@ impl SimulatedChart {
         }
         let stepped = self.runner.step(now);
         teller.tell(now, self.runner.delivered().to_vec());
-        for cancelled in self.runner.take_cancelled() {
-            let under_way = self.under_way.iter_mut().filter(|one| one.returned.activation == cancelled);
+        while let Some(cancelled) = self.runner.next_cancelled() {
+            let under_way = self.under_way.iter_mut().filter(|one| one.assignment.activation == cancelled);
             under_way.for_each(|one| one.until = now);
         }
         stepped.map_err(|error| format!("chart `{}`: {error}", self.runner.name()))
     }
 
     /// The first call whose time is over; of several that end at one moment the one that was made first.
-    fn next_return(&mut self, now: Moment) -> Option<Returned> {
+    fn next_return(&mut self, now: Moment) -> Option<UnderWay> {
         let first = self.under_way.iter().enumerate().min_by_key(|(place, one)| (one.until, *place));
         let place = first.filter(|(_, one)| one.until <= now).map(|(place, _)| place)?;
-        Some(self.under_way.remove(place).returned)
+        Some(self.under_way.remove(place))
     }
 
     fn returned(
         &mut self,
-        returned: Returned,
+        over: UnderWay,
         now: Moment,
         agent: &str,
         policy: Policy,
         cycle: u64,
     ) -> Result<(), String> {
-        let activation = returned.activation;
-        let result = self.runner.returned(returned, policy == Policy::Restart, now);
+        let UnderWay { assignment, returned, .. } = over;
+        let activation = assignment.activation;
+        let result = self.runner.returned(assignment, returned, None, policy == Policy::Restart, now);
         let Err(failure) = result else { return Ok(()) };
         let activity = self.runner.activity_name(activation);
         tracing::error!(%agent, %activity, cycle, "activity failed: {failure}");

@@ -7,6 +7,7 @@ use narukom::{Moment, Narukom, Publisher};
 
 use crate::error::Error;
 use crate::records::{self, CYCLE, Delivery};
+use crate::statistics::{ActivityStatistics, Average};
 
 /// Tells of the cycles of an agent; several count together when the list and the charts run on threads of their own.
 pub(super) struct Teller {
@@ -36,5 +37,21 @@ impl Teller {
     /// How many cycles there were.
     pub(super) fn number(&self) -> u64 {
         self.number.load(Ordering::Relaxed)
+    }
+}
+
+/// Writes to the log what the cycles of an agent and the calls of its activities take.
+pub(super) fn log_times(
+    agent: &str,
+    cycles: u64,
+    cycle: Average,
+    activities: impl Iterator<Item = ActivityStatistics>,
+) {
+    let (mean, deviation) = (cycle.mean(), cycle.deviation());
+    tracing::info!(%agent, cycles, ?mean, ?deviation, "a cycle takes");
+    for activity in activities {
+        let time = activity.call_time;
+        let (mean, deviation) = (time.map(|time| time.mean()), time.map(|time| time.deviation()));
+        tracing::info!(%agent, activity = %activity.name, ?mean, ?deviation, "a call takes");
     }
 }

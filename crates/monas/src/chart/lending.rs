@@ -1,0 +1,169 @@
+//! The blackboards of a chart's regions: which are here, which are lent to activities, and what those show meanwhile.
+//!
+//! An activity owns its region's blackboard while it is called, so nothing moves on it and nobody waits for it. Guards are read
+//! all the same, to see whether an event is one to be held: they see what the blackboard showed when it was lent. Messages are shared,
+//! so that is a reference for each topic that guards read.
+//!
+//! A chart that does not wait for activities (statechart dialects in which leaving a state interrupts its activity) goes on with a
+//! region whose blackboard is still away. It gets another one then; the old one, and whatever the activity wrote on it, is dropped
+//! when it comes back.
+
+use narukom::{AnySample, Blackboard, Cancellation, Moment, Narukom, TopicSlot};
+use yase::{Activation, Chart, RegionId};
+
+use super::Home;
+use crate::talws::component_seed;
+
+/// The blackboards of a chart.
+pub(super) struct Lending {
+    hub: Narukom,
+    agent: String,
+    seed: u64,
+    /// The topics that guards read, in order.
+    read: Box<[TopicSlot]>,
+    regions: Vec<Region>,
+}
+
+struct Region {
+    /// Where it is, for its random numbers.
+    path: String,
+    /// How many blackboards it has had.
+    made: u32,
+    /// None while an activity has it.
+    here: Option<Box<Blackboard>>,
+    loan: Option<Loan>,
+    /// While it is lent: the newest message of each topic that guards read.
+    shown: Box<[Option<AnySample>]>,
+}
+
+/// To whom a blackboard is lent.
+struct Loan {
+    activation: Activation,
+    cancellation: Cancellation,
+}
+
+impl Lending {
+    pub(super) fn new(chart: &Chart, home: Home<'_>) -> Lending {
+        let read: Box<[TopicSlot]> = chart.reads().iter().map(|topic| TopicSlot::new(topic.0)).collect();
+        let regions = chart.regions().map(|region| {
+            let node = chart.region_node(region);
+            let node = node.map(|node| chart.statechart().path(node)).unwrap_or_default();
+            let path = format!("{}/{}/{}/{node}", home.hub.host(), home.agent, home.number);
+            Region { path, made: 0, here: None, loan: None, shown: vec![None; read.len()].into() }
+        });
+        let regions = regions.collect();
+        let mut lending =
+            Lending { hub: home.hub.clone(), agent: home.agent.into(), seed: home.seed, read, regions };
+        (0..lending.regions.len()).for_each(|place| lending.furnish(place));
+        lending
+    }
+
+    /// Gives a region a new blackboard.
+    fn furnish(&mut self, place: usize) {
+        let region = &mut self.regions[place];
+        let mut blackboard = self.hub.blackboard(&self.agent);
+        let seed = match region.made {
+            0 => component_seed(self.seed, &region.path),
+            more => component_seed(self.seed, &format!("{}#{more}", region.path)),
+        };
+        blackboard.set_random(seed);
+        // What guards read is delivered, and recorded, from the first step on.
+        self.read.iter().for_each(|topic| blackboard.interest(*topic));
+        region.made += 1;
+        region.here = Some(Box::new(blackboard));
+    }
+
+    /// A region's blackboard, if it is here.
+    pub(super) fn here(&self, region: RegionId) -> Option<&Blackboard> {
+        self.regions.get(region.0 as usize)?.here.as_deref()
+    }
+
+    /// A region's blackboard, for one who may change it: no activity that has it matters any more.
+    pub(super) fn free_mut(&mut self, region: RegionId, now: Moment) -> Option<&mut Blackboard> {
+        let place = region.0 as usize;
+        if self.regions.get(place)?.here.is_none() {
+            self.replace(place, now);
+        }
+        self.regions[place].here.as_deref_mut()
+    }
+
+    /// The new blackboard knows the states and histories that were published by now.
+    fn replace(&mut self, place: usize, now: Moment) {
+        if let Some(loan) = self.regions[place].loan.take() {
+            loan.cancellation.request();
+        }
+        self.regions[place].shown.fill(None);
+        self.furnish(place);
+        if let Some(blackboard) = &mut self.regions[place].here {
+            blackboard.process_messages(now);
+        }
+    }
+
+    /// A region takes over the values of another.
+    pub(super) fn inherit(&mut self, region: RegionId, from: RegionId, now: Moment) {
+        self.free_mut(region, now);
+        self.free_mut(from, now);
+        let places = [region.0 as usize, from.0 as usize];
+        let Ok([inner, outer]) = self.regions.get_disjoint_mut(places) else { return };
+        if let (Some(inner), Some(outer)) = (&mut inner.here, &outer.here) {
+            inner.adopt(outer);
+        }
+    }
+
+    /// The newest message of a topic that guards read: of the blackboard if it is here, else of when it was lent.
+    pub(super) fn newest(&self, region: RegionId, topic: TopicSlot) -> Option<&AnySample> {
+        let region = self.regions.get(region.0 as usize)?;
+        match &region.here {
+            Some(blackboard) => blackboard.latest_sample(topic),
+            None => region.shown[self.read.binary_search(&topic).ok()?].as_ref(),
+        }
+    }
+
+    /// Hands the blackboard of its region to an activity.
+    pub(super) fn lend(&mut self, activation: Activation, now: Moment) -> Option<Box<Blackboard>> {
+        self.free_mut(activation.region, now)?;
+        let region = &mut self.regions[activation.region.0 as usize];
+        let blackboard = region.here.take()?;
+        for (shown, topic) in region.shown.iter_mut().zip(&self.read) {
+            *shown = blackboard.shown(*topic).cloned();
+        }
+        region.loan = Some(Loan { activation, cancellation: blackboard.cancellation().clone() });
+        Some(blackboard)
+    }
+
+    /// Takes a blackboard back from an activity, and says where it is now; none if the region has another by now, or if it is of no more
+    /// use, being full of what nobody is to know.
+    pub(super) fn take_back(
+        &mut self,
+        activation: Activation,
+        blackboard: Box<Blackboard>,
+        of_use: bool,
+    ) -> Option<&mut Blackboard> {
+        let region = self.regions.get_mut(activation.region.0 as usize)?;
+        region.loan.take_if(|loan| loan.activation == activation)?;
+        region.shown.fill(None);
+        region.here = of_use.then_some(blackboard);
+        region.here.as_deref_mut()
+    }
+
+    /// Asks whoever has a region's blackboard, or is to get it next, to return soon.
+    pub(super) fn cancel(&self, region: RegionId) {
+        let Some(region) = self.regions.get(region.0 as usize) else { return };
+        match (&region.loan, &region.here) {
+            (Some(loan), _) => loan.cancellation.request(),
+            (None, Some(blackboard)) => blackboard.cancellation().request(),
+            (None, None) => {}
+        }
+    }
+
+    /// Asks all who have a blackboard to return soon.
+    pub(super) fn cancel_all(&self) {
+        let loans = self.regions.iter().filter_map(|region| region.loan.as_ref());
+        loans.for_each(|loan| loan.cancellation.request());
+    }
+
+    /// The hub that all blackboards are of.
+    pub(super) fn hub(&self) -> &Narukom {
+        &self.hub
+    }
+}

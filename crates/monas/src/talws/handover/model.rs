@@ -1,0 +1,206 @@
+//! The hand-over under a checker of interleavings: the threads of a chart, of its pool and of somebody who publishes, run one at a time
+//! and switched wherever they touch what they share. That a thread sleeps for ever is found as a deadlock.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use narukom::TopicSlot;
+use shuttle::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use shuttle::sync::{Condvar, Mutex, MutexGuard};
+use shuttle::thread::{self, JoinHandle};
+
+use super::primitives::{Flag, Monitor, Primitives};
+use super::{Mail, Mailbox, Work};
+
+/// The primitives of the checker. `WAKES` is false for those of a world in which nobody is ever woken, to see that the checker sees that.
+struct Checked<const WAKES: bool>;
+
+struct CheckedMonitor<T, const WAKES: bool> {
+    value: Mutex<T>,
+    changed: Condvar,
+}
+
+impl<const WAKES: bool> Primitives for Checked<WAKES> {
+    type Monitor<T: Send + 'static> = CheckedMonitor<T, WAKES>;
+    type Flag = AtomicBool;
+
+    fn linger(worth: impl Fn() -> bool) {
+        worth();
+    }
+}
+
+impl<T: Send, const WAKES: bool> Monitor<T> for CheckedMonitor<T, WAKES> {
+    type Guard<'a>
+        = MutexGuard<'a, T>
+    where
+        Self: 'a;
+
+    fn new(value: T) -> Self {
+        CheckedMonitor { value: Mutex::new(value), changed: Condvar::new() }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, T> {
+        self.value.lock().unwrap()
+    }
+
+    /// The checker knows no time, so nobody wakes by himself.
+    fn sleep<'a>(&'a self, guard: MutexGuard<'a, T>, _: Option<Duration>) -> MutexGuard<'a, T> {
+        self.changed.wait(guard).unwrap()
+    }
+
+    fn wake_one(&self) {
+        if WAKES {
+            self.changed.notify_one();
+        }
+    }
+
+    fn wake_all(&self) {
+        self.changed.notify_all();
+    }
+}
+
+impl Flag for AtomicBool {
+    fn new() -> AtomicBool {
+        AtomicBool::new(false)
+    }
+
+    fn is_set(&self) -> bool {
+        self.load(Ordering::Acquire)
+    }
+
+    fn set(&self, value: bool) {
+        self.store(value, Ordering::Release);
+    }
+
+    fn raise(&self) -> bool {
+        self.swap(true, Ordering::SeqCst)
+    }
+}
+
+/// The topic that the chart reads.
+const TOPIC: TopicSlot = TopicSlot::new(0);
+
+/// What happens: so many regions have their activity called so many times each, on so many workers, while somebody publishes.
+#[derive(Clone, Copy)]
+struct Scene {
+    regions: usize,
+    calls: usize,
+    workers: usize,
+    messages: usize,
+}
+
+/// An activity to be called: its region, and how many of its region's are being called.
+struct Call {
+    region: usize,
+    running: Arc<AtomicUsize>,
+}
+
+/// What the threads share.
+struct Stage<const WAKES: bool> {
+    work: Work<Call, Checked<WAKES>>,
+    mailbox: Mailbox<Call, Checked<WAKES>>,
+    /// The newest message of the topic.
+    published: Mutex<usize>,
+}
+
+impl Scene {
+    /// Plays it to its end. Whoever waits in vain never comes there.
+    fn play<const WAKES: bool>(self) {
+        let stage = Arc::new(Stage::<WAKES> {
+            work: Work::new(self.workers),
+            mailbox: Mailbox::new(1),
+            published: Mutex::new(0),
+        });
+        let publisher = {
+            let stage = stage.clone();
+            thread::spawn(move || stage.publish(self.messages))
+        };
+        let mut workers = Vec::new();
+        self.step_the_chart(&stage, &mut workers);
+        stage.work.close();
+        workers.into_iter().for_each(|worker| worker.join().unwrap());
+        publisher.join().unwrap();
+    }
+
+    /// The chart: each return begins the next call of its region; in the end all have been made, and the last message has been seen.
+    fn step_the_chart<const WAKES: bool>(self, stage: &Arc<Stage<WAKES>>, workers: &mut Vec<JoinHandle<()>>) {
+        // What was published before the topic was followed has to be looked for.
+        let mut seen = if stage.mailbox.follow(TOPIC) { *stage.published.lock().unwrap() } else { 0 };
+        let mut left = vec![self.calls; self.regions];
+        for region in 0..self.regions {
+            stage.submit(Call { region, running: Arc::default() }, workers);
+        }
+        let mut mail = Mail::default();
+        while seen < self.messages || left.iter().any(|left| *left > 0) {
+            stage.mailbox.wait(|| Some(Duration::MAX), &mut mail);
+            if mail.messages.drain(..).count() > 0 {
+                seen = *stage.published.lock().unwrap();
+            }
+            for call in mail.returned.drain(..) {
+                left[call.region] -= 1;
+                if left[call.region] > 0 {
+                    stage.submit(call, workers);
+                }
+            }
+        }
+    }
+}
+
+impl<const WAKES: bool> Stage<WAKES> {
+    fn publish(&self, messages: usize) {
+        for message in 1..=messages {
+            *self.published.lock().unwrap() = message;
+            self.mailbox.message(TOPIC);
+        }
+    }
+
+    fn submit(self: &Arc<Self>, call: Call, workers: &mut Vec<JoinHandle<()>>) {
+        let priority = call.region as i32;
+        if self.work.submit(priority, call) {
+            let stage = self.clone();
+            workers.push(thread::spawn(move || stage.run()));
+        }
+    }
+
+    fn run(&self) {
+        while let Some(call) = self.work.next() {
+            assert_eq!(call.running.fetch_add(1, Ordering::SeqCst), 0, "two at once in one region");
+            thread::yield_now();
+            call.running.fetch_sub(1, Ordering::SeqCst);
+            self.mailbox.returned(call);
+        }
+    }
+}
+
+#[test]
+fn every_activity_comes_back_and_every_message_wakes_in_ten_thousand_interleavings() {
+    let scene = Scene { regions: 3, calls: 3, workers: 2, messages: 2 };
+    shuttle::check_random(move || scene.play::<true>(), 6_000);
+    shuttle::check_pct(move || scene.play::<true>(), 4_000, 3);
+}
+
+#[test]
+fn no_wake_up_is_lost_in_any_interleaving_of_a_chart_and_a_message() {
+    let scene = Scene { regions: 0, calls: 0, workers: 0, messages: 1 };
+    shuttle::check_dfs(move || scene.play::<true>(), None);
+}
+
+#[test]
+fn more_workers_than_work_go_home() {
+    let scene = Scene { regions: 2, calls: 1, workers: 4, messages: 0 };
+    shuttle::check_random(move || scene.play::<true>(), 2_000);
+}
+
+#[test]
+#[should_panic(expected = "deadlock")]
+fn a_lost_wake_up_of_a_chart_would_be_found() {
+    let scene = Scene { regions: 0, calls: 0, workers: 0, messages: 1 };
+    shuttle::check_dfs(move || scene.play::<false>(), None);
+}
+
+#[test]
+#[should_panic(expected = "deadlock")]
+fn a_lost_wake_up_of_a_worker_would_be_found() {
+    let scene = Scene { regions: 1, calls: 2, workers: 1, messages: 0 };
+    shuttle::check_random(move || scene.play::<false>(), 2_000);
+}
