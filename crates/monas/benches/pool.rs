@@ -1,1 +1,294 @@
-fn main() {}
+//! The pool of statechart agents, in real time: `cargo bench -p monas`.
+//!
+//! First figures of one interleaved run: a call through the pool and back beside a round trip through two channels, activities a second,
+//! regions in parallel, and what an idle chart costs. Then each by itself.
+#![allow(clippy::unwrap_used, reason = "a bench that cannot go on ends")]
+#![allow(clippy::disallowed_methods, reason = "a bench reads the clock and has threads")]
+
+use std::hint::black_box;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use monas::measured::RoundTrip;
+use monas::{Agent, Blackboard, BoxError, Registry, Running, Talws};
+use yase::Source;
+
+fn main() {
+    // Under `cargo test` every bench runs once, and nothing is told.
+    if std::env::args().any(|argument| argument == "--bench") {
+        println!("one interleaved run; median (least to most)");
+        tell_round_trips("at once", None);
+        tell_round_trips("after a rest of 500 us", Some(Duration::from_micros(500)));
+        tell_activities();
+        tell_regions();
+        tell_idle();
+    }
+    divan::main();
+}
+
+#[divan::bench]
+fn pool_and_back(bencher: Bencher<'_, '_>) {
+    let mut pool = RoundTrip::new().unwrap();
+    bencher.bench_local(|| pool.call().unwrap());
+}
+
+#[divan::bench]
+fn channel_and_back(bencher: Bencher<'_, '_>) {
+    let mut channels = Channels::new();
+    bencher.bench_local(|| channels.call());
+}
+
+#[divan::bench(args = [1, 3], sample_count = 20, sample_size = 1)]
+fn activities(bencher: Bencher<'_, '_>, regions: usize) {
+    let looping = Looping::new(regions);
+    bencher.counter(ItemsCount::new(Looping::BATCH)).bench_local(|| looping.batch());
+}
+
+/// A thread behind two channels.
+struct Channels {
+    sender: Option<crossbeam_channel::Sender<u64>>,
+    receiver: crossbeam_channel::Receiver<u64>,
+    worker: Option<JoinHandle<()>>,
+}
+
+impl Channels {
+    fn new() -> Channels {
+        let (sender, jobs) = crossbeam_channel::unbounded();
+        let (done, receiver) = crossbeam_channel::unbounded();
+        let worker = thread::spawn(move || jobs.iter().for_each(|job| done.send(job).unwrap()));
+        Channels { sender: Some(sender), receiver, worker: Some(worker) }
+    }
+
+    fn call(&mut self) {
+        self.sender.as_ref().unwrap().send(black_box(1)).unwrap();
+        black_box(self.receiver.recv().unwrap());
+    }
+}
+
+impl Drop for Channels {
+    fn drop(&mut self) {
+        self.sender = None;
+        self.worker.take().unwrap().join().unwrap();
+    }
+}
+
+/// An agent whose regions call an activity that does nothing again and again.
+struct Looping {
+    /// Says so after each batch of calls.
+    batches: Receiver<Instant>,
+    running: Running,
+}
+
+impl Looping {
+    const BATCH: u64 = 10_000;
+
+    fn new(regions: usize) -> Looping {
+        let (sender, batches) = channel();
+        let calls = Arc::new(AtomicU64::new(0));
+        let registry = Registry::empty().with("A", move || {
+            let (sender, calls) = (sender.clone(), calls.clone());
+            move |_: &mut Blackboard| {
+                if (calls.fetch_add(1, Ordering::Relaxed) + 1).is_multiple_of(Looping::BATCH) {
+                    // Nobody listens any more when the run ends.
+                    let _ = sender.send(Instant::now());
+                }
+            }
+        });
+        let looping = Looping {
+            batches,
+            running: start(registry, &format!("m = {}", ["A~"].repeat(regions).join(" || "))),
+        };
+        looping.batch();
+        looping
+    }
+
+    fn batch(&self) -> Instant {
+        self.batches.recv().unwrap()
+    }
+}
+
+fn start(registry: Registry, formula: &str) -> Running {
+    let (chart, diagnostics) = aseme::statechart_of(&Source::new("m.srm", formula));
+    assert!(diagnostics.is_empty(), "{diagnostics:?}");
+    Talws::new().registry(registry).agent(Agent::statechart("m", chart)).start().unwrap()
+}
+
+/// Seconds, or whatever else is compared.
+struct Figures(Vec<f64>);
+
+impl Figures {
+    fn median(&mut self) -> f64 {
+        self.0.sort_by(f64::total_cmp);
+        self.0[self.0.len() / 2]
+    }
+
+    fn told(&mut self, scale: f64) -> String {
+        let median = self.median();
+        let (least, most) = (self.0[0], self.0[self.0.len() - 1]);
+        format!("{:.2} ({:.2} to {:.2})", median * scale, least * scale, most * scale)
+    }
+}
+
+/// What a call costs, of so many; before each there may be a rest in which everybody goes to sleep.
+fn seconds_a_call(calls: u32, rest: Option<Duration>, mut call: impl FnMut()) -> f64 {
+    let mut taken = Duration::ZERO;
+    for _ in 0..calls {
+        if let Some(rest) = rest {
+            let until = Instant::now() + rest;
+            while Instant::now() < until {
+                std::hint::spin_loop();
+            }
+        }
+        let began = Instant::now();
+        call();
+        taken += began.elapsed();
+    }
+    taken.as_secs_f64() / f64::from(calls)
+}
+
+fn tell_round_trips(when: &str, rest: Option<Duration>) {
+    let (mut pool, mut channels) = (RoundTrip::new().unwrap(), Channels::new());
+    let calls = if rest.is_some() { 200 } else { 5_000 };
+    let (mut ours, mut theirs, mut ratios) = (Figures(vec![]), Figures(vec![]), Figures(vec![]));
+    for _ in 0..15 {
+        let our = seconds_a_call(calls, rest, || pool.call().unwrap());
+        let their = seconds_a_call(calls, rest, || channels.call());
+        ours.0.push(our);
+        theirs.0.push(their);
+        ratios.0.push(our / their);
+    }
+    println!("round trip {when}, us: pool {}, crossbeam {}", ours.told(1e6), theirs.told(1e6));
+    println!("    pool to crossbeam {}", ratios.told(1.0));
+}
+
+fn tell_activities() {
+    let mut figures = [Figures(vec![]), Figures(vec![])];
+    for _ in 0..5 {
+        for (figures, regions) in figures.iter_mut().zip([1, 3]) {
+            let looping = Looping::new(regions);
+            let mut last = looping.batch();
+            for _ in 0..5 {
+                let now = looping.batch();
+                figures.0.push(Looping::BATCH as f64 / (now - last).as_secs_f64());
+                last = now;
+            }
+            looping.running.stop();
+        }
+    }
+    let [one, three] = &mut figures;
+    println!(
+        "thousands of activities a second: one region {}, three regions {}",
+        one.told(1e-3),
+        three.told(1e-3)
+    );
+}
+
+/// Work for a processor.
+fn work(rounds: u64) -> u64 {
+    (0..rounds).fold(1, |state: u64, round| {
+        black_box(state.rotate_left(5) ^ round).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    })
+}
+
+/// So many rounds take about 100 ms.
+fn hundred_milliseconds() -> u64 {
+    let mut rounds = 1 << 20;
+    loop {
+        let began = Instant::now();
+        black_box(work(rounds));
+        let taken = began.elapsed().as_secs_f64();
+        if taken > 0.05 {
+            return (rounds as f64 * 0.1 / taken) as u64;
+        }
+        rounds *= 2;
+    }
+}
+
+/// What an activity tells of a call: when it began and ended.
+type Told = (Instant, Instant);
+
+fn tell_regions() {
+    let rounds = hundred_milliseconds();
+    let violations = Arc::new(AtomicU64::new(0));
+    let (mut after, mut beside, mut ratios) = (Figures(vec![]), Figures(vec![]), Figures(vec![]));
+    for _ in 0..5 {
+        let one_by_one = three_works("m = A . B . C", rounds, &violations);
+        let together = three_works("m = A || B || C", rounds, &violations);
+        after.0.push(one_by_one);
+        beside.0.push(together);
+        ratios.0.push(together / one_by_one);
+    }
+    println!(
+        "three works of about 100 ms, ms: one after the other {}, in three regions {}",
+        after.told(1e3),
+        beside.told(1e3)
+    );
+    println!(
+        "    regions to sequence {}, lock violations {}",
+        ratios.told(1.0),
+        violations.load(Ordering::SeqCst)
+    );
+}
+
+/// How long three works take, from the begin of the first to the end of the last.
+fn three_works(formula: &str, rounds: u64, violations: &Arc<AtomicU64>) -> f64 {
+    let (sender, told) = channel();
+    let registry = ["A", "B", "C"].into_iter().fold(Registry::empty(), |registry, name| {
+        let (sender, violations) = (sender.clone(), violations.clone());
+        let inside = Arc::new(AtomicBool::new(false));
+        registry.with(name, move || worker(rounds, sender.clone(), inside.clone(), violations.clone()))
+    });
+    let running = start(registry, formula);
+    let told: Vec<Told> = (0..3).map(|_| told.recv().unwrap()).collect();
+    running.stop();
+    let began = told.iter().map(|(began, _)| *began).min().unwrap();
+    let ended = told.iter().map(|(_, ended)| *ended).max().unwrap();
+    (ended - began).as_secs_f64()
+}
+
+fn worker(
+    rounds: u64,
+    sender: Sender<Told>,
+    inside: Arc<AtomicBool>,
+    violations: Arc<AtomicU64>,
+) -> impl FnMut(&mut Blackboard) -> Result<(), BoxError> + Send {
+    move |_: &mut Blackboard| {
+        let began = Instant::now();
+        violations.fetch_add(u64::from(inside.swap(true, Ordering::SeqCst)), Ordering::SeqCst);
+        black_box(work(rounds));
+        inside.store(false, Ordering::SeqCst);
+        Ok(sender.send((began, Instant::now()))?)
+    }
+}
+
+/// What a chart costs in which everybody waits, in time of the processor, if the system tells.
+fn tell_idle() {
+    let (sender, called) = channel();
+    let registry = Registry::empty().with("A", move || {
+        let sender = sender.clone();
+        move |_: &mut Blackboard| sender.send(())
+    });
+    let running = start(registry, "m = A || A || A");
+    (0..3).for_each(|_| called.recv().unwrap());
+    // Everybody has gone to sleep by then.
+    let _ = called.recv_timeout(Duration::from_millis(100));
+    let (Some(before), began) = (processor_ticks(), Instant::now()) else {
+        return println!("an idle chart: this system does not tell what it costs");
+    };
+    let _ = called.recv_timeout(Duration::from_secs(3));
+    let ticks = processor_ticks().unwrap_or(before) - before;
+    println!("an idle chart: {ticks} ticks of 10 ms in {:.1} s", began.elapsed().as_secs_f64());
+    running.stop();
+}
+
+/// User and system time of this process.
+fn processor_ticks() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let fields: Vec<&str> = text.rsplit_once(')')?.1.split_whitespace().collect();
+    Some(fields.get(11)?.parse::<u64>().ok()? + fields.get(12)?.parse::<u64>().ok()?)
+}

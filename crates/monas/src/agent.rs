@@ -1,6 +1,7 @@
 //! Agents: what runs together under one name.
 
 use std::fmt;
+use std::num::NonZeroUsize;
 
 use yase::Statechart;
 
@@ -55,7 +56,7 @@ pub struct Agent {
     pub(crate) real_time: bool,
     pub(crate) priority: i32,
     pub(crate) statistics_every: Option<u64>,
-    pub(crate) workers: Option<usize>,
+    pub(crate) workers: Option<NonZeroUsize>,
 }
 
 impl Agent {
@@ -129,8 +130,8 @@ impl Agent {
 
     /// Says how many threads the activities of its charts have in real time; as many as can be active at once, at most twelve, if it is not
     /// said.
-    pub fn workers(mut self, workers: std::num::NonZeroUsize) -> Agent {
-        self.workers = Some(workers.get());
+    pub fn workers(mut self, workers: NonZeroUsize) -> Agent {
+        self.workers = Some(workers);
         self
     }
 
@@ -157,6 +158,11 @@ impl Agent {
     /// What happens when an activity fails.
     pub fn policy(&self) -> Policy {
         self.policy
+    }
+
+    /// How many threads the activities of its charts have, if that is said.
+    pub fn worker_count(&self) -> Option<NonZeroUsize> {
+        self.workers
     }
 
     /// How urgent it is, and whether real-time scheduling is wanted.

@@ -42,8 +42,17 @@ fn guarded<T>(call: impl FnOnce() -> Result<T, BoxError>) -> Result<T, Failure> 
     match catch_unwind(AssertUnwindSafe(call)) {
         Ok(Ok(value)) => Ok(value),
         Ok(Err(error)) => Err(Failure::Error(error)),
-        Err(payload) => Err(Failure::Panic(spoken(payload.as_ref()))),
+        Err(payload) => Err(Failure::Panic(last_words(payload))),
     }
+}
+
+/// What a panic said. What it carried ends here, and if that panics too, what that carried is left alone.
+fn last_words(payload: Box<dyn Any + Send>) -> String {
+    let words = spoken(payload.as_ref());
+    if let Err(another) = catch_unwind(AssertUnwindSafe(|| drop(payload))) {
+        std::mem::forget(another);
+    }
+    words
 }
 
 /// What a panic said.

@@ -232,7 +232,7 @@ impl Runner {
             Ok(Progress::Done) => self.posts.finished(activation),
             Ok(Progress::Ongoing(delay)) => {
                 if let Some(blackboard) = self.desk.lending.here(activation.region) {
-                    self.posts.wait(activation, now + delay.max(SHORTEST_DELAY), blackboard);
+                    self.posts.wait(activation, now, delay.max(SHORTEST_DELAY), blackboard);
                 }
             }
             Err(failure) => {

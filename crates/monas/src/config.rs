@@ -18,6 +18,7 @@
 //! | `thread_frequency` | cycles a second; needed by a list of activities |
 //! | `priority`, `is_real_time` | how urgent it is, and whether real-time scheduling is wanted; kept with the agent, while threads are still left to the system's ordinary scheduling |
 //! | `stats_cycle` | after how many cycles its times are written to the log; 0 for never |
+//! | `workers` | how many threads the activities of its statecharts have in real time; as many as can be active at once, at most twelve, if it is not said |
 //! | `enable` | `0` leaves it out |
 //! | `on_failure` | what happens when an activity fails: `restart`, `skip`, `stop-agent`, `safe-state` |
 //!

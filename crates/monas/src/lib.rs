@@ -97,6 +97,12 @@ pub use run_hash::RunHash;
 pub use statistics::{ActivityStatistics, AgentStatistics, Average, Statistics};
 pub use talws::{HostConfig, Running, Simulation, Stopper, Talws, World};
 
+/// What the benches of this crate measure from inside.
+#[doc(hidden)]
+pub mod measured {
+    pub use crate::talws::measured::RoundTrip;
+}
+
 /// What the macros of this crate expand to.
 #[doc(hidden)]
 pub mod linked {

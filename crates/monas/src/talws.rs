@@ -7,6 +7,7 @@ mod deadlines;
 mod handover;
 mod instance;
 mod list_thread;
+pub(crate) mod measured;
 mod pool;
 mod real_time;
 mod seeds;

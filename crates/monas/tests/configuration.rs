@@ -98,12 +98,22 @@ fn the_files_of_2012_are_read() {
 #[test]
 fn canonical_names_and_the_thesis_s_mean_the_same() {
     let text = "<agent is_real_time='true' priority='3' thread_frequency='2.5' stats_cycle='0' enable='1' \
-                on_failure='safe-state'><name>a</name><activity careful='1' speed='0.5'>Walk</activity></agent>";
+                workers='4' on_failure='safe-state'><name>a</name><activity careful='1' speed='0.5'>Walk</activity></agent>";
     let (agents, diagnostics) = read(text, &[]);
     assert_eq!(diagnostics, [""; 0]);
     assert_eq!(agents[0].scheduling(), (3, true));
     assert_eq!(agents[0].frequency().map(|frequency| frequency.hertz()), Some(2.5));
     assert_eq!(agents[0].policy(), Policy::SafeState);
+    assert_eq!(agents[0].worker_count().map(|count| count.get()), Some(4));
+}
+
+#[test]
+fn a_pool_has_at_least_one_thread() {
+    check_agent(
+        "workers='0'",
+        "<activity>Vision</activity>",
+        &["agents.xml:1:39: error[E0306]: `workers` is `0`, expected a whole number from 1"],
+    );
 }
 
 #[test]

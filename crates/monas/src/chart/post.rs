@@ -26,6 +26,8 @@ struct Post {
     activity: Option<Box<dyn Activity>>,
     /// Whether `start` has been called since it was made or failed.
     started: bool,
+    /// The topics on which messages have arrived while it is being called, which it has not seen.
+    missed: Vec<TopicSlot>,
     /// The newest activation of its state.
     newest: Option<Activation>,
     /// The activation that waits for its next call, and when that is.
@@ -84,6 +86,7 @@ impl Posts {
                 declared: declared(&activity.topics(), hub),
                 activity: Some(activity),
                 started: false,
+                missed: Vec::new(),
                 newest: None,
                 waits: None,
                 calls: 0,
@@ -132,6 +135,7 @@ impl Posts {
         let post = &mut self.posts[place];
         let activity = post.activity.take()?;
         post.waits = None;
+        post.missed.clear();
         post.calls += 1;
         Some(Assignment {
             activation,
@@ -177,14 +181,22 @@ impl Posts {
         }
     }
 
-    /// The activation is to be called again at `at`, or when a message arrives on a topic that was read on its blackboard. The chart's
-    /// guards read there too, so if the activity says what it reads, only that counts.
-    pub(crate) fn wait(&mut self, activation: Activation, at: Moment, blackboard: &Blackboard) {
+    /// The activation is to be called again after a delay, or when a message arrives on a topic that was read on its blackboard: at once
+    /// if one has during the call. The chart's guards read there too, so if the activity says what it reads, only that counts.
+    pub(crate) fn wait(
+        &mut self,
+        activation: Activation,
+        now: Moment,
+        delay: Duration,
+        blackboard: &Blackboard,
+    ) {
         let Some(post) = self.post(activation) else { return };
         let mut topics = blackboard.topics_read();
         if let Some(declared) = &post.declared {
             topics.retain(|topic| declared.binary_search(topic).is_ok());
         }
+        let missed = post.missed.iter().any(|topic| topics.contains(topic));
+        let at = if missed { now } else { now + delay };
         post.failures_in_a_row = 0;
         post.waits = Some(Waiting { activation, at, topics });
     }
@@ -220,9 +232,11 @@ impl Posts {
 
     /// Calls those early that wait for a message on a topic, but for the one that has published it itself.
     pub(crate) fn message_arrived(&mut self, topic: TopicSlot, own: Option<Activation>, now: Moment) {
-        for waiting in self.posts.iter_mut().filter_map(|post| post.waits.as_mut()) {
-            if waiting.topics.contains(&topic) && own != Some(waiting.activation) {
-                waiting.at = waiting.at.min(now);
+        for post in self.posts.iter_mut().filter(|post| own.is_none() || post.newest != own) {
+            match &mut post.waits {
+                Some(waiting) if waiting.topics.contains(&topic) => waiting.at = waiting.at.min(now),
+                None if post.activity.is_none() && !post.missed.contains(&topic) => post.missed.push(topic),
+                _ => {}
             }
         }
     }

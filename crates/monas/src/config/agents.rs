@@ -108,11 +108,12 @@ impl Reader<'_> {
         let priority = attributes.integer("priority").unwrap_or(0);
         let frequency = frequency(&mut attributes);
         let statistics = attributes.integer("stats_cycle").unwrap_or(0);
+        let workers = attributes.read("workers", "a whole number from 1", |text| text.parse().ok());
         let enabled = attributes.flag("enable").unwrap_or(true);
         let policy = attributes.one_of("on_failure", &Policy::NAMES).unwrap_or_default();
         attributes.finish();
         let mut agent = Agent::idle(name);
-        agent.frequency = frequency;
+        (agent.frequency, agent.workers) = (frequency, workers);
         let agent = agent.urgency(priority, real_time).statistics_every(statistics).on_failure(policy);
         (agent, enabled)
     }

@@ -3,6 +3,7 @@
 //! As many as the agent's charts can keep busy at once, at most twelve (the thesis's number), if the agent does not say how many; each
 //! starts when there is work that no other is free for. Work of higher priority goes first, of equal priority in the order it came.
 
+use std::num::NonZeroUsize;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
@@ -38,8 +39,8 @@ pub(super) struct Called {
 }
 
 /// How many threads a pool has whose charts have so many activities at once, if its agent does not say.
-pub(super) fn workers(set: Option<usize>, useful: usize) -> usize {
-    set.unwrap_or_else(|| useful.min(MOST_WORKERS)).max(1)
+pub(super) fn workers(set: Option<NonZeroUsize>, useful: usize) -> usize {
+    set.map_or_else(|| useful.clamp(1, MOST_WORKERS), NonZeroUsize::get)
 }
 
 impl Pool {
@@ -102,11 +103,11 @@ impl Drop for Pool {
 
 #[cfg(test)]
 mod tests {
-    use super::workers;
+    use super::*;
 
     #[test]
     fn there_are_as_many_threads_as_activities_at_once_but_twelve_or_as_many_as_are_set() {
         assert_eq!([0, 1, 3, 12, 40].map(|useful| workers(None, useful)), [1, 1, 3, 12, 12]);
-        assert_eq!([0, 1, 20].map(|set| workers(Some(set), 3)), [1, 1, 20]);
+        assert_eq!([1, 20].map(|set| workers(NonZeroUsize::new(set), 3)), [1, 20]);
     }
 }

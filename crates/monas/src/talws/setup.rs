@@ -1,5 +1,6 @@
 //! Puts a team on its hubs: what a run in simulated time and one in real time begin with.
 
+use std::num::NonZeroUsize;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -39,7 +40,7 @@ pub(super) struct Member {
     pub(super) policy: Policy,
     pub(super) frequency: Option<Frequency>,
     pub(super) statistics_every: Option<u64>,
-    pub(super) workers: Option<usize>,
+    pub(super) workers: Option<NonZeroUsize>,
     pub(super) list: Option<List>,
     pub(super) charts: Vec<Runner>,
     pub(super) teller: Teller,
