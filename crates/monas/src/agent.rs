@@ -3,7 +3,7 @@
 use std::fmt;
 use std::num::NonZeroUsize;
 
-use yase::Statechart;
+use yase::{Semantics, Statechart};
 
 use crate::activity::Activity;
 use crate::frequency::Frequency;
@@ -57,6 +57,7 @@ pub struct Agent {
     pub(crate) priority: i32,
     pub(crate) statistics_every: Option<u64>,
     pub(crate) workers: Option<NonZeroUsize>,
+    pub(crate) semantics: Semantics,
 }
 
 impl Agent {
@@ -82,6 +83,7 @@ impl Agent {
             priority: 0,
             statistics_every: None,
             workers: None,
+            semantics: Semantics::yase(),
         }
     }
 
@@ -125,6 +127,12 @@ impl Agent {
     /// Says after how many cycles its times are written to the log.
     pub fn statistics_every(mut self, cycles: u64) -> Agent {
         self.statistics_every = (cycles > 0).then_some(cycles);
+        self
+    }
+
+    /// Says how its charts are read, where dialects of statecharts differ; as [`Semantics::yase`] does, if it is not said.
+    pub fn semantics(mut self, semantics: Semantics) -> Agent {
+        self.semantics = semantics;
         self
     }
 

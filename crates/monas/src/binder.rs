@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use narukom::TOPICS;
-use yase::{Chart, Diagnostic, Source, Span, Statechart, Vocabulary};
+use yase::{Chart, Diagnostic, Semantics, Source, Span, Statechart, Vocabulary};
 
 use crate::activity::Activity;
 use crate::error::{Error, ErrorKind};
@@ -39,7 +39,7 @@ impl<'a> Binder<'a> {
 
     /// Everything that keeps a chart from running. Places are in `source`, if the chart was made from a text.
     pub(crate) fn check(&self, chart: &Statechart, source: Option<&Arc<Source>>) -> Vec<Diagnostic> {
-        self.bind(chart, source).err().unwrap_or_default()
+        self.bind(chart, Semantics::yase(), source).err().unwrap_or_default()
     }
 
     /// Makes a chart ready to run.
@@ -49,11 +49,13 @@ impl<'a> Binder<'a> {
     pub(crate) fn bind(
         &self,
         chart: &Statechart,
+        semantics: Semantics,
         source: Option<&Arc<Source>>,
     ) -> Result<BoundChart, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
         let activities = self.activities(chart, source, &mut diagnostics);
-        let compiled = chart.compile(&self.vocabulary).map_err(|wrong| diagnostics.extend(wrong)).ok();
+        let compiled =
+            chart.compile_with(&self.vocabulary, semantics).map_err(|wrong| diagnostics.extend(wrong)).ok();
         match compiled.filter(|_| diagnostics.is_empty()) {
             Some(compiled) => {
                 let chart = Arc::new(compiled);

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use narukom::{Moment, Narukom, TopicSlot};
-use yase::{Activation, Machine, MachineError, Outcome, Status, TopicId};
+use yase::{Activation, Chooser, Machine, MachineError, Outcome, Status, TopicId};
 
 use crate::activity::Progress;
 use crate::binder::BoundChart;
@@ -23,6 +23,7 @@ use crate::error::Error;
 use crate::listener::Listeners;
 use crate::origin::{self, Origin};
 use crate::statistics::ActivityStatistics;
+use crate::talws::component_seed;
 
 use desk::Desk;
 pub(crate) use desk::transition_name;

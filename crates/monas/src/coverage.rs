@@ -75,7 +75,7 @@ impl Counts {
     pub(crate) fn count(&mut self, chart: &Chart, record: &TraceRecord<'_>) {
         record.entries.iter().for_each(|node| self.entered[node.0 as usize] += 1);
         let segments = record.selected.iter().flat_map(|&compound| chart.segments(compound));
-        segments.for_each(|segment| self.fired[segment.0 as usize] += 1);
+        segments.chain(record.taken).for_each(|segment| self.fired[segment.0 as usize] += 1);
     }
 
     pub(crate) fn table(&self, chart: &Chart, host: &str, agent: &str) -> ChartCoverage {

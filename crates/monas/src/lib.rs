@@ -77,6 +77,7 @@ mod list;
 mod listener;
 mod origin;
 mod parameters;
+mod reach;
 pub mod records;
 mod registry;
 mod run_hash;

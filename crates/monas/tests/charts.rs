@@ -411,6 +411,25 @@ fn charts_are_bound_before_anything_starts_and_all_that_is_wrong_is_said() {
 }
 
 #[test]
+fn a_source_that_can_never_be_heard_is_said_before_anything_starts() {
+    let reads = |guard: &str| {
+        let (_, registry) = noting();
+        let text = format!("Liveness:\nm = A . B\nTransitions:\nA -> B : [{guard}]");
+        let talws = Talws::new().registry(registry).agent(Agent::statechart("m", chart(&text)));
+        let started = talws.agent(balls(&[10])).simulate(1);
+        started.err().map(|error| error.diagnostics().iter().map(ToString::to_string).collect::<Vec<_>>())
+    };
+    let other_host = "error[E0320]: the chart `m` reads `test/ball` of the host `striker`, of which nothing arrives on \
+                      `local` (without a host in front its own is meant)";
+    assert_eq!(reads("striker.ball.State.Ball.x > 0").unwrap(), [other_host]);
+    let nobody = "error[E0321]: the chart `m` reads `test/ball` of `Vision`, but nobody publishes under that name on `local` \
+                  (agents publish under their own names: `m`, `z`)";
+    assert_eq!(reads("Vision.Ball.x > 0").unwrap(), [nobody]);
+    assert_eq!(reads("z.Ball.x > 0"), None);
+    assert_eq!(reads("ball.x > 0"), None);
+}
+
+#[test]
 fn a_changed_constant_in_a_guard_changes_the_hash() {
     let run = |limit: &str| {
         let (_, registry) = noting();
@@ -492,7 +511,7 @@ fn the_records_name_what_happens() {
     assert_eq!(
         fired,
         "monas/chart Chart { chart: 0, time: 10000000, event: 5, selected: [1], preempted: [], held: [], deferred: 0, \
-         exits: [2], entries: [3] }"
+         exits: [2], entries: [3], taken: [] }"
     );
     let cycle =
         records.iter().find(|record| record.starts_with("monas/cycle") && record.contains("time: 10000000"));

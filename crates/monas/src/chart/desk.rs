@@ -220,6 +220,7 @@ impl Desk {
             deferred: record.deferred.map_or(0, |node| node.0 + 1),
             exits: nodes(record.exits),
             entries: nodes(record.entries),
+            taken: record.taken.iter().map(|segment| segment.0).collect(),
         }
     }
 }

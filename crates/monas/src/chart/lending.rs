@@ -48,7 +48,7 @@ impl Lending {
         let regions = chart.regions().map(|region| {
             let node = chart.region_node(region);
             let node = node.map(|node| chart.statechart().path(node)).unwrap_or_default();
-            let path = format!("{}/{}/{}/{node}", home.hub.host(), home.agent, home.number);
+            let path = format!("{}/{node}", home.path());
             Region { path, made: 0, here: None, loan: None, shown: vec![None; read.len()].into() }
         });
         let regions = regions.collect();

@@ -21,7 +21,8 @@ impl Urgency {
         for node in record.entries {
             self.of_entry[node.0 as usize] = 0;
         }
-        for segment in record.selected.iter().flat_map(|&compound| chart.segments(compound)) {
+        let selected = record.selected.iter().flat_map(|&compound| chart.segments(compound));
+        for segment in selected.chain(record.taken) {
             let transition = chart.statechart().transition(*segment);
             self.of_entry[transition.target.0 as usize] = transition.priority;
         }

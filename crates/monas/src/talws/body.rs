@@ -8,9 +8,6 @@ use narukom::{Blackboard, Moment, Narukom, Publisher};
 
 use crate::error::{Error, ErrorKind};
 
-/// The name under which a body publishes.
-const PUBLISHER: &str = "body";
-
 /// A body and its connections to the hub of its host.
 pub(crate) struct Body {
     robot: Box<dyn Robot>,
@@ -26,14 +23,17 @@ pub(crate) struct Body {
 }
 
 impl Body {
+    /// The name under which a body publishes.
+    pub(crate) const PUBLISHER: &'static str = "body";
+
     pub(crate) fn new(robot: Box<dyn Robot>, hub: &Narukom) -> Result<Body, Error> {
         Ok(Body {
             robot,
             percepts: Percepts::default(),
-            sensors: hub.publisher(SENSORS, PUBLISHER).map_err(Error::hub)?,
-            sightings: hub.publisher(SIGHTINGS, PUBLISHER).map_err(Error::hub)?,
-            announcement: hub.publisher(ANNOUNCEMENT, PUBLISHER).map_err(Error::hub)?,
-            commands: hub.blackboard(PUBLISHER),
+            sensors: hub.publisher(SENSORS, Body::PUBLISHER).map_err(Error::hub)?,
+            sightings: hub.publisher(SIGHTINGS, Body::PUBLISHER).map_err(Error::hub)?,
+            announcement: hub.publisher(ANNOUNCEMENT, Body::PUBLISHER).map_err(Error::hub)?,
+            commands: hub.blackboard(Body::PUBLISHER),
             handed: None,
             safe: false,
         })

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use narukom::{Blackboard, Moment, Narukom};
-use yase::Source;
+use yase::{Semantics, Source};
 
 use super::clock::Clock;
 use super::handover::{Mail, Mailbox};
@@ -32,7 +32,7 @@ impl RoundTrip {
     pub fn new() -> Result<RoundTrip, Error> {
         let registry = Registry::empty().with("Nothing", || |_: &mut Blackboard| {});
         let (chart, _) = aseme::statechart_of(&Source::new("nothing.srm", "nothing = Nothing"));
-        let bound = Binder::new(&registry)?.bind(&chart, None).map_err(Error::invalid)?;
+        let bound = Binder::new(&registry)?.bind(&chart, Semantics::yase(), None).map_err(Error::invalid)?;
         let hub = Narukom::with_linked_topics("bench").map_err(Error::hub)?;
         let listeners = Listeners::default();
         let home = Home { hub: &hub, agent: "bench", number: 0, seed: 0, listeners: &listeners };

@@ -18,6 +18,7 @@ use crate::error::{Error, ErrorKind};
 use crate::frequency::Frequency;
 use crate::list::List;
 use crate::listener::Listeners;
+use crate::reach::out_of_reach;
 use crate::records::{self, HOST};
 use crate::registry::Registry;
 
@@ -112,19 +113,28 @@ impl Crew<'_> {
         let hub = self.hub(&name)?;
         introduce(&hub, team, number)?;
         let body = body.map(|robot| Body::new(robot, &hub)).transpose()?;
-        let members = collect_all(agents.into_iter().map(|agent| self.member(agent, &hub)))?;
+        let mut publishers: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
+        publishers.extend(body.iter().map(|_| Body::PUBLISHER.to_owned()));
+        let members = agents.into_iter().map(|agent| self.member(agent, &hub, &publishers));
+        let members = collect_all(members)?;
         Ok(Station { hub, body, members })
     }
 
-    fn member(&self, agent: Agent, hub: &Narukom) -> Result<Member, Error> {
-        let Agent { name, policy, frequency, activities, charts, statistics_every, workers, .. } = agent;
+    fn member(&self, agent: Agent, hub: &Narukom, publishers: &[String]) -> Result<Member, Error> {
+        let Agent {
+            name, policy, frequency, activities, charts, semantics, statistics_every, workers, ..
+        } = agent;
         if frequency.is_none() && !activities.is_empty() {
             let message = format!("agent `{name}` has activities, but nothing says how often they run");
             return Err(Error::new(ErrorKind::NoFrequency, message).with_hint("say so with `every`"));
         }
         let charts = charts.iter().zip(0..).map(|(chart, number)| {
             let home = Home { hub, agent: &name, number, seed: self.seed, listeners: &self.listeners };
-            Runner::new(self.binder.bind(chart, None).map_err(Error::invalid)?, home)
+            let bound = self.binder.bind(chart, semantics, None).map_err(Error::invalid)?;
+            match out_of_reach(&bound.chart, hub, publishers) {
+                wrong if wrong.is_empty() => Runner::new(bound, home),
+                wrong => Err(Error::invalid(wrong)),
+            }
         });
         let charts = collect_all(charts)?;
         let list = (!activities.is_empty()).then(|| {
