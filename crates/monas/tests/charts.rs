@@ -422,10 +422,10 @@ fn a_source_that_can_never_be_heard_is_said_before_anything_starts() {
     let other_host = "error[E0320]: the chart `m` reads `test/ball` of the host `striker`, of which nothing arrives on \
                       `local` (without a host in front its own is meant)";
     assert_eq!(reads("striker.ball.State.Ball.x > 0").unwrap(), [other_host]);
-    let nobody = "error[E0321]: the chart `m` reads `test/ball` of `Vision`, but nobody publishes under that name on `local` \
+    let nobody = "error[E0321]: the chart `m` reads `test/game` of `Vision`, but nobody publishes under that name on `local` \
                   (agents publish under their own names: `m`, `z`)";
-    assert_eq!(reads("Vision.Ball.x > 0").unwrap(), [nobody]);
-    assert_eq!(reads("z.Ball.x > 0"), None);
+    assert_eq!(reads("Vision.Game.phase == PLAY").unwrap(), [nobody]);
+    assert_eq!(reads("z.Game.phase == PLAY"), None);
     assert_eq!(reads("ball.x > 0"), None);
 }
 
