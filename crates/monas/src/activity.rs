@@ -61,7 +61,8 @@ impl Progress {
 /// monas::activity!(Counter);
 /// ```
 ///
-/// An activity does not wait: it returns [`Progress::Ongoing`] and is called again. It knows time and chance only through
+/// An activity does not wait: it returns [`Progress::Ongoing`] and is called again. One whose work takes long looks at
+/// [`Blackboard::is_cancelled`] now and then, and returns soon when it is asked to: its state waits to be left. It knows time and chance only through
 /// [`Blackboard::now`] and [`Blackboard::random`], so that a run with the same seed is the same run.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an activity",

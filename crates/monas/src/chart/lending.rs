@@ -167,3 +167,91 @@ impl Lending {
         &self.hub
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::binder::Binder;
+    use crate::listener::Listeners;
+    use crate::records::{self, HOST};
+    use crate::registry::Registry;
+    use yase::{Semantics, Source};
+
+    const NOW: Moment = Moment::ZERO;
+
+    /// The blackboards of a chart with one region, whose guard reads the name of the host.
+    fn lending() -> (Lending, Activation, TopicSlot) {
+        let registry = Registry::empty().with("A", || |_: &mut Blackboard| {});
+        let text = "Liveness:\nm = A . A\nTransitions:\nA -> A : [host.team == 3]";
+        let (chart, diagnostics) = aseme::statechart_of(&Source::new("m.srm", text));
+        assert_eq!(diagnostics, []);
+        let chart = Binder::new(&registry).unwrap().bind(&chart, Semantics::yase(), None).unwrap().chart;
+        let hub = Narukom::with_linked_topics("local").unwrap();
+        let listeners = Listeners::default();
+        let home = Home { hub: &hub, agent: "m", number: 0, seed: 1, listeners: &listeners };
+        let lending = Lending::new(&chart, home);
+        let entry = chart.activities().next().unwrap();
+        let activation = Activation { node: entry.node, region: entry.region, number: 1 };
+        (lending, activation, hub.topic("monas/host").unwrap())
+    }
+
+    fn publish(lending: &Lending, team: u32) {
+        let publisher = lending.hub().publisher(HOST, "test");
+        publisher.unwrap().publish(records::Host { team, ..records::Host::default() }, NOW);
+    }
+
+    fn team(sample: Option<&AnySample>) -> Option<u32> {
+        Some(sample?.downcast::<records::Host>()?.team)
+    }
+
+    #[test]
+    fn a_lent_blackboard_shows_what_it_showed() {
+        let (mut lending, activation, topic) = lending();
+        publish(&lending, 1);
+        lending.free_mut(activation.region, NOW).unwrap().process_messages(NOW);
+        let mut lent = lending.lend(activation, NOW).unwrap();
+        assert!(lending.here(activation.region).is_none());
+        publish(&lending, 2);
+        lent.process_messages(NOW);
+        assert_eq!(team(lending.newest(activation.region, topic)), Some(1));
+        assert!(lending.take_back(activation, lent, true).is_some());
+        assert_eq!(team(lending.newest(activation.region, topic)), Some(2));
+    }
+
+    #[test]
+    fn a_region_that_goes_on_without_its_blackboard_gets_another_and_the_old_one_is_dropped() {
+        let (mut lending, activation, topic) = lending();
+        let late = lending.lend(activation, NOW).unwrap();
+        publish(&lending, 3);
+        assert!(lending.free_mut(activation.region, NOW).is_some());
+        assert!(late.is_cancelled(), "whoever has the old one may as well return");
+        assert_eq!(team(lending.newest(activation.region, topic)), Some(3), "what was published is known");
+        let next = Activation { number: 2, ..activation };
+        let lent = lending.lend(next, NOW).unwrap();
+        assert!(lending.take_back(activation, late, true).is_none(), "it is not the one that was lent last");
+        assert!(!lent.is_cancelled());
+        assert!(lending.take_back(next, lent, true).is_some());
+    }
+
+    #[test]
+    fn a_blackboard_that_is_of_no_use_any_more_does_not_come_back() {
+        let (mut lending, activation, _) = lending();
+        let mut late = lending.lend(activation, NOW).unwrap();
+        late.publish(HOST, records::Host { team: 7, ..records::Host::default() }).unwrap();
+        assert!(lending.take_back(activation, late, false).is_none());
+        lending.free_mut(activation.region, NOW).unwrap().publish_all(NOW);
+        let topic = lending.hub().topic("monas/host").unwrap();
+        assert_eq!(team(lending.newest(activation.region, topic)), None, "what was written there is gone");
+    }
+
+    #[test]
+    fn whoever_has_the_blackboard_or_gets_it_next_is_asked_to_return() {
+        let (mut lending, activation, _) = lending();
+        lending.cancel(activation.region);
+        let lent = lending.lend(activation, NOW).unwrap();
+        assert!(lent.is_cancelled());
+        lent.cancellation().withdraw();
+        lending.cancel(activation.region);
+        assert!(lent.is_cancelled());
+    }
+}
