@@ -16,6 +16,6 @@ fn the_w3c_tests_pass_that_are_on_record() {
     };
     let report = irp::run(&folder);
     println!("{report}");
-    let counts = (report.null().0, report.mandatory().0);
-    assert_eq!(counts, (suites::recorded("irp null"), suites::recorded("irp mandatory")));
+    assert!(report.null().0 >= suites::recorded("irp null"));
+    assert!(report.mandatory().0 >= suites::recorded("irp mandatory"));
 }
