@@ -98,8 +98,7 @@ impl Message {
 
     fn code(&self) -> String {
         format!(
-            "const _: () = {{
-                use ::narukom::AnyMessage as _;
+            "const _: () = {{{import}
                 static MESSAGE: ::narukom::MessageDescriptor = ::narukom::MessageDescriptor {{
                     full_name: {full_name:?},
                     name: {name:?},
@@ -114,10 +113,9 @@ impl Message {
                     fn field(&self, index: usize) -> ::narukom::FieldValue<'_> {{
                         match index {{ {getters} _ => ::narukom::FieldValue::Missing }}
                     }}
-                    fn set_field(&mut self, index: usize, value: ::narukom::FieldValue<'_>)
+                    fn set_field(&mut self, index: usize, {value}: ::narukom::FieldValue<'_>)
                         -> Result<(), ::narukom::FieldError> {{
-                        match index {{ {setters} _ => return Err(::narukom::FieldError::NoSuchField) }}
-                        Ok(())
+                        match index {{ {setters} _ => Err(::narukom::FieldError::NoSuchField) }}
                     }}
                     fn message_mut(&mut self, index: usize) -> Option<&mut dyn ::narukom::AnyMessage> {{
                         match index {{ {places} _ => None }}
@@ -127,6 +125,9 @@ impl Message {
             full_name = self.full_name,
             name = self.name,
             rust = self.rust,
+            import =
+                if self.holds_messages() { "\n                use ::narukom::AnyMessage as _;" } else { "" },
+            value = if self.is_settable() { "value" } else { "_value" },
             descriptors = self.each(|_, field| format!("{},", field.descriptor())),
             getters = self.each(|index, field| format!("{index} => {},", field.getter())),
             setters = self.each(|index, field| format!("{index} => {},", field.setter())),
@@ -135,6 +136,16 @@ impl Message {
                 .map(|place| format!("{index} => {place},"))
                 .unwrap_or_default()),
         )
+    }
+
+    /// Whether any field is set by index, so that the generated setter uses the value it is given.
+    fn is_settable(&self) -> bool {
+        self.fields.iter().any(|field| !matches!(field.kind, Kind::Unsupported))
+    }
+
+    /// Whether any field is reached as a message, so that the generated code calls methods of `AnyMessage`.
+    fn holds_messages(&self) -> bool {
+        self.fields.iter().any(|field| matches!(field.kind, Kind::Message(_)))
     }
 
     fn each(&self, code: impl Fn(usize, &Field) -> String) -> String {
@@ -221,19 +232,18 @@ impl Field {
             Kind::Enum(_) => "enumeration",
             Kind::Message(rust) => {
                 let message = format!("::narukom::generated::message::<{rust}>(value, {name:?})?");
-                return format!("self.{field} = {message}.map(Into::into)");
+                return format!("{{ self.{field} = {message}.map(Into::into); Ok(()) }}");
             }
             Kind::Unsupported => {
-                return format!("return Err(::narukom::FieldError::Unsupported {{ field: {name:?} }})");
+                return format!("Err(::narukom::FieldError::Unsupported {{ field: {name:?} }})");
             }
         };
-        if self.optional {
-            format!(
-                "self.{field} = ::narukom::generated::optional(value, {name:?}, ::narukom::generated::{read})?"
-            )
+        let value = if self.optional {
+            format!("::narukom::generated::optional(value, {name:?}, ::narukom::generated::{read})?")
         } else {
-            format!("self.{field} = ::narukom::generated::{read}(value, {name:?})?")
-        }
+            format!("::narukom::generated::{read}(value, {name:?})?")
+        };
+        format!("{{ self.{field} = {value}; Ok(()) }}")
     }
 
     /// The code that reaches the message inside the field.

@@ -9,10 +9,12 @@ use std::path::Path;
 
 use messages::everything::Touch;
 use messages::everything::touch::Part;
-use messages::{Everything, Position, Role};
+use messages::{Everything, Lists, Nothing, Position, Role};
 use narukom::{AnyMessage, Enumeration, FieldError, FieldKind, FieldValue, Message, Reflect};
 use narukom_build::Compiler;
 
+/// Generated code stands without a warning, whatever fields a message has.
+#[deny(warnings)]
 mod messages {
     include!("generated/narukom.testing.rs");
 }
@@ -227,4 +229,17 @@ fn messages_travel_without_their_type() {
     assert_eq!(copy.as_any().downcast_ref::<Everything>(), Some(&message));
     assert!(!copy.copy_from(&Position::default()));
     assert!(copy.decode_from(&[0xff]).is_err());
+}
+
+#[test]
+fn messages_without_a_field_that_is_reached_by_index_say_so() {
+    let mut lists = Lists { path: vec![Position::default()], ..Lists::default() };
+    assert!(matches!(lists.field(0), FieldValue::Unsupported));
+    assert_eq!(
+        lists.set_field(0, FieldValue::Missing).unwrap_err(),
+        FieldError::Unsupported { field: "path" }
+    );
+    assert!(lists.message_mut(0).is_none());
+    assert!(matches!(Nothing {}.field(0), FieldValue::Missing));
+    assert_eq!(Nothing {}.set_field(0, FieldValue::Bool(true)).unwrap_err(), FieldError::NoSuchField);
 }

@@ -130,6 +130,22 @@ pub mod everything {
         Right(super::Position),
     }
 }
+/// A message of which no field is reached by index.
+#[derive(Clone, PartialEq, ::narukom::prost::Message)]
+#[prost(prost_path = "::narukom::prost")]
+pub struct Lists {
+    #[prost(message, repeated, tag = "1")]
+    pub path: ::narukom::prost::alloc::vec::Vec<Position>,
+    #[prost(btree_map = "string, double", tag = "2")]
+    pub weights: ::narukom::prost::alloc::collections::BTreeMap<
+        ::narukom::prost::alloc::string::String,
+        f64,
+    >,
+}
+/// A message without a field.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, ::narukom::prost::Message)]
+#[prost(prost_path = "::narukom::prost")]
+pub struct Nothing {}
 /// What a robot is busy with.
 #[derive(
     Clone,
@@ -180,7 +196,6 @@ impl ::narukom::Enumeration for Role {
             };
         }
 const _: () = {
-                use ::narukom::AnyMessage as _;
                 static MESSAGE: ::narukom::MessageDescriptor = ::narukom::MessageDescriptor {
                     full_name: "narukom.testing.Position",
                     name: "Position",
@@ -197,8 +212,7 @@ const _: () = {
                     }
                     fn set_field(&mut self, index: usize, value: ::narukom::FieldValue<'_>)
                         -> Result<(), ::narukom::FieldError> {
-                        match index { 0 => self.x = ::narukom::generated::float64(value, "x")?,1 => self.y = ::narukom::generated::float64(value, "y")?, _ => return Err(::narukom::FieldError::NoSuchField) }
-                        Ok(())
+                        match index { 0 => { self.x = ::narukom::generated::float64(value, "x")?; Ok(()) },1 => { self.y = ::narukom::generated::float64(value, "y")?; Ok(()) }, _ => Err(::narukom::FieldError::NoSuchField) }
                     }
                     fn message_mut(&mut self, index: usize) -> Option<&mut dyn ::narukom::AnyMessage> {
                         match index {  _ => None }
@@ -223,8 +237,7 @@ const _: () = {
                     }
                     fn set_field(&mut self, index: usize, value: ::narukom::FieldValue<'_>)
                         -> Result<(), ::narukom::FieldError> {
-                        match index { 0 => self.flag = ::narukom::generated::boolean(value, "flag")?,1 => self.small = ::narukom::generated::int32(value, "small")?,2 => self.large = ::narukom::generated::int64(value, "large")?,3 => self.count = ::narukom::generated::uint32(value, "count")?,4 => self.total = ::narukom::generated::uint64(value, "total")?,5 => self.rough = ::narukom::generated::float32(value, "rough")?,6 => self.fine = ::narukom::generated::float64(value, "fine")?,7 => self.name = ::narukom::generated::text(value, "name")?,8 => self.raw = ::narukom::generated::bytes(value, "raw")?,9 => self.role = ::narukom::generated::enumeration(value, "role")?,10 => self.position = ::narukom::generated::message::<Position>(value, "position")?.map(Into::into),11 => self.touch = ::narukom::generated::message::<everything::Touch>(value, "touch")?.map(Into::into),12 => self.r#type = ::narukom::generated::text(value, "type")?,13 => self.distance = ::narukom::generated::optional(value, "distance", ::narukom::generated::float64)?,14 => self.remark = ::narukom::generated::optional(value, "remark", ::narukom::generated::text)?,15 => self.wish = ::narukom::generated::optional(value, "wish", ::narukom::generated::enumeration)?,16 => return Err(::narukom::FieldError::Unsupported { field: "path" }),17 => return Err(::narukom::FieldError::Unsupported { field: "landmarks" }),18 => return Err(::narukom::FieldError::Unsupported { field: "left" }),19 => return Err(::narukom::FieldError::Unsupported { field: "right" }),20 => return Err(::narukom::FieldError::Unsupported { field: "stamp" }),21 => self.limit = ::narukom::generated::optional(value, "limit", ::narukom::generated::uint32)?,22 => self.blob = ::narukom::generated::optional(value, "blob", ::narukom::generated::bytes)?,23 => self.home = ::narukom::generated::message::<Position>(value, "home")?.map(Into::into), _ => return Err(::narukom::FieldError::NoSuchField) }
-                        Ok(())
+                        match index { 0 => { self.flag = ::narukom::generated::boolean(value, "flag")?; Ok(()) },1 => { self.small = ::narukom::generated::int32(value, "small")?; Ok(()) },2 => { self.large = ::narukom::generated::int64(value, "large")?; Ok(()) },3 => { self.count = ::narukom::generated::uint32(value, "count")?; Ok(()) },4 => { self.total = ::narukom::generated::uint64(value, "total")?; Ok(()) },5 => { self.rough = ::narukom::generated::float32(value, "rough")?; Ok(()) },6 => { self.fine = ::narukom::generated::float64(value, "fine")?; Ok(()) },7 => { self.name = ::narukom::generated::text(value, "name")?; Ok(()) },8 => { self.raw = ::narukom::generated::bytes(value, "raw")?; Ok(()) },9 => { self.role = ::narukom::generated::enumeration(value, "role")?; Ok(()) },10 => { self.position = ::narukom::generated::message::<Position>(value, "position")?.map(Into::into); Ok(()) },11 => { self.touch = ::narukom::generated::message::<everything::Touch>(value, "touch")?.map(Into::into); Ok(()) },12 => { self.r#type = ::narukom::generated::text(value, "type")?; Ok(()) },13 => { self.distance = ::narukom::generated::optional(value, "distance", ::narukom::generated::float64)?; Ok(()) },14 => { self.remark = ::narukom::generated::optional(value, "remark", ::narukom::generated::text)?; Ok(()) },15 => { self.wish = ::narukom::generated::optional(value, "wish", ::narukom::generated::enumeration)?; Ok(()) },16 => Err(::narukom::FieldError::Unsupported { field: "path" }),17 => Err(::narukom::FieldError::Unsupported { field: "landmarks" }),18 => Err(::narukom::FieldError::Unsupported { field: "left" }),19 => Err(::narukom::FieldError::Unsupported { field: "right" }),20 => Err(::narukom::FieldError::Unsupported { field: "stamp" }),21 => { self.limit = ::narukom::generated::optional(value, "limit", ::narukom::generated::uint32)?; Ok(()) },22 => { self.blob = ::narukom::generated::optional(value, "blob", ::narukom::generated::bytes)?; Ok(()) },23 => { self.home = ::narukom::generated::message::<Position>(value, "home")?.map(Into::into); Ok(()) }, _ => Err(::narukom::FieldError::NoSuchField) }
                     }
                     fn message_mut(&mut self, index: usize) -> Option<&mut dyn ::narukom::AnyMessage> {
                         match index { 10 => Some(self.position.get_or_insert_default().as_message_mut()),11 => Some(self.touch.get_or_insert_default().as_message_mut()),23 => Some(self.home.get_or_insert_default().as_message_mut()), _ => None }
@@ -249,8 +262,7 @@ const _: () = {
                     }
                     fn set_field(&mut self, index: usize, value: ::narukom::FieldValue<'_>)
                         -> Result<(), ::narukom::FieldError> {
-                        match index { 0 => self.part = ::narukom::generated::enumeration(value, "part")?,1 => self.before = ::narukom::generated::message::<everything::Touch>(value, "before")?.map(Into::into), _ => return Err(::narukom::FieldError::NoSuchField) }
-                        Ok(())
+                        match index { 0 => { self.part = ::narukom::generated::enumeration(value, "part")?; Ok(()) },1 => { self.before = ::narukom::generated::message::<everything::Touch>(value, "before")?.map(Into::into); Ok(()) }, _ => Err(::narukom::FieldError::NoSuchField) }
                     }
                     fn message_mut(&mut self, index: usize) -> Option<&mut dyn ::narukom::AnyMessage> {
                         match index { 1 => Some(self.before.get_or_insert_default().as_message_mut()), _ => None }
@@ -264,6 +276,54 @@ impl ::narukom::Enumeration for everything::touch::Part {
                 values: &[("PART_FOOT", 0), ("PART_HEAD", 1)],
             };
         }
+const _: () = {
+                static MESSAGE: ::narukom::MessageDescriptor = ::narukom::MessageDescriptor {
+                    full_name: "narukom.testing.Lists",
+                    name: "Lists",
+                    fields: &[::narukom::FieldDescriptor { name: "path", tag: 1, kind: ::narukom::FieldKind::Unsupported },::narukom::FieldDescriptor { name: "weights", tag: 2, kind: ::narukom::FieldKind::Unsupported },],
+                    file_descriptor_set: FILE_DESCRIPTOR_SET,
+                };
+                impl ::narukom::Message for Lists {
+                    const DESCRIPTOR: &'static ::narukom::MessageDescriptor = &MESSAGE;
+                }
+                impl ::narukom::Reflect for Lists {
+                    fn descriptor(&self) -> &'static ::narukom::MessageDescriptor { &MESSAGE }
+                    fn field(&self, index: usize) -> ::narukom::FieldValue<'_> {
+                        match index { 0 => ::narukom::FieldValue::Unsupported,1 => ::narukom::FieldValue::Unsupported, _ => ::narukom::FieldValue::Missing }
+                    }
+                    fn set_field(&mut self, index: usize, _value: ::narukom::FieldValue<'_>)
+                        -> Result<(), ::narukom::FieldError> {
+                        match index { 0 => Err(::narukom::FieldError::Unsupported { field: "path" }),1 => Err(::narukom::FieldError::Unsupported { field: "weights" }), _ => Err(::narukom::FieldError::NoSuchField) }
+                    }
+                    fn message_mut(&mut self, index: usize) -> Option<&mut dyn ::narukom::AnyMessage> {
+                        match index {  _ => None }
+                    }
+                }
+            };
+const _: () = {
+                static MESSAGE: ::narukom::MessageDescriptor = ::narukom::MessageDescriptor {
+                    full_name: "narukom.testing.Nothing",
+                    name: "Nothing",
+                    fields: &[],
+                    file_descriptor_set: FILE_DESCRIPTOR_SET,
+                };
+                impl ::narukom::Message for Nothing {
+                    const DESCRIPTOR: &'static ::narukom::MessageDescriptor = &MESSAGE;
+                }
+                impl ::narukom::Reflect for Nothing {
+                    fn descriptor(&self) -> &'static ::narukom::MessageDescriptor { &MESSAGE }
+                    fn field(&self, index: usize) -> ::narukom::FieldValue<'_> {
+                        match index {  _ => ::narukom::FieldValue::Missing }
+                    }
+                    fn set_field(&mut self, index: usize, _value: ::narukom::FieldValue<'_>)
+                        -> Result<(), ::narukom::FieldError> {
+                        match index {  _ => Err(::narukom::FieldError::NoSuchField) }
+                    }
+                    fn message_mut(&mut self, index: usize) -> Option<&mut dyn ::narukom::AnyMessage> {
+                        match index {  _ => None }
+                    }
+                }
+            };
 
 const FILE_DESCRIPTOR_SET: &[u8] = include_bytes!("narukom.testing.descriptors");
 }
