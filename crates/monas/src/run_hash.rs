@@ -52,7 +52,7 @@ impl Observer for RunHash {
 }
 
 impl State {
-    fn add(&mut self, Publication { host, publisher, topic, sample }: Publication<'_>) {
+    fn add(&mut self, Publication { host, publisher, topic, sample, .. }: Publication<'_>) {
         self.record.clear();
         self.record.extend_from_slice(&sample.header.published.as_nanos().to_le_bytes());
         for text in [host, publisher, topic.path()] {

@@ -1,25 +1,35 @@
 //! The blackboard: what one agent, or one region of a statechart, knows during a cycle.
 
 mod adopt;
+mod erased;
+mod place;
 mod read;
+mod view;
 mod write;
 
-use std::cell::{OnceCell, RefCell};
+use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::fmt;
 
 use crate::cancellation::Cancellation;
-use crate::hub::{Narukom, Outgoing, Sender};
-use crate::message::AnyMessage;
+use crate::exchange::{Exchange, Outgoing, Sender};
+use crate::hub::Narukom;
 use crate::moment::Moment;
 use crate::random::Random;
-use crate::reading::{Reader, Reading, Window};
-use crate::ring::{Origin, Ring};
-use crate::sample::{AnySample, TopicSlot};
+use crate::reading::{Delivery, Reader, Window};
+use crate::ring::Origin;
+use crate::sample::{Channel, HostId, TopicSlot};
 use crate::topic;
-use crate::writing::Writing;
+
+use place::Place;
+
+pub use view::View;
 
 /// More messages than this between two calls of `publish_all` are refused.
 pub const OUTBOX_LIMIT: usize = 65_536;
+
+/// Of more events than this that nobody collects the oldest are lost.
+pub const EVENT_LIMIT: usize = 4096;
 
 /// What one agent, or one region of a statechart, knows during a cycle, and what it has to say.
 ///
@@ -34,8 +44,8 @@ pub struct Blackboard {
     sender: Sender,
     number: u32,
     places: Box<[Place]>,
-    /// The topics with a reading, in order of first read.
-    attached: RefCell<Vec<TopicSlot>>,
+    /// The topics with a reading, of each host, in order of first read.
+    attached: RefCell<Vec<Channel>>,
     /// The topics with a writing, in order of first write.
     written: Vec<TopicSlot>,
     /// The topics of the messages that wait for `publish_all`, in order.
@@ -43,21 +53,14 @@ pub struct Blackboard {
     /// Where `publish_all` collects them; kept for its memory.
     outgoing: Vec<Outgoing>,
     /// The topics on which something ends with the cycle.
-    open: RefCell<Vec<TopicSlot>>,
-    /// The messages of the last delivery: number and topic.
-    arrivals: Vec<(u64, TopicSlot)>,
+    open: RefCell<Vec<Channel>>,
+    delivery: Delivery,
     window: Window,
     now: Moment,
     random: Random,
-    events: Vec<String>,
+    events: VecDeque<String>,
+    events_lost: u64,
     cancellation: Cancellation,
-}
-
-/// What a blackboard has of one topic.
-#[derive(Default)]
-struct Place {
-    reading: OnceCell<Box<Reading>>,
-    writing: Option<Box<Writing>>,
 }
 
 /// The edges of a cycle.
@@ -76,12 +79,13 @@ impl Blackboard {
             outbox: Vec::new(),
             outgoing: Vec::new(),
             open: RefCell::default(),
-            arrivals: Vec::new(),
+            delivery: Delivery::default(),
             // Signals from before its time are not for it; states and histories are.
             window: Window { since: head, delivered: 0 },
             now: Moment::ZERO,
             random,
-            events: Vec::new(),
+            events: VecDeque::new(),
+            events_lost: 0,
             cancellation: Cancellation::default(),
         }
     }
@@ -90,7 +94,7 @@ impl Blackboard {
     pub fn process_messages(&mut self, now: Moment) {
         self.now = now;
         self.close();
-        self.arrivals.clear();
+        self.delivery.arrivals.clear();
         self.window.since = self.window.since.max(self.window.delivered);
         if self.hub.head() != self.window.delivered {
             self.deliver();
@@ -103,12 +107,12 @@ impl Blackboard {
         for slot in self.outbox.drain(..) {
             let Some(writing) = self.places[slot.index()].writing.as_mut() else { continue };
             let Some((sample, nth)) = writing.take_next() else { continue };
-            self.outgoing.push(Outgoing { sample, origin: Origin { blackboard: self.number, nth } });
+            self.outgoing.push(Outgoing::new(sample, Origin { blackboard: self.number, nth }));
         }
         self.hub.send(&self.sender, &mut self.outgoing, now);
-        for Outgoing { sample, origin } in self.outgoing.drain(..) {
-            if let Some(writing) = self.places[sample.header.topic.index()].writing.as_mut() {
-                writing.complete(origin.nth, sample.header);
+        for Outgoing { header, origin, left, .. } in self.outgoing.drain(..) {
+            if let Some(writing) = self.places[header.topic.index()].writing.as_mut() {
+                writing.complete(origin.nth, header, left);
             }
         }
     }
@@ -118,123 +122,70 @@ impl Blackboard {
         self.now
     }
 
-    /// The topics of the messages of the last delivery, one for each message, in order of publication. Own messages
-    /// are among them when they come back.
-    pub fn arrivals(&self) -> impl ExactSizeIterator<Item = TopicSlot> {
-        self.arrivals.iter().map(|(_, slot)| *slot)
+    /// The topics of the messages of the last delivery that were published on this host, one for each message, in order of publication.
+    /// Own messages are among them when they come back.
+    pub fn arrivals(&self) -> impl Iterator<Item = TopicSlot> {
+        self.from(HostId::LOCAL).arrivals()
     }
 
     /// What ends with the cycle ends.
     fn close(&mut self) {
+        if self.open.get_mut().is_empty() {
+            return;
+        }
         let mut open = self.open.take();
-        open.retain(|slot| {
-            let place = &mut self.places[slot.index()];
-            if let Some(reading) = place.reading.get_mut() {
-                reading.close();
-            }
-            place.writing.as_mut().is_some_and(|writing| {
-                writing.close();
-                writing.is_open()
-            })
-        });
+        open.retain(|channel| self.places[channel.topic.index()].close(channel.host));
         self.open = RefCell::new(open);
     }
 
     fn deliver(&mut self) {
-        let hub = self.hub.clone();
-        let exchange = hub.exchange();
+        let exchange = self.hub.exchange();
+        let mut delivering = Delivering {
+            exchange: &exchange,
+            number: self.number,
+            now: self.now,
+            places: &mut self.places,
+            open: self.open.get_mut(),
+            delivery: &mut self.delivery,
+        };
         match exchange.journal_since(self.window.delivered) {
-            Some(moved) => moved.for_each(|slot| self.deliver_topic(slot, exchange.ring(slot))),
-            None => {
-                let attached = self.attached.take();
-                attached.iter().for_each(|slot| self.deliver_topic(*slot, exchange.ring(*slot)));
-                self.attached = RefCell::new(attached);
-            }
+            Some(moved) => moved.for_each(|channel| delivering.channel(channel)),
+            None => self.attached.get_mut().iter().for_each(|channel| delivering.channel(*channel)),
         }
         self.window.delivered = exchange.order();
         drop(exchange);
-        self.arrivals.sort_unstable();
+        self.delivery.leaving.clear();
+        self.delivery.arrivals.sort_unstable();
     }
 
-    fn deliver_topic(&mut self, slot: TopicSlot, ring: Option<&Ring>) {
-        let reader = self.reader(slot);
-        let (Some(reading), Some(ring)) = (self.places[slot.index()].reading.get_mut(), ring) else { return };
-        let was_open = reading.is_open();
-        reading.deliver(ring, reader, &mut self.arrivals);
-        if reading.is_open() && !was_open {
-            self.open.get_mut().push(slot);
-        }
-    }
-
-    fn reader(&self, slot: TopicSlot) -> Reader {
-        let seen = self.places[slot.index()].writing.as_ref().map_or(0, |writing| writing.seen());
-        Reader { blackboard: self.number, seen }
+    fn reader(&self, channel: Channel) -> Reader {
+        self.places[channel.topic.index()].reader(self.number, channel.host)
     }
 }
 
-/// Access by slot or name, for runtimes and tools.
-impl Blackboard {
-    /// The hub.
-    pub fn hub(&self) -> &Narukom {
-        &self.hub
-    }
+/// What a delivery works on, beside the hub whose lock it holds.
+struct Delivering<'a> {
+    exchange: &'a Exchange,
+    number: u32,
+    now: Moment,
+    places: &'a mut [Place],
+    open: &'a mut Vec<Channel>,
+    delivery: &'a mut Delivery,
+}
 
-    /// The name under which it publishes.
-    pub fn publisher(&self) -> &str {
-        &self.sender.name
-    }
-
-    /// The slot of the topic at `path`.
-    pub fn slot(&self, path: &str) -> Option<TopicSlot> {
-        self.hub.topic(path)
-    }
-
-    /// The newest message of a topic: of a signal topic, of this cycle only.
-    pub fn latest(&self, slot: TopicSlot) -> Option<&dyn AnyMessage> {
-        self.newest(slot).map(|sample| &*sample.message)
-    }
-
-    /// As [`latest`](Blackboard::latest), with the header.
-    pub fn latest_sample(&self, slot: TopicSlot) -> Option<&AnySample> {
-        self.newest(slot)
-    }
-
-    /// As [`latest_sample`](Blackboard::latest_sample), for those who only look on: that is no read, so it makes the blackboard no
-    /// reader of the topic, and an own signal that nobody else has looked at still comes back.
-    pub fn shown(&self, slot: TopicSlot) -> Option<&AnySample> {
-        let reading = self.places.get(slot.index())?.reading.get()?;
-        self.peek(slot, reading)
-    }
-
-    /// As [`latest`](Blackboard::latest), for a topic known by its path.
-    pub fn read_by_name(&self, path: &str) -> Option<&dyn AnyMessage> {
-        self.latest(self.slot(path)?)
-    }
-
-    /// Reads a topic from now on, as a first read would.
-    pub fn interest(&self, slot: TopicSlot) {
-        if let Some(reading) = self.attach(slot) {
-            reading.set_interest(true);
+impl Delivering<'_> {
+    /// Delivers what was published on a channel, if it is read here.
+    fn channel(&mut self, channel: Channel) {
+        let place = &mut self.places[channel.topic.index()];
+        let reader = place.reader(self.number, channel.host);
+        let Some(reading) = place.reading_mut(channel.host) else { return };
+        let Some(ring) = self.exchange.ring(channel) else { return };
+        let was_open = reading.is_open();
+        reading.deliver(ring, reader, self.delivery);
+        reading.expire(self.now, &mut self.delivery.leaving);
+        if reading.is_open() && !was_open {
+            self.open.push(channel);
         }
-    }
-
-    /// Whether the topic has been read here.
-    pub fn is_read(&self, slot: TopicSlot) -> bool {
-        let reading = self.places.get(slot.index()).and_then(|place| place.reading.get());
-        reading.is_some_and(|reading| reading.interest())
-    }
-
-    /// The topics that have been read here.
-    pub fn topics_read(&self) -> Vec<TopicSlot> {
-        let mut slots = self.attached.borrow().clone();
-        slots.retain(|slot| self.is_read(*slot));
-        slots
-    }
-
-    /// As [`lost`](Blackboard::lost), by slot.
-    pub fn lost_at(&self, slot: TopicSlot) -> u64 {
-        let reading = self.places.get(slot.index()).and_then(|place| place.reading.get());
-        reading.map_or(0, |reading| reading.lost())
     }
 }
 
@@ -264,14 +215,24 @@ impl Blackboard {
         self.random = Random::from_seed(seed);
     }
 
-    /// Raises an event in the statechart whose activity this is; the runtime collects it.
+    /// Raises an event in the statechart whose activity this is; the runtime collects it. Of more than [`EVENT_LIMIT`] that it does
+    /// not collect the oldest are [lost](Blackboard::events_lost).
     pub fn raise(&mut self, event: &str) {
-        self.events.push(event.to_owned());
+        if self.events.len() == EVENT_LIMIT {
+            self.events.pop_front();
+            self.events_lost += 1;
+        }
+        self.events.push_back(event.to_owned());
     }
 
     /// The events raised since the last call, oldest first.
     pub fn take_events(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.events)
+        std::mem::take(&mut self.events).into()
+    }
+
+    /// How many events were gone before they were collected.
+    pub fn events_lost(&self) -> u64 {
+        self.events_lost
     }
 }
 

@@ -39,11 +39,13 @@ impl Catalogue {
         Ok(())
     }
 
+    #[inline]
     fn place(&self, hash: u64) -> usize {
         hash as usize & (self.table.len() - 1)
     }
 
     /// The slot of the topic with that name hash.
+    #[inline]
     pub(crate) fn by_hash(&self, hash: u64) -> Option<TopicSlot> {
         let mut place = self.place(hash);
         while let Some((entry, slot)) = self.table[place] {
@@ -77,6 +79,11 @@ impl Catalogue {
 
     pub(crate) fn get(&self, slot: TopicSlot) -> Option<&TopicDeclaration> {
         self.topics.get(slot.index())
+    }
+
+    /// The slot of the topic at `path`, or the error that says that nobody declared it.
+    pub(crate) fn declared(&self, path: &str) -> Result<TopicSlot, Error> {
+        self.by_path(path).ok_or_else(|| self.undeclared(path))
     }
 
     /// The error that says that nobody declared `path`, and which declared one is nearest.
@@ -119,7 +126,8 @@ fn agree(first: &TopicDeclaration, second: &TopicDeclaration) -> Result<(), Erro
         );
         return Err(Error::new(ErrorKind::TypesDiffer, text));
     }
-    if (first.kind(), first.depth()) != (second.kind(), second.depth()) {
+    let keeps = |topic: &TopicDeclaration| (topic.kind(), topic.depth(), topic.age());
+    if keeps(first) != keeps(second) {
         let (one, other) = (keeping(first), keeping(second));
         let text = format!("the topic `{path}` is declared with two ways of keeping: {one} and {other}");
         return Err(Error::new(ErrorKind::KindsDiffer, text));
@@ -128,7 +136,8 @@ fn agree(first: &TopicDeclaration, second: &TopicDeclaration) -> Result<(), Erro
 }
 
 fn keeping(topic: &TopicDeclaration) -> String {
-    format!("{} of depth {} in {}", topic.kind(), topic.depth(), topic.module())
+    let age = topic.age().map(|age| format!(" and {} ms", age.as_millis())).unwrap_or_default();
+    format!("{} of depth {}{age} in {}", topic.kind(), topic.depth(), topic.module())
 }
 
 fn bad_path(topic: &TopicDeclaration) -> Error {

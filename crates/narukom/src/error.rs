@@ -28,6 +28,12 @@ pub enum ErrorKind {
     WrongType,
     /// More messages wait for `publish_all` than a blackboard holds.
     OutboxFull,
+    /// Bytes are no encoding of a message of the topic's type, or more than are taken.
+    Malformed,
+    /// More hosts or publishers than a hub numbers.
+    TooMany,
+    /// A message is said to come from elsewhere, but names the hub's own host.
+    OwnHost,
 }
 
 impl Error {

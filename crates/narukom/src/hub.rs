@@ -1,29 +1,28 @@
 //! The hub: where everything that is published on one host passes.
 
-use std::collections::VecDeque;
 use std::fmt;
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::blackboard::Blackboard;
 use crate::catalogue::Catalogue;
-use crate::error::Error;
+use crate::encoding::Encoding;
+use crate::error::{Error, ErrorKind};
+use crate::exchange::{Exchange, Outgoing, Sender};
 use crate::moment::Moment;
 use crate::observer::{Observer, Publication, Waker};
-use crate::publisher::Publisher;
-use crate::ring::{Entry, Origin, Ring};
-use crate::sample::{AnySample, HostId, PublisherId, TopicSlot};
-use crate::subscriber::Subscriber;
+use crate::publisher::{AnyPublisher, Publisher};
+use crate::receiver::Receiver;
+use crate::sample::{AnySample, Channel, HostId, PublisherId, TopicSlot};
+use crate::subscriber::{self, Subscriber};
+use crate::tap::Tap;
 use crate::topic::{Keep, TOPICS, Topic, TopicDeclaration};
-
-/// How many publications the hub remembers by topic, for readers that look for what moved.
-const JOURNAL_LENGTH: usize = 1024;
 
 /// The hub of one host. Cloning it gives another handle to the same hub.
 ///
 /// Everyone who publishes or reads holds a handle: agents through a [`Blackboard`], others through a [`Publisher`] or a
-/// [`Subscriber`]. The hub holds a bounded ring of messages for each topic; readers fetch from it when they choose, so
-/// one that never does slows nobody.
+/// [`Subscriber`], links through a [`Tap`] and a [`Receiver`]. The hub holds a bounded ring of messages for each topic; readers fetch
+/// from it when they choose, so one that never does slows nobody.
 #[derive(Clone)]
 pub struct Narukom {
     shared: Arc<Shared>,
@@ -33,34 +32,24 @@ struct Shared {
     host: Arc<str>,
     catalogue: Catalogue,
     blackboards: AtomicU32,
-    /// The number of the last publication; readers compare it before they take a lock.
-    head: AtomicU64,
-    /// Held from the numbering of a message to the end of its observation, so that observers see them in order.
-    observers: Mutex<Vec<Box<dyn Observer>>>,
+    /// Whether there is an observer; without one its lock is not taken.
+    is_observed: AtomicBool,
+    observers: Mutex<Observers>,
     exchange: Mutex<Exchange>,
+    head: Head,
 }
 
-/// What is copied in and out under the lock.
-pub(crate) struct Exchange {
-    rings: Vec<Ring>,
-    order: u64,
-    /// The topics of the last publications, oldest first.
-    journal: VecDeque<TopicSlot>,
-    publishers: Vec<Arc<str>>,
-    waker: Option<Arc<dyn Waker>>,
-}
+/// The number of the last publication; readers compare it before they take a lock. It has a cache line of its own (two, since
+/// processors fetch them in pairs), so that those who poll it do not slow down those who take the lock.
+#[repr(align(128))]
+struct Head(AtomicU64);
 
-/// Who publishes.
-#[derive(Clone)]
-pub(crate) struct Sender {
-    pub(crate) publisher: PublisherId,
-    pub(crate) name: Arc<str>,
-}
-
-/// A message on its way to the hub.
-pub(crate) struct Outgoing {
-    pub(crate) sample: AnySample,
-    pub(crate) origin: Origin,
+/// Held from the numbering of a message to the end of its observation, so that observers see them in order.
+#[derive(Default)]
+struct Observers {
+    all: Vec<Box<dyn Observer>>,
+    /// Where a message is encoded that no tap shares.
+    encoding: Encoding,
 }
 
 impl Narukom {
@@ -71,14 +60,16 @@ impl Narukom {
         declarations: impl IntoIterator<Item = &'a TopicDeclaration>,
     ) -> Result<Narukom, Error> {
         let catalogue = Catalogue::new(declarations.into_iter().copied().collect())?;
-        let exchange = Exchange::new(catalogue.topics());
+        let host: Arc<str> = host.into();
+        let exchange = Exchange::new(host.clone(), catalogue.topics());
         let shared = Shared {
-            host: host.into(),
+            host,
             catalogue,
             blackboards: AtomicU32::new(0),
-            head: AtomicU64::new(0),
-            observers: Mutex::new(Vec::new()),
+            is_observed: AtomicBool::new(false),
+            observers: Mutex::default(),
             exchange: Mutex::new(exchange),
+            head: Head(AtomicU64::new(0)),
         };
         Ok(Narukom { shared: Arc::new(shared) })
     }
@@ -86,11 +77,6 @@ impl Narukom {
     /// A hub with every topic that a linked crate declares with [`topic!`](crate::topic!).
     pub fn with_linked_topics(host: &str) -> Result<Narukom, Error> {
         Narukom::new(host, TOPICS.iter())
-    }
-
-    /// The host's name.
-    pub fn host(&self) -> &str {
-        &self.shared.host
     }
 
     /// The topics, sorted by path; the place of each is its slot's number.
@@ -103,21 +89,60 @@ impl Narukom {
         self.shared.catalogue.by_path(path)
     }
 
+    /// The topics that a pattern fits, as [`subscriber`](Narukom::subscriber) has it.
+    pub fn matching(&self, pattern: &str) -> Result<Vec<TopicSlot>, Error> {
+        subscriber::matching(&self.shared.catalogue, pattern)
+    }
+
     /// What is declared of a topic.
     pub fn declaration(&self, slot: TopicSlot) -> Option<&TopicDeclaration> {
         self.shared.catalogue.get(slot)
     }
 
+    /// The newest message that was published on a topic. Nobody becomes a reader by it.
+    pub fn latest(&self, slot: TopicSlot) -> Option<AnySample> {
+        self.exchange().newest(Channel::local(slot)).map(|entry| entry.sample.clone())
+    }
+}
+
+/// Names.
+impl Narukom {
+    /// The host's name.
+    pub fn host(&self) -> &str {
+        &self.shared.host
+    }
+
+    /// The number by which this hub knows a host, heard of or not.
+    ///
+    /// # Errors
+    /// There are more hosts than [`HOST_LIMIT`](crate::HOST_LIMIT).
+    pub fn host_id(&self, name: &str) -> Result<HostId, Error> {
+        self.exchange().host(name)
+    }
+
+    /// The hosts that have a number, in the order of their numbers; the first is this one.
+    pub fn hosts(&self) -> Vec<Arc<str>> {
+        self.exchange().hosts().to_vec()
+    }
+
+    /// The other hosts from which messages of a topic have come.
+    pub fn hosts_of(&self, slot: TopicSlot) -> Vec<HostId> {
+        self.exchange().hosts_of(slot).collect()
+    }
+
     /// The name of a host.
     pub fn host_name(&self, host: HostId) -> Option<Arc<str>> {
-        (host == HostId::LOCAL).then(|| self.shared.host.clone())
+        self.exchange().hosts().get(host.index()).cloned()
     }
 
     /// The name of a publisher.
     pub fn publisher_name(&self, publisher: PublisherId) -> Option<Arc<str>> {
-        self.exchange().publishers.get(publisher.index()).cloned()
+        self.exchange().publisher_name(publisher).cloned()
     }
+}
 
+/// Those who publish, read and look on.
+impl Narukom {
     /// A blackboard for an agent, or for a region of one, that publishes under the name `publisher`. Several may share a name.
     pub fn blackboard(&self, publisher: &str) -> Blackboard {
         let number = self.shared.blackboards.fetch_add(1, Ordering::Relaxed) + 1;
@@ -134,41 +159,85 @@ impl Narukom {
         Ok(Publisher::new(self.clone(), self.sender(publisher), slot))
     }
 
-    /// For those outside agents: reads one topic (`soccer/ball`), those directly under a path (`soccer/*`), or all
-    /// under it (`soccer/**`, `**`). A pattern that fits no topic is an error.
+    /// As [`publisher`](Narukom::publisher), for a topic known at run time: takes messages of any type, or bytes, and refuses what is
+    /// not of the topic's.
+    pub fn publisher_by_name(&self, path: &str, publisher: &str) -> Result<AnyPublisher, Error> {
+        let slot = self.shared.catalogue.declared(path)?;
+        let declaration = self.shared.catalogue.topics()[slot.index()];
+        Ok(AnyPublisher::new(self.clone(), self.sender(publisher), slot, declaration))
+    }
+
+    /// For links: takes in what `publisher` published at `path` on another host.
+    ///
+    /// # Errors
+    /// Nobody declared the topic here, `host` is this one, or there are too many hosts or publishers.
+    pub fn receiver(&self, host: &str, publisher: &str, path: &str) -> Result<Receiver, Error> {
+        let slot = self.shared.catalogue.declared(path)?;
+        let declaration = self.shared.catalogue.topics()[slot.index()];
+        let mut exchange = self.exchange();
+        let id = exchange.host(host)?;
+        if id == HostId::LOCAL {
+            let text =
+                format!("`{path}` of `{publisher}` comes from elsewhere, but names this host, `{host}`");
+            return Err(Error::new(ErrorKind::OwnHost, text));
+        }
+        let sender = exchange.remote_sender(publisher)?;
+        let name = exchange.hosts()[id.index()].clone();
+        drop(exchange);
+        Ok(Receiver::new(self.clone(), (id, name), sender, slot, declaration))
+    }
+
+    /// For those outside agents: reads what is published here on one topic (`soccer/ball`), those directly under a path
+    /// (`soccer/*`), or all under it (`soccer/**`, `**`). A pattern that fits no topic is an error.
     pub fn subscriber(&self, pattern: &str) -> Result<Subscriber, Error> {
-        Subscriber::new(self.clone(), pattern)
+        self.subscriber_of(HostId::LOCAL, pattern)
+    }
+
+    /// As [`subscriber`](Narukom::subscriber), for what has come from another host.
+    pub fn subscriber_of(&self, host: HostId, pattern: &str) -> Result<Subscriber, Error> {
+        Ok(Subscriber::new(self.clone(), host, self.matching(pattern)?))
+    }
+
+    /// As [`subscriber`](Narukom::subscriber), for bytes: for links and recorders.
+    pub fn tap(&self, pattern: &str) -> Result<Tap, Error> {
+        Ok(Tap::new(self.clone(), self.matching(pattern)?))
     }
 
     /// Lets `observer` see everything that is published from now on.
     pub fn observe(&self, observer: Box<dyn Observer>) {
-        self.observers().push(observer);
+        self.observers().all.push(observer);
+        self.shared.is_observed.store(true, Ordering::Release);
     }
 
     /// Lets `waker` know of publications from now on, in place of the one before.
     pub fn set_waker(&self, waker: Arc<dyn Waker>) {
         self.exchange().waker = Some(waker);
     }
+}
 
+/// The way in.
+impl Narukom {
     /// Whether both are handles to one hub.
     pub(crate) fn is(&self, other: &Narukom) -> bool {
         Arc::ptr_eq(&self.shared, &other.shared)
     }
 
+    #[inline]
     pub(crate) fn catalogue(&self) -> &Catalogue {
         &self.shared.catalogue
     }
 
     /// The number of the last publication.
+    #[inline]
     pub(crate) fn head(&self) -> u64 {
-        self.shared.head.load(Ordering::Acquire)
+        self.shared.head.0.load(Ordering::Acquire)
     }
 
     pub(crate) fn exchange(&self) -> MutexGuard<'_, Exchange> {
         self.shared.exchange.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn observers(&self) -> MutexGuard<'_, Vec<Box<dyn Observer>>> {
+    fn observers(&self) -> MutexGuard<'_, Observers> {
         self.shared.observers.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -178,33 +247,57 @@ impl Narukom {
 
     /// Publishes messages at once: a reader sees all of them or none. Their headers are completed.
     pub(crate) fn send(&self, sender: &Sender, outgoing: &mut [Outgoing], now: Moment) {
+        self.pass(self.host(), sender, outgoing, |exchange, message, is_observed| {
+            exchange.publish(message, now, is_observed);
+        });
+    }
+
+    /// Takes in what another host published.
+    pub(crate) fn take_in(&self, host: &str, sender: &Sender, message: &mut Outgoing) {
+        self.pass(host, sender, std::slice::from_mut(message), Exchange::receive);
+    }
+
+    /// Enters messages one by one under the lock, shows them to the observers, and wakes who waits for them.
+    fn pass(
+        &self,
+        host: &str,
+        sender: &Sender,
+        outgoing: &mut [Outgoing],
+        enter: impl Fn(&mut Exchange, &mut Outgoing, bool),
+    ) {
         if outgoing.is_empty() {
             return;
         }
-        let mut observers = self.observers();
-        let waker = self.enter(sender, outgoing, now);
-        for observer in observers.iter_mut() {
-            self.show(observer.as_mut(), sender, outgoing);
-        }
-        drop(observers);
-        if let Some(waker) = waker {
-            outgoing.iter().for_each(|message| waker.wake(message.sample.header.topic));
-        }
-    }
-
-    fn enter(&self, sender: &Sender, outgoing: &mut [Outgoing], now: Moment) -> Option<Arc<dyn Waker>> {
+        let observers = self.shared.is_observed.load(Ordering::Acquire).then(|| self.observers());
         let mut exchange = self.exchange();
-        for message in outgoing {
-            exchange.enter(sender.publisher, message, now);
+        outgoing.iter_mut().for_each(|message| enter(&mut exchange, message, observers.is_some()));
+        let waker = exchange.waker.clone();
+        // The last thing before the lock is free: who polls the head wants the lock at once.
+        self.shared.head.0.store(exchange.order(), Ordering::Release);
+        drop(exchange);
+        if let Some(mut observers) = observers {
+            outgoing.iter_mut().for_each(|message| self.show(&mut observers, host, sender, message));
         }
-        self.shared.head.store(exchange.order, Ordering::Release);
-        exchange.waker.clone()
+        if let Some(waker) = waker {
+            outgoing.iter().for_each(|message| waker.wake(message.header.topic));
+        }
     }
 
-    fn show(&self, observer: &mut dyn Observer, sender: &Sender, outgoing: &[Outgoing]) {
-        for Outgoing { sample, .. } in outgoing {
-            if let Some(topic) = self.declaration(sample.header.topic) {
-                observer.observe(Publication { host: self.host(), publisher: &sender.name, topic, sample });
+    fn show(&self, observers: &mut Observers, host: &str, sender: &Sender, message: &mut Outgoing) {
+        let header = message.header;
+        let (Some(topic), Some(content)) = (self.declaration(header.topic), message.message.take()) else {
+            return;
+        };
+        let Observers { all, encoding } = observers;
+        encoding.clear();
+        let encoding = message.encoding.as_deref().unwrap_or(encoding);
+        let sample = &AnySample { message: content, header };
+        let publication = Publication { host, publisher: &sender.name, topic, sample, encoding };
+        for observer in all {
+            if header.host == HostId::LOCAL {
+                observer.observe(publication);
+            } else {
+                observer.observe_received(publication);
             }
         }
     }
@@ -213,57 +306,5 @@ impl Narukom {
 impl fmt::Debug for Narukom {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Narukom({}, {} topics)", self.host(), self.topics().len())
-    }
-}
-
-impl Exchange {
-    fn new(topics: &[TopicDeclaration]) -> Exchange {
-        Exchange {
-            rings: topics.iter().map(|topic| Ring::new(topic.depth())).collect(),
-            order: 0,
-            journal: VecDeque::with_capacity(JOURNAL_LENGTH),
-            publishers: Vec::new(),
-            waker: None,
-        }
-    }
-
-    fn sender(&mut self, name: &str) -> Sender {
-        let known = self.publishers.iter().position(|other| &**other == name);
-        let index = known.unwrap_or_else(|| {
-            self.publishers.push(name.into());
-            self.publishers.len() - 1
-        });
-        Sender { publisher: PublisherId(index as u32), name: self.publishers[index].clone() }
-    }
-
-    fn enter(&mut self, publisher: PublisherId, message: &mut Outgoing, now: Moment) {
-        let topic = message.sample.header.topic;
-        let Some(ring) = self.rings.get_mut(topic.index()) else { return };
-        self.order += 1;
-        message.sample.header.publisher = publisher;
-        message.sample.header.sequence = ring.next_sequence(publisher);
-        message.sample.header.published = now;
-        message.sample.header.received = now;
-        ring.push(Entry { sample: message.sample.clone(), order: self.order, origin: message.origin });
-        if self.journal.len() == JOURNAL_LENGTH {
-            self.journal.pop_front();
-        }
-        self.journal.push_back(topic);
-    }
-
-    pub(crate) fn ring(&self, slot: TopicSlot) -> Option<&Ring> {
-        self.rings.get(slot.index())
-    }
-
-    /// The number of the last publication.
-    pub(crate) fn order(&self) -> u64 {
-        self.order
-    }
-
-    /// The topics of the publications later than number `order`, if so many are remembered.
-    pub(crate) fn journal_since(&self, order: u64) -> Option<impl Iterator<Item = TopicSlot>> {
-        let count = usize::try_from(self.order - order).ok()?;
-        let start = self.journal.len().checked_sub(count)?;
-        Some(self.journal.range(start..).copied())
     }
 }

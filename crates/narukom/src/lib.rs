@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | [`State`] | the latest message | the latest, however late it comes |
 //! | [`Signal`] | what readers have not fetched yet | each message in one cycle |
-//! | [`Data`] | a history of bounded depth | the history, by time |
+//! | [`Data`] | a history of bounded depth and age | the history, by time |
 //!
 //! An agent reads and writes through its [`Blackboard`]. Its cycle is a transaction: it begins with
 //! [`process_messages`](Blackboard::process_messages), which delivers what others have published, runs the agent's code on a
@@ -30,9 +30,24 @@
 //! # Memory
 //!
 //! A hub holds at most as many messages of each topic as the topic is deep ([`STATE_DEPTH`], [`SIGNAL_DEPTH`], or what
-//! [`Data`] says). A blackboard takes 16 bytes for each topic of the hub, and for each topic that it reads references to at most
-//! as many messages again. Messages are shared: with N topics of depth D and M readers there are at most N·D messages in the hub, and the
-//! readers hold on to at most D more for each topic when they stop fetching. Each writer keeps the memory of its last D + 4 messages of a topic for the next ones.
+//! [`State`] and [`Data`] say), of each host that publishes on it; besides that a topic takes less than 512 bytes and each place for a
+//! message 96. A blackboard takes 24 bytes for each topic of the hub, and for each topic that it reads less than 200 bytes and
+//! 64 for a reference to each message that it was delivered, which are at most as many again. Messages are shared: with N topics of depth
+//! D and M readers there are at most N·D messages in the hub, and readers that stop fetching hold on to at most D more each.
+//! Each writer keeps four messages of a topic that left the hub, to make the next ones of. `tests/memory.rs` holds the crate to this.
+//! Hosts, and the names that other hosts give their publishers, are bounded too ([`HOST_LIMIT`], [`REMOTE_PUBLISHER_LIMIT`]).
+//!
+//! # Other hosts, and topics known at run time
+//!
+//! A link takes in what another host publishes through a [`Receiver`], with the moments of both clocks; agents read it as
+//! `blackboard.from(host).read(BALL)`, apart from what is published here. On its way out a link reads bytes from a [`Tap`]: a message is
+//! encoded once however many taps and observers look, and never for readers in the process. On its way in, as for an [`AnyPublisher`],
+//! bytes are decoded once, and refused with the reason when they are no message of the topic.
+//! [`Blackboard::subscribe`], [`Blackboard::samples`] and [`Blackboard::peek`] are for tools that know a topic by its path only.
+//!
+//! # Speed
+//!
+//! `cargo bench -p narukom` measures publishing and reading in one thread and across threads, beside what others make of it.
 //!
 //! # Example
 //!
@@ -85,10 +100,13 @@
 mod blackboard;
 mod cancellation;
 mod catalogue;
+mod cursors;
 mod descriptor;
+mod encoding;
 mod error;
 #[doc(hidden)]
 pub mod example;
+mod exchange;
 #[doc(hidden)]
 #[allow(missing_docs)]
 pub mod generated;
@@ -101,28 +119,35 @@ mod pool;
 mod publisher;
 mod random;
 mod reading;
+mod receiver;
 mod ring;
 mod sample;
 mod subscriber;
+mod tap;
 mod topic;
 mod writing;
 
-pub use blackboard::{Blackboard, OUTBOX_LIMIT};
+pub use blackboard::{Blackboard, EVENT_LIMIT, OUTBOX_LIMIT, View};
 pub use cancellation::Cancellation;
 pub use descriptor::{EnumDescriptor, FieldDescriptor, FieldKind, MessageDescriptor};
+pub use encoding::{ENCODED_LIMIT, Encoded};
 pub use error::{Error, ErrorKind};
+pub use exchange::{HOST_LIMIT, REMOTE_PUBLISHER_LIMIT};
+pub use history::Neighbours;
 pub use hub::Narukom;
 pub use message::{AnyMessage, Enumeration, FieldError, FieldValue, Message, Reflect};
 pub use moment::Moment;
 pub use observer::{Observer, Publication, Waker};
-pub use publisher::Publisher;
+pub use publisher::{AnyPublisher, Publisher};
 pub use random::Random;
+pub use receiver::{Arrival, Receiver};
 pub use sample::{AnySample, Header, HostId, PublisherId, Sample, TopicSlot};
 pub use subscriber::Subscriber;
+pub use tap::Tap;
 #[doc(hidden)]
 pub use topic::is_topic_path;
 pub use topic::{
-    Data, Keep, Kind, SIGNAL_DEPTH, STATE_DEPTH, Signal, State, TOPICS, Topic, TopicDeclaration,
+    Data, Keep, Kind, SIGNAL_DEPTH, STATE_DEPTH, Signal, State, TOPICS, Timed, Topic, TopicDeclaration,
 };
 
 /// The protobuf library whose traits messages implement; generated code names it through here.

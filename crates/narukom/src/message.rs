@@ -25,6 +25,18 @@ pub trait Reflect {
 
     /// The message inside the field at `index`, made if it was missing; none if the field holds no message.
     fn message_mut(&mut self, index: usize) -> Option<&mut dyn AnyMessage>;
+
+    /// The value of the field of that name: [`FieldValue::Missing`] if there is none. Whoever reads often asks the
+    /// [descriptor](MessageDescriptor::field_index) for the index once.
+    fn field_by_name(&self, name: &str) -> FieldValue<'_> {
+        self.descriptor().field_index(name).map_or(FieldValue::Missing, |index| self.field(index))
+    }
+
+    /// Sets the field of that name.
+    fn set_field_by_name(&mut self, name: &str, value: FieldValue<'_>) -> Result<(), FieldError> {
+        let index = self.descriptor().field_index(name).ok_or(FieldError::NoSuchField)?;
+        self.set_field(index, value)
+    }
 }
 
 /// A message type: a protobuf struct that knows its descriptor. `narukom-build` implements it.
@@ -51,8 +63,11 @@ pub trait AnyMessage: Reflect + Debug + Send + Sync + 'static {
     /// Appends the protobuf encoding to `bytes`.
     fn encode_to(&self, bytes: &mut Vec<u8>);
 
-    /// Becomes the message that `bytes` encode.
+    /// Becomes the message that `bytes` encode. If they encode none, what it then is, is not said.
     fn decode_from(&mut self, bytes: &[u8]) -> Result<(), prost::DecodeError>;
+
+    /// Becomes a message with nothing set; texts, bytes and lists keep their memory.
+    fn reset(&mut self);
 
     /// Becomes equal to `other`; changes nothing and answers `false` if `other` is of another type.
     fn copy_from(&mut self, other: &dyn AnyMessage) -> bool;
@@ -79,8 +94,12 @@ impl<M: Message> AnyMessage for M {
     }
 
     fn decode_from(&mut self, bytes: &[u8]) -> Result<(), prost::DecodeError> {
-        *self = M::decode(bytes)?;
-        Ok(())
+        self.clear();
+        self.merge(bytes)
+    }
+
+    fn reset(&mut self) {
+        self.clear();
     }
 
     fn copy_from(&mut self, other: &dyn AnyMessage) -> bool {

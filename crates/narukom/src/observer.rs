@@ -1,10 +1,12 @@
 //! Those whom a hub tells of publications: observers see every message, a waker learns which topics moved.
 
+use crate::encoding::Encoding;
 use crate::sample::{AnySample, TopicSlot};
 use crate::topic::TopicDeclaration;
 
 /// A message as it is published, with the names behind its header's numbers.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Publication<'a> {
     /// The host on which it was published.
     pub host: &'a str,
@@ -14,6 +16,14 @@ pub struct Publication<'a> {
     pub topic: &'a TopicDeclaration,
     /// The message and its header.
     pub sample: &'a AnySample,
+    pub(crate) encoding: &'a Encoding,
+}
+
+impl<'a> Publication<'a> {
+    /// The protobuf encoding. However many observers and taps ask, the message is encoded once.
+    pub fn bytes(&self) -> &'a [u8] {
+        self.encoding.bytes(&*self.sample.message)
+    }
 }
 
 /// Sees every message that is published on a hub: a recorder, a run hash.
@@ -23,6 +33,11 @@ pub struct Publication<'a> {
 pub trait Observer: Send {
     /// A message was published.
     fn observe(&mut self, publication: Publication<'_>);
+
+    /// A message came from another host, which published it. By default it is not looked at.
+    fn observe_received(&mut self, publication: Publication<'_>) {
+        let _ = publication;
+    }
 }
 
 impl<F: FnMut(Publication<'_>) + Send> Observer for F {
@@ -31,7 +46,7 @@ impl<F: FnMut(Publication<'_>) + Send> Observer for F {
     }
 }
 
-/// Learns that a message was published on a topic, so that whoever waits for it can be woken.
+/// Learns that a message was published on a topic, here or on another host, so that whoever waits for it can be woken.
 ///
 /// It is called on the publisher's thread, when no lock of the hub is held and the messages can be fetched.
 pub trait Waker: Send + Sync {

@@ -1,56 +1,103 @@
 //! Memory of messages, used again when their last reader has let go.
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 
+use crate::encoding::decode;
+use crate::error::Error;
 use crate::message::{AnyMessage, Message};
+use crate::topic::TopicDeclaration;
 
-/// More messages than the hub's ring holds: readers may hold the oldest for one cycle longer.
+/// How many messages wait for their last reader. Readers in step have let go of what the hub's ring gives back by the time
+/// the next message is made; the others are for readers that are a few cycles behind.
 const SPARE: usize = 4;
 
-/// The messages that one publisher made for one topic, oldest first. With every reader in step, the oldest has been
-/// let go by the time a new one is made, and its memory is used again.
+/// Messages that left the hub's ring when this writer published.
+#[derive(Default)]
 pub(crate) struct Pool {
-    made: VecDeque<Arc<dyn AnyMessage>>,
-    limit: usize,
+    spares: Vec<Arc<dyn AnyMessage>>,
+    /// Whose turn it is to go when there are too many.
+    turn: usize,
 }
 
 impl Pool {
-    /// A pool for a topic of which the hub holds `depth` messages.
-    pub(crate) fn new(depth: usize) -> Pool {
-        Pool { made: VecDeque::new(), limit: depth + SPARE }
-    }
-
-    /// Puts `message` behind a reference count. It is to be remembered when it is published.
+    /// Puts `message` behind a reference count.
     pub(crate) fn wrap<M: Message>(&mut self, message: M) -> Arc<dyn AnyMessage> {
-        match self.vacant() {
-            Some(vacant) => refill(vacant, message),
-            None => Arc::new(message),
+        for spare in 0..self.spares.len() {
+            if let Some(place) = exclusive(&mut self.spares[spare]) {
+                *place = message;
+                return self.spares.swap_remove(spare);
+            }
         }
+        Arc::new(message)
     }
 
-    /// The memory of a message that nobody holds any more.
-    pub(crate) fn vacant(&mut self) -> Option<Arc<dyn AnyMessage>> {
-        Arc::get_mut(self.made.front_mut()?)?;
-        self.made.pop_front()
+    /// A message made in place: `make` is given one with nothing set, whose texts, bytes and lists may have memory.
+    pub(crate) fn build<M: Message>(&mut self, make: impl FnOnce(&mut M)) -> Arc<dyn AnyMessage> {
+        for spare in 0..self.spares.len() {
+            if let Some(place) = exclusive::<M>(&mut self.spares[spare]) {
+                place.clear();
+                make(place);
+                return self.spares.swap_remove(spare);
+            }
+        }
+        let mut message = M::default();
+        make(&mut message);
+        Arc::new(message)
+    }
+
+    /// The message of a topic that `bytes` encode.
+    pub(crate) fn decoded(
+        &mut self,
+        topic: &TopicDeclaration,
+        bytes: &[u8],
+    ) -> Result<Arc<dyn AnyMessage>, Error> {
+        let mut message = self.vacant().unwrap_or_else(|| topic.default_message());
+        if let Some(place) = Arc::get_mut(&mut message)
+            && let Err(error) = decode(topic, place, bytes)
+        {
+            self.keep(message);
+            return Err(error);
+        }
+        Ok(message)
+    }
+
+    /// A message that nobody else holds, equal to `source` or with nothing set.
+    pub(crate) fn copied(
+        &mut self,
+        topic: &TopicDeclaration,
+        source: Option<&dyn AnyMessage>,
+    ) -> Arc<dyn AnyMessage> {
+        let Some(source) = source else { return topic.default_message() };
+        let mut message = self.vacant().unwrap_or_else(|| topic.default_message());
+        if let Some(place) = Arc::get_mut(&mut message) {
+            place.copy_from(source);
+        }
+        message
+    }
+
+    /// A message that nobody else holds, with any content.
+    fn vacant(&mut self) -> Option<Arc<dyn AnyMessage>> {
+        let place = self.spares.iter_mut().position(|spare| Arc::get_mut(spare).is_some())?;
+        Some(self.spares.swap_remove(place))
+    }
+
+    /// Takes what left the hub's ring.
+    pub(crate) fn take_back(&mut self, message: Option<Arc<dyn AnyMessage>>) {
+        message.into_iter().for_each(|message| self.keep(message));
     }
 
     /// Keeps `message` for when its last reader has let go.
-    pub(crate) fn remember(&mut self, message: &Arc<dyn AnyMessage>) {
-        if self.made.len() == self.limit {
-            self.made.pop_front();
+    #[inline]
+    fn keep(&mut self, message: Arc<dyn AnyMessage>) {
+        if self.spares.len() < SPARE {
+            self.spares.push(message);
+        } else {
+            self.turn = (self.turn + 1) % SPARE;
+            self.spares[self.turn] = message;
         }
-        self.made.push_back(message.clone());
     }
 }
 
-/// `vacant` with `message` in place of its old content; a new one if it is of another type.
-fn refill<M: Message>(mut vacant: Arc<dyn AnyMessage>, message: M) -> Arc<dyn AnyMessage> {
-    match Arc::get_mut(&mut vacant).and_then(|place| place.as_any_mut().downcast_mut::<M>()) {
-        Some(place) => {
-            *place = message;
-            vacant
-        }
-        None => Arc::new(message),
-    }
+fn exclusive<M: Message>(message: &mut Arc<dyn AnyMessage>) -> Option<&mut M> {
+    Arc::get_mut(message)?.as_any_mut().downcast_mut()
 }

@@ -2,9 +2,13 @@
 
 use std::cell::Cell;
 use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::Duration;
 
+use crate::message::AnyMessage;
+use crate::moment::Moment;
 use crate::ring::{Entry, Ring};
-use crate::sample::{AnySample, TopicSlot};
+use crate::sample::{AnySample, HostId, TopicSlot};
 use crate::topic::{Kind, TopicDeclaration};
 
 /// The delivered messages of a topic, and the place in the hub's ring where the next delivery begins.
@@ -12,9 +16,10 @@ use crate::topic::{Kind, TopicDeclaration};
 pub(crate) struct Reading {
     kind: Kind,
     depth: usize,
+    age: Option<Duration>,
     cursor: u64,
-    /// `state`: at most one. `signal`: this cycle's. `data`: a history sorted by time of publication, equal times in
-    /// order of publication.
+    /// `state`: at most one. `signal`: this cycle's. `data`: a history sorted by time of publication by this host's clock, equal
+    /// times in order of arrival.
     samples: VecDeque<AnySample>,
     lost: u64,
     /// Whether somebody reads the topic on this blackboard; an inherited reading waits for that.
@@ -36,6 +41,15 @@ pub(crate) struct Reader {
     pub(crate) seen: u64,
 }
 
+/// What a delivery brings besides the messages themselves.
+#[derive(Default)]
+pub(crate) struct Delivery {
+    /// Number, topic and host of each message.
+    pub(crate) arrivals: Vec<(u64, TopicSlot, HostId)>,
+    /// What had to go, to be dropped when the hub's lock is no longer held.
+    pub(crate) leaving: Vec<Arc<dyn AnyMessage>>,
+}
+
 impl Reader {
     fn has_seen(self, entry: &Entry) -> bool {
         entry.origin.blackboard == self.blackboard && entry.origin.nth <= self.seen
@@ -43,54 +57,97 @@ impl Reader {
 }
 
 impl Reading {
-    /// The reading that a blackboard would have by now if it had read the topic from the start.
-    pub(crate) fn attach(topic: &TopicDeclaration, ring: &Ring, reader: Reader, window: Window) -> Reading {
+    /// The reading that a blackboard would have by now if it had read the topic from the start. A state of which the hub no
+    /// longer holds the value of then begins with the oldest that it holds.
+    pub(crate) fn attach(
+        topic: &TopicDeclaration,
+        ring: Option<&Ring>,
+        reader: Reader,
+        window: Window,
+    ) -> Reading {
         let first = if topic.kind() == Kind::Signal { window.since } else { 0 };
         let mut reading = Reading {
             kind: topic.kind(),
             depth: topic.depth(),
-            cursor: ring.after(window.delivered.max(first)),
+            age: topic.age(),
+            cursor: ring.map_or(0, |ring| ring.after(window.delivered.max(first))),
             samples: VecDeque::new(),
             lost: 0,
             interest: Cell::new(false),
         };
+        let Some(ring) = ring else { return reading };
+        let mut leaving = Vec::new();
         let entries = ring.from(0).filter(|entry| entry.order > first && entry.order <= window.delivered);
-        entries.for_each(|entry| reading.accept(entry, reader));
+        entries.for_each(|entry| reading.accept(entry, reader, &mut leaving));
+        if reading.kind == Kind::State && reading.samples.is_empty() && ring.had_any_by(window.delivered) {
+            ring.from(0).take(1).for_each(|entry| reading.accept(entry, reader, &mut leaving));
+        }
         reading
     }
 
-    /// Takes what was published since the last delivery, and notes each message in `arrivals`.
-    pub(crate) fn deliver(&mut self, ring: &Ring, reader: Reader, arrivals: &mut Vec<(u64, TopicSlot)>) {
+    /// Takes what was published since the last delivery.
+    #[inline]
+    pub(crate) fn deliver(&mut self, ring: &Ring, reader: Reader, delivery: &mut Delivery) {
         if self.kind != Kind::State {
             self.lost += ring.missed(self.cursor);
         }
-        for entry in ring.from(self.cursor) {
-            self.accept(entry, reader);
-            arrivals.push((entry.order, entry.sample.header.topic));
+        if ring.next() == self.cursor + 1 {
+            ring.newest().into_iter().for_each(|entry| self.take(entry, reader, delivery));
+        } else {
+            ring.from(self.cursor).for_each(|entry| self.take(entry, reader, delivery));
         }
         self.cursor = ring.next();
     }
 
-    fn accept(&mut self, entry: &Entry, reader: Reader) {
-        let sample = entry.sample.clone();
+    #[inline]
+    fn take(&mut self, entry: &Entry, reader: Reader, delivery: &mut Delivery) {
+        let header = &entry.sample.header;
+        delivery.arrivals.push((entry.order, header.topic, header.host));
+        self.accept(entry, reader, &mut delivery.leaving);
+    }
+
+    #[inline]
+    fn accept(&mut self, entry: &Entry, reader: Reader, leaving: &mut Vec<Arc<dyn AnyMessage>>) {
         match self.kind {
             Kind::State => {
-                self.samples.clear();
-                self.samples.push_back(sample);
+                let AnySample { message, header } = &entry.sample;
+                match self.samples.back_mut() {
+                    Some(sample) => {
+                        leaving.push(std::mem::replace(&mut sample.message, message.clone()));
+                        sample.header = *header;
+                    }
+                    None => self.samples.push_back(entry.sample.clone()),
+                }
             }
             Kind::Signal if reader.has_seen(entry) => {}
-            Kind::Signal => self.samples.push_back(sample),
-            Kind::Data => self.insert(sample),
+            Kind::Signal => self.samples.push_back(entry.sample.clone()),
+            Kind::Data => self.insert(&entry.sample, leaving),
         }
     }
 
-    fn insert(&mut self, sample: AnySample) {
+    /// Keeps the newest by time: what comes too late for a full history is left out.
+    fn insert(&mut self, sample: &AnySample, leaving: &mut Vec<Arc<dyn AnyMessage>>) {
+        let local = sample.header.local;
         if self.samples.len() == self.depth {
-            self.samples.pop_front();
+            if self.samples.front().is_some_and(|oldest| oldest.header.local > local) {
+                return;
+            }
+            leaving.extend(self.samples.pop_front().map(|sample| sample.message));
         }
-        let published = sample.header.published;
-        let later = self.samples.iter().rev().take_while(|other| other.header.published > published).count();
-        self.samples.insert(self.samples.len() - later, sample);
+        let later = self.samples.iter().rev().take_while(|other| other.header.local > local).count();
+        self.samples.insert(self.samples.len() - later, sample.clone());
+    }
+
+    /// Lets go of what is too old by now to be read again.
+    #[inline]
+    pub(crate) fn expire(&mut self, now: Moment, leaving: &mut Vec<Arc<dyn AnyMessage>>) {
+        if self.age.is_none() {
+            return;
+        }
+        let oldest = self.oldest(now);
+        while self.samples.front().is_some_and(|sample| sample.header.local < oldest) {
+            leaving.extend(self.samples.pop_front().map(|sample| sample.message));
+        }
     }
 
     /// Becomes what another blackboard has of the topic; whether it is read here remains.
@@ -107,11 +164,29 @@ impl Reading {
         }
     }
 
+    /// What was published earlier than this is too old to be read.
+    #[inline]
+    pub(crate) fn oldest(&self, now: Moment) -> Moment {
+        self.age.map_or(Moment::ZERO, |age| now - age)
+    }
+
+    /// How many messages are to be read at most.
+    #[inline]
+    pub(crate) fn limit(&self) -> usize {
+        match self.kind {
+            Kind::State => 1,
+            Kind::Signal => usize::MAX,
+            Kind::Data => self.depth,
+        }
+    }
+
+    #[inline]
     pub(crate) fn samples(&self) -> &VecDeque<AnySample> {
         &self.samples
     }
 
     /// Whether the end of the cycle has something to do here.
+    #[inline]
     pub(crate) fn is_open(&self) -> bool {
         self.kind == Kind::Signal && !self.samples.is_empty()
     }
@@ -124,6 +199,7 @@ impl Reading {
         self.interest.get()
     }
 
+    #[inline]
     pub(crate) fn set_interest(&self, interest: bool) {
         self.interest.set(interest);
     }

@@ -13,6 +13,11 @@ pub struct HostId(pub(crate) u32);
 impl HostId {
     /// The hub's own host.
     pub const LOCAL: HostId = HostId(0);
+
+    /// Its number; the hub's own host has 0.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
 }
 
 /// A publisher as a hub numbers it, in the order in which publishers were first named.
@@ -59,8 +64,45 @@ pub struct Header {
     pub sequence: u64,
     /// When it was published, by the publisher's clock; until it is published, when it was written.
     pub published: Moment,
-    /// When it came to this hub; equal to `published` if it was published here.
+    /// When it was published, by this hub's clock: what histories are sorted and read by. Equal to `published` if it was
+    /// published here; else whoever carried it knows how far the clocks are apart.
+    pub local: Moment,
+    /// When it came to this hub, by its own clock; equal to `published` if it was published here.
     pub received: Moment,
+}
+
+impl Header {
+    /// The topic, of the host.
+    pub(crate) fn channel(&self) -> Channel {
+        Channel { topic: self.topic, host: self.host }
+    }
+
+    /// The header of a message that is published here, or will be.
+    pub(crate) fn local(publisher: PublisherId, topic: TopicSlot, now: Moment) -> Header {
+        Header {
+            host: HostId::LOCAL,
+            publisher,
+            topic,
+            sequence: 0,
+            published: now,
+            local: now,
+            received: now,
+        }
+    }
+}
+
+/// A topic of one host: what is held, delivered and read apart from others.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) struct Channel {
+    pub(crate) topic: TopicSlot,
+    pub(crate) host: HostId,
+}
+
+impl Channel {
+    /// The topic as it is published on the hub's own host.
+    pub(crate) const fn local(topic: TopicSlot) -> Channel {
+        Channel { topic, host: HostId::LOCAL }
+    }
 }
 
 /// A message on a blackboard, with its header. Reads as the message itself.

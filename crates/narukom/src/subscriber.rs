@@ -3,10 +3,13 @@
 use std::collections::VecDeque;
 use std::fmt;
 
+use crate::catalogue::Catalogue;
+use crate::cursors::Cursors;
 use crate::error::{Error, ErrorKind};
-use crate::hub::{Exchange, Narukom};
-use crate::sample::{AnySample, TopicSlot};
-use crate::topic::{Kind, is_topic_path};
+use crate::hub::Narukom;
+use crate::ring::Entry;
+use crate::sample::{AnySample, HostId, TopicSlot};
+use crate::topic::is_topic_path;
 
 /// Reads messages of one or several topics in the order of publication: for links, the studio, the command line.
 ///
@@ -14,84 +17,66 @@ use crate::topic::{Kind, is_topic_path};
 /// since; what left the hub's ring before it was fetched is [lost](Subscriber::lost) and counted.
 pub struct Subscriber {
     hub: Narukom,
-    cursors: Vec<(TopicSlot, u64)>,
+    cursors: Cursors,
     fetched: VecDeque<(u64, AnySample)>,
-    seen: u64,
-    lost: u64,
 }
 
 impl Subscriber {
-    pub(crate) fn new(hub: Narukom, pattern: &str) -> Result<Subscriber, Error> {
-        let slots = matching(&hub, pattern)?;
-        let (cursors, fetched, seen) = {
-            let exchange = hub.exchange();
-            let cursors =
-                slots.iter().map(|slot| (*slot, exchange.ring(*slot).map_or(0, |ring| ring.next())));
-            (cursors.collect(), latest_states(&hub, &exchange, &slots), exchange.order())
-        };
-        Ok(Subscriber { hub, cursors, fetched, seen, lost: 0 })
+    pub(crate) fn new(hub: Narukom, host: HostId, slots: Vec<TopicSlot>) -> Subscriber {
+        let mut fetched = VecDeque::new();
+        let exchange = hub.exchange();
+        let take = |entry: &Entry| fetched.push_back((entry.order, entry.sample.clone()));
+        let cursors = Cursors::new(&hub, &exchange, host, slots, take);
+        drop(exchange);
+        sort(&mut fetched);
+        Subscriber { hub, cursors, fetched }
     }
 
     /// The next message, if one was published.
     pub fn next_sample(&mut self) -> Option<AnySample> {
-        if self.fetched.is_empty() && self.hub.head() != self.seen {
-            self.fetch();
+        if self.fetched.is_empty() && !self.cursors.is_up_to_date(&self.hub) {
+            let exchange = self.hub.exchange();
+            let fetched = &mut self.fetched;
+            self.cursors.fetch(&exchange, |entry| fetched.push_back((entry.order, entry.sample.clone())));
+            drop(exchange);
+            sort(&mut self.fetched);
         }
         self.fetched.pop_front().map(|(_, sample)| sample)
     }
 
     /// How many messages were gone before they were fetched.
     pub fn lost(&self) -> u64 {
-        self.lost
+        self.cursors.lost()
     }
 
     /// The topics that it reads.
     pub fn topics(&self) -> impl Iterator<Item = TopicSlot> {
-        self.cursors.iter().map(|(slot, _)| *slot)
+        self.cursors.topics()
     }
+}
 
-    fn fetch(&mut self) {
-        let exchange = self.hub.exchange();
-        for (slot, cursor) in &mut self.cursors {
-            let Some(ring) = exchange.ring(*slot) else { continue };
-            self.lost += ring.missed(*cursor);
-            self.fetched.extend(ring.from(*cursor).map(|entry| (entry.order, entry.sample.clone())));
-            *cursor = ring.next();
-        }
-        self.seen = exchange.order();
-        drop(exchange);
-        self.fetched.make_contiguous().sort_unstable_by_key(|(order, _)| *order);
-    }
+fn sort(fetched: &mut VecDeque<(u64, AnySample)>) {
+    fetched.make_contiguous().sort_unstable_by_key(|(order, _)| *order);
 }
 
 impl fmt::Debug for Subscriber {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Subscriber({} topics, {} lost)", self.cursors.len(), self.lost)
+        write!(f, "Subscriber({} topics, {} lost)", self.cursors.topics().count(), self.lost())
     }
 }
 
-fn latest_states(hub: &Narukom, exchange: &Exchange, slots: &[TopicSlot]) -> VecDeque<(u64, AnySample)> {
-    let is_state =
-        |slot: &&TopicSlot| hub.declaration(**slot).is_some_and(|topic| topic.kind() == Kind::State);
-    let latest = |slot: &TopicSlot| exchange.ring(*slot)?.from(0).next_back();
-    let states = slots.iter().filter(is_state).filter_map(latest);
-    let mut states: Vec<_> = states.map(|entry| (entry.order, entry.sample.clone())).collect();
-    states.sort_unstable_by_key(|(order, _)| *order);
-    states.into()
-}
-
 /// The topics that `pattern` fits.
-fn matching(hub: &Narukom, pattern: &str) -> Result<Vec<TopicSlot>, Error> {
+pub(crate) fn matching(catalogue: &Catalogue, pattern: &str) -> Result<Vec<TopicSlot>, Error> {
     if !is_pattern(pattern) {
         let text = format!(
             "`{pattern}` is no pattern: a topic's path, of which `*` stands for a segment, a last `**` for any"
         );
         return Err(Error::new(ErrorKind::BadPath, text));
     }
-    let numbered = (0..).map(TopicSlot::new).zip(hub.topics());
+    let numbered = (0..).map(TopicSlot::new).zip(catalogue.topics());
     let slots: Vec<_> =
         numbered.filter(|(_, topic)| fits(pattern, topic.path())).map(|(slot, _)| slot).collect();
-    if slots.is_empty() { Err(hub.catalogue().undeclared(pattern)) } else { Ok(slots) }
+    if slots.is_empty() { Err(catalogue.undeclared(pattern)) } else { Ok(slots) }
 }
 
 fn is_pattern(pattern: &str) -> bool {

@@ -4,27 +4,32 @@ use std::any::TypeId;
 use std::fmt;
 use std::marker::PhantomData;
 use std::sync::Arc;
+use std::time::Duration;
 
 use linkme::distributed_slice;
 
 use crate::descriptor::MessageDescriptor;
 use crate::message::{AnyMessage, Message};
 
-/// How many of a `state` topic's last messages a hub holds. Readers see the latest; the others serve subscribers, and
-/// readers that come late in a cycle.
+/// How many of a `state` topic's last messages a hub holds, unless the topic says otherwise. Readers see the latest; the others
+/// serve subscribers, and readers that come late in a cycle.
 pub const STATE_DEPTH: usize = 8;
 
 /// How many of a `signal` topic's last messages a hub holds for readers that have not fetched them yet.
 pub const SIGNAL_DEPTH: usize = 64;
 
 /// A topic that keeps the latest message; late readers get it.
-pub struct State<M>(PhantomData<fn() -> M>);
+///
+/// The hub holds the last `DEPTH` messages, at least one. A topic of large messages, such as images, does with one: then few of them
+/// are in memory at a time, and these stay in the processor's caches.
+pub struct State<M, const DEPTH: usize = STATE_DEPTH>(PhantomData<fn() -> M>);
 
 /// A topic whose messages each reader sees in one cycle.
 pub struct Signal<M>(PhantomData<fn() -> M>);
 
-/// A topic that keeps a history of the last `DEPTH` messages, at least one, read by time.
-pub struct Data<M, const DEPTH: usize>(PhantomData<fn() -> M>);
+/// A topic that keeps a history, read by time: the last `DEPTH` messages, at least one, and of these the ones of the last
+/// `MILLIS` milliseconds (of any age, if it is not said).
+pub struct Data<M, const DEPTH: usize, const MILLIS: u64 = { u64::MAX }>(PhantomData<fn() -> M>);
 
 /// How a topic keeps its messages, without the message type.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -49,9 +54,9 @@ impl fmt::Display for Kind {
 
 mod sealed {
     pub trait Sealed {}
-    impl<M> Sealed for super::State<M> {}
+    impl<M, const DEPTH: usize> Sealed for super::State<M, DEPTH> {}
     impl<M> Sealed for super::Signal<M> {}
-    impl<M, const DEPTH: usize> Sealed for super::Data<M, DEPTH> {}
+    impl<M, const DEPTH: usize, const MILLIS: u64> Sealed for super::Data<M, DEPTH, MILLIS> {}
 }
 
 /// A way of keeping messages of one type: [`State`], [`Signal`] or [`Data`].
@@ -62,12 +67,17 @@ pub trait Keep: sealed::Sealed + 'static {
     const KIND: Kind;
     /// How many messages a hub holds.
     const DEPTH: usize;
+    /// How old a message may be to be read, where there is a limit.
+    const AGE: Option<Duration> = None;
 }
 
-impl<M: Message> Keep for State<M> {
+/// A way of keeping that is read by time: [`Data`].
+pub trait Timed: Keep {}
+
+impl<M: Message, const DEPTH: usize> Keep for State<M, DEPTH> {
     type Message = M;
     const KIND: Kind = Kind::State;
-    const DEPTH: usize = STATE_DEPTH;
+    const DEPTH: usize = if DEPTH == 0 { 1 } else { DEPTH };
 }
 
 impl<M: Message> Keep for Signal<M> {
@@ -76,11 +86,14 @@ impl<M: Message> Keep for Signal<M> {
     const DEPTH: usize = SIGNAL_DEPTH;
 }
 
-impl<M: Message, const DEPTH: usize> Keep for Data<M, DEPTH> {
+impl<M: Message, const DEPTH: usize, const MILLIS: u64> Keep for Data<M, DEPTH, MILLIS> {
     type Message = M;
     const KIND: Kind = Kind::Data;
     const DEPTH: usize = if DEPTH == 0 { 1 } else { DEPTH };
+    const AGE: Option<Duration> = if MILLIS == u64::MAX { None } else { Some(Duration::from_millis(MILLIS)) };
 }
+
+impl<M: Message, const DEPTH: usize, const MILLIS: u64> Timed for Data<M, DEPTH, MILLIS> {}
 
 /// A topic as code names it; made by [`topic!`](crate::topic!).
 pub struct Topic<K> {
@@ -129,6 +142,7 @@ pub struct TopicDeclaration {
     hash: u64,
     kind: Kind,
     depth: usize,
+    age: Option<Duration>,
     descriptor: &'static MessageDescriptor,
     module: &'static str,
     message_type: fn() -> TypeId,
@@ -143,6 +157,7 @@ impl TopicDeclaration {
             hash: hash(path),
             kind: K::KIND,
             depth: K::DEPTH,
+            age: K::AGE,
             descriptor: K::Message::DESCRIPTOR,
             module,
             message_type: TypeId::of::<K::Message>,
@@ -163,6 +178,11 @@ impl TopicDeclaration {
     /// How many messages a hub holds.
     pub fn depth(&self) -> usize {
         self.depth
+    }
+
+    /// How old a message may be to be read, where there is a limit.
+    pub fn age(&self) -> Option<Duration> {
+        self.age
     }
 
     /// The message type.
@@ -221,6 +241,8 @@ pub static TOPICS: [TopicDeclaration];
 ///     pub BALL: State<Ball> = "soccer/ball";
 ///     /// Each sighting, for whoever filters.
 ///     pub SIGHTING: Data<Ball, 64> = "soccer/sighting";
+///     /// Where it was seen in the last half second, in at most 32 sightings.
+///     pub TRACK: Data<Ball, 32, 500> = "soccer/track";
 ///     /// The ball was touched.
 ///     pub TOUCH: Signal<Ball> = "soccer/touch";
 /// }

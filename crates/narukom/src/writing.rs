@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use crate::error::Error;
 use crate::message::AnyMessage;
 use crate::pool::Pool;
 use crate::sample::{AnySample, Header};
@@ -43,7 +44,7 @@ impl Writing {
             seen: Cell::new(0),
             hidden: 0,
             inherited: Vec::new(),
-            pool: Pool::new(topic.depth()),
+            pool: Pool::default(),
         }
     }
 
@@ -51,23 +52,32 @@ impl Writing {
         &mut self.pool
     }
 
+    /// The message of the topic that `bytes` encode, to be written.
+    pub(crate) fn decoded(&mut self, bytes: &[u8]) -> Result<Arc<dyn AnyMessage>, Error> {
+        self.pool.decoded(&self.topic, bytes)
+    }
+
     /// How many own messages were read before they came back.
+    #[inline]
     pub(crate) fn seen(&self) -> u64 {
         self.seen.get()
     }
 
     /// Notes that the own messages are being read.
+    #[inline]
     pub(crate) fn mark_seen(&self) {
         self.seen.set(self.written);
     }
 
     /// Own and inherited messages as they are read, oldest first.
+    #[inline]
     pub(crate) fn visible(&self) -> impl DoubleEndedIterator<Item = &AnySample> {
         let own = self.own.iter().filter(|own| own.nth > self.hidden).map(|own| &own.sample);
         self.inherited.iter().chain(own)
     }
 
     /// Whether the end of the cycle has something to do here.
+    #[inline]
     pub(crate) fn is_open(&self) -> bool {
         !self.own.is_empty() || !self.inherited.is_empty()
     }
@@ -86,7 +96,7 @@ impl Writing {
 
     /// Adds a draft to be published: a copy of `source`, or a message with nothing set.
     pub(crate) fn begin_draft(&mut self, source: Option<&AnySample>, header: Header) {
-        let message = self.copy(source.map(|sample| &*sample.message));
+        let message = self.pool.copied(&self.topic, source.map(|sample| &*sample.message));
         self.write(AnySample { message, header });
         self.draft = true;
     }
@@ -95,7 +105,7 @@ impl Writing {
     pub(crate) fn change_draft(&mut self, change: impl FnOnce(&mut dyn AnyMessage)) {
         let Some(mut own) = self.own.pop_back() else { return };
         if Arc::get_mut(&mut own.sample.message).is_none() {
-            own.sample.message = self.copy(Some(&*own.sample.message));
+            own.sample.message = self.pool.copied(&self.topic, Some(&*own.sample.message));
         }
         if let Some(message) = Arc::get_mut(&mut own.sample.message) {
             change(message);
@@ -103,27 +113,17 @@ impl Writing {
         self.own.push_back(own);
     }
 
-    /// A message that nobody else holds, equal to `source` or with nothing set.
-    fn copy(&mut self, source: Option<&dyn AnyMessage>) -> Arc<dyn AnyMessage> {
-        let Some(source) = source else { return self.topic.default_message() };
-        let mut message = self.pool.vacant().unwrap_or_else(|| self.topic.default_message());
-        if let Some(place) = Arc::get_mut(&mut message) {
-            place.copy_from(source);
-        }
-        message
-    }
-
-    /// The next message to be published, and its number. Its memory will be used again.
+    /// The next message to be published, and its number.
     pub(crate) fn take_next(&mut self) -> Option<(AnySample, u64)> {
         let own = self.own.get(self.published)?;
         self.published += 1;
         self.draft &= self.published < self.own.len();
-        self.pool.remember(&own.sample.message);
         Some((own.sample.clone(), own.nth))
     }
 
-    /// Notes the header with which a message was published.
-    pub(crate) fn complete(&mut self, nth: u64, header: Header) {
+    /// Notes the header with which a message was published, and takes back what left the hub's ring in its place.
+    pub(crate) fn complete(&mut self, nth: u64, header: Header, left: Option<Arc<dyn AnyMessage>>) {
+        self.pool.take_back(left);
         if let Some(own) = self.own.iter_mut().rev().find(|own| own.nth == nth) {
             own.sample.header = header;
         }

@@ -106,7 +106,7 @@ fn what_is_published_together_arrives_together_and_in_order() {
     let [signal, data, state] = slots;
     assert_eq!(taker.arrivals().collect::<Vec<_>>(), [state, signal, data, signal]);
     taker.process_messages(at(4));
-    assert_eq!(taker.arrivals().len(), 0);
+    assert_eq!(taker.arrivals().count(), 0);
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn linked_topics_are_found_and_sorted() {
     assert!(!TOPICS.is_empty());
     let hub = hub();
     let paths: Vec<_> = hub.topics().iter().map(|topic| topic.path()).collect();
-    assert_eq!(paths, ["other/state", "test/data", "test/signal", "test/state"]);
+    assert_eq!(paths, ["other/state", "test/aged", "test/data", "test/signal", "test/state"]);
     for (number, path) in (0..).zip(paths) {
         assert_eq!(hub.topic(path), Some(TopicSlot::new(number)));
     }
@@ -53,6 +53,10 @@ fn two_ways_of_keeping_a_topic_are_refused() {
     let (kind, _) =
         start_error(&[declared::<Data<Mark, 2>>("a", "one"), declared::<Data<Mark, 3>>("a", "other")]);
     assert_eq!(kind, ErrorKind::KindsDiffer);
+    let (kind, text) =
+        start_error(&[declared::<Data<Mark, 2, 500>>("a", "one"), declared::<Data<Mark, 2>>("a", "other")]);
+    assert_eq!(kind, ErrorKind::KindsDiffer);
+    assert!(text.contains("data of depth 2 and 500 ms in one"), "{text}");
 }
 
 #[test]
@@ -110,7 +114,7 @@ fn subscribers_get_everything_in_order_of_publication() {
     giver.publish_all(at(2));
     assert_eq!(marks(&mut subscriber), [1, 2, 3, 4, 5]);
     assert_eq!(marks(&mut subscriber), []);
-    assert_eq!(subscriber.topics().count(), 3);
+    assert_eq!(subscriber.topics().count(), 4);
 }
 
 #[test]

@@ -189,6 +189,12 @@ impl Model {
         for entry in ring.iter().filter(|entry| entry.order > begin && entry.order <= known.delivered) {
             shelf.accept(WAYS[way], *entry, board);
         }
+        // A state of which the hub no longer holds the value of then begins with the oldest that it holds.
+        let had_a_value = self.logs[way].first().is_some_and(|entry| entry.order <= known.delivered);
+        let shelf = &mut self.boards[board].shelves[way];
+        if WAYS[way] == Way::State && shelf.items.is_empty() && had_a_value {
+            shelf.items = vec![ring[0].value];
+        }
         let late = |entry: &Published| entry.order > known.delivered.max(begin);
         shelf.cursor = first + ring.iter().position(late).unwrap_or(ring.len());
     }

@@ -185,3 +185,92 @@ fn an_empty_history_answers_nothing() {
     assert!(taker.nearest_not_older(DATA, Moment::ZERO).is_none());
     assert_eq!(taker.recent(DATA, Duration::MAX).count(), 0);
 }
+
+#[test]
+fn a_state_is_found_however_many_followed_since_the_last_delivery() {
+    let hub = hub();
+    let (mut giver, mut late) = (hub.publisher(STATE, "giver").unwrap(), hub.blackboard("late"));
+    giver.publish(Mark::new(1), at(1));
+    late.process_messages(at(1));
+    (2..=50).for_each(|number| giver.publish(Mark::new(number), at(number)));
+    let first = late.read(STATE).unwrap().number;
+    assert!(first > 1, "the value of the last delivery is no longer held");
+    assert_eq!(late.read(STATE).unwrap().number, first, "nothing moves during a cycle");
+    late.process_messages(at(50));
+    assert_eq!(late.read(STATE).unwrap().number, 50);
+}
+
+/// The numbers of the history with an age, at a moment in which nothing is published.
+fn aged(blackboard: &mut Blackboard, millis: u64) -> Vec<u64> {
+    blackboard.process_messages(at(millis));
+    blackboard.recent(AGED, Duration::MAX).map(|mark| mark.number).collect()
+}
+
+#[test]
+fn histories_are_bounded_by_age_and_by_depth() {
+    let hub = hub();
+    let (mut giver, mut taker) = (hub.publisher(AGED, "giver").unwrap(), hub.blackboard("taker"));
+    (1..=6).for_each(|number| giver.publish(Mark::new(number), at(number * 10)));
+    assert_eq!(aged(&mut taker, 60), [3, 4, 5, 6], "by depth");
+    assert_eq!(aged(&mut taker, 80), [3, 4, 5, 6], "50 ms is not more than 50 ms");
+    assert_eq!(aged(&mut taker, 91), [5, 6], "by age");
+    assert_eq!(taker.nearest(AGED, at(0)).unwrap().number, 5);
+    assert!(taker.nearest_not_newer(AGED, at(40)).is_none());
+    assert_eq!(aged(&mut taker, 110), [6]);
+    assert_eq!(taker.read(AGED).unwrap().number, 6);
+    assert_eq!(aged(&mut taker, 111), []);
+    assert!(taker.read(AGED).is_none(), "the newest is too old as well");
+    assert_eq!(taker.lost(AGED), 0, "what is too old is not lost");
+    giver.publish(Mark::new(7), at(112));
+    assert_eq!(aged(&mut taker, 112), [7]);
+}
+
+#[test]
+fn own_data_that_waits_grows_too_old_as_well() {
+    let mut robot = hub().blackboard("robot");
+    robot.process_messages(at(10));
+    robot.publish(AGED, Mark::new(1)).unwrap();
+    assert_eq!(aged(&mut robot, 60), [1]);
+    assert_eq!(aged(&mut robot, 61), []);
+}
+
+#[test]
+fn a_moment_lies_between_its_neighbours() {
+    let taker = history();
+    let around = |millis| {
+        let marks = taker.around(DATA, at(millis))?;
+        Some((marks.before.number, marks.after.number, marks.share))
+    };
+    assert_eq!(around(15), Some((1, 2, 0.5)));
+    assert_eq!(around(25), Some((3, 4, 0.25)));
+    assert_eq!(around(10), Some((1, 1, 0.0)));
+    assert_eq!(around(20), Some((3, 3, 0.0)), "of several at one moment the last");
+    assert_eq!(around(40), Some((4, 4, 0.0)));
+    assert_eq!((around(9), around(41)), (None, None), "nothing is known outside");
+}
+
+#[test]
+fn messages_of_one_moment_are_all_kept_by_every_way_that_keeps_several() {
+    let hub = hub();
+    let (mut giver, mut taker) = (hub.blackboard("giver"), hub.blackboard("taker"));
+    (1..=4).for_each(|number| {
+        giver.publish(SIGNAL, Mark::new(number)).unwrap();
+        giver.publish(DATA, Mark::new(number)).unwrap();
+    });
+    giver.publish_all(at(7));
+    taker.process_messages(at(7));
+    assert_eq!(numbers(&taker), (None, vec![1, 2, 3, 4], vec![1, 2, 3, 4]));
+}
+
+#[test]
+fn what_comes_too_late_for_a_full_history_is_left_out() {
+    let hub = hub();
+    let (mut giver, mut taker) = (hub.publisher(DATA, "giver").unwrap(), hub.blackboard("taker"));
+    [10, 20, 30, 40, 5].into_iter().for_each(|millis| {
+        giver.publish(Mark::new(millis), at(millis));
+        taker.process_messages(at(50));
+        taker.read(DATA);
+    });
+    let all: Vec<_> = taker.recent(DATA, Duration::MAX).map(|mark| mark.number).collect();
+    assert_eq!(all, [10, 20, 30, 40]);
+}

@@ -1,7 +1,7 @@
 //! Taking over another blackboard's values: what a region of a statechart does when it is entered.
 
 use super::Blackboard;
-use crate::sample::TopicSlot;
+use crate::sample::{Channel, TopicSlot};
 use crate::topic::Kind;
 
 /// Taking over.
@@ -16,11 +16,11 @@ impl Blackboard {
         self.now = other.now;
         self.window = other.window;
         for place in 0..self.attached.get_mut().len() {
-            let slot = self.attached.get_mut()[place];
-            self.adopt_reading(slot, other);
+            let channel = self.attached.get_mut()[place];
+            self.adopt_reading(channel, other);
         }
-        for slot in other.attached.borrow().iter() {
-            self.inherit_reading(*slot, other);
+        for channel in other.attached.borrow().iter() {
+            self.inherit_reading(*channel, other);
         }
         for place in 0..self.written.len() {
             self.hide(self.written[place]);
@@ -32,22 +32,23 @@ impl Blackboard {
     }
 
     /// What is read here becomes what `other` reads, or would read.
-    fn adopt_reading(&mut self, slot: TopicSlot, other: &Blackboard) {
-        let theirs = other.places[slot.index()].reading.get();
-        let anew = if theirs.is_none() { self.attached_reading(slot) } else { None };
-        let theirs = theirs.map(|theirs| &**theirs).or(anew.as_ref());
-        if let (Some(mine), Some(theirs)) = (self.places[slot.index()].reading.get_mut(), theirs) {
+    fn adopt_reading(&mut self, channel: Channel, other: &Blackboard) {
+        let theirs = other.places[channel.topic.index()].reading(channel.host);
+        let anew = if theirs.is_none() { self.attached_reading(channel) } else { None };
+        let mine = self.places[channel.topic.index()].reading_mut(channel.host);
+        if let (Some(mine), Some(theirs)) = (mine, theirs.or(anew.as_ref())) {
             mine.take_over(theirs);
         }
     }
 
     /// What `other` reads and nobody here has read yet is known here too.
-    fn inherit_reading(&mut self, slot: TopicSlot, other: &Blackboard) {
-        let place = &self.places[slot.index()].reading;
-        if let (None, Some(theirs)) = (place.get(), other.places[slot.index()].reading.get()) {
+    fn inherit_reading(&mut self, channel: Channel, other: &Blackboard) {
+        let mine = self.places[channel.topic.index()].reading(channel.host);
+        let theirs = other.places[channel.topic.index()].reading(channel.host);
+        if let (None, Some(theirs)) = (mine, theirs) {
             let inherited = theirs.clone();
             inherited.set_interest(false);
-            self.keep(slot, inherited);
+            self.keep(channel, inherited);
         }
     }
 
@@ -70,15 +71,10 @@ impl Blackboard {
 
     /// Finds anew what ends with the cycle.
     fn reopen(&mut self) {
-        let places = &self.places;
-        let reading =
-            |slot: &&TopicSlot| places[slot.index()].reading.get().is_some_and(|reading| reading.is_open());
-        let writing = |slot: &&TopicSlot| {
-            places[slot.index()].writing.as_ref().is_some_and(|writing| writing.is_open())
-        };
+        let written = self.written.iter().map(|slot| Channel::local(*slot));
+        let channels = self.attached.get_mut().iter().copied().chain(written);
         let open = self.open.get_mut();
         open.clear();
-        open.extend(self.attached.get_mut().iter().filter(reading));
-        open.extend(self.written.iter().filter(writing));
+        open.extend(channels.filter(|channel| self.places[channel.topic.index()].is_open(channel.host)));
     }
 }

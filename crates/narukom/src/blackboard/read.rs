@@ -2,24 +2,31 @@
 
 use std::time::Duration;
 
-use super::Blackboard;
-use crate::history::{self, History};
+use super::{Blackboard, View};
+use crate::history::Neighbours;
 use crate::message::Message;
 use crate::moment::Moment;
 use crate::reading::Reading;
-use crate::sample::{AnySample, Sample, TopicSlot};
-use crate::topic::{Data, Keep, Kind, Signal, Topic};
+use crate::sample::{Channel, HostId, Sample};
+use crate::topic::{Keep, Signal, Timed, Topic};
 
-/// Reading.
+/// Reading what is published on this host.
 impl Blackboard {
+    /// What another host published, as far as it was delivered here; with [`HostId::LOCAL`], what this one did.
+    /// [`Narukom::host_id`](crate::Narukom::host_id) gives the number for a name.
+    #[inline]
+    pub fn from(&self, host: HostId) -> View<'_> {
+        View { blackboard: self, host }
+    }
+
     /// The newest message of a topic: of a signal topic, of this cycle only. None too if the hub was made without the topic.
     pub fn read<K: Keep>(&self, topic: Topic<K>) -> Option<&K::Message> {
-        self.sample(topic).map(|sample| sample.message)
+        self.from(HostId::LOCAL).read(topic)
     }
 
     /// As [`read`](Blackboard::read), with the header.
     pub fn sample<K: Keep>(&self, topic: Topic<K>) -> Option<Sample<'_, K::Message>> {
-        self.newest(self.slot_of(topic)?)?.downcast()
+        self.from(HostId::LOCAL).sample(topic)
     }
 
     /// The signals of this cycle, oldest first.
@@ -27,114 +34,76 @@ impl Blackboard {
     /// Each blackboard sees a signal in one cycle. Its own it sees at once or, if nobody here has looked by the next
     /// delivery, then, as everybody else does.
     pub fn signals<M: Message>(&self, topic: Topic<Signal<M>>) -> impl Iterator<Item = Sample<'_, M>> {
-        self.history_of(topic).filter_map(AnySample::downcast)
+        self.from(HostId::LOCAL).signals(topic)
     }
 
     /// The messages of a history that are at most `age` old, oldest first.
-    pub fn recent<M: Message, const DEPTH: usize>(
+    pub fn recent<K: Timed>(
         &self,
-        topic: Topic<Data<M, DEPTH>>,
+        topic: Topic<K>,
         age: Duration,
-    ) -> impl Iterator<Item = Sample<'_, M>> {
-        let oldest = self.now - age;
-        let recent = self.history_of(topic).filter(move |sample| sample.header.published >= oldest);
-        recent.filter_map(AnySample::downcast)
+    ) -> impl Iterator<Item = Sample<'_, K::Message>> {
+        self.from(HostId::LOCAL).recent(topic, age)
     }
 
-    /// The message of a history that was published nearest to `moment`; of two equally near the earlier, of several at one
-    /// moment the last.
-    pub fn nearest<M: Message, const DEPTH: usize>(
-        &self,
-        topic: Topic<Data<M, DEPTH>>,
-        moment: Moment,
-    ) -> Option<Sample<'_, M>> {
-        let history = self.history(self.slot_of(topic)?)?;
-        history::nearer(history.not_newer(moment), history.not_older(moment), moment)?.downcast()
+    /// The message of a history that was published nearest to `moment`; of two equally near the earlier. Of several published at
+    /// one moment it is the one that is nearest in the order of the history.
+    pub fn nearest<K: Timed>(&self, topic: Topic<K>, moment: Moment) -> Option<Sample<'_, K::Message>> {
+        self.from(HostId::LOCAL).nearest(topic, moment)
     }
 
     /// The last message of a history that was published at `moment` or before.
-    pub fn nearest_not_newer<M: Message, const DEPTH: usize>(
+    pub fn nearest_not_newer<K: Timed>(
         &self,
-        topic: Topic<Data<M, DEPTH>>,
+        topic: Topic<K>,
         moment: Moment,
-    ) -> Option<Sample<'_, M>> {
-        self.history(self.slot_of(topic)?)?.not_newer(moment)?.downcast()
+    ) -> Option<Sample<'_, K::Message>> {
+        self.from(HostId::LOCAL).nearest_not_newer(topic, moment)
     }
 
     /// The first message of a history that was published at `moment` or after.
-    pub fn nearest_not_older<M: Message, const DEPTH: usize>(
+    pub fn nearest_not_older<K: Timed>(
         &self,
-        topic: Topic<Data<M, DEPTH>>,
+        topic: Topic<K>,
         moment: Moment,
-    ) -> Option<Sample<'_, M>> {
-        self.history(self.slot_of(topic)?)?.not_older(moment)?.downcast()
+    ) -> Option<Sample<'_, K::Message>> {
+        self.from(HostId::LOCAL).nearest_not_older(topic, moment)
+    }
+
+    /// The two messages of a history between which `moment` lies, for whoever interpolates; none if it lies outside, since nothing
+    /// is known there.
+    pub fn around<K: Timed>(&self, topic: Topic<K>, moment: Moment) -> Option<Neighbours<'_, K::Message>> {
+        self.from(HostId::LOCAL).around(topic, moment)
     }
 
     /// How many messages of a topic were gone before they could be delivered here. States lose none: only the latest counts.
     pub fn lost<K: Keep>(&self, topic: Topic<K>) -> u64 {
-        self.slot_of(topic).map_or(0, |slot| self.lost_at(slot))
+        self.from(HostId::LOCAL).lost(topic)
     }
 
-    fn slot_of<K: Keep>(&self, topic: Topic<K>) -> Option<TopicSlot> {
-        self.hub.catalogue().by_hash(topic.hash())
-    }
-
-    /// The newest message of a topic, which is read with that.
-    pub(super) fn newest(&self, slot: TopicSlot) -> Option<&AnySample> {
-        let reading = self.attach(slot)?;
-        reading.set_interest(true);
-        if let Some(writing) = &self.places[slot.index()].writing {
-            writing.mark_seen();
+    /// The reading of a topic of a host, made if need be.
+    #[inline]
+    pub(super) fn attach(&self, channel: Channel) -> Option<&Reading> {
+        let place = self.places.get(channel.topic.index())?;
+        match place.reading(channel.host) {
+            Some(reading) => Some(reading),
+            None => Some(self.keep(channel, self.attached_reading(channel)?)),
         }
-        self.peek(slot, reading)
-    }
-
-    /// The newest message of a topic.
-    pub(super) fn peek<'a>(&'a self, slot: TopicSlot, reading: &'a Reading) -> Option<&'a AnySample> {
-        let writing = self.places[slot.index()].writing.as_ref();
-        let own = writing.and_then(|writing| writing.visible().next_back());
-        own.or_else(|| reading.samples().back())
-    }
-
-    /// All messages of a topic, oldest first.
-    fn history(&self, slot: TopicSlot) -> Option<History<'_>> {
-        let topic = self.hub.declaration(slot)?;
-        let depth = if topic.kind() == Kind::Data { topic.depth() } else { usize::MAX };
-        let reading = self.attach(slot)?;
-        reading.set_interest(true);
-        let writing = self.places[slot.index()].writing.as_deref();
-        writing.inspect(|writing| writing.mark_seen());
-        Some(History::new(reading, writing, depth))
-    }
-
-    fn history_of<K: Keep>(&self, topic: Topic<K>) -> impl Iterator<Item = &AnySample> {
-        let history = self.slot_of(topic).and_then(|slot| self.history(slot));
-        history.into_iter().flat_map(History::iter)
-    }
-
-    /// The reading of a topic, made if need be.
-    pub(super) fn attach(&self, slot: TopicSlot) -> Option<&Reading> {
-        let reading = &self.places.get(slot.index())?.reading;
-        if reading.get().is_none() {
-            self.keep(slot, Box::new(self.attached_reading(slot)?));
-        }
-        reading.get().map(|reading| &**reading)
     }
 
     /// The reading of a topic as if it had been read from the start.
-    pub(super) fn attached_reading(&self, slot: TopicSlot) -> Option<Reading> {
-        let topic = self.hub.declaration(slot)?;
+    pub(super) fn attached_reading(&self, channel: Channel) -> Option<Reading> {
+        let topic = self.hub.declaration(channel.topic)?;
         let exchange = self.hub.exchange();
-        Some(Reading::attach(topic, exchange.ring(slot)?, self.reader(slot), self.window))
+        Some(Reading::attach(topic, exchange.ring(channel), self.reader(channel), self.window))
     }
 
     /// Puts a reading in its empty place.
-    pub(super) fn keep(&self, slot: TopicSlot, reading: Box<Reading>) {
+    pub(super) fn keep(&self, channel: Channel, reading: Reading) -> &Reading {
         if reading.is_open() {
-            self.open.borrow_mut().push(slot);
+            self.open.borrow_mut().push(channel);
         }
-        if self.places[slot.index()].reading.set(reading).is_ok() {
-            self.attached.borrow_mut().push(slot);
-        }
+        self.attached.borrow_mut().push(channel);
+        self.places[channel.topic.index()].keep(channel.host, reading)
     }
 }

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::{Blackboard, OUTBOX_LIMIT};
-use crate::catalogue;
+use crate::encoding::check_type;
 use crate::error::{Error, ErrorKind};
 use crate::message::AnyMessage;
-use crate::sample::{AnySample, Header, HostId, TopicSlot};
+use crate::sample::{AnySample, Channel, Header, HostId, TopicSlot};
 use crate::topic::{Keep, Topic};
 use crate::writing::Writing;
 
@@ -26,19 +26,48 @@ impl Blackboard {
         Ok(())
     }
 
+    /// As [`publish`](Blackboard::publish), for a message that `make` builds in place, beginning with nothing set: large ones need not
+    /// be moved, and their texts, bytes and lists use the memory of earlier ones.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn publish_with<K: Keep>(
+        &mut self,
+        topic: Topic<K>,
+        make: impl FnOnce(&mut K::Message),
+    ) -> Result<(), Error> {
+        let slot = self.hub.catalogue().checked(topic)?;
+        self.room()?;
+        self.queue(slot, |writing, header| {
+            let message = writing.pool().build(make);
+            writing.write(AnySample { message, header });
+        });
+        Ok(())
+    }
+
     /// As [`publish`](Blackboard::publish), for a topic known at run time.
     ///
     /// # Errors
     /// As there; and the message is not of the topic's type.
     pub fn publish_by_name(&mut self, path: &str, message: Box<dyn AnyMessage>) -> Result<(), Error> {
-        let slot = self.hub.topic(path).ok_or_else(|| self.hub.catalogue().undeclared(path))?;
+        let slot = self.hub.catalogue().declared(path)?;
         self.room()?;
-        if let Some(topic) = self.hub.declaration(slot)
-            && topic.message_type() != message.as_any().type_id()
-        {
-            return Err(catalogue::wrong_type(topic, message.descriptor().full_name));
-        }
+        self.hub.declaration(slot).map_or(Ok(()), |topic| check_type(topic, &*message))?;
         self.queue(slot, |writing, header| writing.write(AnySample { message: Arc::from(message), header }));
+        Ok(())
+    }
+
+    /// As [`publish_by_name`](Blackboard::publish_by_name), for a message that `bytes` encode; they are decoded once, here.
+    ///
+    /// # Errors
+    /// As there; and the bytes encode no message of the topic's type, or are more than
+    /// [`ENCODED_LIMIT`](crate::ENCODED_LIMIT).
+    pub fn publish_bytes(&mut self, path: &str, bytes: &[u8]) -> Result<(), Error> {
+        let slot = self.hub.catalogue().declared(path)?;
+        self.room()?;
+        let Some(writing) = self.writing(slot) else { return Ok(()) };
+        let message = writing.decoded(bytes)?;
+        self.queue(slot, |writing, header| writing.write(AnySample { message, header }));
         Ok(())
     }
 
@@ -54,7 +83,9 @@ impl Blackboard {
         }
         if !self.writing(slot).is_some_and(|writing| writing.has_draft()) {
             self.room()?;
-            let source = self.attach(slot).and_then(|reading| self.peek(slot, reading)).cloned();
+            let local = self.from(HostId::LOCAL);
+            let reading = self.attach(Channel::local(slot));
+            let source = reading.and_then(|reading| local.newest(slot, reading)).cloned();
             self.queue(slot, |writing, header| writing.begin_draft(source.as_ref(), header));
         }
         if let Some(writing) = self.writing(slot) {
@@ -72,11 +103,6 @@ impl Blackboard {
         Err(Error::new(ErrorKind::OutboxFull, text))
     }
 
-    fn header(&self, topic: TopicSlot) -> Header {
-        let publisher = self.sender.publisher;
-        Header { host: HostId::LOCAL, publisher, topic, sequence: 0, published: self.now, received: self.now }
-    }
-
     pub(super) fn writing(&mut self, slot: TopicSlot) -> Option<&mut Writing> {
         let topic = self.hub.declaration(slot)?;
         let writing = &mut self.places.get_mut(slot.index())?.writing;
@@ -88,13 +114,13 @@ impl Blackboard {
 
     /// Writes a message that will be published in its turn.
     fn queue(&mut self, slot: TopicSlot, write: impl FnOnce(&mut Writing, Header)) {
-        let header = self.header(slot);
+        let header = Header::local(self.sender.publisher, slot, self.now);
         let Some(writing) = self.writing(slot) else { return };
         let was_open = writing.is_open();
         write(writing, header);
         self.outbox.push(slot);
         if !was_open {
-            self.open.get_mut().push(slot);
+            self.open.get_mut().push(Channel::local(slot));
         }
     }
 }

@@ -2,7 +2,7 @@
 #![allow(dead_code, unreachable_pub)]
 
 use narukom::{
-    AnyMessage, Blackboard, Data, FieldDescriptor, FieldError, FieldKind, FieldValue, Message,
+    AnyMessage, Arrival, Blackboard, Data, FieldDescriptor, FieldError, FieldKind, FieldValue, Message,
     MessageDescriptor, Moment, Narukom, Reflect, Signal, State, Topic, topic,
 };
 
@@ -104,6 +104,8 @@ topic! {
     pub SIGNAL: Signal<Mark> = "test/signal";
     /// A history of four.
     pub DATA: Data<Mark, 4> = "test/data";
+    /// A history of four, of the last 50 milliseconds.
+    pub AGED: Data<Mark, 4, 50> = "test/aged";
     /// Something else.
     pub ELSE: State<Other> = "other/state";
 }
@@ -119,6 +121,11 @@ pub fn hub() -> Narukom {
 /// The moment so many milliseconds after the start.
 pub fn at(millis: u64) -> Moment {
     Moment::from_nanos(millis * 1_000_000)
+}
+
+/// What a link knows of a message that needed no time: the same moment by all clocks.
+pub fn arrival(sequence: u64, moment: Moment) -> Arrival {
+    Arrival { sequence, published: moment, local: moment, received: moment }
 }
 
 /// Publishes a state, a signal and a piece of data with the number, in a cycle of their own.

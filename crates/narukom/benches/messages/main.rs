@@ -1,0 +1,26 @@
+//! What messages cost, beside what others make of the same work: `cargo bench -p narukom`.
+//!
+//! Machines are shared and differ, so no figure stands alone: all contestants of a table take turns in one run, several rounds, and
+//! what is shown is the median of the rounds' figures, with the smallest and the largest. A word after `--` selects the tables whose
+//! title contains it; a number sets how many rounds: `cargo bench -p narukom -- polling 15`.
+#![allow(clippy::disallowed_methods, reason = "a benchmark reads the clock and starts threads")]
+#![allow(clippy::unwrap_used, reason = "a benchmark that cannot go on stops")]
+
+mod fan_out;
+mod latency;
+mod messages;
+mod one_thread;
+mod table;
+
+use table::Selection;
+
+fn main() {
+    let selection = Selection::from_arguments();
+    one_thread::publish_and_read(&selection);
+    one_thread::nearest(&selection);
+    one_thread::idle_topics(&selection);
+    latency::polling(&selection);
+    latency::blocking(&selection);
+    latency::large(&selection);
+    fan_out::eight(&selection);
+}
