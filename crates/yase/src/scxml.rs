@@ -1,7 +1,7 @@
 //! SCXML: statecharts as the W3C writes them, read, written and run.
 //!
 //! [`read`] makes a [`Document`] of a text: a [`Statechart`](crate::Statechart), and beside it what a chart alone cannot say, such as variables and
-//! invocations. [`write`] makes a text of a chart, and [`Document::write`] one of a document; both read back as they were. A [`Session`] runs a
+//! invocations. [`write()`] makes a text of a chart, and [`Document::write`] one of a document; both read back as they were. A [`Session`] runs a
 //! document on a clock that the caller holds, together with the sessions that the document invokes.
 //!
 //! ```
