@@ -39,6 +39,35 @@ impl BitSet {
         first_bit(from, last, |index| self.words.get(index).copied().unwrap_or(0))
     }
 
+    /// The greatest member from `first` to `last`, both included.
+    pub(crate) fn last(&self, first: usize, last: usize) -> Option<usize> {
+        if first > last {
+            return None;
+        }
+        let mut index = last / BITS;
+        let mut bits = self.words.get(index).copied().unwrap_or(0) & (u64::MAX >> (BITS - 1 - last % BITS));
+        while bits == 0 {
+            if index <= first / BITS {
+                return None;
+            }
+            index -= 1;
+            bits = self.words.get(index).copied().unwrap_or(0);
+        }
+        let number = index * BITS + BITS - 1 - bits.leading_zeros() as usize;
+        (number >= first).then_some(number)
+    }
+
+    /// Becomes equal to a set of the same capacity.
+    pub(crate) fn copy_from(&mut self, other: &BitSet) {
+        self.words.copy_from_slice(&other.words);
+    }
+
+    /// The least member from `from` to `last` that is not in `without`.
+    pub(crate) fn next_without(&self, without: &BitSet, from: usize, last: usize) -> Option<usize> {
+        let word = |set: &BitSet, index: usize| set.words.get(index).copied().unwrap_or(0);
+        first_bit(from, last, |index| word(self, index) & !word(without, index))
+    }
+
     /// The least number from `from` to `last` that is in both sets.
     pub(crate) fn next_common(&self, other: &BitSet, from: usize, last: usize) -> Option<usize> {
         let word = |set: &BitSet, index: usize| set.words.get(index).copied().unwrap_or(0);
@@ -101,6 +130,10 @@ mod tests {
         assert_eq!(set.next(65, 130), Some(130));
         assert_eq!(set.next(5, 4), None);
         assert!(set.any_in(199, 199) && !set.any_in(131, 198));
+        assert_eq!(set.last(0, 198), Some(130));
+        assert_eq!(set.last(64, 129), Some(64));
+        assert_eq!(set.last(65, 129), None);
+        assert_eq!((set.last(0, 199), set.last(0, 0), set.last(1, 62)), (Some(199), Some(0), None));
     }
 
     #[test]

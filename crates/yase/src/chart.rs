@@ -2,11 +2,17 @@
 
 mod build;
 mod check;
+mod entries;
 mod events;
 mod layout;
+mod paths;
+mod roles;
+mod scope;
 mod scripts;
+mod segments;
 mod ways;
 
+use std::ops::Range;
 use std::time::Duration;
 
 use crate::bits::BitSet;
@@ -55,7 +61,12 @@ pub struct Chart {
     pub(crate) branches: Box<[Branch]>,
     pub(crate) triggers: Box<[Trigger]>,
     pub(crate) guards: Box<[ScopedGuard]>,
+    pub(crate) weights: Box<[Weight]>,
     pub(crate) compounds: Box<[Compound]>,
+    pub(crate) choices: Box<[Choice]>,
+    /// By their owner.
+    pub(crate) histories: Box<[History]>,
+    pub(crate) joins: Box<[Join]>,
     pub(crate) activities: Box<[Place]>,
     pub(crate) timers: Box<[Timer]>,
     pub(crate) masks: Masks,
@@ -75,11 +86,19 @@ pub(crate) struct State {
     pub(crate) region: RegionId,
     /// Whether it is the region itself: entering it fills a blackboard.
     pub(crate) is_region: bool,
-    /// Whether it is the END of the root.
+    /// Whether it is an END of the root.
     pub(crate) finishes: bool,
+    pub(crate) parent: Option<Place>,
+    /// An OR's START.
+    pub(crate) start: Option<Place>,
+    /// An AND's regions, an OR's ENDs.
+    pub(crate) parts: Box<[Place]>,
+    /// Its HISTORYs, by number.
+    pub(crate) histories: Range<usize>,
+    /// The event that its completion is.
+    pub(crate) done: Option<EventId>,
     /// Its number among the activities.
     pub(crate) activity: Option<usize>,
-    pub(crate) children: Box<[Place]>,
     pub(crate) entry: Box<[Effect]>,
     pub(crate) exit: Box<[Effect]>,
     pub(crate) defer: Box<[EventId]>,
@@ -107,6 +126,8 @@ impl Branches {
 pub(crate) struct Branch {
     pub(crate) condition: Condition,
     pub(crate) guard: Option<usize>,
+    /// Its number among the segments with a weight.
+    pub(crate) weight: Option<usize>,
     /// The compound transition that is complete with this segment.
     pub(crate) compound: Option<CompoundId>,
     pub(crate) skip: usize,
@@ -117,14 +138,67 @@ pub(crate) struct Branch {
 pub(crate) enum Condition {
     /// Nothing: it is not the first segment.
     None,
+    /// Nothing: it may be taken whenever its source is active.
+    Always,
     /// That its source has completed.
     Completed,
     /// That nothing inside its source can step or runs.
     Quiescent,
     /// That nothing inside its source can step; what runs there will be interrupted.
     NoStepInside,
+    /// That all sources of a JOIN have completed.
+    AllCompleted(usize),
+    /// That its source has completed and has not yet arrived at a JOIN.
+    Arrives(usize),
+    /// That all have arrived at a JOIN.
+    AllArrived(usize),
     /// An event that a trigger matches.
     Trigger(usize),
+}
+
+/// A segment with a weight, on one place in a tree of branches.
+#[derive(Clone, Debug)]
+pub(crate) struct Weight {
+    pub(crate) value: f64,
+    pub(crate) segment: TransitionId,
+    /// The branches beside it, itself among them.
+    pub(crate) beside: Branches,
+}
+
+/// A CHOICE on one blackboard.
+#[derive(Clone, Debug)]
+pub(crate) struct Choice {
+    pub(crate) node: NodeId,
+    pub(crate) branches: Branches,
+}
+
+/// A HISTORY.
+#[derive(Clone, Debug)]
+pub(crate) struct History {
+    pub(crate) place: Place,
+    pub(crate) owner: Place,
+    pub(crate) is_deep: bool,
+    /// The ways out of it, for when nothing is recorded.
+    pub(crate) branches: Branches,
+}
+
+/// A JOIN.
+#[derive(Clone, Debug)]
+pub(crate) struct Join {
+    /// The AND around its sources.
+    pub(crate) around: Place,
+    /// The number of its first segment among all segments into JOINs; the others follow.
+    pub(crate) first: usize,
+    pub(crate) sources: Box<[Place]>,
+    /// The region that each source lies in.
+    pub(crate) regions: Box<[Place]>,
+}
+
+impl Join {
+    /// The numbers of its segments.
+    pub(crate) fn slots(&self) -> Range<usize> {
+        self.first..self.first + self.sources.len()
+    }
 }
 
 /// A guard of a segment on one blackboard.
@@ -140,19 +214,33 @@ pub(crate) struct ScopedGuard {
 pub(crate) struct Compound {
     pub(crate) segments: Box<[TransitionId]>,
     pub(crate) source: Place,
+    /// The further sources of a JOIN.
+    pub(crate) others: Box<[Place]>,
     /// The blackboard of its scope.
     pub(crate) region: RegionId,
+    pub(crate) scope: Place,
     /// Places of which all active ones are left.
     pub(crate) exits: Option<(Place, Place)>,
-    pub(crate) entries: Box<[Place]>,
+    /// What stays without an active child.
+    pub(crate) vacates: Option<Place>,
+    /// The number of the segment into a JOIN that it is.
+    pub(crate) arrives: Option<usize>,
+    pub(crate) leaves: Box<[Leaf]>,
+    pub(crate) entries: Entries,
+    /// The state that timers which it starts belong to.
+    pub(crate) owner: Owner,
     pub(crate) effects: Box<[(TransitionId, Box<[Effect]>)]>,
     pub(crate) interrupts: bool,
-    pub(crate) terminates: bool,
     /// Its place in the order of firing.
     pub(crate) key: u64,
 }
 
 impl Compound {
+    /// The states it begins at.
+    pub(crate) fn sources(&self) -> impl Iterator<Item = Place> {
+        std::iter::once(self.source).chain(self.others.iter().copied())
+    }
+
     /// Whether it leaves a place if that is active.
     pub(crate) fn leaves(&self, place: Place) -> bool {
         self.exits.is_some_and(|(first, last)| first <= place && place <= last)
@@ -162,6 +250,35 @@ impl Compound {
     pub(crate) fn conflicts_with(&self, other: &Compound) -> bool {
         matches!((self.exits, other.exits), (Some(a), Some(b)) if a.0 <= b.1 && b.0 <= a.1)
     }
+}
+
+/// Where a compound transition ends or goes on.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Leaf {
+    /// At a state or a HISTORY.
+    Node(Place),
+    /// At a CHOICE, by its number.
+    Choice(usize),
+    Terminate,
+}
+
+/// What a compound transition enters.
+#[derive(Clone, Debug)]
+pub(crate) enum Entries {
+    None,
+    /// These, outermost first.
+    Listed(Box<[Place]>),
+    /// What its leaves ask for, found out while entering.
+    Found,
+}
+
+/// The state that a timer belongs to.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Owner {
+    None,
+    State(Place),
+    /// The state that is the first target, which a CHOICE decides on.
+    Later,
 }
 
 /// A blackboard.
@@ -187,7 +304,6 @@ pub(crate) struct Timer {
 /// Sets of places.
 #[derive(Clone, Debug)]
 pub(crate) struct Masks {
-    pub(crate) leaves: BitSet,
     pub(crate) starts: BitSet,
     pub(crate) eventless: BitSet,
     pub(crate) triggered: BitSet,

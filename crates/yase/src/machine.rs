@@ -1,10 +1,16 @@
 //! A chart that runs.
 
+mod act;
 mod activities;
 mod bound;
 mod chooser;
+mod completion;
+mod draw;
+mod enter;
 mod errors;
 mod fire;
+mod history;
+mod leave;
 mod newcomers;
 mod queues;
 mod run;
@@ -91,6 +97,7 @@ pub enum MicroStep {
 pub struct MachineError {
     kind: MachineErrorKind,
     cycle: Box<[TransitionId]>,
+    node: Option<NodeId>,
     text: String,
 }
 
@@ -102,12 +109,19 @@ pub enum MachineErrorKind {
     NeverRests,
     /// More steps did something at one moment than [`Semantics::limit`] allows.
     NeverAdvances,
+    /// No way out of a CHOICE was open when it was reached.
+    NoBranch,
 }
 
 impl MachineError {
     /// What kind of error it is.
     pub fn kind(&self) -> MachineErrorKind {
         self.kind
+    }
+
+    /// The CHOICE without an open way.
+    pub fn node(&self) -> Option<NodeId> {
+        self.node
     }
 
     /// The segments that were taken again and again.
@@ -143,12 +157,13 @@ impl Machine {
         self.run.chooser = chooser;
     }
 
-    /// Enters the root and its START, from scratch: what ran before is [stopped](Machine::stop), timers and events are forgotten. The first
-    /// transitions are those of the next [`run_to_completion`](Machine::run_to_completion).
+    /// Enters the root and its START (with [`StartRest::SameStep`](crate::StartRest::SameStep), what that leads to), from scratch: what ran
+    /// before is [stopped](Machine::stop), timers and events are forgotten. The first transitions are those of the next
+    /// [`run_to_completion`](Machine::run_to_completion).
     pub fn start(&mut self, now: Moment, host: &mut impl Host) {
         self.stop(host);
         self.run.reset(now);
-        self.step(host).enter_root();
+        self.step(host).begin_run();
     }
 
     /// Ends everything without leaving any state: running activities get a cancellation request, waiting ones are stopped.
@@ -163,7 +178,7 @@ impl Machine {
     /// Ends everything by leaving all states, innermost first, with their exit actions.
     pub fn leave(&mut self, host: &mut impl Host) {
         if self.run.status == Status::Running {
-            self.step(host).leave_all();
+            self.step(host).leave_all(Status::Stopped);
         }
     }
 
@@ -236,8 +251,8 @@ impl Machine {
     /// A clock that runs backwards stands still for the machine.
     ///
     /// # Errors
-    /// When the chart never comes to rest ([`MachineErrorKind`]). It is stopped then, and shows the configuration before the
-    /// micro-step that would have been one too many.
+    /// When the chart never comes to rest, or cannot go on at a CHOICE ([`MachineErrorKind`]). It is stopped then, and shows the
+    /// configuration before the micro-step that went wrong or would have been one too many.
     pub fn run_to_completion(
         &mut self,
         now: Moment,
@@ -288,6 +303,7 @@ impl Machine {
         let due = || {
             self.run.due
                 || self.run.queues.is_waiting()
+                || !self.run.completions.is_empty()
                 || self.next_deadline().is_some_and(|next| next <= now)
         };
         self.run.status == Status::Running && due()

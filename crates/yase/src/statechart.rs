@@ -274,7 +274,7 @@ impl Statechart {
         fitting.next().is_none().then_some(found)
     }
 
-    fn is_at(&self, id: NodeId, path: &str) -> bool {
+    pub(crate) fn is_at(&self, id: NodeId, path: &str) -> bool {
         let mut nodes = std::iter::once(id).chain(self.ancestors(id));
         path.rsplit('/').all(|segment| nodes.next().is_some_and(|node| self.segment(node) == segment))
     }
@@ -282,18 +282,32 @@ impl Statechart {
     /// The last part of its path.
     pub(crate) fn segment(&self, id: NodeId) -> String {
         let node = self.node(id);
-        if !node.name.is_empty() {
-            return node.name.clone();
-        }
         let place =
-            node.parent.and_then(|parent| self.children(parent).iter().position(|&child| child == id));
-        let number = place.map_or(1, |index| index + 1);
-        match node.kind {
-            NodeKind::Start => "START".into(),
-            NodeKind::End => "END".into(),
-            NodeKind::Condition => "CONDITION".into(),
-            _ => number.to_string(),
+            || node.parent.and_then(|parent| self.children(parent).iter().position(|&child| child == id));
+        segment_of(node, || place().map_or(1, |index| index + 1))
+    }
+
+    /// The last part of each node's path, by [`NodeId`].
+    pub(crate) fn segments(&self) -> Vec<String> {
+        let mut segments = vec![segment_of(self.node(Statechart::ROOT), || 1); self.nodes.len()];
+        for children in &self.children {
+            for (&child, number) in children.iter().zip(1..) {
+                segments[child.0 as usize] = segment_of(self.node(child), || number);
+            }
         }
+        segments
+    }
+}
+
+fn segment_of(node: &Node, number: impl FnOnce() -> usize) -> String {
+    if !node.name.is_empty() {
+        return node.name.clone();
+    }
+    match node.kind {
+        NodeKind::Start => "START".into(),
+        NodeKind::End => "END".into(),
+        NodeKind::Condition => "CONDITION".into(),
+        _ => number().to_string(),
     }
 }
 

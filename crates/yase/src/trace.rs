@@ -50,7 +50,7 @@ pub enum Occasion {
     Swap,
     /// One occurrence of an event.
     Event(EventId),
-    /// The root has reached END, and everything is left.
+    /// Everything is left: the root has reached END, or the chart is ended from outside.
     Finish,
 }
 

@@ -1,19 +1,23 @@
 //! From a statechart to a chart.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use crate::bits::BitSet;
-use crate::chart::ways::{self, Way};
+use crate::chart::paths::PathIndex;
+use crate::chart::roles::{Roles, is_state};
+use crate::chart::segments::Segment;
+use crate::chart::ways::{self, Late, Way, Ways};
 use crate::chart::{
-    Branch, Branches, Chart, Compound, CompoundId, Condition, ErrorEvents, Layout, Masks, Place, Region,
-    RegionId, ScopedGuard, State, Timer, Trigger, events, scripts,
+    Branch, Branches, Chart, Choice, Compound, ErrorEvents, History, Join, Layout, Masks, Place, Region,
+    RegionId, ScopedGuard, State, Timer, Trigger, Weight, entries, events, scope, scripts,
 };
 use crate::diagnostic::Diagnostic;
 use crate::expression::{
-    CompiledTransition, CompiledTrigger, Effect, EventId, EventTable, MessageSource, Names, Origin,
-    ScriptTable, compile_actions, started_timers,
+    CompiledTrigger, Effect, EventId, EventTable, MessageSource, Origin, ScriptTable, compile_actions,
+    started_timers,
 };
-use crate::semantics::{FailureEvents, Semantics};
+use crate::semantics::{Eventless, FailureEvents, Semantics};
 use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 use crate::vocabulary::{TopicId, Vocabulary};
 
@@ -29,10 +33,30 @@ pub(super) fn build(
         return Err(found);
     }
     let layout = Layout::new(chart);
+    let roles = Roles::new(chart, &layout);
     let (region_of, regions) = regions(chart, &layout);
-    let ways = ways::find(chart, &layout, &region_of)?;
-    let timers = timer_names(chart, &ways, &region_of, regions.len());
-    Builder::new(chart, vocabulary, semantics, layout, region_of, timers).finish(ways, regions)
+    let ways = ways::find(chart, &layout, &roles, &region_of, &semantics)?;
+    let timer_names = timer_names(chart, &ways, &region_of, regions.len());
+    let builder = Builder {
+        chart,
+        vocabulary,
+        semantics,
+        layout,
+        region_of,
+        timer_names,
+        starts: entries::starts(chart),
+        index: PathIndex::default(),
+        events: EventTable::new(),
+        scripts: ScriptTable::new(),
+        segments: BTreeMap::new(),
+        branches: Vec::new(),
+        triggers: Vec::new(),
+        guards: Vec::new(),
+        weights: Vec::new(),
+        compounds: Vec::new(),
+        found: Vec::new(),
+    };
+    builder.finish(&ways, regions)
 }
 
 /// The blackboard of each node, and the blackboards in the order of the document.
@@ -45,7 +69,7 @@ fn regions(chart: &Statechart, layout: &Layout) -> (Vec<RegionId>, Vec<Region>) 
         let Some(parent) = chart.node(node).parent else { continue };
         let around = region_of[parent.0 as usize];
         region_of[node.0 as usize] = around;
-        if chart.node(parent).kind == NodeKind::And {
+        if chart.node(parent).kind == NodeKind::And && is_state(chart.node(node).kind) {
             region_of[node.0 as usize] = RegionId(regions.len() as u32);
             regions.push(Region { root: layout.place_of(node), parent: Some(around), timers: 0 });
         }
@@ -54,14 +78,9 @@ fn regions(chart: &Statechart, layout: &Layout) -> (Vec<RegionId>, Vec<Region>) 
 }
 
 /// The timers that are started on each blackboard, in alphabetical order.
-fn timer_names(
-    chart: &Statechart,
-    ways: &[Vec<Way>],
-    region_of: &[RegionId],
-    count: usize,
-) -> Vec<Vec<String>> {
+fn timer_names(chart: &Statechart, ways: &Ways, region_of: &[RegionId], count: usize) -> Vec<Vec<String>> {
     let mut names: Vec<BTreeSet<String>> = vec![BTreeSet::new(); count];
-    for way in ways.iter().flatten() {
+    for way in ways.all() {
         for &segment in &way.segments {
             names[way.region.index()].extend(chart.transition(segment).expression.started_timers());
         }
@@ -78,69 +97,43 @@ fn timer_names(
 }
 
 /// The segments that no way leads through, since their connectors are never entered. They are checked all the same.
-fn unreached(chart: &Statechart, ways: &[Vec<Way>]) -> Vec<TransitionId> {
-    let reached: BTreeSet<TransitionId> =
-        ways.iter().flatten().flat_map(|way| way.segments.iter().copied()).collect();
-    chart.transitions().map(|(id, _)| id).filter(|id| !reached.contains(id)).collect()
-}
-
-struct Builder<'a> {
-    chart: &'a Statechart,
-    vocabulary: &'a Vocabulary,
-    semantics: Semantics,
-    layout: Layout,
-    region_of: Vec<RegionId>,
-    timer_names: Vec<Vec<String>>,
-    events: EventTable,
-    scripts: ScriptTable,
-    segments: BTreeMap<(TransitionId, RegionId), Segment>,
-    branches: Vec<Branch>,
-    triggers: Vec<CompiledTrigger>,
-    guards: Vec<ScopedGuard>,
-    compounds: Vec<Compound>,
-    found: Vec<Diagnostic>,
-}
-
-/// A segment compiled for one blackboard.
-#[derive(Clone, Debug, Default)]
-struct Segment {
-    trigger: Option<usize>,
-    guard: Option<usize>,
-    effects: Box<[Effect]>,
-}
-
-impl<'a> Builder<'a> {
-    fn new(
-        chart: &'a Statechart,
-        vocabulary: &'a Vocabulary,
-        semantics: Semantics,
-        layout: Layout,
-        region_of: Vec<RegionId>,
-        timer_names: Vec<Vec<String>>,
-    ) -> Builder<'a> {
-        Builder {
-            chart,
-            vocabulary,
-            semantics,
-            layout,
-            region_of,
-            timer_names,
-            events: EventTable::new(),
-            scripts: ScriptTable::new(),
-            segments: BTreeMap::new(),
-            branches: Vec::new(),
-            triggers: Vec::new(),
-            guards: Vec::new(),
-            compounds: Vec::new(),
-            found: Vec::new(),
-        }
+fn unreached(chart: &Statechart, ways: &Ways) -> Vec<TransitionId> {
+    let mut reached = vec![false; chart.transitions().len()];
+    for &segment in ways.all().flat_map(|way| &way.segments) {
+        reached[segment.0 as usize] = true;
     }
+    chart.transitions().map(|(id, _)| id).filter(|id| !reached[id.0 as usize]).collect()
+}
 
-    fn finish(mut self, ways: Vec<Vec<Way>>, mut regions: Vec<Region>) -> Result<Chart, Vec<Diagnostic>> {
+/// A chart that is being made ready.
+pub(super) struct Builder<'a> {
+    pub(super) chart: &'a Statechart,
+    pub(super) vocabulary: &'a Vocabulary,
+    pub(super) semantics: Semantics,
+    pub(super) layout: Layout,
+    region_of: Vec<RegionId>,
+    pub(super) timer_names: Vec<Vec<String>>,
+    pub(super) starts: Vec<Option<NodeId>>,
+    pub(super) index: PathIndex,
+    pub(super) events: EventTable,
+    pub(super) scripts: ScriptTable,
+    pub(super) segments: BTreeMap<(TransitionId, RegionId), Segment>,
+    pub(super) branches: Vec<Branch>,
+    pub(super) triggers: Vec<CompiledTrigger>,
+    pub(super) guards: Vec<ScopedGuard>,
+    pub(super) weights: Vec<Weight>,
+    pub(super) compounds: Vec<Compound>,
+    pub(super) found: Vec<Diagnostic>,
+}
+
+impl Builder<'_> {
+    fn finish(mut self, ways: &Ways, mut regions: Vec<Region>) -> Result<Chart, Vec<Diagnostic>> {
         let errors = self.error_events();
         let unnamed = self.events.intern("?");
-        let mut states = self.states(&ways);
-        for segment in unreached(self.chart, &ways) {
+        let mut states = self.states(&ways.of);
+        let choices = ways.choices.iter().map(|late| self.choice(late)).collect();
+        let histories = self.histories(&ways.histories, &mut states);
+        for segment in unreached(self.chart, ways) {
             self.segment(segment, self.region_of[self.chart.transition(segment).source.0 as usize]);
         }
         if !self.found.is_empty() {
@@ -151,14 +144,15 @@ impl<'a> Builder<'a> {
         let activities: Box<[Place]> =
             self.layout.places().filter(|place| states[place.index()].activity.is_some()).collect();
         Ok(Chart {
-            masks: masks(&states),
+            masks: masks(&states, self.semantics.eventless),
             reads: self.reads(&triggers),
             sources: self.sources(&states, &triggers),
             script_places: scripts::places(self.chart, &self.scripts),
-            scripts: self.scripts,
-            semantics: self.semantics,
             max_activities: max_activities(&states),
+            joins: self.joins(&ways.joins),
             statechart: self.chart.clone(),
+            semantics: self.semantics,
+            scripts: self.scripts,
             events: self.events,
             layout: self.layout,
             states: states.into(),
@@ -166,12 +160,54 @@ impl<'a> Builder<'a> {
             branches: self.branches.into(),
             triggers,
             guards: self.guards.into(),
+            weights: self.weights.into(),
             compounds: self.compounds.into(),
+            choices,
+            histories,
             activities,
             timers,
             errors,
             unnamed,
         })
+    }
+
+    fn choice(&mut self, late: &Late) -> Choice {
+        Choice { node: late.node, branches: self.tree(&late.ways, false) }
+    }
+
+    /// The HISTORYs in the order of their owners, which learn their numbers.
+    fn histories(&mut self, ways: &[Late], states: &mut [State]) -> Box<[History]> {
+        let mut histories: Vec<History> = ways.iter().map(|late| self.history(late)).collect();
+        histories.sort_by_key(|history| (history.owner, history.place));
+        for (number, history) in histories.iter().enumerate() {
+            let numbers = &mut states[history.owner.index()].histories;
+            *numbers = if Range::is_empty(numbers) { number..number + 1 } else { numbers.start..number + 1 };
+        }
+        histories.into()
+    }
+
+    fn history(&mut self, late: &Late) -> History {
+        let node = self.chart.node(late.node);
+        History {
+            place: self.layout.place_of(late.node),
+            owner: self.layout.place_of(node.parent.unwrap_or(Statechart::ROOT)),
+            is_deep: node.kind == NodeKind::DeepHistory,
+            branches: self.tree(&late.ways, false),
+        }
+    }
+
+    fn joins(&self, ways: &[ways::Join]) -> Box<[Join]> {
+        let mut first = 0;
+        let join = |join: &ways::Join| {
+            let region =
+                |&source: &NodeId| scope::child_towards(self.chart, join.around, source).unwrap_or(source);
+            let regions = join.sources.iter().map(region).map(|node| self.layout.place_of(node)).collect();
+            let sources: Box<[Place]> = join.sources.iter().map(|&node| self.layout.place_of(node)).collect();
+            let start = first;
+            first += sources.len();
+            Join { around: self.layout.place_of(join.around), first: start, sources, regions }
+        };
+        ways.iter().map(join).collect()
     }
 
     /// The events that failures are.
@@ -243,7 +279,11 @@ impl<'a> Builder<'a> {
             finishes: node.kind == NodeKind::End && node.parent == Some(Statechart::ROOT),
             is_region: node.parent.is_some_and(|parent| chart.node(parent).kind == NodeKind::And),
             activity: None,
-            children: chart.children(id).iter().map(|&child| self.layout.place_of(child)).collect(),
+            parent: node.parent.map(|parent| self.layout.place_of(parent)),
+            start: self.starts[id.0 as usize].map(|start| self.layout.place_of(start)),
+            parts: self.parts(id),
+            histories: 0..0,
+            done: self.done(id),
             entry,
             exit,
             defer: node.defer.iter().map(|event| self.events.intern(event)).collect(),
@@ -252,124 +292,24 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Compiles with the names of a blackboard; on errors says where they stand, and yields nothing.
-    fn actions<T: Default>(
-        &mut self,
-        region: RegionId,
-        compile: impl FnOnce(&mut Names<'_>) -> Result<T, Vec<Diagnostic>>,
-        what: impl FnOnce() -> String,
-    ) -> T {
-        let chart = self.chart;
-        let mut names = Names {
-            vocabulary: self.vocabulary,
-            constants: &chart.constants,
-            timers: &self.timer_names[region.index()],
-            events: &mut self.events,
-            scripts: &mut self.scripts,
-            states: &|path| chart.find(path),
+    /// An AND's regions, an OR's ENDs.
+    fn parts(&self, id: NodeId) -> Box<[Place]> {
+        let kind = self.chart.node(id).kind;
+        let is_part = |child: &&NodeId| match kind {
+            NodeKind::And => is_state(self.chart.node(**child).kind),
+            _ => self.chart.node(**child).kind == NodeKind::End,
         };
-        compile(&mut names).unwrap_or_else(|found| {
-            let what = what();
-            self.found.extend(found.into_iter().map(|mut diagnostic| {
-                diagnostic.message = format!("{} ({what})", diagnostic.message);
-                diagnostic
-            }));
-            T::default()
+        self.chart.children(id).iter().filter(is_part).map(|&child| self.layout.place_of(child)).collect()
+    }
+
+    /// The event that the completion of a composite is.
+    fn done(&mut self, id: NodeId) -> Option<EventId> {
+        let is_wanted = self.semantics.completion_events && id != Statechart::ROOT;
+        let is_composite = matches!(self.chart.node(id).kind, NodeKind::Or | NodeKind::And);
+        (is_wanted && is_composite).then(|| {
+            let name = self.chart.segment(id);
+            self.events.intern(&format!("done.state.{name}"))
         })
-    }
-
-    fn interrupts(&self, way: &Way) -> bool {
-        way.segments.iter().any(|&segment| self.chart.transition(segment).interrupts)
-    }
-
-    /// Writes the ways of one state, with or without a trigger, as a tree of branches.
-    fn tree(&mut self, ways: &[Way], eventless: bool) -> Branches {
-        let ways: Vec<&Way> = ways.iter().filter(|way| way.condition.is_some() == eventless).collect();
-        let start = self.branches.len();
-        self.grow(&ways, 0);
-        Branches { start, end: self.branches.len() }
-    }
-
-    /// Neighbouring ways that begin alike, on one blackboard, share branches.
-    fn grow(&mut self, ways: &[&Way], depth: usize) {
-        let alike = |a: &&Way, b: &&Way| {
-            (a.segments[depth], a.region, a.condition) == (b.segments[depth], b.region, b.condition)
-        };
-        for group in ways.chunk_by(alike) {
-            let Some(&first) = group.first() else { continue };
-            let branch = self.branch(first, depth);
-            let index = self.branches.len();
-            self.branches.push(branch);
-            if first.segments.len() > depth + 1 {
-                self.grow(group, depth + 1);
-            }
-            self.branches[index].skip = self.branches.len();
-        }
-    }
-
-    fn branch(&mut self, way: &Way, depth: usize) -> Branch {
-        let segment = self.segment(way.segments[depth], way.region);
-        let condition = match (depth, way.condition, segment.trigger) {
-            (0, Some(condition), _) => condition,
-            (0, None, Some(trigger)) => Condition::Trigger(trigger),
-            _ => Condition::None,
-        };
-        let is_last = way.segments.len() == depth + 1;
-        let compound = is_last.then(|| self.compound(way));
-        Branch { condition, guard: segment.guard, compound, skip: 0 }
-    }
-
-    /// A segment on a blackboard, compiled when it is met first.
-    fn segment(&mut self, id: TransitionId, region: RegionId) -> Segment {
-        if let Some(segment) = self.segments.get(&(id, region)) {
-            return segment.clone();
-        }
-        let chart = self.chart;
-        let transition = chart.transition(id);
-        let what =
-            || format!("from `{}` to `{}`", chart.path(transition.source), chart.path(transition.target));
-        let compiled: CompiledTransition =
-            self.actions(region, |names| transition.expression.compile(names), what);
-        let segment = Segment {
-            trigger: compiled.trigger.map(|trigger| number(&mut self.triggers, trigger)),
-            guard: compiled
-                .guard
-                .map(|guard| number(&mut self.guards, ScopedGuard { transition: id, region, guard })),
-            effects: compiled.effects,
-        };
-        self.segments.insert((id, region), segment.clone());
-        segment
-    }
-
-    fn compound(&mut self, way: &Way) -> CompoundId {
-        let chart = self.chart;
-        let (source, scope) = (self.layout.place_of(way.source), self.layout.place_of(way.scope));
-        let terminates = chart.node(way.target).kind == NodeKind::Terminate;
-        let still = terminates || way.is_targetless(chart);
-        let internal = way.segments.iter().any(|&id| chart.transition(id).internal);
-        let mut effects = Vec::new();
-        for &id in &way.segments {
-            let segment = self.segment(id, way.region);
-            if !segment.effects.is_empty() {
-                effects.push((id, segment.effects));
-            }
-        }
-        let compound = Compound {
-            segments: way.segments.clone().into(),
-            source,
-            region: way.region,
-            exits: (!still).then(|| (self.layout.first(scope), Place(scope.0.saturating_sub(1)))),
-            entries: if still {
-                Box::default()
-            } else {
-                ways::entries(chart, &self.layout, way.scope, way.target).into()
-            },
-            effects: effects.into(),
-            interrupts: self.interrupts(way),
-            terminates,
-            key: u64::from(!internal) << 32 | u64::from(self.layout.rank(source)),
-        };
-        CompoundId(number(&mut self.compounds, compound) as u32)
     }
 
     /// The topics that guards read or triggers wait for.
@@ -411,13 +351,7 @@ fn awaited(states: &[State], triggers: &[Trigger]) -> BTreeSet<EventId> {
     deferred.chain(named).collect()
 }
 
-/// Appends, and says at which place.
-fn number<T>(list: &mut Vec<T>, item: T) -> usize {
-    list.push(item);
-    list.len() - 1
-}
-
-fn masks(states: &[State]) -> Masks {
+fn masks(states: &[State], eventless: Eventless) -> Masks {
     let set = |member: &dyn Fn(&State) -> bool| {
         let mut set = BitSet::new(states.len());
         for (place, _) in states.iter().enumerate().filter(|(_, state)| member(state)) {
@@ -425,10 +359,13 @@ fn masks(states: &[State]) -> Masks {
         }
         set
     };
+    let is_start = |state: &State| state.kind == NodeKind::Start;
     Masks {
-        leaves: set(&|state| !matches!(state.kind, NodeKind::Or | NodeKind::And)),
-        starts: set(&|state| state.kind == NodeKind::Start),
-        eventless: set(&|state| !state.eventless.is_empty()),
+        starts: set(&is_start),
+        // What is looked at only when it completes has no part in other steps without an event.
+        eventless: set(&|state| {
+            !state.eventless.is_empty() && (eventless != Eventless::Once || is_start(state))
+        }),
         triggered: set(&|state| !state.triggered.is_empty()),
         deferring: set(&|state| !state.defer.is_empty()),
     }
@@ -436,13 +373,13 @@ fn masks(states: &[State]) -> Masks {
 
 /// A BASIC state has one activity or none; an OR as many as its richest child, an AND those of all regions.
 fn max_activities(states: &[State]) -> usize {
-    let mut most: Vec<usize> = Vec::with_capacity(states.len());
-    for state in states {
-        let inside = state.children.iter().map(|child| most[child.index()]);
-        most.push(match state.kind {
-            NodeKind::And => inside.sum(),
-            _ => inside.max().unwrap_or(0).max(usize::from(state.activity.is_some())),
-        });
+    let mut most: Vec<usize> = states.iter().map(|state| usize::from(state.activity.is_some())).collect();
+    for (place, state) in states.iter().enumerate() {
+        let Some(parent) = state.parent.map(Place::index) else { continue };
+        most[parent] = match states[parent].kind {
+            NodeKind::And => most[parent] + most[place],
+            _ => most[parent].max(most[place]),
+        };
     }
     most.last().copied().unwrap_or(0)
 }

@@ -1,60 +1,133 @@
-//! Every complete way out of every state: compound transitions, in the order in which they are tried.
+//! Every complete way out of every state and out of every connector at which it is decided late: compound transitions, in the order in
+//! which they are tried.
 
-use crate::chart::{Condition, Layout, Place, RegionId, check};
+use std::collections::BTreeMap;
+
+use crate::chart::roles::{Role, Roles};
+use crate::chart::scope::{self, Hull};
+use crate::chart::{Condition, Layout, RegionId};
 use crate::diagnostic::{Diagnostic, Span};
+use crate::semantics::{ActiveAncestor, Eventless, Joining, SegmentOrder, Semantics};
 use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 
 /// A chart with more compound transitions is refused: connectors that fan out and in again multiply.
 const MAX_WAYS: usize = 1_000_000;
 
-/// One compound transition.
+/// One compound transition, or the part of one that is decided on late.
 #[derive(Clone, Debug)]
 pub(super) struct Way {
     pub(super) segments: Vec<TransitionId>,
     pub(super) source: NodeId,
+    /// The further sources of a JOIN.
+    pub(super) others: Vec<NodeId>,
     /// What is left and entered happens inside this node.
     pub(super) scope: NodeId,
-    pub(super) target: NodeId,
+    pub(super) leaves: Vec<Leaf>,
     /// The blackboard of its scope.
     pub(super) region: RegionId,
     /// Without a trigger: when it may be taken. Triggers are numbered later.
     pub(super) condition: Option<Condition>,
+    /// What it does to the configuration.
+    pub(super) change: Change,
 }
 
-impl Way {
-    /// Whether it happens inside its source without touching any state.
-    pub(super) fn is_targetless(&self, chart: &Statechart) -> bool {
-        self.source == self.target && self.segments.iter().any(|&id| chart.transition(id).internal)
+/// Where a way ends, or goes on when the actions up to there have been done.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Leaf {
+    /// A state, or a HISTORY.
+    Node(NodeId),
+    /// A CHOICE, by its number among those.
+    Choice(usize),
+    Terminate,
+}
+
+/// What a way does to the configuration.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Change {
+    /// Nothing: it is internal and without target, or stops the chart, or is the late part of another.
+    None,
+    /// Its scope is left and entered.
+    Scope,
+    /// What is in its scope is left; the scope itself stays, without an active child. For a JOIN, the segment into it that this is.
+    Vacates(Option<usize>),
+}
+
+/// The ways of a chart.
+pub(super) struct Ways {
+    /// Out of each state, by [`NodeId`].
+    pub(super) of: Vec<Vec<Way>>,
+    pub(super) choices: Vec<Late>,
+    pub(super) histories: Vec<Late>,
+    pub(super) joins: Vec<Join>,
+}
+
+/// The ways out of a CHOICE or a HISTORY, on one blackboard.
+#[derive(Clone, Debug)]
+pub(super) struct Late {
+    pub(super) node: NodeId,
+    pub(super) ways: Vec<Way>,
+}
+
+/// A JOIN and its sources, in the order of the segments into it.
+#[derive(Clone, Debug)]
+pub(super) struct Join {
+    pub(super) around: NodeId,
+    pub(super) sources: Vec<NodeId>,
+}
+
+impl Ways {
+    /// Every way there is.
+    pub(super) fn all(&self) -> impl Iterator<Item = &Way> {
+        let late = self.choices.iter().chain(&self.histories).map(|late| &late.ways);
+        self.of.iter().chain(late).flatten()
     }
 }
 
-/// The ways out of each node, by [`NodeId`], each list in the order in which its ways are tried.
+/// Finds the ways of a chart whose structure has been checked.
 pub(super) fn find(
     chart: &Statechart,
     layout: &Layout,
+    roles: &Roles,
     regions: &[RegionId],
-) -> Result<Vec<Vec<Way>>, Vec<Diagnostic>> {
-    let mut search =
-        Search { chart, layout, regions, outgoing: outgoing(chart), count: 0, errors: Vec::new() };
-    let mut ways = vec![Vec::new(); chart.nodes().len()];
-    for (id, node) in chart.nodes() {
-        if !check::is_connector(node.kind) {
-            search.follow(id, id, &mut Vec::new(), &mut ways[id.0 as usize]);
-        }
+    semantics: &Semantics,
+) -> Result<Ways, Vec<Diagnostic>> {
+    let mut search = Search {
+        chart,
+        layout,
+        roles,
+        regions,
+        semantics,
+        outgoing: outgoing(chart, roles, semantics.order),
+        numbers: BTreeMap::new(),
+        choices: Vec::new(),
+        joins: Vec::new(),
+        join_numbers: BTreeMap::new(),
+        hulls: BTreeMap::new(),
+        count: 0,
+        errors: Vec::new(),
+    };
+    search.number_joins();
+    let mut of = vec![Vec::new(); chart.nodes().len()];
+    for (id, _) in chart.nodes().filter(|(id, _)| roles.of(*id) == Role::State) {
+        search.out_of_state(id, &mut of[id.0 as usize]);
     }
-    if search.errors.is_empty() { Ok(ways) } else { Err(search.errors) }
+    let histories = search.histories();
+    let choices = search.late_ways();
+    let joins = search.joins;
+    if search.errors.is_empty() { Ok(Ways { of, choices, histories, joins }) } else { Err(search.errors) }
 }
 
-/// The segments that leave each node: higher priority first, then those with a guard, then as in the model.
-fn outgoing(chart: &Statechart) -> Vec<Vec<TransitionId>> {
-    let mut outgoing = vec![Vec::new(); chart.nodes().len()];
-    for (id, transition) in chart.transitions() {
-        outgoing[transition.source.0 as usize].push(id);
-    }
-    for segments in &mut outgoing {
+/// The segments that leave each node, in the order in which they are tried. All that leave a FORK are taken, in the order of the model.
+fn outgoing(chart: &Statechart, roles: &Roles, order: SegmentOrder) -> Vec<Vec<TransitionId>> {
+    let mut outgoing = roles.outgoing.clone();
+    for (segments, (node, _)) in outgoing.iter_mut().zip(chart.nodes()) {
+        if roles.of(node) == Role::Fork {
+            continue;
+        }
         segments.sort_by_key(|&id| {
             let transition = chart.transition(id);
-            (std::cmp::Reverse(transition.priority), transition.expression.guard.is_none(), id)
+            let later = order == SegmentOrder::GuardedFirst && transition.expression.guard.is_none();
+            (std::cmp::Reverse(transition.priority), later, id)
         });
     }
     outgoing
@@ -63,128 +136,379 @@ fn outgoing(chart: &Statechart) -> Vec<Vec<TransitionId>> {
 struct Search<'a> {
     chart: &'a Statechart,
     layout: &'a Layout,
+    roles: &'a Roles,
     regions: &'a [RegionId],
+    semantics: &'a Semantics,
     outgoing: Vec<Vec<TransitionId>>,
+    /// The number of each CHOICE on each blackboard.
+    numbers: BTreeMap<(NodeId, RegionId), usize>,
+    choices: Vec<(NodeId, RegionId)>,
+    joins: Vec<Join>,
+    join_numbers: BTreeMap<NodeId, usize>,
+    /// What encloses all that a CHOICE may lead to; none if it is TERMINATE only.
+    hulls: BTreeMap<NodeId, Option<Hull>>,
     count: usize,
     errors: Vec<Diagnostic>,
 }
 
+/// What is still to be followed.
+#[derive(Clone, Copy)]
+enum Open {
+    /// One of the segments that leave it.
+    Node(NodeId),
+    Segment(TransitionId),
+}
+
+/// A way as far as it has been followed.
+#[derive(Default)]
+struct Trail {
+    segments: Vec<TransitionId>,
+    ends: Vec<NodeId>,
+    /// What is still to be followed, the next one last.
+    open: Vec<Open>,
+}
+
+/// Where a way begins.
+#[derive(Clone, Copy)]
+enum Begin<'s> {
+    /// At a state, or at the states whose segments a JOIN takes together.
+    States(NodeId, &'s [NodeId], Option<Condition>),
+    /// At a connector at which it is decided late, on a blackboard.
+    Late(NodeId, RegionId),
+}
+
 impl Search<'_> {
-    /// Depth first; chains of connectors are short and free of circles, which has been checked.
-    fn follow(&mut self, source: NodeId, at: NodeId, trail: &mut Vec<TransitionId>, ways: &mut Vec<Way>) {
-        for index in 0..self.outgoing[at.0 as usize].len() {
-            if self.count > MAX_WAYS {
-                return;
-            }
-            let id = self.outgoing[at.0 as usize][index];
-            let target = self.chart.transition(id).target;
-            trail.push(id);
-            if check::is_connector(self.chart.node(target).kind) {
-                self.follow(source, target, trail, ways);
-            } else {
-                self.complete(source, target, trail, ways);
-            }
-            trail.pop();
+    fn number_joins(&mut self) {
+        for (id, _) in self.chart.nodes().filter(|(id, _)| self.roles.of(*id) == Role::Join) {
+            let incoming = &self.roles.incoming[id.0 as usize];
+            let sources: Vec<NodeId> = incoming.iter().map(|&id| self.chart.transition(id).source).collect();
+            let hull = sources.iter().map(|&node| Hull::of(self.layout.place_of(node))).reduce(Hull::with);
+            let Some(hull) = hull else { continue };
+            self.join_numbers.insert(id, self.joins.len());
+            self.joins.push(Join { around: scope::lowest_node(self.chart, self.layout, hull), sources });
         }
     }
 
-    fn complete(&mut self, source: NodeId, target: NodeId, trail: &[TransitionId], ways: &mut Vec<Way>) {
+    fn out_of_state(&mut self, state: NodeId, ways: &mut Vec<Way>) {
+        if self.semantics.join == Joining::Each {
+            self.out_of_joins(state, ways);
+        }
+        for index in 0..self.outgoing[state.0 as usize].len() {
+            let id = self.outgoing[state.0 as usize][index];
+            let target = self.chart.transition(id).target;
+            match self.join_numbers.get(&target) {
+                Some(&join) if self.semantics.join == Joining::Each => self.arrive(state, id, join, ways),
+                Some(&join) => self.join_together(state, target, join, ways),
+                None => {
+                    let mut trail = Trail { open: vec![Open::Segment(id)], ..Trail::default() };
+                    self.follow(Begin::States(state, &[], None), &mut trail, ways);
+                }
+            }
+        }
+    }
+
+    /// The way through a JOIN as one transition: it is that of its first source in the document.
+    fn join_together(&mut self, state: NodeId, node: NodeId, join: usize, ways: &mut Vec<Way>) {
+        let mut sources = self.joins[join].sources.clone();
+        sources.sort_by_key(|&source| self.layout.rank(self.layout.place_of(source)));
+        if sources.first() != Some(&state) {
+            return;
+        }
+        let segments = self.roles.incoming[node.0 as usize].clone();
+        let mut trail = Trail { segments, open: vec![Open::Node(node)], ..Trail::default() };
+        let begin = Begin::States(state, &sources[1..], Some(Condition::AllCompleted(join)));
+        self.follow(begin, &mut trail, ways);
+    }
+
+    /// A segment into a JOIN that is taken by itself.
+    fn arrive(&mut self, state: NodeId, segment: TransitionId, join: usize, ways: &mut Vec<Way>) {
+        let Join { around, sources } = &self.joins[join];
+        let slot = sources.iter().position(|&source| source == state);
+        let (Some(region), Some(slot)) = (scope::child_towards(self.chart, *around, state), slot) else {
+            return;
+        };
+        let slot = self.joins[..join].iter().map(|join| join.sources.len()).sum::<usize>() + slot;
         self.count += 1;
+        ways.push(Way {
+            segments: vec![segment],
+            source: state,
+            others: Vec::new(),
+            scope: region,
+            leaves: Vec::new(),
+            region: self.regions[region.0 as usize],
+            condition: Some(Condition::Arrives(slot)),
+            change: Change::Vacates(Some(slot)),
+        });
+    }
+
+    /// The ways out of the JOINs of an AND, which are taken when all have arrived.
+    fn out_of_joins(&mut self, and: NodeId, ways: &mut Vec<Way>) {
+        let joins: Vec<(NodeId, usize)> = match self.chart.node(and).kind {
+            NodeKind::And => {
+                let joins = self.join_numbers.iter().map(|(&node, &join)| (node, join));
+                joins.filter(|&(_, join)| self.joins[join].around == and).collect()
+            }
+            _ => return,
+        };
+        for (node, join) in joins {
+            let mut trail = Trail { open: vec![Open::Node(node)], ..Trail::default() };
+            self.follow(Begin::States(and, &[], Some(Condition::AllArrived(join))), &mut trail, ways);
+        }
+    }
+
+    /// The ways out of each HISTORY, for when there is no record.
+    fn histories(&mut self) -> Vec<Late> {
+        let mut histories = Vec::new();
+        for (id, node) in self.chart.nodes().filter(|(id, _)| self.roles.of(*id) == Role::History) {
+            let owner = node.parent.unwrap_or(Statechart::ROOT);
+            let ways = self.out_of_late(id, self.regions[owner.0 as usize]);
+            histories.push(Late { node: id, ways });
+        }
+        histories
+    }
+
+    /// The ways out of each CHOICE that some way leads to; those ways may lead to further ones.
+    fn late_ways(&mut self) -> Vec<Late> {
+        let mut late = Vec::new();
+        while let Some(&(node, region)) = self.choices.get(late.len()) {
+            let ways = self.out_of_late(node, region);
+            late.push(Late { node, ways });
+        }
+        late
+    }
+
+    fn out_of_late(&mut self, node: NodeId, region: RegionId) -> Vec<Way> {
+        let mut ways = Vec::new();
+        let mut trail = Trail { open: vec![Open::Node(node)], ..Trail::default() };
+        self.follow(Begin::Late(node, region), &mut trail, &mut ways);
+        ways
+    }
+
+    /// Depth first; chains of connectors are short and free of circles, which has been checked. The trail is left as it was found.
+    fn follow(&mut self, begin: Begin<'_>, trail: &mut Trail, ways: &mut Vec<Way>) {
+        if self.count > MAX_WAYS {
+            return;
+        }
+        let Some(open) = trail.open.pop() else {
+            self.complete(begin, trail, ways);
+            return;
+        };
+        match open {
+            Open::Node(node) => {
+                for index in 0..self.outgoing[node.0 as usize].len() {
+                    trail.open.push(Open::Segment(self.outgoing[node.0 as usize][index]));
+                    self.follow(begin, trail, ways);
+                    trail.open.pop();
+                }
+            }
+            Open::Segment(id) => self.take(begin, id, trail, ways),
+        }
+        trail.open.push(open);
+    }
+
+    fn take(&mut self, begin: Begin<'_>, id: TransitionId, trail: &mut Trail, ways: &mut Vec<Way>) {
+        let target = self.chart.transition(id).target;
+        let (open, ends) = (trail.open.len(), trail.ends.len());
+        trail.segments.push(id);
+        match self.roles.of(target) {
+            Role::Branch => trail.open.push(Open::Node(target)),
+            Role::Fork => {
+                let segments = self.outgoing[target.0 as usize].iter().rev();
+                trail.open.extend(segments.map(|&id| Open::Segment(id)));
+            }
+            _ => trail.ends.push(target),
+        }
+        self.follow(begin, trail, ways);
+        trail.segments.pop();
+        trail.open.truncate(open);
+        trail.ends.truncate(ends);
+    }
+
+    fn complete(&mut self, begin: Begin<'_>, trail: &Trail, ways: &mut Vec<Way>) {
+        self.count += 1;
+        let source = match begin {
+            Begin::States(source, ..) | Begin::Late(source, _) => source,
+        };
         if self.count > MAX_WAYS {
             let path = self.chart.path(source);
             let message = format!("more than {MAX_WAYS} compound transitions, up to those out of `{path}`");
             self.errors.push(Diagnostic::error("M06", Span::default(), message));
-            return;
+        } else if trail.ends.len() > 1 && !self.are_orthogonal(&trail.ends) {
+            self.refuse_fork(trail);
+        } else {
+            ways.extend(match begin {
+                Begin::Late(source, region) => Some(self.late(source, region, trail)),
+                Begin::States(source, others, condition) => self.way(source, others, condition, trail),
+            });
         }
-        let internal = trail.iter().any(|&id| self.chart.transition(id).internal);
-        let Some(scope) = self.scope(source, target, internal) else {
-            self.refuse(source, target);
-            return;
-        };
-        ways.push(Way {
-            segments: trail.to_vec(),
+    }
+
+    /// A way that is the late part of others: where it lies is their concern.
+    fn late(&mut self, source: NodeId, region: RegionId, trail: &Trail) -> Way {
+        Way {
+            segments: trail.segments.clone(),
             source,
+            others: Vec::new(),
+            scope: source,
+            leaves: self.leaves(&trail.ends, region),
+            region,
+            condition: None,
+            change: Change::None,
+        }
+    }
+
+    fn way(
+        &mut self,
+        source: NodeId,
+        others: &[NodeId],
+        condition: Option<Condition>,
+        trail: &Trail,
+    ) -> Option<Way> {
+        let is_internal = trail.segments.iter().any(|&id| self.chart.transition(id).internal);
+        let Some((scope, change)) = self.scope(source, others, trail, is_internal) else {
+            self.refuse(source, trail);
+            return None;
+        };
+        let region = self.regions[scope.0 as usize];
+        Some(Way {
+            segments: trail.segments.clone(),
+            source,
+            others: others.to_vec(),
             scope,
-            target,
-            region: self.regions[scope.0 as usize],
-            condition: self.condition(source, target, trail),
-        });
+            leaves: self.leaves(&trail.ends, region),
+            region,
+            condition: condition.or_else(|| self.condition(source, trail)),
+            change,
+        })
     }
 
-    /// The lowest OR that properly contains both ends; the source itself if the transition is internal.
-    fn scope(&self, source: NodeId, target: NodeId, internal: bool) -> Option<NodeId> {
-        let (inner, outer) = (self.layout.place_of(target), self.layout.place_of(source));
-        if internal {
-            return self.layout.contains(outer, inner).then_some(source);
+    fn leaves(&mut self, ends: &[NodeId], region: RegionId) -> Vec<Leaf> {
+        let leaf = |&end: &NodeId| match self.roles.of(end) {
+            Role::Choice => {
+                let (numbers, choices) = (&mut self.numbers, &mut self.choices);
+                Leaf::Choice(*numbers.entry((end, region)).or_insert_with(|| {
+                    choices.push((end, region));
+                    choices.len() - 1
+                }))
+            }
+            Role::Terminate => Leaf::Terminate,
+            _ => Leaf::Node(end),
+        };
+        ends.iter().map(leaf).collect()
+    }
+
+    /// What happens inside which node.
+    fn scope(
+        &mut self,
+        source: NodeId,
+        others: &[NodeId],
+        trail: &Trail,
+        is_internal: bool,
+    ) -> Option<(NodeId, Change)> {
+        let stops = trail.ends.iter().all(|&end| self.ends_in_terminate(end));
+        let mut hull = Hull::of(self.layout.place_of(source));
+        for &node in others {
+            hull = hull.with(Hull::of(self.layout.place_of(node)));
         }
-        let common = self.chart.ancestors(source).find(|&ancestor| {
-            let place = self.layout.place_of(ancestor);
-            target != ancestor && self.layout.contains(place, inner)
-        })?;
-        if self.chart.node(common).kind != NodeKind::And {
-            return Some(common);
+        for &end in &trail.ends {
+            hull = hull.with(self.hull(end).unwrap_or(Hull::of(self.layout.place_of(end))));
         }
-        // an AND lies in an OR, always
-        if self.nested(source, target) { self.chart.node(common).parent } else { None }
+        if is_internal {
+            let inside = scope::lowest_node(self.chart, self.layout, hull) == source;
+            let still = stops || trail.ends == [source];
+            return inside.then_some((source, if still { Change::None } else { Change::Scope }));
+        }
+        if let Some(vacated) = self.completes_ancestor(source, others, trail) {
+            return Some((vacated, Change::Vacates(None)));
+        }
+        let scope = scope::lowest_or(self.chart, self.layout, source, hull)?;
+        Some((scope, if stops { Change::None } else { Change::Scope }))
     }
 
-    /// Whether one is the other or lies in it.
-    fn nested(&self, one: NodeId, other: NodeId) -> bool {
-        let (one, other) = (self.layout.place_of(one), self.layout.place_of(other));
-        self.layout.contains(one, other) || self.layout.contains(other, one)
+    /// What stays without an active child when the target is an ancestor of the source that only counts as complete then.
+    fn completes_ancestor(&self, source: NodeId, others: &[NodeId], trail: &Trail) -> Option<NodeId> {
+        let (&[target], ActiveAncestor::Completed) = (trail.ends.as_slice(), self.semantics.ancestor) else {
+            return None;
+        };
+        if !others.is_empty() || !self.chart.ancestors(source).any(|ancestor| ancestor == target) {
+            return None;
+        }
+        match self.chart.node(target).kind {
+            NodeKind::And => scope::child_towards(self.chart, target, source),
+            _ => Some(target),
+        }
     }
 
-    fn refuse(&mut self, source: NodeId, target: NodeId) {
-        let (source, target) = (self.chart.path(source), self.chart.path(target));
+    /// What encloses all ends that a way may have behind a node, TERMINATE left out.
+    fn hull(&mut self, end: NodeId) -> Option<Hull> {
+        match self.roles.of(end) {
+            Role::Terminate => None,
+            Role::State | Role::History => Some(Hull::of(self.layout.place_of(end))),
+            _ => {
+                if let Some(&hull) = self.hulls.get(&end) {
+                    return hull;
+                }
+                let mut hull: Option<Hull> = None;
+                for index in 0..self.roles.outgoing[end.0 as usize].len() {
+                    let target = self.chart.transition(self.roles.outgoing[end.0 as usize][index]).target;
+                    let behind = self.hull(target);
+                    hull = hull.into_iter().chain(behind).reduce(Hull::with);
+                }
+                self.hulls.insert(end, hull);
+                hull
+            }
+        }
+    }
+
+    fn ends_in_terminate(&mut self, end: NodeId) -> bool {
+        self.hull(end).is_none()
+    }
+
+    /// Whether the ends of the branches of a FORK lie in different regions, wherever CHOICEs lead.
+    fn are_orthogonal(&mut self, ends: &[NodeId]) -> bool {
+        let mut nodes = Vec::new();
+        for &end in ends {
+            let Some(hull) = self.hull(end) else { return false };
+            nodes.push(match self.roles.of(end) {
+                Role::History => self.chart.node(end).parent.unwrap_or(end),
+                _ => scope::lowest_node(self.chart, self.layout, hull),
+            });
+        }
+        scope::are_orthogonal(self.chart, self.layout, &nodes)
+    }
+
+    fn refuse_fork(&mut self, trail: &Trail) {
+        let ends: Vec<String> = trail.ends.iter().map(|&end| self.chart.path(end)).collect();
+        let message = format!("a FORK leads to `{}`, which cannot be active together", ends.join("` and `"));
+        let hint = "the branches of a FORK lead to different regions of one AND";
+        self.errors.push(Diagnostic::error("M04", Span::default(), message).with_hint(hint));
+    }
+
+    fn refuse(&mut self, source: NodeId, trail: &Trail) {
+        let ends: Vec<String> = trail.ends.iter().map(|&end| self.chart.path(end)).collect();
+        let (source, target) = (self.chart.path(source), ends.join("` and `"));
         let message = format!("no transition can lead from `{source}` to `{target}`");
-        let hint = "regions that are active together cannot be left for each other, and what is internal stays inside";
+        let hint = "what is internal stays inside its source";
         self.errors.push(Diagnostic::error("M03", Span::default(), message).with_hint(hint));
     }
 
     /// When a way without a trigger may be taken: guardedness is that of its first segment.
-    fn condition(&self, source: NodeId, target: NodeId, trail: &[TransitionId]) -> Option<Condition> {
-        let first = &self.chart.transition(*trail.first()?).expression;
-        let composite = matches!(self.chart.node(source).kind, NodeKind::Or | NodeKind::And);
-        let interrupts = trail.iter().any(|&id| self.chart.transition(id).interrupts);
-        match &first.trigger {
-            Some(_) => None,
-            None if !composite || first.guard.is_none() || source == target => Some(Condition::Completed),
-            None if interrupts => Some(Condition::NoStepInside),
-            None => Some(Condition::Quiescent),
+    fn condition(&self, source: NodeId, trail: &Trail) -> Option<Condition> {
+        let first = &self.chart.transition(*trail.segments.first()?).expression;
+        if first.trigger.is_some() {
+            return None;
         }
-    }
-}
-
-/// The places to be entered, outermost first, on the way from a scope to a target inside it: where the way enters an AND, all its
-/// other regions are entered too; where it ends, composites are entered up to their START.
-pub(super) fn entries(chart: &Statechart, layout: &Layout, scope: NodeId, target: NodeId) -> Vec<Place> {
-    let mut way: Vec<NodeId> =
-        std::iter::once(target).chain(chart.ancestors(target)).take_while(|&node| node != scope).collect();
-    let mut entered = Vec::new();
-    // what is still to be entered, the next one last, and whether it lies on the way
-    let mut open: Vec<(NodeId, bool)> = Vec::new();
-    push_children(chart, scope, way.pop(), &mut open);
-    while let Some((node, on_way)) = open.pop() {
-        entered.push(layout.place_of(node));
-        let next = if on_way { way.pop() } else { None };
-        push_children(chart, node, next, &mut open);
-    }
-    entered
-}
-
-/// Pushes the children of an entered node that are entered with it, the first one last.
-fn push_children(chart: &Statechart, node: NodeId, next: Option<NodeId>, open: &mut Vec<(NodeId, bool)>) {
-    let children = chart.children(node).iter().rev();
-    match chart.node(node).kind {
-        NodeKind::And => open.extend(children.map(|&child| (child, Some(child) == next))),
-        NodeKind::Or => match next {
-            Some(next) => open.push((next, true)),
-            None => open.extend(
-                children
-                    .filter(|&&child| chart.node(child).kind == NodeKind::Start)
-                    .map(|&start| (start, false)),
-            ),
-        },
-        _ => {}
+        let kind = self.chart.node(source).kind;
+        let interrupts = trail.segments.iter().any(|&id| self.chart.transition(id).interrupts);
+        let waits =
+            matches!(kind, NodeKind::Or | NodeKind::And) && first.guard.is_some() && trail.ends != [source];
+        Some(match self.semantics.eventless {
+            _ if kind == NodeKind::Start => Condition::Always,
+            Eventless::Always => Condition::Always,
+            Eventless::Once => Condition::Completed,
+            Eventless::AsWritten if !waits => Condition::Completed,
+            Eventless::AsWritten | Eventless::Quiescent if interrupts && waits => Condition::NoStepInside,
+            Eventless::AsWritten | Eventless::Quiescent => Condition::Quiescent,
+        })
     }
 }

@@ -120,6 +120,9 @@ impl Run {
         if outcome == Outcome::Failed {
             self.queues.arrive(chart.errors.activity.into());
         }
+        if outcome == Outcome::Done {
+            self.completed(chart, place);
+        }
         self.due = true;
         true
     }
@@ -129,7 +132,8 @@ impl Run {
         let region = chart.states[place.index()].region;
         self.queues.release(|compound| {
             let compound = &chart.compounds[compound.0 as usize];
-            compound.leaves(place) || chart.states[compound.source.index()].region == region
+            let mut sources = compound.sources();
+            compound.leaves(place) || sources.any(|source| chart.states[source.index()].region == region)
         });
     }
 

@@ -97,6 +97,19 @@ impl Chooser {
         Chooser { policy }
     }
 
+    /// One of several options, each as likely as its weight says.
+    pub(super) fn draw(&mut self, weights: &[f64]) -> usize {
+        self.decide(weights.len(), |number| {
+            let unit = (number >> 11) as f64 / (1_u64 << 53) as f64;
+            let mut rest = unit * weights.iter().sum::<f64>();
+            let taken = weights.iter().position(|weight| {
+                rest -= weight;
+                rest < 0.0
+            });
+            taken.unwrap_or(weights.len() - 1)
+        })
+    }
+
     fn decide(&mut self, options: usize, option: impl FnOnce(u64) -> usize) -> usize {
         if options < 2 {
             return 0;
@@ -124,15 +137,28 @@ mod tests {
     #[test]
     fn a_scripted_chooser_replays_and_notes_what_it_chose() {
         let mut chooser = Chooser::scripted(vec![1, 7]);
-        let chosen = [chooser.choose(2), chooser.choose(1), chooser.choose(3), chooser.choose(2)];
+        let chosen = [chooser.choose(2), chooser.choose(1), chooser.choose(3), chooser.draw(&[0.5, 0.5])];
         assert_eq!(chosen, [1, 0, 2, 0]);
         assert_eq!(chooser.choices(), [(1, 2), (2, 3), (0, 2)]);
     }
 
     #[test]
+    fn a_seeded_chooser_draws_in_proportion_and_the_same_again() {
+        let count = |seed| {
+            let mut chooser = Chooser::seeded(seed);
+            (0..10_000).filter(|_| chooser.draw(&[0.8, 0.2]) == 1).count()
+        };
+        assert_eq!(count(7), count(7));
+        assert!((1800..2200).contains(&count(7)), "{}", count(7));
+        let mut chooser = Chooser::seeded(1);
+        let ones = (0..10_000).filter(|_| chooser.choose(4) == 3).count();
+        assert!((2300..2700).contains(&ones), "{ones}");
+    }
+
+    #[test]
     fn a_declared_chooser_takes_the_first() {
         let mut chooser = Chooser::declared();
-        assert_eq!([chooser.choose(5), chooser.choose(2)], [0, 0]);
+        assert_eq!([chooser.choose(5), chooser.draw(&[0.1, 0.9])], [0, 0]);
         assert!(chooser.is_declared() && chooser.seed().is_none() && chooser.choices().is_empty());
     }
 }

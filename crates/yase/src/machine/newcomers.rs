@@ -2,9 +2,9 @@
 
 use crate::chart::{Place, RegionId};
 use crate::host::Host;
+use crate::machine::errors::Fault;
 use crate::machine::run::Run;
 use crate::machine::step::Step;
-use crate::statechart::NodeKind;
 use crate::trace::Occasion;
 
 /// What a machine that took a new chart has still to do.
@@ -23,7 +23,7 @@ impl Newcomers {
 }
 
 impl<H: Host> Step<'_, H> {
-    pub(super) fn welcome(&mut self) {
+    pub(super) fn welcome(&mut self) -> Result<(), Fault> {
         let Newcomers { regions, blackboards } = std::mem::take(&mut self.run.newcomers);
         for region in blackboards {
             if let Some(around) = self.chart.regions[region.index()].parent {
@@ -31,30 +31,16 @@ impl<H: Host> Step<'_, H> {
             }
         }
         if regions.is_empty() {
-            return;
+            return Ok(());
         }
         self.run.selection.clear();
         self.run.log.clear();
         for region in regions {
-            self.enter_by_default(region);
+            self.enter(region);
+            self.enter_inside(region)?;
         }
         self.emit(Occasion::Swap, None);
-    }
-
-    /// Enters a node, and what is entered with it: an OR up to its START, an AND with all its regions.
-    fn enter_by_default(&mut self, outer: Place) {
-        let (chart, layout) = (self.chart, &self.chart.layout);
-        let mut open = vec![outer];
-        while let Some(place) = open.pop() {
-            self.enter(place);
-            let is_and = chart.states[place.index()].kind == NodeKind::And;
-            let children = chart.statechart().children(layout.node(place)).iter().rev();
-            let entered = children.map(|&child| layout.place_of(child)).filter(|child| {
-                let child = &chart.states[child.index()];
-                if is_and { child.is_region } else { child.kind == NodeKind::Start }
-            });
-            open.extend(entered);
-        }
+        Ok(())
     }
 }
 

@@ -1,12 +1,16 @@
 //! Everything about a running chart that changes.
 
+use std::collections::VecDeque;
+
 use crate::bits::BitSet;
 use crate::chart::{Chart, CompoundId, Place, RegionId};
 use crate::expression::EventId;
 use crate::host::ActionPlace;
-use crate::machine::activities::{Activities, Phase};
+use crate::machine::activities::Activities;
 use crate::machine::bound::Bound;
 use crate::machine::chooser::Chooser;
+use crate::machine::errors::Fault;
+use crate::machine::history::Record;
 use crate::machine::newcomers::Newcomers;
 use crate::machine::queues::{Incoming, Queues};
 use crate::machine::timers::Timers;
@@ -43,6 +47,34 @@ pub(super) struct Run {
     pub(super) newcomers: Newcomers,
     pub(super) bound: Bound,
     pub(super) chooser: Chooser,
+    /// The innermost active nodes, by place: active leaves, and composites without an active child.
+    pub(super) tips: BitSet,
+    /// The composites that were left without an active child.
+    pub(super) vacated: BitSet,
+    /// The segments into JOINs that were taken by themselves, by number.
+    pub(super) arrived: BitSet,
+    /// The states that have completed and were not looked at since, where that is done once.
+    pub(super) completions: VecDeque<Place>,
+    /// What each HISTORY remembers.
+    pub(super) records: Box<[Record]>,
+    /// Whether the root has reached its END and is to be left.
+    pub(super) ending: bool,
+    /// Whether TERMINATE was reached in this micro-step.
+    pub(super) terminates: bool,
+    /// What kept the chart from being started.
+    pub(super) failure: Option<Fault>,
+    /// The configuration before this micro-step, in charts with CHOICEs.
+    pub(super) before: BitSet,
+    /// What is to be entered, with all that is around it.
+    pub(super) marked: BitSet,
+    /// What is to be entered next, the first one last.
+    pub(super) entering: Vec<Place>,
+    /// What is to be left.
+    pub(super) leaving: Vec<Place>,
+    /// The selected transitions by the place of their scope.
+    pub(super) in_document: Vec<CompoundId>,
+    /// Timers that belong to a target that is not yet known.
+    pub(super) unbound: Vec<usize>,
     pub(super) selection: Selection,
     pub(super) log: Log,
     /// Where texts that are assigned are copied to.
@@ -69,6 +101,10 @@ pub(super) struct ErredGuard {
 pub(super) struct Selection {
     /// Enabled transitions, inner before outer, then in the order of the document.
     pub(super) candidates: Vec<CompoundId>,
+    /// For each of them, the first active leaf that it was found for.
+    pub(super) found_for: Vec<Place>,
+    /// The state that the latest of them was found at.
+    pub(super) latest: Option<Place>,
     /// Those that win and can fire now.
     pub(super) selected: Vec<CompoundId>,
     pub(super) preempted: Vec<CompoundId>,
@@ -87,6 +123,8 @@ impl Selection {
         if !self.candidates.is_empty() {
             self.closed.clear();
             self.candidates.clear();
+            self.found_for.clear();
+            self.latest = None;
         }
         if self.has_noted {
             self.noted.clear();
@@ -141,8 +179,24 @@ impl Run {
             newcomers: Newcomers::default(),
             bound: Bound::new(),
             chooser: Chooser::declared(),
+            tips: BitSet::new(places),
+            vacated: BitSet::new(places),
+            arrived: BitSet::new(chart.joins.iter().map(|join| join.sources.len()).sum()),
+            completions: VecDeque::new(),
+            records: vec![Record::default(); chart.histories.len()].into(),
+            ending: false,
+            terminates: false,
+            failure: None,
+            before: BitSet::new(places),
+            marked: BitSet::new(places),
+            entering: Vec::new(),
+            leaving: Vec::new(),
+            in_document: Vec::new(),
+            unbound: Vec::new(),
             selection: Selection {
                 candidates: Vec::with_capacity(regions),
+                found_for: Vec::with_capacity(regions),
+                latest: None,
                 selected: Vec::with_capacity(regions),
                 preempted: Vec::with_capacity(regions),
                 held: Vec::with_capacity(regions),
@@ -173,6 +227,15 @@ impl Run {
         self.waiting_starts.clear();
         self.newcomers = Newcomers::default();
         self.bound.reset(now);
+        self.tips.clear();
+        self.vacated.clear();
+        self.arrived.clear();
+        self.completions.clear();
+        self.records.iter_mut().for_each(|record| record.is_known = false);
+        self.ending = false;
+        self.terminates = false;
+        self.failure = None;
+        self.marked.clear();
     }
 
     /// A message has arrived on a topic, or an action has written it on one blackboard: guards that had no value may have one.
@@ -200,6 +263,14 @@ impl Run {
         });
     }
 
+    /// The timers of a state that is left are forgotten, and so are their expiries.
+    pub(super) fn release_timers(&mut self, chart: &Chart, place: Place) {
+        while let Some(timer) = self.timers.release(place) {
+            self.queues.withdraw(timer);
+            self.timer_changed(chart, timer);
+        }
+    }
+
     /// Whether an interrupting transition that leaves it waits for activities to return.
     pub(super) fn is_being_left(&self, chart: &Chart, place: Place) -> bool {
         self.pending.iter().any(|pending| chart.compounds[pending.compound.0 as usize].leaves(place))
@@ -210,16 +281,11 @@ impl Run {
         self.queues.raise(incoming, chart.semantics().pool);
     }
 
-    /// Whether an active state has completed.
-    pub(super) fn is_complete(&self, chart: &Chart, place: Place) -> bool {
-        let state = &chart.states[place.index()];
-        match state.kind {
-            NodeKind::And => state.children.iter().all(|&region| self.is_complete(chart, region)),
-            NodeKind::Or => state
-                .children
-                .iter()
-                .any(|&child| chart.states[child.index()].kind == NodeKind::End && self.is_active(child)),
-            _ => state.activity.is_none_or(|activity| self.activities.slot(activity).phase == Phase::Done),
+    /// A node becomes active.
+    pub(super) fn activate(&mut self, chart: &Chart, place: Place) {
+        self.active.insert(place.index());
+        if !matches!(chart.states[place.index()].kind, NodeKind::Or | NodeKind::And) {
+            self.tips.insert(place.index());
         }
     }
 

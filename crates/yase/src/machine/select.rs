@@ -1,13 +1,16 @@
 //! Which transitions are enabled, and which of them win.
 
-use crate::chart::{Branch, Compound, CompoundId, Condition, Place, ScopedGuard, Trigger};
+use smallvec::SmallVec;
+
+use crate::chart::{Compound, CompoundId, Place, ScopedGuard, Trigger};
 use crate::host::{Host, Report};
 use crate::machine::activities::Phase;
+use crate::machine::draw::Search;
 use crate::machine::queues::Occurrence;
 use crate::machine::run::{ErredGuard, Pending};
 use crate::machine::step::Step;
 use crate::machine::view::View;
-use crate::semantics::{Eventless, FailureEvents};
+use crate::semantics::{ConflictChoice, FailureEvents, Firing, RunningOnExit};
 use crate::trace::Occasion;
 
 impl<H: Host> Step<'_, H> {
@@ -16,8 +19,7 @@ impl<H: Host> Step<'_, H> {
     /// Places are visited children before parents. A state is looked at if from some active leaf inside it, outward, no transition has been
     /// found yet: inner ones win.
     pub(super) fn select(&mut self, occurrence: Option<&Occurrence>) {
-        self.run.log.clear();
-        self.run.selection.clear();
+        self.begin_selection();
         let (masks, last) = (&self.chart.masks, self.chart.layout.len());
         let sources = if occurrence.is_some() { &masks.triggered } else { &masks.eventless };
         let mut next = self.run.active.next_common(sources, 0, last);
@@ -30,14 +32,46 @@ impl<H: Host> Step<'_, H> {
         }
     }
 
+    fn begin_selection(&mut self) {
+        self.run.log.clear();
+        self.run.selection.clear();
+    }
+
+    /// Finds the candidate among the ways out of one state that has completed.
+    pub(super) fn select_at(&mut self, place: Place) {
+        self.begin_selection();
+        if self.run.is_active(place) {
+            self.consider(place, None);
+        }
+    }
+
     fn consider(&mut self, place: Place, occurrence: Option<&Occurrence>) {
         if occurrence.is_none() && self.is_frozen(place) || !self.is_open(place) {
             return;
         }
-        if let Some(compound) = self.best(place, occurrence) {
-            self.run.selection.candidates.push(compound);
-            self.close(place);
+        let state = &self.chart.states[place.index()];
+        let branches = if occurrence.is_some() { state.triggered } else { state.eventless };
+        if let Some(found) = self.scan(branches, Search { state: Some(place), occurrence }) {
+            self.add_candidate(found, place);
+            let chart = self.chart;
+            chart.compounds[found.0 as usize].sources().for_each(|source| self.close(source));
         }
+    }
+
+    /// Candidates stand in the order in which their sources are visited or, for phases, in that of the leaves they were found for.
+    fn add_candidate(&mut self, found: CompoundId, place: Place) {
+        let first = self.chart.layout.first(place).index();
+        let (run, phases) = (&mut *self.run, self.chart.semantics_ref().firing == Firing::Phases);
+        let leaf = run.tips.next_without(&run.selection.closed, first, place.index());
+        let leaf = leaf.map_or(place, |index| Place(index as u32));
+        let selection = &mut run.selection;
+        let index = match phases {
+            true => selection.found_for.partition_point(|&other| other < leaf),
+            false => selection.candidates.len(),
+        };
+        selection.latest = Some(place);
+        selection.candidates.insert(index, found);
+        selection.found_for.insert(index, leaf);
     }
 
     /// Whether it is about to be left, by an interrupting transition or for a held event: then nothing of it happens without an event.
@@ -52,78 +86,32 @@ impl<H: Host> Step<'_, H> {
         let first = self.chart.layout.first(place).index();
         let selection = &self.run.selection;
         selection.candidates.is_empty()
-            || self
-                .run
-                .active
-                .next_common_without(&self.chart.masks.leaves, &selection.closed, first, place.index())
-                .is_some()
+            || self.run.tips.next_without(&selection.closed, first, place.index()).is_some()
     }
 
     fn close(&mut self, place: Place) {
         let first = self.chart.layout.first(place).index();
         let run = &mut *self.run;
-        let mut next = run.active.next_common(&self.chart.masks.leaves, first, place.index());
+        let mut next = run.tips.next(first, place.index());
         while let Some(index) = next {
             run.selection.closed.insert(index);
-            next = run.active.next_common(&self.chart.masks.leaves, index + 1, place.index());
+            next = run.tips.next(index + 1, place.index());
         }
     }
 
-    /// The first complete way out of a state whose segments are all allowed and which no running activity forbids.
-    fn best(&mut self, place: Place, occurrence: Option<&Occurrence>) -> Option<CompoundId> {
-        let chart = self.chart;
-        let state = &chart.states[place.index()];
-        let branches = if occurrence.is_some() { state.triggered } else { state.eventless };
-        let mut index = branches.start;
-        while index < branches.end {
-            let branch = &chart.branches[index];
-            if !self.meets(branch, place, occurrence) || !branch.guard.is_none_or(|guard| self.holds(guard)) {
-                index = branch.skip;
-                continue;
-            }
-            if let Some(id) = branch.compound {
-                if !self.is_blocked(self.compound(id), place) {
-                    return Some(id);
-                }
-                if occurrence.is_some() {
-                    self.note_blocked(id, place);
-                }
-            }
-            index += 1;
-        }
-        None
-    }
-
-    fn meets(&self, branch: &Branch, place: Place, occurrence: Option<&Occurrence>) -> bool {
-        match (branch.condition, occurrence) {
-            (Condition::None, _) => true,
-            (Condition::Trigger(trigger), Some(occurrence)) => {
-                matches(&self.chart.triggers[trigger], occurrence)
-            }
-            (Condition::Completed, None) if self.semantics().eventless == Eventless::AsWritten => {
-                self.run.is_complete(self.chart, place)
-            }
-            (Condition::Completed | Condition::Quiescent, None) => {
-                !self.runs_inside(place) && !self.can_step_inside(place)
-            }
-            (Condition::NoStepInside, None) => !self.can_step_inside(place),
-            _ => false,
-        }
-    }
-
-    fn runs_inside(&self, place: Place) -> bool {
+    pub(super) fn runs_inside(&self, place: Place) -> bool {
         self.run.running.any_in(self.chart.layout.first(place).index(), place.index())
     }
 
-    /// Candidates from inside, if any, are the latest.
-    fn can_step_inside(&self, place: Place) -> bool {
+    /// Sources are visited children before parents: if a candidate was found inside, the latest was.
+    pub(super) fn can_step_inside(&self, place: Place) -> bool {
         let first = self.chart.layout.first(place);
-        self.run.selection.candidates.last().is_some_and(|&last| self.compound(last).source >= first)
+        self.run.selection.latest.is_some_and(|latest| latest >= first)
     }
 
     /// Reads a guard. One without a value counts as false and raises an error event, once until it has succeeded or what it reads has
     /// changed.
-    fn holds(&mut self, guard: usize) -> bool {
+    pub(super) fn holds(&mut self, guard: usize) -> bool {
         let ScopedGuard { transition, region, guard: program } = &self.chart.guards[guard];
         let view = View { chart: self.chart, run: self.run, host: self.host, region: *region };
         let result = program.evaluate(&view);
@@ -153,29 +141,36 @@ impl<H: Host> Step<'_, H> {
 
     /// Whether running activities forbid a transition: one in its own region, or one in a state it would leave. An interrupting one is
     /// forbidden only by another that is already waiting.
-    fn is_blocked(&self, compound: &Compound, place: Place) -> bool {
-        if self.run.is_being_left(self.chart, place) {
+    pub(super) fn is_blocked(&self, compound: &Compound) -> bool {
+        let chart = self.chart;
+        if compound.sources().any(|source| self.run.is_being_left(chart, source)) {
             return true;
         }
-        let region = self.chart.states[place.index()].region;
-        !compound.interrupts
-            && (self.run.running_regions.contains(region.index()) || self.leaves_running(compound))
+        if compound.interrupts || self.semantics().on_exit == RunningOnExit::Interrupted {
+            return false;
+        }
+        let runs =
+            |source: Place| self.run.running_regions.contains(chart.states[source.index()].region.index());
+        compound.sources().any(runs) || self.leaves_running(compound)
     }
 
     pub(super) fn leaves_running(&self, compound: &Compound) -> bool {
-        compound.exits.is_some_and(|(first, last)| self.run.running.any_in(first.index(), last.index()))
+        self.semantics().on_exit == RunningOnExit::Blocks
+            && compound
+                .exits
+                .is_some_and(|(first, last)| self.run.running.any_in(first.index(), last.index()))
     }
 
     /// Of the transitions that wait for activities the innermost counts, as it does of those that can fire.
-    fn note_blocked(&mut self, compound: CompoundId, place: Place) {
+    pub(super) fn note_blocked(&mut self, compound: CompoundId, place: Place) {
         let first = self.chart.layout.first(place).index();
-        let (run, leaves) = (&mut *self.run, &self.chart.masks.leaves);
+        let run = &mut *self.run;
         let mut is_new = false;
-        let mut next = run.active.next_common_without(leaves, &run.selection.noted, first, place.index());
+        let mut next = run.tips.next_without(&run.selection.noted, first, place.index());
         while let Some(index) = next {
             is_new = true;
             run.selection.noted.insert(index);
-            next = run.active.next_common_without(leaves, &run.selection.noted, index + 1, place.index());
+            next = run.tips.next_without(&run.selection.noted, index + 1, place.index());
         }
         if is_new {
             run.selection.has_noted = true;
@@ -183,19 +178,56 @@ impl<H: Host> Step<'_, H> {
         }
     }
 
-    /// Lets the winners among the candidates be selected. Candidates come inner before outer, then in the order of the document, which
-    /// is the order of precedence.
+    /// Lets the winners among the candidates be selected. One that conflicts with others wins if it is nested in all of them; else it loses,
+    /// since candidates stand in the order of precedence, unless the chooser says otherwise.
     pub(super) fn resolve(&mut self) {
-        let (chart, selection) = (self.chart, &mut self.run.selection);
-        let compound = |id: CompoundId| &chart.compounds[id.0 as usize];
-        for &candidate in &selection.candidates {
-            let loses =
-                selection.selected.iter().any(|&other| compound(other).conflicts_with(compound(candidate)));
-            if loses { &mut selection.preempted } else { &mut selection.selected }.push(candidate);
+        for index in 0..self.run.selection.candidates.len() {
+            let candidate = self.run.selection.candidates[index];
+            match self.losers(candidate) {
+                Some(losers) => {
+                    let selection = &mut self.run.selection;
+                    selection.selected.retain(|other| !losers.contains(other));
+                    selection.preempted.extend(losers);
+                    selection.selected.push(candidate);
+                }
+                None => self.run.selection.preempted.push(candidate),
+            }
         }
-        if selection.selected.len() > 1 {
-            selection.selected.sort_unstable_by_key(|&id| compound(id).key);
+        let (chart, selected) = (self.chart, &mut self.run.selection.selected);
+        if selected.len() > 1 && self.chart.semantics_ref().firing == Firing::EachTransition {
+            selected.sort_by_key(|&id| chart.compounds[id.0 as usize].key);
         }
+    }
+
+    /// The selected transitions that a candidate wins against; none if it loses.
+    fn losers(&mut self, candidate: CompoundId) -> Option<SmallVec<[CompoundId; 4]>> {
+        let chart = self.chart;
+        let compound = &chart.compounds[candidate.0 as usize];
+        let mut losers = SmallVec::new();
+        for index in 0..self.run.selection.selected.len() {
+            let id = self.run.selection.selected[index];
+            let other = &chart.compounds[id.0 as usize];
+            if !compound.conflicts_with(other) {
+                continue;
+            }
+            let wins = self.is_nested(compound, other)
+                || !self.is_nested(other, compound)
+                    && self.semantics().conflict == ConflictChoice::Random
+                    && self.run.chooser.choose(2) == 1;
+            if !wins {
+                return None;
+            }
+            losers.push(id);
+        }
+        Some(losers)
+    }
+
+    /// Whether one begins inside a state at which the other begins.
+    fn is_nested(&self, inner: &Compound, outer: &Compound) -> bool {
+        let layout = &self.chart.layout;
+        inner
+            .sources()
+            .any(|inner| outer.sources().any(|outer| inner != outer && layout.contains(outer, inner)))
     }
 
     /// Sets selected transitions aside that would leave running activities, and asks those to return.
@@ -246,7 +278,7 @@ impl<H: Host> Step<'_, H> {
 }
 
 /// The expiry of a timer matches only triggers that name it.
-fn matches(trigger: &Trigger, occurrence: &Occurrence) -> bool {
+pub(super) fn matches(trigger: &Trigger, occurrence: &Occurrence) -> bool {
     match trigger {
         Trigger::Any | Trigger::NoneOf(_) if occurrence.expiry.is_some() => false,
         trigger => trigger.matches(occurrence.event),

@@ -5,9 +5,10 @@ use crate::chart::{Chart, Place, RegionId};
 use crate::expression::EventId;
 use crate::host::{Host, Report};
 use crate::machine::activities::Phase;
+use crate::machine::errors::Fault;
 use crate::machine::queues::{Incoming, Occurrence};
 use crate::machine::run::Run;
-use crate::machine::{MachineError, MachineErrorKind, MicroStep, Status, StepSummary};
+use crate::machine::{MachineError, MicroStep, Status, StepSummary};
 use crate::semantics::{Deferral, Delivery, Semantics};
 use crate::trace::{Occasion, TraceRecord};
 
@@ -57,10 +58,10 @@ impl<'a, H: Host> Step<'a, H> {
     }
 
     fn advance(&mut self) -> Result<bool, MachineError> {
-        self.micro_step().map_err(|kind| {
+        self.micro_step().map_err(|fault| {
             self.halt(Status::Stopped);
             let cycle = self.run.bound.cycle();
-            MachineError::new(kind, self.chart, &cycle)
+            MachineError::new(fault, self.chart, &cycle)
         })
     }
 
@@ -68,7 +69,9 @@ impl<'a, H: Host> Step<'a, H> {
         self.run.due = false;
         self.run.bound.begin(self.run.now);
         if !self.run.newcomers.is_empty() {
-            self.welcome();
+            if let Err(fault) = self.welcome() {
+                self.run.failure = Some(fault);
+            }
         }
         self.expire_timers();
         if self.semantics().delivery == Delivery::EachStep {
@@ -102,14 +105,24 @@ impl<'a, H: Host> Step<'a, H> {
 
     /// The next micro-step, if there is one: a cancelled state is left at last; what was held is offered; then what needs no event,
     /// then raised events, then arrived ones.
-    fn micro_step(&mut self) -> Result<bool, MachineErrorKind> {
-        if self.run.status != Status::Running {
+    fn micro_step(&mut self) -> Result<bool, Fault> {
+        if let Some(fault) = self.run.failure.take() {
+            return Err(fault);
+        }
+        if self.run.status != Status::Running || self.run.ending {
             return Ok(false);
         }
         Ok(self.fire_pending()? || self.offer_held()? || self.eventless()? || self.offer_next()?)
     }
 
-    fn eventless(&mut self) -> Result<bool, MachineErrorKind> {
+    /// What has just completed, where that is looked at once; then all that needs no event.
+    fn eventless(&mut self) -> Result<bool, Fault> {
+        while let Some(place) = self.run.completions.pop_front() {
+            self.select_at(place);
+            if !self.run.selection.candidates.is_empty() {
+                return self.take_eventless();
+            }
+        }
         let (sources, last) = (&self.chart.masks.eventless, self.chart.layout.len());
         if self.run.active.next_common(sources, 0, last).is_none() {
             return Ok(false);
@@ -118,19 +131,23 @@ impl<'a, H: Host> Step<'a, H> {
         if self.run.selection.candidates.is_empty() {
             return Ok(false);
         }
+        self.take_eventless()
+    }
+
+    fn take_eventless(&mut self) -> Result<bool, Fault> {
         self.admit()?;
-        self.take(Occasion::Eventless);
+        self.take(Occasion::Eventless)?;
         Ok(true)
     }
 
-    fn offer_held(&mut self) -> Result<bool, MachineErrorKind> {
+    fn offer_held(&mut self) -> Result<bool, Fault> {
         match self.run.queues.next_held() {
             Some(occurrence) => self.offer(occurrence),
             None => Ok(false),
         }
     }
 
-    fn offer_next(&mut self) -> Result<bool, MachineErrorKind> {
+    fn offer_next(&mut self) -> Result<bool, Fault> {
         if self.run.queues.has_deferred() {
             let (chart, active) = (self.chart, &self.run.active);
             self.run.queues.recall(|event| deferring(chart, active, event).is_some());
@@ -145,13 +162,13 @@ impl<'a, H: Host> Step<'a, H> {
     }
 
     /// Offers one event to the configuration.
-    fn offer(&mut self, occurrence: Occurrence) -> Result<bool, MachineErrorKind> {
+    fn offer(&mut self, occurrence: Occurrence) -> Result<bool, Fault> {
         self.admit()?;
         self.host.offered(occurrence.event, occurrence.is_known, occurrence.token);
         self.select(Some(&occurrence));
         let occasion = Occasion::Event(occurrence.event);
         if !self.run.selection.candidates.is_empty() {
-            self.take(occasion);
+            self.take(occasion)?;
         } else {
             let deferred = self.keep(occurrence);
             self.emit(occasion, deferred);
@@ -176,21 +193,22 @@ impl<'a, H: Host> Step<'a, H> {
     }
 
     /// Fires what was selected.
-    fn take(&mut self, occasion: Occasion) {
+    fn take(&mut self, occasion: Occasion) -> Result<(), Fault> {
         self.resolve();
         self.suspend_interrupting(occasion);
-        self.fire_selected();
+        self.fire_selected()?;
         self.emit(occasion, None);
+        Ok(())
     }
 
     /// Counts one more micro-step.
-    pub(super) fn admit(&mut self) -> Result<(), MachineErrorKind> {
+    pub(super) fn admit(&mut self) -> Result<(), Fault> {
         let (limit, bound) = (self.semantics().limit, &mut self.run.bound);
         if !bound.allows_micro_step(limit) {
-            return Err(MachineErrorKind::NeverRests);
+            return Err(Fault::NeverRests);
         }
         if self.summary.micro_steps == 0 && !bound.allows_step(limit) {
-            return Err(MachineErrorKind::NeverAdvances);
+            return Err(Fault::NeverAdvances);
         }
         bound.count_micro_step();
         self.summary.micro_steps += 1;
@@ -220,11 +238,25 @@ impl<'a, H: Host> Step<'a, H> {
 
     /// The chart is at rest: what was written is published, and the activities of entered states start.
     fn finish(&mut self) {
+        if self.run.ending {
+            self.leave_all(Status::Finished);
+        }
         self.publish_written();
         if self.run.activities.take_queued() {
             self.start_activities();
         }
         self.report_waiting_starts();
+    }
+
+    /// Leaves every state, in a record of its own.
+    pub(super) fn leave_all(&mut self, status: Status) {
+        self.run.selection.clear();
+        self.run.log.clear();
+        self.collect_between(Place(0), self.chart.layout.root());
+        self.leave_collected();
+        self.emit(Occasion::Finish, None);
+        self.publish_written();
+        self.halt(status);
     }
 
     fn publish_written(&mut self) {
@@ -295,6 +327,8 @@ impl<'a, H: Host> Step<'a, H> {
         self.run.running_regions.clear();
         self.run.queues.clear();
         self.run.pending.clear();
+        self.run.completions.clear();
+        self.run.marked.clear();
         self.run.status = status;
     }
 }

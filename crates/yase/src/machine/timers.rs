@@ -1,5 +1,6 @@
 //! Deadlines.
 
+use crate::chart::Place;
 use crate::expression::TimerState;
 use crate::machine::chooser::Chooser;
 use crate::moment::Moment;
@@ -17,6 +18,8 @@ pub(super) struct Deadline {
     pub(super) moment: Moment,
     /// Whether its expiry has been noticed.
     pub(super) expired: bool,
+    /// The state whose end is its end.
+    pub(super) owner: Option<Place>,
 }
 
 impl Timers {
@@ -32,9 +35,25 @@ impl Timers {
     /// Sets a deadline, and says whether the expiry of the one before had been noticed.
     pub(super) fn set(&mut self, timer: usize, moment: Moment) -> bool {
         let Some(slot) = self.slots.get_mut(timer) else { return false };
-        let before = slot.replace(Deadline { moment, expired: false });
+        let before = slot.replace(Deadline { moment, expired: false, owner: None });
         self.look_again();
         before.is_some_and(|before| before.expired)
+    }
+
+    /// A timer that is set belongs to a state.
+    pub(super) fn bind(&mut self, timer: usize, owner: Place) {
+        if let Some(Some(deadline)) = self.slots.get_mut(timer) {
+            deadline.owner = Some(owner);
+        }
+    }
+
+    /// Forgets a timer that belongs to a state, and says which; none if there is none left.
+    pub(super) fn release(&mut self, owner: Place) -> Option<usize> {
+        let owned = |slot: &Option<Deadline>| slot.is_some_and(|deadline| deadline.owner == Some(owner));
+        let timer = self.slots.iter().position(owned)?;
+        self.slots[timer] = None;
+        self.look_again();
+        Some(timer)
     }
 
     pub(super) fn state(&self, timer: usize, now: Moment) -> TimerState {

@@ -9,9 +9,11 @@
 //!     START
 //!     A | run | for=20ms      a BASIC state with an activity `A` that takes 20 ms
 //!     END
-//! ? c                         a CONDITION, `% j` a JUNCTION, `x t` a TERMINATE
+//! ? c                         a CONDITION, `% j` a JUNCTION, `x t` a TERMINATE, `! c` a CHOICE, `< f` a FORK, `> j` a JOIN,
+//!                             `h h` and `H h` a shallow and a deep HISTORY, `i p` and `o p` an ENTRY and an EXIT point
+//! END done                    an END with a name
 //! B | entry=raise(e) | exit=raise(f) | defer=g,h
-//! both -> B {interrupts,internal,!2} : trigger [guard] / actions
+//! both -> B {interrupts,internal,!2,w0.5} : trigger [guard] / actions
 //! ```
 
 use std::time::Duration;
@@ -56,6 +58,14 @@ fn node(text: &str) -> Node {
         Some(("?", name)) => (NodeKind::Condition, name),
         Some(("%", name)) => (NodeKind::Junction, name),
         Some(("x", name)) => (NodeKind::Terminate, name),
+        Some(("!", name)) => (NodeKind::Choice, name),
+        Some(("<", name)) => (NodeKind::Fork, name),
+        Some((">", name)) => (NodeKind::Join, name),
+        Some(("h", name)) => (NodeKind::ShallowHistory, name),
+        Some(("H", name)) => (NodeKind::DeepHistory, name),
+        Some(("i", name)) => (NodeKind::EntryPoint, name),
+        Some(("o", name)) => (NodeKind::ExitPoint, name),
+        Some(("END", name)) => (NodeKind::End, name),
         _ if head == "START" => (NodeKind::Start, ""),
         _ if head == "END" => (NodeKind::End, ""),
         _ => (NodeKind::Basic, head),
@@ -96,6 +106,7 @@ fn transition(chart: &Statechart, source: &str, rest: &str) -> Transition {
         match flag {
             "interrupts" => transition.interrupts = true,
             "internal" => transition.internal = true,
+            _ if flag.starts_with('w') => transition.weight = Some(flag[1..].parse().unwrap()),
             _ => transition.priority = flag.trim_start_matches('!').parse().unwrap(),
         }
     }

@@ -1,8 +1,8 @@
 //! R10 to R13: leaving, acting, entering, and the end.
 
-use yase::{Activation, Host, Machine, Moment, Node, NodeKind, Statechart, Status};
+use yase::{Activation, Host, Machine, Moment, Status};
 
-use crate::kit::world::{World, vocabulary};
+use crate::kit::world::World;
 use crate::kit::{chart, script};
 use crate::{check, compare};
 
@@ -199,25 +199,6 @@ fn r11_guards_of_start_are_read_after_the_action_that_led_there() {
     );
     let last = log.last().unwrap();
     assert!(last.contains("both/one/START -> both/one/B, both/two/START -> both/two/D;"), "{last}");
-}
-
-#[test]
-fn r12_what_reads_guards_on_the_way_or_joins_ways_is_refused_by_name() {
-    let refused = [
-        (NodeKind::Choice, "CHOICE"),
-        (NodeKind::Fork, "FORK"),
-        (NodeKind::Join, "JOIN"),
-        (NodeKind::ShallowHistory, "shallow HISTORY"),
-        (NodeKind::EntryPoint, "entry point"),
-        (NodeKind::ExitPoint, "exit point"),
-    ];
-    for (kind, name) in refused {
-        let mut chart = chart("START\nA\nc/START -> A\n");
-        chart.add(Statechart::ROOT, Node::new(kind, "n"));
-        let found = chart.compile(&vocabulary()).unwrap_err();
-        assert_eq!(found.len(), 1);
-        assert_eq!(found[0].to_string(), format!("error[E0501]: `c/n` is a {name}, which is not run"));
-    }
 }
 
 #[test]

@@ -94,7 +94,7 @@ impl<'a> Restoring<'a> {
             let field = format!("configuration[{index}]");
             let Some(place) = self.place(&field, path) else { continue };
             self.once(self.run.active.contains(place.index()), &field, path);
-            self.run.active.insert(place.index());
+            self.run.activate(self.chart, place);
         }
         for (index, path) in snapshot.waiting_starts.iter().enumerate() {
             let field = format!("waiting_starts[{index}]");
@@ -161,7 +161,7 @@ impl<'a> Restoring<'a> {
             let name = format!("{}` of `{}", record.timer.name, record.timer.region);
             self.once(self.run.timers.slots[timer].is_some(), &field, &name);
             self.run.timers.slots[timer] =
-                Some(Deadline { moment: record.deadline, expired: record.expired });
+                Some(Deadline { moment: record.deadline, expired: record.expired, owner: None });
         }
         self.run.timers.look_again();
     }

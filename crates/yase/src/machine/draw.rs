@@ -1,0 +1,165 @@
+//! Which way out of a node is taken: the first that is open, or one drawn among those with a weight.
+
+use smallvec::SmallVec;
+
+use crate::chart::{Branch, Branches, CompoundId, Condition, Place, Weight};
+use crate::host::Host;
+use crate::machine::queues::Occurrence;
+use crate::machine::select::matches;
+use crate::machine::step::Step;
+use crate::statechart::TransitionId;
+
+/// For what a way is looked for: a state, and the event that is offered, if any. Behind actions that have been done there is no state
+/// any more.
+#[derive(Clone, Copy)]
+pub(super) struct Search<'a> {
+    pub(super) state: Option<Place>,
+    pub(super) occurrence: Option<&'a Occurrence>,
+}
+
+/// The branches of one segment with a weight, and the weight.
+#[derive(Clone, Copy)]
+struct Lot {
+    segment: TransitionId,
+    first: usize,
+    weight: f64,
+}
+
+impl<H: Host> Step<'_, H> {
+    /// The way that is open behind actions that have been done.
+    pub(super) fn open_way(&mut self, branches: Branches) -> Option<CompoundId> {
+        self.scan(branches, Search { state: None, occurrence: None })
+    }
+
+    /// The first complete way whose segments are all allowed and which no running activity forbids. Branches with a weight are drawn, all of
+    /// them where the first one stands, unless what is declared first is to be taken.
+    pub(super) fn scan(&mut self, branches: Branches, search: Search<'_>) -> Option<CompoundId> {
+        let chart = self.chart;
+        let mut index = branches.start;
+        while index < branches.end {
+            let branch = &chart.branches[index];
+            if let Some(weight) = branch.weight
+                && !self.run.chooser.is_declared()
+            {
+                if let Some(found) = self.draw(index, &chart.weights[weight], search) {
+                    return Some(found);
+                }
+                index = branch.skip;
+                continue;
+            }
+            if !self.opens(branch, search) {
+                index = branch.skip;
+                continue;
+            }
+            if let Some(id) = branch.compound
+                && self.accepts(id, search)
+            {
+                return Some(id);
+            }
+            index += 1;
+        }
+        None
+    }
+
+    fn opens(&mut self, branch: &Branch, search: Search<'_>) -> bool {
+        self.meets(branch, search) && branch.guard.is_none_or(|guard| self.holds(guard))
+    }
+
+    /// Whether a complete way is not kept back by a running activity.
+    fn accepts(&mut self, id: CompoundId, search: Search<'_>) -> bool {
+        let Some(place) = search.state else { return true };
+        if !self.is_blocked(self.compound(id)) {
+            return true;
+        }
+        if search.occurrence.is_some() {
+            self.note_blocked(id, place);
+        }
+        false
+    }
+
+    pub(super) fn meets(&self, branch: &Branch, search: Search<'_>) -> bool {
+        let chart = self.chart;
+        let (Some(place), occurrence) = (search.state, search.occurrence) else { return true };
+        match branch.condition {
+            Condition::None => true,
+            Condition::Trigger(trigger) => {
+                occurrence.is_some_and(|occurrence| matches(&chart.triggers[trigger], occurrence))
+            }
+            _ if occurrence.is_some() => false,
+            Condition::Always => true,
+            Condition::Completed => self.run.is_complete(chart, place),
+            Condition::Quiescent => !self.runs_inside(place) && !self.can_step_inside(place),
+            Condition::NoStepInside => !self.can_step_inside(place),
+            Condition::AllCompleted(join) => chart.joins[join]
+                .sources
+                .iter()
+                .all(|&source| self.run.is_active(source) && self.run.is_complete(chart, source)),
+            Condition::Arrives(slot) => {
+                !self.run.arrived.contains(slot) && self.run.is_complete(chart, place)
+            }
+            Condition::AllArrived(join) => {
+                chart.joins[join].slots().all(|slot| self.run.arrived.contains(slot))
+            }
+        }
+    }
+
+    /// Draws among the branches with a weight if the given one is the first of them that matches; it is those of whole segments that are
+    /// drawn. One that is not open is taken out, and the rest is drawn again.
+    fn draw(&mut self, index: usize, weight: &Weight, search: Search<'_>) -> Option<CompoundId> {
+        let mut lots = self.lots(weight.beside, search);
+        if lots.first().is_none_or(|first| first.first != index) {
+            return None;
+        }
+        while !lots.is_empty() {
+            let weights: SmallVec<[f64; 8]> = lots.iter().map(|lot| lot.weight).collect();
+            let lot = lots.remove(self.run.chooser.draw(&weights));
+            let found = self.try_segment(lot, weight.beside.end, search);
+            if found.is_some() {
+                return found;
+            }
+        }
+        None
+    }
+
+    /// The segments with a weight that match, in order.
+    fn lots(&self, beside: Branches, search: Search<'_>) -> SmallVec<[Lot; 8]> {
+        let mut lots: SmallVec<[Lot; 8]> = SmallVec::new();
+        let mut index = beside.start;
+        while index < beside.end {
+            let branch = &self.chart.branches[index];
+            if let Some(Weight { value, segment, .. }) =
+                branch.weight.map(|weight| &self.chart.weights[weight])
+                && lots.last().is_none_or(|last| last.segment != *segment)
+                && self.meets(branch, search)
+            {
+                lots.push(Lot { segment: *segment, first: index, weight: *value });
+            }
+            index = branch.skip;
+        }
+        lots
+    }
+
+    /// Tries all ways that begin with a segment: its branches, which stand beside each other.
+    fn try_segment(&mut self, lot: Lot, end: usize, search: Search<'_>) -> Option<CompoundId> {
+        let chart = self.chart;
+        let mut index = lot.first;
+        while index < end {
+            let branch = &chart.branches[index];
+            let segment = branch.weight.map(|weight| chart.weights[weight].segment);
+            if segment != Some(lot.segment) {
+                return None;
+            }
+            if self.opens(branch, search) {
+                let found = match branch.compound {
+                    Some(id) => self.accepts(id, search).then_some(id),
+                    None => self.scan(Branches { start: index + 1, end: branch.skip }, search),
+                };
+                if found.is_some() {
+                    return found;
+                }
+            }
+            index = branch.skip;
+        }
+        None
+    }
+}
