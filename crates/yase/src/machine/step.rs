@@ -68,10 +68,10 @@ impl<'a, H: Host> Step<'a, H> {
     fn begin(&mut self) {
         self.run.due = false;
         self.run.bound.begin(self.run.now);
-        if !self.run.newcomers.is_empty() {
-            if let Err(fault) = self.welcome() {
-                self.run.failure = Some(fault);
-            }
+        if !self.run.newcomers.is_empty()
+            && let Err(fault) = self.welcome()
+        {
+            self.run.failure = Some(fault);
         }
         self.expire_timers();
         if self.semantics().delivery == Delivery::EachStep {
