@@ -1,0 +1,4 @@
+//! Compiles what links say to each other, and the messages of the examples.
+fn main() -> Result<(), narukom_build::Error> {
+    narukom_build::compile(&["proto/link.proto", "proto/example.proto"], &["proto"])
+}

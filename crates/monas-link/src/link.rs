@@ -1,0 +1,175 @@
+//! A link at work: a thread between a hub and a transport.
+
+use std::collections::hash_map::RandomState;
+use std::fmt;
+use std::hash::{BuildHasher, Hasher};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use narukom::{Moment, Narukom, Waker};
+
+use crate::bridge::Bridge;
+use crate::error::{Error, ErrorKind};
+use crate::inbox::Inbox;
+use crate::protocol::{ClockOffset, Counters, Mismatch, Packet};
+use crate::settings::LinkSettings;
+
+/// The thread looks so often at least, so that a run of a test clock is not slept through.
+const LONGEST_WAIT: Duration = Duration::from_millis(100);
+
+/// Carries packets. What has come it puts into the [`Inbox`] that it was made with.
+pub trait Transport: Send {
+    /// Sends a packet, without waiting for anybody. It may be lost; the protocol asks again.
+    ///
+    /// # Errors
+    /// The packet is not sent.
+    fn send(&mut self, packet: &Packet) -> Result<(), Error>;
+}
+
+/// A link that is running. It ends when it is dropped.
+pub struct Link {
+    inbox: Arc<Inbox>,
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+struct Shared {
+    stops: AtomicBool,
+    report: Mutex<Report>,
+}
+
+/// What is known of a link.
+#[derive(Clone, PartialEq, Eq, Default, Debug)]
+pub struct Report {
+    /// What was counted.
+    pub counters: Counters,
+    /// What differs from what other hosts know.
+    pub mismatches: Vec<Mismatch>,
+    /// The other hosts: when each was last heard, and how far its clock is from this one's.
+    pub peers: Vec<(String, Moment, Option<ClockOffset>)>,
+    /// Packets that came faster than they were taken.
+    pub overrun: u64,
+}
+
+impl Link {
+    /// Starts a link. `connect` makes the transport, `clock` tells the time of the hub's run.
+    ///
+    /// What is published is sent when the link is [woken](Link::waker), and with the next beat at the latest.
+    ///
+    /// # Errors
+    /// The settings do not fit the hub, the transport does not come up, or the system gives no thread.
+    pub fn start(
+        hub: &Narukom,
+        settings: LinkSettings,
+        connect: impl FnOnce(&Bridge, Arc<Inbox>) -> Result<Box<dyn Transport>, Error>,
+        clock: impl Fn() -> Moment + Send + 'static,
+    ) -> Result<Link, Error> {
+        // A number that no earlier life has had; the standard library's hashes begin with one.
+        let incarnation = RandomState::new().build_hasher().finish();
+        let bridge = Bridge::new(hub, settings, incarnation)?;
+        let inbox = Arc::new(Inbox::default());
+        let transport = connect(&bridge, inbox.clone())?;
+        let shared = Arc::new(Shared { stops: AtomicBool::new(false), report: Mutex::default() });
+        let mut worker = Worker {
+            bridge,
+            transport,
+            inbox: inbox.clone(),
+            shared: shared.clone(),
+            next_report: Moment::ZERO,
+        };
+        let name = format!("{} link", hub.host());
+        let thread = thread::Builder::new()
+            .name(name)
+            .spawn(move || worker.run(clock))
+            .map_err(|error| Error::new(ErrorKind::Thread, format!("no thread for the link: {error}")))?;
+        Ok(Link { inbox, shared, thread: Some(thread) })
+    }
+
+    /// Wakes the link when something is published; to be given to [`Narukom::set_waker`].
+    pub fn waker(&self) -> Arc<dyn Waker> {
+        let inbox = self.inbox.clone();
+        Arc::new(move |_| inbox.wake())
+    }
+
+    /// What is known of the link, not older than a beat.
+    pub fn report(&self) -> Report {
+        self.shared.report.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Ends the link; what is known of it then.
+    pub fn stop(mut self) -> Report {
+        self.end();
+        self.report()
+    }
+
+    fn end(&mut self) {
+        self.shared.stops.store(true, Ordering::SeqCst);
+        self.inbox.wake();
+        // A thread that has panicked has said so.
+        let _ = self.thread.take().map(JoinHandle::join);
+    }
+}
+
+impl Drop for Link {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+impl fmt::Debug for Link {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Link").finish_non_exhaustive()
+    }
+}
+
+struct Worker {
+    bridge: Bridge,
+    transport: Box<dyn Transport>,
+    inbox: Arc<Inbox>,
+    shared: Arc<Shared>,
+    next_report: Moment,
+}
+
+impl Worker {
+    fn run(&mut self, clock: impl Fn() -> Moment) {
+        while !self.shared.stops.load(Ordering::SeqCst) {
+            let now = clock();
+            self.pump(&clock);
+            if now >= self.next_report {
+                self.next_report = now + LONGEST_WAIT;
+                self.tell();
+            }
+            let wait = self.bridge.poll_at().since(clock()).min(LONGEST_WAIT);
+            if !wait.is_zero() {
+                self.inbox.wait(wait);
+            }
+        }
+        self.pump(&clock);
+        self.tell();
+    }
+
+    fn pump(&mut self, clock: &impl Fn() -> Moment) {
+        while let Some(packet) = self.inbox.take() {
+            self.bridge.handle(&packet, clock());
+        }
+        while let Some(packet) = self.bridge.poll(clock()) {
+            if self.transport.send(&packet).is_err() {
+                self.bridge.count_failed();
+            }
+        }
+    }
+
+    fn tell(&self) {
+        let node = self.bridge.node();
+        let peer = |(name, heard): (&Arc<str>, Moment)| (name.to_string(), heard, node.clock_offset(name));
+        let report = Report {
+            counters: node.counters(),
+            mismatches: node.mismatches(),
+            peers: node.peers().map(peer).collect(),
+            overrun: self.inbox.dropped(),
+        };
+        *self.shared.report.lock().unwrap_or_else(PoisonError::into_inner) = report;
+    }
+}

@@ -1,0 +1,385 @@
+//! What comes in. Nothing of it is trusted: numbers, names and lengths are checked before they are used.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use narukom::Moment;
+use prost::Message as _;
+
+use super::{CONTROL_BYTES, Delivery, GUEST_LIMIT, MESSAGE_BYTES, NAME_BYTES, Node, Packet};
+use crate::protocol::VERSION;
+use crate::protocol::clock::ClockOffset;
+use crate::protocol::counters::Received;
+use crate::protocol::incoming::{HIGHEST_NUMBER, Incoming, Message};
+use crate::protocol::peers::{OFFER_LIMIT, PEER_LIMIT, Peer, REFUSAL_TRIES, Reading, ReadingState};
+use crate::protocol::schema::differences;
+use crate::protocol::wire::{Beat, Control, Hello, Offer, Refusal, Stamp};
+
+/// So many bytes of all hosts together wait for earlier messages.
+const ALL_HELD_BYTES: usize = 64 << 20;
+
+/// A Beat names so many spans that are missing, at most; more are not looked at.
+const ASKED_SPANS: usize = 1024;
+
+/// So many lines of a difference are told.
+const TOLD_LINES: usize = 8;
+
+impl Node {
+    /// Takes a packet that has come.
+    pub fn handle(&mut self, packet: &Packet, now: Moment) {
+        let is_for_us = packet.to.as_ref().is_none_or(|to| *to == self.host);
+        if packet.from == self.host || !is_for_us {
+            return;
+        }
+        if packet.from.is_empty() || packet.from.len() > NAME_BYTES {
+            self.counters.malformed += 1;
+            return;
+        }
+        match &packet.path {
+            None => self.handle_control(packet, now),
+            Some(path) if packet.stamp.is_empty() => self.handle_guest(path, packet, now),
+            Some(path) => self.handle_message(path, packet, now),
+        }
+    }
+
+    /// The place of the peer of that name, who is given one.
+    fn peer(&mut self, name: &Arc<str>, now: Moment) -> usize {
+        if let Some(place) = self.peers.iter().position(|peer| peer.name == *name) {
+            self.peers[place].heard = now;
+            return place;
+        }
+        if self.peers.len() == PEER_LIMIT {
+            self.forget_most_silent(now);
+        }
+        self.peers.push(Peer::new(name.clone(), now));
+        self.peers.len() - 1
+    }
+
+    fn forget_most_silent(&mut self, now: Moment) {
+        let silent = (0..self.peers.len()).min_by_key(|place| self.peers[*place].heard);
+        if let Some(place) = silent {
+            let mut peer = self.peers.swap_remove(place);
+            let name = peer.name.clone();
+            let mut desk = Desk::new(&name, peer.clock.offset(), now, &mut self.deliveries);
+            peer.end(&mut |topic, message| desk.deliver(topic, message));
+        }
+    }
+
+    fn handle_control(&mut self, packet: &Packet, now: Moment) {
+        let control = (packet.payload.len() <= CONTROL_BYTES).then(|| Control::decode(&*packet.payload));
+        let Some(Ok(control)) = control else {
+            self.counters.malformed += 1;
+            return;
+        };
+        if control.version != VERSION {
+            self.counters.foreign += 1;
+            let text = format!(
+                "speaks version {} of the protocol, and this link version {VERSION}",
+                control.version
+            );
+            return self.note_mismatch(&packet.from, None, text);
+        }
+        let place = self.peer(&packet.from, now);
+        if let Some(hello) = control.hello {
+            self.handle_hello(place, control.incarnation, hello, now);
+        }
+        // Who asks may be unknown too.
+        let is_asked = |beat: &Beat| beat.unknown.iter().any(|host| **host == *self.host);
+        if control.beat.as_ref().is_some_and(is_asked) {
+            self.introductions.is_asked = true;
+            self.hurry(now);
+        }
+        if !self.peers[place].is_in(control.incarnation) {
+            // It is asked for its Hello.
+            return self.hurry(now);
+        }
+        if let Some(beat) = control.beat {
+            self.handle_beat(place, beat, now);
+        }
+        if let Some(refusal) = control.refusal {
+            self.handle_refusal(&packet.from, place, refusal);
+        }
+    }
+
+    fn handle_hello(&mut self, place: usize, incarnation: u64, hello: Hello, now: Moment) {
+        let (first, total) = (hello.first as usize, hello.total as usize);
+        if total > OFFER_LIMIT || first > total || hello.offers.len() > total - first {
+            self.counters.malformed += 1;
+            return;
+        }
+        let peer = &mut self.peers[place];
+        if peer.is_past(incarnation) {
+            return;
+        }
+        if peer.incarnation != Some(incarnation) {
+            let name = peer.name.clone();
+            let mut desk = Desk::new(&name, peer.clock.offset(), now, &mut self.deliveries);
+            peer.begin(incarnation, total, &mut |topic, message| desk.deliver(topic, message));
+            self.mismatches.retain(|(host, _), _| **host != *name);
+            // Who has just come does not know this host.
+            self.introductions.is_asked = true;
+            self.hurry(now);
+        }
+        for (place_of_offer, offer) in (first..).zip(hello.offers) {
+            self.take_offer(place, place_of_offer, offer);
+        }
+        self.hurry_if_missing(place, now);
+    }
+
+    fn take_offer(&mut self, place: usize, place_of_offer: usize, offer: Offer) {
+        let known = self.peers[place].topics.get(place_of_offer);
+        if known.is_none_or(Option::is_some) || offer.path.len() > NAME_BYTES || offer.last > HIGHEST_NUMBER {
+            return;
+        }
+        let path: Arc<str> = offer.path.as_str().into();
+        let host = self.peers[place].name.clone();
+        let state = self.judge(&host, &path, &offer);
+        self.peers[place].topics[place_of_offer] = Some(Reading { path, state });
+    }
+
+    fn judge(&mut self, host: &str, path: &str, offer: &Offer) -> ReadingState {
+        let Some(&topic) = self.wanted.get(path) else { return ReadingState::Unwanted };
+        if !self.access.may_publish(host, path) {
+            self.note_mismatch(host, Some(path), "the access list does not let it publish this".to_owned());
+            return ReadingState::Forbidden(Received::default());
+        }
+        let ours = &self.receive[topic];
+        let kind = ours.kind.to_string();
+        if kind != offer.kind
+            || *ours.type_name != *offer.r#type
+            || ours.schema.hash()[..] != offer.schema[..]
+        {
+            let what = if kind == offer.kind && *ours.type_name == *offer.r#type {
+                ", with other fields"
+            } else {
+                ""
+            };
+            let text = format!(
+                "is {} of `{}` there{what}, and {kind} of `{}` here",
+                offer.kind, offer.r#type, ours.type_name
+            );
+            self.note_mismatch(host, Some(path), text);
+            return ReadingState::Different { counted: Received::default(), tries: REFUSAL_TRIES };
+        }
+        // Of a state the last value is for who comes late; of all else what is said from now on.
+        let is_state = ours.kind == narukom::Kind::State;
+        let start = if is_state { offer.last.saturating_sub(1) } else { offer.last };
+        let mut incoming = Incoming::new(offer.reliable, start);
+        incoming.head(start + 1, offer.last, &mut |_| ());
+        ReadingState::Read { topic, incoming }
+    }
+
+    fn handle_beat(&mut self, place: usize, beat: Beat, now: Moment) {
+        let peer = &mut self.peers[place];
+        peer.beat = Some((beat.sent, now));
+        for echo in beat.echoes.iter().filter(|echo| *echo.host == *self.host) {
+            let [sent, heard, answered] = [echo.sent, echo.received, beat.sent].map(Moment::from_nanos);
+            peer.clock.measure(sent, heard, answered, now);
+        }
+        let (name, offset) = (peer.name.clone(), peer.clock.offset());
+        let mut desk = Desk::new(&name, offset, now, &mut self.deliveries);
+        for head in &beat.heads {
+            if let Some(Some(Reading { state: ReadingState::Read { topic, incoming }, .. })) =
+                peer.topics.get_mut(head.offer as usize)
+            {
+                incoming.head(head.first, head.last, &mut |message| desk.deliver(*topic, message));
+            }
+        }
+        self.hurry_if_missing(place, now);
+        let host = self.host.clone();
+        for missing in beat.missing.iter().filter(|missing| *missing.host == *host).take(ASKED_SPANS) {
+            let topic = missing.offer as usize;
+            if let Some(outgoing) = self.outgoing.get_mut(topic) {
+                outgoing.ask(missing.first, missing.last, &name, now, self.beat / 4);
+                self.mark_ready(topic);
+            }
+        }
+    }
+
+    /// The next beat comes soon, but not at once: what is missing may only have been overtaken. A budget has no room for haste.
+    fn hurry(&mut self, now: Moment) {
+        if self.spending.is_none() {
+            self.next_beat = self.next_beat.min(now + self.beat / 8);
+        }
+    }
+
+    fn hurry_if_missing(&mut self, place: usize, now: Moment) {
+        let is_missing = |reading: &Reading| matches!(&reading.state, ReadingState::Read { incoming, .. } if incoming.is_missing());
+        if self.peers[place].topics.iter().flatten().any(is_missing) {
+            self.hurry(now);
+        }
+    }
+
+    fn handle_refusal(&mut self, from: &str, place: usize, refusal: Refusal) {
+        if *refusal.host != *self.host {
+            return;
+        }
+        let offer = refusal.offer as usize;
+        if refusal.is_answer {
+            return self.handle_answer(from, place, offer, &refusal);
+        }
+        let Some(topic) = self.send.get(offer) else { return };
+        let text = format!("is not read there, since it differs: {}", told(topic, &refusal));
+        let path = topic.path.clone();
+        self.introductions.refuse(Refusal {
+            host: from.to_owned(),
+            offer: refusal.offer,
+            kind: topic.kind.to_string(),
+            schema: topic.schema.lines().to_owned(),
+            is_answer: true,
+        });
+        self.note_mismatch(from, Some(&path), text);
+    }
+
+    fn handle_answer(&mut self, from: &str, place: usize, offer: usize, refusal: &Refusal) {
+        let Some(Some(reading)) = self.peers[place].topics.get_mut(offer) else { return };
+        let ReadingState::Different { tries, .. } = &mut reading.state else { return };
+        *tries = 0;
+        let path = reading.path.clone();
+        let Some(topic) = self.wanted.get(&path).map(|place| &self.receive[*place]) else { return };
+        let text = format!("is not read here, since it differs: {}", told(topic, refusal));
+        self.note_mismatch(from, Some(&path), text);
+    }
+
+    fn handle_message(&mut self, path: &Arc<str>, packet: &Packet, now: Moment) {
+        let Ok(stamp) = Stamp::decode(&*packet.stamp) else {
+            self.counters.malformed += 1;
+            return;
+        };
+        let is_sound = stamp.publisher.len() <= NAME_BYTES
+            && (1..=HIGHEST_NUMBER).contains(&stamp.number)
+            && packet.payload.len() <= MESSAGE_BYTES;
+        if !is_sound {
+            self.counters.malformed += 1;
+            return;
+        }
+        let place = self.peer(&packet.from, now);
+        let held: usize = self.held_bytes();
+        let peer = &mut self.peers[place];
+        let is_current = peer.is_in(stamp.incarnation);
+        let reading = peer.topics.get_mut(stamp.offer as usize).and_then(Option::as_mut);
+        let Some(reading) = reading.filter(|reading| is_current && reading.path == *path) else {
+            self.counters.strangers += 1;
+            return;
+        };
+        let (number, message) = (stamp.number, message(stamp, packet));
+        match &mut reading.state {
+            ReadingState::Unwanted => {}
+            ReadingState::Forbidden(counted) | ReadingState::Different { counted, .. } => {
+                counted.arrived += 1;
+                counted.refused += 1;
+                counted.bytes += packet.payload.len() as u64;
+            }
+            ReadingState::Read { topic, incoming } => {
+                let mut desk = Desk::new(&packet.from, peer.clock.offset(), now, &mut self.deliveries);
+                let mut deliver = |message| desk.deliver(*topic, message);
+                incoming.arrive(number, message, &mut deliver);
+                if held + packet.payload.len() > ALL_HELD_BYTES {
+                    incoming.end(&mut deliver);
+                }
+            }
+        }
+        self.hurry_if_missing(place, now);
+    }
+
+    fn held_bytes(&self) -> usize {
+        let readings = self.peers.iter().flat_map(|peer| peer.topics.iter().flatten());
+        readings
+            .map(|reading| match &reading.state {
+                ReadingState::Read { incoming, .. } => incoming.held_bytes(),
+                _ => 0,
+            })
+            .sum()
+    }
+
+    /// A message of a host that has no link: it is delivered as it comes.
+    fn handle_guest(&mut self, path: &str, packet: &Packet, now: Moment) {
+        let Some(&topic) = self.wanted.get(path).filter(|_| self.admits_guests) else {
+            self.counters.strangers += 1;
+            return;
+        };
+        let key = (packet.from.clone(), topic);
+        if packet.payload.len() > MESSAGE_BYTES
+            || (self.guests.len() == GUEST_LIMIT && !self.guests.contains_key(&key))
+        {
+            self.counters.malformed += 1;
+            return;
+        }
+        let is_allowed = self.access.may_publish(&packet.from, path);
+        let counted = self.guests.entry(key).or_default();
+        counted.arrived += 1;
+        counted.last += 1;
+        counted.bytes += packet.payload.len() as u64;
+        if !is_allowed {
+            counted.refused += 1;
+            counted.gaps += 1;
+            return;
+        }
+        counted.delivered += 1;
+        self.deliveries.push_back(Delivery {
+            host: packet.from.clone(),
+            topic,
+            publisher: "guest".to_owned(),
+            sequence: counted.last,
+            published: now,
+            local: now,
+            received: now,
+            payload: packet.payload.clone(),
+        });
+    }
+}
+
+fn message(stamp: Stamp, packet: &Packet) -> Message {
+    Message {
+        publisher: stamp.publisher,
+        sequence: stamp.sequence,
+        published: stamp.published,
+        payload: packet.payload.clone(),
+    }
+}
+
+/// What another link has of a topic of ours that we do not have, and the other way round.
+fn told(topic: &super::LinkTopic, theirs: &Refusal) -> String {
+    let kinds = format!("{} there, {} here", theirs.kind, topic.kind);
+    let lines = differences(topic.schema.lines(), &theirs.schema, TOLD_LINES);
+    match (theirs.kind == topic.kind.to_string(), lines.is_empty()) {
+        (false, true) => kinds,
+        (false, false) => format!("{kinds}; {}", lines.join("; ")),
+        (true, _) => lines.join("; "),
+    }
+}
+
+/// Where messages of a host become deliveries.
+struct Desk<'a> {
+    host: &'a Arc<str>,
+    offset: Option<ClockOffset>,
+    now: Moment,
+    deliveries: &'a mut VecDeque<Delivery>,
+}
+
+impl<'a> Desk<'a> {
+    fn new(
+        host: &'a Arc<str>,
+        offset: Option<ClockOffset>,
+        now: Moment,
+        deliveries: &'a mut VecDeque<Delivery>,
+    ) -> Desk<'a> {
+        Desk { host, offset, now, deliveries }
+    }
+
+    fn deliver(&mut self, topic: usize, message: Message) {
+        let published = Moment::from_nanos(message.published);
+        // Nothing comes before it was sent, whatever the clocks say.
+        let local = self.offset.map_or(self.now, |offset| offset.local(published).min(self.now));
+        self.deliveries.push_back(Delivery {
+            host: self.host.clone(),
+            topic,
+            publisher: message.publisher,
+            sequence: message.sequence,
+            published,
+            local,
+            received: self.now,
+            payload: message.payload,
+        });
+    }
+}

@@ -1,0 +1,168 @@
+//! Between processes of one computer: each link has a datagram socket in a folder that only its owner can read.
+
+use std::env;
+use std::fs::{self, DirBuilder, Permissions};
+use std::io;
+use std::os::unix::fs::{DirBuilderExt, PermissionsExt};
+use std::os::unix::net::UnixDatagram;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use prost::Message as _;
+
+use crate::error::{Error, ErrorKind};
+use crate::inbox::Inbox;
+use crate::link::Transport;
+use crate::protocol::{Packet, wire};
+
+/// A packet with all that belongs to it is not longer than this. Longer ones need another transport.
+const LARGEST: usize = 128 << 10;
+
+/// The name of a link's socket ends so.
+const ENDING: &str = "link";
+
+/// How often the receiving thread looks whether it is to end.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+/// Sockets in a folder, one for each link; what is for all is sent to every one of them.
+#[derive(Debug)]
+pub struct Local {
+    folder: PathBuf,
+    path: PathBuf,
+    socket: UnixDatagram,
+    buffer: Vec<u8>,
+    stops: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// Where the sockets of a user's links are: `$XDG_RUNTIME_DIR/monas`; none if the system names no such folder.
+pub fn default_folder() -> Option<PathBuf> {
+    env::var_os("XDG_RUNTIME_DIR").map(|folder| Path::new(&folder).join("monas"))
+}
+
+impl Local {
+    /// Makes the socket of the link called `name`. The folder is made if it is not there.
+    ///
+    /// # Errors
+    /// The name is none, another process uses it, or the system refuses.
+    pub fn new(folder: &Path, name: &str, inbox: Arc<Inbox>) -> Result<Local, Error> {
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        if name.is_empty() || !name.chars().all(is_plain) {
+            let text = format!("`{name}` is no name of a socket: letters, digits, `_` and `-`");
+            return Err(Error::new(ErrorKind::Settings, text));
+        }
+        let path = folder.join(format!("{name}.{ENDING}"));
+        let failed =
+            |error: io::Error| Error::new(ErrorKind::Connection, format!("{}: {error}", path.display()));
+        DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(failed)?;
+        remove_dead(&path)?;
+        let socket = UnixDatagram::bind(&path).map_err(failed)?;
+        fs::set_permissions(&path, Permissions::from_mode(0o600)).map_err(failed)?;
+        let listener = socket.try_clone().map_err(failed)?;
+        listener.set_read_timeout(Some(PATIENCE)).map_err(failed)?;
+        // Sending has a socket of its own, since what blocks belongs to the file and not to the handle.
+        let socket = UnixDatagram::unbound().map_err(failed)?;
+        socket.set_nonblocking(true).map_err(failed)?;
+        let stops = Arc::new(AtomicBool::new(false));
+        let has_ended = stops.clone();
+        let thread = thread::Builder::new()
+            .name(format!("{name} socket"))
+            .spawn(move || listen(&listener, &inbox, &has_ended))
+            .map_err(failed)?;
+        let folder = folder.to_owned();
+        Ok(Local { folder, path, socket, buffer: Vec::new(), stops, thread: Some(thread) })
+    }
+
+    fn send_to(&self, path: &Path) -> Result<(), Error> {
+        let sent = self.socket.send_to(&self.buffer, path);
+        match sent {
+            Ok(_) => Ok(()),
+            // Who is gone need not hear it.
+            Err(error) if is_gone(&error) => Ok(()),
+            Err(error) => Err(Error::new(ErrorKind::Connection, format!("{}: {error}", path.display()))),
+        }
+    }
+
+    /// The sockets of the others.
+    fn others(&self) -> Vec<PathBuf> {
+        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        let sockets = entries.map(|entry| entry.path());
+        sockets
+            .filter(|path| path.extension().is_some_and(|end| end == ENDING) && *path != self.path)
+            .collect()
+    }
+}
+
+impl Transport for Local {
+    fn send(&mut self, packet: &Packet) -> Result<(), Error> {
+        self.buffer.clear();
+        let datagram = wire::Datagram {
+            from: packet.from.to_string(),
+            path: packet.path.as_deref().unwrap_or_default().to_owned(),
+            stamp: packet.stamp.to_vec(),
+            payload: packet.payload.to_vec(),
+            priority: packet.priority.into(),
+        };
+        if datagram.encoded_len() > LARGEST {
+            let text = format!("{} bytes do not fit into a packet of {LARGEST}", datagram.encoded_len());
+            return Err(Error::new(ErrorKind::TooLarge, text));
+        }
+        datagram.encode_raw(&mut self.buffer);
+        match &packet.to {
+            Some(name) => self.send_to(&self.folder.join(format!("{name}.{ENDING}"))),
+            None => self.others().iter().map(|path| self.send_to(path)).fold(Ok(()), Result::and),
+        }
+    }
+}
+
+impl Drop for Local {
+    fn drop(&mut self) {
+        self.stops.store(true, Ordering::SeqCst);
+        let _ = self.thread.take().map(JoinHandle::join);
+        // Who finds the socket later finds nobody behind it.
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+/// Removes the socket of a process that was killed; that of a living one is left, and an error.
+fn remove_dead(path: &Path) -> Result<(), Error> {
+    let failed = |error: io::Error| Error::new(ErrorKind::Connection, format!("{}: {error}", path.display()));
+    match UnixDatagram::unbound().map_err(failed)?.connect(path) {
+        Ok(()) => {
+            let text = format!("{}: another process has a link of this name", path.display());
+            Err(Error::new(ErrorKind::Connection, text))
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(error) if is_gone(&error) => fs::remove_file(path).map_err(failed),
+        Err(error) => Err(failed(error)),
+    }
+}
+
+fn is_gone(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::ConnectionRefused | io::ErrorKind::NotFound)
+}
+
+fn listen(socket: &UnixDatagram, inbox: &Inbox, stops: &AtomicBool) {
+    let mut buffer = vec![0; LARGEST + 1];
+    while !stops.load(Ordering::SeqCst) {
+        let Ok(length) = socket.recv(&mut buffer) else { continue };
+        inbox.put(read(&buffer[..length]));
+    }
+}
+
+/// The packet that a datagram holds. What is none becomes one that nobody understands, and is counted as such.
+fn read(bytes: &[u8]) -> Packet {
+    let datagram = wire::Datagram::decode(bytes).unwrap_or_default();
+    Packet {
+        from: datagram.from.into(),
+        to: None,
+        path: (!datagram.path.is_empty()).then(|| datagram.path.into()),
+        stamp: datagram.stamp.into(),
+        payload: datagram.payload.into(),
+        priority: datagram.priority.clamp(1, 7) as u8,
+        is_reliable: true,
+    }
+}

@@ -1,0 +1,117 @@
+//! Processes of their own, linked by the sockets of one computer: they exchange ball and commands, are killed, and come back.
+#![cfg(all(unix, feature = "local"))]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::disallowed_methods,
+    reason = "other processes need real time; what is awaited is awaited with a limit, and never slept for"
+)]
+
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// The example `player`, which stands beside this test.
+fn player() -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    test.parent().unwrap().parent().unwrap().join("examples/player")
+}
+
+struct Player {
+    process: Child,
+    lines: Receiver<String>,
+}
+
+impl Player {
+    fn new(role: &str, folder: &Path) -> Player {
+        let mut command = Command::new(player());
+        command.arg(role).arg("local").arg(folder).stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut process = command.spawn().unwrap();
+        let output = BufReader::new(process.stdout.take().unwrap());
+        let (sender, lines) = channel();
+        thread::spawn(move || output.lines().map_while(Result::ok).try_for_each(|line| sender.send(line)));
+        Player { process, lines }
+    }
+
+    /// The next line that begins so.
+    fn line(&self, begin: &str) -> String {
+        let end = Instant::now() + PATIENCE;
+        loop {
+            let left = end.saturating_duration_since(Instant::now());
+            let line =
+                self.lines.recv_timeout(left).unwrap_or_else(|error| panic!("no line `{begin}`: {error}"));
+            if line.starts_with(begin) {
+                return line;
+            }
+        }
+    }
+
+    /// Ends it as a person would, and gives what it had counted.
+    fn stop(mut self) -> String {
+        drop(self.process.stdin.take());
+        let line = self.line("received");
+        assert!(self.process.wait().unwrap().success());
+        line
+    }
+
+    /// As `kill -9` does.
+    fn kill(mut self) {
+        self.process.kill().unwrap();
+        self.process.wait().unwrap();
+    }
+}
+
+/// A figure of what was counted.
+fn figure(line: &str, name: &str) -> u64 {
+    let rest = line.split(&format!("{name}: ")).nth(1).unwrap();
+    rest.chars().take_while(char::is_ascii_digit).collect::<String>().parse().unwrap()
+}
+
+fn check(line: &str) {
+    let of = |name| figure(line, name);
+    assert_eq!(
+        of("arrived"),
+        of("delivered") + of("duplicates") + of("late") + of("refused") + of("held"),
+        "{line}"
+    );
+    assert_eq!(of("last") - of("start"), of("delivered") + of("gaps") + of("held") + of("missing"), "{line}");
+}
+
+#[test]
+fn ball_and_commands_pass_and_a_killed_process_comes_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let coach = Player::new("coach", folder.path());
+    for _ in 0..2 {
+        let robot = Player::new("robot", folder.path());
+        coach.line("ball");
+        robot.line("command of coach: kick");
+        robot.kill();
+    }
+    let robot = Player::new("robot", folder.path());
+    robot.line("command of coach: kick");
+    check(&robot.stop());
+    let line = coach.stop();
+    check(&line);
+    assert!(figure(&line, "delivered") > 0, "{line}");
+    assert_eq!(figure(&line, "gaps"), 0, "{line}");
+}
+
+#[test]
+fn two_processes_of_one_name_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let robot = Player::new("robot", folder.path());
+    let coach = Player::new("coach", folder.path());
+    robot.line("command");
+    let mut second = Command::new(player());
+    let output = second.arg("robot").arg("local").arg(folder.path()).stdin(Stdio::null()).output().unwrap();
+    assert!(!output.status.success());
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("another process has a link of this name"), "{said}");
+    robot.kill();
+    coach.kill();
+}

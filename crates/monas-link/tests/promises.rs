@@ -1,0 +1,255 @@
+//! What the protocol promises, on networks of all kinds, in simulated time.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod network;
+
+use std::time::Duration;
+
+use monas_link::Budget;
+use narukom::Moment;
+use network::*;
+use proptest::prelude::*;
+
+const STATE: usize = 0;
+const LOOSE_STATE: usize = 3;
+const RELIABLE: [usize; 3] = [0, 1, 2];
+const ALL: usize = 5;
+
+/// Something that happens to a network.
+#[derive(Clone, Copy, Debug)]
+enum Turn {
+    Publish {
+        node: usize,
+        topic: usize,
+        count: u8,
+    },
+    Wait(u64),
+    /// The node hears nobody, and nobody hears it.
+    Part(usize),
+    Heal,
+    Restart(usize),
+}
+
+fn turns(nodes: usize) -> impl Strategy<Value = Vec<Turn>> {
+    let publish =
+        (0..nodes, 0..ALL, 1_u8..20).prop_map(|(node, topic, count)| Turn::Publish { node, topic, count });
+    let turn = prop_oneof![
+        8 => publish,
+        6 => (1_u64..400).prop_map(Turn::Wait),
+        1 => (0..nodes).prop_map(Turn::Part),
+        1 => Just(Turn::Heal),
+        1 => (0..nodes).prop_map(Turn::Restart),
+    ];
+    proptest::collection::vec(turn, 1..40)
+}
+
+fn play(network: &mut Network, turns: &[Turn]) {
+    for turn in turns {
+        match *turn {
+            Turn::Publish { node, topic, count } => (0..count).for_each(|_| network.publish(node, topic)),
+            Turn::Wait(millis) => network.run(millis),
+            Turn::Part(node) => network.parts[node] = 1 + node as u8,
+            Turn::Heal => network.parts.fill(0),
+            Turn::Restart(node) => {
+                network.restart(node);
+                // What others were given belongs to another life.
+                let name = network.nodes[node].host().clone();
+                network.run(200);
+                network.given.iter_mut().for_each(|given| given.retain(|one| one.host != name));
+            }
+        }
+        network.check_counters();
+    }
+}
+
+/// Makes the network whole, and waits as long as the protocol says that it takes.
+fn heal(network: &mut Network) {
+    network.parts.fill(0);
+    network.faults = CALM;
+    network.run(2 * 200 + 4 * 40 + 4);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn everything_adds_up_and_states_are_equal(turns in turns(3), seed in any::<u8>()) {
+        let mut network = Network::of(3, 64, ROUGH, seed);
+        play(&mut network, &turns);
+        heal(&mut network);
+        network.check_counters();
+        for reader in 0..3 {
+            for sender in (0..3).filter(|sender| *sender != reader) {
+                let host = ["a", "b", "c"][sender];
+                for topic in [STATE, LOOSE_STATE] {
+                    let published = network.published[sender][topic];
+                    let read = network.numbers(reader, host, topic).last().copied();
+                    prop_assert!(published == 0 || read == Some(published), "{read:?} of {published} of {host}");
+                }
+                for topic in RELIABLE {
+                    let path = &network.settings[sender].send[topic].path;
+                    let got = network.received(reader, host, path);
+                    prop_assert_eq!((got.held, got.missing), (0, 0), "{} of {}: {:?}", path, host, got);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_comes_twice_or_out_of_order(turns in turns(2), seed in any::<u8>()) {
+        let turns: Vec<Turn> = turns.into_iter().filter(|turn| !matches!(turn, Turn::Restart(_))).collect();
+        let mut network = Network::of(2, 64, ROUGH, seed);
+        play(&mut network, &turns);
+        heal(&mut network);
+        for (reader, host) in [(0, "b"), (1, "a")] {
+            for topic in 0..ALL {
+                let numbers = network.numbers(reader, host, topic);
+                prop_assert!(numbers.is_sorted_by(|one, next| one < next), "{numbers:?}");
+                let got = network.received(reader, host, &network.settings[0].send[topic].path);
+                prop_assert_eq!(got.delivered as usize, numbers.len());
+            }
+        }
+    }
+
+    #[test]
+    fn no_window_is_over_budget(turns in turns(2), seed in any::<u8>(), packets in 4_u32..40) {
+        let budget = Budget { packets, window: Duration::from_millis(1000), payload: 128 };
+        let settings = ["a", "b"].map(|name| {
+            let mut one = settings(name, topics(64));
+            one.budget = Some(budget);
+            one
+        });
+        // A process that was killed does not know what it had sent.
+        let turns: Vec<Turn> = turns.into_iter().filter(|turn| !matches!(turn, Turn::Restart(_))).collect();
+        let mut network = Network::new(settings.into(), ROUGH, seed);
+        play(&mut network, &turns);
+        network.run(3000);
+        for log in &network.log {
+            prop_assert!(log.iter().all(|(_, size)| *size <= budget.payload));
+            for (first, (start, _)) in log.iter().enumerate() {
+                let end = *start + budget.window;
+                let inside = log[first..].iter().take_while(|(at, _)| *at <= end).count();
+                prop_assert!(inside <= packets as usize, "{inside} packets from {start} on");
+            }
+        }
+        network.check_counters();
+    }
+}
+
+#[test]
+fn what_is_kept_long_enough_comes_all_and_in_order() {
+    let mut network = Network::of(2, 4096, CALM, 7);
+    network.run(500);
+    network.faults = ROUGH;
+    for _ in 0..1000 {
+        RELIABLE[1..].iter().for_each(|topic| network.publish(0, *topic));
+        network.run(2);
+    }
+    heal(&mut network);
+    for topic in [1, 2] {
+        assert!(network.numbers(1, "a", topic).into_iter().eq(1..=1000), "topic {topic}");
+    }
+    let got = network.received(1, "a", "test/data");
+    assert_eq!((got.delivered, got.gaps, got.missing), (1000, 0, 0));
+    assert!(got.duplicates > 0, "the network doubles: {got:?}");
+}
+
+#[test]
+fn a_partition_longer_than_what_is_kept_leaves_a_counted_gap() {
+    let mut network = Network::of(2, 64, CALM, 7);
+    network.run(500);
+    network.publish(0, 1);
+    network.run(10);
+    network.parts[1] = 1;
+    (0..100).for_each(|_| network.publish(0, 1));
+    network.run(5000);
+    heal(&mut network);
+    let got = network.received(1, "a", "test/signal");
+    assert_eq!((got.delivered, got.gaps, got.last), (1 + 64, 36, 101));
+    assert_eq!(network.numbers(1, "a", 1)[1..], (38..=101).collect::<Vec<_>>());
+}
+
+#[test]
+fn late_readers_get_the_state_and_no_signals() {
+    let mut network = Network::of(2, 64, CALM, 7);
+    network.parts[1] = 1;
+    for topic in 0..ALL {
+        (0..3).for_each(|_| network.publish(0, topic));
+    }
+    network.run(1000);
+    heal(&mut network);
+    let given: Vec<Vec<u64>> = (0..ALL).map(|topic| network.numbers(1, "a", topic)).collect();
+    assert_eq!(given, [vec![3], vec![], vec![], vec![3], vec![]]);
+    network.publish(0, 1);
+    network.run(10);
+    assert_eq!(network.numbers(1, "a", 1), [4]);
+}
+
+#[test]
+fn a_host_that_was_killed_and_comes_back_is_heard_at_once() {
+    let mut network = Network::of(2, 64, CALM, 7);
+    network.run(500);
+    (0..5).for_each(|_| network.publish(0, 1));
+    network.run(10);
+    network.restart(0);
+    network.run(5);
+    (0..2).for_each(|_| network.publish(0, 1));
+    network.run(10);
+    assert_eq!(network.numbers(1, "a", 1), [1, 2, 3, 4, 5, 1, 2]);
+    let got = network.received(1, "a", "test/signal");
+    assert_eq!((got.delivered, got.gaps, got.start, got.last), (2, 0, 0, 2), "of its second life");
+}
+
+#[test]
+fn urgent_topics_go_first_when_the_budget_is_short() {
+    let budget = Budget { packets: 10, window: Duration::from_secs(1), payload: 128 };
+    let mut settings = ["a", "b"].map(|name| settings(name, topics(64)));
+    settings[0].budget = Some(budget);
+    let mut network = Network::new(settings.into(), CALM, 7);
+    network.run(3000);
+    for topic in (0..ALL).rev() {
+        (0..4).for_each(|_| network.publish(0, topic));
+    }
+    network.run(1500);
+    // Signals (1, 2) have passed, and the history (5) waits.
+    assert_eq!(network.numbers(1, "a", 1), [1, 2, 3, 4]);
+    assert!(network.numbers(1, "a", 2).len() < 4);
+    assert!(network.nodes[0].counters().waits > 0);
+    network.run(10_000);
+    assert_eq!(network.numbers(1, "a", 2), [1, 2, 3, 4]);
+}
+
+#[test]
+fn what_is_too_large_for_the_budget_is_counted_and_not_sent() {
+    let budget = Budget { packets: 100, window: Duration::from_secs(1), payload: 128 };
+    let mut one = settings("a", topics(64));
+    one.budget = Some(budget);
+    let mut network = Network::new(vec![one, settings("b", topics(64))], CALM, 7);
+    let publication = monas_link::Publication {
+        publisher: "vision",
+        sequence: 1,
+        published: Moment::ZERO,
+        payload: vec![0; 128].into(),
+    };
+    network.nodes[0].publish(1, publication);
+    network.run(1000);
+    let sent = network.nodes[0].counters().sent.into_iter().find(|one| one.0 == "test/signal").unwrap().1;
+    assert_eq!((sent.taken, sent.oversize, sent.sent), (1, 1, 0));
+}
+
+#[test]
+fn clocks_are_compared() {
+    let mut network = Network::of(2, 64, Faults { delay: 5, ..CALM }, 7);
+    network.ahead = vec![Duration::from_secs(1000), Duration::from_secs(7)];
+    network.run(3000);
+    let offset = network.nodes[1].clock_offset("a").unwrap();
+    let error = (offset.ahead - 993_000_000_000).unsigned_abs();
+    assert!(error <= offset.way / 2, "{offset:?}");
+    assert!(offset.way <= 11_000_000, "{offset:?}");
+    network.publish(0, 1);
+    network.run(20);
+    let given = network.given[1].last().unwrap();
+    assert_eq!(given.published, Moment::from_secs_f64(1003.0));
+    let error = given.local.distance(Moment::from_secs_f64(10.0));
+    assert!(error <= Duration::from_millis(6), "{error:?}");
+}

@@ -1,0 +1,89 @@
+//! Packets of a link: any bytes, and what two honest links say to each other with some bytes changed, doubled or left out.
+#![no_main]
+
+use std::sync::{Arc, LazyLock};
+use std::time::Duration;
+
+use libfuzzer_sys::fuzz_target;
+use monas_link::example::Ball;
+use monas_link::{Bridge, LinkSettings, Packet};
+use narukom::{Moment, Narukom, Signal, State, topic};
+
+topic! {
+    BALL: State<Ball> = "soccer/ball";
+    TOUCH: Signal<Ball> = "soccer/touch";
+}
+
+static SAID: LazyLock<Vec<Packet>> = LazyLock::new(conversation);
+
+fuzz_target!(|data: &[u8]| {
+    let hub = Narukom::with_linked_topics("robot_2").expect("the topics fit");
+    let mut end = end(&hub, 2);
+    let mut now = Moment::ZERO;
+    for edit in data.chunks(8) {
+        now += Duration::from_millis(u64::from(edit[0]));
+        end.handle(&packet(edit), now);
+        while end.poll(now).is_some() {}
+    }
+    for (host, path, got) in &end.node().counters().received {
+        let seen = got.delivered + got.duplicates + got.late + got.refused + got.held;
+        assert_eq!(got.arrived, seen, "{path} of {host}: {got:?}");
+        let said = got.delivered + got.gaps + got.held + got.missing;
+        assert_eq!(got.last - got.start, said, "{path} of {host}: {got:?}");
+    }
+    for (path, sent) in &end.node().counters().sent {
+        assert_eq!(sent.taken, sent.sent + sent.dropped + sent.oversize + sent.waiting, "{path}: {sent:?}");
+    }
+});
+
+fn end(hub: &Narukom, incarnation: u64) -> Bridge {
+    let settings = LinkSettings { guests: true, ..LinkSettings::default() };
+    Bridge::new(hub, settings.sending("soccer/*").receiving("soccer/*"), incarnation).expect("the settings fit")
+}
+
+/// A packet of the conversation, changed: the second byte says which, the others what stands where; or bytes as they come.
+fn packet(edit: &[u8]) -> Packet {
+    let said = &SAID[usize::from(edit.get(1).copied().unwrap_or(0)) % SAID.len()];
+    let mut packet = said.clone();
+    match edit {
+        [_, _, 255, rest @ ..] => packet.payload = rest.into(),
+        [_, _, 254, rest @ ..] => packet.stamp = rest.into(),
+        [_, _, rest @ ..] => {
+            for pair in rest.chunks_exact(2) {
+                let part = if pair[0] & 1 == 0 { &mut packet.stamp } else { &mut packet.payload };
+                let mut bytes = part.to_vec();
+                if let Some(byte) = bytes.get_mut(usize::from(pair[0] / 2)) {
+                    *byte = pair[1];
+                }
+                *part = Arc::from(bytes);
+            }
+        }
+        _ => {}
+    }
+    packet
+}
+
+/// What a link says to another that loses one packet in three.
+fn conversation() -> Vec<Packet> {
+    let hubs = ["robot_1", "robot_2"].map(|name| Narukom::with_linked_topics(name).expect("the topics fit"));
+    let (mut here, mut there) = (end(&hubs[0], 1), end(&hubs[1], 2));
+    let mut touch = hubs[0].publisher(TOUCH, "body").expect("it is declared");
+    let mut ball = hubs[0].publisher(BALL, "vision").expect("it is declared");
+    let mut said = Vec::new();
+    for step in 0..60_u64 {
+        let now = Moment::from_nanos(step * 20_000_000);
+        touch.publish(Ball { distance: step as f64, bearing: 0.5 }, now);
+        ball.publish(Ball { distance: step as f64, bearing: 0.5 }, now);
+        while let Some(packet) = here.poll(now) {
+            if said.len() % 3 != 2 {
+                there.handle(&packet, now);
+            }
+            said.push(packet);
+        }
+        while let Some(packet) = there.poll(now) {
+            here.handle(&packet, now);
+        }
+    }
+    said.truncate(255);
+    said
+}
