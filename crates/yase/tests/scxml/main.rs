@@ -5,6 +5,7 @@
 mod irp;
 mod reading;
 mod round_trip;
+mod scion;
 mod session;
 mod suites;
 

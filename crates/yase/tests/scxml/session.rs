@@ -186,6 +186,17 @@ fn an_error_in_finalize_comes_after_the_event() {
 }
 
 #[test]
+fn done_invoke_brings_what_the_end_gives() {
+    let noted = notes(
+        "<state id='s'><invoke id='i'><content><scxml><final id='f'><onexit><log expr=\"'out'\"/></onexit>
+            <donedata><param name='x' expr='6 * 7'/></donedata></final></scxml></content></invoke>
+         <transition event='done.invoke.i' target='t'><log expr='_event.data'/><log expr='_event.invokeid'/></transition></state><final id='t'/>",
+        &[],
+    );
+    assert_eq!(noted, ["  inner out", "{\"x\":42}", "i"]);
+}
+
+#[test]
 fn what_a_cancelled_session_says_is_not_heard() {
     let mut session = session(
         "<state id='s'><invoke id='i'><content><scxml><state id='t'>
