@@ -135,7 +135,7 @@ impl<'a> Judging<'a> {
         if activity == Some(record.activity.as_str()) {
             let state = self.path(&record.state)?;
             let verdict = self.renamed(&record.state, &state, &state);
-            self.report.add(Subject::Activity, name, verdict);
+            self.report.add(Subject::Activation, name, verdict);
             return Some(ActivityRecord { state, ..record.clone() });
         }
         let is_done = record.phase == ActivityPhase::Done;
@@ -146,7 +146,7 @@ impl<'a> Judging<'a> {
             }),
             // its state is told to have another one
             Some(_) => {}
-            None => self.report.add(Subject::Activity, name, Verdict::Kept),
+            None => self.report.add(Subject::Activation, name, Verdict::Kept),
         }
         None
     }

@@ -49,7 +49,7 @@ pub enum Subject {
     /// An active node.
     State,
     /// The activity of an active state.
-    Activity,
+    Activation,
     /// A timer that is set.
     Timer,
     /// An event that waits for its turn.
@@ -158,7 +158,7 @@ impl fmt::Display for Subject {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Subject::State => "state",
-            Subject::Activity => "activity",
+            Subject::Activation => "activity",
             Subject::Timer => "timer",
             Subject::Event => "event",
             Subject::DeferredEvent => "deferred event",
