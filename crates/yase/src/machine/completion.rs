@@ -55,16 +55,25 @@ impl Run {
 
     /// A state has completed: where that is looked at once, it is looked at next, and so are the ANDs that are complete with it.
     pub(super) fn completed(&mut self, chart: &Chart, place: Place) {
+        self.completed_from(chart, Some(place));
+    }
+
+    fn completed_from(&mut self, chart: &Chart, first: Option<Place>) {
         if chart.semantics_ref().eventless != Eventless::Once {
             return;
         }
-        let mut next = Some(place);
+        let mut next = first;
         while let Some(place) = next {
             self.completions.push_back(place);
-            next = chart.states[place.index()].parent.filter(|&parent| {
-                chart.states[parent.index()].kind == NodeKind::And && self.is_complete(chart, parent)
-            });
+            next = self.complete_and(chart, place);
         }
+    }
+
+    /// The AND around a region, if it has completed.
+    fn complete_and(&self, chart: &Chart, region: Place) -> Option<Place> {
+        let parent = chart.states[region.index()].parent?;
+        let is_and = chart.states[parent.index()].kind == NodeKind::And;
+        (is_and && self.is_complete(chart, parent)).then_some(parent)
     }
 
     /// A state was left: whatever was to come of its completion is of no more interest.
@@ -78,11 +87,12 @@ impl Run {
         }
     }
 
-    /// A composite stays without an active child, and counts as complete.
-    pub(super) fn vacate(&mut self, chart: &Chart, place: Place) {
+    /// A composite stays without an active child, and counts as complete. For a region that has arrived at a JOIN that is no news: only
+    /// the AND around it may be complete by that.
+    pub(super) fn vacate(&mut self, chart: &Chart, place: Place, has_arrived: bool) {
         self.vacated.insert(place.index());
         self.tips.insert(place.index());
-        self.completed(chart, place);
+        self.completed_from(chart, if has_arrived { self.complete_and(chart, place) } else { Some(place) });
     }
 
     /// A child of a composite is entered.

@@ -123,7 +123,7 @@ impl<H: Host> Step<'_, H> {
     /// Enters what a transition leads to. If the chart stops, what leads to TERMINATE leads nowhere.
     fn enter_on(&mut self, compound: &Compound, stops: bool) -> Result<(), Fault> {
         if let Some(place) = compound.vacates {
-            self.run.vacate(self.chart, place);
+            self.run.vacate(self.chart, place, compound.arrives.is_some());
         }
         self.run.arrive_at_join(self.chart, compound);
         match &compound.entries {

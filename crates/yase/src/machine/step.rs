@@ -329,6 +329,7 @@ impl<'a, H: Host> Step<'a, H> {
         self.run.pending.clear();
         self.run.completions.clear();
         self.run.marked.clear();
+        self.run.unbound.clear();
         self.run.status = status;
     }
 }
