@@ -33,7 +33,8 @@ impl Chooser {
         Chooser { policy: Policy::Declared }
     }
 
-    /// Draws from a generator.
+    /// Draws from a generator, PCG of 64 bits: one number for each choice. Of n options that are alike it takes number · n / 2⁶⁴; of weighted
+    /// ones the first whose sum with those before it is greater than (number / 2¹¹) / 2⁵³ of all weights.
     pub fn seeded(seed: u64) -> Chooser {
         let generator = Box::new(Pcg64::seed_from_u64(seed));
         Chooser { policy: Policy::Seeded { seed, drawn: 0, generator } }
@@ -101,10 +102,10 @@ impl Chooser {
     pub(super) fn draw(&mut self, weights: &[f64]) -> usize {
         self.decide(weights.len(), |number| {
             let unit = (number >> 11) as f64 / (1_u64 << 53) as f64;
-            let mut rest = unit * weights.iter().sum::<f64>();
+            let (drawn, mut sum) = (unit * weights.iter().sum::<f64>(), 0.0);
             let taken = weights.iter().position(|weight| {
-                rest -= weight;
-                rest < 0.0
+                sum += weight;
+                sum > drawn
             });
             taken.unwrap_or(weights.len() - 1)
         })

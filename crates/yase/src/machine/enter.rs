@@ -85,7 +85,8 @@ impl<H: Host> Step<'_, H> {
             return Ok(start);
         }
         self.resolve_histories(place)?;
-        Ok(self.marked_child(place))
+        // a HISTORY that leads nowhere leaves it at START
+        Ok(self.marked_child(place).or(start))
     }
 
     /// Goes on, behind the actions that have been done, on a way that is decided on now. False if none is open.

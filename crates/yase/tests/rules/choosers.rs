@@ -23,7 +23,12 @@ const WEIGHTS: &str = "
 ";
 
 /// The states that are reached, one run for each list of choices, and what the chooser has noted.
-fn reached(text: &str, script_text: &str, semantics: Semantics, choices: &[&[u32]]) -> Vec<(String, Vec<(u32, u32)>)> {
+fn reached(
+    text: &str,
+    script_text: &str,
+    semantics: Semantics,
+    choices: &[&[u32]],
+) -> Vec<(String, Vec<(u32, u32)>)> {
     let chart = chart(text);
     let run = |choices: &&[u32]| {
         let mut machine = Machine::new(script::compile_with(&chart, semantics));

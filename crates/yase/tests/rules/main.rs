@@ -5,10 +5,12 @@
 #[path = "../kit/mod.rs"]
 mod kit;
 
+mod choosers;
 mod completion;
 mod data;
 mod firing;
 mod pool;
+mod refusals;
 mod running;
 mod scripts;
 mod selection;

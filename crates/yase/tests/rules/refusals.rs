@@ -31,15 +31,21 @@ fn r12_forks_that_do_not_lead_into_different_regions_are_refused() {
     let apart = "the branches of a FORK lead to different regions of one AND";
     assert_eq!(
         with("    < f\n    A -> f : e\n    f -> B\n    f -> C"),
-        format!("error[M04]: a FORK leads to `c/both/one/B` and `c/both/one/C`, which cannot be active together ({apart})")
+        format!(
+            "error[M04]: a FORK leads to `c/both/one/B` and `c/both/one/C`, which cannot be active together ({apart})"
+        )
     );
     assert_eq!(
         with("    < f\n    A -> f : e\n    f -> B\n    f -> both"),
-        format!("error[M04]: a FORK leads to `c/both/one/B` and `c/both`, which cannot be active together ({apart})")
+        format!(
+            "error[M04]: a FORK leads to `c/both/one/B` and `c/both`, which cannot be active together ({apart})"
+        )
     );
     assert_eq!(
         with("    < f\n    ! ch\n    A -> f : e\n    f -> D\n    f -> ch\n    ch -> B\n    ch -> A"),
-        format!("error[M04]: a FORK leads to `c/both/two/D` and `c/ch`, which cannot be active together ({apart})")
+        format!(
+            "error[M04]: a FORK leads to `c/both/two/D` and `c/ch`, which cannot be active together ({apart})"
+        )
     );
     assert_eq!(
         with("    < f\n    A -> f : e\n    f -> B"),
