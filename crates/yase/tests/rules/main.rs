@@ -9,6 +9,7 @@ mod choosers;
 mod completion;
 mod data;
 mod firing;
+mod history;
 mod pool;
 mod refusals;
 mod running;
