@@ -14,24 +14,53 @@ impl BitSet {
         BitSet { words: vec![0; capacity.div_ceil(BITS)].into_boxed_slice() }
     }
 
+    #[inline]
     pub(crate) fn insert(&mut self, number: usize) {
         if let Some(word) = self.words.get_mut(number / BITS) {
             *word |= 1 << (number % BITS);
         }
     }
 
+    #[inline]
     pub(crate) fn remove(&mut self, number: usize) {
         if let Some(word) = self.words.get_mut(number / BITS) {
             *word &= !(1 << (number % BITS));
         }
     }
 
+    #[inline]
     pub(crate) fn contains(&self, number: usize) -> bool {
         self.words.get(number / BITS).is_some_and(|word| word >> (number % BITS) & 1 == 1)
     }
 
     pub(crate) fn clear(&mut self) {
         self.words.fill(0);
+    }
+
+    /// Whether there is no member.
+    #[inline]
+    pub(crate) fn is_empty(&self) -> bool {
+        self.words.iter().all(|&word| word == 0)
+    }
+
+    /// Whether the sets have a member in common.
+    #[inline]
+    pub(crate) fn meets(&self, other: &BitSet) -> bool {
+        self.words.iter().zip(&other.words).any(|(one, other)| one & other != 0)
+    }
+
+    /// The members below 64, as the bits of a word.
+    #[inline]
+    pub(crate) fn first_word(&self) -> u64 {
+        self.words.first().copied().unwrap_or(0)
+    }
+
+    /// Replaces the members below 64.
+    #[inline]
+    pub(crate) fn set_first_word(&mut self, bits: u64) {
+        if let Some(word) = self.words.first_mut() {
+            *word = bits;
+        }
     }
 
     /// The least member from `from` to `last`, both included.

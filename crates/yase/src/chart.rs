@@ -2,6 +2,7 @@
 
 mod build;
 mod check;
+mod direct;
 mod entries;
 mod events;
 mod layout;
@@ -22,6 +23,7 @@ use crate::semantics::{EventMatching, Semantics};
 use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 use crate::vocabulary::{TopicId, Vocabulary};
 
+pub(crate) use direct::{Direct, DirectPlace, DirectWay};
 pub(crate) use events::Trigger;
 pub(crate) use layout::{Layout, Place};
 pub use scripts::{ScriptEntry, ScriptPlace};
@@ -70,6 +72,7 @@ pub struct Chart {
     pub(crate) activities: Box<[Place]>,
     pub(crate) timers: Box<[Timer]>,
     pub(crate) masks: Masks,
+    pub(crate) direct: Option<Direct>,
     pub(crate) errors: ErrorEvents,
     /// The event that stands for all that no expression names.
     pub(crate) unnamed: EventId,

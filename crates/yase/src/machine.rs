@@ -5,6 +5,7 @@ mod activities;
 mod bound;
 mod chooser;
 mod completion;
+mod direct;
 mod draw;
 mod enter;
 mod errors;

@@ -9,8 +9,8 @@ use crate::chart::roles::{Roles, is_state};
 use crate::chart::segments::Segment;
 use crate::chart::ways::{self, Late, Way, Ways};
 use crate::chart::{
-    Branch, Branches, Chart, Choice, Compound, ErrorEvents, History, Join, Layout, Masks, Place, Region,
-    RegionId, ScopedGuard, State, Timer, Trigger, Weight, entries, events, scope, scripts,
+    Branch, Branches, Chart, Choice, Compound, Direct, ErrorEvents, History, Join, Layout, Masks, Place,
+    Region, RegionId, ScopedGuard, State, Timer, Trigger, Weight, direct, entries, events, scope, scripts,
 };
 use crate::diagnostic::Diagnostic;
 use crate::expression::{
@@ -143,7 +143,10 @@ impl Builder<'_> {
         let timers = self.timers(&mut regions, &states, &triggers);
         let activities: Box<[Place]> =
             self.layout.places().filter(|place| states[place.index()].activity.is_some()).collect();
+        let direct_ways =
+            direct::Ways { branches: &self.branches, triggers: &triggers, compounds: &self.compounds };
         Ok(Chart {
+            direct: Direct::new(self.chart, &self.semantics, &states, &direct_ways),
             masks: masks(&states, self.semantics.eventless),
             reads: self.reads(&triggers),
             sources: self.sources(&states, &triggers),

@@ -20,23 +20,37 @@ pub(super) struct Scene {
 
 impl<H: Host> Step<'_, H> {
     /// Does the actions of one place in order.
+    #[inline(always)]
     pub(super) fn perform(&mut self, effects: &[Effect], scene: Scene) {
         if effects.is_empty() {
             return;
         }
-        let place = scene.place;
         if self.run.log.wanted {
-            self.run.log.effects.push(place);
+            self.run.log.effects.push(scene.place);
         }
         for (index, effect) in effects.iter().enumerate() {
             if let Err(error) = self.act(effect, scene) {
-                self.run.raise(self.chart, self.chart.errors.action, true, 0);
-                self.host.report(self.chart, Report::ActionFailed { place, index, error: &error });
+                self.action_failed(scene.place, index, &error);
             }
         }
     }
 
+    #[cold]
+    fn action_failed(&mut self, place: ActionPlace, index: usize, error: &ActionError) {
+        self.run.raise(self.chart, self.chart.errors.action, true, 0);
+        self.host.report(self.chart, Report::ActionFailed { place, index, error });
+    }
+
+    /// What is the host's to do is done without a detour.
+    #[inline(always)]
     fn act(&mut self, effect: &Effect, scene: Scene) -> Result<(), ActionError> {
+        let Effect::Script { script } = effect else { return self.act_itself(effect, scene) };
+        let mut performance = Performance { chart: self.chart, run: self.run };
+        self.host.perform(*script, scene.region, &mut performance).map_err(ActionError::Script)
+    }
+
+    #[inline(never)]
+    fn act_itself(&mut self, effect: &Effect, scene: Scene) -> Result<(), ActionError> {
         let region = scene.region;
         match effect {
             Effect::Assign { topic, field, value } => {
@@ -52,10 +66,7 @@ impl<H: Host> Step<'_, H> {
             Effect::PublishAll => self.publish_all(region),
             Effect::StartTimeout { timer, delay } => self.start_timer(*timer, self.run.now + *delay, scene),
             Effect::Raise { event } => self.run.raise(self.chart, *event, true, 0),
-            Effect::Script { script } => {
-                let mut performance = Performance { chart: self.chart, run: self.run };
-                self.host.perform(*script, region, &mut performance).map_err(ActionError::Script)?;
-            }
+            Effect::Script { .. } => return self.act(effect, scene),
         }
         Ok(())
     }

@@ -14,13 +14,13 @@ pub(super) struct Bound {
     pub(super) micro_steps: u32,
     pub(super) instant: Moment,
     pub(super) steps: u32,
-    recent: Box<[CompoundId]>,
+    recent: [CompoundId; MEMORY],
     taken: usize,
 }
 
 impl Bound {
     pub(super) fn new() -> Bound {
-        let recent = vec![CompoundId(0); MEMORY].into();
+        let recent = [CompoundId(0); MEMORY];
         Bound { micro_steps: 0, instant: Moment::ZERO, steps: 0, recent, taken: 0 }
     }
 

@@ -136,6 +136,7 @@ impl<H: Host> Step<'_, H> {
         }
     }
 
+    #[inline(never)]
     pub(super) fn enter(&mut self, place: Place) {
         let state = &self.chart.states[place.index()];
         let node = self.chart.layout.node(place);

@@ -97,7 +97,8 @@ impl<H: Host> Step<'_, H> {
         Ok(())
     }
 
-    fn count_fired(&mut self, id: CompoundId) {
+    #[inline]
+    pub(super) fn count_fired(&mut self, id: CompoundId) {
         self.summary.transitions += 1;
         self.run.bound.remember(id);
     }
@@ -112,6 +113,7 @@ impl<H: Host> Step<'_, H> {
     }
 
     /// Does the actions of a way, segment by segment.
+    #[inline(never)]
     pub(super) fn do_actions(&mut self, way: &Compound) {
         for (segment, effects) in &way.effects {
             let scene =

@@ -52,6 +52,7 @@ impl<H: Host> Step<'_, H> {
         self.run.leaving.clear();
     }
 
+    #[inline(never)]
     fn leave(&mut self, place: Place) {
         let state = &self.chart.states[place.index()];
         if let Some(activity) = state.activity {

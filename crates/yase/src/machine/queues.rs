@@ -74,6 +74,12 @@ impl Queues {
         self.raised.iter().chain(&self.arrived).chain(&self.deferred).chain(held)
     }
 
+    /// Whether no events wait but arrived ones.
+    #[inline]
+    pub(super) fn only_arrived_wait(&self) -> bool {
+        self.raised.len() | self.deferred.len() | self.held.len() == 0
+    }
+
     /// Whether some event can be offered now.
     pub(super) fn is_waiting(&self) -> bool {
         !self.raised.is_empty() || !self.arrived.is_empty() || self.held.iter().any(|held| held.offer)
@@ -99,6 +105,11 @@ impl Queues {
 
     pub(super) fn next_raised(&mut self) -> Option<Occurrence> {
         self.raised.pop_front()
+    }
+
+    #[inline]
+    pub(super) fn first_arrived(&self) -> Option<&Occurrence> {
+        self.arrived.front()
     }
 
     pub(super) fn next_arrived(&mut self) -> Option<Occurrence> {

@@ -33,6 +33,19 @@ impl<'a, H: Host> Step<'a, H> {
     /// Takes transitions until none is enabled.
     pub(super) fn run(mut self) -> Result<StepSummary, MachineError> {
         self.open();
+        match self.take_directly() {
+            Ok(true) => {
+                self.publish_written();
+                Ok(self.summary)
+            }
+            Ok(false) => self.run_on(),
+            Err(fault) => Err(self.fail(fault)),
+        }
+    }
+
+    /// The long way: apart from the short one, so that the compiler keeps that small.
+    #[inline(never)]
+    fn run_on(mut self) -> Result<StepSummary, MachineError> {
         while self.advance()? {}
         self.finish();
         Ok(self.summary)
@@ -50,6 +63,7 @@ impl<'a, H: Host> Step<'a, H> {
     }
 
     /// Begins a step, or goes on with the one under way.
+    #[inline(always)]
     fn open(&mut self) {
         match self.run.under_way.take() {
             Some(summary) => self.summary = summary,
@@ -58,13 +72,17 @@ impl<'a, H: Host> Step<'a, H> {
     }
 
     fn advance(&mut self) -> Result<bool, MachineError> {
-        self.micro_step().map_err(|fault| {
-            self.halt(Status::Stopped);
-            let cycle = self.run.bound.cycle();
-            MachineError::new(fault, self.chart, &cycle)
-        })
+        self.micro_step().map_err(|fault| self.fail(fault))
     }
 
+    #[cold]
+    fn fail(&mut self, fault: Fault) -> MachineError {
+        self.halt(Status::Stopped);
+        let cycle = self.run.bound.cycle();
+        MachineError::new(fault, self.chart, &cycle)
+    }
+
+    #[inline(always)]
     fn begin(&mut self) {
         self.run.due = false;
         self.run.bound.begin(self.run.now);
@@ -89,9 +107,22 @@ impl<'a, H: Host> Step<'a, H> {
     }
 
     fn deliver_to_all(&mut self) {
+        if self.run.erred.is_empty() {
+            return self.deliver_simply();
+        }
         for (index, region) in self.chart.regions.iter().enumerate() {
             if self.run.is_active(region.root) && !self.run.running_regions.contains(index) {
                 self.deliver(RegionId(index as u32));
+            }
+        }
+    }
+
+    /// As above, with no errors to forget: of a host without messages the compiler leaves nothing here.
+    #[inline]
+    fn deliver_simply(&mut self) {
+        for (index, region) in self.chart.regions.iter().enumerate() {
+            if self.run.is_active(region.root) && !self.run.running_regions.contains(index) {
+                self.host.deliver(RegionId(index as u32));
             }
         }
     }
@@ -177,7 +208,8 @@ impl<'a, H: Host> Step<'a, H> {
     }
 
     /// What nobody took is held, deferred (by the state that is returned) or dropped.
-    fn keep(&mut self, occurrence: Occurrence) -> Option<Place> {
+    #[inline(never)]
+    pub(super) fn keep(&mut self, occurrence: Occurrence) -> Option<Place> {
         let deferral = self.semantics().deferral;
         let run = &mut *self.run;
         if !run.selection.held.is_empty() {
@@ -259,7 +291,11 @@ impl<'a, H: Host> Step<'a, H> {
         self.halt(status);
     }
 
+    #[inline(always)]
     fn publish_written(&mut self) {
+        if self.run.written.is_empty() {
+            return;
+        }
         let last = self.chart.regions.len();
         while let Some(index) = self.run.written.next(0, last) {
             self.run.written.remove(index);
@@ -297,6 +333,9 @@ impl<'a, H: Host> Step<'a, H> {
             return;
         }
         let (starts, last) = (&self.chart.masks.starts, self.chart.layout.len());
+        if !self.run.active.meets(starts) {
+            return;
+        }
         let mut from = 0;
         while let Some(index) =
             self.run.active.next_common_without(starts, &self.run.waiting_starts, from, last)

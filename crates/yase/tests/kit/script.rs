@@ -113,10 +113,30 @@ pub fn play(chart: &Statechart, script: &str) -> Vec<String> {
 }
 
 pub fn play_with(chart: &Statechart, script: &str, semantics: Semantics) -> Vec<String> {
-    let mut machine = Machine::new(compile_with(chart, semantics));
-    let mut world = World::new(chart);
-    run(&mut machine, &Script::parse(script), &mut world);
+    let (mut world, script) = (World::new(chart), Script::parse(script));
+    let chart = compile_with(chart, semantics);
+    let mut machine = Machine::new(chart.clone());
+    let silent = World { silent: true, ..world.clone() };
+    run(&mut machine, &script, &mut world);
+    assert_silent_alike(&machine, &world, silent, chart, &script);
     world.log
+}
+
+/// Plays a script again to a machine whose micro-steps nobody looks at, and asserts that whatever else can be seen is the same.
+pub fn assert_silent_alike(
+    traced: &Machine,
+    seen: &World,
+    mut silent: World,
+    chart: Arc<Chart>,
+    script: &Script,
+) {
+    let mut machine = Machine::new(chart);
+    run(&mut machine, script, &mut silent);
+    let told: Vec<&String> =
+        seen.log.iter().filter(|line| line.starts_with("  ") || line.starts_with("error")).collect();
+    assert_eq!(told, silent.log.iter().collect::<Vec<_>>());
+    assert_eq!(traced.configuration(), machine.configuration());
+    assert_eq!((traced.status(), traced.next_deadline()), (machine.status(), machine.next_deadline()));
 }
 
 /// Plays a script, from time 0, in simulated time: whatever is due at a time happens in the order inputs, activities, step.

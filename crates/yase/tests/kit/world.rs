@@ -73,6 +73,8 @@ pub struct World {
     pub log: Vec<String>,
     /// Whether what happens to blackboards is written down too.
     pub verbose: bool,
+    /// Whether micro-steps are not written down: then the machine may go its short way.
+    pub silent: bool,
     /// Whether reads of guards stay in the lines of micro-steps.
     pub reads: bool,
     /// Names and durations of activities.
@@ -225,7 +227,7 @@ impl Host for World {
     }
 
     fn wants_trace(&self) -> bool {
-        true
+        !self.silent
     }
 
     fn trace(&mut self, chart: &Chart, record: &TraceRecord<'_>) {

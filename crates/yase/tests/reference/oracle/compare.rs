@@ -41,10 +41,17 @@ pub(crate) fn judge(case: &Case) -> Verdict {
     let expected = by_reference(case, timers);
     let mut machine = Machine::new(chart);
     machine.set_chooser(chooser(&case.freedom));
-    let found = by_machine(case, machine);
-    match expected == found {
+    let found = by_machine(case, machine.clone(), false);
+    if expected != found {
+        return Verdict::Different(Difference { expected, found });
+    }
+    // A machine whose micro-steps nobody looks at may go a short way: all else must be the same.
+    let is_micro_step = |line: &String| line.starts_with(|first: char| first.is_ascii_digit());
+    let told: Vec<String> = found.into_iter().filter(|line| !is_micro_step(line)).collect();
+    let found = by_machine(case, machine, true);
+    match told == found {
         true => Verdict::Same(expected),
-        false => Verdict::Different(Difference { expected, found }),
+        false => Verdict::Different(Difference { expected: told, found }),
     }
 }
 
@@ -62,8 +69,8 @@ fn by_reference(case: &Case, timers: Vec<(RegionId, String)>) -> Vec<String> {
     normal(world.log)
 }
 
-fn by_machine(case: &Case, machine: Machine) -> Vec<String> {
-    let mut world = world(case);
+fn by_machine(case: &Case, machine: Machine, silent: bool) -> Vec<String> {
+    let mut world = World { silent, ..world(case) };
     let mut watched = Watched { inner: machine, chart: &case.chart };
     script::run(&mut watched, &case.script, &mut world);
     world.say(format!("asked {:?}", watched.inner.chooser().choices()));
