@@ -94,6 +94,11 @@
 //! assert_eq!(mermaid.lost[0].message, lost);
 //! ```
 
+/// What the README shows runs as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 mod bits;
 mod chart;
 pub mod diagnostic;
