@@ -20,7 +20,7 @@ pub struct TransitionId(pub u32);
 pub enum NodeKind {
     /// A composite of which one child is active at a time.
     Or,
-    /// A composite whose children, all of kind [`Or`](NodeKind::Or), are active together: its regions.
+    /// A composite whose states are active together: its regions, each an OR, a BASIC state or an AND itself.
     And,
     /// A state without children; it may have an activity.
     Basic,

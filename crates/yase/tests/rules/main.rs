@@ -5,12 +5,16 @@
 #[path = "../kit/mod.rs"]
 mod kit;
 
+mod borders;
 mod choosers;
 mod completion;
+mod connectors;
 mod data;
 mod firing;
 mod history;
+mod histories;
 mod pool;
+mod profiles;
 mod refusals;
 mod running;
 mod scripts;
