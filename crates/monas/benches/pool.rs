@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use monas::measured::RoundTrip;
-use monas::{Agent, Blackboard, BoxError, Registry, Running, Talws};
+use monas::{Agent, Blackboard, BoxError, Progress, Registry, Running, Talws};
 use yase::Source;
 
 fn main() {
@@ -271,7 +271,10 @@ fn tell_idle() {
     let (sender, called) = channel();
     let registry = Registry::empty().with("A", move || {
         let sender = sender.clone();
-        move |_: &mut Blackboard| sender.send(())
+        move |_: &mut Blackboard| -> Result<Progress, BoxError> {
+            sender.send(())?;
+            Ok(Progress::after(Duration::from_secs(3600)))
+        }
     });
     let running = start(registry, "m = A || A || A");
     (0..3).for_each(|_| called.recv().unwrap());

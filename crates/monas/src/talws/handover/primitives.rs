@@ -1,10 +1,10 @@
 //! What the hand-over is made of: a lock with a place to sleep, and a flag. Threads have one kind of them, the checker another.
 
+use std::hint;
 use std::ops::DerefMut;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
-use std::{hint, thread};
 
 /// One kind of primitives.
 pub(in crate::talws) trait Primitives: 'static {
@@ -44,11 +44,10 @@ pub(in crate::talws) trait Flag: Send + Sync {
 /// The primitives of the standard library.
 pub(in crate::talws) struct Threads;
 
-/// So many rounds somebody who has nothing to do looks for something before he sleeps: a few microseconds. Waking a thread that sleeps
-/// takes several times as long, and whoever has just handed out an activity that does little has it back by then.
-const ROUNDS: u32 = 12;
-/// From this round on others run meanwhile.
-const YIELDING: u32 = 7;
+/// So many rounds somebody who has nothing to do looks for something before he sleeps, each twice as long as the one before: a few
+/// microseconds. Waking a thread that sleeps takes several times as long, and whoever has just handed out an activity that does little has
+/// it back by then. He does not yield: on a busy machine that puts him behind all others, while one who sleeps is woken at once.
+const ROUNDS: u32 = 7;
 
 impl Primitives for Threads {
     type Monitor<T: Send + 'static> = ThreadMonitor<T>;
@@ -59,10 +58,7 @@ impl Primitives for Threads {
             if worth() {
                 return;
             }
-            match round < YIELDING {
-                true => (0..1 << round).for_each(|_| hint::spin_loop()),
-                false => thread::yield_now(),
-            }
+            (0..1 << round).for_each(|_| hint::spin_loop());
         }
     }
 }
