@@ -138,7 +138,7 @@ impl<H: Host> Step<'_, H> {
     }
 
     /// A way to TERMINATE stops the chart.
-    fn stop_if_terminated(&mut self) {
+    pub(super) fn stop_if_terminated(&mut self) {
         if std::mem::take(&mut self.run.terminates) {
             self.halt(Status::Stopped);
         }

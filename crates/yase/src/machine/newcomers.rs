@@ -40,6 +40,7 @@ impl<H: Host> Step<'_, H> {
             self.enter_inside(region)?;
         }
         self.emit(Occasion::Swap, None);
+        self.stop_if_terminated();
         Ok(())
     }
 }

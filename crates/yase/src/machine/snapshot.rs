@@ -75,6 +75,7 @@
 mod consistency;
 mod error;
 mod paths;
+mod records;
 mod restore;
 mod take;
 
@@ -86,6 +87,7 @@ use crate::semantics::Semantics;
 
 pub use error::{Misfit, MisfitKind, RestoreError};
 pub(crate) use paths::{Paths, event_name, find_event, ways};
+pub(crate) use records::can_remember;
 
 /// The version of the format that this crate writes and reads.
 pub const VERSION: u32 = 1;
@@ -120,6 +122,18 @@ pub struct Snapshot {
     pub to_inherit: Vec<String>,
     /// The active STARTs of which it has been reported that they wait.
     pub waiting_starts: Vec<String>,
+    /// Active composites that were left without an active child, and count as complete.
+    pub vacated: Vec<String>,
+    /// Transitions into JOINs that were taken by themselves and wait for the others.
+    pub joined: Vec<Way>,
+    /// States that have completed, oldest first, where that is looked at once and has not been yet.
+    pub completions: Vec<String>,
+    /// Whether the root has reached its END, and is left when the step is over.
+    pub ending: bool,
+    /// The CHOICE without an open way that kept the machine from being started, which its first step says.
+    pub no_branch: Option<String>,
+    /// What HISTORYs remember.
+    pub history: Vec<HistoryRecord>,
     /// The timers that are set.
     pub timers: Vec<TimerRecord>,
     /// How many activities have been started or queued to be, ever.
@@ -161,6 +175,16 @@ pub struct TimerName {
     pub name: String,
 }
 
+/// What a HISTORY remembers of the time when its composite was left last.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HistoryRecord {
+    /// The HISTORY.
+    pub history: String,
+    /// Of a shallow one the child that was active (in an AND none, since all are), of a deep one all that was active inside.
+    pub nodes: Vec<String>,
+}
+
 /// A timer that is set.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -171,6 +195,8 @@ pub struct TimerRecord {
     pub deadline: Moment,
     /// Whether a step has noticed that it has expired.
     pub expired: bool,
+    /// The state with whose end it is forgotten.
+    pub owner: Option<String>,
 }
 
 /// The activity of an active state.
@@ -312,6 +338,21 @@ impl Snapshot {
     /// The activity of an active state, by its path.
     pub fn activity(&self, state: &str) -> Option<&ActivityRecord> {
         self.activities.iter().find(|activity| activity.state == state)
+    }
+
+    /// What a HISTORY remembers, by its path.
+    pub fn history(&self, history: &str) -> Option<&[String]> {
+        let record = self.history.iter().find(|record| record.history == history);
+        record.map(|record| record.nodes.as_slice())
+    }
+
+    /// Has a HISTORY remember other nodes, or for the first time.
+    pub fn set_history(&mut self, history: &str, nodes: &[&str]) {
+        let nodes = nodes.iter().map(|&node| node.to_owned()).collect();
+        match self.history.iter_mut().find(|record| record.history == history) {
+            Some(record) => record.nodes = nodes,
+            None => self.history.push(HistoryRecord { history: history.to_owned(), nodes }),
+        }
     }
 
     /// A timer that is set, by the path of its region and its name.

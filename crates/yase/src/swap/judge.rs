@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::chart::{Chart, CompoundId};
 use crate::machine::snapshot::{
-    ActivityPhase, ActivityRecord, ErredGuardRecord, EventName, HeldRecord, OccurrenceRecord, PendingRecord,
-    Snapshot, TimerName, TimerRecord, Way, event_name, find_event, ways,
+    ActivityPhase, ActivityRecord, ErredGuardRecord, EventName, HeldRecord, HistoryRecord, OccurrenceRecord,
+    PendingRecord, Snapshot, TimerName, TimerRecord, Way, can_remember, event_name, find_event, ways,
 };
 use crate::statechart::{NodeId, NodeKind, TransitionId};
 use crate::swap::matching::Match;
@@ -44,6 +44,8 @@ impl<'a> Judging<'a> {
         new.configuration = self.in_document_order(active);
         new.activities = old.activities.iter().filter_map(|record| self.activity(record)).collect();
         self.unheard_activities(old, &new);
+        self.unfinished(old, &mut new);
+        new.history = old.history.iter().filter_map(|record| self.history(record)).collect();
         new.timers = old.timers.iter().filter_map(|record| self.timer(record)).collect();
         self.events(old, &mut new);
         new.pending = old.pending.iter().filter_map(|record| self.pending(record)).collect();
@@ -180,6 +182,69 @@ impl<'a> Judging<'a> {
         }
     }
 
+    fn unfinished(&mut self, old: &Snapshot, new: &mut Snapshot) {
+        new.vacated = old.vacated.iter().filter_map(|path| self.path(path)).collect();
+        new.joined = old.joined.iter().filter_map(|way| self.joined(way)).collect();
+        new.completions = old.completions.iter().filter_map(|path| self.path(path)).collect();
+        new.no_branch = old.no_branch.as_ref().and_then(|path| self.path(path));
+    }
+
+    fn joined(&mut self, way: &Way) -> Option<Way> {
+        let found = self.way(way).filter(|found| {
+            let compound = self.plan.new_paths.find_way(&self.ways, found);
+            compound.is_some_and(|compound| self.chart.compounds[compound.0 as usize].arrives.is_some())
+        });
+        let verdict = match &found {
+            Some(found) if found == way => Verdict::Kept,
+            Some(found) => Verdict::Moved(found.join(", ")),
+            None => Verdict::Lost("it leads to no JOIN now"),
+        };
+        self.report.add(Subject::Arrival, way.join(", "), verdict);
+        found
+    }
+
+    fn history(&mut self, record: &HistoryRecord) -> Option<HistoryRecord> {
+        let Some(found) = self.remembered(record) else {
+            let why = "it cannot remember that any more";
+            self.report.add(Subject::History, &record.history, Verdict::Lost(why));
+            return None;
+        };
+        let is_kept = record.nodes.len() == found.nodes.len()
+            && record
+                .nodes
+                .iter()
+                .zip(&found.nodes)
+                .all(|(old, new)| self.renamed(old, new, new) == Verdict::Kept);
+        let verdict = match self.renamed(&record.history, &found.history, &found.history) {
+            Verdict::Kept if !is_kept => Verdict::Moved(found.nodes.join(", ")),
+            verdict => verdict,
+        };
+        self.report.add(Subject::History, &record.history, verdict);
+        Some(found)
+    }
+
+    /// What a HISTORY remembers is the same if it is there, and can be what was active in its composite, with what was put around it.
+    fn remembered(&self, record: &HistoryRecord) -> Option<HistoryRecord> {
+        let (chart, layout) = (self.chart, &self.chart.layout);
+        let (_, node) = self.node(&record.history)?;
+        let history = chart.histories.iter().find(|history| history.place == layout.place_of(node))?;
+        let nodes: Option<Vec<NodeId>> =
+            record.nodes.iter().map(|path| self.node(path).map(|(_, node)| node)).collect();
+        let mut places = BTreeSet::new();
+        for node in nodes? {
+            places.insert(layout.place_of(node));
+            if history.is_deep {
+                let around = chart.statechart().ancestors(node).map(|node| layout.place_of(node));
+                places.extend(around.take_while(|&place| place != history.owner));
+            }
+        }
+        let path = |place| self.plan.new_paths.place(chart, place);
+        can_remember(chart, history, &places).then(|| HistoryRecord {
+            history: path(history.place),
+            nodes: places.into_iter().map(path).collect(),
+        })
+    }
+
     fn timer(&mut self, record: &TimerRecord) -> Option<TimerRecord> {
         let name = format!("{}: {}", record.timer.region, record.timer.name);
         let Some(timer) = self.timer_name(&record.timer) else {
@@ -187,10 +252,15 @@ impl<'a> Judging<'a> {
             self.report.add(Subject::Timer, name, Verdict::Lost(why));
             return None;
         };
+        let owner = record.owner.as_ref().map(|path| self.path(path));
+        if owner == Some(None) {
+            self.report.add(Subject::Timer, name, Verdict::Lost("the state that it belongs to is no more"));
+            return None;
+        }
         let to = format!("{}: {}", timer.region, timer.name);
         let verdict = self.renamed(&record.timer.region, &timer.region, &to);
         self.report.add(Subject::Timer, name, verdict);
-        Some(TimerRecord { timer, ..record.clone() })
+        Some(TimerRecord { timer, owner: owner.flatten(), ..record.clone() })
     }
 
     fn timer_name(&self, timer: &TimerName) -> Option<TimerName> {

@@ -50,6 +50,10 @@ pub enum Subject {
     State,
     /// The activity of an active state.
     Activation,
+    /// What a HISTORY remembers.
+    History,
+    /// A transition into a JOIN that waits for the others.
+    Arrival,
     /// A timer that is set.
     Timer,
     /// An event that waits for its turn.
@@ -159,6 +163,8 @@ impl fmt::Display for Subject {
         f.write_str(match self {
             Subject::State => "state",
             Subject::Activation => "activity",
+            Subject::History => "history",
+            Subject::Arrival => "arrival",
             Subject::Timer => "timer",
             Subject::Event => "event",
             Subject::DeferredEvent => "deferred event",

@@ -11,4 +11,5 @@ mod editing;
 mod every_step;
 mod micro_steps;
 mod misfits;
+mod profiles;
 mod stage;

@@ -1,7 +1,7 @@
 //! A machine in the kit's world.
 
 use yase::snapshot::{RestoreError, Snapshot};
-use yase::{Machine, Moment, Outcome};
+use yase::{Machine, Moment, Outcome, Semantics};
 
 use crate::kit;
 use crate::kit::world::World;
@@ -14,9 +14,13 @@ pub(crate) struct Stage {
 impl Stage {
     /// Starts a chart and lets events happen to it at time 0.
     pub(crate) fn new(chart: &str, events: &[&str]) -> Stage {
+        Stage::with(Semantics::yase(), chart, events)
+    }
+
+    pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> Stage {
         let chart = kit::chart(chart);
         let mut world = World::new(&chart);
-        let mut machine = Machine::new(kit::script::compile(&chart));
+        let mut machine = Machine::new(kit::script::compile_with(&chart, semantics));
         machine.start(Moment::ZERO, &mut world);
         let mut stage = Stage { machine, world };
         stage.step(0);

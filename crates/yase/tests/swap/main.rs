@@ -7,6 +7,7 @@ mod kit;
 #[path = "../kit/random.rs"]
 mod random;
 
+mod history;
 mod refusals;
 mod same;
 mod verdicts;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use yase::swap::{Plan, Refusal, Report, plan};
-use yase::{Chart, Machine, Moment, Outcome};
+use yase::{Chart, Machine, Moment, Outcome, Semantics};
 
 use crate::kit;
 use crate::kit::script;
@@ -19,9 +19,13 @@ pub(crate) struct Stage {
 impl Stage {
     /// Starts a chart and lets events happen to it at time 0.
     pub(crate) fn new(chart: &str, events: &[&str]) -> Stage {
+        Stage::with(Semantics::yase(), chart, events)
+    }
+
+    pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> Stage {
         let chart = kit::chart(chart);
         let mut world = World::new(&chart);
-        let mut machine = Machine::new(script::compile(&chart));
+        let mut machine = Machine::new(script::compile_with(&chart, semantics));
         machine.start(Moment::ZERO, &mut world);
         let mut stage = Stage { machine, world };
         stage.step(0);
@@ -49,7 +53,7 @@ impl Stage {
     }
 
     pub(crate) fn plan(&self, new: &str) -> Plan {
-        plan(self.machine.chart(), &script::compile(&kit::chart(new)))
+        plan(self.machine.chart(), &script::compile_with(&kit::chart(new), self.machine.semantics()))
     }
 
     pub(crate) fn swap(&mut self, plan: &Plan) -> Result<Report, Refusal> {

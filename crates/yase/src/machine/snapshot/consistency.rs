@@ -6,12 +6,15 @@ use crate::chart::{CompoundId, Place};
 use crate::machine::Status;
 use crate::machine::queues::Occurrence;
 use crate::machine::snapshot::restore::Restoring;
-use crate::machine::snapshot::{MisfitKind, Snapshot};
+use crate::machine::snapshot::{MisfitKind, Snapshot, can_remember};
 use crate::statechart::NodeKind;
 
 /// Finds what could not be in any machine of the chart. All names have been understood, or it has been said that they were not.
 pub(super) fn check(restoring: &mut Restoring<'_>, snapshot: &Snapshot) {
     restoring.configuration_is_closed();
+    restoring.unfinished_is_of_active_nodes();
+    restoring.joined_regions_are_vacated();
+    restoring.records_are_configurations();
     restoring.newcomers_have_a_place();
     restoring.starts_wait_where_they_are();
     restoring.activities_are_those_of_active_states(snapshot);
@@ -39,7 +42,7 @@ impl Restoring<'_> {
     fn configuration_is_closed(&mut self) {
         let active = self.active();
         let may_be_empty = matches!(self.run.status, Status::Idle | Status::Finished);
-        if active.is_empty() && may_be_empty {
+        if active.is_empty() && (may_be_empty || self.run.failure.is_some()) {
             return;
         }
         if self.run.status == Status::Idle {
@@ -68,11 +71,41 @@ impl Restoring<'_> {
     }
 
     fn children_fit(&mut self, place: Place) {
+        let is_and = self.kind(place) == NodeKind::And;
+        let is_there = |child: Place| self.is_active(child) || is_and && self.run.is_to_enter(child);
+        let may_be_empty = self.run.vacated.contains(place.index());
+        for text in self.holes(place, is_there, may_be_empty) {
+            self.unclosed(text);
+        }
+    }
+
+    /// What is wrong with the children of a node, among nodes that are active together.
+    fn holes(&self, place: Place, is_there: impl Fn(Place) -> bool, may_be_empty: bool) -> Vec<String> {
+        let path = self.path(place);
+        let children: Vec<Place> = self.children(place).collect();
+        let there = || children.iter().filter(|&&child| is_there(child));
         match self.kind(place) {
-            NodeKind::Or => self.one_child_is_active(place),
-            NodeKind::And => self.all_regions_are_active(place),
-            NodeKind::Basic | NodeKind::Start | NodeKind::End => {}
-            _ => self.unclosed(format!("`{}` is a connector and never active", self.path(place))),
+            NodeKind::Or | NodeKind::And if may_be_empty => match there().next() {
+                Some(&child) => vec![format!("`{path}` was vacated, but `{}` is active", self.path(child))],
+                None => Vec::new(),
+            },
+            NodeKind::Or => match there().count() {
+                0 => vec![format!("`{path}` is active, but nothing in it")],
+                1 => Vec::new(),
+                _ => {
+                    let list: Vec<String> = there().map(|&child| format!("`{}`", self.path(child))).collect();
+                    vec![format!("in `{path}` one child is active, not {}", list.join(", "))]
+                }
+            },
+            NodeKind::And => {
+                let regions = children.iter().filter(|child| self.chart.states[child.index()].is_region);
+                let missing = regions.filter(|&&region| !is_there(region)).map(|&region| self.path(region));
+                missing
+                    .map(|region| format!("`{path}` is active, but its region `{region}` is not"))
+                    .collect()
+            }
+            NodeKind::Basic | NodeKind::Start | NodeKind::End => Vec::new(),
+            _ => vec![format!("`{path}` is a connector and never active")],
         }
     }
 
@@ -82,26 +115,39 @@ impl Restoring<'_> {
         children.iter().map(|&child| layout.place_of(child))
     }
 
-    fn one_child_is_active(&mut self, place: Place) {
-        let active = self.children(place).filter(|&child| self.is_active(child));
-        let active: Vec<String> = active.map(|child| format!("`{}`", self.path(child))).collect();
-        let path = self.path(place);
-        match active.len() {
-            0 => self.unclosed(format!("`{path}` is active, but nothing in it")),
-            1 => {}
-            _ => self.unclosed(format!("in `{path}` one child is active, not {}", active.join(", "))),
+    fn unfinished_is_of_active_nodes(&mut self) {
+        let places = self.chart.layout.places();
+        let vacated = places.filter(|place| self.run.vacated.contains(place.index()));
+        let completed = self.run.completions.iter().copied();
+        let rows =
+            vacated.map(|place| ("vacated", place)).chain(completed.map(|place| ("completions", place)));
+        let wrong: Vec<_> = rows.filter(|&(_, place)| !self.is_active(place)).collect();
+        for (field, place) in wrong {
+            let text = format!("`{}` is not active", self.path(place));
+            self.wrong(field, text);
         }
     }
 
-    fn all_regions_are_active(&mut self, place: Place) {
-        let missing: Vec<Place> = self
-            .children(place)
-            .filter(|child| self.chart.states[child.index()].is_region)
-            .filter(|&region| !self.is_active(region) && !self.run.is_to_enter(region))
-            .collect();
-        for region in missing {
-            let (path, region) = (self.path(place), self.path(region));
-            self.unclosed(format!("`{path}` is active, but its region `{region}` is not"));
+    fn joined_regions_are_vacated(&mut self) {
+        let chart = self.chart;
+        for join in &chart.joins {
+            for (slot, &region) in join.slots().zip(&join.regions) {
+                if self.run.arrived.contains(slot) && !self.run.vacated.contains(region.index()) {
+                    let text = format!("`{}` has arrived at a JOIN, but was not vacated", self.path(region));
+                    self.wrong("joined", text);
+                }
+            }
+        }
+    }
+
+    fn records_are_configurations(&mut self) {
+        let chart = self.chart;
+        for (history, record) in chart.histories.iter().zip(self.run.records.clone()) {
+            let places = record.places.into_iter().collect();
+            if record.is_known && !can_remember(chart, history, &places) {
+                let path = self.path(history.place);
+                self.wrong("history", format!("what `{path}` remembers was never active together"));
+            }
         }
     }
 
@@ -247,9 +293,11 @@ impl Restoring<'_> {
 
     fn is_in_the_way(&self, compound: CompoundId) -> bool {
         let compound = &self.chart.compounds[compound.0 as usize];
-        let region = self.chart.states[compound.source.index()].region;
-        self.run.running_regions.contains(region.index())
-            || self.run.is_being_left(self.chart, compound.source)
+        let is_locked = |source: Place| {
+            let region = self.chart.states[source.index()].region;
+            self.run.running_regions.contains(region.index()) || self.run.is_being_left(self.chart, source)
+        };
+        compound.sources().any(is_locked)
             || compound
                 .exits
                 .is_some_and(|(first, last)| self.run.running.any_in(first.index(), last.index()))
@@ -261,8 +309,8 @@ impl Restoring<'_> {
             let compound = &self.chart.compounds[pending.compound.0 as usize];
             if !compound.interrupts {
                 self.wrong(format!("pending[{index}]"), "the transition does not interrupt");
-            } else if !self.is_active(compound.source) {
-                let text = format!("its source `{}` is not active", self.path(compound.source));
+            } else if let Some(source) = compound.sources().find(|&source| !self.is_active(source)) {
+                let text = format!("its source `{}` is not active", self.path(source));
                 self.wrong(format!("pending[{index}]"), text);
             }
         }
@@ -279,6 +327,7 @@ impl Restoring<'_> {
             ("held", snapshot.held.is_empty()),
             ("pending", snapshot.pending.is_empty()),
             ("activities", snapshot.activities.is_empty()),
+            ("completions", snapshot.completions.is_empty()),
         ];
         for (field, _) in rows.into_iter().filter(|(_, is_empty)| !is_empty) {
             self.wrong(field, "the machine does not run, so there is nothing");

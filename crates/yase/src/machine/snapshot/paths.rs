@@ -64,6 +64,16 @@ impl Paths {
         chart.segments(compound).iter().map(|&segment| self.segment(segment).to_owned()).collect()
     }
 
+    pub(crate) fn find_way(
+        &self,
+        ways: &BTreeMap<&[TransitionId], CompoundId>,
+        way: &Way,
+    ) -> Option<CompoundId> {
+        let segments: Option<Vec<TransitionId>> =
+            way.iter().map(|segment| self.find_segment(segment)).collect();
+        ways.get(segments?.as_slice()).copied()
+    }
+
     pub(crate) fn timer(&self, chart: &Chart, timer: usize) -> TimerName {
         let Some(timer) = chart.timers.get(timer) else { return TimerName::default() };
         TimerName { region: self.region(chart, timer.region), name: timer.name.to_string() }

@@ -9,6 +9,8 @@ use crate::machine::Machine;
 use crate::machine::activities::{Phase, Slot};
 use crate::machine::bound::MEMORY;
 use crate::machine::chooser::Chooser;
+use crate::machine::errors::Fault;
+use crate::machine::history::Record;
 use crate::machine::queues::{Held, Occurrence};
 use crate::machine::run::{ErredGuard, Pending, Run};
 use crate::machine::snapshot::{
@@ -50,6 +52,8 @@ impl<'a> Restoring<'a> {
         self.origin(snapshot);
         self.clock(snapshot);
         self.states(snapshot);
+        self.unfinished(snapshot);
+        self.history(snapshot);
         self.newcomers(snapshot);
         self.activities(snapshot);
         self.timers(snapshot);
@@ -110,6 +114,58 @@ impl<'a> Restoring<'a> {
         }
     }
 
+    /// What is left of transitions that end without entering.
+    fn unfinished(&mut self, snapshot: &Snapshot) {
+        for (index, path) in snapshot.vacated.iter().enumerate() {
+            let field = format!("vacated[{index}]");
+            let Some(place) = self.place(&field, path) else { continue };
+            self.once(self.run.vacated.contains(place.index()), &field, path);
+            self.run.vacated.insert(place.index());
+            self.run.tips.insert(place.index());
+        }
+        for (index, way) in snapshot.joined.iter().enumerate() {
+            let field = format!("joined[{index}]");
+            let Some(compound) = self.way(&field, way) else { continue };
+            let Some(slot) = self.chart.compounds[compound.0 as usize].arrives else {
+                self.misfit(MisfitKind::Unknown, field, format!("`{}` leads to no JOIN", way.join(", ")));
+                continue;
+            };
+            self.once(self.run.arrived.contains(slot), &field, &way.join(", "));
+            self.run.arrived.insert(slot);
+        }
+        for (index, path) in snapshot.completions.iter().enumerate() {
+            if let Some(place) = self.place(&format!("completions[{index}]"), path) {
+                self.run.completions.push_back(place);
+            }
+        }
+        self.run.ending = snapshot.ending;
+        if let Some(path) = &snapshot.no_branch
+            && let Some(place) = self.place("no_branch", path)
+        {
+            self.run.failure = Some(Fault::NoBranch(self.chart.layout.node(place)));
+        }
+    }
+
+    fn history(&mut self, snapshot: &Snapshot) {
+        for (index, record) in snapshot.history.iter().enumerate() {
+            let field = format!("history[{index}]");
+            let Some(place) = self.place(&format!("{field}.history"), &record.history) else { continue };
+            let histories = &self.chart.histories;
+            let Some(number) = histories.iter().position(|history| history.place == place) else {
+                let text = format!("`{}` is no HISTORY", record.history);
+                self.misfit(MisfitKind::Unknown, format!("{field}.history"), text);
+                continue;
+            };
+            self.once(self.run.records[number].is_known, &field, &record.history);
+            let nodes = record.nodes.iter().enumerate();
+            let mut places: Vec<Place> = nodes
+                .filter_map(|(node, path)| self.place(&format!("{field}.nodes[{node}]"), path))
+                .collect();
+            places.sort_unstable();
+            self.run.records[number] = Record { is_known: true, places };
+        }
+    }
+
     fn newcomers(&mut self, snapshot: &Snapshot) {
         for (index, path) in snapshot.to_enter.iter().enumerate() {
             let field = format!("to_enter[{index}]");
@@ -160,8 +216,12 @@ impl<'a> Restoring<'a> {
             let Some(timer) = self.timer(&field, &record.timer) else { continue };
             let name = format!("{}` of `{}", record.timer.name, record.timer.region);
             self.once(self.run.timers.slots[timer].is_some(), &field, &name);
+            let owner = match &record.owner {
+                Some(path) => self.place(&format!("timers[{index}].owner"), path),
+                None => None,
+            };
             self.run.timers.slots[timer] =
-                Some(Deadline { moment: record.deadline, expired: record.expired, owner: None });
+                Some(Deadline { moment: record.deadline, expired: record.expired, owner });
         }
         self.run.timers.look_again();
     }
@@ -297,10 +357,7 @@ impl<'a> Restoring<'a> {
     }
 
     fn way(&mut self, field: &str, way: &Way) -> Option<CompoundId> {
-        let paths = &self.paths;
-        let segments: Option<Vec<TransitionId>> =
-            way.iter().map(|segment| paths.find_segment(segment)).collect();
-        let found = segments.and_then(|segments| self.ways.get(segments.as_slice()).copied());
+        let found = self.paths.find_way(&self.ways, way);
         self.known(found, field, "compound transition", &way.join(", "))
     }
 

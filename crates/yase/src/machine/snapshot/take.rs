@@ -7,11 +7,12 @@ use crate::host::Activation;
 use crate::machine::Machine;
 use crate::machine::activities::Phase;
 use crate::machine::bound::Bound;
+use crate::machine::errors::Fault;
 use crate::machine::queues::{Held, Occurrence};
 use crate::machine::run::Run;
 use crate::machine::snapshot::{
-    ActivityPhase, ActivityRecord, BoundRecord, ErredGuardRecord, EventName, HeldRecord, OccurrenceRecord,
-    Paths, PendingRecord, Snapshot, TimerRecord, VERSION, Way, event_name,
+    ActivityPhase, ActivityRecord, BoundRecord, ErredGuardRecord, EventName, HeldRecord, HistoryRecord,
+    OccurrenceRecord, Paths, PendingRecord, Snapshot, TimerRecord, VERSION, Way, event_name,
 };
 
 impl Machine {
@@ -71,6 +72,15 @@ impl Taking<'_> {
                 .map(|&region| self.paths.region(chart, region))
                 .collect(),
             waiting_starts: self.nodes(&run.waiting_starts),
+            vacated: self.nodes(&run.vacated),
+            joined: self.joined(),
+            completions: run.completions.iter().map(|&place| self.paths.place(chart, place)).collect(),
+            ending: run.ending,
+            no_branch: run.failure.and_then(|fault| match fault {
+                Fault::NoBranch(node) => Some(self.paths.node(node).to_owned()),
+                _ => None,
+            }),
+            history: self.history(),
             timers: self.timers(),
             activations: run.activities.count,
             activities: self.activities(),
@@ -97,12 +107,33 @@ impl Taking<'_> {
         members(set, last).map(|index| self.paths.region(self.chart, RegionId(index as u32))).collect()
     }
 
+    fn joined(&self) -> Vec<Way> {
+        let ids = (0..self.chart.compounds.len() as u32).map(CompoundId);
+        let has_arrived = |id: &CompoundId| {
+            let slot = self.chart.compounds[id.0 as usize].arrives;
+            slot.is_some_and(|slot| self.run.arrived.contains(slot))
+        };
+        ids.filter(has_arrived).map(|id| self.way(id)).collect()
+    }
+
+    fn history(&self) -> Vec<HistoryRecord> {
+        let records = self.chart.histories.iter().zip(&self.run.records);
+        records
+            .filter(|(_, record)| record.is_known)
+            .map(|(history, record)| HistoryRecord {
+                history: self.paths.place(self.chart, history.place),
+                nodes: record.places.iter().map(|&place| self.paths.place(self.chart, place)).collect(),
+            })
+            .collect()
+    }
+
     fn timers(&self) -> Vec<TimerRecord> {
         let set = self.run.timers.slots.iter().enumerate();
         set.filter_map(|(timer, slot)| {
             let deadline = slot.as_ref()?;
             let timer = self.paths.timer(self.chart, timer);
-            Some(TimerRecord { timer, deadline: deadline.moment, expired: deadline.expired })
+            let owner = deadline.owner.map(|place| self.paths.place(self.chart, place));
+            Some(TimerRecord { timer, deadline: deadline.moment, expired: deadline.expired, owner })
         })
         .collect()
     }

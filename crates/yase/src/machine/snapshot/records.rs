@@ -1,0 +1,61 @@
+//! What a HISTORY can remember.
+
+use std::collections::BTreeSet;
+
+use crate::chart::{Chart, History, Place};
+use crate::semantics::{ActiveAncestor, Joining};
+use crate::statechart::NodeKind;
+
+/// Whether these nodes can have been what was active in the HISTORY's composite: the child, or, for a deep one, all that was inside.
+pub(crate) fn can_remember(chart: &Chart, history: &History, places: &BTreeSet<Place>) -> bool {
+    let states = places.iter().all(|&place| is_state(kind(chart, place)));
+    states && if history.is_deep { deep(chart, history, places) } else { shallow(chart, history, places) }
+}
+
+fn shallow(chart: &Chart, history: &History, places: &BTreeSet<Place>) -> bool {
+    match kind(chart, history.owner) {
+        NodeKind::Or => {
+            let is_child = |place: &Place| chart.states[place.index()].parent == Some(history.owner);
+            places.len() == 1 && places.iter().all(is_child)
+        }
+        _ => places.is_empty(),
+    }
+}
+
+fn deep(chart: &Chart, history: &History, places: &BTreeSet<Place>) -> bool {
+    let is_there = |place: Place| place == history.owner || places.contains(&place);
+    let is_inside =
+        |place: &Place| chart.states[place.index()].parent.is_some_and(is_there) && *place != history.owner;
+    let mut all = places.iter().chain(std::iter::once(&history.owner));
+    places.iter().all(is_inside) && all.all(|&place| is_filled(chart, place, is_there))
+}
+
+/// Whether a node has the children that it has to have.
+fn is_filled(chart: &Chart, place: Place, is_there: impl Fn(Place) -> bool) -> bool {
+    let layout = &chart.layout;
+    let children = chart.statechart().children(layout.node(place)).iter();
+    let children: Vec<Place> = children.map(|&child| layout.place_of(child)).collect();
+    let count = children.iter().filter(|&&child| is_there(child)).count();
+    let is_region = |child: &&Place| chart.states[child.index()].is_region;
+    match kind(chart, place) {
+        NodeKind::Or | NodeKind::And if count == 0 && can_be_vacated(chart) => true,
+        NodeKind::Or => count == 1,
+        NodeKind::And => children.iter().filter(is_region).all(|&region| is_there(region)),
+        _ => true,
+    }
+}
+
+/// Whether transitions may leave a composite without an active child.
+fn can_be_vacated(chart: &Chart) -> bool {
+    let semantics = chart.semantics_ref();
+    semantics.join == Joining::Each || semantics.ancestor == ActiveAncestor::Completed
+}
+
+fn is_state(kind: NodeKind) -> bool {
+    use NodeKind::{And, Basic, End, Or, Start};
+    matches!(kind, Or | And | Basic | Start | End)
+}
+
+fn kind(chart: &Chart, place: Place) -> NodeKind {
+    chart.states[place.index()].kind
+}
