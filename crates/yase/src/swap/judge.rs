@@ -40,11 +40,11 @@ impl<'a> Judging<'a> {
         new.semantics = self.chart.semantics();
         new.due |= !self.plan.is_same();
         let active = self.active(old);
+        self.unfinished(old, &mut new);
         self.enter(&active, &mut new);
         new.configuration = self.in_document_order(active);
         new.activities = old.activities.iter().filter_map(|record| self.activity(record)).collect();
         self.unheard_activities(old, &new);
-        self.unfinished(old, &mut new);
         new.history = old.history.iter().filter_map(|record| self.history(record)).collect();
         new.timers = old.timers.iter().filter_map(|record| self.timer(record)).collect();
         self.events(old, &mut new);
@@ -112,7 +112,8 @@ impl<'a> Judging<'a> {
             let Some(node) = chart.region_node(region) else { continue };
             let Some(parent) = chart.statechart().node(node).parent else { continue };
             let path = self.plan.new_paths.node(node).to_owned();
-            if !active.contains(&parent) {
+            let is_vacated = new.vacated.iter().any(|path| path == self.plan.new_paths.node(parent));
+            if is_vacated || !active.contains(&parent) {
                 continue;
             } else if !active.contains(&node) {
                 self.report.to_enter.push(path.clone());

@@ -1,57 +1,89 @@
-//! Random runs that are cut at every micro-step: taken down as text, and gone on with by a machine that was made of the text.
+//! Random runs, under all semantics, that are cut at every micro-step: taken down as text, and gone on with by a machine that was made of
+//! the text.
 
-use std::num::NonZeroU32;
+use std::sync::Arc;
 
-use proptest::collection::vec;
-use proptest::prelude::any;
-use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 use yase::snapshot::Snapshot;
-use yase::statechart::Statechart;
-use yase::{Activation, Machine, MicroStep, Moment, Outcome, Semantics, TopicId};
+use yase::{Activation, Chart, Chooser, Machine, MicroStep, Moment, Outcome, TopicId};
 
-use crate::kit::script::{self, Interpreter, Script};
-use crate::kit::world::World;
-use crate::random;
+use crate::kit::script::{self, Interpreter};
+use crate::kit::world::{World, vocabulary};
+use crate::oracle::chance::Freedom;
+use crate::oracle::random::Case;
 
-const CHARTS: u32 = 1000;
+const RUNS: u64 = 1000;
 
-/// Charts that never rest are stopped soon.
-const LIMIT: NonZeroU32 = NonZeroU32::new(40).unwrap();
+/// In so many runs each cut is also gone on with without any other.
+const WHOLE_RUNS: u64 = 10;
 
 #[test]
 fn a_machine_that_is_restored_at_every_micro_step_writes_the_same_lines() {
-    let config =
-        Config { cases: CHARTS, failure_persistence: None, max_shrink_iters: 200, ..Config::default() };
-    let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
-    let taken = std::cell::Cell::new((0, 0));
-    let result = runner.run(&vec(any::<u8>(), 200..2000), |bytes| {
-        let (chart, script) = random::case(&mut random::Choices::new(&bytes));
-        let expected = run(&mut machine(&chart), &chart, &script);
-        let mut cut = Cut { machine: machine(&chart), snapshots: 0, mid_step: 0 };
-        let found = run(&mut cut, &chart, &script);
-        let (all, mid_step) = taken.get();
-        taken.set((all + cut.snapshots, mid_step + cut.mid_step));
-        if expected == found { Ok(()) } else { Err(TestCaseError::fail(difference(&expected, &found))) }
+    let counts = std::thread::scope(|threads| {
+        let second = threads.spawn(|| cut_everywhere(RUNS / 2..RUNS));
+        let first = cut_everywhere(0..RUNS / 2);
+        let second = second.join().expect("it does not panic");
+        [first.0 + second.0, first.1 + second.1]
     });
-    match result {
-        Ok(()) => {}
-        Err(TestError::Fail(reason, _)) => panic!("{reason}"),
-        Err(error) => panic!("{error}"),
+    let [all, mid_step] = counts;
+    println!("{all} snapshots of {RUNS} runs, {mid_step} of them in the middle of a step");
+    assert!(mid_step > 20 * RUNS && all > mid_step, "the runs are too short");
+}
+
+/// How many snapshots were taken, and how many of them in the middle of a step.
+fn cut_everywhere(numbers: std::ops::Range<u64>) -> (u64, u64) {
+    let (mut all, mut mid_step) = (0, 0);
+    for number in numbers {
+        let case = Case::numbered(number);
+        let chart = compile(&case);
+        let expected = run(&mut machine(&chart, &case), &case);
+        let mut cut = Cut::new(machine(&chart, &case), None);
+        let found = run(&mut cut, &case);
+        assert!(expected == found, "case {number}: {}", difference(&expected, &found));
+        all += cut.snapshots;
+        mid_step += cut.mid_step;
     }
-    let (all, mid_step) = taken.get();
-    println!("{all} snapshots of {CHARTS} runs, {mid_step} of them in the middle of a step");
-    assert!(mid_step > 20 * CHARTS && all > mid_step, "the runs are too short");
+    (all, mid_step)
 }
 
-fn machine(chart: &Statechart) -> Machine {
-    let mut semantics = Semantics::yase();
-    semantics.limit = LIMIT;
-    Machine::new(script::compile_with(chart, semantics))
+#[test]
+fn a_machine_that_is_restored_once_goes_on_to_the_end() {
+    let mut restored = 0;
+    for number in RUNS..RUNS + WHOLE_RUNS {
+        let case = Case::numbered(number);
+        let chart = compile(&case);
+        let mut whole = Cut::new(machine(&chart, &case), Some(u64::MAX));
+        let expected = run(&mut whole, &case);
+        for at in 0..whole.calls {
+            let mut cut = Cut::new(machine(&chart, &case), Some(at));
+            let found = run(&mut cut, &case);
+            assert!(expected == found, "case {number} at {at}: {}", difference(&expected, &found));
+            restored += cut.snapshots;
+        }
+    }
+    println!("{restored} machines were restored and ran to their end");
+    assert!(restored > 20 * WHOLE_RUNS, "the runs are too short");
 }
 
-fn run(interpreter: &mut impl Interpreter, chart: &Statechart, script: &Script) -> Vec<String> {
-    let mut world = World { verbose: true, reads: true, ..World::new(chart) };
-    script::run(interpreter, script, &mut world);
+fn compile(case: &Case) -> Arc<Chart> {
+    match case.chart.compile_with(&vocabulary(), case.semantics) {
+        Ok(chart) => Arc::new(chart),
+        Err(found) => panic!("{found:?}"),
+    }
+}
+
+fn machine(chart: &Arc<Chart>, case: &Case) -> Machine {
+    let mut machine = Machine::new(chart.clone());
+    machine.set_chooser(match &case.freedom {
+        Freedom::Declared => Chooser::declared(),
+        Freedom::Seeded(seed) => Chooser::seeded(*seed),
+        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
+    });
+    machine
+}
+
+fn run(interpreter: &mut impl Interpreter, case: &Case) -> Vec<String> {
+    let mut world = World { verbose: true, reads: true, ..World::new(&case.chart) };
+    script::run(interpreter, &case.script, &mut world);
     world.log
 }
 
@@ -59,30 +91,43 @@ fn difference(expected: &[String], found: &[String]) -> String {
     let same = expected.iter().zip(found).take_while(|(a, b)| a == b).count();
     let one = |log: &[String]| log.get(same).cloned().unwrap_or_else(|| "(nothing)".into());
     let before = expected[same.saturating_sub(12)..same].join("\n");
-    format!("{before}\nexpected {}\nfound    {}", one(expected), one(found))
+    format!("\n{before}\nexpected {}\nfound    {}", one(expected), one(found))
 }
 
-/// A machine that is replaced by its restored self before everything that happens to it.
+/// A machine that is replaced by its restored self before everything that happens to it, or before one of these calls.
 struct Cut {
     machine: Machine,
-    snapshots: u32,
-    mid_step: u32,
+    only: Option<u64>,
+    calls: u64,
+    snapshots: u64,
+    mid_step: u64,
 }
 
 impl Cut {
+    fn new(machine: Machine, only: Option<u64>) -> Cut {
+        Cut { machine, only, calls: 0, snapshots: 0, mid_step: 0 }
+    }
+
     fn cut(&mut self) -> &mut Machine {
+        if self.only.is_none_or(|only| only == self.calls) {
+            self.replace();
+        }
+        self.calls += 1;
+        &mut self.machine
+    }
+
+    fn replace(&mut self) {
         let snapshot = self.machine.snapshot();
         let text = serde_json::to_string(&snapshot).unwrap();
         let read: Snapshot = serde_json::from_str(&text).unwrap();
         assert_eq!(read, snapshot, "nothing is lost in the text");
-        let chart = self.machine.chart().clone();
-        let restored = Machine::restore(chart, &read).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let restored = Machine::restore(self.machine.chart().clone(), &read)
+            .unwrap_or_else(|error| panic!("{error}\n{text}"));
         assert_eq!(restored.snapshot(), snapshot, "the restored machine is as the one before");
         assert!(restored.activations().eq(self.machine.activations()));
         self.snapshots += 1;
-        self.mid_step += u32::from(self.machine.is_mid_step());
+        self.mid_step += u64::from(self.machine.is_mid_step());
         self.machine = restored;
-        &mut self.machine
     }
 }
 

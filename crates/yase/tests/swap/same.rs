@@ -1,55 +1,42 @@
 //! Swapping a chart for itself, or for a copy whose nodes are numbered otherwise, changes nothing.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::num::NonZeroU32;
 use std::sync::Arc;
 
-use proptest::collection::vec;
-use proptest::prelude::any;
-use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 use yase::statechart::{NodeId, Statechart, Transition};
 use yase::swap::plan;
-use yase::{Activation, Chart, Machine, Moment, Outcome, Semantics, TopicId};
+use yase::{Activation, Chart, Chooser, Machine, Moment, Outcome, Semantics, TopicId};
 
-use crate::kit::script::{self, Interpreter, Script};
+use crate::kit::script::{self, Interpreter};
 use crate::kit::world::World;
-use crate::random;
+use crate::oracle::chance::Freedom;
+use crate::oracle::random::Case;
 use crate::world::rekey;
 
-const CHARTS: u32 = 300;
-
-/// Charts that never rest are stopped soon.
-const LIMIT: NonZeroU32 = NonZeroU32::new(40).unwrap();
+const RUNS: u64 = 300;
 
 #[test]
 fn swapping_a_chart_for_itself_or_a_renumbered_copy_at_every_stable_point_changes_no_line() {
-    let config =
-        Config { cases: CHARTS, failure_persistence: None, max_shrink_iters: 200, ..Config::default() };
-    let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
-    let swaps = std::cell::Cell::new(0);
-    let result = runner.run(&vec(any::<u8>(), 200..2000), |bytes| {
-        let (chart, script) = random::case(&mut random::Choices::new(&bytes));
-        let compiled = compile(&chart);
-        let expected = run(&mut Machine::new(compiled.clone()), &chart, &script);
-        for other in [chart.clone(), renumbered(&chart)] {
-            let charts = [compiled.clone(), compile(&other)];
-            let mut swapping = Swapping { machine: Machine::new(compiled.clone()), charts, swaps: 0 };
-            let found = run(&mut swapping, &chart, &script);
-            swaps.set(swaps.get() + swapping.swaps);
-            if expected != found {
-                let same = expected.iter().zip(&found).take_while(|(a, b)| a == b).count();
-                let text = format!("{:?}\n{:?}", expected.get(same), found.get(same));
-                return Err(TestCaseError::fail(text));
-            }
-        }
-        Ok(())
-    });
-    match result {
-        Ok(()) => println!("{} swaps in {CHARTS} runs", swaps.get()),
-        Err(TestError::Fail(reason, _)) => panic!("{reason}"),
-        Err(error) => panic!("{error}"),
+    let swaps: u64 = (0..RUNS).map(swapped).sum();
+    println!("{swaps} swaps in {RUNS} runs");
+    assert!(swaps > 20 * RUNS, "the runs are too short");
+}
+
+/// Plays a case without and with swaps, and says how many there were.
+fn swapped(number: u64) -> u64 {
+    let case = Case::numbered(number);
+    let compiled = compile(&case.chart, case.semantics);
+    let expected = run(&mut machine(compiled.clone(), &case), &case);
+    let mut swaps = 0;
+    for other in [case.chart.clone(), renumbered(&case.chart)] {
+        let charts = [compiled.clone(), compile(&other, case.semantics)];
+        let mut swapping = Swapping { machine: machine(compiled.clone(), &case), charts, swaps: 0 };
+        let found = run(&mut swapping, &case);
+        swaps += swapping.swaps;
+        let same = expected.iter().zip(&found).take_while(|(a, b)| a == b).count();
+        assert!(expected == found, "case {number}: {:?} {:?}", expected.get(same), found.get(same));
     }
-    assert!(swaps.get() > 20 * CHARTS, "the runs are too short");
+    swaps
 }
 
 #[test]
@@ -57,21 +44,30 @@ fn a_renumbered_copy_numbers_otherwise() {
     let chart = crate::kit::chart(
         "& both\n  one\n    START\n    A\n    both/one/START -> both/one/A\nSTART\nSTART -> both",
     );
-    let chart = plan(&compile(&chart), &compile(&renumbered(&chart)));
+    let [one, other] = [chart.clone(), renumbered(&chart)].map(|chart| script::compile(&chart));
+    let chart = plan(&one, &other);
     let a = NodeId(4);
     assert!(chart.is_same());
     assert_ne!(chart.node(a), Some(a));
 }
 
-fn compile(chart: &Statechart) -> Arc<Chart> {
-    let mut semantics = Semantics::yase();
-    semantics.limit = LIMIT;
+fn compile(chart: &Statechart, semantics: Semantics) -> Arc<Chart> {
     script::compile_with(chart, semantics)
 }
 
-fn run(interpreter: &mut impl Interpreter, chart: &Statechart, script: &Script) -> Vec<String> {
-    let mut world = World { verbose: true, ..World::new(chart) };
-    script::run(interpreter, script, &mut world);
+fn machine(chart: Arc<Chart>, case: &Case) -> Machine {
+    let mut machine = Machine::new(chart);
+    machine.set_chooser(match &case.freedom {
+        Freedom::Declared => Chooser::declared(),
+        Freedom::Seeded(seed) => Chooser::seeded(*seed),
+        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
+    });
+    machine
+}
+
+fn run(interpreter: &mut impl Interpreter, case: &Case) -> Vec<String> {
+    let mut world = World { verbose: true, ..World::new(&case.chart) };
+    script::run(interpreter, &case.script, &mut world);
     world.log
 }
 
@@ -99,7 +95,7 @@ fn renumbered(chart: &Statechart) -> Statechart {
 struct Swapping {
     machine: Machine,
     charts: [Arc<Chart>; 2],
-    swaps: u32,
+    swaps: u64,
 }
 
 impl Swapping {

@@ -98,7 +98,7 @@ impl Restoring<'_> {
                 }
             },
             NodeKind::And => {
-                let regions = children.iter().filter(|child| self.chart.states[child.index()].is_region);
+                let regions = self.chart.states[place.index()].parts.iter();
                 let missing = regions.filter(|&&region| !is_there(region)).map(|&region| self.path(region));
                 missing
                     .map(|region| format!("`{path}` is active, but its region `{region}` is not"))
@@ -131,8 +131,11 @@ impl Restoring<'_> {
     fn joined_regions_are_vacated(&mut self) {
         let chart = self.chart;
         for join in &chart.joins {
-            for (slot, &region) in join.slots().zip(&join.regions) {
-                if self.run.arrived.contains(slot) && !self.run.vacated.contains(region.index()) {
+            let ends = join.sources.iter().zip(&join.regions);
+            for (slot, (source, &region)) in join.slots().zip(ends) {
+                // a region that is the source itself has nothing inside that was left
+                let has_left = self.run.vacated.contains(region.index()) || *source == region;
+                if self.run.arrived.contains(slot) && !has_left {
                     let text = format!("`{}` has arrived at a JOIN, but was not vacated", self.path(region));
                     self.wrong("joined", text);
                 }
@@ -155,7 +158,7 @@ impl Restoring<'_> {
         for index in 0..self.run.newcomers.regions.len() {
             let place = self.run.newcomers.regions[index];
             let path = self.path(place);
-            if !self.chart.states[place.index()].is_region {
+            if !self.chart.regions.iter().any(|region| region.root == place) {
                 self.wrong("to_enter", format!("`{path}` is no region"));
             } else if self.is_active(place) {
                 self.wrong("to_enter", format!("`{path}` is active already"));

@@ -36,11 +36,10 @@ fn is_filled(chart: &Chart, place: Place, is_there: impl Fn(Place) -> bool) -> b
     let children = chart.statechart().children(layout.node(place)).iter();
     let children: Vec<Place> = children.map(|&child| layout.place_of(child)).collect();
     let count = children.iter().filter(|&&child| is_there(child)).count();
-    let is_region = |child: &&Place| chart.states[child.index()].is_region;
     match kind(chart, place) {
         NodeKind::Or | NodeKind::And if count == 0 && can_be_vacated(chart) => true,
         NodeKind::Or => count == 1,
-        NodeKind::And => children.iter().filter(is_region).all(|&region| is_there(region)),
+        NodeKind::And => chart.states[place.index()].parts.iter().all(|&region| is_there(region)),
         _ => true,
     }
 }
