@@ -162,8 +162,8 @@ fn normal(log: Vec<String>) -> Vec<String> {
 
 fn normal_line(line: String) -> String {
     if let Some(error) = line.strip_prefix("error: ") {
-        let branch = error.contains("branch");
-        return if branch { format!("error: {}", error.to_lowercase()) } else { "error: endless".into() };
+        let branch = error.contains("CHOICE");
+        return if branch { line } else { "error: endless".into() };
     }
     match line.split_once("; read ") {
         None => line,

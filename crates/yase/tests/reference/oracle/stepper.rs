@@ -99,6 +99,8 @@ pub(crate) struct Stepper<'c> {
     unbound: Vec<(RegionId, String)>,
     records: BTreeMap<NodeId, Vec<NodeId>>,
     arrivals: BTreeSet<TransitionId>,
+    /// What has lost what was active in it, and counts as complete.
+    vacated: BTreeSet<NodeId>,
     completions: Vec<NodeId>,
     count: u32,
     raised: Vec<Occurrence>,
@@ -118,6 +120,8 @@ pub(crate) struct Stepper<'c> {
     steps_at_instant: u32,
     /// The root has reached its END and what is active is still to be left.
     ended: bool,
+    /// What went wrong when the chart began; the first step tells it.
+    failure: Option<Failure>,
     before: BTreeSet<NodeId>,
 }
 
@@ -145,6 +149,7 @@ impl<'c> Stepper<'c> {
             unbound: vec![],
             records: BTreeMap::new(),
             arrivals: BTreeSet::new(),
+            vacated: BTreeSet::new(),
             completions: vec![],
             count: 0,
             raised: vec![],
@@ -163,6 +168,7 @@ impl<'c> Stepper<'c> {
             instant: Moment::ZERO,
             steps_at_instant: 0,
             ended: false,
+            failure: None,
             before: BTreeSet::new(),
         }
     }

@@ -91,7 +91,11 @@ impl Stepper<'_> {
             };
         };
         match (self.kind(history), self.kind(owner)) {
-            (NodeKind::DeepHistory, _) => self.enter_recorded(&record, world),
+            (NodeKind::DeepHistory, _) => {
+                let states: Vec<NodeId> =
+                    record.into_iter().filter(|&node| self.kind(node) != NodeKind::Start).collect();
+                self.enter_below(owner, &states, world)
+            }
             (_, NodeKind::And) => self.enter_regions(owner, &[], world),
             _ => match record[..] {
                 [child] if self.kind(child) == NodeKind::Start => self.enter_start(owner, world),
@@ -101,18 +105,8 @@ impl Stepper<'_> {
         }
     }
 
-    /// All that was active, outermost first.
-    fn enter_recorded(&mut self, record: &[NodeId], world: &mut World) -> Result<(), Failure> {
-        for &node in record {
-            match self.kind(node) {
-                NodeKind::Start => self.enter_start(self.parent(node), world)?,
-                _ => self.enter(node, world),
-            }
-        }
-        Ok(())
-    }
-
     pub(super) fn enter(&mut self, node: NodeId, world: &mut World) {
+        self.occupy(node);
         self.active.insert(node);
         self.line.entries.push(node);
         if self.is_region(node) {
@@ -135,6 +129,16 @@ impl Stepper<'_> {
         }
     }
 
+    /// A region that was vacated is no longer: who has arrived at a JOIN from it must arrive again.
+    fn occupy(&mut self, node: NodeId) {
+        let Some(around) = self.chart.node(node).parent else { return };
+        let chart = self.chart;
+        if self.vacated.remove(&around) && self.is_region(around) {
+            self.arrivals
+                .retain(|id| !chart.ancestors(chart.transition(*id).source).any(|above| above == around));
+        }
+    }
+
     fn reached(&mut self, end: NodeId, world: &mut World) {
         let composite = self.parent(end);
         if composite == Statechart::ROOT {
@@ -147,10 +151,23 @@ impl Stepper<'_> {
         self.completed(composite);
         if self.semantics.completion_events {
             self.raise_done(composite);
-            let around = self.parent(composite);
-            if self.kind(around) == NodeKind::And && self.is_complete(around) {
+            let mut around = self.parent(composite);
+            while self.kind(around) == NodeKind::And && self.has_ended(around) {
                 self.raise_done(around);
+                around = self.parent(around);
             }
+        }
+    }
+
+    /// As `isInFinalState` of SCXML: a BASIC state has not ended, though it may have completed.
+    fn has_ended(&self, node: NodeId) -> bool {
+        match self.kind(node) {
+            NodeKind::And => {
+                let mut regions = self.chart.children(node).iter().filter(|&&child| self.is_region(child));
+                regions.all(|&region| self.has_ended(region))
+            }
+            NodeKind::Or => self.is_complete(node),
+            _ => false,
         }
     }
 

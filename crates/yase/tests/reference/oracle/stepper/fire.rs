@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use yase::statechart::{NodeId, NodeKind, TransitionId};
-use yase::{Host, RegionId, RootEnd, RunningOnExit, Statechart};
+use yase::{Eventless, Host, RegionId, RootEnd, RunningOnExit, Statechart};
 
 use super::{Failure, Phase, Stepper, Way};
 use crate::kit::world::World;
@@ -21,13 +21,9 @@ impl Stepper<'_> {
         Ok(fired)
     }
 
-    /// Sources are active still, or those from which all have arrived at a JOIN.
+    /// Sources are active still.
     pub(super) fn may_fire(&self, way: &Way) -> bool {
-        let first = self.transition(way.segments[0]).source;
-        match self.kind(first) {
-            NodeKind::Join => self.incoming(first).iter().all(|id| self.arrivals.contains(id)),
-            _ => way.sources.iter().all(|source| self.active.contains(source)),
-        }
+        way.sources.iter().all(|source| self.active.contains(source))
     }
 
     pub(super) fn fire(&mut self, way: &Way, world: &mut World) -> Result<(), Failure> {
@@ -72,7 +68,11 @@ impl Stepper<'_> {
                     NodeKind::DeepHistory => self.active_inside(owner),
                     _ => continue,
                 };
-                self.records.insert(child, record);
+                if record.is_empty() && self.kind(owner) == NodeKind::Or {
+                    self.records.remove(&child); // it was vacated
+                } else {
+                    self.records.insert(child, record);
+                }
             }
         }
     }
@@ -93,6 +93,7 @@ impl Stepper<'_> {
         self.unbound = before; // what an exit action starts belongs to no state
         self.active.remove(&node);
         self.waiting.remove(&node);
+        self.vacated.remove(&node);
         self.completions.retain(|&other| other != node);
         self.forget_arrivals(node);
         self.unset_timers_of(node);
@@ -155,16 +156,29 @@ impl Stepper<'_> {
             return Ok(());
         }
         let vacated = self.vacates(way);
+        for &node in &vacated {
+            self.vacated.insert(node);
+            self.completed(node);
+        }
         if self.kind(way.ends[0]) == NodeKind::Join {
             self.arrivals.extend(&way.segments);
-        }
-        for &node in &vacated {
-            self.completed(node);
+            self.arrived_at(way.ends[0]);
         }
         if vacated.is_empty() && !self.is_targetless(way) {
             self.enter_below(self.scope(way), targets, world)?;
         }
         Ok(())
+    }
+
+    /// When all have arrived, their AND is offered once more.
+    fn arrived_at(&mut self, join: NodeId) {
+        let all = self.incoming(join).iter().all(|id| self.arrivals.contains(id));
+        if let Some(and) =
+            self.joined_and(join).filter(|_| all && self.semantics.eventless == Eventless::Once)
+            && !self.completions.contains(&and)
+        {
+            self.completions.push(and);
+        }
     }
 
     /// What is left to do when the root has reached its END.
@@ -205,11 +219,12 @@ impl Stepper<'_> {
     pub(super) fn begin_chart(&mut self, world: &mut World) {
         self.line = super::Line::default();
         self.enter(Statechart::ROOT, world);
-        let begun = self.enter_below(Statechart::ROOT, &[], world);
-        self.print_start(world);
-        self.end(world);
-        if begun.is_err() {
-            self.halt(world);
+        match self.enter_below(Statechart::ROOT, &[], world) {
+            Ok(()) => self.print_start(world),
+            Err(failure) => {
+                self.active.clear();
+                self.failure = Some(failure);
+            }
         }
     }
 }

@@ -96,7 +96,7 @@ impl Stepper<'_> {
 
     pub(super) fn describe(&self, failure: &Failure) -> String {
         match failure {
-            Failure::NoBranch(choice) => format!("no branch of {}", self.name(*choice)),
+            Failure::NoBranch(choice) => format!("no way out of CHOICE `{}` is open", self.name(*choice)),
             Failure::Endless => "endless".to_owned(),
         }
     }

@@ -1,7 +1,5 @@
 //! What is enabled and who wins: R7 to R9, R14, R15.
 
-use std::collections::BTreeSet;
-
 use yase::statechart::{NodeId, NodeKind, TransitionId};
 use yase::{ConflictChoice, Eventless, Firing, RegionId, RunningOnExit};
 
@@ -59,25 +57,36 @@ impl<'c> Stepper<'c> {
             return false;
         }
         match self.kind(node) {
+            _ if self.vacated.contains(&node) => true,
             NodeKind::And => {
                 let mut regions = self.chart.children(node).iter().filter(|&&child| self.is_region(child));
                 regions.all(|&region| self.is_complete(region))
             }
             NodeKind::Or => {
                 let inside = self.active_children(node);
-                inside.iter().all(|&child| self.kind(child) == NodeKind::End)
+                inside.iter().any(|&child| self.kind(child) == NodeKind::End)
             }
             _ => self.jobs.get(&node).is_none_or(|job| job.phase == Phase::Done),
         }
     }
 
     /// R15
-    fn is_ready(&mut self, way: &Way, world: &mut World) -> bool {
+    fn is_ready(&mut self, way: &Way, offer: Offer<'_>, world: &mut World) -> bool {
         let source = way.sources[0];
+        if offer.event().is_some() || self.begins_at_join(way) {
+            return true;
+        }
+        if self.kind(way.ends[0]) == NodeKind::Join {
+            return self.is_complete(source) && !self.arrivals.contains(&way.segments[0]);
+        }
+        let once = matches!(offer, Offer::Completion);
         if way.sources.len() > 1 {
             let sources = way.sources.clone();
             return sources.iter().all(|&source| self.is_complete(source))
-                && sources.iter().all(|&source| self.is_reached(source, world));
+                && (once || sources.iter().all(|&source| self.is_reached(source, world)));
+        }
+        if once {
+            return true;
         }
         let leaf = !matches!(self.kind(source), NodeKind::Or | NodeKind::And);
         let guarded = self.expression(way.segments[0]).guard.is_some();
@@ -125,66 +134,88 @@ impl<'c> Stepper<'c> {
         if let Some(known) = self.judged.get(&node) {
             return known.clone();
         }
-        let out = self.outgoing(node);
         let judgement = match (offer, self.semantics.eventless) {
             (Offer::Nothing, Eventless::Once) if self.kind(node) != NodeKind::Start => Judgement::default(),
-            _ => self.judge_ways(vec![node], out, offer, world),
+            _ => self.judge_ways(node, offer, world),
         };
         self.judged.insert(node, judgement.clone());
         judgement
     }
 
-    fn judge_ways(
-        &mut self,
-        sources: Vec<NodeId>,
-        out: Vec<TransitionId>,
-        offer: Offer<'_>,
-        world: &mut World,
-    ) -> Judgement {
-        let mut blocked = None;
+    /// Ways out of JOINs at which all have arrived come first.
+    fn judge_ways(&mut self, node: NodeId, offer: Offer<'_>, world: &mut World) -> Judgement {
         let event = offer.event();
-        if event.is_none() && sources.iter().any(|&node| self.is_frozen(node, false)) {
+        if event.is_none() && self.is_frozen(node, false) {
             return Judgement::default();
         }
-        let matching: Vec<TransitionId> =
-            out.into_iter().filter(|&id| self.is_triggered(id, event)).collect();
-        let found = self.first_way(sources[0], &matching, &mut |me, way| {
-            let joined = sources.len() > 1;
-            let mut way = way.clone();
-            if joined {
-                way.sources = sources.clone();
+        let mut lists: Vec<Vec<TransitionId>> =
+            self.joins_behind(node).into_iter().map(|join| self.outgoing(join)).collect();
+        lists.push(self.outgoing(node));
+        let mut judgement = Judgement::default();
+        for list in lists {
+            if judgement.found.is_none() {
+                self.judge_list(node, list, offer, &mut judgement, world);
             }
+        }
+        judgement
+    }
+
+    fn judge_list(
+        &mut self,
+        node: NodeId,
+        list: Vec<TransitionId>,
+        offer: Offer<'_>,
+        judgement: &mut Judgement,
+        world: &mut World,
+    ) {
+        let event = offer.event();
+        let matching: Vec<TransitionId> = list
+            .into_iter()
+            .filter(|&id| self.is_triggered(id, event) && self.may_be_drawn(node, id, offer, world))
+            .collect();
+        let blocked = &mut judgement.blocked;
+        judgement.found = self.first_way(node, &matching, &mut |me, way| {
             let frozen = way.sources.iter().any(|&node| me.is_frozen(node, true));
-            let locked = !me.interrupts(&way) && me.is_locked(&way);
-            if event.is_none() && locked {
-                return false; // there is nothing to hold, so nothing is read
-            }
-            if matches!(offer, Offer::Nothing) && !joined && !me.is_ready(&way, world) {
+            let locked = !me.interrupts(way) && me.is_locked(way);
+            if !me.is_ready(way, offer, world) || !me.guards_hold(way, world) {
                 return false;
             }
-            if !me.guards_hold(&way, world) {
-                return false;
-            }
-            if frozen || locked || !me.interrupts(&way) && me.leaves_running(&way) {
-                blocked.get_or_insert(way);
+            if frozen || locked || !me.interrupts(way) && me.leaves_running(way) {
+                blocked.get_or_insert(way.clone());
                 return false;
             }
             true
         });
-        let found = found.map(|way| if sources.len() > 1 { Way { sources, ..way } } else { way });
-        Judgement { found, blocked }
+    }
+
+    /// Those with a weight are drawn among if R15 allows one of their ways.
+    fn may_be_drawn(&mut self, node: NodeId, id: TransitionId, offer: Offer<'_>, world: &mut World) -> bool {
+        let start = Way { sources: vec![node], ..Way::default() };
+        self.transition(id).weight.is_none()
+            || self.any_way(&start, &[id], &mut |me, way| me.is_ready(way, offer, world))
+    }
+
+    /// The JOINs behind an AND at which all have arrived, one by one.
+    fn joins_behind(&self, and: NodeId) -> Vec<NodeId> {
+        let joins = self.chart.nodes().map(|(id, _)| id).filter(|&id| self.kind(id) == NodeKind::Join);
+        let complete = |&join: &NodeId| {
+            let into = self.incoming(join);
+            self.joined_and(join) == Some(and) && into.iter().all(|id| self.arrivals.contains(id))
+        };
+        joins.filter(complete).collect()
     }
 
     /// The candidates, and the ways that wait for running activities.
     pub(super) fn candidates(&mut self, offer: Offer<'_>, world: &mut World) -> (Vec<Way>, Vec<Way>) {
         let (mut found, mut waiting): (Vec<Way>, Vec<Way>) = (vec![], vec![]);
         self.judged.clear();
-        if matches!(offer, Offer::Nothing) {
-            found.extend(self.complete_joins(world));
-        }
         for leaf in self.active_leaves() {
             let mut noted = false;
             for node in self.outward(leaf) {
+                let joined = |way: &Way| way.sources.len() > 1 && way.sources.contains(&node);
+                if found.iter().any(joined) {
+                    break; // what leads to a JOIN is all that its sources contribute
+                }
                 let Judgement { found: enabled, blocked } = self.judge(node, offer, world);
                 if let Some(way) = blocked
                     && offer.event().is_some()
@@ -205,21 +236,6 @@ impl<'c> Stepper<'c> {
         }
         self.sort_inner_first(&mut waiting);
         (found, waiting)
-    }
-
-    /// The ways out of the JOINs at which all have arrived, one by one.
-    fn complete_joins(&mut self, world: &mut World) -> Vec<Way> {
-        let joins: Vec<NodeId> =
-            self.tree.document.iter().copied().filter(|&node| self.kind(node) == NodeKind::Join).collect();
-        let mut found = vec![];
-        for join in joins {
-            let into = self.incoming(join);
-            if !into.is_empty() && into.iter().all(|id| self.arrivals.contains(id)) {
-                let sources = into.iter().map(|&id| self.transition(id).source).collect();
-                found.extend(self.judge_ways(sources, self.outgoing(join), Offer::Nothing, world).found);
-            }
-        }
-        found
     }
 
     fn is_nested(&self, inner: &Way, outer: &Way) -> bool {
@@ -252,30 +268,17 @@ impl<'c> Stepper<'c> {
 
     fn strongest(&mut self, mut candidates: Vec<Way>) -> (Vec<Way>, Vec<Way>) {
         self.sort_inner_first(&mut candidates);
-        let (mut winners, mut losers): (Vec<Way>, Vec<Way>) = (vec![], vec![]);
-        for way in candidates {
-            let against: Vec<usize> =
-                (0..winners.len()).filter(|&index| self.conflict(&winners[index], &way)).collect();
-            if against.is_empty() {
-                winners.push(way);
-            } else if self.upsets(&way, &against, &winners) {
-                for index in against.into_iter().rev() {
-                    losers.push(winners.remove(index));
-                }
-                winners.push(way);
-            } else {
-                losers.push(way);
-            }
-        }
+        let (mut winners, losers) = self.remove_conflicting(candidates);
         winners.sort_by_key(|way| (!self.is_internal(way), self.key(way)));
         (winners, losers)
     }
 
-    /// Whether chance has a later candidate win against earlier ones.
-    fn upsets(&mut self, way: &Way, against: &[usize], winners: &[Way]) -> bool {
-        self.semantics.conflict == ConflictChoice::Random
-            && !against.iter().any(|&index| self.is_nested(&winners[index], way))
-            && self.chance.pick(2) == 1
+    /// Whether a later candidate wins against an earlier one: it is nested in it, or chance says so.
+    fn upsets(&mut self, way: &Way, winner: &Way) -> bool {
+        self.is_nested(way, winner)
+            || !self.is_nested(winner, way)
+                && self.semantics.conflict == ConflictChoice::Random
+                && self.chance.pick(2) == 1
     }
 
     fn conflict(&self, a: &Way, b: &Way) -> bool {
@@ -286,12 +289,11 @@ impl<'c> Stepper<'c> {
     fn remove_conflicting(&mut self, candidates: Vec<Way>) -> (Vec<Way>, Vec<Way>) {
         let (mut winners, mut losers): (Vec<Way>, Vec<Way>) = (vec![], vec![]);
         for way in candidates {
-            let against: BTreeSet<usize> =
+            let against: Vec<usize> =
                 (0..winners.len()).filter(|&index| self.conflict(&winners[index], &way)).collect();
-            if against.iter().all(|&index| self.is_nested(&way, &winners[index])) {
-                for &index in against.iter().rev() {
-                    losers.push(winners.remove(index));
-                }
+            if against.iter().all(|&index| self.upsets(&way, &winners[index])) {
+                losers.extend(against.iter().map(|&index| winners[index].clone()));
+                winners.retain(|winner| !losers.contains(winner));
                 winners.push(way);
             } else {
                 losers.push(way);

@@ -122,7 +122,7 @@ impl Stepper<'_> {
     pub(super) fn known_name(&self, event: &str) -> Option<String> {
         let mut name = event;
         loop {
-            if self.is_named(name, true) || name.starts_with("error.") {
+            if self.is_named(name, true) || name.starts_with("error.") || name.starts_with("done.state.") {
                 return Some(name.to_owned());
             }
             name = match self.semantics.matching {
@@ -133,16 +133,22 @@ impl Stepper<'_> {
     }
 
     fn micro_step(&mut self, world: &mut World) -> Result<bool, Failure> {
-        if !self.running_chart {
+        if let Some(failure) = self.failure.take() {
+            return Err(failure);
+        }
+        if !self.running_chart || self.ended {
             return Ok(false);
         }
         self.line = Line::default();
-        if self.complete_something(world)? || self.interrupt_something(world)? {
+        if self.interrupt_something(world)? {
             return Ok(true);
         }
         if let Some(index) = self.held.iter().position(|held| held.offer) {
             let occurrence = self.held.remove(index).occurrence;
             return self.offer(occurrence, world);
+        }
+        if self.complete_something(world)? {
+            return Ok(true);
         }
         let (candidates, _) = self.candidates(Offer::Nothing, world);
         if !candidates.is_empty() {
@@ -160,17 +166,19 @@ impl Stepper<'_> {
         self.offer(next, world)
     }
 
-    /// R15, `once`: completions before anything else; one that finds nothing open is consumed.
+    /// R15, `once`: completions before what is new; one that finds nothing open is consumed.
     fn complete_something(&mut self, world: &mut World) -> Result<bool, Failure> {
         while !self.completions.is_empty() {
             let node = self.completions.remove(0);
             self.judged.clear();
+            self.line = Line::default(); // what one that is consumed has read is not told
             if let Some(way) = self.judge(node, Offer::Completion, world).found {
                 self.admit()?;
                 self.take(vec![way], None, world)?;
                 return Ok(true);
             }
         }
+        self.line = Line::default();
         Ok(false)
     }
 
@@ -188,7 +196,6 @@ impl Stepper<'_> {
             held.offer = true;
         }
         self.print(&Heading { event: event.as_deref(), fired: &[way], ..Heading::default() }, world);
-        self.end(world);
         Ok(true)
     }
 
@@ -265,8 +272,10 @@ impl Stepper<'_> {
         let (mut now, mut later) = (vec![], vec![]);
         for way in winners {
             if self.leaves_running(&way) {
-                for node in self.in_order_of_exit(&self.exit_set(&way)) {
-                    self.cancel(node, world);
+                for node in self.active_in_document_order() {
+                    if self.would_leave(&way, node) {
+                        self.cancel(node, world);
+                    }
                 }
                 self.pending.push((way.clone(), event.map(str::to_owned)));
                 later.push(way);
@@ -279,7 +288,6 @@ impl Stepper<'_> {
             _ => self.fire_each(now, world)?,
         };
         self.print(&Heading { event, fired: &fired, losers: &losers, held: &later, deferring: None }, world);
-        self.end(world);
         Ok(())
     }
 
@@ -296,6 +304,7 @@ impl Stepper<'_> {
     }
 
     fn finish(&mut self, world: &mut World) {
+        self.end(world);
         for region in std::mem::take(&mut self.written) {
             world.publish_all(region);
         }

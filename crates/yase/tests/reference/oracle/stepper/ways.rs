@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use yase::statechart::{NodeId, NodeKind, Transition, TransitionId};
-use yase::{ActiveAncestor, ExitOrder, Joining};
+use yase::{ActiveAncestor, Eventless, ExitOrder, Joining};
 
 use super::Stepper;
 
@@ -113,6 +113,7 @@ impl<'c> Stepper<'c> {
                 all.extend(rest);
                 self.follow(&way, &all, accept)
             }
+            Role::Join if !self.is_offered(target, way.sources[0]) => false,
             Role::Join => {
                 way.segments = self.incoming(target);
                 way.sources = way.segments.iter().map(|&id| self.transition(id).source).collect();
@@ -123,6 +124,15 @@ impl<'c> Stepper<'c> {
                 self.follow(&way, rest, accept)
             }
         }
+    }
+
+    /// Whether something is true of some complete way, whatever chance would say.
+    pub(super) fn any_way(&mut self, way: &Way, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+        let (chance, declared) = (self.chance.clone(), crate::oracle::chance::Freedom::Declared);
+        self.chance = crate::oracle::chance::Chance::new(declared);
+        let found = self.follow(way, open, accept);
+        self.chance = chance;
+        found
     }
 
     fn branch(&mut self, way: &Way, node: NodeId, rest: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
@@ -152,6 +162,25 @@ impl<'c> Stepper<'c> {
             })
         });
         found
+    }
+
+    /// The way through a JOIN is one of its first source; looked at once, it is one of whichever source completes.
+    fn is_offered(&self, join: NodeId, source: NodeId) -> bool {
+        let sources = self.incoming(join).into_iter().map(|id| self.transition(id).source);
+        self.semantics.eventless == Eventless::Once
+            || sources.min_by_key(|&node| self.position(node)) == Some(source)
+    }
+
+    /// Whether it is the way out of a JOIN at which all have arrived; its source is their AND.
+    pub(super) fn begins_at_join(&self, way: &Way) -> bool {
+        self.kind(self.transition(way.segments[0]).source) == NodeKind::Join
+    }
+
+    /// The AND that JOINs' sources lie in.
+    pub(super) fn joined_and(&self, join: NodeId) -> Option<NodeId> {
+        let sources: Vec<NodeId> = self.incoming(join).iter().map(|&id| self.transition(id).source).collect();
+        let together = self.semantics.join == Joining::Together;
+        (!together && !sources.is_empty()).then(|| self.lowest_around(&sources, |kind| kind == NodeKind::And))
     }
 
     pub(super) fn incoming(&self, node: NodeId) -> Vec<TransitionId> {
@@ -192,6 +221,9 @@ impl<'c> Stepper<'c> {
         if self.is_internal(way) {
             return way.sources[0];
         }
+        if let [vacated] = self.vacates(way)[..] {
+            return vacated;
+        }
         let targets = way.ends.iter().flat_map(|&end| self.final_targets(end));
         let all: Vec<NodeId> = way.sources.iter().copied().chain(targets).collect();
         self.lowest_around(&all, |kind| kind == NodeKind::Or)
@@ -206,9 +238,7 @@ impl<'c> Stepper<'c> {
     pub(super) fn vacates(&self, way: &Way) -> Vec<NodeId> {
         let [end] = way.ends[..] else { return vec![] };
         let around = if self.kind(end) == NodeKind::Join {
-            let sources: Vec<NodeId> =
-                self.incoming(end).iter().map(|&id| self.transition(id).source).collect();
-            self.lowest_around(&sources, |kind| kind == NodeKind::And)
+            self.joined_and(end).unwrap()
         } else if self.completes_ancestor(way, end) {
             end
         } else {
@@ -224,7 +254,8 @@ impl<'c> Stepper<'c> {
         self.semantics.ancestor == ActiveAncestor::Completed
             && !self.is_internal(way)
             && matches!(self.kind(end), NodeKind::Or | NodeKind::And)
-            && way.sources.iter().all(|&source| self.is_inside(source, end))
+            && way.sources.len() == 1
+            && self.is_inside(way.sources[0], end)
     }
 
     pub(super) fn child_towards(&self, outer: NodeId, inner: NodeId) -> NodeId {
