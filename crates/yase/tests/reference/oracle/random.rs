@@ -13,9 +13,6 @@ use crate::oracle::chance::Freedom;
 
 pub(crate) use points::{POINTS, Variant, differs_somewhere};
 
-/// Whether charts are made of everything there is, or only of what the machine runs so far.
-pub(crate) const WHOLE: bool = false;
-
 /// Random choices out of bytes; when they have run out, always the first.
 pub(crate) struct Choices<'a> {
     bytes: std::slice::Iter<'a, u8>,
@@ -60,10 +57,7 @@ impl Case {
     }
 
     fn from_choices(choices: &mut Choices<'_>) -> Case {
-        let (mut semantics, variant) = points::semantics(choices);
-        if !WHOLE {
-            semantics = points::run_so_far(semantics);
-        }
+        let (semantics, variant) = points::semantics(choices);
         let freedom = freedom(choices);
         let script = script(choices, &semantics);
         let mut maker =

@@ -19,7 +19,7 @@ impl Maker<'_, '_> {
         }
         for _ in 0..self.choices.pick(&[0, 0, 0, 1, 1, 2]) {
             let kinds = [NodeKind::Condition, NodeKind::Junction, NodeKind::Choice];
-            let kind = self.choices.pick(&kinds[..if self.has_choices() && super::WHOLE { 3 } else { 2 }]);
+            let kind = self.choices.pick(&kinds[..if self.has_choices() { 3 } else { 2 }]);
             self.named(composite, kind, "c");
         }
         self.around_ands(composite);
@@ -48,9 +48,6 @@ impl Maker<'_, '_> {
 
     /// FORK and JOIN, where there is an AND for them.
     fn around_ands(&mut self, composite: NodeId) {
-        if !super::WHOLE {
-            return;
-        }
         let and = |maker: &Self, node: NodeId| maker.chart.node(node).kind == NodeKind::And;
         let ands: Vec<NodeId> =
             self.chart.children(composite).iter().copied().filter(|&node| and(self, node)).collect();
@@ -64,9 +61,6 @@ impl Maker<'_, '_> {
 
     /// Points on the border of a composite, and its memory.
     fn borders(&mut self, composite: NodeId) {
-        if !super::WHOLE {
-            return;
-        }
         for (kind, prefix, percent) in [
             (NodeKind::ShallowHistory, "h", 15),
             (NodeKind::DeepHistory, "hh", 15),
@@ -117,7 +111,6 @@ impl Maker<'_, '_> {
     fn regions(&mut self, and: NodeId, depth: usize) {
         for _ in 0..2 + self.choices.below(2) {
             let kind = match self.choices.below(12) {
-                _ if !super::WHOLE => NodeKind::Or,
                 0 => NodeKind::Basic,
                 1 if depth < 3 && self.names < MANY => NodeKind::And,
                 _ => NodeKind::Or,

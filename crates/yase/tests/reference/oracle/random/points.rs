@@ -107,13 +107,3 @@ fn differs(semantics: Semantics, point: usize) -> bool {
 pub(crate) fn differs_somewhere(point: usize) -> bool {
     [Semantics::yase(), Semantics::uml(), Semantics::scxml()].into_iter().any(|it| differs(it, point))
 }
-
-/// `yase`, with those points that the machine looks at so far.
-pub(super) fn run_so_far(semantics: Semantics) -> Semantics {
-    let mut known = Semantics::yase();
-    if semantics.eventless == Eventless::Quiescent {
-        known.eventless = Eventless::Quiescent;
-    }
-    (known.delivery, known.deferral, known.limit) = (semantics.delivery, semantics.deferral, semantics.limit);
-    known
-}

@@ -109,7 +109,8 @@ impl Maker<'_, '_> {
         let text = format!("{} {}", self.guard(), self.slash_actions(40));
         self.connect(connector, first, &text);
         let second = self.choices.pick(&all);
-        let guard = match self.kind(connector) != NodeKind::Choice && self.choices.percent(10) {
+        let percent = if self.kind(connector) == NodeKind::Choice { 3 } else { 10 };
+        let guard = match self.choices.percent(percent) {
             true => self.guard(), // no way need be open
             false => String::new(),
         };
@@ -280,17 +281,6 @@ impl Maker<'_, '_> {
     fn is_legal(&self, source: NodeId, target: NodeId) -> bool {
         let same = self.parent(source) == self.parent(target);
         let owner = self.parent(target);
-        if !super::WHOLE {
-            let chart = &self.chart;
-            let inside = |node: NodeId, outer: NodeId| {
-                node == outer || chart.ancestors(node).any(|above| above == outer)
-            };
-            let common = chart.ancestors(source).find(|&above| target != above && inside(target, above));
-            let across = common.is_some_and(|common| chart.node(common).kind == NodeKind::And);
-            if across && !(inside(source, target) || inside(target, source)) {
-                return false;
-            }
-        }
         match self.kind(target) {
             _ if target == Statechart::ROOT => false,
             NodeKind::Start | NodeKind::Join => false,
@@ -313,14 +303,14 @@ impl Maker<'_, '_> {
     pub(super) fn weights(&mut self) {
         let nodes: Vec<NodeId> = self.chart.nodes().map(|(id, _)| id).collect();
         for node in nodes {
-            if !super::WHOLE {
-                return;
-            }
             let transitions = self.chart.transitions();
             let mut out: Vec<_> = transitions.filter(|(_, it)| it.source == node).map(|(id, _)| id).collect();
             out.retain(|&id| self.kind(self.chart.transition(id).target) != NodeKind::Join);
-            let fork = matches!(self.kind(node), NodeKind::Fork | NodeKind::EntryPoint);
-            if out.len() < 2 || fork || !self.choices.percent(10) {
+            // whether a draw is made behind a guard that is closed is left open
+            let first = is_state(self.kind(node))
+                || is_history(self.kind(node))
+                || matches!(self.kind(node), NodeKind::Start | NodeKind::Choice);
+            if out.len() < 2 || !first || !self.choices.percent(10) {
                 continue;
             }
             let shares: &[f64] = match out.len() {
