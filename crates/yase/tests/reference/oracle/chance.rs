@@ -34,6 +34,11 @@ impl Chance {
         self.weighted(&vec![1.0; options])
     }
 
+    /// Whether weights matter.
+    pub(crate) fn draws(&self) -> bool {
+        !matches!(self.freedom, Freedom::Declared)
+    }
+
     /// One of several options, in proportion to their weights.
     pub(crate) fn weighted(&mut self, weights: &[f64]) -> usize {
         if weights.len() < 2 {

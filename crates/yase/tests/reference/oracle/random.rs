@@ -5,7 +5,7 @@ mod points;
 mod wires;
 mod words;
 
-use yase::statechart::{NodeId, Statechart};
+use yase::statechart::{NodeId, NodeKind, Statechart};
 use yase::{EventMatching, Eventless, Firing, Joining, Semantics, TopicId};
 
 use crate::kit::script::{Input, Script};
@@ -37,6 +37,16 @@ impl<'a> Choices<'a> {
     }
 }
 
+/// The points that may differ from `yase` in a case that is compared.
+const SETTLED: [&str; 6] = [
+    "eventless quiescent",
+    "delivery explicit",
+    "deferral off",
+    "segments as modelled",
+    "one pool",
+    "timers of states",
+];
+
 /// A chart, what happens to it, and how it is read.
 #[derive(Clone)]
 pub(crate) struct Case {
@@ -54,6 +64,25 @@ impl Case {
         let length = 300 + (next(&mut state) % 2500) as usize;
         let bytes: Vec<u8> = (0..length).map(|_| (next(&mut state) >> 33) as u8).collect();
         Case::from_choices(&mut Choices::new(&bytes))
+    }
+
+    /// Whether machine and interpreter are held to each other on this case. They are not yet where they are known to read the
+    /// rules differently: under the points of `uml` and `scxml`, where segments with weights are drawn, where composites are
+    /// joined while something inside them can still step, and where a CHOICE may lead to TERMINATE.
+    pub(crate) fn is_settled(&self) -> bool {
+        let draws = self.chart.transitions().any(|(_, transition)| transition.weight.is_some());
+        let joins_composites = self.chart.transitions().any(|(_, transition)| {
+            let kind = |node| self.chart.node(node).kind;
+            kind(transition.target) == NodeKind::Join && kind(transition.source) != NodeKind::Basic
+        });
+        let has = |kind| self.chart.nodes().any(|(_, node)| node.kind == kind);
+        let ends_late = has(NodeKind::Choice) && has(NodeKind::Terminate);
+        let is_near_yase = match self.variant {
+            Variant::Profile(name) => name == "yase",
+            Variant::Flipped(name, point) => name == "yase" && SETTLED.contains(&POINTS[point].0),
+            Variant::Mixed => false,
+        };
+        is_near_yase && !ends_late && !joins_composites && (self.freedom == Freedom::Declared || !draws)
     }
 
     fn from_choices(choices: &mut Choices<'_>) -> Case {

@@ -60,7 +60,7 @@ impl<'c> Stepper<'c> {
         self.kind(around) == NodeKind::And && out.len() > 1 && plain && regions.len() == out.len()
     }
 
-    /// Tries segments in their order; those with weights are drawn, at the place of the first of them.
+    /// Tries segments in their order. Those with weights are drawn, at the place of the first of them, if there is a draw.
     pub(super) fn try_each(
         &mut self,
         list: &[TransitionId],
@@ -70,6 +70,7 @@ impl<'c> Stepper<'c> {
         for &id in list {
             let taken = match self.transition(id).weight {
                 None => attempt(self, id),
+                Some(_) if !self.chance.draws() => attempt(self, id),
                 Some(_) if drawn => false,
                 Some(_) => {
                     drawn = true;
