@@ -66,6 +66,15 @@ impl Case {
         Case::from_choices(&mut Choices::new(&bytes))
     }
 
+    /// The first settled case of the hundred of that number.
+    #[allow(dead_code)] // of the three that play cases two ask for it
+    pub(crate) fn settled_near(number: u64) -> Case {
+        let mut cases = (number * 100..number * 100 + 100).map(Case::numbered);
+        cases
+            .find(Case::is_settled)
+            .unwrap_or_else(|| panic!("none of a hundred cases from {number}00 is settled"))
+    }
+
     /// Whether machine and interpreter are held to each other on this case. They are not yet where they are known to read the
     /// rules differently: under the points of `uml` and `scxml`, where segments with weights are drawn, where composites are
     /// joined while something inside them can still step, and where a CHOICE may lead to TERMINATE.
