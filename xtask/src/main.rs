@@ -1,9 +1,11 @@
 //! The project's own chores, started with `cargo xtask NAME`. Each is a module; none is needed to use Monas.
 //!
 //! - `tidy` holds the house to what ARCHITECTURE.md and STYLE.md promise.
+//! - `faults` puts classic faults into the engine, one at a time, and requires that the tests catch them.
 //! - `season` plays a season and writes its golden table; with `--check` it compares.
 //! - `picture` draws the match that README.md shows.
 
+mod faults;
 mod play;
 mod tidy;
 
@@ -14,6 +16,7 @@ const USAGE: &str = "\
 cargo xtask NAME
 
   tidy            check layers, absences, dependencies, texts and documents
+  faults          put classic faults into a copy and see that the tests catch each
   season          play a season and write its golden table (tests/golden)
   season --check  play a season and compare it with its golden table
   picture         draw docs/match.svg";
@@ -23,6 +26,7 @@ fn main() -> ExitCode {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let result = match arguments[..] {
         ["tidy"] => tidy::run(&root()),
+        ["faults"] => faults::run(&root()),
         ["season"] => play::season(&root(), &[]),
         ["season", "--check"] => play::season(&root(), &["--check"]),
         ["picture"] => play::season(&root(), &["picture", "docs/match.svg"]),

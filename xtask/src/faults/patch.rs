@@ -1,0 +1,111 @@
+//! A fault as a file: prose, `Rule:`, one `Caught by:` for each test, and unified diffs.
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+
+/// A fault that can be put into the sources.
+pub(super) struct Fault {
+    pub(super) name: String,
+    /// The rule that it breaks.
+    pub(super) rule: String,
+    /// The tests that see it.
+    pub(super) tests: Vec<Test>,
+    /// The file of each diff, and the diff.
+    pub(super) diffs: Vec<(String, String)>,
+}
+
+/// A test that sees a fault.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(super) struct Test {
+    /// What cargo is told to find the program that it is in, as in `-p yase --test rules`.
+    pub(super) program: String,
+    /// Its whole name there.
+    pub(super) name: String,
+}
+
+/// All faults of a folder, by name.
+pub(super) fn read(folder: &Path) -> Result<Vec<Fault>, Box<dyn Error>> {
+    let mut faults = Vec::new();
+    for entry in fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|extension| extension == "patch") {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            faults.push(parse(name, &fs::read_to_string(&path)?)?);
+        }
+    }
+    faults.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(faults)
+}
+
+fn parse(name: String, text: &str) -> Result<Fault, String> {
+    let mut fault = Fault { name, rule: String::new(), tests: Vec::new(), diffs: Vec::new() };
+    for line in text.split_inclusive('\n') {
+        if let Some(file) = line.strip_prefix("--- a/") {
+            fault.diffs.push((file.trim().to_owned(), line.to_owned()));
+        } else if let Some((_, diff)) = fault.diffs.last_mut() {
+            diff.push_str(line);
+        } else if let Some(rule) = line.strip_prefix("Rule: ") {
+            fault.rule = rule.trim().to_owned();
+        } else if let Some(test) = line.strip_prefix("Caught by: ") {
+            let test = test.trim().rsplit_once(' ');
+            let (program, name) =
+                test.ok_or_else(|| format!("{}: a test is its program and its name", fault.name))?;
+            fault.tests.push(Test { program: program.to_owned(), name: name.to_owned() });
+        }
+    }
+    let missing = [
+        ("a rule", fault.rule.is_empty()),
+        ("tests", fault.tests.is_empty()),
+        ("a diff", fault.diffs.is_empty()),
+    ];
+    match missing.iter().find(|(_, is_missing)| *is_missing) {
+        Some((what, _)) => Err(format!("{}: it names no {}", fault.name, what.trim_start_matches("a "))),
+        None => Ok(fault),
+    }
+}
+
+/// The files that a fault changes, with the fault in them.
+pub(super) fn apply(
+    fault: &Fault,
+    read: impl Fn(&str) -> Result<String, Box<dyn Error>>,
+) -> Result<BTreeMap<String, String>, Box<dyn Error>> {
+    let mut files = BTreeMap::new();
+    for (file, diff) in &fault.diffs {
+        let sound = read(file).map_err(|error| format!("{}: {file}: {error}", fault.name))?;
+        let patch = diffy::Patch::from_str(diff).map_err(|error| format!("{}: {error}", fault.name))?;
+        let broken = diffy::apply(&sound, &patch)
+            .map_err(|error| format!("{} does not fit {file} any more: {error}", fault.name))?;
+        files.insert(file.clone(), broken);
+    }
+    Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "Prose.\n\nRule: R1\nCaught by: -p yase --test rules a::b\n\n--- a/x.rs\n+++ b/x.rs\n@@ -1,2 +1,2 @@\n one\n-two\n+three\n";
+
+    #[test]
+    fn a_patch_has_a_header_and_diffs() {
+        let fault = parse("f".into(), TEXT).unwrap();
+        assert_eq!(fault.rule, "R1");
+        assert_eq!(
+            (fault.tests[0].program.as_str(), fault.tests[0].name.as_str()),
+            ("-p yase --test rules", "a::b")
+        );
+        let files = apply(&fault, |_| Ok("one\ntwo\n".into())).unwrap();
+        assert_eq!(files["x.rs"], "one\nthree\n");
+    }
+
+    #[test]
+    fn what_does_not_fit_or_is_not_whole_is_refused() {
+        let fault = parse("f".into(), TEXT).unwrap();
+        assert!(apply(&fault, |_| Ok("one\n2\n".into())).is_err());
+        assert!(parse("f".into(), &TEXT.replace("Rule", "Role")).is_err());
+        assert!(parse("f".into(), &TEXT.replace("Caught", "Seen")).is_err());
+        assert!(parse("f".into(), "Rule: R1\nCaught by: -p yase a\n").is_err());
+    }
+}
