@@ -1,9 +1,12 @@
 //! Sets of small numbers, one bit each.
 
-/// A set of numbers below a capacity that is fixed when it is made. Numbers beyond it are never members.
+/// A set of numbers below a capacity that is fixed when it is made, rounded up to a word. Numbers beyond it are never members.
+///
+/// The first word stands in the set itself: most charts have no more than 64 nodes.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub(crate) struct BitSet {
-    words: Box<[u64]>,
+    first: u64,
+    rest: Box<[u64]>,
 }
 
 const BITS: usize = u64::BITS as usize;
@@ -11,61 +14,75 @@ const BITS: usize = u64::BITS as usize;
 impl BitSet {
     /// The empty set of numbers below `capacity`.
     pub(crate) fn new(capacity: usize) -> BitSet {
-        BitSet { words: vec![0; capacity.div_ceil(BITS)].into_boxed_slice() }
+        let rest = capacity.div_ceil(BITS).saturating_sub(1);
+        BitSet { first: 0, rest: vec![0; rest].into_boxed_slice() }
     }
 
     #[inline]
     pub(crate) fn insert(&mut self, number: usize) {
-        if let Some(word) = self.words.get_mut(number / BITS) {
+        if number < BITS {
+            self.first |= 1 << number;
+        } else if let Some(word) = self.rest.get_mut(number / BITS - 1) {
             *word |= 1 << (number % BITS);
         }
     }
 
     #[inline]
     pub(crate) fn remove(&mut self, number: usize) {
-        if let Some(word) = self.words.get_mut(number / BITS) {
+        if number < BITS {
+            self.first &= !(1 << number);
+        } else if let Some(word) = self.rest.get_mut(number / BITS - 1) {
             *word &= !(1 << (number % BITS));
         }
     }
 
     #[inline]
     pub(crate) fn contains(&self, number: usize) -> bool {
-        self.words.get(number / BITS).is_some_and(|word| word >> (number % BITS) & 1 == 1)
+        self.word(number / BITS) >> (number % BITS) & 1 == 1
     }
 
+    #[inline]
     pub(crate) fn clear(&mut self) {
-        self.words.fill(0);
+        self.first = 0;
+        self.rest.fill(0);
     }
 
     /// Whether there is no member.
     #[inline]
     pub(crate) fn is_empty(&self) -> bool {
-        self.words.iter().all(|&word| word == 0)
+        self.first == 0 && self.rest.iter().all(|&word| word == 0)
     }
 
     /// Whether the sets have a member in common.
     #[inline]
     pub(crate) fn meets(&self, other: &BitSet) -> bool {
-        self.words.iter().zip(&other.words).any(|(one, other)| one & other != 0)
+        self.first & other.first != 0
+            || self.rest.iter().zip(&other.rest).any(|(one, other)| one & other != 0)
     }
 
     /// The members below 64, as the bits of a word.
     #[inline]
     pub(crate) fn first_word(&self) -> u64 {
-        self.words.first().copied().unwrap_or(0)
+        self.first
+    }
+
+    #[inline]
+    fn word(&self, index: usize) -> u64 {
+        match index.checked_sub(1) {
+            None => self.first,
+            Some(index) => self.rest.get(index).copied().unwrap_or(0),
+        }
     }
 
     /// Replaces the members below 64.
     #[inline]
     pub(crate) fn set_first_word(&mut self, bits: u64) {
-        if let Some(word) = self.words.first_mut() {
-            *word = bits;
-        }
+        self.first = bits;
     }
 
     /// The least member from `from` to `last`, both included.
     pub(crate) fn next(&self, from: usize, last: usize) -> Option<usize> {
-        first_bit(from, last, |index| self.words.get(index).copied().unwrap_or(0))
+        first_bit(from, last, |index| self.word(index))
     }
 
     /// The greatest member from `first` to `last`, both included.
@@ -74,13 +91,13 @@ impl BitSet {
             return None;
         }
         let mut index = last / BITS;
-        let mut bits = self.words.get(index).copied().unwrap_or(0) & (u64::MAX >> (BITS - 1 - last % BITS));
+        let mut bits = self.word(index) & (u64::MAX >> (BITS - 1 - last % BITS));
         while bits == 0 {
             if index <= first / BITS {
                 return None;
             }
             index -= 1;
-            bits = self.words.get(index).copied().unwrap_or(0);
+            bits = self.word(index);
         }
         let number = index * BITS + BITS - 1 - bits.leading_zeros() as usize;
         (number >= first).then_some(number)
@@ -88,19 +105,18 @@ impl BitSet {
 
     /// Becomes equal to a set of the same capacity.
     pub(crate) fn copy_from(&mut self, other: &BitSet) {
-        self.words.copy_from_slice(&other.words);
+        self.first = other.first;
+        self.rest.copy_from_slice(&other.rest);
     }
 
     /// The least member from `from` to `last` that is not in `without`.
     pub(crate) fn next_without(&self, without: &BitSet, from: usize, last: usize) -> Option<usize> {
-        let word = |set: &BitSet, index: usize| set.words.get(index).copied().unwrap_or(0);
-        first_bit(from, last, |index| word(self, index) & !word(without, index))
+        first_bit(from, last, |index| self.word(index) & !without.word(index))
     }
 
     /// The least number from `from` to `last` that is in both sets.
     pub(crate) fn next_common(&self, other: &BitSet, from: usize, last: usize) -> Option<usize> {
-        let word = |set: &BitSet, index: usize| set.words.get(index).copied().unwrap_or(0);
-        first_bit(from, last, |index| word(self, index) & word(other, index))
+        first_bit(from, last, |index| self.word(index) & other.word(index))
     }
 
     /// The least number from `from` to `last` that is in this set and `other`, but not in `without`.
@@ -111,8 +127,7 @@ impl BitSet {
         from: usize,
         last: usize,
     ) -> Option<usize> {
-        let word = |set: &BitSet, index: usize| set.words.get(index).copied().unwrap_or(0);
-        first_bit(from, last, |index| word(self, index) & word(other, index) & !word(without, index))
+        first_bit(from, last, |index| self.word(index) & other.word(index) & !without.word(index))
     }
 
     /// Whether some member lies from `first` to `last`, both included.

@@ -23,7 +23,7 @@ use crate::semantics::{EventMatching, Semantics};
 use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 use crate::vocabulary::{TopicId, Vocabulary};
 
-pub(crate) use direct::{Direct, DirectPlace, DirectWay};
+pub(crate) use direct::{Direct, DirectActions, DirectPlace, DirectWay};
 pub(crate) use events::Trigger;
 pub(crate) use layout::{Layout, Place};
 pub use scripts::{ScriptEntry, ScriptPlace};

@@ -94,8 +94,12 @@ pub enum MicroStep {
 
 /// Why a machine stopped by itself.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("{text}")]
-pub struct MachineError {
+#[error("{}", .0.text)]
+pub struct MachineError(Box<Fatality>);
+
+/// What is known of it. It stands apart, so that a step that goes well hands back little.
+#[derive(Clone, PartialEq, Eq, Debug)]
+struct Fatality {
     kind: MachineErrorKind,
     cycle: Box<[TransitionId]>,
     node: Option<NodeId>,
@@ -117,17 +121,17 @@ pub enum MachineErrorKind {
 impl MachineError {
     /// What kind of error it is.
     pub fn kind(&self) -> MachineErrorKind {
-        self.kind
+        self.0.kind
     }
 
     /// The CHOICE without an open way.
     pub fn node(&self) -> Option<NodeId> {
-        self.node
+        self.0.node
     }
 
     /// The segments that were taken again and again.
     pub fn cycle(&self) -> &[TransitionId] {
-        &self.cycle
+        &self.0.cycle
     }
 }
 
@@ -259,7 +263,11 @@ impl Machine {
         now: Moment,
         host: &mut impl Host,
     ) -> Result<StepSummary, MachineError> {
-        if self.advance_to(now) { self.step(host).run() } else { Ok(StepSummary::default()) }
+        if self.advance_to(now) {
+            direct::run(&self.chart, &mut self.run, host)
+        } else {
+            Ok(StepSummary::default())
+        }
     }
 
     /// Makes one micro-step of a run-to-completion step: the first, or the next of the step that is under way. The call that finds

@@ -146,7 +146,7 @@ impl Builder<'_> {
         let direct_ways =
             direct::Ways { branches: &self.branches, triggers: &triggers, compounds: &self.compounds };
         Ok(Chart {
-            direct: Direct::new(self.chart, &self.semantics, &states, &direct_ways),
+            direct: Direct::new(self.chart, &self.semantics, &self.layout, &states, &direct_ways),
             masks: masks(&states, self.semantics.eventless),
             reads: self.reads(&triggers),
             sources: self.sources(&states, &triggers),

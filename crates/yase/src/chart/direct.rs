@@ -7,10 +7,12 @@
 
 use std::ops::Range;
 
-use crate::chart::{Branch, Branches, Compound, CompoundId, Condition, Entries, Place, State, Trigger};
-use crate::expression::EventId;
+use crate::chart::{
+    Branch, Branches, Compound, CompoundId, Condition, Entries, Layout, Place, RegionId, State, Trigger,
+};
+use crate::expression::{Effect, EventId, ScriptId};
 use crate::semantics::{Eventless, Semantics};
-use crate::statechart::{NodeKind, Statechart};
+use crate::statechart::{NodeId, NodeKind, Statechart};
 
 /// So many places fit into one word.
 const PLACES: usize = u64::BITS as usize;
@@ -24,10 +26,10 @@ pub(crate) struct Direct {
     pub(crate) sources: u64,
     /// The places without others inside.
     pub(crate) leaves: u64,
-    /// The places that are entered without more than their actions.
-    pub(crate) plain: u64,
     pub(crate) places: Box<[DirectPlace]>,
     pub(crate) ways: Box<[DirectWay]>,
+    /// What the ways enter.
+    pub(crate) entries: Box<[Place]>,
 }
 
 /// One place.
@@ -36,7 +38,34 @@ pub(crate) struct DirectPlace {
     /// Itself and all places inside.
     pub(crate) inside: u64,
     /// Its ways out, in the order in which they are tried.
-    pub(crate) ways: Range<usize>,
+    pub(crate) ways: Range<u32>,
+    pub(crate) node: NodeId,
+    pub(crate) region: RegionId,
+    pub(crate) exit: DirectActions,
+    pub(crate) entry: DirectActions,
+    /// Whether it is entered without more than its actions.
+    pub(crate) is_plain: bool,
+}
+
+/// What is done at the entry or the exit of a state.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum DirectActions {
+    /// Nothing.
+    None,
+    /// One action, which is the host's.
+    Script(ScriptId),
+    /// Others.
+    Others,
+}
+
+impl From<&[Effect]> for DirectActions {
+    fn from(effects: &[Effect]) -> DirectActions {
+        match effects {
+            [] => DirectActions::None,
+            [Effect::Script { script }] => DirectActions::Script(*script),
+            _ => DirectActions::Others,
+        }
+    }
 }
 
 /// One way out of a state.
@@ -50,7 +79,8 @@ pub(crate) struct DirectWay {
     pub(crate) exits: u64,
     /// Whether it has actions of its own.
     pub(crate) acts: bool,
-    pub(crate) entries: Box<[Place]>,
+    /// The places it enters, in [`Direct::entries`].
+    pub(crate) entries: Range<u32>,
     /// Its place in the order of firing.
     pub(crate) key: u64,
 }
@@ -60,6 +90,7 @@ impl Direct {
     pub(super) fn new(
         chart: &Statechart,
         semantics: &Semantics,
+        layout: &Layout,
         states: &[State],
         ways: &Ways<'_>,
     ) -> Option<Direct> {
@@ -70,32 +101,37 @@ impl Direct {
             detours: 0,
             sources: 0,
             leaves: 0,
-            plain: 0,
             places: Box::default(),
             ways: Box::default(),
+            entries: Box::default(),
         };
-        let (mut places, mut found): (Vec<DirectPlace>, Vec<DirectWay>) = (Vec::new(), Vec::new());
+        let (mut places, mut found) = (Vec::<DirectPlace>::new(), Found::default());
         for (place, state) in states.iter().enumerate() {
-            let (bit, first) = (1 << place, found.len());
+            let (bit, first) = (1 << place, found.ways.len());
             let rests = state.kind == NodeKind::Start; // whether it waits there is told at the end of a step
             if rests
                 || state.activity.is_some()
                 || !state.eventless.is_empty()
                 || !ways.append(state.triggered, &mut found)
             {
-                found.truncate(first);
+                found.ways.truncate(first);
                 direct.detours |= bit;
             }
-            if found.len() > first {
+            if found.ways.len() > first {
                 direct.sources |= bit;
             }
             if !matches!(state.kind, NodeKind::Or | NodeKind::And) {
                 direct.leaves |= bit;
             }
-            if state.activity.is_none() && !state.is_region && !state.finishes {
-                direct.plain |= bit;
-            }
-            places.push(DirectPlace { inside: bit, ways: first..found.len() });
+            places.push(DirectPlace {
+                inside: bit,
+                ways: first as u32..found.ways.len() as u32,
+                node: layout.node(Place(place as u32)),
+                region: state.region,
+                exit: DirectActions::from(&*state.exit),
+                entry: DirectActions::from(&*state.entry),
+                is_plain: state.activity.is_none() && !state.is_region && !state.finishes,
+            });
         }
         // children stand before their parents
         for place in 0..states.len() {
@@ -103,7 +139,8 @@ impl Direct {
                 places[parent.index()].inside |= places[place].inside;
             }
         }
-        (direct.places, direct.ways) = (places.into(), found.into());
+        (direct.places, direct.ways, direct.entries) =
+            (places.into(), found.ways.into(), found.entries.into());
         Some(direct)
     }
 }
@@ -123,6 +160,13 @@ fn has_known_kinds_only(chart: &Statechart) -> bool {
         && chart.transitions().all(|(_, transition)| transition.weight.is_none())
 }
 
+/// The ways that have been found to be direct.
+#[derive(Default)]
+struct Found {
+    ways: Vec<DirectWay>,
+    entries: Vec<Place>,
+}
+
 /// The ways of a chart.
 pub(super) struct Ways<'a> {
     pub(super) branches: &'a [Branch],
@@ -132,7 +176,7 @@ pub(super) struct Ways<'a> {
 
 impl Ways<'_> {
     /// Appends the ways of a state; false if some is more than a segment with a trigger that names its events.
-    fn append(&self, range: Branches, found: &mut Vec<DirectWay>) -> bool {
+    fn append(&self, range: Branches, found: &mut Found) -> bool {
         for branch in &self.branches[range.start..range.end] {
             let (Condition::Trigger(trigger), Some(id)) = (branch.condition, branch.compound) else {
                 return false;
@@ -142,14 +186,17 @@ impl Ways<'_> {
             else {
                 return false;
             };
-            found.extend(events.iter().map(|&event| DirectWay {
+            let first = found.entries.len() as u32;
+            found.entries.extend_from_slice(entries);
+            let entries = first..found.entries.len() as u32;
+            found.ways.extend(events.iter().map(|&event| DirectWay {
                 event,
                 guard: branch.guard.map(|guard| guard as u32),
                 compound: id,
                 source: 1 << compound.source.0,
                 exits,
                 acts: !compound.effects.is_empty(),
-                entries: entries.into(),
+                entries: entries.clone(),
                 key: compound.key,
             }));
         }

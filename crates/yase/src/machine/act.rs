@@ -36,7 +36,7 @@ impl<H: Host> Step<'_, H> {
     }
 
     #[cold]
-    fn action_failed(&mut self, place: ActionPlace, index: usize, error: &ActionError) {
+    pub(super) fn action_failed(&mut self, place: ActionPlace, index: usize, error: &ActionError) {
         self.run.raise(self.chart, self.chart.errors.action, true, 0);
         self.host.report(self.chart, Report::ActionFailed { place, index, error });
     }

@@ -44,10 +44,11 @@ impl Bound {
         self.micro_steps < limit.get()
     }
 
-    /// A step that does something: whether there may be one more at this moment.
-    pub(super) fn allows_step(&mut self, limit: NonZeroU32) -> bool {
-        self.steps = self.steps.saturating_add(1);
-        self.steps <= limit.get()
+    /// A step that does something: counts it, if there may be one more at this moment.
+    pub(super) fn admits_step(&mut self, limit: NonZeroU32) -> bool {
+        let may = self.steps < limit.get();
+        self.steps += u32::from(may);
+        may
     }
 
     pub(super) fn remember(&mut self, compound: CompoundId) {

@@ -1,147 +1,370 @@
 //! The short way of a step.
 //!
-//! It does what selecting and firing do, for steps in which most of that has nothing to do: nobody traces, no activity runs, nothing is held,
-//! deferred, raised or pending, and out of the active states lead only ways that are direct (see `chart::Direct`). When one of these does not
-//! hold, the step goes on the long way, from where it is.
+//! It does what a step does where most of that has nothing to do: no activity runs, nothing is held, deferred, raised or pending, no timer
+//! is due, and out of the active states lead only ways that are direct (see `chart::Direct`). When one of these does not hold, the step goes
+//! on the long way, from where it is.
+//!
+//! All it works with stands in the values of one struct, which are never lent as a whole: so the compiler keeps them in registers. What is
+//! seldom done is a call of the long way's own.
 
-use crate::chart::{Direct, DirectPlace, DirectWay, Owner, Place};
-use crate::expression::EventId;
-use crate::host::{ActionPlace, Host};
-use crate::machine::Status;
+use crate::chart::{Chart, Direct, DirectActions, DirectPlace, DirectWay, Owner, Place, RegionId};
+use crate::expression::{EventId, ScriptId};
+use crate::host::{ActionError, ActionPlace, Host};
 use crate::machine::act::Scene;
-use crate::machine::errors::Fault;
+use crate::machine::queues::Occurrence;
+use crate::machine::run::Run;
+use crate::machine::script::Performance;
 use crate::machine::step::Step;
+use crate::machine::view::View;
+use crate::machine::{MachineError, Status, StepSummary};
+use crate::semantics::Delivery;
+use crate::trace::Occasion;
 
-impl<'a, H: Host> Step<'a, H> {
-    /// Takes arrived events the short way, as long as it serves. Says whether the chart is at rest then.
-    #[inline]
-    pub(super) fn take_directly(&mut self) -> Result<bool, Fault> {
-        let Some(direct) = &self.chart.direct else { return Ok(false) };
-        if self.run.log.wanted || self.run.failure.is_some() {
-            return Ok(false);
+/// A step on the short way.
+pub(super) struct ShortStep<'a, H> {
+    chart: &'a Chart,
+    direct: &'a Direct,
+    run: &'a mut Run,
+    host: &'a mut H,
+    micro_steps: u32,
+    transitions: u32,
+}
+
+/// Makes a run-to-completion step, on the short way as far as that leads.
+#[inline]
+pub(super) fn run<H: Host>(chart: &Chart, run: &mut Run, host: &mut H) -> Result<StepSummary, MachineError> {
+    match &chart.direct {
+        Some(direct) if run.can_begin_directly(direct) => {
+            let traced = host.wants_trace();
+            run.log.wanted = traced;
+            let short = ShortStep { chart, direct, run, host, micro_steps: 0, transitions: 0 };
+            // apart, so that what is not traced does not look at each turn whether it is
+            if traced { short.run_traced() } else { short.run::<false>() }
         }
-        while self.serves(direct) {
-            let Some(&occurrence) = self.run.queues.first_arrived() else { return Ok(true) };
-            self.admit()?;
-            self.host.offered(occurrence.event, occurrence.is_known, occurrence.token);
-            self.choose(direct, occurrence.event);
-            self.run.queues.next_arrived();
-            if self.run.selection.ways.is_empty() {
-                self.run.selection.clear();
-                self.keep(occurrence);
-            } else {
-                self.fire_directly(direct);
-            }
-        }
-        Ok(false)
+        _ => Step::new(chart, run, host).run(),
+    }
+}
+
+impl Run {
+    /// Whether a new step has nothing to do but to offer events.
+    #[inline(always)]
+    fn can_begin_directly(&self, direct: &Direct) -> bool {
+        self.goes_on_directly(direct)
+            && self.under_way.is_none()
+            && self.failure.is_none()
+            && self.newcomers.is_empty()
+            && self.timers.next_deadline().is_none_or(|next| next > self.now)
     }
 
     /// States with activities, and those that may go on without an event, are detours: so nothing runs, and nothing waits but events.
     #[inline(always)]
-    fn serves(&self, direct: &Direct) -> bool {
-        let run = &*self.run;
-        run.active.first_word() & direct.detours == 0
-            && run.queues.only_arrived_wait()
-            && run.pending.is_empty()
-            && run.status == Status::Running
+    fn goes_on_directly(&self, direct: &Direct) -> bool {
+        self.active.first_word() & direct.detours == 0
+            && self.queues.only_arrived_wait()
+            && self.pending.is_empty()
+            && self.status == Status::Running
+    }
+}
+
+impl<H: Host> ShortStep<'_, H> {
+    #[inline(never)]
+    fn run_traced(self) -> Result<StepSummary, MachineError> {
+        self.run::<true>()
     }
 
-    /// Selects transitions: from the innermost states outward, not where all that is active inside has found one, and none that leaves
-    /// what an earlier one leaves.
     #[inline(always)]
-    fn choose(&mut self, direct: &'a Direct, event: EventId) {
-        let active = self.run.active.first_word();
-        let (mut closed, mut left, mut last_key, mut in_order) = (0, 0, 0, true);
-        self.run.selection.ways.clear();
-        let mut sources = active & direct.sources;
-        while sources != 0 {
-            let place = &direct.places[sources.trailing_zeros() as usize];
-            sources &= sources - 1;
-            let open = active & direct.leaves & place.inside & !closed;
-            let Some(index) = self.open_way_for(direct, place, open, event) else { continue };
-            let way = &direct.ways[index];
-            closed |= place.inside;
-            if way.exits & left == 0 {
-                left |= way.exits;
-                in_order &= last_key <= way.key;
-                last_key = way.key;
-                self.run.selection.ways.push(index);
+    fn run<const TRACED: bool>(mut self) -> Result<StepSummary, MachineError> {
+        if TRACED {
+            self.run.log.clear();
+        }
+        self.run.due = false;
+        self.run.bound.begin(self.run.now);
+        if self.chart.semantics_ref().delivery == Delivery::EachStep {
+            self.deliver();
+        }
+        while self.run.goes_on_directly(self.direct) {
+            let Some(&occurrence) = self.run.queues.first_arrived() else { return Ok(self.finish()) };
+            if !self.admit() {
+                break;
+            }
+            self.host.offered(occurrence.event, occurrence.is_known, occurrence.token);
+            self.offer::<TRACED>(occurrence);
+        }
+        self.long_way().run_on()
+    }
+
+    #[inline(always)]
+    fn summary(&self) -> StepSummary {
+        StepSummary { micro_steps: self.micro_steps, transitions: self.transitions, started: 0 }
+    }
+
+    /// The same step on the long way.
+    #[inline(always)]
+    fn long_way(&mut self) -> Step<'_, H> {
+        let summary = self.summary();
+        Step { chart: self.chart, run: self.run, host: self.host, summary }
+    }
+
+    /// Of a host without messages the compiler leaves nothing here.
+    #[inline(always)]
+    fn deliver(&mut self) {
+        if !self.run.erred.is_empty() {
+            return self.long_way().deliver_to_all();
+        }
+        for (index, region) in self.chart.regions.iter().enumerate() {
+            if self.run.is_active(region.root) {
+                self.host.deliver(RegionId(index as u32));
             }
         }
-        if !in_order {
-            self.run.selection.ways.sort_unstable_by_key(|&index| direct.ways[index].key);
+    }
+
+    #[inline(always)]
+    fn finish(mut self) -> StepSummary {
+        if !self.run.written.is_empty() {
+            self.publish();
         }
+        self.summary()
     }
 
-    /// The first way out of a state that an event opens, if something active inside has found none yet.
-    #[inline(always)]
-    fn open_way_for(
-        &mut self,
-        direct: &Direct,
-        place: &DirectPlace,
-        open: u64,
-        event: EventId,
-    ) -> Option<usize> {
-        place.ways.clone().find(|&index| {
-            let way = &direct.ways[index];
-            way.event == event && open != 0 && way.guard.is_none_or(|guard| self.holds(guard as usize))
-        })
+    #[inline(never)]
+    fn publish(&mut self) {
+        self.long_way().publish_written();
     }
 
-    /// A way whose source another has left is not taken, nor one after the end.
+    /// Counts one more micro-step, if there may be one: what stands in the way is for the long way to say.
     #[inline(always)]
-    fn fire_directly(&mut self, direct: &Direct) {
-        let mut index = 0;
-        while let Some(&number) = self.run.selection.ways.get(index) {
-            let way = &direct.ways[number];
-            if self.run.active.first_word() & way.source != 0 && self.run.status == Status::Running {
-                self.count_fired(way.compound);
-                self.go(direct, way);
-            }
-            index += 1;
+    fn admit(&mut self) -> bool {
+        let (limit, bound) = (self.chart.semantics_ref().limit, &mut self.run.bound);
+        if !bound.allows_micro_step(limit) || (self.micro_steps == 0 && !bound.admits_step(limit)) {
+            return false;
+        }
+        bound.count_micro_step();
+        self.micro_steps += 1;
+        true
+    }
+
+    /// Offers an event. Most lead to one transition, which happens without a list.
+    #[inline(always)]
+    fn offer<const TRACED: bool>(&mut self, occurrence: Occurrence) {
+        let mut search = Search::new(self.run.active.first_word(), self.direct);
+        let first = self.next_way::<TRACED>(&mut search, occurrence.event);
+        self.run.queues.next_arrived();
+        if TRACED {
+            self.run.selection.clear();
+        }
+        let Some(first) = first else { return self.keep(occurrence) };
+        match self.next_way::<TRACED>(&mut search, occurrence.event) {
+            None => self.fire::<TRACED>(first),
+            Some(second) => self.fire_several::<TRACED>(search, [first, second], occurrence.event),
         }
         let active = self.run.active.first_word();
-        self.run.tips.set_first_word(active & direct.leaves);
+        self.run.tips.set_first_word(active & self.direct.leaves);
+        if TRACED {
+            self.long_way().emit(Occasion::Event(occurrence.event), None);
+            self.run.log.clear();
+        }
+    }
+
+    #[inline(never)]
+    fn keep(&mut self, occurrence: Occurrence) {
+        self.run.selection.clear();
+        let mut step = self.long_way();
+        let deferred = step.keep(occurrence);
+        step.emit(Occasion::Event(occurrence.event), deferred);
+        self.run.log.clear();
+    }
+
+    /// The next transition that the event enables: from the innermost states outward, not where all that is active inside has found one.
+    #[inline(always)]
+    fn next_way<const TRACED: bool>(&mut self, search: &mut Search, event: EventId) -> Option<u32> {
+        while search.sources != 0 {
+            let place = &self.direct.places[search.sources.trailing_zeros() as usize];
+            search.sources &= search.sources - 1;
+            if search.open & place.inside == 0 {
+                continue;
+            }
+            let (first, last) = (place.ways.start, place.ways.end);
+            for index in first..last {
+                let way = &self.direct.ways[index as usize];
+                if way.event == event && way.guard.is_none_or(|guard| self.holds::<TRACED>(guard)) {
+                    search.open &= !place.inside;
+                    return Some(index);
+                }
+            }
+        }
+        None
     }
 
     #[inline(always)]
-    fn go(&mut self, direct: &Direct, way: &DirectWay) {
+    fn holds<const TRACED: bool>(&mut self, guard: u32) -> bool {
+        if !TRACED && self.run.erred.is_empty() {
+            let scoped = &self.chart.guards[guard as usize];
+            let view = View { chart: self.chart, run: self.run, host: self.host, region: scoped.region };
+            if let Ok(value) = scoped.guard.evaluate(&view) {
+                return value;
+            }
+        }
+        self.long_way().holds(guard as usize)
+    }
+
+    /// Of transitions that leave the same state, the one that was found first fires; all that do, in the order that is meant, but not one whose
+    /// source another has left, nor one after the end.
+    #[inline(never)]
+    fn fire_several<const TRACED: bool>(&mut self, mut search: Search, found: [u32; 2], event: EventId) {
+        let mut chosen = Chosen::default();
+        found.into_iter().for_each(|index| self.choose::<TRACED>(&mut chosen, index));
+        while let Some(index) = self.next_way::<TRACED>(&mut search, event) {
+            self.choose::<TRACED>(&mut chosen, index);
+        }
+        let direct = self.direct;
+        let ways = &mut chosen.ways[..chosen.count];
+        if !chosen.in_order {
+            ways.sort_unstable_by_key(|&index| direct.ways[index as usize].key);
+        }
+        for &index in ways.iter() {
+            let source = direct.ways[index as usize].source;
+            if self.run.active.first_word() & source != 0 && self.run.status == Status::Running {
+                self.fire::<TRACED>(index);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn choose<const TRACED: bool>(&mut self, chosen: &mut Chosen, index: u32) {
+        let way = &self.direct.ways[index as usize];
+        if way.exits & chosen.left == 0 {
+            chosen.left |= way.exits;
+            chosen.in_order &= chosen.last_key <= way.key;
+            chosen.last_key = way.key;
+            chosen.ways[chosen.count] = index;
+            chosen.count += 1;
+        } else if TRACED {
+            self.run.selection.preempted.push(way.compound);
+        }
+    }
+
+    #[inline(always)]
+    fn fire<const TRACED: bool>(&mut self, index: u32) {
+        let way = &self.direct.ways[index as usize];
+        self.transitions += 1;
+        self.run.bound.remember(way.compound);
+        if TRACED {
+            self.run.selection.selected.push(way.compound);
+        }
         let mut exits = self.run.active.first_word() & way.exits;
         while exits != 0 {
-            let place = Place(exits.trailing_zeros());
+            let place = exits.trailing_zeros();
             exits &= exits - 1;
-            self.leave_directly(place);
+            self.leave::<TRACED>(Place(place));
         }
         if way.acts {
-            self.do_actions(&self.chart.compounds[way.compound.0 as usize]);
+            self.act_on(way);
         }
-        for &place in &way.entries {
-            match direct.plain >> place.0 & 1 {
-                1 => self.enter_directly(place),
-                _ => self.enter(place),
-            }
+        let entries = self.direct.entries.get(way.entries.start as usize..way.entries.end as usize);
+        for &place in entries.unwrap_or_default() {
+            self.enter::<TRACED>(place);
         }
     }
 
+    #[inline(never)]
+    fn act_on(&mut self, way: &DirectWay) {
+        let compound = &self.chart.compounds[way.compound.0 as usize];
+        self.long_way().do_actions(compound);
+    }
+
     #[inline(always)]
-    fn leave_directly(&mut self, place: Place) {
-        let state = &self.chart.states[place.index()];
-        if !state.exit.is_empty() {
-            let at = ActionPlace::Exit(self.chart.layout.node(place));
-            self.perform(&state.exit, Scene { place: at, region: state.region, owner: Owner::None });
+    fn leave<const TRACED: bool>(&mut self, place: Place) {
+        let state = &self.direct.places[place.index()];
+        match state.exit {
+            DirectActions::None => {}
+            DirectActions::Script(script) => {
+                self.perform::<TRACED>(script, state.region, ActionPlace::Exit(state.node));
+            }
+            DirectActions::Others => self.act_at_exit(state, place),
         }
         let active = self.run.active.first_word();
         self.run.active.set_first_word(active & !(1 << place.0));
+        if TRACED {
+            self.run.log.exits.push(state.node);
+        }
     }
 
     #[inline(always)]
-    fn enter_directly(&mut self, place: Place) {
-        let state = &self.chart.states[place.index()];
+    fn enter<const TRACED: bool>(&mut self, place: Place) {
+        let state = &self.direct.places[place.index()];
+        if !state.is_plain {
+            return self.long_way().enter(place);
+        }
         let active = self.run.active.first_word();
         self.run.active.set_first_word(active | 1 << place.0);
-        if !state.entry.is_empty() {
-            let at = ActionPlace::Entry(self.chart.layout.node(place));
-            self.perform(&state.entry, Scene { place: at, region: state.region, owner: Owner::State(place) });
+        if TRACED {
+            self.run.log.entries.push(state.node);
         }
+        match state.entry {
+            DirectActions::None => {}
+            DirectActions::Script(script) => {
+                self.perform::<TRACED>(script, state.region, ActionPlace::Entry(state.node));
+            }
+            DirectActions::Others => self.act_at_entry(state, place),
+        }
+    }
+
+    #[inline(never)]
+    fn act_at_exit(&mut self, state: &DirectPlace, place: Place) {
+        let scene = Scene { place: ActionPlace::Exit(state.node), region: state.region, owner: Owner::None };
+        let actions = &self.chart.states[place.index()].exit;
+        self.long_way().perform(actions, scene);
+    }
+
+    #[inline(never)]
+    fn act_at_entry(&mut self, state: &DirectPlace, place: Place) {
+        let owner = Owner::State(place);
+        let scene = Scene { place: ActionPlace::Entry(state.node), region: state.region, owner };
+        let actions = &self.chart.states[place.index()].entry;
+        self.long_way().perform(actions, scene);
+    }
+
+    /// The only action of a place, which is the host's.
+    #[inline(always)]
+    fn perform<const TRACED: bool>(&mut self, script: ScriptId, region: RegionId, at: ActionPlace) {
+        if TRACED {
+            self.run.log.effects.push(at);
+        }
+        let mut performance = Performance { chart: self.chart, run: self.run };
+        if let Err(error) = self.host.perform(script, region, &mut performance) {
+            self.long_way().action_failed(at, 0, &ActionError::Script(error));
+        }
+    }
+}
+
+/// Where transitions are still looked for.
+#[derive(Clone, Copy)]
+struct Search {
+    /// The active states with ways out that were not looked at.
+    sources: u64,
+    /// The innermost active states that have found none.
+    open: u64,
+}
+
+impl Search {
+    #[inline(always)]
+    fn new(active: u64, direct: &Direct) -> Search {
+        Search { sources: active & direct.sources, open: active & direct.leaves }
+    }
+}
+
+/// Transitions that happen together: each has a source of its own, so there are no more than states.
+struct Chosen {
+    ways: [u32; u64::BITS as usize],
+    count: usize,
+    /// The states that they leave, if those are active.
+    left: u64,
+    last_key: u64,
+    in_order: bool,
+}
+
+impl Default for Chosen {
+    fn default() -> Chosen {
+        Chosen { ways: [0; u64::BITS as usize], count: 0, left: 0, last_key: 0, in_order: true }
     }
 }

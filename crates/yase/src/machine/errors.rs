@@ -1,7 +1,7 @@
 //! What a machine says when it stops by itself.
 
 use crate::chart::{Chart, CompoundId};
-use crate::machine::{MachineError, MachineErrorKind};
+use crate::machine::{Fatality, MachineError, MachineErrorKind};
 use crate::statechart::{NodeId, TransitionId};
 
 /// Why a step cannot go on.
@@ -27,12 +27,8 @@ impl MachineError {
             }
             Fault::NoBranch(node) => {
                 let text = format!("no way out of CHOICE `{}` is open", chart.short_path(node));
-                MachineError {
-                    kind: MachineErrorKind::NoBranch,
-                    cycle: Box::default(),
-                    node: Some(node),
-                    text,
-                }
+                let kind = MachineErrorKind::NoBranch;
+                MachineError(Box::new(Fatality { kind, cycle: Box::default(), node: Some(node), text }))
             }
         }
     }
@@ -42,7 +38,7 @@ impl MachineError {
             cycle.iter().flat_map(|&compound| chart.segments(compound)).copied().collect();
         let names: Vec<String> = segments.iter().map(|&segment| name(chart, segment)).collect();
         let text = format!("{what}: it repeats {}", names.join(", "));
-        MachineError { kind, cycle: segments, node: None, text }
+        MachineError(Box::new(Fatality { kind, cycle: segments, node: None, text }))
     }
 }
 

@@ -105,8 +105,6 @@ pub(super) struct Selection {
     pub(super) found_for: Vec<Place>,
     /// The state that the latest of them was found at.
     pub(super) latest: Option<Place>,
-    /// Those that win, on the short way, by number.
-    pub(super) ways: Vec<usize>,
     /// Those that win and can fire now.
     pub(super) selected: Vec<CompoundId>,
     pub(super) preempted: Vec<CompoundId>,
@@ -200,7 +198,6 @@ impl Run {
                 found_for: Vec::with_capacity(regions),
                 latest: None,
                 selected: Vec::with_capacity(regions),
-                ways: Vec::with_capacity(regions),
                 preempted: Vec::with_capacity(regions),
                 held: Vec::with_capacity(regions),
                 closed: BitSet::new(places),

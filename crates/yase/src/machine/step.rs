@@ -30,22 +30,16 @@ impl<'a, H: Host> Step<'a, H> {
         self.chart.semantics_ref()
     }
 
-    /// Takes transitions until none is enabled.
+    /// Takes transitions until none is enabled. This is the long way: apart from the short one, so that the compiler keeps that small.
+    #[inline(never)]
     pub(super) fn run(mut self) -> Result<StepSummary, MachineError> {
         self.open();
-        match self.take_directly() {
-            Ok(true) => {
-                self.publish_written();
-                Ok(self.summary)
-            }
-            Ok(false) => self.run_on(),
-            Err(fault) => Err(self.fail(fault)),
-        }
+        self.run_on()
     }
 
-    /// The long way: apart from the short one, so that the compiler keeps that small.
+    /// Goes on with a step that has begun.
     #[inline(never)]
-    fn run_on(mut self) -> Result<StepSummary, MachineError> {
+    pub(super) fn run_on(mut self) -> Result<StepSummary, MachineError> {
         while self.advance()? {}
         self.finish();
         Ok(self.summary)
@@ -63,7 +57,6 @@ impl<'a, H: Host> Step<'a, H> {
     }
 
     /// Begins a step, or goes on with the one under way.
-    #[inline(always)]
     fn open(&mut self) {
         match self.run.under_way.take() {
             Some(summary) => self.summary = summary,
@@ -82,7 +75,6 @@ impl<'a, H: Host> Step<'a, H> {
         MachineError::new(fault, self.chart, &cycle)
     }
 
-    #[inline(always)]
     fn begin(&mut self) {
         self.run.due = false;
         self.run.bound.begin(self.run.now);
@@ -106,23 +98,10 @@ impl<'a, H: Host> Step<'a, H> {
         }
     }
 
-    fn deliver_to_all(&mut self) {
-        if self.run.erred.is_empty() {
-            return self.deliver_simply();
-        }
+    pub(super) fn deliver_to_all(&mut self) {
         for (index, region) in self.chart.regions.iter().enumerate() {
             if self.run.is_active(region.root) && !self.run.running_regions.contains(index) {
                 self.deliver(RegionId(index as u32));
-            }
-        }
-    }
-
-    /// As above, with no errors to forget: of a host without messages the compiler leaves nothing here.
-    #[inline]
-    fn deliver_simply(&mut self) {
-        for (index, region) in self.chart.regions.iter().enumerate() {
-            if self.run.is_active(region.root) && !self.run.running_regions.contains(index) {
-                self.host.deliver(RegionId(index as u32));
             }
         }
     }
@@ -239,7 +218,7 @@ impl<'a, H: Host> Step<'a, H> {
         if !bound.allows_micro_step(limit) {
             return Err(Fault::NeverRests);
         }
-        if self.summary.micro_steps == 0 && !bound.allows_step(limit) {
+        if self.summary.micro_steps == 0 && !bound.admits_step(limit) {
             return Err(Fault::NeverAdvances);
         }
         bound.count_micro_step();
@@ -291,8 +270,7 @@ impl<'a, H: Host> Step<'a, H> {
         self.halt(status);
     }
 
-    #[inline(always)]
-    fn publish_written(&mut self) {
+    pub(super) fn publish_written(&mut self) {
         if self.run.written.is_empty() {
             return;
         }
