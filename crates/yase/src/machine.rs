@@ -217,6 +217,7 @@ impl Machine {
     pub fn raise_with(&mut self, name: &str, token: u64) -> bool {
         let (event, is_known) = self.chart.event(name);
         if self.run.status == Status::Running {
+            self.run.is_settled = false;
             self.run.raise(&self.chart, event, is_known, token);
         }
         is_known
@@ -240,12 +241,14 @@ impl Machine {
     /// Notes that an activity has returned, which frees its region. Says whether it was running: a return after
     /// [`stop`](Machine::stop) is not for this run.
     pub fn activity_returned(&mut self, activation: Activation, outcome: Outcome) -> bool {
+        self.run.is_settled = false;
         self.run.activity_returned(&self.chart, activation, outcome)
     }
 
     /// Notes that an activity that was [`Ongoing`](Outcome::Ongoing) or [failed](Outcome::Failed) is called again, which locks its region. Says
     /// whether it may: if its state has been left or is about to be, it must not be called again.
     pub fn activity_resumed(&mut self, activation: Activation) -> bool {
+        self.run.is_settled = false;
         self.run.activity_resumed(&self.chart, activation)
     }
 

@@ -38,7 +38,7 @@ pub(crate) struct DirectPlace {
     /// Itself and all places inside.
     pub(crate) inside: u64,
     /// Its ways out, in the order in which they are tried.
-    pub(crate) ways: Range<u32>,
+    pub(crate) ways: Range<u16>,
     pub(crate) node: NodeId,
     pub(crate) region: RegionId,
     pub(crate) exit: DirectActions,
@@ -77,9 +77,11 @@ pub(crate) struct DirectWay {
     pub(crate) source: u64,
     /// The places it leaves, if they are active.
     pub(crate) exits: u64,
+    /// The places it enters.
+    pub(crate) enters: u64,
     /// Whether it has actions of its own.
     pub(crate) acts: bool,
-    /// The places it enters, in [`Direct::entries`].
+    /// The same in their order, in [`Direct::entries`].
     pub(crate) entries: Range<u32>,
     /// Its place in the order of firing.
     pub(crate) key: u64,
@@ -125,13 +127,16 @@ impl Direct {
             }
             places.push(DirectPlace {
                 inside: bit,
-                ways: first as u32..found.ways.len() as u32,
+                ways: first as u16..found.ways.len() as u16,
                 node: layout.node(Place(place as u32)),
                 region: state.region,
                 exit: DirectActions::from(&*state.exit),
                 entry: DirectActions::from(&*state.entry),
                 is_plain: state.activity.is_none() && !state.is_region && !state.finishes,
             });
+        }
+        if found.ways.len() > usize::from(u16::MAX) {
+            return None;
         }
         // children stand before their parents
         for place in 0..states.len() {
@@ -186,6 +191,7 @@ impl Ways<'_> {
             else {
                 return false;
             };
+            let enters = entries.iter().fold(0, |enters, place| enters | 1 << place.0);
             let first = found.entries.len() as u32;
             found.entries.extend_from_slice(entries);
             let entries = first..found.entries.len() as u32;
@@ -195,6 +201,7 @@ impl Ways<'_> {
                 compound: id,
                 source: 1 << compound.source.0,
                 exits,
+                enters,
                 acts: !compound.effects.is_empty(),
                 entries: entries.clone(),
                 key: compound.key,

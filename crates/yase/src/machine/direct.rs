@@ -49,10 +49,8 @@ impl Run {
     /// Whether a new step has nothing to do but to offer events.
     #[inline(always)]
     fn can_begin_directly(&self, direct: &Direct) -> bool {
-        self.goes_on_directly(direct)
-            && self.under_way.is_none()
-            && self.failure.is_none()
-            && self.newcomers.is_empty()
+        self.is_settled
+            && self.active.first_word() & direct.detours == 0
             && self.timers.next_deadline().is_none_or(|next| next > self.now)
     }
 
@@ -60,9 +58,18 @@ impl Run {
     #[inline(always)]
     fn goes_on_directly(&self, direct: &Direct) -> bool {
         self.active.first_word() & direct.detours == 0
-            && self.queues.only_arrived_wait()
-            && self.pending.is_empty()
+            && self.queues.raised.len() | self.queues.deferred.len() == 0
             && self.status == Status::Running
+    }
+
+    /// Whether nothing is left of the steps that were but the configuration, timers and failed guards.
+    pub(super) fn is_at_rest(&self) -> bool {
+        self.queues.raised.len() | self.queues.deferred.len() | self.queues.held.len() == 0
+            && self.pending.is_empty()
+            && self.newcomers.is_empty()
+            && self.completions.is_empty()
+            && self.under_way.is_none()
+            && self.failure.is_none()
     }
 }
 
@@ -78,17 +85,18 @@ impl<H: Host> ShortStep<'_, H> {
             self.run.log.clear();
         }
         self.run.due = false;
-        self.run.bound.begin(self.run.now);
         if self.chart.semantics_ref().delivery == Delivery::EachStep {
             self.deliver();
         }
         while self.run.goes_on_directly(self.direct) {
-            let Some(&occurrence) = self.run.queues.first_arrived() else { return Ok(self.finish()) };
+            // not copied as a whole: it was just written piece by piece, and processors wait for that
+            let Some(first) = self.run.queues.first_arrived() else { return Ok(self.finish()) };
+            let Occurrence { event, is_known, token, .. } = *first;
             if !self.admit() {
                 break;
             }
-            self.host.offered(occurrence.event, occurrence.is_known, occurrence.token);
-            self.offer::<TRACED>(occurrence);
+            self.host.offered(event, is_known, token);
+            self.offer::<TRACED>(event);
         }
         self.long_way().run_on()
     }
@@ -135,7 +143,12 @@ impl<H: Host> ShortStep<'_, H> {
     #[inline(always)]
     fn admit(&mut self) -> bool {
         let (limit, bound) = (self.chart.semantics_ref().limit, &mut self.run.bound);
-        if !bound.allows_micro_step(limit) || (self.micro_steps == 0 && !bound.admits_step(limit)) {
+        if self.micro_steps == 0 {
+            bound.begin(self.run.now);
+            if !bound.admits_step(limit) {
+                return false;
+            }
+        } else if !bound.allows_micro_step(limit) {
             return false;
         }
         bound.count_micro_step();
@@ -145,28 +158,29 @@ impl<H: Host> ShortStep<'_, H> {
 
     /// Offers an event. Most lead to one transition, which happens without a list.
     #[inline(always)]
-    fn offer<const TRACED: bool>(&mut self, occurrence: Occurrence) {
+    fn offer<const TRACED: bool>(&mut self, event: EventId) {
         let mut search = Search::new(self.run.active.first_word(), self.direct);
-        let first = self.next_way::<TRACED>(&mut search, occurrence.event);
-        self.run.queues.next_arrived();
+        let first = self.next_way::<TRACED>(&mut search, event);
         if TRACED {
             self.run.selection.clear();
         }
-        let Some(first) = first else { return self.keep(occurrence) };
-        match self.next_way::<TRACED>(&mut search, occurrence.event) {
+        let Some(first) = first else { return self.keep() };
+        self.run.queues.drop_arrived();
+        match self.next_way::<TRACED>(&mut search, event) {
             None => self.fire::<TRACED>(first),
-            Some(second) => self.fire_several::<TRACED>(search, [first, second], occurrence.event),
+            Some(second) => self.fire_several::<TRACED>(search, [first, second], event),
         }
         let active = self.run.active.first_word();
         self.run.tips.set_first_word(active & self.direct.leaves);
         if TRACED {
-            self.long_way().emit(Occasion::Event(occurrence.event), None);
+            self.long_way().emit(Occasion::Event(event), None);
             self.run.log.clear();
         }
     }
 
     #[inline(never)]
-    fn keep(&mut self, occurrence: Occurrence) {
+    fn keep(&mut self) {
+        let Some(occurrence) = self.run.queues.next_arrived() else { return };
         self.run.selection.clear();
         let mut step = self.long_way();
         let deferred = step.keep(occurrence);
@@ -176,16 +190,16 @@ impl<H: Host> ShortStep<'_, H> {
 
     /// The next transition that the event enables: from the innermost states outward, not where all that is active inside has found one.
     #[inline(always)]
-    fn next_way<const TRACED: bool>(&mut self, search: &mut Search, event: EventId) -> Option<u32> {
+    fn next_way<const TRACED: bool>(&mut self, search: &mut Search, event: EventId) -> Option<u16> {
         while search.sources != 0 {
             let place = &self.direct.places[search.sources.trailing_zeros() as usize];
             search.sources &= search.sources - 1;
             if search.open & place.inside == 0 {
                 continue;
             }
-            let (first, last) = (place.ways.start, place.ways.end);
-            for index in first..last {
-                let way = &self.direct.ways[index as usize];
+            let (first, last) = (place.ways.start as usize, place.ways.end as usize);
+            let ways = self.direct.ways.get(first..last).unwrap_or_default();
+            for (index, way) in (place.ways.start..).zip(ways) {
                 if way.event == event && way.guard.is_none_or(|guard| self.holds::<TRACED>(guard)) {
                     search.open &= !place.inside;
                     return Some(index);
@@ -210,7 +224,7 @@ impl<H: Host> ShortStep<'_, H> {
     /// Of transitions that leave the same state, the one that was found first fires; all that do, in the order that is meant, but not one whose
     /// source another has left, nor one after the end.
     #[inline(never)]
-    fn fire_several<const TRACED: bool>(&mut self, mut search: Search, found: [u32; 2], event: EventId) {
+    fn fire_several<const TRACED: bool>(&mut self, mut search: Search, found: [u16; 2], event: EventId) {
         let mut chosen = Chosen::default();
         found.into_iter().for_each(|index| self.choose::<TRACED>(&mut chosen, index));
         while let Some(index) = self.next_way::<TRACED>(&mut search, event) {
@@ -230,7 +244,7 @@ impl<H: Host> ShortStep<'_, H> {
     }
 
     #[inline(always)]
-    fn choose<const TRACED: bool>(&mut self, chosen: &mut Chosen, index: u32) {
+    fn choose<const TRACED: bool>(&mut self, chosen: &mut Chosen, index: u16) {
         let way = &self.direct.ways[index as usize];
         if way.exits & chosen.left == 0 {
             chosen.left |= way.exits;
@@ -244,26 +258,30 @@ impl<H: Host> ShortStep<'_, H> {
     }
 
     #[inline(always)]
-    fn fire<const TRACED: bool>(&mut self, index: u32) {
+    fn fire<const TRACED: bool>(&mut self, index: u16) {
         let way = &self.direct.ways[index as usize];
         self.transitions += 1;
         self.run.bound.remember(way.compound);
         if TRACED {
             self.run.selection.selected.push(way.compound);
         }
-        let mut exits = self.run.active.first_word() & way.exits;
+        let mut active = self.run.active.first_word();
+        // known before it has happened, so that what comes next need not wait for it
+        let after = active & !way.exits | way.enters;
+        let mut exits = active & way.exits;
         while exits != 0 {
             let place = exits.trailing_zeros();
             exits &= exits - 1;
-            self.leave::<TRACED>(Place(place));
+            active = self.leave::<TRACED>(Place(place), active);
         }
         if way.acts {
             self.act_on(way);
         }
         let entries = self.direct.entries.get(way.entries.start as usize..way.entries.end as usize);
         for &place in entries.unwrap_or_default() {
-            self.enter::<TRACED>(place);
+            active = self.enter::<TRACED>(place, active);
         }
+        self.run.active.set_first_word(after);
     }
 
     #[inline(never)]
@@ -273,7 +291,7 @@ impl<H: Host> ShortStep<'_, H> {
     }
 
     #[inline(always)]
-    fn leave<const TRACED: bool>(&mut self, place: Place) {
+    fn leave<const TRACED: bool>(&mut self, place: Place, active: u64) -> u64 {
         let state = &self.direct.places[place.index()];
         match state.exit {
             DirectActions::None => {}
@@ -282,21 +300,23 @@ impl<H: Host> ShortStep<'_, H> {
             }
             DirectActions::Others => self.act_at_exit(state, place),
         }
-        let active = self.run.active.first_word();
-        self.run.active.set_first_word(active & !(1 << place.0));
+        let active = active & !(1 << place.0);
+        self.run.active.set_first_word(active);
         if TRACED {
             self.run.log.exits.push(state.node);
         }
+        active
     }
 
     #[inline(always)]
-    fn enter<const TRACED: bool>(&mut self, place: Place) {
+    fn enter<const TRACED: bool>(&mut self, place: Place, active: u64) -> u64 {
         let state = &self.direct.places[place.index()];
+        let active = active | 1 << place.0;
         if !state.is_plain {
-            return self.long_way().enter(place);
+            self.long_way().enter(place);
+            return active;
         }
-        let active = self.run.active.first_word();
-        self.run.active.set_first_word(active | 1 << place.0);
+        self.run.active.set_first_word(active);
         if TRACED {
             self.run.log.entries.push(state.node);
         }
@@ -307,6 +327,7 @@ impl<H: Host> ShortStep<'_, H> {
             }
             DirectActions::Others => self.act_at_entry(state, place),
         }
+        active
     }
 
     #[inline(never)]
@@ -355,7 +376,7 @@ impl Search {
 
 /// Transitions that happen together: each has a source of its own, so there are no more than states.
 struct Chosen {
-    ways: [u32; u64::BITS as usize],
+    ways: [u16; u64::BITS as usize],
     count: usize,
     /// The states that they leave, if those are active.
     left: u64,

@@ -74,12 +74,6 @@ impl Queues {
         self.raised.iter().chain(&self.arrived).chain(&self.deferred).chain(held)
     }
 
-    /// Whether no events wait but arrived ones.
-    #[inline]
-    pub(super) fn only_arrived_wait(&self) -> bool {
-        self.raised.len() | self.deferred.len() | self.held.len() == 0
-    }
-
     /// Whether some event can be offered now.
     pub(super) fn is_waiting(&self) -> bool {
         !self.raised.is_empty() || !self.arrived.is_empty() || self.held.iter().any(|held| held.offer)
@@ -110,6 +104,12 @@ impl Queues {
     #[inline]
     pub(super) fn first_arrived(&self) -> Option<&Occurrence> {
         self.arrived.front()
+    }
+
+    /// Forgets the first that has arrived, without looking at it.
+    #[inline]
+    pub(super) fn drop_arrived(&mut self) {
+        self.arrived.pop_front();
     }
 
     pub(super) fn next_arrived(&mut self) -> Option<Occurrence> {

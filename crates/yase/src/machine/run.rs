@@ -25,6 +25,9 @@ pub(super) struct Run {
     pub(super) now: Moment,
     /// Whether something happened that a step may answer to, other than events and timers.
     pub(super) due: bool,
+    /// Whether the last step has ended with nothing left to be done, and nothing has happened since but arriving events. Every long step
+    /// takes it back, and says at its end.
+    pub(super) is_settled: bool,
     /// What a step has done that is taken one micro-step at a time and has not ended.
     pub(super) under_way: Option<StepSummary>,
     /// The configuration, by place.
@@ -165,6 +168,7 @@ impl Run {
             status: Status::Idle,
             now: Moment::ZERO,
             due: false,
+            is_settled: false,
             under_way: None,
             active: BitSet::new(places),
             running: BitSet::new(places),
@@ -214,6 +218,7 @@ impl Run {
         self.status = Status::Running;
         self.now = now;
         self.due = true;
+        self.is_settled = false;
         self.under_way = None;
         self.active.clear();
         self.running.clear();
@@ -276,6 +281,7 @@ impl Run {
         self.pending.iter().any(|pending| chart.compounds[pending.compound.0 as usize].leaves(place))
     }
 
+    /// An event is queued before those that arrive.
     pub(super) fn raise(&mut self, chart: &Chart, event: EventId, is_known: bool, token: u64) {
         let incoming = Incoming { event, expiry: None, token, is_known };
         self.queues.raise(incoming, chart.semantics().pool);

@@ -23,6 +23,7 @@ pub(super) struct Step<'a, H> {
 impl<'a, H: Host> Step<'a, H> {
     pub(super) fn new(chart: &'a Chart, run: &'a mut Run, host: &'a mut H) -> Step<'a, H> {
         run.log.wanted = host.wants_trace();
+        run.is_settled = false;
         Step { chart, run, host, summary: StepSummary::default() }
     }
 
@@ -257,6 +258,7 @@ impl<'a, H: Host> Step<'a, H> {
             self.start_activities();
         }
         self.report_waiting_starts();
+        self.run.is_settled = self.run.is_at_rest();
     }
 
     /// Leaves every state, in a record of its own.
