@@ -11,6 +11,7 @@ mod roles;
 mod scope;
 mod scripts;
 mod segments;
+mod visits;
 mod ways;
 
 use std::ops::Range;
@@ -72,6 +73,8 @@ pub struct Chart {
     pub(crate) activities: Box<[Place]>,
     pub(crate) timers: Box<[Timer]>,
     pub(crate) masks: Masks,
+    /// In which order states are looked at without an event, if it is not that of their places.
+    pub(crate) visits: Option<Box<[Place]>>,
     pub(crate) direct: Option<Direct>,
     pub(crate) errors: ErrorEvents,
     /// The event that stands for all that no expression names.
@@ -249,9 +252,12 @@ impl Compound {
         self.exits.is_some_and(|(first, last)| first <= place && place <= last)
     }
 
-    /// Whether two compound transitions leave common states. Scopes are nested or apart, so one end decides.
-    pub(crate) fn conflicts_with(&self, other: &Compound) -> bool {
-        matches!((self.exits, other.exits), (Some(a), Some(b)) if a.0 <= b.1 && b.0 <= a.1)
+    /// Whether two compound transitions leave common states: what is active in what both of them leave. A composite that was left without
+    /// an active child has nothing to be left.
+    pub(crate) fn conflicts_with(&self, other: &Compound, active: &BitSet) -> bool {
+        let (Some(a), Some(b)) = (self.exits, other.exits) else { return false };
+        let (first, last) = (a.0.max(b.0), a.1.min(b.1));
+        first <= last && active.any_in(first.index(), last.index())
     }
 }
 

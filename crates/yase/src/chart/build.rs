@@ -11,6 +11,7 @@ use crate::chart::ways::{self, Late, Way, Ways};
 use crate::chart::{
     Branch, Branches, Chart, Choice, Compound, Direct, ErrorEvents, History, Join, Layout, Masks, Place,
     Region, RegionId, ScopedGuard, State, Timer, Trigger, Weight, direct, entries, events, scope, scripts,
+    visits,
 };
 use crate::diagnostic::Diagnostic;
 use crate::expression::{
@@ -141,6 +142,7 @@ impl Builder<'_> {
         }
         let triggers = self.match_events(&mut states);
         let timers = self.timers(&mut regions, &states, &triggers);
+        let joins = self.joins(&ways.joins);
         let activities: Box<[Place]> =
             self.layout.places().filter(|place| states[place.index()].activity.is_some()).collect();
         let direct_ways =
@@ -152,7 +154,8 @@ impl Builder<'_> {
             sources: self.sources(&states, &triggers),
             script_places: scripts::places(self.chart, &self.scripts),
             max_activities: max_activities(&states),
-            joins: self.joins(&ways.joins),
+            visits: visits::order(&self.layout, &joins, &self.semantics),
+            joins,
             statechart: self.chart.clone(),
             semantics: self.semantics,
             scripts: self.scripts,

@@ -1,7 +1,7 @@
 //! Every complete way out of every state and out of every connector at which it is decided late: compound transitions, in the order in
 //! which they are tried.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::chart::roles::{Role, Roles};
 use crate::chart::scope::{self, Hull};
@@ -42,6 +42,9 @@ pub(super) enum Leaf {
 }
 
 /// What a way does to the configuration.
+///
+/// A way all of whose possible ends are TERMINATE leaves and enters nothing. One that may also lead elsewhere has the scope of its other
+/// ends, and leaves what is in that before it is known where it leads.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Change {
     /// Nothing: it is internal and without target, or stops the chart, or is the late part of another.
@@ -207,16 +210,18 @@ impl Search<'_> {
         }
     }
 
-    /// The way through a JOIN as one transition: it is that of its first source in the document.
+    /// The way through a JOIN as one transition: it is that of its first source in the document. Where a completion is looked at once, it is
+    /// looked at when the last of the sources completes, whichever that is.
     fn join_together(&mut self, state: NodeId, node: NodeId, join: usize, ways: &mut Vec<Way>) {
         let mut sources = self.joins[join].sources.clone();
         sources.sort_by_key(|&source| self.layout.rank(self.layout.place_of(source)));
-        if sources.first() != Some(&state) {
+        let Some((&first, others)) = sources.split_first() else { return };
+        if first != state && self.semantics.eventless != Eventless::Once {
             return;
         }
         let segments = self.roles.incoming[node.0 as usize].clone();
         let mut trail = Trail { segments, open: vec![Open::Node(node)], ..Trail::default() };
-        let begin = Begin::States(state, &sources[1..], Some(Condition::AllCompleted(join)));
+        let begin = Begin::States(first, others, Some(Condition::AllCompleted(join)));
         self.follow(begin, &mut trail, ways);
     }
 
@@ -333,6 +338,8 @@ impl Search<'_> {
             let path = self.chart.path(source);
             let message = format!("more than {MAX_WAYS} compound transitions, up to those out of `{path}`");
             self.errors.push(Diagnostic::error("M06", Span::default(), message));
+        } else if trail.ends.len() > 1 && trail.ends.iter().any(|&end| self.ends_in_terminate(end)) {
+            self.refuse_fork_that_stops(trail);
         } else if trail.ends.len() > 1 && !self.are_orthogonal(&trail.ends) {
             self.refuse_fork(trail);
         } else {
@@ -411,7 +418,7 @@ impl Search<'_> {
             hull = hull.with(Hull::of(self.layout.place_of(node)));
         }
         for &end in &trail.ends {
-            hull = hull.with(self.hull(end).unwrap_or(Hull::of(self.layout.place_of(end))));
+            hull = hull.with(self.hull(end).unwrap_or(self.hull_of_terminates(end)));
         }
         if is_internal {
             let inside = scope::lowest_node(self.chart, self.layout, hull) == source;
@@ -460,6 +467,21 @@ impl Search<'_> {
         }
     }
 
+    /// What encloses all TERMINATEs behind a node behind which there is nothing else: its targets, where there are no others.
+    fn hull_of_terminates(&self, end: NodeId) -> Hull {
+        let mut hull: Option<Hull> = None;
+        let (mut open, mut seen) = (vec![end], BTreeSet::new());
+        while let Some(node) = open.pop() {
+            if self.roles.of(node) == Role::Terminate {
+                hull = hull.into_iter().chain([Hull::of(self.layout.place_of(node))]).reduce(Hull::with);
+            } else if seen.insert(node) {
+                let outgoing = &self.roles.outgoing[node.0 as usize];
+                open.extend(outgoing.iter().map(|&id| self.chart.transition(id).target));
+            }
+        }
+        hull.unwrap_or(Hull::of(self.layout.place_of(end)))
+    }
+
     fn ends_in_terminate(&mut self, end: NodeId) -> bool {
         self.hull(end).is_none()
     }
@@ -477,6 +499,16 @@ impl Search<'_> {
         scope::are_orthogonal(self.chart, self.layout, &nodes)
     }
 
+    fn refuse_fork_that_stops(&mut self, trail: &Trail) {
+        let stops = trail.ends.iter().copied().find(|&end| self.ends_in_terminate(end));
+        let message = format!(
+            "a FORK leads to `{}`, which stops the chart",
+            self.chart.path(stops.unwrap_or(Statechart::ROOT))
+        );
+        let hint = "the branches of a FORK lead to states; TERMINATE may stand behind a CHOICE that leads to others too";
+        self.errors.push(Diagnostic::error("M04", Span::default(), message).with_hint(hint));
+    }
+
     fn refuse_fork(&mut self, trail: &Trail) {
         let ends: Vec<String> = trail.ends.iter().map(|&end| self.chart.path(end)).collect();
         let message = format!("a FORK leads to `{}`, which cannot be active together", ends.join("` and `"));
@@ -492,7 +524,8 @@ impl Search<'_> {
         self.errors.push(Diagnostic::error("M03", Span::default(), message).with_hint(hint));
     }
 
-    /// When a way without a trigger may be taken: guardedness is that of its first segment.
+    /// When a way without a trigger may be taken: guardedness is that of its first segment. A completion that is looked at once is consumed
+    /// if the state is complete no more by then.
     fn condition(&self, source: NodeId, trail: &Trail) -> Option<Condition> {
         let first = &self.chart.transition(*trail.segments.first()?).expression;
         if first.trigger.is_some() {

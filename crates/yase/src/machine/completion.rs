@@ -64,7 +64,9 @@ impl Run {
         }
         let mut next = first;
         while let Some(place) = next {
-            self.completions.push_back(place);
+            if !self.completions.contains(&place) {
+                self.completions.push_back(place);
+            }
             next = self.complete_and(chart, place);
         }
     }

@@ -159,6 +159,7 @@ impl<H: Host> ShortStep<'_, H> {
     /// Offers an event. Most lead to one transition, which happens without a list.
     #[inline(always)]
     fn offer<const TRACED: bool>(&mut self, event: EventId) {
+        self.run.forget_failures_told();
         let mut search = Search::new(self.run.active.first_word(), self.direct);
         let first = self.next_way::<TRACED>(&mut search, event);
         if TRACED {

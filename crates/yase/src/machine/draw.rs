@@ -90,10 +90,7 @@ impl<H: Host> Step<'_, H> {
             Condition::Completed => self.run.is_complete(chart, place),
             Condition::Quiescent => !self.runs_inside(place) && !self.can_step_inside(place),
             Condition::NoStepInside => !self.can_step_inside(place),
-            Condition::AllCompleted(join) => chart.joins[join]
-                .sources
-                .iter()
-                .all(|&source| self.run.is_active(source) && self.run.is_complete(chart, source)),
+            Condition::AllCompleted(join) => self.can_join(join),
             Condition::Arrives(slot) => {
                 !self.run.arrived.contains(slot) && self.run.is_complete(chart, place)
             }
@@ -104,21 +101,38 @@ impl<H: Host> Step<'_, H> {
     }
 
     /// Draws among the branches with a weight if the given one is the first of them that matches; it is those of whole segments that are
-    /// drawn. One that is not open is taken out, and the rest is drawn again.
+    /// drawn. One that is not open is taken out, and the rest is drawn again. What was drawn stays drawn within the micro-step: a node that is
+    /// come by again is not drawn at again.
     fn draw(&mut self, index: usize, weight: &Weight, search: Search<'_>) -> Option<CompoundId> {
         let mut lots = self.lots(weight.beside, search);
         if lots.first().is_none_or(|first| first.first != index) {
             return None;
         }
+        let mut known = 0;
         while !lots.is_empty() {
-            let weights: SmallVec<[f64; 8]> = lots.iter().map(|lot| lot.weight).collect();
-            let lot = lots.remove(self.run.chooser.draw(&weights));
+            let lot = lots.remove(self.next_lot(&lots, &mut known));
             let found = self.try_segment(lot, weight.beside.end, search);
             if found.is_some() {
                 return found;
             }
         }
         None
+    }
+
+    /// The one that was drawn earlier in this micro-step or, if there is none left, one that is drawn now. Those before `known` were
+    /// looked at.
+    fn next_lot(&mut self, lots: &[Lot], known: &mut usize) -> usize {
+        while let Some(&drawn) = self.run.drawn.get(*known) {
+            *known += 1;
+            if let Some(index) = lots.iter().position(|lot| lot.segment == drawn) {
+                return index;
+            }
+        }
+        let weights: SmallVec<[f64; 8]> = lots.iter().map(|lot| lot.weight).collect();
+        let index = self.run.chooser.draw(&weights);
+        self.run.drawn.push(lots[index].segment);
+        *known += 1;
+        index
     }
 
     /// The segments with a weight that match, in order.

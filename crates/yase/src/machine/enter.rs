@@ -58,8 +58,8 @@ impl<H: Host> Step<'_, H> {
             NodeKind::Or => {
                 self.resolve_histories(place)?;
                 let child = match self.marked_child(place) {
-                    Some(child) => Some(child),
-                    None => self.begin_at_start(place)?,
+                    None if !self.run.terminates => self.begin_at_start(place)?,
+                    child => child,
                 };
                 self.run.entering.extend(child);
             }
@@ -101,7 +101,7 @@ impl<H: Host> Step<'_, H> {
         Ok(true)
     }
 
-    /// Marks where a way ends; where it ends at a CHOICE, goes on.
+    /// Marks where a way ends; where it ends at a CHOICE, goes on. Nothing happens behind TERMINATE.
     pub(super) fn mark_leaves(&mut self, leaves: &[Leaf], scope: Place) -> Result<(), Fault> {
         for &leaf in leaves {
             match leaf {
@@ -119,6 +119,9 @@ impl<H: Host> Step<'_, H> {
                     self.run.terminates = true;
                     self.run.unbound.clear();
                 }
+            }
+            if self.run.terminates {
+                break;
             }
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! What a micro-step does: leaving, acting, entering.
 
-use crate::chart::{Compound, CompoundId, Entries};
+use crate::chart::{Compound, CompoundId, Entries, Place};
 use crate::host::{ActionPlace, Host};
 use crate::machine::Status;
 use crate::machine::act::Scene;
@@ -12,15 +12,14 @@ use crate::trace::Occasion;
 impl<H: Host> Step<'_, H> {
     /// Enters the root and its START. What goes wrong is said by the first step.
     pub(super) fn begin_run(&mut self) {
-        self.run.log.clear();
-        self.run.selection.clear();
+        self.run.begin_micro_step();
         match self.enter_root() {
             Ok(()) => {
                 self.emit(Occasion::Start, None);
                 self.stop_if_terminated();
             }
             Err(fault) => {
-                self.run.active.clear();
+                self.run.forget_entered();
                 self.run.failure = Some(fault);
             }
         }
@@ -33,8 +32,7 @@ impl<H: Host> Step<'_, H> {
         let Some(index) = ready else { return Ok(false) };
         self.admit()?;
         let pending = self.run.pending.remove(index);
-        self.run.selection.clear();
-        self.run.log.clear();
+        self.run.begin_micro_step();
         self.run.selection.selected.push(pending.compound);
         self.fire_selected()?;
         self.forget_left();
@@ -65,17 +63,23 @@ impl<H: Host> Step<'_, H> {
         };
         if fired.is_err() {
             self.run.active.copy_from(&self.run.before);
+            // what was vacated or has arrived in this micro-step has not, and it is of no more interest
+            self.run.vacated.clear();
+            self.run.arrived.clear();
         }
         fired
     }
 
-    /// What comes after the end does not fire, nor a way to TERMINATE whose source another has left: it leaves nothing itself, so it is in
-    /// conflict with none.
+    /// What comes after the end does not fire, nor what begins at a state that another has left, be it active again: that is in conflict
+    /// with none if it leaves nothing itself, as a way to TERMINATE.
     fn fire_each(&mut self) -> Result<(), Fault> {
         let mut index = 0;
         while let Some(&id) = self.run.selection.selected.get(index) {
-            let mut sources = self.chart.compounds[id.0 as usize].sources();
-            if self.run.status == Status::Running && sources.all(|source| self.run.is_active(source)) {
+            let fired = &self.run.selection.selected[..index];
+            let stays = |source: Place| {
+                self.run.is_active(source) && !fired.iter().any(|&fired| self.compound(fired).leaves(source))
+            };
+            if self.run.status == Status::Running && self.compound(id).sources().all(stays) {
                 self.fire(id)?;
                 index += 1;
             } else {
@@ -92,7 +96,7 @@ impl<H: Host> Step<'_, H> {
             self.leave_between(first, last);
         }
         self.act_on(compound)?;
-        self.enter_on(compound, self.run.terminates)?;
+        self.enter_on(compound)?;
         self.stop_if_terminated();
         Ok(())
     }
@@ -122,8 +126,11 @@ impl<H: Host> Step<'_, H> {
         }
     }
 
-    /// Enters what a transition leads to. If the chart stops, what leads to TERMINATE leads nowhere.
-    fn enter_on(&mut self, compound: &Compound, stops: bool) -> Result<(), Fault> {
+    /// Enters what a transition leads to. Nothing is entered any more when the chart has reached its end.
+    fn enter_on(&mut self, compound: &Compound) -> Result<(), Fault> {
+        if self.run.terminates || self.run.status != Status::Running {
+            return Ok(());
+        }
         if let Some(place) = compound.vacates {
             self.run.vacate(self.chart, place, compound.arrives.is_some());
         }
@@ -131,7 +138,6 @@ impl<H: Host> Step<'_, H> {
         match &compound.entries {
             Entries::None => {}
             Entries::Listed(list) => list.iter().for_each(|&place| self.enter(place)),
-            Entries::Found if stops && self.marked_child(compound.scope).is_none() => {}
             Entries::Found => self.enter_inside(compound.scope)?,
         }
         Ok(())
@@ -144,7 +150,8 @@ impl<H: Host> Step<'_, H> {
         }
     }
 
-    /// All that is left, then all actions, then all that is entered: each as one set, and the actions in the order of selection.
+    /// All that is left, then all actions, then all that is entered: each as one set, and the actions in the order of selection. If one
+    /// leads to TERMINATE, what the others lead to is entered before the chart stops.
     fn fire_phases(&mut self) -> Result<(), Fault> {
         let chart = self.chart;
         let compound = |id: CompoundId| &chart.compounds[id.0 as usize];
@@ -157,15 +164,20 @@ impl<H: Host> Step<'_, H> {
             Ok(())
         })?;
         self.leave_collected();
-        self.each_selected(|step, id| step.act_on(compound(id)))?;
-        let stops = std::mem::take(&mut self.run.terminates);
-        let run = &mut *self.run;
-        run.in_document.clear();
-        run.in_document.extend_from_slice(&run.selection.selected);
-        run.in_document.sort_by_key(|&id| chart.layout.rank(compound(id).scope));
+        self.run.in_document.clear();
+        let mut stops = false;
+        self.each_selected(|step, id| {
+            step.act_on(compound(id))?;
+            match std::mem::take(&mut step.run.terminates) {
+                true => stops = true,
+                false => step.run.in_document.push(id),
+            }
+            Ok(())
+        })?;
+        self.run.in_document.sort_by_key(|&id| chart.layout.rank(compound(id).scope));
         let mut index = 0;
         while let Some(&id) = self.run.in_document.get(index) {
-            self.enter_on(compound(id), stops)?;
+            self.enter_on(compound(id))?;
             index += 1;
         }
         self.run.terminates |= stops;

@@ -33,8 +33,7 @@ impl<H: Host> Step<'_, H> {
         if regions.is_empty() {
             return Ok(());
         }
-        self.run.selection.clear();
-        self.run.log.clear();
+        self.run.begin_micro_step();
         for region in regions {
             self.enter(region);
             self.enter_inside(region)?;

@@ -16,6 +16,7 @@ use crate::machine::queues::{Incoming, Queues};
 use crate::machine::timers::Timers;
 use crate::machine::{Status, StepSummary};
 use crate::moment::Moment;
+use crate::semantics::FailureEvents;
 use crate::statechart::{NodeId, NodeKind, TransitionId};
 use crate::vocabulary::TopicId;
 
@@ -43,6 +44,10 @@ pub(super) struct Run {
     pub(super) pending: Vec<Pending>,
     /// The guards that had no value when they were last read.
     pub(super) erred: Vec<ErredGuard>,
+    /// The segments whose guards had none in this micro-step, of which it was told.
+    told: Vec<TransitionId>,
+    /// The segments with a weight that were drawn in this micro-step, in order.
+    pub(super) drawn: Vec<TransitionId>,
     /// The blackboards that were written in this step.
     pub(super) written: BitSet,
     /// The active STARTs of which it was told that they wait.
@@ -74,7 +79,7 @@ pub(super) struct Run {
     pub(super) entering: Vec<Place>,
     /// What is to be left.
     pub(super) leaving: Vec<Place>,
-    /// The selected transitions by the place of their scope.
+    /// The selected transitions that enter something, in the order of their scopes in the document.
     pub(super) in_document: Vec<CompoundId>,
     /// Timers that belong to a target that is not yet known.
     pub(super) unbound: Vec<usize>,
@@ -104,10 +109,8 @@ pub(super) struct ErredGuard {
 pub(super) struct Selection {
     /// Enabled transitions, inner before outer, then in the order of the document.
     pub(super) candidates: Vec<CompoundId>,
-    /// For each of them, the first active leaf that it was found for.
+    /// For each of them, the state that it was found at or, for phases, the first active leaf that it was found for.
     pub(super) found_for: Vec<Place>,
-    /// The state that the latest of them was found at.
-    pub(super) latest: Option<Place>,
     /// Those that win and can fire now.
     pub(super) selected: Vec<CompoundId>,
     pub(super) preempted: Vec<CompoundId>,
@@ -127,7 +130,6 @@ impl Selection {
             self.closed.clear();
             self.candidates.clear();
             self.found_for.clear();
-            self.latest = None;
         }
         if self.has_noted {
             self.noted.clear();
@@ -178,6 +180,8 @@ impl Run {
             queues: Queues::default(),
             pending: Vec::with_capacity(4),
             erred: Vec::new(),
+            told: Vec::new(),
+            drawn: Vec::new(),
             written: BitSet::new(regions),
             waiting_starts: BitSet::new(places),
             newcomers: Newcomers::default(),
@@ -200,7 +204,6 @@ impl Run {
             selection: Selection {
                 candidates: Vec::with_capacity(regions),
                 found_for: Vec::with_capacity(regions),
-                latest: None,
                 selected: Vec::with_capacity(regions),
                 preempted: Vec::with_capacity(regions),
                 held: Vec::with_capacity(regions),
@@ -241,6 +244,50 @@ impl Run {
         self.terminates = false;
         self.failure = None;
         self.marked.clear();
+    }
+
+    /// The chart could not be started: nothing has been entered.
+    pub(super) fn forget_entered(&mut self) {
+        self.active.clear();
+        self.tips.clear();
+        self.running.clear();
+        self.running_regions.clear();
+        self.activities.reset();
+        self.timers.reset();
+        self.completions.clear();
+        self.marked.clear();
+        self.entering.clear();
+        self.unbound.clear();
+    }
+
+    /// What is noted of one micro-step is forgotten.
+    pub(super) fn begin_micro_step(&mut self) {
+        self.log.clear();
+        self.selection.clear();
+        self.told.clear();
+        self.drawn.clear();
+    }
+
+    /// A micro-step of the short way begins, of which nothing else is noted.
+    #[inline(always)]
+    pub(super) fn forget_failures_told(&mut self) {
+        self.told.clear();
+    }
+
+    /// A guard has had no value: says whether that is to be told.
+    pub(super) fn note_failure(&mut self, chart: &Chart, guard: usize) -> bool {
+        let is_new = !self.erred.iter().any(|erred| erred.guard == guard);
+        let every_time = chart.semantics_ref().failures == FailureEvents::EveryTime;
+        if is_new && !every_time {
+            self.erred.push(ErredGuard { guard, stale: false });
+        }
+        let segment = chart.guards[guard].transition;
+        let is_told = self.told.contains(&segment);
+        if (is_new || every_time) && !is_told {
+            self.told.push(segment);
+            return true;
+        }
+        false
     }
 
     /// A message has arrived on a topic, or an action has written it on one blackboard: guards that had no value may have one.

@@ -7,19 +7,29 @@ use crate::host::{Host, Report};
 use crate::machine::activities::Phase;
 use crate::machine::draw::Search;
 use crate::machine::queues::Occurrence;
-use crate::machine::run::{ErredGuard, Pending};
+use crate::machine::run::Pending;
 use crate::machine::step::Step;
 use crate::machine::view::View;
-use crate::semantics::{ConflictChoice, FailureEvents, Firing, RunningOnExit};
+use crate::semantics::{ConflictChoice, Firing, RunningOnExit};
 use crate::trace::Occasion;
 
 impl<H: Host> Step<'_, H> {
     /// Finds the candidates for an event or, without one, for a step without.
     ///
     /// Places are visited children before parents. A state is looked at if from some active leaf inside it, outward, no transition has been
-    /// found yet: inner ones win.
+    /// found yet: inner ones win. Before a state with a way through a JOIN, what lies in the other sources of that is visited too.
     pub(super) fn select(&mut self, occurrence: Option<&Occurrence>) {
-        self.begin_selection();
+        self.run.begin_micro_step();
+        match &self.chart.visits {
+            Some(order) if occurrence.is_none() => self.visit_in_order(order),
+            _ => self.visit(occurrence),
+        }
+        if !self.run.selection.candidates.is_empty() {
+            self.run.selection.held.clear();
+        }
+    }
+
+    fn visit(&mut self, occurrence: Option<&Occurrence>) {
         let (masks, last) = (&self.chart.masks, self.chart.layout.len());
         let sources = if occurrence.is_some() { &masks.triggered } else { &masks.eventless };
         let mut next = self.run.active.next_common(sources, 0, last);
@@ -27,19 +37,19 @@ impl<H: Host> Step<'_, H> {
             self.consider(Place(index as u32), occurrence);
             next = self.run.active.next_common(sources, index + 1, last);
         }
-        if !self.run.selection.candidates.is_empty() {
-            self.run.selection.held.clear();
-        }
     }
 
-    fn begin_selection(&mut self) {
-        self.run.log.clear();
-        self.run.selection.clear();
+    fn visit_in_order(&mut self, order: &[Place]) {
+        for &place in order {
+            if self.run.is_active(place) && self.chart.masks.eventless.contains(place.index()) {
+                self.consider(place, None);
+            }
+        }
     }
 
     /// Finds the candidate among the ways out of one state that has completed.
     pub(super) fn select_at(&mut self, place: Place) {
-        self.begin_selection();
+        self.run.begin_micro_step();
         if self.run.is_active(place) {
             self.consider(place, None);
         }
@@ -58,20 +68,19 @@ impl<H: Host> Step<'_, H> {
         }
     }
 
-    /// Candidates stand in the order in which their sources are visited or, for phases, in that of the leaves they were found for.
+    /// Candidates stand in the order of their sources, inner ones first, or, for phases, in that of the leaves they were found for.
     fn add_candidate(&mut self, found: CompoundId, place: Place) {
         let first = self.chart.layout.first(place).index();
         let (run, phases) = (&mut *self.run, self.chart.semantics_ref().firing == Firing::Phases);
         let leaf = run.tips.next_without(&run.selection.closed, first, place.index());
-        let leaf = leaf.map_or(place, |index| Place(index as u32));
         let selection = &mut run.selection;
-        let index = match phases {
-            true => selection.found_for.partition_point(|&other| other < leaf),
-            false => selection.candidates.len(),
+        let found_for = match leaf.filter(|_| phases) {
+            Some(leaf) => Place(leaf as u32),
+            None => place,
         };
-        selection.latest = Some(place);
+        let index = selection.found_for.partition_point(|&other| other <= found_for);
         selection.candidates.insert(index, found);
-        selection.found_for.insert(index, leaf);
+        selection.found_for.insert(index, found_for);
     }
 
     /// Whether it is about to be left, by an interrupting transition or for a held event: then nothing of it happens without an event.
@@ -103,14 +112,27 @@ impl<H: Host> Step<'_, H> {
         self.run.running.any_in(self.chart.layout.first(place).index(), place.index())
     }
 
-    /// Sources are visited children before parents: if a candidate was found inside, the latest was.
+    /// Whether a candidate was found that begins inside a state.
     pub(super) fn can_step_inside(&self, place: Place) -> bool {
         let first = self.chart.layout.first(place);
-        self.run.selection.latest.is_some_and(|latest| latest >= first)
+        let begins_inside =
+            |&id: &CompoundId| self.compound(id).sources().any(|it| first <= it && it < place);
+        self.run.selection.candidates.iter().any(begins_inside)
+    }
+
+    /// Whether all sources of a JOIN have completed, and nothing was found from any of the active leaves inside them, outward: a JOIN takes
+    /// its sources as a whole, when none of them can step any more.
+    pub(super) fn can_join(&self, join: usize) -> bool {
+        self.chart.joins[join].sources.iter().all(|&source| {
+            let first = self.chart.layout.first(source).index();
+            self.run.is_active(source)
+                && self.run.is_complete(self.chart, source)
+                && !self.run.selection.closed.any_in(first, source.index())
+        })
     }
 
     /// Reads a guard. One without a value counts as false and raises an error event, once until it has succeeded or what it reads has
-    /// changed.
+    /// changed, and once in a micro-step for its segment, however often and on however many blackboards it is read.
     pub(super) fn holds(&mut self, guard: usize) -> bool {
         let ScopedGuard { transition, region, guard: program } = &self.chart.guards[guard];
         let view = View { chart: self.chart, run: self.run, host: self.host, region: *region };
@@ -125,11 +147,7 @@ impl<H: Host> Step<'_, H> {
                 value
             }
             Err(error) => {
-                let every_time = self.semantics().failures == FailureEvents::EveryTime;
-                if every_time || !self.run.erred.iter().any(|erred| erred.guard == guard) {
-                    if !every_time {
-                        self.run.erred.push(ErredGuard { guard, stale: false });
-                    }
+                if self.run.note_failure(self.chart, guard) {
                     self.run.raise(self.chart, self.chart.errors.guard, true, 0);
                     self.host
                         .report(self.chart, Report::GuardFailed { transition: *transition, error: &error });
@@ -207,7 +225,7 @@ impl<H: Host> Step<'_, H> {
         for index in 0..self.run.selection.selected.len() {
             let id = self.run.selection.selected[index];
             let other = &chart.compounds[id.0 as usize];
-            if !compound.conflicts_with(other) {
+            if !compound.conflicts_with(other, &self.run.active) {
                 continue;
             }
             let wins = self.is_nested(compound, other)
@@ -222,7 +240,7 @@ impl<H: Host> Step<'_, H> {
         Some(losers)
     }
 
-    /// Whether one begins inside a state at which the other begins.
+    /// Whether one begins inside a state at which the other begins, of a JOIN at any of its sources.
     fn is_nested(&self, inner: &Compound, outer: &Compound) -> bool {
         let layout = &self.chart.layout;
         inner

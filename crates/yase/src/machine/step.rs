@@ -263,8 +263,7 @@ impl<'a, H: Host> Step<'a, H> {
 
     /// Leaves every state, in a record of its own.
     pub(super) fn leave_all(&mut self, status: Status) {
-        self.run.selection.clear();
-        self.run.log.clear();
+        self.run.begin_micro_step();
         self.collect_between(Place(0), self.chart.layout.root());
         self.leave_collected();
         self.emit(Occasion::Finish, None);
@@ -348,6 +347,7 @@ impl<'a, H: Host> Step<'a, H> {
         self.run.pending.clear();
         self.run.completions.clear();
         self.run.marked.clear();
+        self.run.entering.clear();
         self.run.unbound.clear();
         self.run.status = status;
     }

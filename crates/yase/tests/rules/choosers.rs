@@ -148,3 +148,30 @@ fn r22_weights_that_are_no_shares_are_refused() {
         "error[M23]: a transition out of `c/A` has weight 0 (a weight is more than 0 and at most 1)"
     );
 }
+
+#[test]
+fn r22_what_is_drawn_at_a_node_stays_drawn_for_the_micro_step() {
+    // both regions come by the same CONDITION in one micro-step, which one of them then loses
+    let text = "
+        START
+        & both
+          one
+            START
+            A
+          two
+            START
+            B
+        ? c
+        D
+        E
+        c/START -> both
+        one/START -> A
+        two/START -> B
+        A -> c : e
+        B -> c : e
+        c/c -> D {w0.5}
+        c/c -> E {w0.5}
+    ";
+    let found = reached(text, "1 e; 2", Semantics::yase(), &[&[1, 0], &[0, 1]]);
+    assert_eq!(found, [("E".to_owned(), vec![(1, 2)]), ("D".to_owned(), vec![(0, 2)])]);
+}

@@ -13,6 +13,7 @@ mod data;
 mod firing;
 mod histories;
 mod history;
+mod joins;
 mod pool;
 mod profiles;
 mod refusals;
@@ -20,11 +21,19 @@ mod running;
 mod scripts;
 mod selection;
 mod structure;
+mod terminate;
 mod timers;
 mod trace;
 mod wiring;
 
 use yase::Semantics;
+
+/// `yase` with a change.
+fn with(change: impl FnOnce(&mut Semantics)) -> Semantics {
+    let mut semantics = Semantics::yase();
+    change(&mut semantics);
+    semantics
+}
 
 /// Plays a script to a chart and compares every line that the world wrote down.
 #[track_caller]

@@ -1,6 +1,8 @@
 //! R4 to R8: events, guards, paths, and who wins.
 
-use crate::{check, compare, kit, refusal};
+use yase::FailureEvents;
+
+use crate::{check, check_with, compare, kit, refusal, with};
 
 #[test]
 fn r04_a_micro_step_takes_one_occurrence_or_none() {
@@ -399,4 +401,42 @@ fn r08_what_stays_inside_conflicts_with_nothing_and_fires_first() {
          exit both/one/A, both/one, both/two/C, both/two, both; \
          do process_messages (both/two/C -> both/two/C), publish_all (both/one/A -> X); enter X",
     );
+}
+
+#[test]
+fn r05_a_guard_that_errs_is_told_once_in_a_micro_step_however_often_it_is_read() {
+    let text = "
+        START
+        & both
+          one
+            START
+            A
+          two
+            START
+            B
+        ? p
+        D
+        c/START -> both
+        one/START -> A
+        two/START -> B
+        A -> p : e
+        B -> p : e
+        p -> D : [A.n < fail()]
+        ";
+    let told = |event: &str| {
+        format!(
+            "
+            0.000 s start; enter c, START
+            0.000 s -: START -> both; exit START; enter both, both/one, both/one/START, both/two, both/two/START
+            0.000 s -: both/one/START -> both/one/A, both/two/START -> both/two/B; exit both/one/START, both/two/START; enter both/one/A, both/two/B
+            guard failed: the function failed: it always fails
+            0.001 s e: dropped
+            0.001 s {event}: dropped
+            "
+        )
+    };
+    let again = "guard failed: the function failed: it always fails\n0.002 s e: dropped\n0.002 s error.execution: dropped";
+    check(text, "1 e; 2 e; 3", &format!("{}0.002 s e: dropped", told("error.guard")));
+    let every_time = with(|it| it.failures = FailureEvents::EveryTime);
+    check_with(every_time, text, "1 e; 2 e; 3", &format!("{}{again}", told("error.execution")));
 }

@@ -33,7 +33,7 @@ fn a_machine_that_is_restored_at_every_micro_step_writes_the_same_lines() {
 fn cut_everywhere(numbers: std::ops::Range<u64>) -> (u64, u64) {
     let (mut all, mut mid_step) = (0, 0);
     for number in numbers {
-        let case = Case::settled_near(number);
+        let case = Case::numbered(number);
         let chart = compile(&case);
         let expected = run(&mut machine(&chart, &case), &case);
         let mut cut = Cut::new(machine(&chart, &case), None);
@@ -49,7 +49,7 @@ fn cut_everywhere(numbers: std::ops::Range<u64>) -> (u64, u64) {
 fn a_machine_that_is_restored_once_goes_on_to_the_end() {
     let mut restored = 0;
     for number in RUNS..RUNS + WHOLE_RUNS {
-        let case = Case::settled_near(number);
+        let case = Case::numbered(number);
         let chart = compile(&case);
         let mut whole = Cut::new(machine(&chart, &case), Some(u64::MAX));
         let expected = run(&mut whole, &case);

@@ -24,7 +24,7 @@ fn swapping_a_chart_for_itself_or_a_renumbered_copy_at_every_stable_point_change
 
 /// Plays a case without and with swaps, and says how many there were.
 fn swapped(number: u64) -> u64 {
-    let case = Case::settled_near(number);
+    let case = Case::numbered(number);
     let compiled = compile(&case.chart, case.semantics);
     let expected = run(&mut machine(compiled.clone(), &case), &case);
     let mut swaps = 0;

@@ -70,10 +70,20 @@ impl Restoring<'_> {
         }
     }
 
+    /// TERMINATE stops a chart in the middle: what would have been entered is not there.
     fn children_fit(&mut self, place: Place) {
         let is_and = self.kind(place) == NodeKind::And;
         let is_there = |child: Place| self.is_active(child) || is_and && self.run.is_to_enter(child);
         let may_be_empty = self.run.vacated.contains(place.index());
+        let is_cut_short = self.run.status == Status::Stopped
+            && match self.kind(place) {
+                NodeKind::And => true,
+                NodeKind::Or => !self.children(place).any(is_there),
+                _ => false,
+            };
+        if is_cut_short {
+            return;
+        }
         for text in self.holes(place, is_there, may_be_empty) {
             self.unclosed(text);
         }

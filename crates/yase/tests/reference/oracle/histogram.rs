@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use yase::expression::Trigger;
 use yase::statechart::{NodeId, NodeKind, Statechart, Transition};
 
-use crate::oracle::random::{Case, POINTS, Variant, differs_somewhere};
+use crate::oracle::random::{Case, POINTS, Variant, differs_somewhere, has};
 use lines::{Line, lines};
 
 #[derive(Clone, Default)]
@@ -87,6 +87,9 @@ impl Histogram {
         for profile in ["yase", "uml", "scxml"] {
             self.add(format!("profile {profile}"), case.variant == Variant::Profile(profile));
         }
+        for (index, (name, _)) in POINTS.iter().enumerate() {
+            self.add(format!("value {name}"), has(case.semantics, index));
+        }
         for (index, (name, _)) in POINTS.iter().enumerate().filter(|(index, _)| differs_somewhere(*index)) {
             let alone = matches!(case.variant, Variant::Flipped(_, flipped) if flipped == index);
             self.add(format!("point {name}"), alone);
@@ -105,6 +108,11 @@ impl Histogram {
     /// The rows that never occurred.
     pub(crate) fn missing(&self) -> Vec<&String> {
         self.rows.iter().filter(|(_, count)| **count == 0).map(|(row, _)| row).collect()
+    }
+
+    /// How many charts were played.
+    pub(crate) fn played(&self) -> u64 {
+        ["declared", "seeded", "scripted"].iter().map(|name| self.row(&format!("chooser {name}"))).sum()
     }
 
     pub(crate) fn row(&self, row: &str) -> u64 {

@@ -5,13 +5,13 @@ mod points;
 mod wires;
 mod words;
 
-use yase::statechart::{NodeId, NodeKind, Statechart};
-use yase::{EventMatching, Eventless, Firing, Joining, Semantics, TopicId};
+use yase::statechart::{NodeId, Statechart};
+use yase::{EventMatching, Eventless, Firing, Semantics, TopicId};
 
 use crate::kit::script::{Input, Script};
 use crate::oracle::chance::Freedom;
 
-pub(crate) use points::{POINTS, Variant, differs_somewhere};
+pub(crate) use points::{POINTS, Variant, differs_somewhere, has};
 
 /// Random choices out of bytes; when they have run out, always the first.
 pub(crate) struct Choices<'a> {
@@ -37,16 +37,6 @@ impl<'a> Choices<'a> {
     }
 }
 
-/// The points that may differ from `yase` in a case that is compared.
-const SETTLED: [&str; 6] = [
-    "eventless quiescent",
-    "delivery explicit",
-    "deferral off",
-    "segments as modelled",
-    "one pool",
-    "timers of states",
-];
-
 /// A chart, what happens to it, and how it is read.
 #[derive(Clone)]
 pub(crate) struct Case {
@@ -64,34 +54,6 @@ impl Case {
         let length = 300 + (next(&mut state) % 2500) as usize;
         let bytes: Vec<u8> = (0..length).map(|_| (next(&mut state) >> 33) as u8).collect();
         Case::from_choices(&mut Choices::new(&bytes))
-    }
-
-    /// The first settled case of the hundred of that number.
-    #[allow(dead_code)] // of the three that play cases two ask for it
-    pub(crate) fn settled_near(number: u64) -> Case {
-        let mut cases = (number * 100..number * 100 + 100).map(Case::numbered);
-        cases
-            .find(Case::is_settled)
-            .unwrap_or_else(|| panic!("none of a hundred cases from {number}00 is settled"))
-    }
-
-    /// Whether machine and interpreter are held to each other on this case. They are not yet where they are known to read the
-    /// rules differently: under the points of `uml` and `scxml`, where segments with weights are drawn, where composites are
-    /// joined while something inside them can still step, and where a CHOICE may lead to TERMINATE.
-    pub(crate) fn is_settled(&self) -> bool {
-        let draws = self.chart.transitions().any(|(_, transition)| transition.weight.is_some());
-        let joins_composites = self.chart.transitions().any(|(_, transition)| {
-            let kind = |node| self.chart.node(node).kind;
-            kind(transition.target) == NodeKind::Join && kind(transition.source) != NodeKind::Basic
-        });
-        let has = |kind| self.chart.nodes().any(|(_, node)| node.kind == kind);
-        let ends_late = has(NodeKind::Choice) && has(NodeKind::Terminate);
-        let is_near_yase = match self.variant {
-            Variant::Profile(name) => name == "yase",
-            Variant::Flipped(name, point) => name == "yase" && SETTLED.contains(&POINTS[point].0),
-            Variant::Mixed => false,
-        };
-        is_near_yase && !ends_late && !joins_composites && (self.freedom == Freedom::Declared || !draws)
     }
 
     fn from_choices(choices: &mut Choices<'_>) -> Case {
@@ -167,10 +129,6 @@ impl Maker<'_, '_> {
     /// Charts in which transitions without triggers do not wait need more triggers, lest they never rest.
     fn is_hasty(&self) -> bool {
         matches!(self.semantics.eventless, Eventless::Always | Eventless::Quiescent)
-    }
-
-    fn joins_each(&self) -> bool {
-        self.semantics.join == Joining::Each
     }
 
     fn parent(&self, node: NodeId) -> NodeId {

@@ -19,7 +19,6 @@ use yase::{Activation, Moment, Outcome, RegionId, Semantics, TopicId};
 use crate::kit::script::Interpreter;
 use crate::kit::world::{TOPICS, World};
 use crate::oracle::chance::Chance;
-use select::Judgement;
 use tree::Tree;
 use ways::Way;
 
@@ -112,7 +111,16 @@ pub(crate) struct Stepper<'c> {
     stale: BTreeSet<(TransitionId, RegionId)>,
     written: BTreeSet<RegionId>,
     waiting: BTreeSet<NodeId>,
-    judged: BTreeMap<NodeId, Judgement>,
+    /// What this micro-step has found so far: transitions, and the state each was found at.
+    found: Vec<(NodeId, Way)>,
+    /// The active leaves from which something was found, outward.
+    closed: BTreeSet<NodeId>,
+    /// The active leaves when it began.
+    leaves: Vec<NodeId>,
+    /// The segments whose guards have failed in this micro-step, which is told once.
+    told: BTreeSet<TransitionId>,
+    /// The segments with weights that were drawn in this micro-step.
+    drawn: Vec<TransitionId>,
     line: Line,
     micro_steps: u32,
     did_something: bool,
@@ -120,6 +128,8 @@ pub(crate) struct Stepper<'c> {
     steps_at_instant: u32,
     /// The root has reached its END and what is active is still to be left.
     ended: bool,
+    /// TERMINATE was reached in this micro-step.
+    terminates: bool,
     /// What went wrong when the chart began; the first step tells it.
     failure: Option<Failure>,
     before: BTreeSet<NodeId>,
@@ -161,13 +171,18 @@ impl<'c> Stepper<'c> {
             stale: BTreeSet::new(),
             written: BTreeSet::new(),
             waiting: BTreeSet::new(),
-            judged: BTreeMap::new(),
+            found: vec![],
+            closed: BTreeSet::new(),
+            leaves: vec![],
+            told: BTreeSet::new(),
+            drawn: vec![],
             line: Line::default(),
             micro_steps: 0,
             did_something: false,
             instant: Moment::ZERO,
             steps_at_instant: 0,
             ended: false,
+            terminates: false,
             failure: None,
             before: BTreeSet::new(),
         }

@@ -103,6 +103,11 @@ fn differs(semantics: Semantics, point: usize) -> bool {
     changed != semantics
 }
 
+/// Whether a semantics has a value of a point.
+pub(crate) fn has(semantics: Semantics, point: usize) -> bool {
+    !differs(semantics, point)
+}
+
 /// Whether a value of a point is another than that of some profile.
 pub(crate) fn differs_somewhere(point: usize) -> bool {
     [Semantics::yase(), Semantics::uml(), Semantics::scxml()].into_iter().any(|it| differs(it, point))

@@ -1,6 +1,5 @@
 //! The transitions of a random chart.
 
-use yase::ActiveAncestor;
 use yase::statechart::{NodeId, NodeKind, Statechart, Transition};
 
 use super::Maker;
@@ -63,9 +62,8 @@ impl Maker<'_, '_> {
     fn out_of_start(&mut self, start: NodeId) {
         let parent = self.parent(start);
         let all = self.children(parent, |kind| {
-            let never =
-                [NodeKind::Start, NodeKind::Terminate, NodeKind::Join, NodeKind::End, NodeKind::ExitPoint];
-            !never.contains(&kind) && !is_history(kind) && kind != NodeKind::EntryPoint
+            let never = [NodeKind::Start, NodeKind::Join, NodeKind::End, NodeKind::ExitPoint];
+            !never.contains(&kind) && kind != NodeKind::EntryPoint
         });
         if self.choices.percent(25) {
             let target = self.near_or_deep(parent, &all);
@@ -154,7 +152,7 @@ impl Maker<'_, '_> {
                     true => self.children(region, |kind| kind == NodeKind::Basic),
                     false => self.inside(region, is_state),
                 };
-                let whole = !self.joins_each() && self.choices.percent(20);
+                let whole = self.choices.percent(20);
                 let source = match inside.is_empty() || whole {
                     true => region,
                     false => self.choices.pick(&inside),
@@ -165,21 +163,20 @@ impl Maker<'_, '_> {
             }
         }
         let targets = self.children(self.parent(join), |kind| {
-            is_state(kind) || matches!(kind, NodeKind::End | NodeKind::Choice | NodeKind::Junction)
+            let connectors = [NodeKind::Choice, NodeKind::Junction, NodeKind::Terminate];
+            is_state(kind) || kind == NodeKind::End || connectors.contains(&kind)
         });
         let target = self.choices.pick(&targets);
         let text = self.slash_actions(40);
         self.connect(join, target, &text);
     }
 
-    /// A default, always if START may lead here: without one it would lead to START again.
+    /// Without a default, or when that is closed, it leads to START; if START itself led here, the chart rests there.
     fn out_of_history(&mut self, history: NodeId) {
-        let from_connector = |it: &Transition| it.target == history && is_branch(self.kind(it.source));
-        let needed = self.chart.transitions().any(|(_, transition)| from_connector(transition));
-        if needed || self.choices.percent(50) {
+        if self.choices.percent(50) {
             let inside = self.inside(self.parent(history), |kind| is_state(kind) || kind == NodeKind::End);
             let target = self.choices.pick(&inside);
-            let guard = if !needed && self.choices.percent(20) { self.guard() } else { String::new() };
+            let guard = if self.choices.percent(20) { self.guard() } else { String::new() };
             let text = format!("{guard} {}", self.slash_actions(40));
             self.connect(history, target, &text);
         }
@@ -287,16 +284,8 @@ impl Maker<'_, '_> {
             NodeKind::Condition | NodeKind::Junction | NodeKind::Choice | NodeKind::Fork => same,
             NodeKind::EntryPoint => source != owner && !self.is_inside(source, owner),
             NodeKind::ExitPoint => self.is_inside(source, owner),
-            NodeKind::Or | NodeKind::And => !self.would_vacate_itself(source, target),
             _ => true,
         }
-    }
-
-    /// A region without anything inside cannot lose what is inside.
-    fn would_vacate_itself(&self, source: NodeId, target: NodeId) -> bool {
-        self.semantics.ancestor == ActiveAncestor::Completed
-            && self.kind(target) == NodeKind::And
-            && self.parent(source) == target
     }
 
     /// Gives weights to what leaves some nodes.

@@ -1,6 +1,6 @@
 //! Entering: R10, R11, R14, and what is remembered.
 
-use yase::statechart::{NodeId, NodeKind};
+use yase::statechart::{NodeId, NodeKind, TransitionId};
 use yase::{Eventless, Host, RootEnd, StartRest, Statechart};
 
 use super::{Failure, Job, Phase, Stepper, Way};
@@ -14,12 +14,22 @@ impl Stepper<'_> {
         targets: &[NodeId],
         world: &mut World,
     ) -> Result<(), Failure> {
+        self.enter_below_from(composite, targets, None, world)
+    }
+
+    fn enter_below_from(
+        &mut self,
+        composite: NodeId,
+        targets: &[NodeId],
+        start: Option<NodeId>,
+        world: &mut World,
+    ) -> Result<(), Failure> {
         let remembered = targets.iter().copied().find(|&target| {
             let history = matches!(self.kind(target), NodeKind::ShallowHistory | NodeKind::DeepHistory);
             history && self.parent(target) == composite
         });
         if let Some(history) = remembered {
-            return self.enter_remembered(history, world);
+            return self.enter_remembered(history, start, world);
         }
         let inner: Vec<NodeId> =
             targets.iter().copied().filter(|&target| self.is_inside(target, composite)).collect();
@@ -35,6 +45,9 @@ impl Stepper<'_> {
     }
 
     fn enter_whole(&mut self, node: NodeId, targets: &[NodeId], world: &mut World) -> Result<(), Failure> {
+        if self.is_ended() {
+            return Ok(());
+        }
         self.enter(node, world);
         self.enter_below(node, targets, world)
     }
@@ -55,7 +68,7 @@ impl Stepper<'_> {
         if self.semantics.start == StartRest::SameStep
             && let Some(way) = self.open_way(start, world)
         {
-            return self.go_on(&way, composite, world);
+            return self.go_on(&way, composite, Some(start), world);
         }
         self.enter(start, world);
         Ok(())
@@ -67,7 +80,14 @@ impl Stepper<'_> {
         self.first_way(connector, &out, &mut |me, way| me.guards_hold(way, world))
     }
 
-    fn go_on(&mut self, way: &Way, composite: NodeId, world: &mut World) -> Result<(), Failure> {
+    /// `start` is the START that the way comes from: a HISTORY that leads nowhere leads back to it, where entering ends.
+    fn go_on(
+        &mut self,
+        way: &Way,
+        composite: NodeId,
+        start: Option<NodeId>,
+        world: &mut World,
+    ) -> Result<(), Failure> {
         let outer = std::mem::take(&mut self.unbound);
         self.line.taken.extend(&way.segments);
         let region = self.region(self.scope(way));
@@ -75,31 +95,34 @@ impl Stepper<'_> {
         let targets = self.choose(&way.ends, region, world)?;
         self.bind_timers(targets.first().copied());
         self.unbound = outer;
-        if targets.iter().any(|&target| self.kind(target) == NodeKind::Terminate) {
-            self.halt(world);
+        if self.terminates {
             return Ok(());
         }
-        self.enter_below(composite, &targets, world)
+        self.enter_below_from(composite, &targets, start, world)
     }
 
-    fn enter_remembered(&mut self, history: NodeId, world: &mut World) -> Result<(), Failure> {
+    fn enter_remembered(
+        &mut self,
+        history: NodeId,
+        start: Option<NodeId>,
+        world: &mut World,
+    ) -> Result<(), Failure> {
         let owner = self.parent(history);
         let Some(record) = self.records.get(&history).cloned() else {
             return match self.open_way(history, world) {
-                Some(way) => self.go_on(&way, owner, world),
+                Some(way) => self.go_on(&way, owner, start, world),
+                None if start.is_some() => {
+                    start.into_iter().for_each(|start| self.enter(start, world));
+                    Ok(())
+                }
                 None => self.enter_below(owner, &[], world),
             };
         };
         match (self.kind(history), self.kind(owner)) {
-            (NodeKind::DeepHistory, _) => {
-                let states: Vec<NodeId> =
-                    record.into_iter().filter(|&node| self.kind(node) != NodeKind::Start).collect();
-                self.enter_below(owner, &states, world)
-            }
+            (NodeKind::DeepHistory, _) => self.enter_below(owner, &record, world),
             (_, NodeKind::And) => self.enter_regions(owner, &[], world),
             _ => match record[..] {
-                [child] if self.kind(child) == NodeKind::Start => self.enter_start(owner, world),
-                [child] => self.enter_whole(child, &[], world),
+                [child] => self.enter_whole(child, &[], world), // START too, to rest there
                 _ => Ok(()),
             },
         }
@@ -134,8 +157,9 @@ impl Stepper<'_> {
         let Some(around) = self.chart.node(node).parent else { return };
         let chart = self.chart;
         if self.vacated.remove(&around) && self.is_region(around) {
-            self.arrivals
-                .retain(|id| !chart.ancestors(chart.transition(*id).source).any(|above| above == around));
+            let from = |id: &TransitionId| chart.transition(*id).source;
+            let inside = |node: NodeId| node == around || chart.ancestors(node).any(|above| above == around);
+            self.arrivals.retain(|id| !inside(from(id)));
         }
     }
 
@@ -183,8 +207,16 @@ impl Stepper<'_> {
         if !self.completions.contains(&node) {
             self.completions.push(node);
         }
-        let around = self.parent(node);
-        if self.kind(around) == NodeKind::And && self.is_complete(around) {
+        self.complete_around(node);
+    }
+
+    /// The AND around a region, if it has completed.
+    pub(super) fn complete_around(&mut self, region: NodeId) {
+        let around = self.parent(region);
+        if self.semantics.eventless == Eventless::Once
+            && self.kind(around) == NodeKind::And
+            && self.is_complete(around)
+        {
             self.completed(around);
         }
     }

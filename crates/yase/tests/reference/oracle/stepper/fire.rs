@@ -9,11 +9,12 @@ use super::{Failure, Phase, Stepper, Way};
 use crate::kit::world::World;
 
 impl Stepper<'_> {
-    /// One transition after the other; those whose source another one has left do not fire.
+    /// One transition after the other; those whose source another one has left do not fire, though it be active again.
     pub(super) fn fire_each(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
         let mut fired = vec![];
         for way in ways {
-            if self.running_chart && !self.ended && self.may_fire(&way) {
+            let left = way.sources.iter().any(|source| self.line.exits.contains(source));
+            if self.running_chart && !self.ended && !left {
                 self.fire(&way, world)?;
                 fired.push(way);
             }
@@ -30,26 +31,45 @@ impl Stepper<'_> {
         let exits = self.exit_set(way);
         self.leave_all(&exits, world);
         let targets = self.effects_and_targets(way, world)?;
-        self.enter_targets(way, &targets, world)
+        if !self.terminates {
+            self.enter_targets(way, &targets, world)?;
+        }
+        self.halt_if_terminated(world);
+        Ok(())
+    }
+
+    /// R13
+    fn halt_if_terminated(&mut self, world: &mut World) {
+        if std::mem::take(&mut self.terminates) {
+            self.halt(world);
+        }
+    }
+
+    /// Nothing is entered any more.
+    pub(super) fn is_ended(&self) -> bool {
+        self.terminates || !self.running_chart
     }
 
     /// All exits, then all effects, then all entries.
     pub(super) fn fire_phases(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
         let exits: BTreeSet<NodeId> = ways.iter().flat_map(|way| self.exit_set(way)).collect();
         self.leave_all(&exits, world);
-        let mut entering = vec![];
+        let (mut entering, mut stops) = (vec![], false);
         for way in &ways {
-            if self.running_chart {
-                let targets = self.effects_and_targets(way, world)?;
-                entering.push((way.clone(), targets));
+            let targets = self.effects_and_targets(way, world)?;
+            match std::mem::take(&mut self.terminates) {
+                true => stops = true, // when what the others lead to has been entered
+                false => entering.push((way.clone(), targets)),
             }
         }
         entering.sort_by_key(|(way, _)| self.position(self.scope(way)));
         for (way, targets) in entering {
-            if self.running_chart {
+            if !self.is_ended() {
                 self.enter_targets(&way, &targets, world)?;
             }
         }
+        self.terminates |= stops;
+        self.halt_if_terminated(world);
         Ok(ways)
     }
 
@@ -136,7 +156,11 @@ impl Stepper<'_> {
     ) -> Result<Vec<NodeId>, Failure> {
         let mut targets = vec![];
         for &end in ends {
+            if self.terminates {
+                break; // nothing happens behind TERMINATE
+            }
             if self.kind(end) != NodeKind::Choice {
+                self.terminates = self.kind(end) == NodeKind::Terminate;
                 targets.push(end);
                 continue;
             }
@@ -151,16 +175,19 @@ impl Stepper<'_> {
     }
 
     fn enter_targets(&mut self, way: &Way, targets: &[NodeId], world: &mut World) -> Result<(), Failure> {
-        if targets.iter().any(|&target| self.kind(target) == NodeKind::Terminate) {
-            self.halt(world);
-            return Ok(());
-        }
         let vacated = self.vacates(way);
+        let arrives = self.kind(way.ends[0]) == NodeKind::Join;
         for &node in &vacated {
+            if self.kind(node) == NodeKind::Basic {
+                continue; // a BASIC region has nothing to lose
+            }
             self.vacated.insert(node);
-            self.completed(node);
+            match arrives {
+                true => self.complete_around(node), // for the region it is no news
+                false => self.completed(node),
+            }
         }
-        if self.kind(way.ends[0]) == NodeKind::Join {
+        if arrives {
             self.arrivals.extend(&way.segments);
             self.arrived_at(way.ends[0]);
         }
@@ -217,10 +244,13 @@ impl Stepper<'_> {
     }
 
     pub(super) fn begin_chart(&mut self, world: &mut World) {
-        self.line = super::Line::default();
+        self.begin_micro_step();
         self.enter(Statechart::ROOT, world);
         match self.enter_below(Statechart::ROOT, &[], world) {
-            Ok(()) => self.print_start(world),
+            Ok(()) => {
+                self.print_start(world);
+                self.halt_if_terminated(world);
+            }
             Err(failure) => {
                 self.active.clear();
                 self.failure = Some(failure);

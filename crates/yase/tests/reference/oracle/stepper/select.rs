@@ -1,7 +1,9 @@
 //! What is enabled and who wins: R7 to R9, R14, R15.
 
-use yase::statechart::{NodeId, NodeKind, TransitionId};
-use yase::{ConflictChoice, Eventless, Firing, RegionId, RunningOnExit};
+use std::collections::BTreeSet;
+
+use yase::statechart::{NodeId, NodeKind, Statechart, TransitionId};
+use yase::{ConflictChoice, Eventless, Firing, Joining, RegionId, RunningOnExit};
 
 use super::{Held, Occurrence, Phase, Stepper, Way};
 use crate::kit::world::World;
@@ -22,6 +24,17 @@ impl<'a> Offer<'a> {
             _ => None,
         }
     }
+}
+
+/// What a selection has come to.
+#[derive(Default)]
+struct Search {
+    visited: BTreeSet<NodeId>,
+    /// Candidates, and the first leaf that each was found for.
+    found: Vec<(NodeId, Way)>,
+    waiting: Vec<Way>,
+    /// The leaves for which something was found that waits.
+    noted: BTreeSet<NodeId>,
 }
 
 /// The best enabled way out of a state; and, if there is an event, the first that would be but for running activities.
@@ -71,7 +84,7 @@ impl<'c> Stepper<'c> {
     }
 
     /// R15
-    fn is_ready(&mut self, way: &Way, offer: Offer<'_>, world: &mut World) -> bool {
+    fn is_ready(&self, way: &Way, offer: Offer<'_>) -> bool {
         let source = way.sources[0];
         if offer.event().is_some() || self.begins_at_join(way) {
             return true;
@@ -79,46 +92,31 @@ impl<'c> Stepper<'c> {
         if self.kind(way.ends[0]) == NodeKind::Join {
             return self.is_complete(source) && !self.arrivals.contains(&way.segments[0]);
         }
-        let once = matches!(offer, Offer::Completion);
         if way.sources.len() > 1 {
-            let sources = way.sources.clone();
-            return sources.iter().all(|&source| self.is_complete(source))
-                && (once || sources.iter().all(|&source| self.is_reached(source, world)));
+            let open = |source| self.leaves_in(source).is_disjoint(&self.closed);
+            return way.sources.iter().all(|&source| self.is_complete(source) && open(source));
         }
-        if once {
-            return true;
+        if matches!(offer, Offer::Completion) {
+            return self.is_complete(source); // it may be complete no more
         }
         let leaf = !matches!(self.kind(source), NodeKind::Or | NodeKind::And);
         let guarded = self.expression(way.segments[0]).guard.is_some();
         match self.semantics.eventless {
             Eventless::AsWritten if leaf || !guarded || way.ends == way.sources => self.is_complete(source),
-            Eventless::AsWritten | Eventless::Quiescent => self.is_quiet(way, source, world),
+            Eventless::AsWritten | Eventless::Quiescent => self.is_quiet(way, source),
             _ => true,
         }
     }
 
     /// Nothing inside can step and nothing inside runs, but for what the guarded exit of a composite may interrupt.
-    fn is_quiet(&mut self, way: &Way, source: NodeId, world: &mut World) -> bool {
+    fn is_quiet(&self, way: &Way, source: NodeId) -> bool {
         let inside = self.active_inside(source);
         let exit = self.expression(way.segments[0]).guard.is_some() && way.ends != way.sources;
         let composite = matches!(self.kind(source), NodeKind::Or | NodeKind::And);
         let may_run = exit && composite && self.interrupts(way);
         let runs = self.runs(source) || inside.iter().any(|&node| self.runs(node));
-        (may_run || !runs)
-            && !inside.iter().any(|&node| self.judge(node, Offer::Nothing, world).found.is_some())
-    }
-
-    /// Whether from an active leaf outward nothing was found before a state.
-    fn is_reached(&mut self, state: NodeId, world: &mut World) -> bool {
-        let below = |leaf: NodeId| leaf == state || self.is_inside(leaf, state);
-        let leaves: Vec<NodeId> = self.active_leaves().into_iter().filter(|&leaf| below(leaf)).collect();
-        leaves.into_iter().any(|leaf| {
-            let inner = self.outward(leaf).into_iter().take_while(|&node| node != state);
-            !inner
-                .collect::<Vec<_>>()
-                .into_iter()
-                .any(|node| self.judge(node, Offer::Nothing, world).found.is_some())
-        })
+        let steps = |way: &Way| way.sources.iter().any(|&other| self.is_inside(other, source));
+        (may_run || !runs) && !self.found.iter().any(|(_, way)| steps(way))
     }
 
     /// Whether a pending interruption or, without an event, a held event is about to leave a state.
@@ -129,21 +127,8 @@ impl<'c> Stepper<'c> {
         pending || !with_event && held
     }
 
-    /// A state is judged once in a micro-step.
-    pub(super) fn judge(&mut self, node: NodeId, offer: Offer<'_>, world: &mut World) -> Judgement {
-        if let Some(known) = self.judged.get(&node) {
-            return known.clone();
-        }
-        let judgement = match (offer, self.semantics.eventless) {
-            (Offer::Nothing, Eventless::Once) if self.kind(node) != NodeKind::Start => Judgement::default(),
-            _ => self.judge_ways(node, offer, world),
-        };
-        self.judged.insert(node, judgement.clone());
-        judgement
-    }
-
     /// Ways out of JOINs at which all have arrived come first.
-    fn judge_ways(&mut self, node: NodeId, offer: Offer<'_>, world: &mut World) -> Judgement {
+    pub(super) fn judge_ways(&mut self, node: NodeId, offer: Offer<'_>, world: &mut World) -> Judgement {
         let event = offer.event();
         if event.is_none() && self.is_frozen(node, false) {
             return Judgement::default();
@@ -171,13 +156,13 @@ impl<'c> Stepper<'c> {
         let event = offer.event();
         let matching: Vec<TransitionId> = list
             .into_iter()
-            .filter(|&id| self.is_triggered(id, event) && self.may_be_drawn(node, id, offer, world))
+            .filter(|&id| self.is_triggered(id, event) && self.may_be_drawn(node, id, offer))
             .collect();
         let blocked = &mut judgement.blocked;
         judgement.found = self.first_way(node, &matching, &mut |me, way| {
             let frozen = way.sources.iter().any(|&node| me.is_frozen(node, true));
             let locked = !me.interrupts(way) && me.is_locked(way);
-            if !me.is_ready(way, offer, world) || !me.guards_hold(way, world) {
+            if !me.is_ready(way, offer) || !me.guards_hold(way, world) {
                 return false;
             }
             if frozen || locked || !me.interrupts(way) && me.leaves_running(way) {
@@ -189,10 +174,10 @@ impl<'c> Stepper<'c> {
     }
 
     /// Those with a weight are drawn among if R15 allows one of their ways.
-    fn may_be_drawn(&mut self, node: NodeId, id: TransitionId, offer: Offer<'_>, world: &mut World) -> bool {
+    fn may_be_drawn(&mut self, node: NodeId, id: TransitionId, offer: Offer<'_>) -> bool {
         let start = Way { sources: vec![node], ..Way::default() };
         self.transition(id).weight.is_none()
-            || self.any_way(&start, &[id], &mut |me, way| me.is_ready(way, offer, world))
+            || self.any_way(&start, &[id], &mut |me, way| me.is_ready(way, offer))
     }
 
     /// The JOINs behind an AND at which all have arrived, one by one.
@@ -207,35 +192,75 @@ impl<'c> Stepper<'c> {
 
     /// The candidates, and the ways that wait for running activities.
     pub(super) fn candidates(&mut self, offer: Offer<'_>, world: &mut World) -> (Vec<Way>, Vec<Way>) {
-        let (mut found, mut waiting): (Vec<Way>, Vec<Way>) = (vec![], vec![]);
-        self.judged.clear();
-        for leaf in self.active_leaves() {
-            let mut noted = false;
-            for node in self.outward(leaf) {
-                let joined = |way: &Way| way.sources.len() > 1 && way.sources.contains(&node);
-                if found.iter().any(joined) {
-                    break; // what leads to a JOIN is all that its sources contribute
-                }
-                let Judgement { found: enabled, blocked } = self.judge(node, offer, world);
-                if let Some(way) = blocked
-                    && offer.event().is_some()
-                    && !noted
-                {
-                    noted = true;
-                    if !waiting.contains(&way) {
-                        waiting.push(way);
-                    }
-                }
-                if let Some(way) = enabled {
-                    if !found.contains(&way) {
-                        found.push(way);
-                    }
-                    break;
-                }
+        self.begin_micro_step();
+        let mut search = Search::default();
+        self.visit(Statechart::ROOT, offer, &mut search, world);
+        let mut found = search.found;
+        if self.semantics.firing == Firing::Phases {
+            found.sort_by_key(|(leaf, _)| self.position(*leaf)); // as SCXML goes through atomic states
+        }
+        (found.into_iter().map(|(_, way)| way).collect(), search.waiting)
+    }
+
+    /// R7: what is inside a state before the state, and, since a JOIN takes its sources only when nothing inside them can step, what is
+    /// inside those before the first of them.
+    fn visit(&mut self, node: NodeId, offer: Offer<'_>, search: &mut Search, world: &mut World) {
+        if !search.visited.insert(node) {
+            return;
+        }
+        let others = if offer.event().is_none() { self.joined_with(node) } else { vec![] };
+        for outer in std::iter::once(node).chain(others) {
+            for &child in self.chart.children(outer) {
+                self.visit(child, offer, search, world);
             }
         }
-        self.sort_inner_first(&mut waiting);
-        (found, waiting)
+        if self.active.contains(&node) {
+            self.consider(node, offer, search, world);
+        }
+    }
+
+    /// The other sources of the JOINs whose first source a state is.
+    fn joined_with(&self, node: NodeId) -> Vec<NodeId> {
+        if self.semantics.join != Joining::Together || self.semantics.eventless == Eventless::Once {
+            return vec![];
+        }
+        let first = |list: &&Vec<NodeId>| list.iter().min_by_key(|it| self.position(**it)) == Some(&node);
+        let lists = self.tree.joined.iter().filter(first);
+        lists.flatten().copied().filter(|&source| source != node).collect()
+    }
+
+    /// A state contributes if from some active leaf outward nothing has been found yet.
+    fn consider(&mut self, node: NodeId, offer: Offer<'_>, search: &mut Search, world: &mut World) {
+        let leaves = self.leaves_in(node);
+        let Some(&open) = leaves.difference(&self.closed).min_by_key(|&&leaf| self.position(leaf)) else {
+            return;
+        };
+        if let (Offer::Nothing, Eventless::Once) = (offer, self.semantics.eventless)
+            && self.kind(node) != NodeKind::Start
+        {
+            return;
+        }
+        let Judgement { found, blocked } = self.judge_ways(node, offer, world);
+        if let Some(way) = blocked.filter(|_| offer.event().is_some())
+            && !leaves.is_subset(&search.noted)
+        {
+            search.noted.extend(&leaves);
+            search.waiting.push(way);
+        }
+        if let Some(way) = found {
+            for &source in &way.sources {
+                let inside = self.leaves_in(source);
+                self.closed.extend(inside);
+            }
+            self.found.push((node, way.clone()));
+            search.found.push((open, way));
+        }
+    }
+
+    /// The active leaves inside an active state, which may be one itself.
+    fn leaves_in(&self, node: NodeId) -> BTreeSet<NodeId> {
+        let inside = |leaf: &NodeId| *leaf == node || self.is_inside(*leaf, node);
+        self.leaves.iter().copied().filter(inside).collect()
     }
 
     fn is_nested(&self, inner: &Way, outer: &Way) -> bool {

@@ -139,7 +139,6 @@ impl Stepper<'_> {
         if !self.running_chart || self.ended {
             return Ok(false);
         }
-        self.line = Line::default();
         if self.interrupt_something(world)? {
             return Ok(true);
         }
@@ -156,7 +155,6 @@ impl Stepper<'_> {
             self.take(candidates, None, world)?;
             return Ok(true);
         }
-        self.line = Line::default();
         self.recall();
         let next = match self.raised.is_empty() {
             false => self.raised.remove(0),
@@ -170,16 +168,24 @@ impl Stepper<'_> {
     fn complete_something(&mut self, world: &mut World) -> Result<bool, Failure> {
         while !self.completions.is_empty() {
             let node = self.completions.remove(0);
-            self.judged.clear();
-            self.line = Line::default(); // what one that is consumed has read is not told
-            if let Some(way) = self.judge(node, Offer::Completion, world).found {
+            self.begin_micro_step(); // what one that is consumed has read is not told
+            if let Some(way) = self.judge_ways(node, Offer::Completion, world).found {
                 self.admit()?;
                 self.take(vec![way], None, world)?;
                 return Ok(true);
             }
         }
-        self.line = Line::default();
         Ok(false)
+    }
+
+    /// What is noted of one micro-step is forgotten; each selection is the beginning of one.
+    pub(super) fn begin_micro_step(&mut self) {
+        self.line = Line::default();
+        self.leaves = self.active_leaves();
+        self.found.clear();
+        self.closed.clear();
+        self.told.clear();
+        self.drawn.clear();
     }
 
     /// An interruption whose activities have returned.
@@ -189,6 +195,7 @@ impl Stepper<'_> {
         };
         self.admit()?;
         let (way, event) = self.pending.remove(index);
+        self.begin_micro_step();
         self.fire(&way, world)?;
         let pending = std::mem::take(&mut self.pending);
         self.pending = pending.into_iter().filter(|(way, _)| self.may_fire(way)).collect();

@@ -10,11 +10,15 @@ pub(super) struct Tree {
     /// Every node, a parent before its children, siblings in order.
     pub document: Vec<NodeId>,
     pub position: Vec<usize>,
+    /// Whether a node lies inside another: by the outer one, then the inner one.
+    pub inside: Vec<Vec<bool>>,
     /// The root and every region of an AND, in document order.
     pub regions: Vec<NodeId>,
     pub region: Vec<RegionId>,
     /// The segments that leave a node, in the order of R3.
     pub outgoing: Vec<Vec<TransitionId>>,
+    /// The sources of each JOIN.
+    pub joined: Vec<Vec<NodeId>>,
     pub names: Vec<String>,
     /// The words in the guard of each segment.
     pub words: Vec<Vec<String>>,
@@ -27,6 +31,9 @@ impl Tree {
         for (place, node) in document.iter().enumerate() {
             position[node.0 as usize] = place;
         }
+        let is_inside =
+            |outer| chart.nodes().map(|(id, _)| chart.ancestors(id).any(|it| it == outer)).collect();
+        let inside = chart.nodes().map(|(id, _)| is_inside(id)).collect();
         let regions: Vec<NodeId> =
             document.iter().copied().filter(|&node| owns_blackboard(chart, node)).collect();
         let owner = |node: NodeId| {
@@ -36,9 +43,11 @@ impl Tree {
         };
         let region = chart.nodes().map(|(id, _)| RegionId(owner(id) as u32)).collect();
         let outgoing = chart.nodes().map(|(id, _)| outgoing(chart, id, order)).collect();
+        let joins = chart.nodes().filter(|(_, node)| node.kind == NodeKind::Join);
+        let joined = joins.map(|(id, _)| sources(chart, id)).collect();
         let names = chart.nodes().map(|(id, _)| name(chart, id)).collect();
         let words = chart.transitions().map(|(_, it)| words(&it.expression)).collect();
-        Tree { document, position, regions, region, outgoing, names, words }
+        Tree { document, position, inside, regions, region, outgoing, joined, names, words }
     }
 }
 
@@ -77,6 +86,10 @@ fn outgoing(chart: &Statechart, node: NodeId, order: SegmentOrder) -> Vec<Transi
     out
 }
 
+fn sources(chart: &Statechart, join: NodeId) -> Vec<NodeId> {
+    chart.transitions().filter(|(_, it)| it.target == join).map(|(_, it)| it.source).collect()
+}
+
 fn name(chart: &Statechart, node: NodeId) -> String {
     let path = chart.path(node);
     path.split_once('/').map_or(path.clone(), |(_, rest)| rest.to_owned())
@@ -101,7 +114,7 @@ impl Stepper<'_> {
     }
 
     pub(super) fn is_inside(&self, node: NodeId, outer: NodeId) -> bool {
-        self.chart.ancestors(node).any(|ancestor| ancestor == outer)
+        self.tree.inside[outer.0 as usize][node.0 as usize]
     }
 
     pub(super) fn is_region(&self, node: NodeId) -> bool {
@@ -122,7 +135,8 @@ impl Stepper<'_> {
     }
 
     pub(super) fn active_inside(&self, node: NodeId) -> Vec<NodeId> {
-        self.active_in_document_order().into_iter().filter(|&inner| self.is_inside(inner, node)).collect()
+        let inside = |inner: &NodeId| self.is_inside(*inner, node) && self.active.contains(inner);
+        self.tree.document.iter().copied().filter(inside).collect()
     }
 
     /// Active without an active child: a state without children, START, END, or a vacated region.

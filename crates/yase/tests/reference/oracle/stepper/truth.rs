@@ -60,8 +60,11 @@ impl Stepper<'_> {
             }
             Err(error) => {
                 self.line.reads.push((id, None));
-                if self.erred.insert((id, region)) || self.raises_every_error() {
+                let is_new = self.erred.insert((id, region));
+                if is_new {
                     self.stale.remove(&(id, region));
+                }
+                if (is_new || self.raises_every_error()) && self.told.insert(id) {
                     self.raise(self.error_event("error.guard"));
                     world.say(format!("  guard failed: {error}"));
                 }

@@ -91,13 +91,24 @@ impl<'c> Stepper<'c> {
         attempt: &mut dyn FnMut(&mut Stepper<'c>, TransitionId) -> bool,
     ) -> bool {
         while !rest.is_empty() {
-            let weights: Vec<f64> = rest.iter().filter_map(|&id| self.transition(id).weight).collect();
-            let id = rest.remove(self.chance.weighted(&weights));
+            let id = match self.drawn.iter().position(|id| rest.contains(id)) {
+                Some(index) => self.drawn[index],
+                None => self.draw_one(&rest),
+            };
+            rest.retain(|&other| other != id);
             if attempt(self, id) {
                 return true;
             }
         }
         false
+    }
+
+    /// What is drawn is kept for the rest of the micro-step.
+    fn draw_one(&mut self, rest: &[TransitionId]) -> TransitionId {
+        let weights: Vec<f64> = rest.iter().filter_map(|&id| self.transition(id).weight).collect();
+        let id = rest[self.chance.weighted(&weights)];
+        self.drawn.push(id);
+        id
     }
 
     /// Follows segments to the first complete way that is accepted, depth first; `open` are those still to be followed.
@@ -225,9 +236,19 @@ impl<'c> Stepper<'c> {
         if let [vacated] = self.vacates(way)[..] {
             return vacated;
         }
-        let targets = way.ends.iter().flat_map(|&end| self.final_targets(end));
-        let all: Vec<NodeId> = way.sources.iter().copied().chain(targets).collect();
+        let targets: Vec<NodeId> = way.ends.iter().flat_map(|&end| self.final_targets(end)).collect();
+        let ending = self.only_terminates(way);
+        let counts = |target: &NodeId| ending || self.kind(*target) != NodeKind::Terminate;
+        let all: Vec<NodeId> =
+            way.sources.iter().copied().chain(targets.into_iter().filter(counts)).collect();
         self.lowest_around(&all, |kind| kind == NodeKind::Or)
+    }
+
+    /// R13: a way all of whose possible ends are TERMINATE leaves and enters nothing; where it may also lead elsewhere, its scope is that
+    /// of the other ends.
+    pub(super) fn only_terminates(&self, way: &Way) -> bool {
+        let mut targets = way.ends.iter().flat_map(|&end| self.final_targets(end));
+        targets.all(|target| self.kind(target) == NodeKind::Terminate)
     }
 
     fn lowest_around(&self, nodes: &[NodeId], wanted: impl Fn(NodeKind) -> bool) -> NodeId {
@@ -265,8 +286,7 @@ impl<'c> Stepper<'c> {
 
     /// The active states a way would leave.
     pub(super) fn exit_set(&self, way: &Way) -> BTreeSet<NodeId> {
-        let terminates = way.ends.iter().any(|&end| self.kind(end) == NodeKind::Terminate);
-        if self.is_targetless(way) || terminates {
+        if self.is_targetless(way) || self.only_terminates(way) {
             return BTreeSet::new();
         }
         let mut vacated = self.vacates(way);
