@@ -74,7 +74,8 @@ fn report(found: &Found, charts: u64) -> ExitCode {
     for row in found.histogram.missing() {
         println!("never: {row}");
     }
-    println!("{} of {charts} charts come to rest", found.histogram.row("R17 comes to rest"));
+    let (resting, played) = (found.histogram.row("R17 comes to rest"), found.histogram.played());
+    println!("{played} of {charts} charts were played, {resting} come to rest");
     match &found.difference {
         Some(difference) => println!("{difference}"),
         None => println!("no difference in {charts} charts, {} of them refused", found.refused.len()),
