@@ -12,6 +12,11 @@
 //! a chart keeps names as they were written, and the labels and encoded [`names`] of the thesis's model files are computed when
 //! one is written: [`to_json`] for tools, [`to_text`] and [`to_svg`] for people.
 //!
+//! Around the role stand the other models of the method: actors and goals ([`Sag`]), use cases ([`Suc`]), protocols ([`Aip`]), all roles of a
+//! system ([`SystemRoles`]), the functionality table ([`FunctionalityTable`]), and statecharts as model files have them ([`Iac`], for protocols too).
+//! Each has a text form, and the XMI of the method's original tools; [`convert`] tells files apart, reads them, and writes them in another format, with a
+//! list of what that cannot say.
+//!
 //! Reading never fails. Every function that reads returns what it understood, and what was wrong as [`Diagnostic`]s with a code, a place
 //! and a hint. Nothing here opens a file, and nothing here knows how a chart is run.
 //!
@@ -59,20 +64,37 @@
 //! ");
 //! ```
 
+pub mod aip;
+pub mod convert;
+mod document;
+pub mod functionality;
+pub mod iac;
 mod json;
 pub mod liveness;
+mod meta;
 pub mod names;
 mod outline;
 pub mod path;
 pub mod refine;
+pub mod roles;
+pub mod sag;
 pub mod srm;
+pub mod suc;
 mod text;
 pub mod transform;
+pub mod transformations;
+mod xmi;
 
+pub use aip::Aip;
+pub use functionality::FunctionalityTable;
+pub use iac::Iac;
 pub use json::to_json;
 pub use liveness::Liveness;
 pub use outline::to_text;
+pub use roles::SystemRoles;
+pub use sag::Sag;
 pub use srm::{Srm, SrmFile};
+pub use suc::Suc;
 pub use transform::{liveness_to_statechart, srm_to_iac};
 pub use yase::export::to_svg;
 
@@ -80,18 +102,23 @@ use std::sync::Arc;
 
 use yase::{Diagnostic, Source, Statechart};
 
-/// The statechart that a model's text describes, with every finding about the text.
+/// The statechart that a model's text describes, with every finding about the text: a role's, a protocol's, or one in a file of its own, in any format.
 ///
 /// If the formulas themselves have errors, the refinements are not judged: what they name is not known.
 pub fn statechart_of(source: &Arc<Source>) -> (Statechart, Vec<Diagnostic>) {
+    let (chart, mut diagnostics) = convert::chart_of(source).unwrap_or_else(|| role_statechart(source));
+    diagnostics.sort_by_key(|diagnostic| diagnostic.span);
+    (chart, diagnostics.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect())
+}
+
+fn role_statechart(source: &Source) -> (Statechart, Vec<Diagnostic>) {
     let (file, mut diagnostics) = SrmFile::parse(source.text.as_str());
     let (chart, findings) = match diagnostics.iter().any(is_about_formulas) {
         true => liveness_to_statechart(&file.srm().liveness),
         false => srm_to_iac(file.srm()),
     };
     diagnostics.extend(findings);
-    diagnostics.sort_by_key(|diagnostic| diagnostic.span);
-    (chart, diagnostics.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect())
+    (chart, diagnostics)
 }
 
 fn is_about_formulas(diagnostic: &Diagnostic) -> bool {

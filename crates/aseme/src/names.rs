@@ -39,6 +39,31 @@ pub fn encode(term: &str) -> String {
     encoded
 }
 
+/// The term that an encoded name was made of: the one without underscores at the operators; none if the name has no operators,
+/// or is none that [`encode`] makes of a formula.
+pub fn decode(name: &str) -> Option<String> {
+    let mut rest = name;
+    let mut term = String::with_capacity(name.len());
+    while let Some(character) = rest.chars().next() {
+        let operator = ENCODING.iter().find(|(_, word)| rest.starts_with(word));
+        match operator {
+            Some((operator, word)) => {
+                term.push_str(operator);
+                rest = &rest[word.len()..];
+            }
+            None => {
+                term.push(character);
+                rest = &rest[character.len_utf8()..];
+            }
+        }
+    }
+    let (formula, findings) = crate::liveness::parse(&format!("x = {term}"));
+    let whole = formula.formulas().first().and_then(|formula| formula.expression);
+    let is_same = findings.iter().all(|finding| !finding.is_error())
+        && whole.map(|whole| formula.compact(whole)).as_deref() == Some(&term);
+    (is_same && term != name && encode(&term) == name).then_some(term)
+}
+
 /// The encoded name of each node, by its id; a node without a name of its own has its label.
 pub fn names(chart: &Statechart) -> Vec<String> {
     let name = |(node, label): (&Node, String)| if node.name.is_empty() { label } else { encode(&node.name) };
@@ -63,5 +88,15 @@ mod tests {
         assert_eq!(encode("a||b*"), "a_parallel_b_zero_or_more_times_");
         assert_eq!(encode("|a~|3"), "_or_a_forever__or_3");
         assert_eq!(encode("kickBall"), "kickBall");
+    }
+
+    #[test]
+    fn what_was_encoded_is_decoded() {
+        for term in ["([I]|R)+", "a||b*", "|a~|3", "(a.b)~", "[Stare+]"] {
+            assert_eq!(decode(&encode(term)).as_deref(), Some(term));
+        }
+        for name in ["kickBall", "_or_", "a_open_group_b", "0.1", ""] {
+            assert_eq!(decode(name), None, "{name}");
+        }
     }
 }

@@ -40,7 +40,9 @@ use crate::liveness::{self, Liveness};
 use crate::path::Path;
 use crate::text;
 
+pub(crate) use constants::constant_value;
 pub use sections::Section;
+pub(crate) use states::{duration, events};
 
 /// A role: what it does, and how the chart of that is refined.
 #[derive(Clone, PartialEq, Debug, Default)]

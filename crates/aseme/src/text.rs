@@ -3,16 +3,15 @@
 use yase::Span;
 
 /// The text with every comment (`#` to the end of the line, unless within double quotes), carriage return and byte order mark
-/// replaced by as many blanks, so that each byte keeps its place.
+/// replaced by as many blanks, so that each byte keeps its place. A backslash within quotes takes the quote behind it in.
 pub(crate) fn without_comments(text: &str) -> String {
     let mut blanked = String::with_capacity(text.len());
-    let (mut quoted, mut comment) = (false, false);
+    let (mut quotes, mut comment) = (Quotes::default(), false);
     for character in text.chars() {
-        match character {
-            '\n' => (quoted, comment) = (false, false),
-            '"' if !comment => quoted = !quoted,
-            '#' if !quoted => comment = true,
-            _ => {}
+        if character == '\n' {
+            (quotes, comment) = (Quotes::default(), false);
+        } else {
+            comment = comment || !quotes.hold(character) && character == '#';
         }
         if comment || matches!(character, '\r' | '\u{feff}') {
             blanked.extend(std::iter::repeat_n(' ', character.len_utf8()));
@@ -23,13 +22,65 @@ pub(crate) fn without_comments(text: &str) -> String {
     blanked
 }
 
+/// Whether a part of a line has neither a comment nor a quote that is left open, so that it reads back as it is.
+pub(crate) fn is_plain(text: &str) -> bool {
+    let mut quotes = Quotes::default();
+    let is_plain = |character: char| {
+        let quoted = quotes.hold(character);
+        !character.is_control() && character != '\u{feff}' && (quoted || character != '#')
+    };
+    text.chars().all(is_plain) && !quotes.are_open() && text.trim() == text
+}
+
+/// Goes along a line, knowing what stands within double quotes. A backslash there takes the next letter in.
+#[derive(Default)]
+pub(crate) struct Quotes {
+    open: bool,
+    escaped: bool,
+}
+
+impl Quotes {
+    /// Goes one letter on; whether quotes hold it, or it is one of them.
+    pub(crate) fn hold(&mut self, letter: char) -> bool {
+        let held = self.open || letter == '"';
+        if std::mem::take(&mut self.escaped) {
+            return held;
+        }
+        self.escaped = self.open && letter == '\\';
+        self.open ^= letter == '"';
+        held
+    }
+
+    /// Whether they are still to be closed.
+    pub(crate) fn are_open(&self) -> bool {
+        self.open
+    }
+}
+
+/// Where something stands first outside of quotes.
+pub(crate) fn outside_quotes(text: &str, wanted: &str) -> Option<usize> {
+    let mut quotes = Quotes::default();
+    let mut letters = text.char_indices();
+    letters.find(|&(at, letter)| !quotes.hold(letter) && text[at..].starts_with(wanted)).map(|(at, _)| at)
+}
+
 /// The comments that begin within a span, in order, each with its `#`.
 pub(crate) fn comments_within(text: &str, span: Span) -> Vec<&str> {
     let blanked = without_comments(text);
-    let lines = lines_of(text, span);
-    lines
-        .filter_map(|line| comment_start(text, &blanked, line).map(|start| text[start..line.end].trim_end()))
-        .collect()
+    lines_of(text, span).filter_map(|line| comment_of(text, &blanked, line)).collect()
+}
+
+/// All comments of a text with their places.
+pub(crate) fn comments(text: &str) -> Vec<(Span, &str)> {
+    let blanked = without_comments(text);
+    let lines = lines_of(text, Span::new(0, text.len()));
+    let starts = lines.filter_map(|line| Some((comment_start(text, &blanked, line)?, line.end)));
+    starts.map(|(start, end)| (Span::new(start, end), text[start..end].trim_end())).collect()
+}
+
+/// The comment on a line, with its `#`.
+pub(crate) fn comment_of<'a>(text: &'a str, blanked: &str, line: Span) -> Option<&'a str> {
+    comment_start(text, blanked, line).map(|start| text[start..line.end].trim_end())
 }
 
 fn comment_start(text: &str, blanked: &str, line: Span) -> Option<usize> {
@@ -87,6 +138,12 @@ mod tests {
         let blanked = without_comments(text);
         assert_eq!(blanked.len(), text.len());
         assert_eq!(blanked, format!("a = b {}\nc = \"#\"    ", " ".repeat("# ω is forever".len())));
+    }
+
+    #[test]
+    fn an_escaped_quote_does_not_end_a_text() {
+        assert_eq!(without_comments(r#""a \" # b" # c"#), r#""a \" # b"    "#);
+        assert_eq!(without_comments(r#""a \\" # b"#), r#""a \\"    "#);
     }
 
     #[test]

@@ -102,7 +102,7 @@ fn charts_have_limits() {
 
 #[test]
 fn sections_are_known() {
-    check("<Model name='m'/>", "E0230", "<Model", "an `SRM:SRMmodel`, or text");
+    check("<SAGmodel/>", "E0230", "<SAGmodel", "an `SRM:SRMmodel`, or text");
     check("Role: r\nLivenes:\nr = a", "E0231", "Livenes", "did you mean `Liveness:`?");
     check("Liveness:\nr = a\nLiveness:\nq = b", "E0232", "Liveness", "already");
     check("Role: r\nConstants:", "E0233", "Role: r", "add `Liveness:`");

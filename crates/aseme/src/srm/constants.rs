@@ -52,7 +52,8 @@ impl Reader {
     }
 }
 
-fn constant_value(text: &str) -> Option<ConstantValue> {
+/// What the text of a value stands for, in SI units.
+pub(crate) fn constant_value(text: &str) -> Option<ConstantValue> {
     match text {
         "true" => return Some(ConstantValue::Bool(true)),
         "false" => return Some(ConstantValue::Bool(false)),

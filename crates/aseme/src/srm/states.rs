@@ -124,14 +124,15 @@ fn expected(key: &str) -> &'static str {
 }
 
 /// Names with blanks, commas or `|` between.
-fn events(text: &str) -> Option<Vec<String>> {
+pub(crate) fn events(text: &str) -> Option<Vec<String>> {
     let words = text.split([' ', '\t', '\n', ',', ';', '|']).filter(|word| !word.is_empty());
     let events: Vec<String> = words.map(String::from).collect();
     let is_event = |event: &String| event.split('.').all(text::is_name);
     (!events.is_empty() && events.iter().all(is_event)).then_some(events)
 }
 
-fn duration(text: &str) -> Option<Duration> {
+/// `250ms` or `2s`.
+pub(crate) fn duration(text: &str) -> Option<Duration> {
     let milliseconds = text.strip_suffix("ms").map(|number| (number, 0.001));
     let (number, unit) = milliseconds.or_else(|| text.strip_suffix('s').map(|number| (number, 1.0)))?;
     let seconds: f64 = number.trim_end().parse().ok()?;

@@ -1,0 +1,16 @@
+//! Models of all kinds: read, written, converted there and back.
+
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "the functions around tests are tests too"
+)]
+
+mod any;
+mod faults;
+mod kit;
+mod round_trip;
+mod shared;
+mod text;
+mod xmi;
