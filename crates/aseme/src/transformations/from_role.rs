@@ -57,7 +57,7 @@ impl SystemRoles {
     /// The text of the system's only role, to be refined and run, and what it does not say (E0850).
     ///
     /// # Errors
-    /// There is no role, or more than one (E0247, E0248).
+    /// There is no role, or more than one (E0247, E0248), or the formulas have errors.
     pub fn to_role(&self) -> Result<(String, Vec<Diagnostic>), Vec<Diagnostic>> {
         let [role] = self.roles.as_slice() else {
             let second = self.roles.get(1).map_or(Span::default(), |role| role.place.0);
@@ -68,11 +68,23 @@ impl SystemRoles {
             };
             return Err(vec![found]);
         };
-        let (formulas, _) = liveness::parse(&role.liveness);
-        let text = format!("Role: {}\nProtocols: N/A\nLiveness:\n{formulas}", role.name);
+        let (formulas, findings) = liveness::parse(&role.liveness);
+        if findings.iter().any(Diagnostic::is_error) {
+            let place = role.liveness_place.0;
+            return Err(findings.into_iter().map(|finding| Diagnostic { span: place, ..finding }).collect());
+        }
+        let first = formulas.formulas().first().map_or("", |formula| formula.name.as_str());
+        let name = if role.name.trim().is_empty() { first } else { role.name.as_str() };
+        let text = format!("Role: {name}\nProtocols: N/A\nLiveness:\n{formulas}");
         let (again, _) = crate::srm::SrmFile::parse(text.as_str());
         let (derived, _) = SystemRoles::from_role(again.srm());
-        Ok((text, self.lost_to(&derived)))
+        let mut lost = self.lost_to(&derived);
+        if again.srm().role != role.name {
+            let message =
+                format!("the name of the role, `{}`: the text of a role cannot say that", role.name);
+            lost.push(Diagnostic::warning("E0850", role.place.0, message));
+        }
+        Ok((text, lost))
     }
 
     /// What another model that was derived does not say.

@@ -13,7 +13,12 @@ fn exercise(text: &str) {
     let Some((model, _)) = found else { return assert!(!findings.is_empty()) };
     for (_, format) in Format::WORDS {
         match model.write(format, text) {
-            Ok(written) if written.lost.is_empty() && !matches!(model, convert::Model::Role(_)) => {
+            // The text of a role is a model of its own.
+            Ok(written)
+                if written.lost.is_empty()
+                    && format != Format::Role
+                    && !matches!(model, convert::Model::Role(_)) =>
+            {
                 let (again, _) = convert::read(&Source::new("again", written.text.as_str()));
                 let (again, _) = again.expect("what is written is a model");
                 assert_eq!(again, model, "{format:?}\n{}", written.text);

@@ -100,8 +100,8 @@ States:
   r OR
     START
     (Scan|Kick)~ OR
-      functionality = motion
       variables = gsm
+      functionality = motion
       START
       Scan BASIC
         activity = LookAround
