@@ -65,6 +65,9 @@ pub struct Chart {
     pub(crate) triggers: Box<[Trigger]>,
     pub(crate) guards: Box<[ScopedGuard]>,
     pub(crate) weights: Box<[Weight]>,
+    /// The trees of branches in which something is drawn behind a connector, by their first branch.
+    pub(crate) deep: Box<[Deep]>,
+    pub(crate) rows: Box<[Row]>,
     pub(crate) compounds: Box<[Compound]>,
     pub(crate) choices: Box<[Choice]>,
     /// By their owner.
@@ -169,6 +172,24 @@ pub(crate) struct Weight {
     pub(crate) segment: TransitionId,
     /// The branches beside it, itself among them.
     pub(crate) beside: Branches,
+}
+
+/// A tree of branches in which something is drawn behind a connector, whose ways may lie on several blackboards: so they are gone through
+/// one by one.
+#[derive(Clone, Debug)]
+pub(crate) struct Deep {
+    pub(crate) first_branch: usize,
+    /// Its ways, in the order in which they are tried.
+    pub(crate) rows: Range<usize>,
+}
+
+/// One way of such a tree.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    pub(crate) compound: CompoundId,
+    pub(crate) condition: Condition,
+    /// By segment.
+    pub(crate) guards: Box<[Option<usize>]>,
 }
 
 /// A CHOICE on one blackboard.

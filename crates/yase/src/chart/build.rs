@@ -9,9 +9,9 @@ use crate::chart::roles::{Roles, is_state};
 use crate::chart::segments::Segment;
 use crate::chart::ways::{self, Late, Way, Ways};
 use crate::chart::{
-    Branch, Branches, Chart, Choice, Compound, Direct, ErrorEvents, History, Join, Layout, Masks, Place,
-    Region, RegionId, ScopedGuard, State, Timer, Trigger, Weight, direct, entries, events, scope, scripts,
-    visits,
+    Branch, Branches, Chart, Choice, Compound, Deep, Direct, ErrorEvents, History, Join, Layout, Masks,
+    Place, Region, RegionId, Row, ScopedGuard, State, Timer, Trigger, Weight, direct, entries, events, scope,
+    scripts, visits,
 };
 use crate::diagnostic::Diagnostic;
 use crate::expression::{
@@ -54,6 +54,8 @@ pub(super) fn build(
         triggers: Vec::new(),
         guards: Vec::new(),
         weights: Vec::new(),
+        deep: Vec::new(),
+        rows: Vec::new(),
         compounds: Vec::new(),
         found: Vec::new(),
     };
@@ -123,6 +125,8 @@ pub(super) struct Builder<'a> {
     pub(super) triggers: Vec<CompiledTrigger>,
     pub(super) guards: Vec<ScopedGuard>,
     pub(super) weights: Vec<Weight>,
+    pub(super) deep: Vec<Deep>,
+    pub(super) rows: Vec<Row>,
     pub(super) compounds: Vec<Compound>,
     pub(super) found: Vec<Diagnostic>,
 }
@@ -167,6 +171,8 @@ impl Builder<'_> {
             triggers,
             guards: self.guards.into(),
             weights: self.weights.into(),
+            deep: self.deep.into(),
+            rows: self.rows.into(),
             compounds: self.compounds.into(),
             choices,
             histories,

@@ -3,8 +3,8 @@
 use crate::chart::build::Builder;
 use crate::chart::ways::{Change, Leaf as End, Way};
 use crate::chart::{
-    Branch, Branches, Compound, CompoundId, Condition, Entries, Leaf, Owner, Place, RegionId, ScopedGuard,
-    Weight, entries,
+    Branch, Branches, Compound, CompoundId, Condition, Deep, Entries, Leaf, Owner, Place, RegionId, Row,
+    ScopedGuard, Weight, entries,
 };
 use crate::diagnostic::Diagnostic;
 use crate::expression::{CompiledTransition, Effect, Names};
@@ -23,7 +23,33 @@ impl Builder<'_> {
     /// Writes the ways of one node, with or without a trigger, as a tree of branches.
     pub(super) fn tree(&mut self, ways: &[Way], eventless: bool) -> Branches {
         let ways: Vec<&Way> = ways.iter().filter(|way| way.condition.is_some() == eventless).collect();
-        self.grow(&ways, 0)
+        let first = self.compounds.len();
+        let branches = self.grow(&ways, 0);
+        if ways.iter().any(|way| self.is_drawn_late(way)) {
+            self.write_rows(&ways, branches.start, first);
+        }
+        branches
+    }
+
+    /// Whether something is drawn behind a connector.
+    fn is_drawn_late(&self, way: &Way) -> bool {
+        way.segments.iter().skip(1).any(|&id| self.chart.transition(id).weight.is_some())
+    }
+
+    /// The ways one by one: their compound transitions were made in this order, from `first` on.
+    fn write_rows(&mut self, ways: &[&Way], first_branch: usize, first: usize) {
+        let start = self.rows.len();
+        for (index, way) in ways.iter().enumerate() {
+            let segments: Vec<Segment> =
+                way.segments.iter().map(|&id| self.segment(id, way.region)).collect();
+            let trigger = segments.first().and_then(|segment| segment.trigger).map(Condition::Trigger);
+            self.rows.push(Row {
+                compound: CompoundId((first + index) as u32),
+                condition: way.condition.or(trigger).unwrap_or(Condition::None),
+                guards: segments.iter().map(|segment| segment.guard).collect(),
+            });
+        }
+        self.deep.push(Deep { first_branch, rows: start..self.rows.len() });
     }
 
     /// Neighbouring ways that begin alike, on one blackboard, share branches.

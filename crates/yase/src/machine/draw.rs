@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use crate::chart::{Branch, Branches, CompoundId, Condition, Place, Weight};
+use crate::chart::{Branch, Branches, CompoundId, Condition, Place, Row, Weight};
 use crate::host::Host;
 use crate::machine::queues::Occurrence;
 use crate::machine::select::matches;
@@ -17,7 +17,7 @@ pub(super) struct Search<'a> {
     pub(super) occurrence: Option<&'a Occurrence>,
 }
 
-/// The branches of one segment with a weight, and the weight.
+/// One segment with a weight, the first of its branches (or its number among those beside it), and the weight.
 #[derive(Clone, Copy)]
 struct Lot {
     segment: TransitionId,
@@ -35,6 +35,13 @@ impl<H: Host> Step<'_, H> {
     /// them where the first one stands, unless what is declared first is to be taken.
     pub(super) fn scan(&mut self, branches: Branches, search: Search<'_>) -> Option<CompoundId> {
         let chart = self.chart;
+        if !chart.deep.is_empty()
+            && !branches.is_empty()
+            && !self.run.chooser.is_declared()
+            && let Ok(found) = chart.deep.binary_search_by_key(&branches.start, |deep| deep.first_branch)
+        {
+            return self.scan_rows(&chart.rows[chart.deep[found].rows.clone()], 0, search);
+        }
         let mut index = branches.start;
         while index < branches.end {
             let branch = &chart.branches[index];
@@ -78,9 +85,13 @@ impl<H: Host> Step<'_, H> {
     }
 
     pub(super) fn meets(&self, branch: &Branch, search: Search<'_>) -> bool {
+        self.allows(branch.condition, search)
+    }
+
+    fn allows(&self, condition: Condition, search: Search<'_>) -> bool {
         let chart = self.chart;
         let (Some(place), occurrence) = (search.state, search.occurrence) else { return true };
-        match branch.condition {
+        match condition {
             Condition::None => true,
             Condition::Trigger(trigger) => {
                 occurrence.is_some_and(|occurrence| matches(&chart.triggers[trigger], occurrence))
@@ -173,6 +184,86 @@ impl<H: Host> Step<'_, H> {
                 }
             }
             index = branch.skip;
+        }
+        None
+    }
+
+    /// The first of some ways that is open, where they are gone through one by one: all begin with the same segments up to `depth`, and those
+    /// that go on alike stand beside each other.
+    fn scan_rows(&mut self, rows: &[Row], depth: usize, search: Search<'_>) -> Option<CompoundId> {
+        let chart = self.chart;
+        let segment = |row: &Row| chart.compounds[row.compound.0 as usize].segments.get(depth).copied();
+        let alternatives: SmallVec<[&[Row]; 8]> = rows.chunk_by(|a, b| segment(a) == segment(b)).collect();
+        let mut is_drawn = false;
+        for alternative in alternatives.iter().copied() {
+            let found = match self.weight_of(alternative, depth) {
+                None => self.go_on(alternative, depth, search),
+                Some(_) if is_drawn || !self.matches_somewhere(alternative, depth, search) => None,
+                Some(_) => {
+                    is_drawn = true;
+                    self.draw_rows(&alternatives, rows, depth, search)
+                }
+            };
+            if found.is_some() {
+                return found;
+            }
+        }
+        None
+    }
+
+    fn weight_of(&self, alternative: &[Row], depth: usize) -> Option<(TransitionId, f64)> {
+        let row = alternative.first()?;
+        let segment = *self.chart.compounds[row.compound.0 as usize].segments.get(depth)?;
+        Some((segment, self.chart.statechart().transition(segment).weight?))
+    }
+
+    /// Whether a segment is one to draw: at a state if it may be taken by one of its ways, at a connector always.
+    fn matches_somewhere(&self, alternative: &[Row], depth: usize, search: Search<'_>) -> bool {
+        depth > 0 || alternative.iter().any(|row| self.allows(row.condition, search))
+    }
+
+    /// Goes on behind a segment that all of some ways have, or tries the one that ends with it.
+    fn go_on(&mut self, rows: &[Row], depth: usize, search: Search<'_>) -> Option<CompoundId> {
+        let [row] = rows else { return self.scan_rows(rows, depth + 1, search) };
+        if row.guards.len() > depth + 1 {
+            return self.scan_rows(rows, depth + 1, search);
+        }
+        (self.leads_so_far(row, depth + 1, search) && self.accepts(row.compound, search))
+            .then_some(row.compound)
+    }
+
+    /// Whether so many segments of a way are open.
+    fn leads_so_far(&mut self, row: &Row, segments: usize, search: Search<'_>) -> bool {
+        self.allows(row.condition, search)
+            && row.guards[..segments].iter().flatten().all(|&guard| self.holds(guard))
+    }
+
+    /// Draws among segments with a weight behind a connector, if that is come by at all.
+    fn draw_rows(
+        &mut self,
+        alternatives: &[&[Row]],
+        rows: &[Row],
+        depth: usize,
+        search: Search<'_>,
+    ) -> Option<CompoundId> {
+        if depth > 0 && !rows.iter().any(|row| self.leads_so_far(row, depth, search)) {
+            return None;
+        }
+        let mut lots: SmallVec<[Lot; 8]> = SmallVec::new();
+        for (first, alternative) in alternatives.iter().enumerate() {
+            if let Some((segment, weight)) = self.weight_of(alternative, depth)
+                && self.matches_somewhere(alternative, depth, search)
+            {
+                lots.push(Lot { segment, first, weight });
+            }
+        }
+        let mut known = 0;
+        while !lots.is_empty() {
+            let lot = lots.remove(self.next_lot(&lots, &mut known));
+            let found = self.go_on(alternatives[lot.first], depth, search);
+            if found.is_some() {
+                return found;
+            }
         }
         None
     }

@@ -175,3 +175,32 @@ fn r22_what_is_drawn_at_a_node_stays_drawn_for_the_micro_step() {
     let found = reached(text, "1 e; 2", Semantics::yase(), &[&[1, 0], &[0, 1]]);
     assert_eq!(found, [("E".to_owned(), vec![(1, 2)]), ("D".to_owned(), vec![(0, 2)])]);
 }
+
+#[test]
+fn r22_what_leaves_a_connector_is_drawn_among_though_it_lies_on_several_blackboards() {
+    // one way behind the CONDITION stays in the region, the other leaves the AND
+    let text = "
+        START
+        & both
+          one
+            START
+            A
+            ? c
+            B
+          two
+            START
+            C
+        D
+        c/START -> both
+        one/START -> A
+        two/START -> C
+        A -> one/c : e
+        one/c -> B {w0.5}
+        one/c -> D {w0.5} : [A.n == 1]
+    ";
+    let found = reached(text, "1 e; 2 A=1; 3", Semantics::yase(), &[&[0], &[1]]);
+    // the second is closed: the first is what is left
+    assert_eq!(found, [("both/two/C".to_owned(), vec![(0, 2)]), ("both/two/C".to_owned(), vec![(1, 2)])]);
+    let open = reached(text, "1 A=1; 2 e; 3", Semantics::yase(), &[&[0], &[1]]);
+    assert_eq!(open, [("both/two/C".to_owned(), vec![(0, 2)]), ("D".to_owned(), vec![(1, 2)])]);
+}

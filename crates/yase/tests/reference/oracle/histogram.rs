@@ -201,7 +201,7 @@ impl Seen<'_> {
 type Row = (&'static str, fn(&Seen<'_>) -> bool);
 
 /// What lines, or chart and lines together, say.
-const SEEN: [Row; 75] = [
+const SEEN: [Row; 79] = [
     ("R1 a chart rests at START", |it| it.says("  waits at")),
     ("R2 an AND is left from inside", |it| {
         it.any_exit(|line, node| {
@@ -276,11 +276,30 @@ const SEEN: [Row; 75] = [
     ("R12 JOIN together", |it| {
         it.case.semantics.join == yase::Joining::Together && it.any_selected_through(&[NodeKind::Join])
     }),
+    ("R12 JOIN together of a composite", |it| {
+        it.case.semantics.join == yase::Joining::Together
+            && it.any_fired(|transition, _| {
+                it.chart.node(transition.target).kind == NodeKind::Join
+                    && it.chart.node(transition.source).kind != NodeKind::Basic
+            })
+    }),
     ("R12 JOIN, each", |it| {
         it.case.semantics.join == yase::Joining::Each && it.any_selected_through(&[NodeKind::Join])
     }),
     ("R12 JOIN, all have arrived", |it| {
         it.any_fired(|transition, _| it.chart.node(transition.source).kind == NodeKind::Join)
+    }),
+    ("R13 TERMINATE behind CHOICE or START", |it| {
+        it.lines
+            .iter()
+            .any(|line| line.taken.split(' ').any(|name| it.kind(name) == Some(NodeKind::Terminate)))
+    }),
+    ("R13 TERMINATE beside another transition", |it| {
+        it.lines.iter().any(|line| {
+            let stops =
+                |compound: &&&str| compound.split(' ').any(|name| it.kind(name) == Some(NodeKind::Terminate));
+            line.selected.len() > 1 && line.selected.iter().any(|compound| stops(&compound))
+        })
     }),
     ("R13 TERMINATE", |it| it.any_selected_through(&[NodeKind::Terminate])),
     ("R13 END of the root", |it| {
@@ -337,6 +356,18 @@ const SEEN: [Row; 75] = [
     }),
     ("R22 asked", |it| it.log.last().is_some_and(|last| last != "asked []")),
     ("R22 not the first option", |it| it.log.last().is_some_and(|last| last.contains("(1,"))),
+    ("R22 a weighted segment behind a connector", |it| {
+        let weighted = |from: &str, to: &str| {
+            let ends = (it.node(from), it.node(to));
+            it.chart.transitions().any(|(_, segment)| {
+                segment.weight.is_some() && (Some(segment.source), Some(segment.target)) == ends
+            })
+        };
+        it.lines.iter().flat_map(|line| &line.selected).any(|compound| {
+            let names: Vec<&str> = compound.split(" -> ").collect();
+            names.windows(2).skip(1).any(|pair| weighted(pair[0], pair[1]))
+        })
+    }),
     ("R22 a weighted transition", |it| it.any_fired(|it, _| it.weight.is_some())),
     ("R23 more than twenty lines", |it| it.lines.len() > 20),
     ("R24 two activities start in one step", |it| {

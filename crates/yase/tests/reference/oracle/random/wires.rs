@@ -295,11 +295,11 @@ impl Maker<'_, '_> {
             let transitions = self.chart.transitions();
             let mut out: Vec<_> = transitions.filter(|(_, it)| it.source == node).map(|(id, _)| id).collect();
             out.retain(|&id| self.kind(self.chart.transition(id).target) != NodeKind::Join);
-            // whether a draw is made behind a guard that is closed is left open
-            let first = is_state(self.kind(node))
-                || is_history(self.kind(node))
-                || matches!(self.kind(node), NodeKind::Start | NodeKind::Choice);
-            if out.len() < 2 || !first || !self.choices.percent(10) {
+            // all that leave a FORK are taken, and so are the points on borders of ANDs that fork
+            let forks = self.kind(node) == NodeKind::Fork
+                || self.kind(node) == NodeKind::EntryPoint && self.kind(self.parent(node)) == NodeKind::And;
+            let percent = if is_state(self.kind(node)) { 10 } else { 20 };
+            if out.len() < 2 || forks || !self.choices.percent(percent) {
                 continue;
             }
             let shares: &[f64] = match out.len() {

@@ -77,7 +77,7 @@ impl Stepper<'_> {
     /// The way out of START or HISTORY that is open now.
     fn open_way(&mut self, connector: NodeId, world: &mut World) -> Option<Way> {
         let out = self.outgoing(connector);
-        self.first_way(connector, &out, &mut |me, way| me.guards_hold(way, world))
+        self.first_way(connector, &out, &mut |me, way, so_far| me.guards_hold(way, so_far, world))
     }
 
     /// `start` is the START that the way comes from: a HISTORY that leads nowhere leads back to it, where entering ends.

@@ -165,7 +165,8 @@ impl Stepper<'_> {
                 continue;
             }
             let out = self.outgoing(end);
-            let found = self.first_way(end, &out, &mut |me, way| me.all_hold(&way.segments, region, world));
+            let found =
+                self.first_way(end, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, world));
             let Some(way) = found else { return Err(Failure::NoBranch(end)) };
             self.line.taken.extend(&way.segments);
             self.effects(&way.segments, region, world);

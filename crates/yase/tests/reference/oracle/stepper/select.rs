@@ -159,10 +159,13 @@ impl<'c> Stepper<'c> {
             .filter(|&id| self.is_triggered(id, event) && self.may_be_drawn(node, id, offer))
             .collect();
         let blocked = &mut judgement.blocked;
-        judgement.found = self.first_way(node, &matching, &mut |me, way| {
+        judgement.found = self.first_way(node, &matching, &mut |me, way, so_far| {
+            if so_far.is_some() {
+                return me.is_ready(way, offer) && me.guards_hold(way, so_far, world);
+            }
             let frozen = way.sources.iter().any(|&node| me.is_frozen(node, true));
             let locked = !me.interrupts(way) && me.is_locked(way);
-            if !me.is_ready(way, offer) || !me.guards_hold(way, world) {
+            if !me.is_ready(way, offer) || !me.guards_hold(way, None, world) {
                 return false;
             }
             if frozen || locked || !me.interrupts(way) && me.leaves_running(way) {
@@ -177,7 +180,7 @@ impl<'c> Stepper<'c> {
     fn may_be_drawn(&mut self, node: NodeId, id: TransitionId, offer: Offer<'_>) -> bool {
         let start = Way { sources: vec![node], ..Way::default() };
         self.transition(id).weight.is_none()
-            || self.any_way(&start, &[id], &mut |me, way| me.is_ready(way, offer))
+            || self.any_way(&start, &[id], &mut |me, way, _| me.is_ready(way, offer))
     }
 
     /// The JOINs behind an AND at which all have arrived, one by one.

@@ -33,17 +33,19 @@ impl Stepper<'_> {
     }
 
     /// R5: on the blackboard of the scope.
-    pub(super) fn guards_hold(&mut self, way: &Way, world: &mut World) -> bool {
+    pub(super) fn guards_hold(&mut self, way: &Way, so_far: Option<usize>, world: &mut World) -> bool {
         let region = self.region(self.scope(way));
-        self.all_hold(&way.segments, region, world)
+        self.all_hold(way, so_far, region, world)
     }
 
     pub(super) fn all_hold(
         &mut self,
-        segments: &[TransitionId],
+        way: &Way,
+        so_far: Option<usize>,
         region: RegionId,
         world: &mut World,
     ) -> bool {
+        let segments = &way.segments[..so_far.unwrap_or(way.segments.len())];
         segments.iter().all(|&id| self.holds(id, region, world))
     }
 

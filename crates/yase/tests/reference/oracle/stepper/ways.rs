@@ -28,8 +28,8 @@ enum Role {
     End,
 }
 
-/// Whether a way is taken; what it is asked about is complete.
-pub(super) type Accept<'a, 'c> = &'a mut dyn FnMut(&mut Stepper<'c>, &Way) -> bool;
+/// Whether a complete way is taken or, for a number of segments, whether it is open so far.
+pub(super) type Accept<'a, 'c> = &'a mut dyn FnMut(&mut Stepper<'c>, &Way, Option<usize>) -> bool;
 
 impl<'c> Stepper<'c> {
     pub(super) fn transition(&self, id: TransitionId) -> &'c Transition {
@@ -113,7 +113,7 @@ impl<'c> Stepper<'c> {
 
     /// Follows segments to the first complete way that is accepted, depth first; `open` are those still to be followed.
     pub(super) fn follow(&mut self, way: &Way, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
-        let Some((&segment, rest)) = open.split_first() else { return accept(self, way) };
+        let Some((&segment, rest)) = open.split_first() else { return accept(self, way, None) };
         let mut way = way.clone();
         way.segments.push(segment);
         let target = self.transition(segment).target;
@@ -140,18 +140,34 @@ impl<'c> Stepper<'c> {
 
     /// Whether something is true of some complete way, whatever chance would say.
     pub(super) fn any_way(&mut self, way: &Way, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+        self.without_chance(|me| me.follow(way, open, accept))
+    }
+
+    fn without_chance(&mut self, look: impl FnOnce(&mut Stepper<'c>) -> bool) -> bool {
         let (chance, declared) = (self.chance.clone(), crate::oracle::chance::Freedom::Declared);
         self.chance = crate::oracle::chance::Chance::new(declared);
-        let found = self.follow(way, open, accept);
+        let found = look(self);
         self.chance = chance;
         found
     }
 
     fn branch(&mut self, way: &Way, node: NodeId, rest: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
         let out = self.outgoing(node);
+        let drawn = self.chance.draws() && out.iter().any(|&id| self.transition(id).weight.is_some());
+        if drawn && !self.is_come_by(way, node, rest, accept) {
+            return false;
+        }
         self.try_each(&out, &mut |me, id| {
             let open = [&[id], rest].concat();
             me.follow(way, &open, accept)
+        })
+    }
+
+    /// Nothing is drawn at a connector that no open segments lead to, on the blackboard of any way through it.
+    fn is_come_by(&mut self, way: &Way, node: NodeId, rest: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+        let so_far = way.segments.len();
+        self.without_chance(|me| {
+            me.branch(way, node, rest, &mut |me, whole, _| accept(me, whole, Some(so_far)))
         })
     }
 
@@ -165,9 +181,9 @@ impl<'c> Stepper<'c> {
         let start = Way { sources: vec![node], ..Way::default() };
         let mut found = None;
         self.try_each(list, &mut |me, id| {
-            me.follow(&start, &[id], &mut |me, way| {
-                let yes = accept(me, way);
-                if yes {
+            me.follow(&start, &[id], &mut |me, way, so_far| {
+                let yes = accept(me, way, so_far);
+                if yes && so_far.is_none() {
                     found = Some(way.clone());
                 }
                 yes
