@@ -118,9 +118,11 @@ impl Run {
     /// A segment into a JOIN has been taken by itself. When all have, the way out of it is looked at.
     pub(super) fn arrive_at_join(&mut self, chart: &Chart, compound: &Compound) {
         let Some(slot) = compound.arrives else { return };
-        self.arrived.insert(slot);
         let joined = chart.joins.iter().find(|join| join.slots().contains(&slot));
-        if let Some(join) = joined.filter(|join| join.slots().all(|slot| self.arrived.contains(slot)))
+        // in phases another may have left the AND before
+        let Some(join) = joined.filter(|join| self.is_active(join.around)) else { return };
+        self.arrived.insert(slot);
+        if join.slots().all(|slot| self.arrived.contains(slot))
             && chart.semantics_ref().eventless == Eventless::Once
             && !self.completions.contains(&join.around)
         {

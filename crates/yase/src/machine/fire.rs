@@ -131,7 +131,8 @@ impl<H: Host> Step<'_, H> {
         if self.run.terminates || self.run.status != Status::Running {
             return Ok(());
         }
-        if let Some(place) = compound.vacates {
+        // in phases another may have left it before
+        if let Some(place) = compound.vacates.filter(|&place| self.run.is_active(place)) {
             self.run.vacate(self.chart, place, compound.arrives.is_some());
         }
         self.run.arrive_at_join(self.chart, compound);

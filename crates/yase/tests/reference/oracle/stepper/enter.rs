@@ -77,7 +77,9 @@ impl Stepper<'_> {
     /// The way out of START or HISTORY that is open now.
     fn open_way(&mut self, connector: NodeId, world: &mut World) -> Option<Way> {
         let out = self.outgoing(connector);
-        self.first_way(connector, &out, &mut |me, way, so_far| me.guards_hold(way, so_far, world))
+        // the blackboard of the composite, also where its way leads from an AND's HISTORY into a region
+        let region = self.region(self.parent(connector));
+        self.first_way(connector, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, world))
     }
 
     /// `start` is the START that the way comes from: a HISTORY that leads nowhere leads back to it, where entering ends.
@@ -90,7 +92,7 @@ impl Stepper<'_> {
     ) -> Result<(), Failure> {
         let outer = std::mem::take(&mut self.unbound);
         self.line.taken.extend(&way.segments);
-        let region = self.region(self.scope(way));
+        let region = self.region(composite);
         self.effects(&way.segments, region, world);
         let targets = self.choose(&way.ends, region, world)?;
         self.bind_timers(targets.first().copied());

@@ -179,8 +179,8 @@ impl Stepper<'_> {
         let vacated = self.vacates(way);
         let arrives = self.kind(way.ends[0]) == NodeKind::Join;
         for &node in &vacated {
-            if self.kind(node) == NodeKind::Basic {
-                continue; // a BASIC region has nothing to lose
+            if self.kind(node) == NodeKind::Basic || !self.active.contains(&node) {
+                continue; // a BASIC region has nothing to lose; in phases another may have left it before
             }
             self.vacated.insert(node);
             match arrives {
@@ -188,7 +188,7 @@ impl Stepper<'_> {
                 false => self.completed(node),
             }
         }
-        if arrives {
+        if arrives && self.joined_and(way.ends[0]).is_some_and(|and| self.active.contains(&and)) {
             self.arrivals.extend(&way.segments);
             self.arrived_at(way.ends[0]);
         }
