@@ -7,7 +7,7 @@ use crate::host::{ActionPlace, Host};
 use crate::machine::act::Scene;
 use crate::machine::activities::Phase;
 use crate::machine::step::Step;
-use crate::semantics::{ExitOrder, RunningOnExit, TimerScope};
+use crate::semantics::{ExitOrder, TimerScope};
 use crate::statechart::NodeKind;
 
 impl<H: Host> Step<'_, H> {
@@ -79,7 +79,7 @@ impl<H: Host> Step<'_, H> {
     }
 
     /// The activity of a state that is left: one that waited to be called again is told; one that runs can only be here to be
-    /// interrupted.
+    /// interrupted, or since its state was entered in the same micro-step: then it does not start.
     fn release_activity(&mut self, place: Place, activity: usize) {
         let slot = self.run.activities.slot(activity);
         let activation = self.run.activation(self.chart, place, slot);
@@ -89,8 +89,7 @@ impl<H: Host> Step<'_, H> {
             _ => {}
         }
         self.run.activities.slot_mut(activity).phase = Phase::Idle;
-        if self.semantics().on_exit == RunningOnExit::Interrupted && self.run.running.contains(place.index())
-        {
+        if self.run.running.contains(place.index()) {
             self.run.unlock(self.chart, place);
         }
     }
