@@ -15,7 +15,7 @@
 //! Around the role stand the other models of the method: actors and goals ([`Sag`]), use cases ([`Suc`]), protocols ([`Aip`]), all roles of a
 //! system ([`SystemRoles`]), the functionality table ([`FunctionalityTable`]), and statecharts as model files have them ([`Iac`], for protocols too).
 //! Each has a text form, and the XMI of the method's original tools; [`convert`] tells files apart, reads them, and writes them in another format, with a
-//! list of what that cannot say.
+//! list of what that cannot say. [`transformations`] leads from one to the next, from goals to charts.
 //!
 //! Reading never fails. Every function that reads returns what it understood, and what was wrong as [`Diagnostic`]s with a code, a place
 //! and a hint. Nothing here opens a file, and nothing here knows how a chart is run.

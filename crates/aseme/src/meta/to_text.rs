@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Class, FeatureKind, Instance, Metamodel, Object, Value};
-use crate::document::{Document, Item, quoted, reference, value_text};
+use crate::document::{Document, Item, reference, value_text};
 use crate::text;
 
 /// A model as text: a header with its kind, and an item for each object, class by class.
@@ -39,7 +39,7 @@ fn item(class: &Class, object: &Object, titles: &[Vec<String>]) -> Item {
                 text.lines().for_each(|line| item.line(4, line.into()));
             }
             (FeatureKind::Formulas, Value::Text(text)) if !text.is_empty() => {
-                item.set(feature.word, &quoted(text))
+                item.set(feature.word, &value_text(text))
             }
             (FeatureKind::Text, Value::Text(text)) if !text.is_empty() => {
                 item.set(feature.word, &value_text(text))

@@ -147,19 +147,32 @@ impl<'a> Making<'a> {
             participant.name == role.name || participant.name.contains(&format!("_{}", role.name))
         };
         match self.srm.roles.iter().position(plays) {
+            Some(_) if participant.liveness.trim().is_empty() => {}
             Some(role) => {
+                let activities = self.activities_of(participant);
                 let liveness = &mut self.srm.roles[role].liveness;
                 *liveness = with_formula(liveness, &participant.name, &participant.liveness);
+                let capability = self.srm.capabilities.iter_mut().find(|it| it.name == participant.name);
+                let place = capability
+                    .map_or(&mut self.srm.roles[role].activities, |capability| &mut capability.activities);
+                place.extend(
+                    activities.into_iter().filter(|activity| !place.contains(activity)).collect::<Vec<_>>(),
+                );
             }
             None => self.free_participant(participant),
         }
     }
 
-    /// A part that no role of the use cases plays is there for roles that are written later.
-    fn free_participant(&mut self, participant: &Participant) {
+    /// The activities that the formulas of a participant name.
+    fn activities_of(&mut self, participant: &Participant) -> Vec<usize> {
         let (formulas, _) = liveness::parse(&participant_formula(&participant.name, &participant.liveness));
         let names: Vec<String> = activity_names(&formulas).into_iter().map(String::from).collect();
-        let activities = names.iter().map(|name| self.activity(name, None)).collect();
+        names.iter().map(|name| self.activity(name, None)).collect()
+    }
+
+    /// A part that no role of the use cases plays is there for roles that are written later.
+    fn free_participant(&mut self, participant: &Participant) {
+        let activities = self.activities_of(participant);
         let (name, description) = (participant.name.clone(), participant.liveness.clone());
         self.srm.capabilities.push(Capability { name, activities, description, ..Capability::default() });
     }

@@ -13,4 +13,5 @@ mod kit;
 mod round_trip;
 mod shared;
 mod text;
+mod transformations;
 mod xmi;
