@@ -1,0 +1,27 @@
+//! Model files of all kinds: findings fit, and what is written in a format that says all of it reads back as the same model.
+#![no_main]
+
+use aseme::convert::{self, Format, Model};
+use libfuzzer_sys::fuzz_target;
+use monas_fuzz::assert_findings_fit;
+use yase::Source;
+
+fuzz_target!(|text: &str| {
+    let (found, findings) = convert::read(&Source::new("model", text));
+    assert_findings_fit(text, &findings);
+    let Some((model, _)) = found else { return assert!(!findings.is_empty()) };
+    for (_, format) in Format::WORDS {
+        match model.write(format, text) {
+            Ok(written) if written.lost.is_empty() && format != Format::Role && !matches!(model, Model::Role(_)) => {
+                let (again, findings) = convert::read(&Source::new("again", written.text.as_str()));
+                assert_findings_fit(&written.text, &findings);
+                let again = again.map(|(model, _)| model);
+                assert_eq!(again.as_ref(), Some(&model), "{format:?}\n{}", written.text);
+            }
+            Ok(_) => {}
+            Err(refused) => assert!(!refused.is_empty(), "{format:?}"),
+        }
+    }
+    let (_, findings) = aseme::statechart_of(&Source::new("model", text));
+    assert_findings_fit(text, &findings);
+});
