@@ -20,6 +20,10 @@ pub enum ErrorKind {
     File,
     /// The other side cannot be reached, or refuses.
     Connection,
+    /// Another process has the name.
+    NameTaken,
+    /// What was asked for is refused; the error says why.
+    Refused,
     /// A packet is larger than the transport carries.
     TooLarge,
     /// The system gives no thread.

@@ -77,6 +77,8 @@
 //! ```
 
 mod bridge;
+#[cfg(all(unix, feature = "local"))]
+pub mod control;
 mod error;
 mod inbox;
 mod link;
