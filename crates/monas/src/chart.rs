@@ -4,6 +4,7 @@
 //! in simulated time, on a pool in real time), and brings back what they returned.
 
 mod desk;
+mod following;
 mod lending;
 mod post;
 mod urgency;

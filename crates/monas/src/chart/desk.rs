@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use narukom::{Moment, Publisher, TopicSlot};
-use yase::expression::{CallError, MessageSource, Origin};
+use yase::expression::{CallError, MessageSource};
 use yase::{
     Activation, Chart, FieldId, FunctionId, Host, Occasion, RegionId, Report, TopicId, TraceRecord,
     TransitionId, Value,
@@ -57,7 +57,7 @@ impl Desk {
             agent: home.agent.into(),
             number: home.number,
             now: Moment::ZERO,
-            lending: Lending::new(chart, home),
+            lending: Lending::new(chart, home)?,
             urgency: Urgency::new(chart),
             functions,
             started: VecDeque::new(),
@@ -76,25 +76,8 @@ impl Desk {
         self.cancelled.clear();
     }
 
-    /// The newest message of a source. A blackboard keeps one newest message for each topic: if that is not by the publisher that is
-    /// meant, or if another host is meant, of which nothing arrives on this hub, there is none.
     fn newest(&self, region: RegionId, source: &MessageSource) -> Option<&dyn narukom::AnyMessage> {
-        let sample = self.lending.newest(region, slot(source.topic))?;
-        let is_meant = match &source.origin {
-            Origin::Own => true,
-            Origin::Host(host) => **host == *self.host,
-            Origin::Publisher(publisher) => self.is_published_by(sample, publisher),
-            Origin::HostPublisher { host, publisher } => {
-                **host == *self.host && self.is_published_by(sample, publisher)
-            }
-            _ => false,
-        };
-        is_meant.then_some(&*sample.message)
-    }
-
-    fn is_published_by(&self, sample: &narukom::AnySample, publisher: &str) -> bool {
-        let hub = self.lending.hub();
-        hub.publisher_name(sample.header.publisher).is_some_and(|name| *name == *publisher)
+        self.lending.newest_of(region, source, self.now).map(|sample| &*sample.message)
     }
 }
 
@@ -115,9 +98,7 @@ impl Host for Desk {
     }
 
     fn deliver(&mut self, region: RegionId) {
-        let now = self.now;
-        let Some(blackboard) = self.lending.free_mut(region, now) else { return };
-        blackboard.process_messages(now);
+        let Some(blackboard) = self.lending.deliver(region, self.now) else { return };
         self.delivered.extend(Delivery::all(blackboard, region.0));
     }
 

@@ -9,9 +9,12 @@
 //! when it comes back.
 
 use narukom::{AnySample, Blackboard, Cancellation, Moment, Narukom, TopicSlot};
+use yase::expression::MessageSource;
 use yase::{Activation, Chart, RegionId};
 
 use super::Home;
+use super::following::Following;
+use crate::error::Error;
 use crate::talws::component_seed;
 
 /// The blackboards of a chart.
@@ -34,6 +37,7 @@ struct Region {
     loan: Option<Loan>,
     /// While it is lent: the newest message of each topic that guards read.
     shown: Box<[Option<AnySample>]>,
+    following: Following,
 }
 
 /// To whom a blackboard is lent.
@@ -43,19 +47,23 @@ struct Loan {
 }
 
 impl Lending {
-    pub(super) fn new(chart: &Chart, home: Home<'_>) -> Lending {
+    /// # Errors
+    /// The chart reads more hosts than a hub tells apart.
+    pub(super) fn new(chart: &Chart, home: Home<'_>) -> Result<Lending, Error> {
         let read: Box<[TopicSlot]> = chart.reads().iter().map(|topic| TopicSlot::new(topic.0)).collect();
         let regions = chart.regions().map(|region| {
             let node = chart.region_node(region);
             let node = node.map(|node| chart.statechart().path(node)).unwrap_or_default();
             let path = format!("{}/{node}", home.path());
-            Region { path, made: 0, here: None, loan: None, shown: vec![None; read.len()].into() }
+            let following = Following::new(chart, home.hub)?;
+            let shown = vec![None; read.len()].into();
+            Ok(Region { path, made: 0, here: None, loan: None, shown, following })
         });
-        let regions = regions.collect();
+        let regions = regions.collect::<Result<_, Error>>()?;
         let mut lending =
             Lending { hub: home.hub.clone(), agent: home.agent.into(), seed: home.seed, read, regions };
         (0..lending.regions.len()).for_each(|place| lending.furnish(place));
-        lending
+        Ok(lending)
     }
 
     /// Gives a region a new blackboard.
@@ -105,13 +113,36 @@ impl Lending {
         self.free_mut(from, now);
         let places = [region.0 as usize, from.0 as usize];
         let Ok([inner, outer]) = self.regions.get_disjoint_mut(places) else { return };
+        inner.following.adopt(&outer.following);
         if let (Some(inner), Some(outer)) = (&mut inner.here, &outer.here) {
             inner.adopt(outer);
         }
     }
 
+    /// What arrived is delivered to a region's blackboard, which is given.
+    pub(super) fn deliver(&mut self, region: RegionId, now: Moment) -> Option<&Blackboard> {
+        self.free_mut(region, now)?;
+        let region = &mut self.regions[region.0 as usize];
+        region.following.deliver(&self.hub);
+        let blackboard = region.here.as_deref_mut()?;
+        blackboard.process_messages(now);
+        Some(blackboard)
+    }
+
+    /// The newest message of a source that guards read.
+    pub(super) fn newest_of(
+        &self,
+        region: RegionId,
+        source: &MessageSource,
+        now: Moment,
+    ) -> Option<&AnySample> {
+        let shown = self.newest(region, TopicSlot::new(source.topic.0));
+        let following = &self.regions.get(region.0 as usize)?.following;
+        following.newest(source, shown, now, &self.hub).unwrap_or(shown)
+    }
+
     /// The newest message of a topic that guards read: of the blackboard if it is here, else of when it was lent.
-    pub(super) fn newest(&self, region: RegionId, topic: TopicSlot) -> Option<&AnySample> {
+    fn newest(&self, region: RegionId, topic: TopicSlot) -> Option<&AnySample> {
         let region = self.regions.get(region.0 as usize)?;
         match &region.here {
             Some(blackboard) => blackboard.latest_sample(topic),
@@ -163,7 +194,8 @@ impl Lending {
     }
 
     /// The hub that all blackboards are of.
-    pub(super) fn hub(&self) -> &Narukom {
+    #[cfg(test)]
+    fn hub(&self) -> &Narukom {
         &self.hub
     }
 }
@@ -189,7 +221,7 @@ mod tests {
         let hub = Narukom::with_linked_topics("local").unwrap();
         let listeners = Listeners::default();
         let home = Home { hub: &hub, agent: "m", number: 0, seed: 1, listeners: &listeners };
-        let lending = Lending::new(&chart, home);
+        let lending = Lending::new(&chart, home).unwrap();
         let entry = chart.activities().next().unwrap();
         let activation = Activation { node: entry.node, region: entry.region, number: 1 };
         (lending, activation, hub.topic("monas/host").unwrap())
