@@ -7,6 +7,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 
 use crate::duration;
+#[cfg(unix)]
+use crate::topic::TopicCommand;
 
 /// The configuration that is read when none is named.
 const DEFAULT_CONFIGURATION: &str = "config/agents.xml";
@@ -20,7 +22,7 @@ pub(crate) struct Arguments {
 }
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 done, 1 ran and failed, 2 usage, 3 invalid configuration or model, 130 interrupted.
+Exit codes: 0 done, 1 ran and failed, 2 usage, 3 invalid configuration or model, 4 nothing to connect to, 130 interrupted.
 Environment: NO_COLOR switches colours off; MONAS_LOG chooses what is logged, for example `info` or `monas=debug`.";
 
 #[derive(Subcommand, Debug)]
@@ -33,7 +35,12 @@ pub(crate) enum Command {
     /// Look at configurations without running them.
     #[command(subcommand)]
     Config(ConfigCommand),
+    /// Look at the topics of a run while it runs, and publish on them.
+    #[cfg(unix)]
+    #[command(subcommand)]
+    Topic(TopicCommand),
     /// Print a completion script for a shell.
+    #[command(after_help = "Example: source <(monas completions bash)")]
     Completions {
         /// The shell to print it for.
         shell: Shell,
@@ -58,6 +65,12 @@ pub(crate) struct RunArguments {
     /// Let simulated time pass no faster than real time. Agents without a match run in real time anyway.
     #[arg(long)]
     pub(crate) realtime: bool,
+    /// The name of the control socket, which `monas topic` finds the run by; that of the configuration if it is not said.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) control: Option<String>,
+    /// Serve no control socket.
+    #[arg(long, conflicts_with = "control")]
+    pub(crate) no_control: bool,
     #[command(flatten)]
     pub(crate) format: FormatArgument,
 }

@@ -14,6 +14,8 @@ pub enum Exit {
     Usage,
     /// 3: a configuration or a model is invalid; nothing ran.
     Invalid,
+    /// 4: what it is to connect to is not there.
+    Unreachable,
     /// 130: it was interrupted.
     Interrupted,
 }
@@ -26,6 +28,7 @@ impl Exit {
             Exit::Failure => 1,
             Exit::Usage => 2,
             Exit::Invalid => 3,
+            Exit::Unreachable => 4,
             Exit::Interrupted => 130,
         }
     }

@@ -20,6 +20,8 @@ pub(crate) enum Failure {
     Usage(String),
     /// It could not be done.
     Failed(Format, String),
+    /// What it is to connect to is not there.
+    Unreachable(Format, String),
     /// Standard output or standard error does not take what is written.
     Output(io::Error),
 }
@@ -38,6 +40,7 @@ impl Failure {
             }
             Failure::Usage(message) => (tell(console, Format::Text, &message), Exit::Usage),
             Failure::Failed(format, message) => (tell(console, format, &message), Exit::Failure),
+            Failure::Unreachable(format, message) => (tell(console, format, &message), Exit::Unreachable),
             Failure::Output(error) if error.kind() == io::ErrorKind::BrokenPipe => (Ok(()), Exit::Success),
             Failure::Output(error) => (tell(console, Format::Text, &error.to_string()), Exit::Failure),
         };

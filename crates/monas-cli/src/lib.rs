@@ -35,12 +35,15 @@ mod model;
 mod process;
 mod report;
 mod run;
+#[cfg(unix)]
+mod topic;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser};
+use clap_complete::env::Shells;
 
 use arguments::{Arguments, Command, ConfigCommand};
 use console::Console;
@@ -81,6 +84,8 @@ fn execute(command: Command, console: &mut Console<'_>) -> Result<Exit, Failure>
             check::execute(&config, format.value, console)
         }
         Command::Model(command) => model::execute(&command, console),
+        #[cfg(unix)]
+        Command::Topic(command) => topic::execute(&command, console),
         Command::Completions { shell } => completions(shell, console).map_err(Failure::from),
     }
 }
@@ -101,7 +106,15 @@ fn answer(error: &clap::Error, console: &mut Console<'_>) -> io::Result<Exit> {
 
 fn completions(shell: clap_complete::Shell, console: &mut Console<'_>) -> io::Result<Exit> {
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut Arguments::command(), "monas", &mut script);
+    let name = shell.to_string();
+    let shells = Shells::builtins();
+    match shells.completer(&name) {
+        // The shell asks this command itself what fits, so that it completes what runs knows too.
+        Some(completer) => {
+            completer.write_registration("COMPLETE", "monas", "monas", "monas", &mut script)?
+        }
+        None => clap_complete::generate(shell, &mut Arguments::command(), "monas", &mut script),
+    }
     console.out.write_all(&script)?;
     Ok(Exit::Success)
 }

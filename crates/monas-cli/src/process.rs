@@ -3,14 +3,19 @@
 use std::io::{self, IsTerminal, Write};
 use std::panic;
 
+use clap::CommandFactory;
+use clap_complete::CompleteEnv;
 use indicatif::MultiProgress;
 use tracing_subscriber::EnvFilter;
 
+use crate::arguments::Arguments;
 use crate::console::Console;
 use crate::exit::Exit;
 
 /// Runs the command as this process.
 pub(crate) fn main() -> Exit {
+    // A shell that asks what fits is answered, and that is all.
+    CompleteEnv::with_factory(Arguments::command).complete();
     let bars = MultiProgress::new();
     log_to_standard_error(&bars);
     // Whoever catches a panic decides what becomes of it; the log says where it was.

@@ -1,12 +1,14 @@
 //! `monas run`: a match in simulated time, or a set of agents in real time.
 
+mod control;
 mod coverage;
 mod interrupt;
+mod links;
 mod live;
 mod pace;
 mod play;
 mod scoreboard;
-mod table;
+pub(crate) mod table;
 
 use std::path::Path;
 
@@ -16,6 +18,9 @@ use crate::arguments::RunArguments;
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::failure::Failure;
+
+pub(crate) use interrupt::Interrupt;
+pub(crate) use pace::WallClock;
 
 /// What a configuration describes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

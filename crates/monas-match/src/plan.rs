@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use monas::{Agent, ChartListener, HostConfig, Registry, RunHash, Talws};
+use monas::{Agent, ChartListener, HostConfig, LinkConfig, Registry, RunHash, Talws};
 use monas_sim::{FieldGeometry, Physics, Pitch, Rules, Setup, TeamSetup, World};
 use monas_tape::Tape;
 use yase::Diagnostic;
@@ -42,10 +42,11 @@ fn robots(file: &MatchFile, registry: &Registry, diagnostics: &mut Vec<Diagnosti
     let mut robots = Vec::new();
     for team in &file.teams {
         for robot in &team.robots {
-            let (agents, found) = monas::config::load(&robot.role, registry);
+            let (setup, found) = monas::config::load(&robot.role, registry);
             diagnostics.extend(found);
+            let monas::config::Setup { agents, links } = setup;
             let host = format!("{}-{}", file::host_name(&team.setup.name), robot.number);
-            robots.push(RobotPlan { team: team.setup.number, number: robot.number, host, agents });
+            robots.push(RobotPlan { team: team.setup.number, number: robot.number, host, agents, links });
         }
     }
     robots
@@ -71,6 +72,7 @@ pub struct MatchPlan {
     registry: Registry,
     listeners: Vec<Box<dyn ChartListener>>,
     warnings: Vec<Diagnostic>,
+    is_linked: bool,
 }
 
 impl std::fmt::Debug for MatchPlan {
@@ -89,6 +91,7 @@ struct RobotPlan {
     number: u8,
     host: String,
     agents: Vec<Agent>,
+    links: Vec<LinkConfig>,
 }
 
 /// How a match is to be played.
@@ -116,6 +119,7 @@ impl MatchPlan {
             registry,
             listeners: Vec::new(),
             warnings: Vec::new(),
+            is_linked: false,
         })
     }
 
@@ -127,6 +131,18 @@ impl MatchPlan {
     /// Lets a listener see every micro-step of every chart.
     pub fn listen(mut self, listener: Box<dyn ChartListener>) -> MatchPlan {
         self.listeners.push(listener);
+        self
+    }
+
+    /// Whether robots have links to other processes.
+    pub fn has_links(&self) -> bool {
+        self.robots.iter().any(|robot| !robot.links.is_empty())
+    }
+
+    /// Opens the links of the robots when the match begins. Then whoever [advances](RunningMatch::advance) it paces it, and it is a
+    /// function of its seed no longer. Without this a match with links is refused.
+    pub fn linked(mut self) -> MatchPlan {
+        self.is_linked = true;
         self
     }
 
@@ -153,9 +169,10 @@ impl MatchPlan {
         };
         let pitch = Pitch::new(World::new(setup).map_err(Error::field)?);
         let mut talws = Talws::new().registry(self.registry);
-        for (index, RobotPlan { team, number, host, agents }) in self.robots.into_iter().enumerate() {
+        for (index, RobotPlan { team, number, host, agents, links }) in self.robots.into_iter().enumerate() {
             let body = pitch.body(index).map(|body| Box::new(body) as _);
-            talws.host(HostConfig { name: host, team: team.into(), number: number.into(), body, agents });
+            let (team, number) = (team.into(), number.into());
+            talws.host(HostConfig { name: host, team, number, body, agents, links });
         }
         talws.world(Box::new(Stage::new(pitch.clone())));
         for listener in self.listeners {
@@ -171,7 +188,11 @@ impl MatchPlan {
         if let Some((tape, _)) = &tape {
             talws.observe(Box::new(tape.clone()));
         }
-        let simulation = talws.simulate(options.seed).map_err(Error::agents)?;
+        let simulation = match self.is_linked {
+            true => talws.simulate_linked(options.seed),
+            false => talws.simulate(options.seed),
+        };
+        let simulation = simulation.map_err(Error::agents)?;
         Ok(RunningMatch::new(simulation, pitch, hash, tape, length))
     }
 }

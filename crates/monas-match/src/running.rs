@@ -115,6 +115,7 @@ impl RunningMatch {
             agents: self.agents(),
             time_to_first_touch: touch.map(Duration::from_secs_f64),
             coverage: self.simulation.coverage(),
+            links: self.simulation.statistics().links,
             events: self.events,
         })
     }

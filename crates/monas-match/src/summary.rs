@@ -54,6 +54,8 @@ pub struct Summary {
     pub time_to_first_touch: Option<Duration>,
     /// Which states were active and which transitions fired, chart by chart.
     pub coverage: Vec<monas::ChartCoverage>,
+    /// What the robots' links have done.
+    pub links: Vec<monas::LinkStatistics>,
 }
 
 /// What a team did.

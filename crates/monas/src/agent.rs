@@ -58,6 +58,7 @@ pub struct Agent {
     pub(crate) statistics_every: Option<u64>,
     pub(crate) workers: Option<NonZeroUsize>,
     pub(crate) semantics: Semantics,
+    pub(crate) elsewhere: Vec<String>,
 }
 
 impl Agent {
@@ -84,6 +85,7 @@ impl Agent {
             statistics_every: None,
             workers: None,
             semantics: Semantics::yase(),
+            elsewhere: Vec::new(),
         }
     }
 
@@ -140,6 +142,13 @@ impl Agent {
     /// said.
     pub fn workers(mut self, workers: NonZeroUsize) -> Agent {
         self.workers = Some(workers);
+        self
+    }
+
+    /// Says that another process runs an activity of its charts: here its state does nothing, and what the activity publishes comes over a
+    /// link.
+    pub fn elsewhere(mut self, activity: impl Into<String>) -> Agent {
+        self.elsewhere.push(activity.into());
         self
     }
 

@@ -25,15 +25,57 @@
 //! All other attributes of an `activity` are its [parameters](crate::Parameters). A `provider` is an agent with the one activity
 //! that it is named after. Files may hold any number of agents, in an `<agents>` or not.
 //!
+//! A `<statechart elsewhere="Vision">` leaves the named activities to another process: their states do nothing here, and a link brings what
+//! they publish.
+//!
+//! # Links
+//!
+//! ```xml
+//! <link name="blue-2">
+//!   <send topics="body/*" priority="2"/>
+//!   <send topics="soccer/game_state" reliability="best_effort"/>
+//!   <receive topics="soccer/ball" as="own"/>
+//! </link>
+//! <link transport="zenoh" name="robot_1" access="config/access.txt">
+//!   <listen>7447</listen>
+//!   <connect>tls/192.168.1.22:7447</connect>
+//!   <certificates authority="team.pem" certificate="robot_1.pem" key="robot_1.key"/>
+//!   <budget profile="spl" robots="5"/>
+//!   <send topics="soccer/hello"/>
+//!   <receive topics="soccer/hello"/>
+//! </link>
+//! ```
+//!
+//! | attribute of `link` | means |
+//! |---|---|
+//! | `name` | the name of this end; that of the host if it is not said |
+//! | `transport` | `local`, sockets of one computer; or `zenoh`, in programs that have it |
+//! | `folder` | of `local`: where the sockets are; `$XDG_RUNTIME_DIR/monas` if it is not said |
+//! | `beat` | how often the link says how far it is; 200 ms if it is not said |
+//! | `clock` | the name of the other end whose time the run takes for its own, for processes of one robot; in real time only |
+//! | `access` | a file that says who may publish what, see [`AccessList`](monas_link::AccessList); everybody if it is not said |
+//! | `guests` | `1` lets programs without a link of their own send |
+//! | `realm`, `scouting`, `shared_memory` | of `zenoh`: the first segment of keys; `1` looks for others without being told where; `0` keeps large messages out of shared memory |
+//! | `enable` | `0` leaves it out |
+//!
+//! Links whose sockets are in one folder hear each other, so each robot has a folder of its own.
+//!
+//! `<send>` and `<receive>` name `topics` (`soccer/ball`, `soccer/*`, `soccer/**`). What is sent has a `priority` from 1, first, to 7, last (4),
+//! and a `reliability`: `reliable`, or `best_effort`. What is received is that of the other host, read with
+//! `blackboard.from(host)`, or with `as="own"` this host's own: then the other end is a process of the same robot. `<budget>` is a
+//! `profile` (`spl`: 1200 packets of 128 bytes in 20 minutes for a team, divided by its `robots`), or `packets`, `window` and `payload`.
+//! `<listen>` is an endpoint (a port alone is reached from this computer only), `<connect>` another's.
+//!
 //! [`load`] reads a file and everything it names, and returns every [`Diagnostic`](yase::Diagnostic): of the XML, of names that the
 //! [`Registry`](crate::Registry) does not know, of model files, formulas and expressions. Nothing runs before there is none.
 
 mod agents;
+mod links;
 mod model;
 mod paths;
 mod repair;
 pub mod xml;
 
-pub use agents::{load, read};
+pub use agents::{Setup, load, read};
 pub use model::load as load_model;
 pub use paths::{locate, read as read_file};

@@ -35,6 +35,8 @@ pub enum ErrorKind {
     Body,
     /// The world failed.
     World,
+    /// A link cannot be opened.
+    Link,
     /// The system gave no thread.
     Thread,
 }

@@ -42,6 +42,14 @@ impl Frequency {
     pub fn due(self, cycle: u64) -> Moment {
         Moment::from_secs_f64(cycle as f64 / self.hertz)
     }
+
+    /// The first cycle that is due at a moment or later.
+    pub(crate) fn first_due(self, moment: Moment) -> u64 {
+        let near = (moment.as_secs_f64() * self.hertz) as u64;
+        // The estimate may be off by one to either side.
+        let candidates = near.saturating_sub(1)..=near + 1;
+        candidates.into_iter().find(|cycle| self.due(*cycle) >= moment).unwrap_or(near + 2)
+    }
 }
 
 impl fmt::Display for Frequency {
@@ -59,6 +67,14 @@ mod tests {
         assert_eq!(Hz(30).due(3_000_000), Moment::from_nanos(100_000 * 1_000_000_000));
         assert_eq!(Hz(10).due(1), Moment::from_nanos(100_000_000));
         assert_eq!(Hz(10).due(0), Moment::ZERO);
+    }
+
+    #[test]
+    fn the_first_cycle_from_a_moment_on_is_found() {
+        assert_eq!(Hz(10).first_due(Moment::ZERO), 0);
+        assert_eq!(Hz(10).first_due(Moment::from_nanos(100_000_000)), 1);
+        assert_eq!(Hz(10).first_due(Moment::from_nanos(100_000_001)), 2);
+        assert_eq!(Hz(30).first_due(Hz(30).due(1_000_001)), 1_000_001);
     }
 
     #[test]

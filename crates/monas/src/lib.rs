@@ -73,6 +73,7 @@ mod coverage;
 mod error;
 mod frequency;
 mod function;
+mod link;
 mod list;
 mod listener;
 mod origin;
@@ -90,13 +91,14 @@ pub use agent::{Agent, Policy};
 pub use coverage::{ChartCoverage, StateCoverage, TransitionCoverage};
 pub use error::{Error, ErrorKind};
 pub use frequency::{Frequency, Hz};
+pub use link::{Certificates, Endpoints, LinkConfig, LinkStatistics, LinkTransport};
 pub use listener::{ChartListener, MicroStep};
 pub use narukom::{Blackboard, Moment};
 pub use parameters::{ParameterFault, Parameters};
 pub use registry::Registry;
 pub use run_hash::RunHash;
 pub use statistics::{ActivityStatistics, AgentStatistics, Average, Statistics};
-pub use talws::{HostConfig, Running, Simulation, Stopper, Talws, World};
+pub use talws::{HostConfig, Overview, Running, Simulation, Stopper, Talws, World};
 
 /// What the benches of this crate measure from inside.
 #[doc(hidden)]

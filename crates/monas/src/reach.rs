@@ -1,28 +1,48 @@
 //! What a chart reads that nobody can ever deliver to it.
 //!
 //! An expression may say whose message is meant: that of another host, or of a certain publisher. A message that never arrives reads as
-//! missing, without a word; so whoever cannot be heard on the chart's host is told before anything starts.
+//! missing, without a word; so whoever cannot be heard on the chart's host is told before anything starts. What links bring may come
+//! from anybody.
 
 use narukom::{Narukom, TopicSlot};
 use yase::expression::Origin;
 use yase::{Chart, Diagnostic, Span};
 
-/// A diagnostic for each source that nobody on the host is. Hosts are not linked: what one publishes, no other receives.
-pub(crate) fn out_of_reach(chart: &Chart, hub: &Narukom, publishers: &[String]) -> Vec<Diagnostic> {
+/// Who can be heard on a host.
+pub(crate) struct Reach<'a> {
+    pub(crate) hub: &'a Narukom,
+    /// Those who publish on the host.
+    pub(crate) publishers: &'a [String],
+    /// The topics that links bring from other hosts,
+    pub(crate) from_others: &'a [TopicSlot],
+    /// and from other processes of this one.
+    pub(crate) from_own: &'a [TopicSlot],
+}
+
+/// A diagnostic for each source of which nothing can arrive.
+pub(crate) fn out_of_reach(chart: &Chart, reach: &Reach<'_>) -> Vec<Diagnostic> {
     let model = &chart.statechart().name;
+    let own = reach.hub.host();
     let told = chart.sources().filter_map(|source| {
         let (host, publisher) = meant(&source.origin);
-        let topic = hub.declaration(TopicSlot::new(source.topic.0)).map_or("?", |topic| topic.path());
+        let slot = TopicSlot::new(source.topic.0);
+        let topic = reach.hub.declaration(slot).map_or("?", |topic| topic.path());
         let said = format!("the chart `{model}` reads `{topic}`");
-        match (host.filter(|host| *host != hub.host()), publisher) {
-            (Some(host), _) => Some(of_host(&said, host, hub.host())),
-            (None, Some(name)) if !publishers.iter().any(|known| known == name) => {
-                Some(of_publisher(&said, name, hub.host(), publishers))
+        match (host.filter(|host| *host != own), publisher) {
+            (Some(host), _) if !reach.from_others.contains(&slot) => Some(of_host(&said, topic, host, own)),
+            (None, Some(name)) if !reach.from_own.contains(&slot) && !reach.knows(name) => {
+                Some(of_publisher(&said, name, own, reach.publishers))
             }
             _ => None,
         }
     });
     told.collect()
+}
+
+impl Reach<'_> {
+    fn knows(&self, publisher: &str) -> bool {
+        self.publishers.iter().any(|known| known == publisher)
+    }
 }
 
 /// The host and the publisher that are meant, as far as they are named.
@@ -35,9 +55,12 @@ fn meant(origin: &Origin) -> (Option<&str>, Option<&str>) {
     }
 }
 
-fn of_host(said: &str, host: &str, own: &str) -> Diagnostic {
+fn of_host(said: &str, topic: &str, host: &str, own: &str) -> Diagnostic {
     let message = format!("{said} of the host `{host}`, of which nothing arrives on `{own}`");
-    Diagnostic::error("E0320", Span::default(), message).with_hint("without a host in front its own is meant")
+    let hint = format!(
+        "a link brings it: `<receive topics=\"{topic}\"/>`; without a host in front the chart's own is meant"
+    );
+    Diagnostic::error("E0320", Span::default(), message).with_hint(hint)
 }
 
 fn of_publisher(said: &str, name: &str, own: &str, publishers: &[String]) -> Diagnostic {

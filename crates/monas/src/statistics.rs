@@ -2,11 +2,15 @@
 
 use std::time::Duration;
 
+use crate::link::LinkStatistics;
+
 /// What a run has done so far, agent by agent in the order in which they run.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Statistics {
     /// One entry for each agent.
     pub agents: Vec<AgentStatistics>,
+    /// One entry for each link.
+    pub links: Vec<LinkStatistics>,
 }
 
 /// What one agent has done so far.

@@ -6,8 +6,10 @@ mod clock;
 mod deadlines;
 mod handover;
 mod instance;
+mod links;
 mod list_thread;
 pub(crate) mod measured;
+mod overview;
 mod pool;
 mod real_time;
 mod seeds;
@@ -25,12 +27,14 @@ use std::time::Duration;
 use crate::activity::BoxError;
 use crate::agent::Agent;
 use crate::config;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
+use crate::link::LinkConfig;
 use crate::listener::ChartListener;
 use crate::registry::Registry;
 use crate::statistics::Statistics;
 
 pub(crate) use clock::Clock;
+pub use overview::Overview;
 pub use real_time::Running;
 pub(crate) use seeds::component_seed;
 pub use simulation::Simulation;
@@ -52,6 +56,8 @@ pub struct HostConfig {
     pub body: Option<Box<dyn Robot>>,
     /// Its agents.
     pub agents: Vec<Agent>,
+    /// Its links to other processes and hosts.
+    pub links: Vec<LinkConfig>,
 }
 
 impl std::fmt::Debug for HostConfig {
@@ -62,6 +68,7 @@ impl std::fmt::Debug for HostConfig {
             .field("number", &self.number)
             .field("body", &self.body.as_ref().map(|body| &body.anatomy().model))
             .field("agents", &self.agents)
+            .field("links", &self.links)
             .finish()
     }
 }
@@ -121,17 +128,18 @@ impl Talws {
         Talws::default()
     }
 
-    /// The agents of a configuration file, on the host [`LOCAL`](Talws::LOCAL), with the registry that they are taken from.
+    /// The agents and links of a configuration file, on the host [`LOCAL`](Talws::LOCAL), with the registry that they are taken from.
     ///
     /// # Errors
     /// [`ErrorKind::Invalid`](crate::ErrorKind::Invalid) with every diagnostic of the file and of the models it names.
     pub fn from_config(path: impl AsRef<Path>, registry: Registry) -> Result<Talws, Error> {
-        let (agents, diagnostics) = config::load(path, &registry);
+        let (setup, diagnostics) = config::load(path, &registry);
         if diagnostics.iter().any(|diagnostic| diagnostic.is_error()) {
             return Err(Error::invalid(diagnostics));
         }
         diagnostics.iter().for_each(|diagnostic| tracing::warn!("{diagnostic}"));
-        Ok(agents.into_iter().fold(Talws::new().registry(registry), Talws::agent))
+        let talws = setup.agents.into_iter().fold(Talws::new().registry(registry), Talws::agent);
+        Ok(setup.links.into_iter().fold(talws, Talws::link))
     }
 
     /// Takes activities and functions from this registry instead of the linked ones.
@@ -142,15 +150,23 @@ impl Talws {
 
     /// Adds an agent to the host [`LOCAL`](Talws::LOCAL).
     pub fn agent(mut self, agent: Agent) -> Talws {
-        match self.hosts.iter_mut().find(|host| host.name == Talws::LOCAL) {
-            Some(host) => host.agents.push(agent),
-            None => {
-                let host =
-                    HostConfig { name: Talws::LOCAL.into(), agents: vec![agent], ..HostConfig::default() };
-                self.hosts.push(host);
-            }
-        }
+        self.local().agents.push(agent);
         self
+    }
+
+    /// Adds a link to the host [`LOCAL`](Talws::LOCAL).
+    pub fn link(mut self, link: LinkConfig) -> Talws {
+        self.local().links.push(link);
+        self
+    }
+
+    fn local(&mut self) -> &mut HostConfig {
+        let known = self.hosts.iter().position(|host| host.name == Talws::LOCAL);
+        let place = known.unwrap_or_else(|| {
+            self.hosts.push(HostConfig { name: Talws::LOCAL.into(), ..HostConfig::default() });
+            self.hosts.len() - 1
+        });
+        &mut self.hosts[place]
     }
 
     /// Adds a host.
@@ -180,8 +196,23 @@ impl Talws {
     /// Prepares a run in simulated time. The same seed gives the same run, in whatever order hosts and agents were added.
     ///
     /// # Errors
-    /// Two hosts or two agents of a host with one name, topics that contradict each other, and every diagnostic of every chart.
+    /// Two hosts or two agents of a host with one name, topics that contradict each other, and every diagnostic of every chart; and
+    /// [`ErrorKind::Link`](crate::ErrorKind::Link) if a host has links: other processes do not wait for simulated time.
     pub fn simulate(self, seed: u64) -> Result<Simulation, Error> {
+        if let Some(host) = self.hosts.iter().find(|host| !host.links.is_empty()) {
+            let message =
+                format!("`{}` has links, and other processes do not wait for simulated time", host.name);
+            return Err(Error::new(ErrorKind::Link, message).with_hint("pace it, with `simulate_linked`"));
+        }
+        Simulation::new(self, seed)
+    }
+
+    /// As [`simulate`](Talws::simulate), with the links of all hosts. What comes over them comes when it comes, so whoever advances the
+    /// run paces it, as [`Simulation::run_paced`] does, and it is a function of its seed no longer.
+    ///
+    /// # Errors
+    /// As in [`simulate`](Talws::simulate), and when a link cannot be opened.
+    pub fn simulate_linked(self, seed: u64) -> Result<Simulation, Error> {
         Simulation::new(self, seed)
     }
 

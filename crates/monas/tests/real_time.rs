@@ -196,7 +196,14 @@ fn a_body_senses_and_acts_and_the_world_moves_on() {
     talws.world(Box::new(Quiet(moves)));
     let body = Body(acts, Anatomy::new("test", Duration::from_millis(1)));
     let agents = vec![Agent::new("walker", Hz(1000)).activity(walks)];
-    talws.host(HostConfig { name: "red-1".into(), team: 1, number: 1, body: Some(Box::new(body)), agents });
+    talws.host(HostConfig {
+        name: "red-1".into(),
+        team: 1,
+        number: 1,
+        body: Some(Box::new(body)),
+        agents,
+        links: Vec::new(),
+    });
     let running = talws.start().unwrap();
     while next(&acted, 1) != [1.0] {}
     let expected: Vec<Moment> = (1..=5).map(|millis| Moment::from_nanos(millis * 1_000_000)).collect();

@@ -76,9 +76,21 @@ fn hosts_do_not_hear_each_other() {
     let (seen, note) = recorder();
     let mut talws = Talws::new();
     let speaks = Agent::new("a", Hz(10)).activity(|b: &mut Blackboard| b.publish(BALL, Ball::default()));
-    talws.host(HostConfig { name: "red-1".into(), team: 1, number: 1, agents: vec![speaks], body: None });
+    talws.host(HostConfig {
+        name: "red-1".into(),
+        team: 1,
+        number: 1,
+        agents: vec![speaks],
+        ..HostConfig::default()
+    });
     let listens = Agent::new("b", Hz(10)).activity(move |b: &mut Blackboard| note(b.read(BALL).is_some()));
-    talws.host(HostConfig { name: "red-2".into(), team: 1, number: 2, agents: vec![listens], body: None });
+    talws.host(HostConfig {
+        name: "red-2".into(),
+        team: 1,
+        number: 2,
+        agents: vec![listens],
+        ..HostConfig::default()
+    });
     talws.simulate(1).unwrap().run_until(at(500)).unwrap();
     assert_eq!(seen.taken(), [false; 5]);
 }
@@ -113,7 +125,7 @@ fn team(order: &[usize], seed: u64) -> (String, u64) {
         let mut agents = vec![agent("sees".into()), agent("walks".into())];
         agents.rotate_left(number % 2);
         let name = format!("red-{number}");
-        talws.host(HostConfig { name, team: 1, number: number as u32, agents, body: None });
+        talws.host(HostConfig { name, team: 1, number: number as u32, agents, ..HostConfig::default() });
     }
     talws.simulate(seed).unwrap().run_until(at(2000)).unwrap();
     hash.finish()
@@ -141,7 +153,7 @@ fn the_same_seed_gives_the_same_hash_in_whatever_order_hosts_and_agents_were_add
                 team: 1,
                 number: number as u32,
                 agents,
-                body: None,
+                ..HostConfig::default()
             });
         }
         talws.simulate(7).unwrap().run_until(at(2000)).unwrap();
@@ -225,7 +237,8 @@ fn embodied(agents: Vec<Agent>) -> (Talws, Log) {
     let log = Log::default();
     let body = Body(log.clone(), Anatomy::new("test", Duration::from_millis(10)));
     let mut talws = Talws::new();
-    talws.host(HostConfig { name: "red-1".into(), team: 1, number: 1, body: Some(Box::new(body)), agents });
+    let body = Some(Box::new(body) as _);
+    talws.host(HostConfig { name: "red-1".into(), team: 1, number: 1, body, agents, links: Vec::new() });
     (talws, log)
 }
 

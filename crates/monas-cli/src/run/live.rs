@@ -3,14 +3,14 @@
 use std::io::Write;
 use std::time::Duration;
 
-use monas::{AgentStatistics, Registry, Talws};
+use monas::{AgentStatistics, ErrorKind, Registry, Statistics, Talws};
 use monas_tape::Tape;
 use serde_json::{Value, json};
 use yase::Diagnostic;
 
 use super::interrupt::Interrupt;
 use super::pace::WallClock;
-use super::table;
+use super::{control, links, table};
 use crate::arguments::{Format, RunArguments};
 use crate::console::Console;
 use crate::exit::Exit;
@@ -29,13 +29,21 @@ pub(super) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Re
         talws.observe(Box::new(tape.clone()));
     }
     let interrupt = Interrupt::for_console(console).map_err(|error| Failure::failed(format, error))?;
-    let running = talws.start().map_err(|error| Failure::failed(format, error))?;
+    let running = talws.start().map_err(|error| not_started(format, error))?;
+    let control = control::serve(arguments, running.overview(), console)?;
     writeln!(console.err, "running, Ctrl-C stops")?;
     WallClock::start().wait_until(arguments.length.unwrap_or(Duration::MAX), &interrupt);
-    let agents = running.stop().agents;
+    drop(control);
+    let Statistics { agents, links } = running.stop();
     let recorded =
         tape.map(|tape| tape.finish()).transpose().map_err(|error| Failure::failed(format, error))?;
     write(console.out, format, &agents, recorded)?;
+    match format {
+        Format::Text => links::write(console.out, &links)?,
+        Format::Json => {
+            links::objects(&links).iter().try_for_each(|object| writeln!(console.out, "{object}"))?;
+        }
+    }
     Ok(match interrupt.is_requested() {
         true => Exit::Interrupted,
         false if agents.iter().any(|agent| agent.stopped.is_some()) => Exit::Failure,
@@ -43,15 +51,25 @@ pub(super) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Re
     })
 }
 
-/// The agents of the configuration, ready to run.
+/// What a person wrote is told as such; a link that does not come up is nothing to connect to.
+fn not_started(format: Format, error: monas::Error) -> Failure {
+    match error.kind() {
+        ErrorKind::Invalid => Failure::Invalid(format, error.diagnostics().to_vec()),
+        ErrorKind::Link => Failure::Unreachable(format, error.to_string()),
+        _ => Failure::failed(format, error),
+    }
+}
+
+/// The agents and links of the configuration, ready to run.
 fn talws(arguments: &RunArguments, console: &mut Console<'_>) -> Result<Talws, Failure> {
     let format = arguments.format.value;
-    let (agents, diagnostics) = monas::config::load(&arguments.config, &Registry::linked());
+    let (setup, diagnostics) = monas::config::load(&arguments.config, &Registry::linked());
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(Failure::Invalid(format, diagnostics));
     }
     report::write(console, format, &diagnostics)?;
-    Ok(agents.into_iter().fold(Talws::new(), Talws::agent))
+    let talws = setup.agents.into_iter().fold(Talws::new(), Talws::agent);
+    Ok(setup.links.into_iter().fold(talws, Talws::link))
 }
 
 fn write(

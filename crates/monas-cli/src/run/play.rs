@@ -6,8 +6,7 @@ use monas_match::{Match, MatchPlan, Options, RunningMatch};
 
 use super::interrupt::Interrupt;
 use super::pace::WallClock;
-use super::scoreboard;
-use super::table;
+use super::{control, scoreboard, table};
 use crate::arguments::RunArguments;
 use crate::console::Console;
 use crate::exit::Exit;
@@ -16,12 +15,23 @@ use crate::report;
 
 /// How much simulated time passes between two looks at the match.
 const LOOK: Duration = Duration::from_millis(100);
+/// The same where it is held back to real time, so that others see it flow.
+const PACED_LOOK: Duration = Duration::from_millis(10);
 
 pub(super) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
     let format = arguments.format.value;
     let plan = Match::load(&arguments.config, &monas::Registry::linked())
         .map_err(|diagnostics| Failure::Invalid(format, diagnostics))?;
     report::write(console, format, plan.warnings())?;
+    let plan = match plan.has_links() {
+        true if !arguments.realtime => {
+            let message = "robots of this match have links to other processes, which do not wait for simulated time: add \
+                           --realtime";
+            return Err(Failure::Usage(message.into()));
+        }
+        true => plan.linked(),
+        false => plan,
+    };
     let interrupt = Interrupt::for_console(console).map_err(|error| Failure::failed(format, error))?;
     let clock = WallClock::start();
     let running = play(plan, arguments, &interrupt, clock, console)?;
@@ -43,10 +53,13 @@ fn play(
     let length = arguments.length.unwrap_or_else(|| plan.length());
     let options = Options { seed: arguments.seed.unwrap_or_default(), record: arguments.record.clone() };
     let mut running = plan.start(options).map_err(failed)?;
+    // It ends when this function does, since then nobody advances the match any more.
+    let _control = control::serve(arguments, running.simulation().overview(), console)?;
+    let look = if arguments.realtime { PACED_LOOK } else { LOOK };
     let mut scoreboard = scoreboard::for_console(console, length);
     scoreboard.show(&running)?;
     while running.now() < length && !running.is_over() && !interrupt.is_requested() {
-        running.advance((running.now() + LOOK).min(length)).map_err(failed)?;
+        running.advance((running.now() + look).min(length)).map_err(failed)?;
         scoreboard.show(&running)?;
         if arguments.realtime {
             clock.wait_until(running.now(), interrupt);

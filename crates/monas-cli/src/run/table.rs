@@ -7,7 +7,7 @@ use comfy_table::{Cell, CellAlignment, Table};
 use monas_match::{AgentSummary, Summary, TeamSummary};
 use serde_json::{Value, json};
 
-use super::coverage;
+use super::{coverage, links};
 use crate::arguments::Format;
 
 /// Writes the results; `wall` is how long the match took.
@@ -26,6 +26,7 @@ pub(super) fn write(
 fn write_text(out: &mut dyn Write, summary: &Summary, wall: Duration) -> io::Result<()> {
     writeln!(out, "{}\n", teams(&summary.teams))?;
     writeln!(out, "{}\n", agents(&summary.agents))?;
+    links::write(out, &summary.links)?;
     coverage::by_role(&summary.coverage).iter().try_for_each(|role| coverage::write(out, role))?;
     if let Some(time) = summary.time_to_first_touch {
         writeln!(out, "from kick-off to the first touch: {:.1} s on average", time.as_secs_f64())?;
@@ -95,7 +96,7 @@ fn agents(agents: &[AgentSummary]) -> Table {
 }
 
 /// A table in which numbers, which begin at column `first_number`, stand to the right.
-pub(super) fn of_numbers<Row: IntoIterator<Item = String>>(
+pub(crate) fn of_numbers<Row: IntoIterator<Item = String>>(
     header: impl IntoIterator<Item: Into<Cell>>,
     first_number: usize,
     rows: impl IntoIterator<Item = Row>,
@@ -133,6 +134,7 @@ fn objects(summary: &Summary, wall: Duration) -> Vec<Value> {
         .chain(teams)
         .chain(agents)
         .chain(roles.iter().map(coverage::object))
+        .chain(links::objects(&summary.links))
         .chain(std::iter::once(run))
         .collect()
 }

@@ -1,5 +1,6 @@
 //! The built command, started as a person would, in the workspace's folder.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -33,4 +34,17 @@ impl From<Output> for Answer {
 /// Runs the command to its end.
 pub(crate) fn monas(arguments: &[&str]) -> Answer {
     command(arguments).output().expect("the command starts").into()
+}
+
+/// Copies a folder with all that is in it.
+pub(crate) fn copy(from: &Path, to: &Path) {
+    fs::create_dir(to).expect("the folder takes folders");
+    for entry in fs::read_dir(from).expect("a folder") {
+        let entry = entry.expect("an entry");
+        let target = to.join(entry.file_name());
+        match entry.path().is_dir() {
+            true => copy(&entry.path(), &target),
+            false => drop(fs::copy(entry.path(), target).expect("the folder takes files")),
+        }
+    }
 }

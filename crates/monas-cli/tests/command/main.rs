@@ -1,8 +1,14 @@
 //! The built command as a person or a program meets it.
 
-#![allow(clippy::expect_used, reason = "a test that cannot be prepared fails")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot be prepared fails")]
 
+#[cfg(unix)]
+mod elsewhere;
 mod kit;
 mod model;
 mod run;
+#[cfg(unix)]
+mod running;
+#[cfg(unix)]
+mod topic;
 mod usage;

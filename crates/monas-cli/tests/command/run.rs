@@ -2,10 +2,9 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader};
-use std::path::Path;
 use std::process::{Command, Stdio};
 
-use crate::kit::{command, monas, root};
+use crate::kit::{command, copy, monas, root};
 use serde_json::Value;
 
 const MATCH: &str = "config/match.xml";
@@ -119,18 +118,6 @@ fn changed(file: &str, text: &str, replacement: &str) -> (tempfile::TempDir, usi
     let line = original.lines().position(|line| line.contains(text)).expect("the file holds the text");
     fs::write(&path, original.replacen(text, replacement, 1)).expect("the folder takes files");
     (folder, line + 1)
-}
-
-fn copy(from: &Path, to: &Path) {
-    fs::create_dir(to).expect("the folder takes folders");
-    for entry in fs::read_dir(from).expect("a folder") {
-        let entry = entry.expect("an entry");
-        let target = to.join(entry.file_name());
-        match entry.path().is_dir() {
-            true => copy(&entry.path(), &target),
-            false => drop(fs::copy(entry.path(), target).expect("the folder takes files")),
-        }
-    }
 }
 
 #[test]

@@ -16,7 +16,16 @@ fn version_names_itself() {
 fn help_lists_the_commands_and_exit_codes() {
     let answer = monas(&["--help"]);
     assert_eq!(answer.code, Some(0));
-    for word in ["run", "model", "config", "completions", "130 interrupted", "NO_COLOR"] {
+    for word in [
+        "run",
+        "model",
+        "config",
+        "topic",
+        "completions",
+        "4 nothing to connect to",
+        "130 interrupted",
+        "NO_COLOR",
+    ] {
         assert!(answer.out.contains(word), "{word} is not in\n{}", answer.out);
     }
 }
@@ -51,12 +60,19 @@ fn nothing_is_coloured_where_nobody_watches() {
 }
 
 #[test]
-fn completions_know_the_commands() {
-    for shell in ["bash", "zsh", "fish"] {
+fn completions_are_scripts_that_ask_the_command() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let answer = monas(&["completions", shell]);
         assert_eq!(answer.code, Some(0), "{shell}");
-        assert!(answer.out.contains("transform") && answer.out.contains("realtime"), "{shell}");
+        assert!(answer.out.contains("COMPLETE") && answer.out.contains("monas"), "{shell}: {}", answer.out);
     }
+    let complete = |words: &[&str]| {
+        let line = [&["--", "monas"], words].concat();
+        let answer = command(&line).env("COMPLETE", "fish").output().expect("the command starts");
+        String::from_utf8(answer.stdout).expect("UTF-8")
+    };
+    assert!(complete(&["model", "tr"]).starts_with("transform"));
+    assert!(complete(&["run", "--real"]).starts_with("--realtime"));
 }
 
 #[test]

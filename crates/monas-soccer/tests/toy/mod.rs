@@ -55,13 +55,14 @@ impl Shared {
     /// A simulation of one robot with the agents of a role of this repository.
     pub(crate) fn play(&self, role: &str) -> Simulation {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config/roles").join(role);
-        let (agents, diagnostics) = monas::config::load(&file, &Registry::linked());
+        let (setup, diagnostics) = monas::config::load(&file, &Registry::linked());
         let errors: Vec<_> = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).collect();
         assert!(errors.is_empty(), "{errors:?}");
         let mut talws = Talws::new();
         let body: Option<Box<dyn Robot>> = Some(Box::new(Body::new(self.clone())));
         let number = self.lock().number;
-        talws.host(HostConfig { name: "robot".into(), team: 1, number, body, agents });
+        let (agents, links) = (setup.agents, setup.links);
+        talws.host(HostConfig { name: "robot".into(), team: 1, number, body, agents, links });
         talws.simulate(1).unwrap()
     }
 

@@ -1,52 +1,78 @@
-//! Agents from a file: Listing 4.17 of the thesis, read with diagnostics.
+//! Agents and links from a file: Listing 4.17 of the thesis, read with diagnostics.
 
 use std::path::Path;
 use std::sync::Arc;
 
+use monas_link::Place;
+use narukom::Narukom;
 use yase::{Diagnostic, Source, Statechart};
 
+use super::links::LinkReader;
 use super::model;
 use super::paths;
-use super::xml::{self, Attributes, Element};
+use super::xml::{self, Attribute, Attributes, Element};
 use crate::activity::Activity;
 use crate::agent::{Agent, Policy};
 use crate::binder::Binder;
 use crate::error::ErrorKind;
 use crate::frequency::{Frequency, Hz};
+use crate::link::LinkConfig;
 use crate::parameters::Parameters;
 use crate::registry::Registry;
 
-/// Reads the agents in a file, and everything that is wrong with it or with a model it names.
+/// What a file says of a host.
+#[derive(Debug, Default)]
+pub struct Setup {
+    /// The agents that run on it.
+    pub agents: Vec<Agent>,
+    /// Its links to other processes and hosts.
+    pub links: Vec<LinkConfig>,
+}
+
+/// Reads the agents and links in a file, and everything that is wrong with it or with a model it names.
 ///
 /// A file whose diagnostics hold no [error](Diagnostic::is_error) can be run.
-pub fn load(path: impl AsRef<Path>, registry: &Registry) -> (Vec<Agent>, Vec<Diagnostic>) {
+pub fn load(path: impl AsRef<Path>, registry: &Registry) -> (Setup, Vec<Diagnostic>) {
     match paths::read(path.as_ref()) {
         Ok(source) => read(&source, path.as_ref(), registry),
-        Err(diagnostic) => (Vec::new(), vec![*diagnostic]),
+        Err(diagnostic) => (Setup::default(), vec![*diagnostic]),
     }
 }
 
 /// As [`load`], of a text that is at hand; models are looked for from where `path` would be.
-pub fn read(source: &Arc<Source>, path: &Path, registry: &Registry) -> (Vec<Agent>, Vec<Diagnostic>) {
+pub fn read(source: &Arc<Source>, path: &Path, registry: &Registry) -> (Setup, Vec<Diagnostic>) {
     let (elements, diagnostics) = xml::parse(source);
-    let mut reader = Reader { path, registry, diagnostics, agents: Vec::new() };
+    let mut reader = Reader { path, registry, diagnostics, setup: Setup::default() };
+    // What runs elsewhere is held against the links, wherever these stand.
+    reader.links(&elements);
     reader.agents(&elements);
-    (reader.agents, reader.diagnostics)
+    (reader.setup, reader.diagnostics)
 }
 
 struct Reader<'a> {
     path: &'a Path,
     registry: &'a Registry,
     diagnostics: Vec<Diagnostic>,
-    agents: Vec<Agent>,
+    setup: Setup,
 }
 
-/// The elements that stand for an agent, or hold some.
-const TOP: [&str; 3] = ["agent", "provider", "agents"];
+/// The elements that stand for an agent or a link, or hold some.
+const TOP: [&str; 4] = ["agent", "provider", "link", "agents"];
 /// The elements within an agent.
 const WITHIN: [&str; 3] = ["name", "activity", "statechart"];
 
 impl Reader<'_> {
+    fn links(&mut self, elements: &[Element]) {
+        for element in elements {
+            if element.is("agents") {
+                self.links(element.children());
+            } else if element.is("link") {
+                let mut reader = LinkReader { path: self.path, diagnostics: &mut self.diagnostics };
+                self.setup.links.extend(reader.link(element));
+            }
+        }
+    }
+
     fn agents(&mut self, elements: &[Element]) {
         for element in elements {
             if element.is("agents") {
@@ -56,7 +82,7 @@ impl Reader<'_> {
                 self.agent(element);
             } else if element.is("provider") {
                 self.provider(element);
-            } else {
+            } else if !element.is("link") {
                 self.diagnostics.push(element.unknown(&TOP));
             }
         }
@@ -177,11 +203,50 @@ impl Reader<'_> {
         element.expect_children(&[], &mut self.diagnostics);
         let mut attributes = Attributes::new(element, &mut self.diagnostics);
         let enabled = attributes.flag("enable").unwrap_or(true);
+        let elsewhere = attributes.get("elsewhere").cloned();
         attributes.finish();
-        match self.chart(element).filter(|_| enabled) {
-            Some(chart) => agent.chart(chart),
-            None => agent,
+        let Some(chart) = self.chart(element).filter(|_| enabled) else { return agent };
+        let named = elsewhere.map(|given| self.elsewhere(element, &given, &chart)).unwrap_or_default();
+        named.into_iter().fold(agent.chart(chart), Agent::elsewhere)
+    }
+
+    /// The activities of a chart that another process runs: each must be one of the chart's, and links must bring what it publishes.
+    fn elsewhere(&mut self, element: &Element, given: &Attribute, chart: &Statechart) -> Vec<String> {
+        let names: Vec<String> = given.value.split_whitespace().map(str::to_owned).collect();
+        let mut known: Vec<&str> = chart.nodes().filter_map(|(_, node)| node.activity.as_deref()).collect();
+        known.sort_unstable();
+        known.dedup();
+        for name in &names {
+            if !known.contains(&name.as_str()) {
+                let message = format!("the chart `{}` has no activity `{name}`", chart.name);
+                let diagnostic = element.error("E0338", given.value_span, message);
+                self.diagnostics.push(diagnostic.with_nearest(name, known.iter().copied()));
+            } else if let Ok(activity) = self.registry.activity(name) {
+                let topics = activity.topics();
+                let published = topics.published_paths().iter();
+                let missing: Vec<&str> = published.copied().filter(|topic| !self.is_brought(topic)).collect();
+                for topic in missing {
+                    let message = format!("`{name}` runs elsewhere, and no link brings its `{topic}`");
+                    let hint = format!("add to a `<link>`: `<receive topics=\"{topic}\" as=\"own\"/>`");
+                    self.diagnostics.push(element.error("E0339", given.value_span, message).with_hint(hint));
+                }
+            }
         }
+        names
+    }
+
+    /// Whether a link brings a topic as the host's own.
+    fn is_brought(&self, topic: &str) -> bool {
+        let rules = self.setup.links.iter().flat_map(|link| &link.settings.receive);
+        let mut own = rules.filter(|rule| rule.place == Place::Own);
+        let hub = Narukom::with_linked_topics("configuration").ok();
+        hub.is_some_and(|hub| {
+            let slot = hub.topic(topic);
+            own.any(|rule| {
+                let brought = hub.matching(&rule.topics).unwrap_or_default();
+                slot.is_some_and(|slot| brought.contains(&slot))
+            })
+        })
     }
 
     /// The model that a statechart names, checked; none, and why, if it cannot be used.
@@ -221,12 +286,12 @@ impl Reader<'_> {
         }
         if enabled {
             self.refuse_namesake(element, &agent.name);
-            self.agents.push(agent);
+            self.setup.agents.push(agent);
         }
     }
 
     fn refuse_namesake(&mut self, element: &Element, name: &str) {
-        if !name.is_empty() && self.agents.iter().any(|agent| agent.name == name) {
+        if !name.is_empty() && self.setup.agents.iter().any(|agent| agent.name == name) {
             let named = element.children_named("name").next().unwrap_or(element);
             let message = format!("another agent is named `{name}`");
             self.diagnostics.push(element.error("E0311", named.text_span(), message));

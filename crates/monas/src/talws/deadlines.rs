@@ -15,8 +15,8 @@ pub(super) struct Deadlines {
 }
 
 impl Deadlines {
-    pub(super) fn new(frequency: Frequency) -> Deadlines {
-        Deadlines { frequency, next: 0, overruns: 0 }
+    pub(super) fn new(frequency: Frequency, begin: Moment) -> Deadlines {
+        Deadlines { frequency, next: frequency.first_due(begin), overruns: 0 }
     }
 
     /// When the next cycle begins.
@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn a_cycle_in_time_leaves_the_grid_alone() {
-        let mut deadlines = Deadlines::new(Hz(100));
+        let mut deadlines = Deadlines::new(Hz(100), at(0));
         assert_eq!(deadlines.next(), at(0));
         assert_eq!(deadlines.ended(at(7)), None);
         assert_eq!(deadlines.next(), at(10));
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn after_an_overrun_the_next_cycle_begins_at_once_and_the_grid_stays() {
-        let mut deadlines = Deadlines::new(Hz(100));
+        let mut deadlines = Deadlines::new(Hz(100), at(0));
         assert_eq!(deadlines.ended(at(13)), Some(Duration::from_millis(3)));
         assert_eq!(deadlines.next(), at(10), "which has come already");
         assert_eq!(deadlines.ended(at(15)), None);
@@ -80,8 +80,15 @@ mod tests {
     }
 
     #[test]
+    fn a_run_that_begins_late_has_missed_nothing() {
+        let mut deadlines = Deadlines::new(Hz(100), at(5005));
+        assert_eq!(deadlines.next(), at(5010));
+        assert_eq!(deadlines.ended(at(5012)), None);
+    }
+
+    #[test]
     fn cycles_that_were_missed_are_not_made_up_for() {
-        let mut deadlines = Deadlines::new(Hz(100));
+        let mut deadlines = Deadlines::new(Hz(100), at(0));
         assert_eq!(deadlines.ended(at(57)), Some(Duration::from_millis(47)));
         assert_eq!(deadlines.next(), at(50));
         assert_eq!(deadlines.ended(at(58)), None);
@@ -90,7 +97,7 @@ mod tests {
 
     #[test]
     fn an_hour_of_overrun_is_left_behind_in_one_step() {
-        let mut deadlines = Deadlines::new(Hz(1_000_000));
+        let mut deadlines = Deadlines::new(Hz(1_000_000), at(0));
         assert!(deadlines.ended(at(3_600_000)).is_some());
         assert_eq!(deadlines.next(), at(3_600_000));
     }

@@ -5,14 +5,18 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 
+use narukom::Narukom;
+
 use super::body::Body;
 use super::chart_thread::ChartThread;
 use super::clock::Clock;
 use super::deadlines::Deadlines;
 use super::handover::Mailbox;
+use super::links::{RunningLink, time_of_other};
 use super::list_thread::ListThread;
+use super::overview::Overview;
 use super::pool::{self, Called, Pool};
-use super::setup::{Environment, Member, Stage, Station, tick};
+use super::setup::{Environment, Member, Stage, Station, first_tick, tick};
 use super::stopper::Stopper;
 use super::{ENDED, Talws};
 use crate::error::{Error, ErrorKind};
@@ -26,6 +30,8 @@ pub struct Running {
     /// The threads of agents, those of one agent next to each other.
     agents: Vec<JoinHandle<AgentStatistics>>,
     others: Vec<JoinHandle<()>>,
+    links: Vec<RunningLink>,
+    hubs: Vec<Narukom>,
 }
 
 /// What stops all that belongs to one agent.
@@ -68,10 +74,12 @@ impl Running {
         let Stage { world, stations } = Stage::new(talws, seed)?;
         let mut running = Running {
             stopper: Stopper::new(),
-            clock: Clock::start(),
+            clock: run_clock(&stations)?,
             mailboxes: Vec::new(),
             agents: Vec::new(),
             others: Vec::new(),
+            links: Vec::new(),
+            hubs: world.iter().map(|world| world.hub().clone()).collect(),
         };
         let mut launched = world.map_or(Ok(()), |world| running.launch_world(world));
         for station in stations {
@@ -83,6 +91,11 @@ impl Running {
     /// What ends the run, from any thread.
     pub fn stopper(&self) -> Stopper {
         self.stopper.clone()
+    }
+
+    /// The run, for those who look on and publish from outside.
+    pub fn overview(&self) -> Overview {
+        Overview::real(self.hubs.clone(), self.clock)
     }
 
     /// Waits until the run is stopped, and tells what agents have done.
@@ -114,7 +127,8 @@ impl Running {
                 tracing::error!("the thread of a body or the world has panicked");
             }
         }
-        Statistics { agents }
+        let links = self.links.drain(..).map(RunningLink::stop).collect();
+        Statistics { agents, links }
     }
 
     fn launch_world(&mut self, mut world: Environment) -> Result<(), Error> {
@@ -132,7 +146,11 @@ impl Running {
     }
 
     fn launch_station(&mut self, station: Station) -> Result<(), Error> {
-        let Station { hub, body, members } = station;
+        let Station { hub, body, members, links } = station;
+        self.hubs.push(hub.clone());
+        let clock = self.clock;
+        let links = links.into_iter().map(|link| RunningLink::start(&hub, link, move || clock.now()));
+        let links = links.collect::<Result<Vec<_>, Error>>()?;
         let rests = Arc::new(AtomicBool::new(false));
         let mailbox = || Arc::new(Mailbox::new(hub.topics().len()));
         let switch = |member: &Member| {
@@ -144,7 +162,12 @@ impl Running {
             switches.iter().flat_map(|s| s.mailboxes.iter().cloned()).collect();
         self.mailboxes.extend(mailboxes.iter().cloned());
         // Before anybody publishes, so that nobody misses anything.
-        hub.set_waker(Arc::new(move |topic| mailboxes.iter().for_each(|mailbox| mailbox.message(topic))));
+        let linked: Vec<_> = links.iter().map(RunningLink::waker).collect();
+        self.links.extend(links);
+        hub.set_waker(Arc::new(move |topic| {
+            mailboxes.iter().for_each(|mailbox| mailbox.message(topic));
+            linked.iter().for_each(|wake| wake(topic));
+        }));
         for (member, switch) in members.into_iter().zip(switches) {
             self.launch_member(member, hub.host(), switch)?;
         }
@@ -167,7 +190,7 @@ impl Running {
                 teller: teller.another()?,
                 switch: switch.clone(),
                 clock: self.clock,
-                ticks: 0,
+                ticks: frequency.map_or(0, |frequency| frequency.first_due(self.clock.begin())),
                 steps: 0,
                 step_time: Average::default(),
                 out: 0,
@@ -179,7 +202,7 @@ impl Running {
                 host: host.into(),
                 agent: name.clone(),
                 list,
-                deadlines: Deadlines::new(frequency),
+                deadlines: Deadlines::new(frequency, self.clock.begin()),
                 statistics_every,
                 teller,
                 switch,
@@ -197,7 +220,7 @@ impl Running {
     fn launch_body(&mut self, mut body: Body, host: &str, rests: Arc<AtomicBool>) -> Result<(), Error> {
         let (stopper, clock, host) = (self.stopper.clone(), self.clock, host.to_owned());
         let thread = spawn(&format!("{host} body"), move || {
-            let mut next = 0;
+            let mut next = first_tick(body.period(), clock.begin());
             while stopper.wait_until(tick(body.period(), next), &clock) {
                 next += 1;
                 let now = clock.now();
@@ -209,6 +232,20 @@ impl Running {
         })?;
         self.others.push(thread);
         Ok(())
+    }
+}
+
+/// The clock of the run: its own, or that of the other end of a link that says so.
+fn run_clock(stations: &[Station]) -> Result<Clock, Error> {
+    let links = stations.iter().flat_map(|station| station.links.iter().map(|link| (&station.hub, link)));
+    let mut followed = links.filter_map(|(hub, link)| Some((hub, link, link.clock.as_deref()?)));
+    match (followed.next(), followed.next()) {
+        (None, _) => Ok(Clock::start()),
+        (Some((hub, link, other)), None) => time_of_other(hub, link, other),
+        (Some((.., one)), Some((.., other))) => {
+            let message = format!("links say that the time is that of `{one}`, and that of `{other}`");
+            Err(Error::new(ErrorKind::Link, message))
+        }
     }
 }
 

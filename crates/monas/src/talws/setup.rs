@@ -7,18 +7,20 @@ use std::time::Duration;
 use narukom::{Blackboard, Moment, Narukom, Observer, Publication};
 
 use super::body::Body;
+use super::links::Brought;
 use super::seeds::component_seed;
 use super::teller::Teller;
 use super::{HostConfig, Talws, World};
 use crate::activity::BoxError;
 use crate::agent::{Agent, Policy};
-use crate::binder::Binder;
+use crate::binder::{Binder, BoundChart};
 use crate::chart::{Home, Runner};
 use crate::error::{Error, ErrorKind};
 use crate::frequency::Frequency;
+use crate::link::{Elsewhere, LinkConfig};
 use crate::list::List;
 use crate::listener::Listeners;
-use crate::reach::out_of_reach;
+use crate::reach::{Reach, out_of_reach};
 use crate::records::{self, HOST};
 use crate::registry::Registry;
 
@@ -33,6 +35,7 @@ pub(super) struct Station {
     pub(super) hub: Narukom,
     pub(super) body: Option<Body>,
     pub(super) members: Vec<Member>,
+    pub(super) links: Vec<LinkConfig>,
 }
 
 /// An agent with its list and its charts, each with its blackboards.
@@ -106,7 +109,7 @@ impl Crew<'_> {
     }
 
     fn station(&self, config: HostConfig) -> Result<Station, Error> {
-        let HostConfig { name, team, number, body, mut agents } = config;
+        let HostConfig { name, team, number, body, mut agents, links } = config;
         agents.sort_by(|a, b| a.name.cmp(&b.name));
         distinct("agents", agents.iter().map(|agent| agent.name.as_str()))
             .map_err(|error| error.with_hint(format!("both are on host `{name}`")))?;
@@ -115,14 +118,31 @@ impl Crew<'_> {
         let body = body.map(|robot| Body::new(robot, &hub)).transpose()?;
         let mut publishers: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
         publishers.extend(body.iter().map(|_| Body::PUBLISHER.to_owned()));
-        let members = agents.into_iter().map(|agent| self.member(agent, &hub, &publishers));
+        let brought = Brought::by(&links, &hub)?;
+        let reach = Reach {
+            hub: &hub,
+            publishers: &publishers,
+            from_others: &brought.others,
+            from_own: &brought.own,
+        };
+        let members = agents.into_iter().map(|agent| self.member(agent, &reach));
         let members = collect_all(members)?;
-        Ok(Station { hub, body, members })
+        Ok(Station { hub, body, members, links })
     }
 
-    fn member(&self, agent: Agent, hub: &Narukom, publishers: &[String]) -> Result<Member, Error> {
+    fn member(&self, agent: Agent, reach: &Reach<'_>) -> Result<Member, Error> {
+        let hub = reach.hub;
         let Agent {
-            name, policy, frequency, activities, charts, semantics, statistics_every, workers, ..
+            name,
+            policy,
+            frequency,
+            activities,
+            charts,
+            semantics,
+            statistics_every,
+            workers,
+            elsewhere,
+            ..
         } = agent;
         if frequency.is_none() && !activities.is_empty() {
             let message = format!("agent `{name}` has activities, but nothing says how often they run");
@@ -130,8 +150,9 @@ impl Crew<'_> {
         }
         let charts = charts.iter().zip(0..).map(|(chart, number)| {
             let home = Home { hub, agent: &name, number, seed: self.seed, listeners: &self.listeners };
-            let bound = self.binder.bind(chart, semantics, None).map_err(Error::invalid)?;
-            match out_of_reach(&bound.chart, hub, publishers) {
+            let mut bound = self.binder.bind(chart, semantics, None).map_err(Error::invalid)?;
+            put_elsewhere(&mut bound, &elsewhere);
+            match out_of_reach(&bound.chart, reach) {
                 wrong if wrong.is_empty() => Runner::new(bound, home),
                 wrong => Err(Error::invalid(wrong)),
             }
@@ -144,6 +165,15 @@ impl Crew<'_> {
         });
         let teller = Teller::new(hub, &name)?;
         Ok(Member { name, policy, frequency, statistics_every, workers, list, charts, teller })
+    }
+}
+
+/// Takes the activities out of a chart that another process runs.
+fn put_elsewhere(bound: &mut BoundChart, names: &[String]) {
+    for (entry, activity) in bound.chart.activities().zip(&mut bound.activities) {
+        if names.iter().any(|name| name == entry.name) {
+            *activity = Box::new(Elsewhere::new(entry.name));
+        }
     }
 }
 
@@ -171,6 +201,12 @@ pub(super) fn tick(period: Duration, number: u64) -> Moment {
     // A period of nothing would never let time pass.
     let nanos = period.as_nanos().max(1).saturating_mul(u128::from(number));
     Moment::from_nanos(u64::try_from(nanos).unwrap_or(u64::MAX))
+}
+
+/// The first tick that is due at a moment or later.
+pub(super) fn first_tick(period: Duration, moment: Moment) -> u64 {
+    let nanos = u64::try_from(period.as_nanos().max(1)).unwrap_or(u64::MAX);
+    moment.as_nanos().div_ceil(nanos)
 }
 
 /// Publishes who the host is and which topics it has.

@@ -7,11 +7,13 @@ use narukom::{Moment, Narukom, TopicSlot};
 use super::body::Body;
 use super::clock::Clock;
 use super::instance::Instance;
+use super::links::RunningLink;
+use super::overview::{Inlet, Overview, ShownMoment};
 use super::setup::{Environment, Stage, Station, tick};
 use super::stopper::Stopper;
 use super::{ENDED, Talws};
 use crate::coverage::ChartCoverage;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::list::Outcome;
 use crate::origin::{self, Origin};
 use crate::statistics::Statistics;
@@ -23,8 +25,12 @@ use crate::statistics::Statistics;
 /// of their names; an agent that a message wakes runs in the same moment, when it is its turn again.
 pub struct Simulation {
     now: Moment,
+    /// The same, for other threads.
+    shown: Arc<ShownMoment>,
     world: Option<Environment>,
     hosts: Vec<Host>,
+    links: Vec<RunningLink>,
+    inlet: Inlet,
 }
 
 /// A host with all that runs on it.
@@ -49,7 +55,11 @@ type News = (TopicSlot, Option<Origin>);
 impl Simulation {
     pub(super) fn new(talws: Talws, seed: u64) -> Result<Simulation, Error> {
         let Stage { world, stations } = Stage::new(talws, seed)?;
-        Ok(Simulation { now: Moment::ZERO, world, hosts: stations.into_iter().map(Host::new).collect() })
+        let shown = Arc::new(ShownMoment::default());
+        let mut links = Vec::new();
+        let hosts = stations.into_iter().map(|station| Host::new(station, &shown, &mut links));
+        let hosts = hosts.collect::<Result<_, Error>>()?;
+        Ok(Simulation { now: Moment::ZERO, shown, world, hosts, links, inlet: Inlet::new() })
     }
 
     /// The moment up to which everything has happened.
@@ -64,12 +74,13 @@ impl Simulation {
     /// The world or a body failed. Agents do not fail: see [`Policy`](crate::Policy).
     pub fn run_until(&mut self, end: Moment) -> Result<(), Error> {
         loop {
+            self.let_in();
             let next = self.due();
             if next >= end {
-                self.now = self.now.max(end);
+                self.pass(self.now.max(end));
                 return Ok(());
             }
-            self.now = next;
+            self.pass(next);
             self.happen(next)?;
         }
     }
@@ -82,11 +93,12 @@ impl Simulation {
     pub fn run_paced(&mut self, end: Moment, stopper: &Stopper) -> Result<(), Error> {
         let (clock, begun) = (Clock::start(), self.now);
         while self.due() < end {
+            self.let_in();
             let next = self.due();
             if !stopper.wait_until(Moment::ZERO + next.since(begun), &clock) {
                 return Ok(());
             }
-            self.now = next;
+            self.pass(next);
             self.happen(next)?;
         }
         self.run_until(end)
@@ -96,7 +108,16 @@ impl Simulation {
     pub fn statistics(&self) -> Statistics {
         let agents =
             self.hosts.iter().flat_map(|host| host.instances.iter().map(|i| i.statistics(host.hub.host())));
-        Statistics { agents: agents.collect() }
+        let links = self.links.iter().map(RunningLink::statistics).collect();
+        Statistics { agents: agents.collect(), links }
+    }
+
+    /// The run, for those who look on and publish from outside. What they publish is published between two moments of the run, as long
+    /// as somebody lets it run.
+    pub fn overview(&self) -> Overview {
+        let world = self.world.iter().map(Environment::hub);
+        let hubs = self.hosts.iter().map(|host| &host.hub).chain(world).cloned();
+        Overview::simulated(hubs.collect(), self.shown.clone(), &self.inlet)
     }
 
     /// The hub of a host or of the world, for those who look on.
@@ -130,6 +151,20 @@ impl Simulation {
         world.chain(self.hosts.iter().map(|host| host.due(self.now))).min().unwrap_or(Moment::MAX)
     }
 
+    /// Time comes to a moment.
+    fn pass(&mut self, now: Moment) {
+        self.now = now;
+        self.shown.set(now);
+    }
+
+    /// Publishes what was handed in from outside since the last moment, and tells agents of it and of what links have brought.
+    fn let_in(&mut self) {
+        let now = self.now;
+        if self.inlet.publish_waiting(now) || !self.links.is_empty() {
+            self.hosts.iter_mut().for_each(|host| host.wake(now));
+        }
+    }
+
     fn happen(&mut self, now: Moment) -> Result<(), Error> {
         if let Some(world) = self.world.as_mut().filter(|world| world.due() <= now) {
             world.advance(now)?;
@@ -159,13 +194,32 @@ impl std::fmt::Debug for Simulation {
 }
 
 impl Host {
-    fn new(station: Station) -> Host {
-        let Station { hub, body, members } = station;
+    fn new(
+        station: Station,
+        shown: &Arc<ShownMoment>,
+        running: &mut Vec<RunningLink>,
+    ) -> Result<Host, Error> {
+        let Station { hub, body, members, links } = station;
         let moved = Arc::new(Moved::default());
+        let mut linked = Vec::new();
+        for link in links {
+            if let Some(other) = &link.clock {
+                let message =
+                    format!("the time of `{}` is simulated, and cannot be that of `{other}`", hub.host());
+                return Err(Error::new(ErrorKind::Link, message));
+            }
+            let shown = shown.clone();
+            let link = RunningLink::start(&hub, link, move || shown.get())?;
+            linked.push(link.waker());
+            running.push(link);
+        }
         let waker = moved.clone();
-        hub.set_waker(Arc::new(move |topic| waker.note(topic)));
+        hub.set_waker(Arc::new(move |topic| {
+            waker.note(topic);
+            linked.iter().for_each(|wake| wake(topic));
+        }));
         let instances = members.into_iter().map(Instance::new).collect();
-        Host { hub, moved, looked_through: Vec::new(), body: body.map(|body| (body, 0)), instances }
+        Ok(Host { hub, moved, looked_through: Vec::new(), body: body.map(|body| (body, 0)), instances })
     }
 
     fn due(&self, now: Moment) -> Moment {

@@ -1,0 +1,116 @@
+//! `monas topic list` and `info`.
+
+use monas_link::control::messages::TopicEntry;
+use prost_reflect::{Cardinality, FieldDescriptor};
+use serde_json::{Value, json};
+
+use super::arguments::RunChoice;
+use super::connect::{self, failure};
+use super::schemas::Schemas;
+use crate::arguments::Format;
+use crate::console::Console;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::run::table;
+
+pub(super) fn list(
+    pattern: Option<&str>,
+    choice: &RunChoice,
+    console: &mut Console<'_>,
+) -> Result<Exit, Failure> {
+    let topics = entries(pattern.unwrap_or_default(), choice)?;
+    match choice.format.value {
+        Format::Json => topics.iter().try_for_each(|topic| writeln!(console.out, "{}", object(topic)))?,
+        Format::Text => {
+            let header = ["host", "topic", "keeps", "message", "by", "count", "at"];
+            writeln!(console.out, "{}", table::of_numbers(header, 5, topics.iter().map(row)))?;
+        }
+    }
+    Ok(Exit::Success)
+}
+
+fn entries(pattern: &str, choice: &RunChoice) -> Result<Vec<TopicEntry>, Failure> {
+    let host = choice.host.as_deref().unwrap_or_default();
+    connect::client(choice)?.topics(host, pattern).map_err(failure(choice.format.value))
+}
+
+fn row(topic: &TopicEntry) -> [String; 7] {
+    let last = topic.last.as_ref();
+    let none = || "-".to_owned();
+    [
+        topic.host.clone(),
+        topic.path.clone(),
+        keeping(topic),
+        topic.r#type.clone(),
+        last.map_or_else(none, |last| last.publisher.clone()),
+        last.map_or_else(none, |last| last.sequence.to_string()),
+        last.map_or_else(none, |last| format!("{:.3} s", seconds(last.published))),
+    ]
+}
+
+fn keeping(topic: &TopicEntry) -> String {
+    match topic.kind.as_str() {
+        "data" => format!("data {}", topic.depth),
+        kind => kind.to_owned(),
+    }
+}
+
+fn object(topic: &TopicEntry) -> Value {
+    let last = topic.last.as_ref().map(|last| {
+        json!({"publisher": last.publisher, "sequence": last.sequence, "seconds": seconds(last.published)})
+    });
+    json!({"host": topic.host, "topic": topic.path, "keeps": topic.kind, "depth": topic.depth, "type": topic.r#type,
+        "last": last, "from": topic.from})
+}
+
+pub(super) fn seconds(nanos: u64) -> f64 {
+    nanos as f64 / 1e9
+}
+
+pub(super) fn info(topic: &str, choice: &RunChoice, console: &mut Console<'_>) -> Result<Exit, Failure> {
+    let format = choice.format.value;
+    let entries = entries(topic, choice)?;
+    let mut schemas = Schemas::new(connect::socket(choice)?, format);
+    let message = schemas.of(topic)?;
+    if format == Format::Json {
+        let fields: Vec<Value> = message.fields().map(|field| field_object(&field)).collect();
+        for entry in &entries {
+            let mut object = object(entry);
+            object["fields"] = fields.clone().into();
+            writeln!(console.out, "{object}")?;
+        }
+        return Ok(Exit::Success);
+    }
+    for entry in &entries {
+        writeln!(console.out, "{} on {}: {} of {}", entry.path, entry.host, keeping(entry), entry.r#type)?;
+        match &entry.last {
+            Some(last) => writeln!(
+                console.out,
+                "  last by {} at {:.3} s, its number {}",
+                last.publisher,
+                seconds(last.published),
+                last.sequence
+            )?,
+            None => writeln!(console.out, "  nobody has published on it")?,
+        }
+        if !entry.from.is_empty() {
+            writeln!(console.out, "  from other hosts: {}", entry.from.join(", "))?;
+        }
+    }
+    for field in message.fields() {
+        writeln!(console.out, "  {} {}", type_name(&field), field.name())?;
+    }
+    Ok(Exit::Success)
+}
+
+fn field_object(field: &FieldDescriptor) -> Value {
+    json!({"name": field.name(), "type": type_name(field), "number": field.number()})
+}
+
+/// As a `.proto` file writes it.
+fn type_name(field: &FieldDescriptor) -> String {
+    match field.cardinality() {
+        Cardinality::Repeated => format!("repeated {:?}", field.kind()),
+        _ => format!("{:?}", field.kind()),
+    }
+}

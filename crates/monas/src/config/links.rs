@@ -1,0 +1,315 @@
+//! Links from a file: which topics cross to other processes and hosts, and on which way.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use monas_link::{AccessList, Bridge, Budget, LinkSettings, Place, ReceiveRule, Reliability, SendRule};
+use narukom::Narukom;
+use yase::{Diagnostic, Span};
+
+use super::paths;
+use super::xml::{self, Attributes, Element};
+use crate::link::{Certificates, Endpoints, LinkConfig, LinkTransport};
+
+/// The elements within a link.
+const WITHIN: [&str; 6] = ["send", "receive", "budget", "connect", "listen", "certificates"];
+/// Those of them, and those attributes, that mean something for zenoh only.
+const OF_ZENOH: [&str; 3] = ["connect", "listen", "certificates"];
+
+/// What may be sent by rules of games: how many packets by a whole team in a game, how long the game is, s, and how many bytes each has.
+///
+/// The figures of the Standard Platform League: 1200 packets of 128 bytes a team, in two halves of ten minutes.
+const PROFILES: [(&str, (u32, u64, usize)); 1] = [("spl", (1200, 1200, 128))];
+
+/// What is read of a link before it is known on which way it goes.
+#[derive(Default)]
+struct Draft {
+    settings: LinkSettings,
+    folder: Option<PathBuf>,
+    endpoints: Endpoints,
+}
+
+/// Reads links.
+pub(super) struct LinkReader<'a> {
+    pub(super) path: &'a Path,
+    pub(super) diagnostics: &'a mut Vec<Diagnostic>,
+}
+
+impl LinkReader<'_> {
+    /// A link, if nothing is wrong with it, and whether it is wanted.
+    pub(super) fn link(&mut self, element: &Element) -> Option<LinkConfig> {
+        let errors = self.errors();
+        element.expect_children(&WITHIN, self.diagnostics);
+        let mut attributes = Attributes::new(element, self.diagnostics);
+        let enabled = attributes.flag("enable").unwrap_or(true);
+        let way = attributes.one_of("transport", &[("local", false), ("zenoh", true)]).unwrap_or(false);
+        let plain = |text: &str| is_plain(text).then(|| text.to_owned());
+        let mut draft = Draft::default();
+        let expected = "a name of letters, digits, `_` and `-`";
+        draft.settings.name = attributes.read("name", expected, plain).unwrap_or_default();
+        draft.settings.guests = attributes.flag("guests").unwrap_or(false);
+        if let Some(beat) = attributes.read("beat", "a time of at least `1ms`, such as `200ms`", beat) {
+            draft.settings.beat = beat;
+        }
+        let clock = attributes.read("clock", "the name of the link's other end", plain);
+        draft.folder = attributes.text("folder").map(PathBuf::from);
+        draft.endpoints.realm = attributes.read("realm", expected, plain);
+        draft.endpoints.scouting = attributes.flag("scouting").unwrap_or(false);
+        draft.endpoints.shared_memory = attributes.flag("shared_memory").unwrap_or(true);
+        let access = attributes.get("access").map(|given| (given.value.clone(), given.value_span));
+        attributes.finish();
+        self.misplaced(element, way);
+        if let Some((named, span)) = access {
+            draft.settings.access = self.access(element, &named, span).unwrap_or_default();
+        }
+        self.content(element, &mut draft);
+        self.contradictions(element, &draft.settings, errors);
+        let transport = match way {
+            true => self.zenoh(element, draft.endpoints),
+            false => LinkTransport::Local { folder: draft.folder },
+        };
+        (enabled && self.errors() == errors).then_some(LinkConfig {
+            settings: draft.settings,
+            transport,
+            clock,
+        })
+    }
+
+    fn errors(&self) -> usize {
+        self.diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count()
+    }
+
+    fn content(&mut self, element: &Element, draft: &mut Draft) {
+        for child in element.children() {
+            child.expect_children(&[], self.diagnostics);
+            if child.is("send") {
+                draft.settings.send.extend(self.send(child));
+            } else if child.is("receive") {
+                draft.settings.receive.extend(self.receive(child));
+            } else if child.is("budget") {
+                draft.settings.budget = self.budget(child);
+            } else if child.is("connect") {
+                draft.endpoints.connect.extend(self.endpoint(child, false));
+            } else if child.is("listen") {
+                draft.endpoints.listen.extend(self.endpoint(child, true));
+            } else if child.is("certificates") {
+                draft.endpoints.certificates = self.certificates(child);
+            }
+        }
+        if draft.settings.send.is_empty() && draft.settings.receive.is_empty() {
+            let message = "the link neither sends nor receives anything";
+            let hint =
+                "say what crosses it: `<send topics=\"soccer/*\"/>`, `<receive topics=\"soccer/ball\"/>`";
+            self.diagnostics.push(element.error("E0330", element.name_span(), message).with_hint(hint));
+        }
+    }
+
+    fn send(&mut self, element: &Element) -> Option<SendRule> {
+        let mut attributes = Attributes::new(element, self.diagnostics);
+        let words = [("reliable", Reliability::Reliable), ("best_effort", Reliability::BestEffort)];
+        let reliability = attributes.one_of("reliability", &words).unwrap_or_default();
+        let fits = |text: &str| text.parse().ok().filter(|number: &u8| (1..=7).contains(number));
+        let expected = "a number from 1, sent first, to 7, sent last";
+        let priority = attributes.read("priority", expected, fits).unwrap_or(4);
+        let topics = attributes.required("topics").map(str::to_owned);
+        attributes.finish();
+        Some(SendRule { topics: self.pattern(element, topics?)?, reliability, priority })
+    }
+
+    fn receive(&mut self, element: &Element) -> Option<ReceiveRule> {
+        let mut attributes = Attributes::new(element, self.diagnostics);
+        let place =
+            attributes.one_of("as", &[("other", Place::Other), ("own", Place::Own)]).unwrap_or_default();
+        let topics = attributes.required("topics").map(str::to_owned);
+        attributes.finish();
+        Some(ReceiveRule { topics: self.pattern(element, topics?)?, place })
+    }
+
+    /// A pattern that fits a topic of the program.
+    fn pattern(&mut self, element: &Element, topics: String) -> Option<String> {
+        let hub = self.hub(element)?;
+        match hub.matching(&topics) {
+            Ok(_) => Some(topics),
+            Err(error) => {
+                let given = element.attributes().iter().find(|given| xml::is_written(&given.name, "topics"));
+                let span = given.map_or(element.name_span(), |given| given.value_span);
+                self.diagnostics.push(element.error("E0331", span, error.to_string()));
+                None
+            }
+        }
+    }
+
+    /// A hub with the topics of the program, to look them up.
+    fn hub(&mut self, element: &Element) -> Option<Narukom> {
+        let hub = Narukom::with_linked_topics("configuration");
+        hub.map_err(|error| {
+            self.diagnostics.push(element.error("E0331", element.name_span(), error.to_string()))
+        })
+        .ok()
+    }
+
+    fn budget(&mut self, element: &Element) -> Option<Budget> {
+        let mut attributes = Attributes::new(element, self.diagnostics);
+        let profile = attributes.one_of("profile", &PROFILES);
+        let robots = attributes
+            .read("robots", "a whole number from 1", |text| text.parse::<u32>().ok().filter(|n| *n > 0));
+        let packets = attributes
+            .read("packets", "a whole number from 1", |text| text.parse().ok().filter(|n: &u32| *n > 0));
+        let window = attributes.duration("window");
+        let payload = attributes.read("payload", "a whole number of bytes from 1", |text| {
+            text.parse().ok().filter(|bytes: &usize| *bytes > 0)
+        });
+        attributes.finish();
+        match (profile, packets, window, payload) {
+            (Some((packets, seconds, payload)), None, None, None) => Some(Budget {
+                packets: (packets / robots.unwrap_or(1)).max(1),
+                window: Duration::from_secs(seconds),
+                payload,
+            }),
+            (None, Some(packets), Some(window), Some(payload)) if robots.is_none() => {
+                Some(Budget { packets, window, payload })
+            }
+            _ => {
+                let message = "a budget is a profile, or `packets`, `window` and `payload`";
+                let hint = "`<budget profile=\"spl\" robots=\"5\"/>`, or `<budget packets=\"240\" window=\"20min\" payload=\"128\"/>`";
+                self.diagnostics.push(element.error("E0332", element.name_span(), message).with_hint(hint));
+                None
+            }
+        }
+    }
+
+    /// An endpoint; a port alone is one of this computer.
+    fn endpoint(&mut self, element: &Element, listens: bool) -> Option<String> {
+        Attributes::new(element, self.diagnostics).finish();
+        let text = element.text();
+        if listens && text.parse::<u16>().is_ok() {
+            return Some(format!("tcp/127.0.0.1:{text}"));
+        }
+        if is_endpoint(text) {
+            return Some(text.to_owned());
+        }
+        let message = format!("`{text}` is no endpoint");
+        let hint = match listens {
+            true => {
+                "`tcp/127.0.0.1:7447` or `tls/0.0.0.0:7447`; a port alone, such as `7447`, is for this computer only"
+            }
+            false => "`tcp/192.168.1.20:7447` or `tls/robot_2:7447`",
+        };
+        self.diagnostics.push(element.error("E0333", element.text_span(), message).with_hint(hint));
+        None
+    }
+
+    fn certificates(&mut self, element: &Element) -> Option<Certificates> {
+        let mut attributes = Attributes::new(element, self.diagnostics);
+        let named = ["authority", "certificate", "key"].map(|key| {
+            let text = attributes.required(key)?.to_owned();
+            attributes.get(key).map(|given| (text, given.value_span))
+        });
+        attributes.finish();
+        let [authority, certificate, key] =
+            named.map(|named| named.and_then(|(text, span)| self.file(element, &text, span)));
+        Some(Certificates { authority: authority?, certificate: certificate?, key: key? })
+    }
+
+    /// A file that is named; it must be there.
+    fn file(&mut self, element: &Element, named: &str, span: Span) -> Option<PathBuf> {
+        match paths::locate(self.path, named) {
+            Ok(found) => Some(found),
+            Err(hint) => {
+                let diagnostic = element.error("E0316", span, format!("no file `{named}`"));
+                self.diagnostics.push(match hint {
+                    Some(hint) => diagnostic.with_hint(format!("did you mean `{hint}`?")),
+                    None => diagnostic,
+                });
+                None
+            }
+        }
+    }
+
+    fn access(&mut self, element: &Element, named: &str, span: Span) -> Option<AccessList> {
+        let found = self.file(element, named, span)?;
+        let source = paths::read(&found).map_err(|unread| self.diagnostics.push(*unread)).ok()?;
+        let (list, errors) = AccessList::parse(&source.text);
+        for error in errors {
+            let line = line_span(&source.text, error.line);
+            let message = format!("access: {}", error.message);
+            self.diagnostics.push(Diagnostic::error("E0334", line, message).in_source(&source));
+        }
+        Some(list)
+    }
+
+    /// What the link's way gives no meaning to.
+    fn misplaced(&mut self, element: &Element, zenoh: bool) {
+        let keys: &[&str] = if zenoh { &["folder"] } else { &["realm", "scouting", "shared_memory"] };
+        let way = if zenoh { "zenoh" } else { "local" };
+        for given in element.attributes() {
+            if keys.iter().any(|key| xml::is_written(&given.name, key)) {
+                let message = format!("`{}` means nothing where the transport is `{way}`", given.name);
+                self.diagnostics.push(element.error("E0335", given.name_span, message));
+            }
+        }
+        for child in element.children().iter().filter(|_| !zenoh) {
+            if OF_ZENOH.iter().any(|name| child.is(name)) {
+                let message = format!("`<{}>` means nothing where the transport is `local`", child.name());
+                let hint = "other computers are reached with `transport=\"zenoh\"`";
+                self.diagnostics.push(element.error("E0335", child.name_span(), message).with_hint(hint));
+            }
+        }
+    }
+
+    /// What the link itself finds wrong, when each of its settings is in order.
+    fn contradictions(&mut self, element: &Element, settings: &LinkSettings, errors: usize) {
+        if self.errors() > errors {
+            return;
+        }
+        let Some(hub) = self.hub(element) else { return };
+        if let Err(error) = Bridge::new(&hub, settings.clone(), 0) {
+            self.diagnostics.push(element.error("E0336", element.name_span(), error.to_string()));
+        }
+    }
+
+    fn zenoh(&mut self, element: &Element, endpoints: Endpoints) -> LinkTransport {
+        let given = element.attributes().iter().find(|given| xml::is_written(&given.name, "transport"));
+        let span = given.map_or(element.name_span(), |given| given.value_span);
+        let message = "the transport `zenoh` is not in this program";
+        let hint = "between processes of one computer there is `transport=\"local\"`";
+        self.diagnostics.push(element.error("E0337", span, message).with_hint(hint));
+        if endpoints.listen.is_empty() && endpoints.connect.is_empty() && !endpoints.scouting {
+            let message = "the link neither listens nor connects, and does not look for others";
+            let hint =
+                "add `<listen>7447</listen>`, `<connect>tcp/192.168.1.20:7447</connect>` or `scouting=\"1\"`";
+            self.diagnostics.push(element.error("E0333", element.name_span(), message).with_hint(hint));
+        }
+        let secured = |endpoint: &String| endpoint.starts_with("tls/");
+        let is_secured = endpoints.listen.iter().chain(&endpoints.connect).any(secured);
+        if is_secured && endpoints.certificates.is_none() {
+            let message = "an endpoint begins with `tls/`, and the link has no certificates";
+            let hint =
+                "`<certificates authority=\"team.pem\" certificate=\"robot_1.pem\" key=\"robot_1.key\"/>`";
+            self.diagnostics.push(element.error("E0333", element.name_span(), message).with_hint(hint));
+        }
+        LinkTransport::Zenoh(endpoints)
+    }
+}
+
+fn is_plain(text: &str) -> bool {
+    !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+}
+
+fn beat(text: &str) -> Option<Duration> {
+    xml::duration(text).filter(|beat| *beat >= Duration::from_millis(1))
+}
+
+/// `tcp/HOST:PORT`, with other protocols that zenoh knows.
+fn is_endpoint(text: &str) -> bool {
+    let Some((protocol, address)) = text.split_once('/') else { return false };
+    let Some((host, port)) = address.rsplit_once(':') else { return false };
+    ["tcp", "tls", "udp", "quic"].contains(&protocol) && !host.is_empty() && port.parse::<u16>().is_ok()
+}
+
+/// Where a line stands, counted from 1.
+fn line_span(text: &str, line: usize) -> Span {
+    let before: usize = text.split_inclusive('\n').take(line - 1).map(str::len).sum();
+    let length = text[before..].lines().next().unwrap_or_default().len();
+    Span::new(before, before + length)
+}
