@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use kit::{BALL, Ball, NEWS, Recorder, at, recorder};
 use monas::{Activity, Agent, Blackboard, BoxError, Hz, Progress, Registry, Talws};
-use yase::{Source, Statechart};
+use yase::{Semantics, Source, Statechart};
 
 fn chart(text: &str) -> Statechart {
     let (chart, diagnostics) = aseme::statechart_of(&Source::new("m.srm", text));
@@ -101,4 +101,25 @@ fn a_message_that_arrives_during_a_call_begins_the_next_one_at_its_end() {
     let talws = Talws::new().registry(registry).agent(agent).agent(reporter());
     talws.simulate(1).unwrap().run_until(at(240)).unwrap();
     assert_eq!(calls.taken(), [(at(0), Some(1.0)), (at(50), Some(2.0)), (at(200), Some(2.0))]);
+}
+
+#[test]
+fn where_leaving_a_state_interrupts_its_activity_the_chart_does_not_wait_and_a_late_return_is_of_no_interest()
+{
+    // Entering the chart enters A, which locks the region before anything is delivered. It would return at 50 ms. B, at 20 ms, sees the second ball on another blackboard, and never what A has written.
+    let text =
+        format!("Liveness:\nm = A . B . C\nTransitions:\nA -> B : news\nB -> C : [ball.x == 9]\n{SLOW}");
+    let text = format!("{text}\nB : duration = 100ms");
+    let under = |semantics: Semantics| told(|agent| agent.semantics(semantics), &text);
+    assert_eq!(under(Semantics::uml()), ["A 0 ball 0", "B 20 ball 2", "C 120 ball 9"]);
+    // Here a transition without a trigger does not wait for its state to be complete, so C is left before its activity begins.
+    assert_eq!(under(Semantics::scxml()), ["A 0 ball 0", "B 20 ball 2"]);
+}
+
+#[test]
+fn a_state_that_is_active_again_waits_for_the_late_return_of_its_activity() {
+    // The news leave A and enter it again while its first call goes on. There is one instance, so the second call follows the first.
+    let text = format!("Liveness:\nm = A~\nTransitions:\nA -> A : news\n{SLOW}");
+    let words = told(|agent| agent.semantics(Semantics::uml()), &text);
+    assert_eq!(words, ["A 0 ball 0", "A 20 ball 2"]);
 }
