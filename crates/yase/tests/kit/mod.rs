@@ -8,5 +8,5 @@ pub mod script;
 pub mod world;
 
 pub use chart::chart;
-pub use script::{Interpreter, Script, play};
+pub use script::{ByMicroSteps, Interpreter, Script, play};
 pub use world::World;

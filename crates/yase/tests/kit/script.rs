@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use yase::{Activation, Chart, Machine, Moment, Outcome, RegionId, Semantics, Statechart, TopicId};
+use yase::{
+    Activation, Chart, Machine, MicroStep, Moment, Outcome, RegionId, Semantics, Statechart, TopicId,
+};
 
 use super::world::{TOPICS, World, vocabulary};
 
@@ -57,6 +59,53 @@ impl Interpreter for Machine {
 
     fn regions(&self) -> usize {
         self.chart().regions().len()
+    }
+}
+
+/// A machine that is stepped one micro-step at a time. So it never goes the short way, and each step must come to the same as a whole one.
+pub struct ByMicroSteps(pub Machine);
+
+impl Interpreter for ByMicroSteps {
+    fn start(&mut self, now: Moment, world: &mut World) {
+        self.0.start(now, world);
+    }
+
+    fn event(&mut self, name: &str) {
+        self.0.dispatch_name(name);
+    }
+
+    fn message(&mut self, topic: TopicId) {
+        self.0.message_arrived(topic, 1);
+    }
+
+    fn returned(&mut self, activation: Activation, outcome: Outcome) -> bool {
+        self.0.activity_returned(activation, outcome)
+    }
+
+    fn resumed(&mut self, activation: Activation) -> bool {
+        self.0.activity_resumed(activation)
+    }
+
+    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+        loop {
+            match self.0.micro_step(now, world) {
+                Ok(MicroStep::Made) => {}
+                Ok(MicroStep::AtRest(_)) => return Ok(()),
+                Err(error) => return Err(error.to_string()),
+            }
+        }
+    }
+
+    fn needs_step(&self, now: Moment) -> bool {
+        self.0.needs_step(now)
+    }
+
+    fn next_deadline(&self) -> Option<Moment> {
+        self.0.next_deadline()
+    }
+
+    fn regions(&self) -> usize {
+        self.0.chart().regions().len()
     }
 }
 
@@ -116,8 +165,12 @@ pub fn play_with(chart: &Statechart, script: &str, semantics: Semantics) -> Vec<
     let (mut world, script) = (World::new(chart), Script::parse(script));
     let chart = compile_with(chart, semantics);
     let mut machine = Machine::new(chart.clone());
-    let silent = World { silent: true, ..world.clone() };
+    let (silent, mut again) = (World { silent: true, ..world.clone() }, world.clone());
     run(&mut machine, &script, &mut world);
+    let mut by_micro_steps = ByMicroSteps(Machine::new(chart.clone()));
+    run(&mut by_micro_steps, &script, &mut again);
+    assert_eq!(world.log, again.log, "one micro-step at a time");
+    assert_eq!(machine.configuration(), by_micro_steps.0.configuration());
     assert_silent_alike(&machine, &world, silent, chart, &script);
     world.log
 }

@@ -1,6 +1,6 @@
 //! R7, R12, R15: JOINs that take composites, and what their sources may still do.
 
-use yase::{ActiveAncestor, Eventless, Semantics};
+use yase::{ActiveAncestor, Eventless, Joining, Semantics};
 
 use crate::{check_with, with};
 
@@ -233,6 +233,48 @@ fn r10_what_begins_at_a_state_that_another_has_left_does_not_fire_though_it_was_
         0.000 s -: both/one/START -> both/one/A; exit both/one/START; enter both/one/A
         0.001 s e: both/one/A -> both/r; exit both/one/A, both/one, both/r, both; enter both, both/one, both/one/START, both/r
         0.001 s -: both/one/START -> both/one/A; exit both/one/START; enter both/one/A
+        ",
+    );
+}
+
+#[test]
+fn r12_what_has_arrived_at_a_join_and_is_then_left_arrives_again() {
+    // `two` has arrived and is vacated; `both -> D` leaves and enters it with all that is in it, but not `both`
+    check_with(
+        with(|it| it.join = Joining::Each),
+        "
+        START
+        & both
+          one
+            START
+            A
+          & two
+            p
+              START
+              END
+            q
+              START
+              D
+        > j
+        E
+        c/START -> both
+        one/START -> A
+        p/START -> p/END
+        q/START -> D
+        A -> j : [false]
+        p -> j
+        both -> D {internal} : f
+        j -> E
+        ",
+        "1 f; 2",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> both; exit START; enter both, both/one, both/one/START, both/two, both/two/p, both/two/p/START, both/two/q, both/two/q/START
+        0.000 s -: both/one/START -> both/one/A, both/two/p/START -> both/two/p/END, both/two/q/START -> both/two/q/D; exit both/one/START, both/two/p/START, both/two/q/START; enter both/one/A, both/two/p/END, both/two/q/D
+        0.000 s -: both/two/p -> j; exit both/two/p/END, both/two/p, both/two/q/D, both/two/q
+        0.001 s f: both -> both/two/q/D; exit both/one/A, both/one, both/two; enter both/one, both/one/START, both/two, both/two/p, both/two/p/START, both/two/q, both/two/q/D
+        0.001 s -: both/one/START -> both/one/A, both/two/p/START -> both/two/p/END; exit both/one/START, both/two/p/START; enter both/one/A, both/two/p/END
+        0.001 s -: both/two/p -> j; exit both/two/p/END, both/two/p, both/two/q/D, both/two/q
         ",
     );
 }
