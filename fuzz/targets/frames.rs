@@ -1,7 +1,7 @@
 //! Packets of a link: any bytes, and what two honest links say to each other with some bytes changed, doubled or left out.
 #![no_main]
 
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 use std::time::Duration;
 
 use libfuzzer_sys::fuzz_target;
@@ -46,16 +46,16 @@ fn packet(edit: &[u8]) -> Packet {
     let said = &SAID[usize::from(edit.get(1).copied().unwrap_or(0)) % SAID.len()];
     let mut packet = said.clone();
     match edit {
-        [_, _, 255, rest @ ..] => packet.payload = rest.into(),
+        [_, _, 255, rest @ ..] => packet.payload = rest.to_vec().into(),
         [_, _, 254, rest @ ..] => packet.stamp = rest.into(),
         [_, _, rest @ ..] => {
             for pair in rest.chunks_exact(2) {
-                let part = if pair[0] & 1 == 0 { &mut packet.stamp } else { &mut packet.payload };
-                let mut bytes = part.to_vec();
-                if let Some(byte) = bytes.get_mut(usize::from(pair[0] / 2)) {
+                let mut parts = [packet.stamp.to_vec(), packet.payload.to_vec()];
+                if let Some(byte) = parts[usize::from(pair[0] & 1)].get_mut(usize::from(pair[0] / 2)) {
                     *byte = pair[1];
                 }
-                *part = Arc::from(bytes);
+                let [stamp, payload] = parts;
+                (packet.stamp, packet.payload) = (stamp.into(), payload.into());
             }
         }
         _ => {}

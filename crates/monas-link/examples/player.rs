@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! player robot local FOLDER          player coach local FOLDER
+//! player robot listen tcp/127.0.0.1:7447      player coach connect tcp/127.0.0.1:7447      (with --features zenoh)
 //! ```
 //!
 //! It ends when its standard input does, and then prints what was counted.
@@ -28,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let [role, way, place] = words[..] else {
-        return Err("usage: player robot|coach local FOLDER".into());
+        return Err("usage: player robot|coach local|listen|connect PLACE".into());
     };
     let is_robot = match role {
         "robot" => true,
@@ -130,6 +131,13 @@ fn transport(
         "local" => {
             let local = monas_link::Local::new(Path::new(place), bridge.node().host(), inbox)?;
             Ok(Box::new(local))
+        }
+        #[cfg(feature = "zenoh")]
+        "listen" | "connect" => {
+            let mut settings = monas_link::ZenohSettings::default();
+            let endpoints = if way == "listen" { &mut settings.listen } else { &mut settings.connect };
+            endpoints.push(place.to_owned());
+            Ok(Box::new(monas_link::Zenoh::open(&settings, bridge.node(), inbox)?))
         }
         _ => Err(monas_link::Error::unknown_transport(way)),
     }

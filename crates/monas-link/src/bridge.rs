@@ -6,7 +6,7 @@ use std::sync::Arc;
 use narukom::{AnyPublisher, Arrival, Moment, Narukom, Receiver, Tap};
 
 use crate::error::{Error, ErrorKind};
-use crate::protocol::{Delivery, Node, Packet, Publication};
+use crate::protocol::{Delivery, MessageBytes, Node, Packet, Publication};
 use crate::settings::{LinkSettings, Place, Plan};
 
 /// So many publishers of other hosts are told apart; messages of more are refused.
@@ -42,6 +42,11 @@ impl Bridge {
         &self.node
     }
 
+    /// Lets no message out that is longer, with its stamp, than what the transport carries.
+    pub fn set_largest(&mut self, bytes: usize) {
+        self.node.set_largest(bytes);
+    }
+
     /// Takes a packet that has come.
     pub fn handle(&mut self, packet: &Packet, now: Moment) {
         self.node.handle(packet, now);
@@ -75,7 +80,7 @@ impl Bridge {
                         publisher: &publisher,
                         sequence: encoded.header.sequence,
                         published: encoded.header.published,
-                        payload: encoded.bytes().into(),
+                        payload: MessageBytes::copy_from_slice(encoded.bytes()),
                     },
                 );
             }

@@ -1,6 +1,8 @@
 //! Where transports put what has come, until the link's thread takes it.
 
 use std::collections::VecDeque;
+#[cfg(test)]
+use std::sync::Arc;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -24,6 +26,7 @@ struct Content {
     packets: VecDeque<Packet>,
     bytes: usize,
     dropped: u64,
+    shared: u64,
     is_awake: bool,
 }
 
@@ -35,18 +38,22 @@ impl Inbox {
             content.dropped += 1;
             return;
         }
-        content.bytes += packet.stamp.len() + packet.payload.len();
+        content.bytes += size(&packet);
         content.packets.push_back(packet);
-        drop(content);
-        self.wake();
+        self.wake_with(content);
     }
 
     /// The next packet.
     pub fn take(&self) -> Option<Packet> {
         let mut content = self.content();
         let packet = content.packets.pop_front()?;
-        content.bytes -= packet.stamp.len() + packet.payload.len();
+        content.bytes -= size(&packet);
         Some(packet)
+    }
+
+    /// Whether nothing waits.
+    pub fn is_empty(&self) -> bool {
+        self.content().packets.is_empty()
     }
 
     /// How many packets did not fit.
@@ -54,9 +61,22 @@ impl Inbox {
         self.content().dropped
     }
 
+    /// Counts a packet that lay in memory shared with its sender.
+    pub fn count_shared(&self) {
+        self.content().shared += 1;
+    }
+
+    /// How many packets lay in memory shared with their senders.
+    pub fn shared(&self) -> u64 {
+        self.content().shared
+    }
+
     /// Wakes whoever waits, or will wait next.
     pub fn wake(&self) {
-        let mut content = self.content();
+        self.wake_with(self.content());
+    }
+
+    fn wake_with(&self, mut content: MutexGuard<'_, Content>) {
         let was_awake = std::mem::replace(&mut content.is_awake, true);
         drop(content);
         if !was_awake {
@@ -76,5 +96,35 @@ impl Inbox {
 
     fn content(&self) -> MutexGuard<'_, Content> {
         self.content.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Names count too: who sends them has chosen how long they are.
+fn size(packet: &Packet) -> usize {
+    let names = [Some(&packet.from), packet.to.as_ref(), packet.path.as_ref()];
+    let names: usize = names.into_iter().flatten().map(|name| name.len()).sum();
+    names + packet.stamp.len() + packet.payload.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn packet(from: &str, payload: usize) -> Packet {
+        let (stamp, payload) = (Arc::default(), vec![0; payload].into());
+        Packet { from: from.into(), to: None, path: None, stamp, payload, priority: 4, is_reliable: true }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_dropped_and_counted() {
+        let inbox = Inbox::default();
+        (0..PACKETS + 10).for_each(|_| inbox.put(packet("a", 0)));
+        assert_eq!(inbox.dropped(), 10);
+        assert_eq!(std::iter::from_fn(|| inbox.take()).count(), PACKETS);
+        assert!(inbox.is_empty());
+        for _ in 0..6 {
+            inbox.put(packet(&"x".repeat(BYTES / 8), BYTES / 8));
+        }
+        assert_eq!(inbox.dropped(), 11, "names count as much as what they bring");
     }
 }

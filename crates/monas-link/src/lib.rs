@@ -9,7 +9,9 @@
 //! and what time it is, and says what packets are to be sent. It knows no sockets, threads or clocks, so all that it promises is
 //! tested in simulated time, on a network that loses, delays, doubles, overtakes and falls apart.
 //!
-//! A *transport* ([`Transport`]) carries packets and may lose them: sockets of one computer (feature `local`). Between the two, a [`Bridge`] takes messages from a hub and brings them in, and a [`Link`] is the thread that drives it.
+//! A *transport* ([`Transport`]) carries packets and may lose them: sockets of one computer (feature `local`), or sessions of zenoh
+//! between computers (feature `zenoh`). Between the two, a [`Bridge`] takes messages from a hub and brings them in, and a [`Link`] is
+//! the thread that drives it.
 //!
 //! # The protocol
 //!
@@ -30,8 +32,9 @@
 //!   counted. A late reader begins with the last value of a state, and with what is said from then on of all else.
 //! - On a topic that is sent with the best effort a message that comes is delivered at once, unless a newer one was before.
 //! - States are equal on all sides within two beats and two ways there and back after the network is whole, if nothing more is lost;
-//!   with a budget, within four beats, since then nothing is said out of turn.
-//! - In no window does a link with a budget send more packets than it allows, and none is larger. Controls count like messages.
+//!   with a budget, within four beats and two ways, since then nothing is said out of turn, if what there is to say fits into it.
+//! - In no window does a link with a budget send more packets than it allows, and none is larger. Controls count like messages. A link
+//!   does not know what it has sent before it was started, so it is silent for the first window.
 //! - Nothing grows without bound. Of each topic that is sent as many messages are kept as it is deep and at most 8 MiB besides the last; of
 //!   each that is received at most 1024 messages and 4 MiB wait for earlier ones, and 64 MiB in all; 64 other hosts are remembered,
 //!   with at most 1024 topics each.
@@ -99,7 +102,8 @@ pub use inbox::Inbox;
 pub use link::{Link, Report, Transport};
 pub use protocol::{
     AccessError, AccessList, Budget, ClockOffset, Counters, Delivery, LinkTopic, MessageBytes, Mismatch,
-    Node, NodeSettings, Packet, Publication, Received, Reliability, Schema, Sent, VERSION, differences,
+    Node, NodeSettings, Packet, Publication, Received, Reliability, Schema, Sent, Spent, VERSION,
+    differences,
 };
 pub use settings::{LinkSettings, Place, ReceiveRule, SendRule};
 pub use transport::*;

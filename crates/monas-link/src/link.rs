@@ -13,11 +13,14 @@ use narukom::{Moment, Narukom, Waker};
 use crate::bridge::Bridge;
 use crate::error::{Error, ErrorKind};
 use crate::inbox::Inbox;
-use crate::protocol::{ClockOffset, Counters, Mismatch, Packet};
+use crate::protocol::{ClockOffset, Counters, Mismatch, Packet, Spent};
 use crate::settings::LinkSettings;
 
 /// The thread looks so often at least, so that a run of a test clock is not slept through.
 const LONGEST_WAIT: Duration = Duration::from_millis(100);
+
+/// Of what has come so much is taken before something is sent: however much comes, the link is heard and can be ended.
+const ROUND: usize = 256;
 
 /// Carries packets. What has come it puts into the [`Inbox`] that it was made with.
 pub trait Transport: Send {
@@ -26,6 +29,11 @@ pub trait Transport: Send {
     /// # Errors
     /// The packet is not sent.
     fn send(&mut self, packet: &Packet) -> Result<(), Error>;
+
+    /// The longest message that it carries, stamp included. Longer ones are counted as [`oversize`](crate::Sent::oversize).
+    fn largest(&self) -> usize {
+        usize::MAX
+    }
 }
 
 /// A link that is running. It ends when it is dropped.
@@ -49,8 +57,12 @@ pub struct Report {
     pub mismatches: Vec<Mismatch>,
     /// The other hosts: when each was last heard, and how far its clock is from this one's.
     pub peers: Vec<(String, Moment, Option<ClockOffset>)>,
+    /// How much of the budget is used up; none without one.
+    pub spent: Option<Spent>,
     /// Packets that came faster than they were taken.
     pub overrun: u64,
+    /// Packets that lay in memory shared with their senders.
+    pub shared: u64,
 }
 
 impl Link {
@@ -68,9 +80,10 @@ impl Link {
     ) -> Result<Link, Error> {
         // A number that no earlier life has had; the standard library's hashes begin with one.
         let incarnation = RandomState::new().build_hasher().finish();
-        let bridge = Bridge::new(hub, settings, incarnation)?;
+        let mut bridge = Bridge::new(hub, settings, incarnation)?;
         let inbox = Arc::new(Inbox::default());
         let transport = connect(&bridge, inbox.clone())?;
+        bridge.set_largest(transport.largest());
         let shared = Arc::new(Shared { stops: AtomicBool::new(false), report: Mutex::default() });
         let mut worker = Worker {
             bridge,
@@ -139,19 +152,19 @@ impl Worker {
             self.pump(&clock);
             if now >= self.next_report {
                 self.next_report = now + LONGEST_WAIT;
-                self.tell();
+                self.tell(now);
             }
             let wait = self.bridge.poll_at().since(clock()).min(LONGEST_WAIT);
-            if !wait.is_zero() {
+            if !wait.is_zero() && self.inbox.is_empty() {
                 self.inbox.wait(wait);
             }
         }
         self.pump(&clock);
-        self.tell();
+        self.tell(clock());
     }
 
     fn pump(&mut self, clock: &impl Fn() -> Moment) {
-        while let Some(packet) = self.inbox.take() {
+        for packet in (0..ROUND).map_while(|_| self.inbox.take()) {
             self.bridge.handle(&packet, clock());
         }
         while let Some(packet) = self.bridge.poll(clock()) {
@@ -161,14 +174,16 @@ impl Worker {
         }
     }
 
-    fn tell(&self) {
+    fn tell(&self, now: Moment) {
         let node = self.bridge.node();
         let peer = |(name, heard): (&Arc<str>, Moment)| (name.to_string(), heard, node.clock_offset(name));
         let report = Report {
             counters: node.counters(),
             mismatches: node.mismatches(),
             peers: node.peers().map(peer).collect(),
+            spent: node.spent(now),
             overrun: self.inbox.dropped(),
+            shared: self.inbox.shared(),
         };
         *self.shared.report.lock().unwrap_or_else(PoisonError::into_inner) = report;
     }

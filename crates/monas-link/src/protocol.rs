@@ -11,7 +11,7 @@ mod peers;
 mod schema;
 
 pub use access::{AccessError, AccessList};
-pub use budget::Budget;
+pub use budget::{Budget, Spent};
 pub use clock::ClockOffset;
 pub use counters::{Counters, Received, Sent};
 pub use node::{

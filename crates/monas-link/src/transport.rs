@@ -2,6 +2,10 @@
 
 #[cfg(all(unix, feature = "local"))]
 mod local;
+#[cfg(feature = "zenoh")]
+mod zenoh;
 
+#[cfg(feature = "zenoh")]
+pub use self::zenoh::{Tls, Zenoh, ZenohSettings};
 #[cfg(all(unix, feature = "local"))]
 pub use local::{Local, default_folder};

@@ -16,7 +16,7 @@ fn packet(from: &str, path: Option<&str>, stamp: &[u8], payload: &[u8]) -> Packe
         to: None,
         path: path.map(Arc::from),
         stamp: stamp.into(),
-        payload: payload.into(),
+        payload: payload.to_vec().into(),
         priority: 4,
         is_reliable: true,
     }
@@ -73,12 +73,12 @@ proptest! {
         let count = packets.len();
         for (which, place, value) in edits {
             let packet = &mut packets[which % count];
-            let part = if place % 2 == 0 { &mut packet.stamp } else { &mut packet.payload };
-            let mut bytes = part.to_vec();
-            if let Some(byte) = bytes.get_mut(place / 2) {
+            let mut parts = [packet.stamp.to_vec(), packet.payload.to_vec()];
+            if let Some(byte) = parts[place % 2].get_mut(place / 2) {
                 *byte = value;
             }
-            *part = bytes.into();
+            let [stamp, payload] = parts;
+            (packet.stamp, packet.payload) = (stamp.into(), payload.into());
         }
         let mut network = Network::of(2, 64, CALM, 4);
         for (step, which) in (0..count).chain(order.into_iter().map(|which| which % count)).enumerate() {
@@ -133,6 +133,49 @@ fn a_host_that_never_fills_a_gap_fills_no_memory() {
     }
     network.check_counters();
     assert!(network.received(1, "a", "test/signal").gaps > 3000);
+}
+
+/// The stamp of a message of a link's first life.
+fn stamp(offer: u8, number: u8) -> Vec<u8> {
+    let incarnation = 1_u64.to_le_bytes();
+    [&[0x09][..], &incarnation, &[0x10, offer, 0x18, number]].concat()
+}
+
+#[test]
+fn many_hosts_that_fill_no_gaps_fill_no_memory() {
+    let mut network = Network::of(1, 64, CALM, 3);
+    let hello = said().into_iter().find(|packet| packet.path.is_none()).unwrap();
+    for host in 0..30 {
+        let name = format!("host_{host}");
+        network.nodes[0].handle(&Packet { from: name.as_str().into(), ..hello.clone() }, Moment::ZERO);
+        for number in 2..5 {
+            let message = packet(&name, Some("test/signal"), &stamp(1, number), &[0; 1 << 20]);
+            network.nodes[0].handle(&message, Moment::ZERO);
+            network.fetch(0);
+        }
+    }
+    let held: u64 = network.nodes[0].counters().received.iter().map(|one| one.2.held).sum();
+    assert!((48..=64).contains(&held), "{held} MiB");
+    network.check_counters();
+}
+
+#[test]
+fn lengths_that_cannot_be_are_malformed() {
+    let mut network = Network::of(1, 64, CALM, 3);
+    let endless = [0x1a, 0xff, 0xff, 0xff, 0xff, 0x0f];
+    let long = "x".repeat(200);
+    for bad in [
+        packet("b", None, &[], &endless),
+        packet("b", None, &[], &[0; (60 << 10) + 1]),
+        packet("b", Some("test/signal"), &endless, &[]),
+        packet("b", Some("test/signal"), &stamp(1, 0), &[]),
+        packet(&long, None, &[], &[]),
+        packet("", None, &[], &[]),
+    ] {
+        network.nodes[0].handle(&bad, Moment::ZERO);
+    }
+    assert_eq!(network.nodes[0].counters().malformed, 6);
+    assert_eq!(network.nodes[0].peers().count(), 0);
 }
 
 #[test]

@@ -208,7 +208,7 @@ fn bytes_that_are_no_message_are_refused_and_counted() {
         to: None,
         path: Some("soccer/ball".into()),
         stamp: [].into(),
-        payload: payload.into(),
+        payload: payload.to_vec().into(),
         priority: 4,
         is_reliable: true,
     };

@@ -7,8 +7,9 @@
     reason = "other processes need real time; what is awaited is awaited with a limit, and never slept for"
 )]
 
+use std::ffi::OsStr;
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
@@ -28,9 +29,9 @@ struct Player {
 }
 
 impl Player {
-    fn new(role: &str, folder: &Path) -> Player {
+    fn new(role: &str, way: &str, place: impl AsRef<OsStr>) -> Player {
         let mut command = Command::new(player());
-        command.arg(role).arg("local").arg(folder).stdin(Stdio::piped()).stdout(Stdio::piped());
+        command.args([role, way]).arg(place).stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut process = command.spawn().unwrap();
         let output = BufReader::new(process.stdout.take().unwrap());
         let (sender, lines) = channel();
@@ -82,17 +83,16 @@ fn check(line: &str) {
     assert_eq!(of("last") - of("start"), of("delivered") + of("gaps") + of("held") + of("missing"), "{line}");
 }
 
-#[test]
-fn ball_and_commands_pass_and_a_killed_process_comes_back() {
-    let folder = tempfile::tempdir().unwrap();
-    let coach = Player::new("coach", folder.path());
+/// The robot is killed twice, and started again.
+fn ball_and_commands_pass_and_a_killed_process_comes_back(ways: [&str; 2], place: impl AsRef<OsStr>) {
+    let coach = Player::new("coach", ways[0], &place);
     for _ in 0..2 {
-        let robot = Player::new("robot", folder.path());
+        let robot = Player::new("robot", ways[1], &place);
         coach.line("ball");
         robot.line("command of coach: kick");
         robot.kill();
     }
-    let robot = Player::new("robot", folder.path());
+    let robot = Player::new("robot", ways[1], &place);
     robot.line("command of coach: kick");
     check(&robot.stop());
     let line = coach.stop();
@@ -102,10 +102,26 @@ fn ball_and_commands_pass_and_a_killed_process_comes_back() {
 }
 
 #[test]
+fn over_local_sockets_a_killed_process_comes_back() {
+    let folder = tempfile::tempdir().unwrap();
+    ball_and_commands_pass_and_a_killed_process_comes_back(["local", "local"], folder.path());
+}
+
+#[cfg(feature = "zenoh")]
+#[test]
+fn over_zenoh_a_killed_process_comes_back() {
+    let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    ball_and_commands_pass_and_a_killed_process_comes_back(
+        ["listen", "connect"],
+        format!("tcp/127.0.0.1:{port}"),
+    );
+}
+
+#[test]
 fn two_processes_of_one_name_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let robot = Player::new("robot", folder.path());
-    let coach = Player::new("coach", folder.path());
+    let robot = Player::new("robot", "local", folder.path());
+    let coach = Player::new("coach", "local", folder.path());
     robot.line("command");
     let mut second = Command::new(player());
     let output = second.arg("robot").arg("local").arg(folder.path()).stdin(Stdio::null()).output().unwrap();

@@ -119,8 +119,7 @@ proptest! {
             one.budget = Some(budget);
             one
         });
-        // A process that was killed does not know what it had sent.
-        let turns: Vec<Turn> = turns.into_iter().filter(|turn| !matches!(turn, Turn::Restart(_))).collect();
+        // Restarts among them: a process that was killed does not know what it had sent.
         let mut network = Network::new(settings.into(), ROUGH, seed);
         play(&mut network, &turns);
         network.run(3000);
@@ -217,6 +216,49 @@ fn urgent_topics_go_first_when_the_budget_is_short() {
     assert!(network.nodes[0].counters().waits > 0);
     network.run(10_000);
     assert_eq!(network.numbers(1, "a", 2), [1, 2, 3, 4]);
+}
+
+#[test]
+fn with_a_budget_states_are_equal_within_four_beats() {
+    let budget = Budget { packets: 60, window: Duration::from_secs(1), payload: 512 };
+    for phase in 0..20 {
+        let mut network = Network::new(["a", "b"].map(|name| settings(name, topics(64))).into(), CALM, 7);
+        network.settings.iter_mut().for_each(|one| one.budget = Some(budget));
+        network.restart(0);
+        network.run(1500);
+        network.restart(1);
+        network.run(1500 + 10 * phase);
+        network.parts[1] = 1;
+        // Of one life or of the next, which the other side does not know yet.
+        if phase % 2 == 0 {
+            network.restart(0);
+        }
+        network.run(1100);
+        [STATE, LOOSE_STATE].map(|topic| (0..3).for_each(|_| network.publish(0, topic)));
+        network.run(100);
+        network.parts.fill(0);
+        network.run(4 * 200 + 4);
+        for topic in [STATE, LOOSE_STATE] {
+            assert_eq!(network.numbers(1, "a", topic).last(), Some(&3), "phase {phase}");
+        }
+    }
+}
+
+#[test]
+fn a_link_with_a_budget_is_silent_for_its_first_window_and_says_how_much_is_spent() {
+    let budget = Budget { packets: 4, window: Duration::from_secs(1), payload: 512 };
+    let mut settings = ["a", "b"].map(|name| settings(name, topics(64)));
+    settings[0].budget = Some(budget);
+    let mut network = Network::new(settings.into(), CALM, 7);
+    (0..10).for_each(|_| network.publish(0, 1));
+    network.run(1000);
+    assert_eq!(network.log[0].len(), 0);
+    assert_eq!(network.nodes[0].counters().waits, 1);
+    network.run(2);
+    let spent = network.nodes[0].spent(network.now(0)).unwrap();
+    assert_eq!((spent.packets, spent.budget), (4, budget));
+    assert_eq!(spent.next, network.log[0][0].0 + budget.window + Duration::from_nanos(1));
+    assert_eq!(network.nodes[1].spent(network.now(1)), None);
 }
 
 #[test]

@@ -102,6 +102,11 @@ impl AccessList {
         [host, "*"].into_iter().filter_map(|name| self.rules.get(name))
     }
 
+    /// Whether there is no list, and everything is allowed.
+    pub fn is_open(&self) -> bool {
+        self.is_open
+    }
+
     /// The hosts that are named, with the patterns of what each may publish; those of `*` are everybody's.
     pub fn publishers(&self) -> impl Iterator<Item = (&str, &[String])> {
         self.rules.iter().map(|(host, rights)| (host.as_str(), rights.publish.as_slice()))

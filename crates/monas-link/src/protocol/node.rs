@@ -7,11 +7,12 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 use std::time::Duration;
 
+use bytes::Bytes;
 use narukom::{Kind, Moment};
 use prost::Message as _;
 
 use super::access::AccessList;
-use super::budget::{Budget, Spending};
+use super::budget::{Budget, Spending, Spent};
 use super::clock::ClockOffset;
 use super::counters::{Counters, Received};
 use super::outgoing::Outgoing;
@@ -22,8 +23,8 @@ use crate::error::{Error, ErrorKind};
 
 use control::Introductions;
 
-/// The bytes of a message, shared by all who send them.
-pub type MessageBytes = Arc<[u8]>;
+/// The bytes of a message, shared by all who hold them.
+pub type MessageBytes = Bytes;
 
 /// Controls are not longer than this, if no budget says less. Packets that are longer are not looked at.
 const CONTROL_BYTES: usize = 60 << 10;
@@ -178,6 +179,8 @@ pub struct Node {
     mismatches: BTreeMap<(String, Option<String>), String>,
     introductions: Introductions,
     spending: Option<Spending>,
+    /// Messages are not longer than this, stamps included.
+    largest: usize,
     beat: Duration,
     next_beat: Moment,
     /// The place among the offers with which the next Beat begins.
@@ -222,6 +225,7 @@ impl Node {
             deliveries: VecDeque::new(),
             mismatches: BTreeMap::new(),
             spending,
+            largest: MESSAGE_BYTES,
             beat: beat.max(slowest).max(Duration::from_millis(1)),
             next_beat: Moment::ZERO,
             next_head: 0,
@@ -231,9 +235,15 @@ impl Node {
         node.check_offers().map(|()| node)
     }
 
+    /// Lets no message out that is longer, with its stamp, than what the transport carries.
+    pub fn set_largest(&mut self, bytes: usize) {
+        self.largest = bytes.min(MESSAGE_BYTES);
+    }
+
     /// Takes a message of the topic at a place among [`NodeSettings::send`].
     pub fn publish(&mut self, topic: usize, publication: Publication<'_>) {
-        let limit = self.spending.as_ref().map_or(MESSAGE_BYTES, Spending::payload);
+        let limit =
+            self.spending.as_ref().map_or(self.largest, |spending| spending.payload().min(self.largest));
         let Some(outgoing) = self.outgoing.get_mut(topic) else { return };
         let stamp = wire::Stamp {
             incarnation: self.incarnation,
@@ -268,6 +278,7 @@ impl Node {
 
     /// The next packet to be sent, if there is one and the budget allows it. Its sender must send it.
     pub fn poll(&mut self, now: Moment) -> Option<Packet> {
+        self.spending.iter_mut().for_each(|spending| spending.begin(now));
         if self.spending.as_ref().is_some_and(|spending| spending.next() > now) {
             self.count_wait();
             return None;
@@ -338,6 +349,11 @@ impl Node {
         &self.send
     }
 
+    /// Who may publish, and who may manage agents.
+    pub fn access(&self) -> &AccessList {
+        &self.access
+    }
+
     /// What has been counted.
     pub fn counters(&self) -> Counters {
         let sent = self.send.iter().zip(&self.outgoing);
@@ -361,6 +377,11 @@ impl Node {
         counters.received.extend(guests);
         counters.received.sort_by(|a, b| (&a.0, &a.1).cmp(&(&b.0, &b.1)));
         counters
+    }
+
+    /// How much of the budget is used up; none without one.
+    pub fn spent(&self, now: Moment) -> Option<Spent> {
+        self.spending.as_ref().map(|spending| spending.spent(now))
     }
 
     /// What differs from what other hosts know.

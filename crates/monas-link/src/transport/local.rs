@@ -21,6 +21,9 @@ use crate::protocol::{Packet, wire};
 /// A packet with all that belongs to it is not longer than this. Longer ones need another transport.
 const LARGEST: usize = 128 << 10;
 
+/// So much of it are names and what marks its parts.
+const FRAME: usize = 1 << 10;
+
 /// The name of a link's socket ends so.
 const ENDING: &str = "link";
 
@@ -115,6 +118,10 @@ impl Transport for Local {
             Some(name) => self.send_to(&self.folder.join(format!("{name}.{ENDING}"))),
             None => self.others().iter().map(|path| self.send_to(path)).fold(Ok(()), Result::and),
         }
+    }
+
+    fn largest(&self) -> usize {
+        LARGEST - FRAME
     }
 }
 

@@ -2,7 +2,6 @@
 #![allow(dead_code, unreachable_pub)]
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 use std::time::Duration;
 
 use monas_link::{
@@ -118,7 +117,7 @@ impl Network {
     pub fn publish(&mut self, node: usize, topic: usize) {
         let number = &mut self.published[node][topic];
         *number += 1;
-        let payload: Arc<[u8]> = number.to_le_bytes().into();
+        let payload = number.to_le_bytes().to_vec().into();
         let (publisher, sequence) = (["left", "right"][(*number % 2) as usize], number.div_ceil(2));
         let published = self.now(node);
         self.nodes[node].publish(topic, Publication { publisher, sequence, published, payload });

@@ -1,0 +1,193 @@
+//! Between computers, on zenoh. Its sessions carry packets; numbers, repairs and histories are the protocol's.
+//!
+//! | key | what |
+//! |---|---|
+//! | `REALM/HOST/m/TOPIC` | a message of a topic: its protobuf encoding, with the stamp attached |
+//! | `REALM/HOST/r/TO/TOPIC` | the same, sent again to one host |
+//! | `REALM/HOST/c` | what links say to each other |
+//!
+//! A program without a link subscribes to `REALM/*/m/soccer/ball` and decodes what comes; it puts bare protobuf on
+//! `REALM/ITS_NAME/m/soccer/command`, and is a guest.
+
+mod config;
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::sync::Arc;
+
+use zenoh::bytes::ZBytes;
+use zenoh::pubsub::Publisher;
+use zenoh::qos::{CongestionControl, Priority, Reliability};
+use zenoh::sample::{Locality, Sample, SampleKind};
+use zenoh::{Session, Wait};
+
+use crate::error::{Error, ErrorKind};
+use crate::inbox::Inbox;
+use crate::link::Transport;
+use crate::protocol::{MessageBytes, Node, Packet};
+
+pub use config::{Tls, ZenohSettings};
+
+/// So much of a message are its key and what marks its parts.
+const FRAME: usize = 1 << 10;
+
+/// A session of zenoh.
+pub struct Zenoh {
+    session: Session,
+    /// Realm and host.
+    prefix: String,
+    publishers: BTreeMap<Arc<str>, Publisher<'static>>,
+    largest: usize,
+}
+
+impl Zenoh {
+    /// Opens a session, and subscribes to what the node receives. Nobody need be there yet.
+    ///
+    /// # Errors
+    /// A name does not fit into a key, a certificate cannot be used, or an endpoint cannot be listened on.
+    pub fn open(settings: &ZenohSettings, node: &Node, inbox: Arc<Inbox>) -> Result<Zenoh, Error> {
+        let (realm, host) = (&settings.realm, node.host());
+        check_name(realm)?;
+        check_name(host)?;
+        let session = zenoh::open(settings.config(node.access())?).wait().map_err(refused)?;
+        let mut zenoh = Zenoh {
+            session,
+            prefix: format!("{realm}/{host}"),
+            publishers: BTreeMap::new(),
+            largest: settings.largest,
+        };
+        zenoh.subscribe(realm, node, &inbox)?;
+        for topic in node.sends() {
+            let key = format!("{}/m/{}", zenoh.prefix, topic.path);
+            let publisher = zenoh.session.declare_publisher(key);
+            // Nobody waits for a slow reader: what does not get through is asked for again.
+            let publisher = publisher
+                .congestion_control(CongestionControl::Drop)
+                .priority(priority(topic.priority))
+                .reliability(reliability(topic.reliability == crate::Reliability::Reliable));
+            zenoh.publishers.insert(topic.path.clone(), publisher.wait().map_err(refused)?);
+        }
+        Ok(zenoh)
+    }
+
+    fn subscribe(&self, realm: &str, node: &Node, inbox: &Arc<Inbox>) -> Result<(), Error> {
+        let mut keys = vec![format!("{realm}/*/c"), format!("{realm}/*/r/{}/**", node.host())];
+        keys.extend(node.receives().iter().map(|topic| format!("{realm}/*/m/{}", topic.path)));
+        for key in keys {
+            let (inbox, skipped, largest) = (inbox.clone(), realm.len() + 1, self.largest);
+            let take = move |sample: Sample| receive(&sample, skipped, largest, &inbox);
+            let subscriber =
+                self.session.declare_subscriber(key).allowed_origin(Locality::Remote).callback(take);
+            subscriber.background().wait().map_err(refused)?;
+        }
+        Ok(())
+    }
+
+    /// Sends what has no publisher: controls, and what goes to one host only.
+    fn put(&self, packet: &Packet) -> Result<(), Error> {
+        let key = match (&packet.path, &packet.to) {
+            (Some(path), Some(to)) => format!("{}/r/{to}/{path}", self.prefix),
+            (Some(path), None) => format!("{}/m/{path}", self.prefix),
+            (None, _) => format!("{}/c", self.prefix),
+        };
+        let put = self.session.put(key, packet.payload.clone()).congestion_control(CongestionControl::Drop);
+        let put = put.priority(priority(packet.priority)).reliability(reliability(packet.is_reliable));
+        put.attachment(&packet.stamp[..]).wait().map_err(refused)
+    }
+}
+
+impl Transport for Zenoh {
+    fn send(&mut self, packet: &Packet) -> Result<(), Error> {
+        let publisher = packet.path.as_ref().filter(|_| packet.to.is_none());
+        match publisher.and_then(|path| self.publishers.get(path)) {
+            Some(publisher) => {
+                publisher.put(packet.payload.clone()).attachment(&packet.stamp[..]).wait().map_err(refused)
+            }
+            None => self.put(packet),
+        }
+    }
+
+    fn largest(&self) -> usize {
+        self.largest.saturating_sub(FRAME)
+    }
+}
+
+impl Drop for Zenoh {
+    fn drop(&mut self) {
+        self.publishers.clear();
+        // A session that does not close is gone with its process.
+        let _ = self.session.close().wait();
+    }
+}
+
+impl std::fmt::Debug for Zenoh {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Zenoh({})", self.prefix)
+    }
+}
+
+fn refused(error: impl Display) -> Error {
+    Error::new(ErrorKind::Connection, format!("zenoh: {error}"))
+}
+
+fn check_name(name: &str) -> Result<(), Error> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if !name.is_empty() && name.chars().all(is_plain) {
+        return Ok(());
+    }
+    let text = format!("`{name}` cannot be part of a key: letters, digits, `_` and `-`");
+    Err(Error::new(ErrorKind::Settings, text))
+}
+
+fn priority(number: u8) -> Priority {
+    Priority::try_from(number.clamp(1, 7)).unwrap_or(Priority::DEFAULT)
+}
+
+fn reliability(is_reliable: bool) -> Reliability {
+    if is_reliable { Reliability::Reliable } else { Reliability::BestEffort }
+}
+
+/// The bytes of a sample, whoever else can still write into its memory.
+fn own(bytes: Cow<'_, [u8]>) -> MessageBytes {
+    match bytes {
+        Cow::Borrowed(bytes) => MessageBytes::copy_from_slice(bytes),
+        Cow::Owned(bytes) => bytes.into(),
+    }
+}
+
+fn receive(sample: &Sample, skipped: usize, largest: usize, inbox: &Inbox) {
+    let Some(packet) = packet(sample, skipped, largest) else { return };
+    if sample.payload().as_shm().is_some() {
+        inbox.count_shared();
+    }
+    inbox.put(packet);
+}
+
+/// The packet that a sample is, if its key is one of a link. What lies in shared memory is copied before anybody looks at it: whoever
+/// sent it could still change it. What is too long becomes a packet that nobody understands, and is counted as such.
+fn packet(sample: &Sample, skipped: usize, largest: usize) -> Option<Packet> {
+    if sample.kind() != SampleKind::Put {
+        return None;
+    }
+    let (from, rest) = sample.key_expr().as_str().get(skipped..)?.split_once('/')?;
+    let (path, to) = match rest.split_once('/') {
+        None if rest == "c" => (None, None),
+        Some(("m", path)) => (Some(path), None),
+        Some(("r", rest)) => rest.split_once('/').map(|(to, path)| (Some(path), Some(to)))?,
+        _ => return None,
+    };
+    let stamp = sample.attachment().map(ZBytes::to_bytes).unwrap_or_default();
+    let is_taken = stamp.len() + sample.payload().len() <= largest;
+    let (stamp, payload) =
+        if is_taken { (stamp, sample.payload().to_bytes()) } else { ((&[0xff]).into(), Cow::default()) };
+    Some(Packet {
+        from: from.into(),
+        to: to.map(Arc::from),
+        path: path.map(Arc::from),
+        stamp: (&*stamp).into(),
+        payload: own(payload),
+        priority: sample.priority() as u8,
+        is_reliable: sample.reliability() == Reliability::Reliable,
+    })
+}
