@@ -234,7 +234,7 @@ fn with_a_budget_states_are_equal_within_four_beats() {
             network.restart(0);
         }
         network.run(1100);
-        [STATE, LOOSE_STATE].map(|topic| (0..3).for_each(|_| network.publish(0, topic)));
+        (0..3).for_each(|_| [STATE, LOOSE_STATE].iter().for_each(|topic| network.publish(0, *topic)));
         network.run(100);
         network.parts.fill(0);
         network.run(4 * 200 + 4);

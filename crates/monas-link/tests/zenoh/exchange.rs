@@ -122,6 +122,7 @@ fn what_is_longer_than_the_line_takes_is_counted_and_holds_nothing_up() {
         coach.publish(Command { text: "x".repeat(length) }, first.now());
     }
     await_that("the others", || second.received("robot_1", "soccer/command").delivered == 2);
+    await_that("the report", || first.sent("soccer/command").sent == 2);
     let sent = first.sent("soccer/command");
     assert_eq!((sent.taken, sent.sent, sent.oversize), (3, 2, 1));
     first.stop();
