@@ -6,7 +6,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use libfuzzer_sys::fuzz_target;
 use monas_robot::{Announcement, Sensors, topics};
-use monas_tape::{Recording, Tape};
+use monas_tape::{Content, Decoder, Recording, Tape};
 use narukom::{Moment, Narukom};
 
 static WHOLE: LazyLock<Vec<u8>> = LazyLock::new(|| recorded().expect("a tape is recorded in memory"));
@@ -17,10 +17,19 @@ fuzz_target!(|data: &[u8]| {
     assert!(!data.is_empty() || messages == 2 * EACH, "{messages} messages of the whole tape");
 });
 
-/// Reads up to the first error, and answers how many messages there were.
+/// Counts everything, takes apart what can be taken apart, and answers how many messages there were before the first error.
 fn read(bytes: Vec<u8>) -> usize {
     let recording = Recording::from_bytes(bytes);
-    let _ = recording.is_finished();
+    let Ok(overview) = recording.overview() else { return 0 };
+    assert!(overview.bytes == recording.size());
+    let mut decoder = Decoder::new();
+    for content in recording.contents().into_iter().flatten() {
+        if let Ok(Content::Message(message)) = content
+            && let Ok(value) = decoder.decode(&message.channel, message.bytes)
+        {
+            assert!(value.differences(&value).is_empty());
+        }
+    }
     recording.messages().map_or(0, |messages| messages.map_while(Result::ok).count())
 }
 

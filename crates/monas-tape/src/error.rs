@@ -3,6 +3,8 @@
 use std::io;
 use std::path::Path;
 
+use crate::playback::Channel;
+
 /// An error of a tape.
 #[derive(Debug, thiserror::Error)]
 #[error("{text}")]
@@ -25,16 +27,28 @@ pub enum ErrorKind {
     Damaged,
     /// A file is compressed; tapes are not.
     Compressed,
+    /// Messages cannot be taken apart: they are not protobuf, or do not fit their schema.
+    Opaque,
 }
 
 impl Error {
     pub(crate) fn file(path: &Path, source: io::Error) -> Error {
-        let text = format!("the tape {} cannot be opened", path.display());
+        let text = format!("the tape {} cannot be opened: {source}", path.display());
+        Error { kind: ErrorKind::File, text, source: Some(source.into()) }
+    }
+
+    pub(crate) fn unwritable(path: &Path, source: io::Error) -> Error {
+        let text = format!("the tape {} cannot be written: {source}", path.display());
         Error { kind: ErrorKind::File, text, source: Some(source.into()) }
     }
 
     pub(crate) fn writing(source: mcap::McapError) -> Error {
-        let text = "the tape cannot be written".to_owned();
+        let text = format!("the tape cannot be written: {source}");
+        Error { kind: ErrorKind::File, text, source: Some(source.into()) }
+    }
+
+    pub(crate) fn no_thread(source: io::Error) -> Error {
+        let text = format!("no thread to write the tape: {source}");
         Error { kind: ErrorKind::File, text, source: Some(source.into()) }
     }
 
@@ -49,6 +63,12 @@ impl Error {
     pub(crate) fn compressed(with: &str) -> Error {
         let text = format!("the tape is compressed ({with}), which is not supported");
         Error { kind: ErrorKind::Compressed, text, source: None }
+    }
+
+    pub(crate) fn opaque(channel: &Channel, why: &str) -> Error {
+        let Channel { topic, publisher, .. } = channel;
+        let text = format!("the messages of `{publisher}` on `{topic}` cannot be taken apart: {why}");
+        Error { kind: ErrorKind::Opaque, text, source: None }
     }
 
     /// What kind of error it is.

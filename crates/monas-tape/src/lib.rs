@@ -4,15 +4,24 @@
 //! Foxglove and the libraries of several languages read. A [`Recording`] is such a file read again.
 //!
 //! Each host, topic and publisher has a channel named `host/topic/path`, with the message's schema (encoding `protobuf`,
-//! the descriptor set with its imports) and, as metadata, `host`, `publisher`, `topic` and `kind`. A message's log time is when the hub
-//! received it, its publish time when it was published; both count from the start of the run.
+//! the descriptor set with its imports) and, as metadata, `host`, `publisher`, `topic` and `kind`. What came to a host from another one has
+//! a channel `receiver/from/host/topic/path` with `received_by` besides. A message's log time is when the hub received it, its publish
+//! time when it was published, by the clock of that hub; both count from the start of the run.
 //!
 //! # Why it is so
 //!
-//! - **The same run gives the same bytes.** The tape reads no clock and does not compress; times are those of the run.
-//! - **A killed process loses little.** Chunks are closed once a second of the run's time. What stands in closed chunks is read
-//!   up to the cut; what comes after it is missing without an error, and [`Recording::is_finished`] says so.
-//! - **Recording does not disturb.** If the disk is full the recording ends and the run goes on; [`Tape::finish`] tells.
+//! - **Recording does not disturb.** Publishers leave a message and go on; a thread of the tape encodes and writes. In real time a
+//!   disk that is too slow costs messages, which are counted, and no publisher's time. If the disk is full the recording ends and the
+//!   run goes on; [`Tape::finish`] tells.
+//! - **The same run gives the same bytes.** In simulated time nothing is left out, and what is written depends on no clock. Nothing is
+//!   compressed.
+//! - **A killed process loses little.** Chunks are closed once a second of the run's time, in real time also when nothing follows. What
+//!   stands in closed chunks is read up to the cut; what comes after it is missing without an error, and [`Recording::is_finished`] says
+//!   so. [`recover`] makes a whole tape of it.
+//! - **Reading trusts nothing.** A tape takes up as much memory as its file, and what is taken apart at a time is bounded, whatever the
+//!   file says of itself.
+//!
+//! [`cut`] and [`merge`] make tapes of tapes, and a [`Decoder`] takes messages apart by the schemas that the tape brings.
 //!
 //! [MCAP]: https://mcap.dev
 //!
@@ -46,12 +55,23 @@
 //! # }
 //! ```
 
+mod copy;
+mod edit;
 mod error;
+mod overview;
 mod playback;
+mod queue;
 mod recorder;
 mod records;
 mod tape;
+mod value;
+mod writer;
 
+pub use edit::{Cut, Recovery, cut, merge, recover};
 pub use error::{Error, ErrorKind};
-pub use playback::{Channel, Message, Messages, Recording, read};
+pub use overview::{ChannelOverview, Overview};
+pub use playback::{
+    Attachment, Channel, Content, Contents, Facts, Message, Messages, Recording, Schema, read,
+};
 pub use tape::Tape;
+pub use value::{Decoder, FieldDifference, Value};

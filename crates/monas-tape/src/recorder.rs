@@ -1,12 +1,12 @@
 //! The file behind a tape: schemas, channels, chunks.
 
-use std::collections::BTreeMap;
 use std::io::Write;
 
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
-use mcap::{Attachment, McapError, McapResult, WriteOptions, Writer};
-use narukom::Publication;
+use mcap::{McapError, McapResult, WriteOptions, Writer};
+
+use crate::playback::{Attachment, Channel, Facts, Message, Schema};
 
 /// A chunk is closed when its messages span this much time, in nanoseconds: what a killed process loses.
 const CHUNK_SPAN: u64 = 1_000_000_000;
@@ -19,8 +19,6 @@ pub(crate) struct Recorder {
     writer: Writer<Output>,
     /// The moment of the first message of the chunk that is being filled.
     chunk_begins: Option<u64>,
-    /// The encoding of the message that is being written; kept for its memory.
-    bytes: Vec<u8>,
     messages: u64,
 }
 
@@ -29,42 +27,31 @@ impl Recorder {
         let library = concat!("monas-tape/", env!("CARGO_PKG_VERSION"));
         let options = WriteOptions::new().compression(None).disable_seeking(true).library(library);
         let writer = options.create(NoSeek::new(output))?;
-        Ok(Recorder { writer, chunk_begins: None, bytes: Vec::new(), messages: 0 })
+        Ok(Recorder { writer, chunk_begins: None, messages: 0 })
     }
 
-    /// The channel of a publication's host, topic and publisher.
-    pub(crate) fn channel(&mut self, publication: Publication<'_>) -> McapResult<u16> {
-        let descriptor = publication.topic.descriptor();
-        let schema =
-            self.writer.add_schema(descriptor.full_name, "protobuf", descriptor.file_descriptor_set)?;
-        let topic = format!("{}/{}", publication.host, publication.topic.path());
-        let metadata = BTreeMap::from(
-            [
-                ("host", publication.host),
-                ("kind", &publication.topic.kind().to_string()),
-                ("publisher", publication.publisher),
-                ("topic", publication.topic.path()),
-            ]
-            .map(|(key, value)| (key.to_owned(), value.to_owned())),
-        );
-        self.writer.add_channel(schema, &topic, "protobuf", &metadata)
+    /// The number of a channel in the file.
+    pub(crate) fn channel(&mut self, channel: &Channel) -> McapResult<u16> {
+        let Channel { name, schema, encoding, facts, .. } = channel;
+        // MCAP numbers schemas from 1; 0 stands for none.
+        let schema = match **schema == Schema::default() {
+            true => 0,
+            false => self.writer.add_schema(&schema.name, &schema.encoding, &schema.data)?,
+        };
+        self.writer.add_channel(schema, name, encoding, facts)
     }
 
     /// Appends a message to a channel.
-    pub(crate) fn write(&mut self, channel: u16, publication: Publication<'_>) -> McapResult<()> {
-        let header = &publication.sample.header;
-        let time = header.received.as_nanos();
+    pub(crate) fn write(&mut self, channel: u16, message: &Message<'_>) -> McapResult<()> {
+        let time = message.received.as_nanos();
         self.begin(time)?;
-        self.bytes.clear();
-        publication.sample.message.encode_to(&mut self.bytes);
-        let record = MessageHeader {
+        let header = MessageHeader {
             channel_id: channel,
-            // MCAP has 32 bits for it, which is enough for 49 days at 1000 Hz; the lower half is what is kept.
-            sequence: header.sequence as u32,
+            sequence: message.sequence,
             log_time: time,
-            publish_time: header.published.as_nanos(),
+            publish_time: message.published.as_nanos(),
         };
-        self.writer.write_to_known_channel(&record, &self.bytes)?;
+        self.writer.write_to_known_channel(&header, message.bytes)?;
         self.messages += 1;
         Ok(())
     }
@@ -73,24 +60,37 @@ impl Recorder {
     fn begin(&mut self, time: u64) -> McapResult<()> {
         let begins = *self.chunk_begins.get_or_insert(time);
         if time.saturating_sub(begins) >= CHUNK_SPAN {
-            self.writer.flush()?;
+            self.flush()?;
             self.chunk_begins = Some(time);
         }
         Ok(())
     }
 
-    pub(crate) fn describe(&mut self, name: &str, entries: &BTreeMap<String, String>) -> McapResult<()> {
-        self.writer.write_metadata(&Metadata { name: name.to_owned(), metadata: entries.clone() })
+    /// Closes the chunk: whatever has been written survives this process.
+    pub(crate) fn flush(&mut self) -> McapResult<()> {
+        self.chunk_begins = None;
+        self.writer.flush()
     }
 
-    pub(crate) fn attach(&mut self, name: &str, media_type: &str, content: &[u8]) -> McapResult<()> {
-        self.writer.attach(&Attachment {
+    pub(crate) fn describe(&mut self, facts: &Facts) -> McapResult<()> {
+        self.chunk_begins = None;
+        self.writer.write_metadata(&Metadata { name: facts.name.clone(), metadata: facts.entries.clone() })
+    }
+
+    pub(crate) fn attach(&mut self, file: &Attachment<'_>) -> McapResult<()> {
+        self.chunk_begins = None;
+        self.writer.attach(&mcap::Attachment {
             log_time: 0,
             create_time: 0,
-            name: name.to_owned(),
-            media_type: media_type.to_owned(),
-            data: content.into(),
+            name: file.name.to_owned(),
+            media_type: file.media_type.to_owned(),
+            data: file.bytes.into(),
         })
+    }
+
+    /// How many messages were written.
+    pub(crate) fn messages(&self) -> u64 {
+        self.messages
     }
 
     /// Writes the summary; answers how many messages were written.

@@ -12,6 +12,8 @@ pub(crate) const SCHEMA: u8 = 0x03;
 pub(crate) const CHANNEL: u8 = 0x04;
 pub(crate) const MESSAGE: u8 = 0x05;
 pub(crate) const CHUNK: u8 = 0x06;
+pub(crate) const ATTACHMENT: u8 = 0x09;
+pub(crate) const METADATA: u8 = 0x0c;
 pub(crate) const DATA_END: u8 = 0x0f;
 
 /// Bytes that are read from the front.
@@ -26,18 +28,28 @@ pub(crate) struct Record<'a> {
 }
 
 /// A message type.
-pub(crate) struct Schema<'a> {
+pub(crate) struct SchemaRecord<'a> {
     pub(crate) id: u16,
     pub(crate) name: &'a str,
+    pub(crate) encoding: &'a str,
     pub(crate) data: &'a [u8],
 }
 
-/// A stream of messages; its facts are read from [`facts`](ChannelRecord::facts).
+/// A stream of messages.
 pub(crate) struct ChannelRecord<'a> {
     pub(crate) id: u16,
     pub(crate) schema: u16,
     pub(crate) topic: &'a str,
-    facts: Bytes<'a>,
+    pub(crate) encoding: &'a str,
+    /// [Pairs](Bytes::pairs) of a name and a value.
+    pub(crate) facts: Bytes<'a>,
+}
+
+/// A file.
+pub(crate) struct AttachmentRecord<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) media_type: &'a str,
+    pub(crate) data: &'a [u8],
 }
 
 /// A message.
@@ -111,14 +123,31 @@ impl<'a> Bytes<'a> {
         Some(Record { kind, body: Bytes(body), is_whole })
     }
 
-    pub(crate) fn schema(mut self) -> Option<Schema<'a>> {
-        let (id, name, _encoding) = (self.u16()?, self.text()?, self.text()?);
-        Some(Schema { id, name, data: self.block()? })
+    pub(crate) fn schema(mut self) -> Option<SchemaRecord<'a>> {
+        let (id, name, encoding) = (self.u16()?, self.text()?, self.text()?);
+        Some(SchemaRecord { id, name, encoding, data: self.block()? })
     }
 
     pub(crate) fn channel(mut self) -> Option<ChannelRecord<'a>> {
-        let (id, schema, topic, _encoding) = (self.u16()?, self.u16()?, self.text()?, self.text()?);
-        Some(ChannelRecord { id, schema, topic, facts: Bytes(self.block()?) })
+        let (id, schema, topic, encoding) = (self.u16()?, self.u16()?, self.text()?, self.text()?);
+        Some(ChannelRecord { id, schema, topic, encoding, facts: Bytes(self.block()?) })
+    }
+
+    /// The name of some facts, and the facts as [`pairs`](Bytes::pairs).
+    pub(crate) fn metadata(mut self) -> Option<(&'a str, Bytes<'a>)> {
+        Some((self.text()?, Bytes(self.block()?)))
+    }
+
+    pub(crate) fn attachment(mut self) -> Option<AttachmentRecord<'a>> {
+        let (_logged, _created) = (self.u64()?, self.u64()?);
+        let (name, media_type, length) = (self.text()?, self.text()?, self.u64()?);
+        let data = self.take(usize::try_from(length).ok()?)?;
+        Some(AttachmentRecord { name, media_type, data })
+    }
+
+    /// Pairs of texts, as many as are whole.
+    pub(crate) fn pairs(mut self) -> impl Iterator<Item = (&'a str, &'a str)> {
+        std::iter::from_fn(move || Some((self.text()?, self.text()?)))
     }
 
     pub(crate) fn message(mut self) -> Option<MessageRecord<'a>> {
@@ -132,19 +161,6 @@ impl<'a> Bytes<'a> {
         let (crc, compression, length) = (self.u32()?, self.text()?, self.u64()?);
         let (records, is_whole) = self.take_up_to(length);
         Some(Chunk { crc, compression, records, is_whole })
-    }
-}
-
-impl ChannelRecord<'_> {
-    /// The value of a fact about the channel.
-    pub(crate) fn fact(&self, key: &str) -> Option<&str> {
-        let mut facts = self.facts;
-        while let (Some(name), Some(value)) = (facts.text(), facts.text()) {
-            if name == key {
-                return Some(value);
-            }
-        }
-        None
     }
 }
 

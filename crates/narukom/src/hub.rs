@@ -292,7 +292,8 @@ impl Narukom {
         encoding.clear();
         let encoding = message.encoding.as_deref().unwrap_or(encoding);
         let sample = &AnySample { message: content, header };
-        let publication = Publication { host, publisher: &sender.name, topic, sample, encoding };
+        let hub = self.host();
+        let publication = Publication { hub, host, publisher: &sender.name, topic, sample, encoding };
         for observer in all {
             if header.host == HostId::LOCAL {
                 observer.observe(publication);

@@ -142,7 +142,7 @@ pub use publisher::{AnyPublisher, Publisher};
 pub use random::Random;
 pub use receiver::{Arrival, Receiver};
 pub use sample::{AnySample, Header, HostId, PublisherId, Sample, TopicSlot};
-pub use subscriber::Subscriber;
+pub use subscriber::{Subscriber, pattern_fits};
 pub use tap::Tap;
 #[doc(hidden)]
 pub use topic::is_topic_path;

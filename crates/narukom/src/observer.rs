@@ -8,6 +8,8 @@ use crate::topic::TopicDeclaration;
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Publication<'a> {
+    /// The host whose hub shows it.
+    pub hub: &'a str,
     /// The host on which it was published.
     pub host: &'a str,
     /// Who published it.

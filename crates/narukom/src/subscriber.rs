@@ -84,6 +84,11 @@ fn is_pattern(pattern: &str) -> bool {
     pattern == "**" || segments.split('/').all(|segment| segment == "*" || is_topic_path(segment))
 }
 
+/// Whether a pattern, as [`Narukom::subscriber`] has it, fits a topic's `path`. One that is not well formed fits none.
+pub fn pattern_fits(pattern: &str, path: &str) -> bool {
+    is_pattern(pattern) && fits(pattern, path)
+}
+
 /// Whether a well formed `pattern` fits a topic's `path`.
 fn fits(pattern: &str, path: &str) -> bool {
     let mut segments = path.split('/');

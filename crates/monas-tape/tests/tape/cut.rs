@@ -1,32 +1,13 @@
 //! Tapes that were cut off or damaged.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
 
-mod ball;
-
-use ball::*;
-use monas_tape::{ErrorKind, Recording, Tape};
+use crate::ball::*;
+use monas_tape::{ErrorKind, Recording};
 use proptest::prelude::*;
 
 /// How many messages are read before the end or the first error.
 fn readable(bytes: Vec<u8>) -> usize {
     let recording = Recording::from_bytes(bytes);
     recording.messages().map_or(0, |messages| messages.take_while(Result::is_ok).count())
-}
-
-#[test]
-fn what_a_killed_process_wrote_is_read_up_to_the_last_second() {
-    let output = Shared::default();
-    let tape = Tape::to_writer(output.clone()).unwrap();
-    let hub = hub("robot");
-    hub.observe(Box::new(tape.clone()));
-    play(&[hub], 45);
-    let bytes = output.bytes();
-    let count = readable(bytes.clone());
-    // 4.5 s of 30 messages each; of the last second up to all may be missing.
-    assert!((120 - 3..=135).contains(&count), "{count}");
-    let recording = Recording::from_bytes(bytes);
-    assert!(!recording.is_finished());
-    assert!(recording.messages().unwrap().all(|message| message.is_ok()));
 }
 
 #[test]
@@ -84,7 +65,7 @@ fn tapes_of_others_are_read_whether_in_chunks_or_not() {
         let [message] = &messages[..] else { panic!("one message: {messages:?}") };
         let channel = &message.channel;
         assert_eq!(
-            (&*channel.topic, &*channel.message_type, &*channel.schema),
+            (&*channel.topic, channel.message_type(), &*channel.schema.data),
             ("/ball", "a.Ball", &b"schema"[..])
         );
         assert_eq!((message.sequence, message.bytes), (7, &b"ball"[..]));

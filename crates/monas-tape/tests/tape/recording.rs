@@ -1,13 +1,10 @@
 //! What was published is read.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
-
-mod ball;
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use ball::*;
-use monas_tape::{ErrorKind, Recording, Tape, read};
+use crate::ball::*;
+use monas_tape::{Channel, Decoder, ErrorKind, Recording, Tape, Value, read};
 use narukom::prost::Message as _;
 
 /// Host, publisher, topic, sequence, milliseconds and distance of a message.
@@ -53,8 +50,8 @@ fn channels_carry_kind_and_schema() {
     let kinds: Vec<_> = messages.iter().map(|message| &*message.channel.kind).collect();
     assert_eq!(kinds[..3], ["state", "data", "state"]);
     for message in &messages {
-        assert_eq!(message.channel.message_type, "tape.test.Ball");
-        assert_eq!(message.channel.schema, SCHEMA);
+        assert_eq!(message.channel.message_type(), "tape.test.Ball");
+        assert_eq!(message.channel.schema.data, SCHEMA);
         assert_eq!(message.received, message.published);
     }
 }
@@ -147,4 +144,87 @@ fn a_full_disk_stops_the_recording_and_not_the_run() {
     assert_eq!(hub.subscriber("soccer/ball").unwrap().next_sample().unwrap().header.sequence, 100);
     let error = tape.finish().unwrap_err();
     assert_eq!(error.kind(), ErrorKind::File);
+}
+
+#[test]
+fn what_comes_from_other_hosts_is_recorded_too() {
+    let output = Shared::default();
+    let tape = Tape::to_writer(output.clone()).unwrap();
+    let here = hub("here");
+    here.observe(Box::new(tape.clone()));
+    let mut receiver = here.receiver("there", "vision", "soccer/ball").unwrap();
+    let arrival = narukom::Arrival { sequence: 5, published: at(900), local: at(90), received: at(100) };
+    receiver.receive(Box::new(Ball { distance: 2.0 }), arrival).unwrap();
+    here.publisher(SEEN, "vision").unwrap().publish(Ball { distance: 3.0 }, at(110));
+    tape.finish().unwrap();
+    let recording = Recording::from_bytes(output.bytes());
+    let messages: Vec<_> = recording.messages().unwrap().map(|message| message.unwrap()).collect();
+    let [received, own] = &messages[..] else { panic!("two messages: {messages:?}") };
+    assert_eq!((&*received.channel.host, received.channel.received_by.as_deref()), ("there", Some("here")));
+    assert_eq!((received.sequence, received.published, received.received), (5, at(90), at(100)));
+    assert_eq!((&*own.channel.host, own.channel.received_by.as_deref(), own.sequence), ("here", None, 1));
+    assert_eq!([received, own].map(|message| message.channel.recorded_by()), ["here", "here"]);
+}
+
+#[test]
+fn an_overview_counts() {
+    let overview = Recording::from_bytes(recorded(10)).overview().unwrap();
+    assert!(overview.is_finished && overview.damages.is_empty());
+    assert_eq!((overview.messages(), overview.span), (60, Some((at(100), at(1050)))));
+    let first = &overview.channels[0];
+    let Channel { host, topic, publisher, .. } = &*first.channel;
+    assert_eq!((&**host, &**topic, &**publisher), ("robot_1", "soccer/ball", "body"));
+    assert_eq!((first.messages, first.bytes, first.first_sequence), (10, 90, 1));
+    assert_eq!(first.frequency(), Some(10.0));
+}
+
+#[test]
+fn messages_are_taken_apart_by_the_schema_in_the_tape() {
+    let recording = Recording::from_bytes(recorded(1));
+    let message = recording.messages().unwrap().next().unwrap().unwrap();
+    let mut decoder = Decoder::new();
+    let value = decoder.decode(&message.channel, message.bytes).unwrap();
+    assert_eq!(value, Value::Fields(vec![("distance".into(), Value::Float(1.0))]));
+    let other = decoder.decode(&message.channel, &Ball { distance: 2.5 }.encode_to_vec()).unwrap();
+    let differences = value.differences(&other);
+    let [difference] = &differences[..] else { panic!("one: {differences:?}") };
+    assert_eq!(difference.path, "distance");
+    assert_eq!((difference.first, difference.second), (Some(&Value::Float(1.0)), Some(&Value::Float(2.5))));
+    assert_eq!(value.differences(&value), []);
+    let error = decoder.decode(&message.channel, b"\x09\x00").unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Opaque);
+}
+
+/// Takes nothing before it is told to.
+struct Held(std::sync::mpsc::Receiver<()>, bool);
+
+impl Write for Held {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        // Once whoever holds it lets go, it flows.
+        self.1 = self.1 || self.0.recv().is_err();
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn in_real_time_nobody_waits_for_a_slow_disk_and_what_is_left_out_is_counted() {
+    let (hold, held) = std::sync::mpsc::channel();
+    // The magic number and the header; then no more.
+    (0..64).for_each(|_| hold.send(()).unwrap());
+    let tape = Tape::to_writer_real_time(Held(held, false)).unwrap();
+    let hub = hub("robot");
+    hub.observe(Box::new(tape.clone()));
+    let mut publisher = hub.publisher(SEEN, "vision").unwrap();
+    let published = 400_000;
+    for number in 0..published {
+        publisher.publish(Ball::default(), at(10 * number));
+    }
+    let dropped = tape.dropped();
+    assert!(dropped > 0, "the queue has an end");
+    drop(hold);
+    assert_eq!(tape.finish().unwrap() + dropped, published);
 }
