@@ -147,7 +147,7 @@ fn looking_on_changes_nothing_and_what_is_published_is_recorded() {
     let folder = folder();
     let tape = folder.path().join("run.mcap").display().to_string();
     let arguments =
-        ["run", MATCH, "--for", "80s", "--seed", "7", "--control", "game", "--record", tape.as_str()];
+        ["run", MATCH, "--for", "30s", "--seed", "7", "--control", "game", "--record", tape.as_str()];
     let alone = ask(folder.path(), &arguments);
     let mut watched = Running::start(folder.path(), &arguments, "control socket: ");
     let echo = ask(folder.path(), &["topic", "echo", "**", "--count", "500", "--format", "json"]);
