@@ -50,7 +50,7 @@ pub(crate) fn judge(case: &Case) -> Verdict {
     }
     // A machine whose micro-steps nobody looks at writes nothing of them down: all else must be the same.
     let is_micro_step = |line: &String| line.starts_with(|first: char| first.is_ascii_digit());
-    let told: Vec<String> = expected.iter().cloned().filter(|line| !is_micro_step(line)).collect();
+    let told: Vec<String> = expected.iter().filter(|line| !is_micro_step(line)).cloned().collect();
     let found = by_machine(case, machine, true);
     match told == found {
         true => Verdict::Same(expected),
