@@ -120,13 +120,13 @@ impl Stepper<'_> {
         self.line.exits.push(node);
     }
 
-    /// An AND that is left forgets who has arrived at the JOINs behind it.
+    /// An AND that is left forgets who has arrived at the JOINs behind it, and a region that is left has not arrived any more.
     fn forget_arrivals(&mut self, node: NodeId) {
-        let chart = self.chart;
-        let inside =
-            |id: &TransitionId| chart.ancestors(chart.transition(*id).source).any(|above| above == node);
-        if self.kind(node) == NodeKind::And {
-            self.arrivals.retain(|id| !inside(id));
+        let (chart, is_region) = (self.chart, self.is_region(node));
+        let from = |id: &TransitionId| chart.transition(*id).source;
+        let inside = |source: NodeId| chart.ancestors(source).any(|above| above == node);
+        if self.kind(node) == NodeKind::And || is_region {
+            self.arrivals.retain(|id| !(inside(from(id)) || is_region && from(id) == node));
         }
     }
 
