@@ -132,7 +132,12 @@ impl<H: Host> Step<'_, H> {
             return Ok(());
         }
         // in phases another may have left it before
-        if let Some(place) = compound.vacates.filter(|&place| self.run.is_active(place)) {
+        // in phases another may have left it before, or entered it again with something inside
+        let is_empty = |place: Place| {
+            let first = self.chart.layout.first(place).index();
+            self.run.is_active(place) && self.run.active.next(first, place.index()) == Some(place.index())
+        };
+        if let Some(place) = compound.vacates.filter(|&place| is_empty(place)) {
             self.run.vacate(self.chart, place, compound.arrives.is_some());
         }
         self.run.arrive_at_join(self.chart, compound);

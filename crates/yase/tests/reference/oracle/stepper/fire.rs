@@ -179,8 +179,10 @@ impl Stepper<'_> {
         let vacated = self.vacates(way);
         let arrives = self.kind(way.ends[0]) == NodeKind::Join;
         for &node in &vacated {
-            if self.kind(node) == NodeKind::Basic || !self.active.contains(&node) {
-                continue; // a BASIC region has nothing to lose; in phases another may have left it before
+            let is_filled = self.chart.children(node).iter().any(|child| self.active.contains(child));
+            if self.kind(node) == NodeKind::Basic || !self.active.contains(&node) || is_filled {
+                // a BASIC region has nothing to lose; in phases another may have left it before, or entered it again
+                continue;
             }
             self.vacated.insert(node);
             match arrives {
