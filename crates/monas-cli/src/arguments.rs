@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 
 use crate::duration;
+use crate::tape::arguments::TapeCommand;
 #[cfg(unix)]
 use crate::topic::TopicCommand;
 
@@ -22,7 +23,8 @@ pub(crate) struct Arguments {
 }
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 done, 1 ran and failed, 2 usage, 3 invalid configuration or model, 4 nothing to connect to, 130 interrupted.
+Exit codes: 0 done, 1 ran and failed, 2 usage, 3 invalid configuration or model, 4 nothing to connect to,
+5 a replay differs from its recording, 130 interrupted.
 Environment: NO_COLOR switches colours off; MONAS_LOG chooses what is logged, for example `info` or `monas=debug`.";
 
 #[derive(Subcommand, Debug)]
@@ -39,6 +41,9 @@ pub(crate) enum Command {
     #[cfg(unix)]
     #[command(subcommand)]
     Topic(TopicCommand),
+    /// Look at recordings, mend, cut and merge them, write them as text, replay them.
+    #[command(subcommand)]
+    Tape(TapeCommand),
     /// Print a completion script for a shell.
     #[command(after_help = "Example: source <(monas completions bash)")]
     Completions {

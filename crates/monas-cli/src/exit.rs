@@ -16,6 +16,8 @@ pub enum Exit {
     Invalid,
     /// 4: what it is to connect to is not there.
     Unreachable,
+    /// 5: a property that was to be checked does not hold: a replay differs from its recording.
+    Diverged,
     /// 130: it was interrupted.
     Interrupted,
 }
@@ -29,6 +31,7 @@ impl Exit {
             Exit::Usage => 2,
             Exit::Invalid => 3,
             Exit::Unreachable => 4,
+            Exit::Diverged => 5,
             Exit::Interrupted => 130,
         }
     }

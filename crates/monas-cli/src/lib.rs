@@ -35,6 +35,7 @@ mod model;
 mod process;
 mod report;
 mod run;
+mod tape;
 #[cfg(unix)]
 mod topic;
 
@@ -86,6 +87,7 @@ fn execute(command: Command, console: &mut Console<'_>) -> Result<Exit, Failure>
         Command::Model(command) => model::execute(&command, console),
         #[cfg(unix)]
         Command::Topic(command) => topic::execute(&command, console),
+        Command::Tape(command) => tape::execute(&command, console),
         Command::Completions { shell } => completions(shell, console).map_err(Failure::from),
     }
 }

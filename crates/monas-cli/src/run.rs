@@ -5,7 +5,7 @@ mod coverage;
 mod interrupt;
 mod links;
 mod live;
-mod pace;
+pub(crate) mod pace;
 mod play;
 mod scoreboard;
 pub(crate) mod table;

@@ -24,6 +24,7 @@
 mod error;
 mod file;
 mod incidents;
+mod label;
 mod parameters;
 mod plan;
 mod running;
@@ -31,6 +32,7 @@ mod stage;
 mod summary;
 
 pub use error::{Error, ErrorKind};
+pub use label::{END, RUN, label_real_time};
 pub use parameters::simulator_file;
 pub use plan::{Match, MatchPlan, Options};
 pub use running::RunningMatch;

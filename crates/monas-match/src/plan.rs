@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use monas::{Agent, ChartListener, HostConfig, LinkConfig, Registry, RunHash, Talws};
+use monas::{Agent, ChartListener, HostConfig, LinkConfig, Provenance, Registry, RunHash, Talws};
 use monas_sim::{FieldGeometry, Physics, Pitch, Rules, Setup, TeamSetup, World};
-use monas_tape::Tape;
 use yase::Diagnostic;
 
 use crate::error::Error;
 use crate::file::{self, MatchFile};
+use crate::label;
 use crate::running::RunningMatch;
 use crate::stage::Stage;
 
@@ -29,7 +29,7 @@ impl Match {
         let once = each_once(diagnostics);
         match file.filter(|_| !once.iter().any(Diagnostic::is_error)) {
             Some(file) => match MatchPlan::new(file, robots, registry.clone()) {
-                Some(plan) => Ok(MatchPlan { warnings: once, ..plan }),
+                Some(plan) => Ok(MatchPlan { warnings: once, files: Provenance::of(path), ..plan }),
                 None => Err(once),
             },
             None => Err(once),
@@ -73,6 +73,7 @@ pub struct MatchPlan {
     listeners: Vec<Box<dyn ChartListener>>,
     warnings: Vec<Diagnostic>,
     is_linked: bool,
+    files: Provenance,
 }
 
 impl std::fmt::Debug for MatchPlan {
@@ -120,6 +121,7 @@ impl MatchPlan {
             listeners: Vec::new(),
             warnings: Vec::new(),
             is_linked: false,
+            files: Provenance::default(),
         })
     }
 
@@ -146,6 +148,25 @@ impl MatchPlan {
         self
     }
 
+    /// The match file and all that it names, as they were read.
+    pub fn files(&self) -> &Provenance {
+        &self.files
+    }
+
+    /// The robots with their agents and without their bodies: for replays.
+    pub fn agents(self) -> Vec<HostConfig> {
+        let host = |robot: RobotPlan| HostConfig {
+            name: robot.host,
+            team: robot.team.into(),
+            number: robot.number.into(),
+            body: None,
+            agents: robot.agents,
+            // Who is heard of is known by them; a replay opens none.
+            links: robot.links,
+        };
+        self.robots.into_iter().map(host).collect()
+    }
+
     /// How long the match takes, in simulated time.
     pub fn length(&self) -> Duration {
         Duration::from_secs_f64(2.0 * self.rules.half_duration)
@@ -168,6 +189,7 @@ impl MatchPlan {
             seed: options.seed,
         };
         let pitch = Pitch::new(World::new(setup).map_err(Error::field)?);
+        let hosts: Vec<String> = self.robots.iter().map(|robot| robot.host.clone()).collect();
         let mut talws = Talws::new().registry(self.registry);
         for (index, RobotPlan { team, number, host, agents, links }) in self.robots.into_iter().enumerate() {
             let body = pitch.body(index).map(|body| Box::new(body) as _);
@@ -180,9 +202,10 @@ impl MatchPlan {
         }
         let hash = RunHash::new();
         talws.observe(Box::new(hash.clone()));
+        let files = &self.files;
         let tape = options.record.map(|path| {
-            let tape = Tape::create(&path).map_err(|error| Error::recording(&path, error))?;
-            Ok((tape, path))
+            let tape = label::simulated(&path, files, options.seed, &hosts);
+            Ok((tape.map_err(|error| Error::recording(&path, error))?, path))
         });
         let tape = tape.transpose()?;
         if let Some((tape, _)) = &tape {

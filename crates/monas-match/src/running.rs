@@ -9,6 +9,7 @@ use monas_tape::Tape;
 
 use crate::error::Error;
 use crate::incidents;
+use crate::label;
 use crate::summary::{AgentSummary, MatchEvent, Scoreboard, Summary, TeamScore, TeamSummary};
 
 /// A match that is being played, in simulated time.
@@ -101,6 +102,9 @@ impl RunningMatch {
     /// # Errors
     /// The recording cannot be ended.
     pub fn finish(mut self) -> Result<Summary, Error> {
+        if let Some((tape, path)) = &self.tape {
+            label::ended(tape, self.simulation.now()).map_err(|error| Error::recording(path, error))?;
+        }
         self.simulation.stop();
         let (hash, messages) = self.hash.finish();
         if let Some((tape, path)) = self.tape.take() {

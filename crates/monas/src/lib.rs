@@ -78,6 +78,7 @@ mod list;
 mod listener;
 mod origin;
 mod parameters;
+mod provenance;
 mod reach;
 pub mod records;
 mod registry;
@@ -95,10 +96,16 @@ pub use link::{Certificates, Endpoints, LinkConfig, LinkStatistics, LinkTranspor
 pub use listener::{ChartListener, MicroStep};
 pub use narukom::{Blackboard, Moment};
 pub use parameters::{ParameterFault, Parameters};
+pub use provenance::Provenance;
 pub use registry::Registry;
 pub use run_hash::RunHash;
 pub use statistics::{ActivityStatistics, AgentStatistics, Average, Statistics};
 pub use talws::{HostConfig, Overview, Running, Simulation, Stopper, Talws, World};
+
+/// Running agents again on what was recorded: [`Talws::replay`].
+pub mod replay {
+    pub use crate::talws::{Company, Difference, Input, Recorded, RecordedMessage, Replay, Tally};
+}
 
 /// What the benches of this crate measure from inside.
 #[doc(hidden)]

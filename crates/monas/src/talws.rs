@@ -9,9 +9,11 @@ mod instance;
 mod links;
 mod list_thread;
 pub(crate) mod measured;
+mod moved;
 mod overview;
 mod pool;
 mod real_time;
+mod replay;
 mod seeds;
 mod setup;
 mod simulated_chart;
@@ -36,6 +38,7 @@ use crate::statistics::Statistics;
 pub(crate) use clock::Clock;
 pub use overview::Overview;
 pub use real_time::Running;
+pub use replay::{Company, Difference, Input, Recorded, RecordedMessage, Replay, Tally};
 pub(crate) use seeds::component_seed;
 pub use simulation::Simulation;
 pub use stopper::Stopper;
@@ -117,6 +120,8 @@ pub struct Talws {
     world: Option<Box<dyn World>>,
     observers: Vec<Box<dyn Observer>>,
     listeners: Vec<Box<dyn ChartListener>>,
+    /// Those who publish on the hosts beside their agents and bodies.
+    company: Vec<Company>,
 }
 
 impl Talws {

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::time::Duration;
 
-use monas::{AgentStatistics, ErrorKind, Registry, Statistics, Talws};
+use monas::{AgentStatistics, ErrorKind, Provenance, Registry, Statistics, Talws};
 use monas_tape::Tape;
 use serde_json::{Value, json};
 use yase::Diagnostic;
@@ -23,9 +23,12 @@ pub(super) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Re
         return Err(Failure::Usage("--seed is for simulated time; these agents run in real time".into()));
     }
     let mut talws = talws(arguments, console)?;
-    let tape = arguments.record.as_ref().map(Tape::create).transpose();
+    let tape = arguments.record.as_ref().map(Tape::create_real_time).transpose();
     let tape = tape.map_err(|error| Failure::failed(format, error))?;
     if let Some(tape) = &tape {
+        let files = Provenance::of(&arguments.config);
+        monas_match::label_real_time(tape, &files, &[Talws::LOCAL.to_owned()])
+            .map_err(|error| Failure::failed(format, error))?;
         talws.observe(Box::new(tape.clone()));
     }
     let interrupt = Interrupt::for_console(console).map_err(|error| Failure::failed(format, error))?;
@@ -35,8 +38,8 @@ pub(super) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Re
     WallClock::start().wait_until(arguments.length.unwrap_or(Duration::MAX), &interrupt);
     drop(control);
     let Statistics { agents, links } = running.stop();
-    let recorded =
-        tape.map(|tape| tape.finish()).transpose().map_err(|error| Failure::failed(format, error))?;
+    let recorded = tape.map(|tape| Ok((tape.finish()?, tape.dropped()))).transpose();
+    let recorded = recorded.map_err(|error: monas_tape::Error| Failure::failed(format, error))?;
     write(console.out, format, &agents, recorded)?;
     match format {
         Format::Text => links::write(console.out, &links)?,
@@ -76,7 +79,7 @@ fn write(
     out: &mut dyn Write,
     format: Format,
     agents: &[AgentStatistics],
-    recorded: Option<u64>,
+    recorded: Option<(u64, u64)>,
 ) -> Result<(), Failure> {
     if format == Format::Json {
         agents.iter().try_for_each(|agent| writeln!(out, "{}", object(agent)))?;
@@ -90,8 +93,8 @@ fn write(
             writeln!(out, "{} has stopped: {reason}", agent.agent)?;
         }
     }
-    if let Some(messages) = recorded {
-        writeln!(out, "messages recorded: {messages}")?;
+    if let Some((messages, dropped)) = recorded {
+        writeln!(out, "messages recorded: {messages}, left out because the disk was too slow: {dropped}")?;
     }
     Ok(())
 }

@@ -36,6 +36,19 @@ pub(crate) fn monas(arguments: &[&str]) -> Answer {
     command(arguments).output().expect("the command starts").into()
 }
 
+/// The project's configuration and models in another folder, with one text replaced by another; and the line of it.
+pub(crate) fn changed(file: &str, text: &str, replacement: &str) -> (tempfile::TempDir, usize) {
+    let folder = tempfile::tempdir().expect("a folder");
+    for part in ["config", "models"] {
+        copy(&root().join(part), &folder.path().join(part));
+    }
+    let path = folder.path().join(file);
+    let original = fs::read_to_string(&path).expect("the file is there");
+    let line = original.lines().position(|line| line.contains(text)).expect("the file holds the text");
+    fs::write(&path, original.replacen(text, replacement, 1)).expect("the folder takes files");
+    (folder, line + 1)
+}
+
 /// Copies a folder with all that is in it.
 pub(crate) fn copy(from: &Path, to: &Path) {
     fs::create_dir(to).expect("the folder takes folders");

@@ -9,6 +9,7 @@ mod model;
 mod run;
 #[cfg(unix)]
 mod running;
+mod tape;
 #[cfg(unix)]
 mod topic;
 mod usage;

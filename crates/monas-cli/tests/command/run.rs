@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-use crate::kit::{command, copy, monas, root};
+use crate::kit::{changed, command, monas};
 use serde_json::Value;
 
 const MATCH: &str = "config/match.xml";
@@ -105,19 +105,6 @@ fn the_projects_match_is_without_findings() {
         "{}",
         answer.err
     );
-}
-
-/// The project's configuration and models in another folder, with one text replaced by another; and the line of it.
-fn changed(file: &str, text: &str, replacement: &str) -> (tempfile::TempDir, usize) {
-    let folder = tempfile::tempdir().expect("a folder");
-    for part in ["config", "models"] {
-        copy(&root().join(part), &folder.path().join(part));
-    }
-    let path = folder.path().join(file);
-    let original = fs::read_to_string(&path).expect("the file is there");
-    let line = original.lines().position(|line| line.contains(text)).expect("the file holds the text");
-    fs::write(&path, original.replacen(text, replacement, 1)).expect("the folder takes files");
-    (folder, line + 1)
 }
 
 #[test]

@@ -20,9 +20,11 @@ fn help_lists_the_commands_and_exit_codes() {
         "run",
         "model",
         "config",
+        "tape",
         "topic",
         "completions",
         "4 nothing to connect to",
+        "5 a replay differs",
         "130 interrupted",
         "NO_COLOR",
     ] {

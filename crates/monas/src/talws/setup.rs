@@ -8,6 +8,7 @@ use narukom::{Blackboard, Moment, Narukom, Observer, Publication};
 
 use super::body::Body;
 use super::links::Brought;
+use super::replay::{Company, names_on};
 use super::seeds::component_seed;
 use super::teller::Teller;
 use super::{HostConfig, Talws, World};
@@ -63,15 +64,33 @@ struct Crew<'a> {
     listeners: Listeners,
     observers: Observers,
     seed: u64,
+    company: Vec<Company>,
 }
 
 /// The observers of all hubs, called one at a time.
-type Observers = Arc<Mutex<Vec<Box<dyn Observer>>>>;
+#[derive(Clone)]
+struct Observers(Arc<Mutex<Vec<Box<dyn Observer>>>>);
+
+impl Observers {
+    fn each(&self, act: impl FnMut(&mut Box<dyn Observer>)) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).iter_mut().for_each(act);
+    }
+}
+
+impl Observer for Observers {
+    fn observe(&mut self, publication: Publication<'_>) {
+        self.each(|observer| observer.observe(publication));
+    }
+
+    fn observe_received(&mut self, publication: Publication<'_>) {
+        self.each(|observer| observer.observe_received(publication));
+    }
+}
 
 impl Stage {
     /// Sorts hosts by team, number and name, agents by name, and binds all charts.
     pub(super) fn new(talws: Talws, seed: u64) -> Result<Stage, Error> {
-        let Talws { registry, hosts: mut configs, world, observers, listeners } = talws;
+        let Talws { registry, hosts: mut configs, world, observers, listeners, company } = talws;
         configs.sort_by(|a, b| (a.team, a.number, &a.name).cmp(&(b.team, b.number, &b.name)));
         let names = configs.iter().map(|host| host.name.as_str());
         distinct("hosts", names.chain(world.iter().map(|world| world.name())))?;
@@ -79,8 +98,9 @@ impl Stage {
         let crew = Crew {
             binder: Binder::new(&registry)?,
             listeners: Listeners::new(listeners),
-            observers: Arc::new(Mutex::new(observers)),
+            observers: Observers(Arc::new(Mutex::new(observers))),
             seed,
+            company,
         };
         let world = world.map(|world| crew.environment(world)).transpose()?;
         let stations = configs.into_iter().map(|config| crew.station(config));
@@ -100,11 +120,7 @@ impl Crew<'_> {
 
     fn hub(&self, name: &str) -> Result<Narukom, Error> {
         let hub = Narukom::with_linked_topics(name).map_err(Error::hub)?;
-        let observers = self.observers.clone();
-        hub.observe(Box::new(move |publication: Publication<'_>| {
-            let mut observers = observers.lock().unwrap_or_else(PoisonError::into_inner);
-            observers.iter_mut().for_each(|observer| observer.observe(publication));
-        }));
+        hub.observe(Box::new(self.observers.clone()));
         Ok(hub)
     }
 
@@ -118,6 +134,7 @@ impl Crew<'_> {
         let body = body.map(|robot| Body::new(robot, &hub)).transpose()?;
         let mut publishers: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
         publishers.extend(body.iter().map(|_| Body::PUBLISHER.to_owned()));
+        publishers.extend(names_on(&self.company, hub.host()));
         let brought = Brought::by(&links, &hub)?;
         let reach = Reach {
             hub: &hub,

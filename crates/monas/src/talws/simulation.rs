@@ -1,13 +1,14 @@
 //! Runs in simulated time: one thread, exact nanoseconds, a defined order.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
-use narukom::{Moment, Narukom, TopicSlot};
+use narukom::{Moment, Narukom};
 
 use super::body::Body;
 use super::clock::Clock;
 use super::instance::Instance;
 use super::links::RunningLink;
+use super::moved::Moved;
 use super::overview::{Inlet, Overview, ShownMoment};
 use super::setup::{Environment, Stage, Station, tick};
 use super::stopper::Stopper;
@@ -15,7 +16,6 @@ use super::{ENDED, Talws};
 use crate::coverage::ChartCoverage;
 use crate::error::{Error, ErrorKind};
 use crate::list::Outcome;
-use crate::origin::{self, Origin};
 use crate::statistics::Statistics;
 
 /// A run in simulated time.
@@ -36,21 +36,10 @@ pub struct Simulation {
 /// A host with all that runs on it.
 struct Host {
     hub: Narukom,
-    moved: Arc<Moved>,
-    /// Where the topics that moved are looked through; kept for its memory.
-    looked_through: Vec<News>,
+    moved: Moved,
     body: Option<(Body, u64)>,
     instances: Vec<Instance>,
 }
-
-/// The topics on which something was published since somebody looked.
-#[derive(Default)]
-struct Moved {
-    news: Mutex<Vec<News>>,
-}
-
-/// A message was published: its topic, and the activity of a chart that did it, if one did.
-type News = (TopicSlot, Option<Origin>);
 
 impl Simulation {
     pub(super) fn new(talws: Talws, seed: u64) -> Result<Simulation, Error> {
@@ -200,7 +189,7 @@ impl Host {
         running: &mut Vec<RunningLink>,
     ) -> Result<Host, Error> {
         let Station { hub, body, members, links } = station;
-        let moved = Arc::new(Moved::default());
+        let moved = Moved::default();
         let mut linked = Vec::new();
         for link in links {
             if let Some(other) = &link.clock {
@@ -213,13 +202,13 @@ impl Host {
             linked.push(link.waker());
             running.push(link);
         }
-        let waker = moved.clone();
+        let note = moved.noting();
         hub.set_waker(Arc::new(move |topic| {
-            waker.note(topic);
+            note(topic);
             linked.iter().for_each(|wake| wake(topic));
         }));
         let instances = members.into_iter().map(Instance::new).collect();
-        Ok(Host { hub, moved, looked_through: Vec::new(), body: body.map(|body| (body, 0)), instances })
+        Ok(Host { hub, moved, body: body.map(|body| (body, 0)), instances })
     }
 
     fn due(&self, now: Moment) -> Moment {
@@ -258,26 +247,11 @@ impl Host {
 
     /// Tells every agent which topics have moved.
     fn wake(&mut self, now: Moment) {
-        self.moved.take(&mut self.looked_through);
-        for (topic, origin) in self.looked_through.drain(..) {
-            self.instances.iter_mut().for_each(|instance| instance.message_arrived(topic, origin, now));
-        }
+        self.moved.tell(self.instances.iter_mut(), now);
     }
 
     /// Hands the newest commands to the body, which may move no topic.
     fn act(&mut self, now: Moment) -> Result<(), Error> {
         self.body.as_mut().map_or(Ok(()), |(body, _)| body.act(now))
-    }
-}
-
-impl Moved {
-    fn note(&self, topic: TopicSlot) {
-        self.news.lock().unwrap_or_else(PoisonError::into_inner).push((topic, origin::publishing()));
-    }
-
-    /// Swaps what was noted for an empty list.
-    fn take(&self, into: &mut Vec<News>) {
-        into.clear();
-        std::mem::swap(&mut *self.news.lock().unwrap_or_else(PoisonError::into_inner), into);
     }
 }

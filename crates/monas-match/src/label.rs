@@ -1,0 +1,52 @@
+//! What is written on a tape before anything is recorded: which run it is of, and the files of that run.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use monas::{Moment, Provenance};
+use monas_tape::{Error, Tape};
+
+/// The name of the facts about a run: `version`, `configuration` (the name of a file that is in the tape), `configuration_hash`, `time`
+/// (`simulated` or `real`), `seed` if time is simulated, and `robots`, the hosts, with blanks between them.
+pub const RUN: &str = "run";
+
+/// The name of the facts about its end: `nanoseconds`, the moment up to which everything happened. What is recorded later was
+/// published while agents were being stopped.
+pub const END: &str = "end";
+
+/// Begins the tape of a run in simulated time.
+pub(crate) fn simulated(
+    path: &Path,
+    files: &Provenance,
+    seed: u64,
+    robots: &[String],
+) -> Result<Tape, Error> {
+    let tape = Tape::create(path)?;
+    label(&tape, files, robots, &[("time", "simulated".to_owned()), ("seed", seed.to_string())])?;
+    Ok(tape)
+}
+
+/// Writes on a tape that it is of a run in real time.
+///
+/// # Errors
+/// The tape cannot be written.
+pub fn label_real_time(tape: &Tape, files: &Provenance, robots: &[String]) -> Result<(), Error> {
+    label(tape, files, robots, &[("time", "real".to_owned())])
+}
+
+fn label(tape: &Tape, files: &Provenance, robots: &[String], more: &[(&str, String)]) -> Result<(), Error> {
+    let facts = [
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("configuration", files.root().to_owned()),
+        ("configuration_hash", files.hash()),
+        ("robots", robots.join(" ")),
+    ];
+    let facts = facts.iter().chain(more).map(|(key, value)| ((*key).to_owned(), value.clone()));
+    tape.describe(RUN, &facts.collect())?;
+    files.files().try_for_each(|(name, media_type, content)| tape.attach(name, media_type, content))
+}
+
+/// Writes on a tape when its run ended.
+pub(crate) fn ended(tape: &Tape, now: Moment) -> Result<(), Error> {
+    tape.describe(END, &BTreeMap::from([("nanoseconds".to_owned(), now.as_nanos().to_string())]))
+}

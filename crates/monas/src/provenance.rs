@@ -1,0 +1,218 @@
+//! Where a run comes from: the files of its configuration, as they were.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+use crate::config;
+use crate::config::xml::{self, Element};
+
+/// What the names of configurations and models end with. Nothing else that a configuration names belongs to it: least of all keys.
+const PARTS: [(&str, &str); 4] =
+    [("xml", "text/xml"), ("srm", "text/plain"), ("xmi", "text/xml"), ("scxml", "text/xml")];
+
+/// A configuration and every configuration and model that it names, directly or not, so that the same agents can be put together
+/// again elsewhere and later.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Provenance {
+    /// The name of the first file.
+    root: String,
+    /// The files' contents by their names: their paths from the folder that holds all of them, with slashes.
+    files: BTreeMap<String, Vec<u8>>,
+}
+
+impl Provenance {
+    /// The configuration at `path`, with what it names. What it names and is not there is left out: whoever loads the configuration
+    /// hears of that.
+    pub fn of(path: impl AsRef<Path>) -> Provenance {
+        let mut found = BTreeMap::new();
+        let root = normal(path.as_ref());
+        collect(&root, &mut found);
+        let folder = common_folder(found.keys());
+        let name = |path: &Path| slashes(path.strip_prefix(&folder).unwrap_or(path));
+        Provenance {
+            root: name(&root),
+            files: found.iter().map(|(path, content)| (name(path), content.clone())).collect(),
+        }
+    }
+
+    /// One whose files are at hand.
+    pub fn from_files(
+        root: impl Into<String>,
+        files: impl IntoIterator<Item = (String, Vec<u8>)>,
+    ) -> Provenance {
+        Provenance { root: root.into(), files: files.into_iter().collect() }
+    }
+
+    /// The name of the configuration itself.
+    pub fn root(&self) -> &str {
+        &self.root
+    }
+
+    /// Name, media type and content of each file, by name.
+    pub fn files(&self) -> impl Iterator<Item = (&str, &'static str, &[u8])> {
+        self.files.iter().map(|(name, content)| {
+            (name.as_str(), media_type(Path::new(name)).unwrap_or("text/plain"), &content[..])
+        })
+    }
+
+    /// 64 hexadecimal digits that are others for every other configuration: BLAKE3 of the files by name, of each its name and its
+    /// content, each with its length in front (u64, little endian).
+    pub fn hash(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        for (name, content) in &self.files {
+            for part in [name.as_bytes(), content] {
+                hasher.update(&(part.len() as u64).to_le_bytes());
+                hasher.update(part);
+            }
+        }
+        hasher.finalize().to_hex().to_string()
+    }
+
+    /// Writes the files into a folder, and answers the path of the configuration there.
+    ///
+    /// # Errors
+    /// A file cannot be written, or its name leads out of the folder.
+    pub fn unpack(&self, folder: &Path) -> io::Result<PathBuf> {
+        let inside = |name: &str| {
+            let path = Path::new(name);
+            let is_inside =
+                !name.is_empty() && path.components().all(|part| matches!(part, Component::Normal(_)));
+            match is_inside {
+                true => Ok(folder.join(path)),
+                false => Err(io::Error::other(format!("`{name}` is no name of a file of a configuration"))),
+            }
+        };
+        for (name, content) in &self.files {
+            let path = inside(name)?;
+            path.parent().map_or(Ok(()), fs::create_dir_all)?;
+            fs::write(path, content)?;
+        }
+        inside(&self.root)
+    }
+}
+
+/// Adds a file and what it names.
+fn collect(path: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
+    if media_type(path).is_none() || found.contains_key(path) {
+        return;
+    }
+    let Ok(source) = config::read_file(path) else { return };
+    found.insert(path.to_owned(), source.text.clone().into_bytes());
+    if path.extension().is_some_and(|extension| extension == "xml") {
+        xml::parse(&source).0.iter().for_each(|element| collect_named(path, element, found));
+    }
+}
+
+/// Adds the files that an element and those in it name, in attributes or as text.
+fn collect_named(path: &Path, element: &Element, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
+    let values = element.attributes().iter().map(|attribute| &*attribute.value);
+    for named in values.chain([element.text()]) {
+        if media_type(Path::new(named)).is_some()
+            && let Ok(file) = config::locate(path, named)
+        {
+            collect(&normal(&file), found);
+        }
+    }
+    element.children().iter().for_each(|child| collect_named(path, child, found));
+}
+
+fn media_type(path: &Path) -> Option<&'static str> {
+    let extension = path.extension()?.to_str()?;
+    PARTS.iter().find(|(known, _)| *known == extension).map(|(_, media_type)| *media_type)
+}
+
+/// The path without `.` and, where that can be seen, without `..`.
+fn normal(path: &Path) -> PathBuf {
+    let mut parts: Vec<Component<'_>> = Vec::new();
+    for part in path.components() {
+        match (part, parts.last()) {
+            (Component::CurDir, _) => {}
+            (Component::ParentDir, Some(Component::Normal(_))) => drop(parts.pop()),
+            _ => parts.push(part),
+        }
+    }
+    parts.into_iter().collect()
+}
+
+/// The innermost folder that holds all files.
+fn common_folder<'a>(mut paths: impl Iterator<Item = &'a PathBuf>) -> PathBuf {
+    let first = paths.next().and_then(|path| path.parent()).unwrap_or(Path::new("")).to_owned();
+    paths.fold(first, |folder, path| {
+        let both = folder.components().zip(path.components());
+        both.take_while(|(a, b)| a == b).map(|(part, _)| part).collect()
+    })
+}
+
+fn slashes(path: &Path) -> String {
+    let parts: Vec<_> = path.components().map(|part| part.as_os_str().to_string_lossy()).collect();
+    parts.join("/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn project(files: &[(&str, &str)]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, content) in files {
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, content).unwrap();
+        }
+        folder
+    }
+
+    const FILES: [(&str, &str); 5] = [
+        (
+            "config/match.xml",
+            "<match field='config/field.xml'><robot role='roles/goalie.xml' key='config/secret.pem'/></match>",
+        ),
+        ("config/field.xml", "<field/>"),
+        ("config/roles/goalie.xml", "<agent><name>G</name><statechart>models/g.srm</statechart></agent>"),
+        ("config/secret.pem", "nobody is to see this"),
+        ("models/g.srm", "Liveness:\ng = A"),
+    ];
+
+    #[test]
+    fn a_configuration_is_all_that_it_names_and_no_more() {
+        let folder = project(&FILES);
+        let provenance = Provenance::of(folder.path().join("config/match.xml"));
+        assert_eq!(provenance.root(), "config/match.xml");
+        let names: Vec<&str> = provenance.files().map(|(name, ..)| name).collect();
+        assert_eq!(
+            names,
+            ["config/field.xml", "config/match.xml", "config/roles/goalie.xml", "models/g.srm"]
+        );
+    }
+
+    #[test]
+    fn it_can_be_unpacked_and_is_the_same_then() {
+        let folder = project(&FILES);
+        let provenance = Provenance::of(folder.path().join("config/match.xml"));
+        let elsewhere = tempfile::tempdir().unwrap();
+        let root = provenance.unpack(elsewhere.path()).unwrap();
+        let again = Provenance::of(root);
+        assert_eq!((&again, again.hash()), (&provenance, provenance.hash()));
+        fs::write(elsewhere.path().join("models/g.srm"), "Liveness:\ng = B").unwrap();
+        assert_ne!(Provenance::of(elsewhere.path().join("config/match.xml")).hash(), provenance.hash());
+    }
+
+    #[test]
+    fn nothing_is_written_outside_the_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["../out.xml", "/tmp/out.xml", "a/../../out.xml", ""] {
+            let hostile = Provenance::from_files(name, [(name.to_owned(), b"x".to_vec())]);
+            assert!(hostile.unpack(&folder.path().join("in")).is_err(), "{name}");
+        }
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn paths_are_written_in_one_way() {
+        assert_eq!(normal(Path::new("./config/../models/g.srm")), Path::new("models/g.srm"));
+        assert_eq!(normal(Path::new("../config/m.xml")), Path::new("../config/m.xml"));
+        assert_eq!(Provenance::of("nowhere.xml"), Provenance::from_files("nowhere.xml", []));
+    }
+}
