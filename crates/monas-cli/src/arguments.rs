@@ -82,14 +82,12 @@ pub(crate) struct RunArguments {
 
 #[derive(Subcommand, Debug)]
 pub(crate) enum ModelCommand {
-    /// Transform a role's formulas into a statechart and print it.
-    Transform {
-        /// The model file.
-        #[arg(value_hint = ValueHint::FilePath)]
-        file: PathBuf,
-        #[command(flatten)]
-        format: FormatArgument,
-    },
+    /// Transform a model into the next one of the method; without --to, into the statechart it describes.
+    Transform(TransformArguments),
+    /// Write a model in another format of its kind.
+    ///
+    /// What the format cannot say is listed, and nothing is written unless --lossy is given.
+    Convert(ConvertArguments),
     /// Draw the statechart of a model as SVG.
     Draw {
         /// The model file.
@@ -109,6 +107,71 @@ pub(crate) enum ModelCommand {
         #[command(flatten)]
         format: FormatArgument,
     },
+}
+
+/// What `model transform` may be told.
+#[derive(Args, Debug)]
+pub(crate) struct TransformArguments {
+    /// The model file.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) file: PathBuf,
+    /// What to make of it.
+    #[arg(long, value_name = "KIND")]
+    pub(crate) to: Option<Kind>,
+    /// Another model to take in: the protocols (AIP) for an SRM, a protocol's chart (EAC) for an IAC.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) with: Vec<PathBuf>,
+    /// Which one, where there are several: the name of a protocol or a role.
+    #[arg(long)]
+    pub(crate) name: Option<String>,
+    /// Where to write it; standard output if not given.
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+    /// How to write it: a format of `model convert`, or for a functionality table `table`, `html` or `csv`.
+    #[arg(long = "as", value_name = "FORMAT")]
+    pub(crate) written: Option<String>,
+    /// Write it even if the format cannot say all of it.
+    #[arg(long)]
+    pub(crate) lossy: bool,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
+}
+
+/// The kinds of models that models are transformed into.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub(crate) enum Kind {
+    /// Use cases, from actors and goals.
+    Suc,
+    /// Protocols, from use cases.
+    Aip,
+    /// Roles, from use cases.
+    Srm,
+    /// The functionality table, from roles.
+    Ft,
+    /// The statechart of a protocol, from protocols.
+    Eac,
+    /// The statechart of a role, from roles.
+    Iac,
+}
+
+/// What `model convert` may be told.
+#[derive(Args, Debug)]
+pub(crate) struct ConvertArguments {
+    /// The model file.
+    #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
+    pub(crate) input: PathBuf,
+    /// Where to write it; `-` is standard output.
+    #[arg(value_name = "OUT", value_hint = ValueHint::FilePath)]
+    pub(crate) output: PathBuf,
+    /// The format: text, role, xmi, xmi-2010, xmi-flat, xmi-2012, xmi-2018 or scxml. If not given, the ending of OUT says it
+    /// (.model, .stct, .xmi, .scxml, .txt); any other ending means XMI for what is text, and text for what is XMI.
+    #[arg(long = "as", value_name = "FORMAT")]
+    pub(crate) written: Option<String>,
+    /// Write it even if the format cannot say all of it.
+    #[arg(long)]
+    pub(crate) lossy: bool,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
 }
 
 #[derive(Subcommand, Debug)]

@@ -1,10 +1,15 @@
-//! `monas model`: roles read, transformed, drawn and checked.
+//! `monas model`: models read, transformed, converted, drawn and checked.
+
+mod convert;
+mod transform;
 
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
+use aseme::convert::Model;
 use monas::config;
-use yase::{Diagnostic, Statechart};
+use yase::{Diagnostic, Source, Statechart};
 
 use crate::arguments::{Format, ModelCommand};
 use crate::console::Console;
@@ -14,22 +19,14 @@ use crate::report;
 
 pub(crate) fn execute(command: &ModelCommand, console: &mut Console<'_>) -> Result<Exit, Failure> {
     match command {
-        ModelCommand::Transform { file, format } => transform(file, format.value, console),
+        ModelCommand::Transform(arguments) => transform::execute(arguments, console),
+        ModelCommand::Convert(arguments) => convert::execute(arguments, console),
         ModelCommand::Draw { file, output, format } => draw(file, output.as_deref(), format.value, console),
         ModelCommand::Check { files, format } => {
             let files: Vec<&Path> = files.iter().map(AsRef::as_ref).collect();
             check(&files, format.value, console)
         }
     }
-}
-
-fn transform(file: &Path, format: Format, console: &mut Console<'_>) -> Result<Exit, Failure> {
-    let chart = valid_chart(file, format, console)?;
-    match format {
-        Format::Text => write!(console.out, "{}", aseme::to_text(&chart))?,
-        Format::Json => writeln!(console.out, "{}", aseme::to_json(&chart))?,
-    }
-    Ok(Exit::Success)
 }
 
 fn draw(
@@ -39,32 +36,67 @@ fn draw(
     console: &mut Console<'_>,
 ) -> Result<Exit, Failure> {
     let drawing = aseme::to_svg(&valid_chart(file, format, console)?);
+    write(output, &drawing, format, console)
+}
+
+/// Writes a text into a file, or on standard output.
+fn write(
+    output: Option<&Path>,
+    text: &str,
+    format: Format,
+    console: &mut Console<'_>,
+) -> Result<Exit, Failure> {
     match output {
-        Some(path) => fs::write(path, drawing)
+        Some(path) => fs::write(path, text)
             .map_err(|error| Failure::Failed(format, format!("cannot write {}: {error}", path.display())))?,
-        None => console.out.write_all(drawing.as_bytes())?,
+        None => console.out.write_all(text.as_bytes())?,
     }
     Ok(Exit::Success)
+}
+
+/// The model in a file without errors, and its text; findings are shown.
+fn valid_model(
+    path: &Path,
+    format: Format,
+    console: &mut Console<'_>,
+) -> Result<(Arc<Source>, Model, aseme::convert::Format, Vec<Diagnostic>), Failure> {
+    let source = config::read_file(path).map_err(|unread| Failure::Invalid(format, vec![*unread]))?;
+    match aseme::convert::read(&source) {
+        (Some((model, written)), findings) if !findings.iter().any(Diagnostic::is_error) => {
+            report::write(console, format, &findings)?;
+            Ok((source, model, written, findings))
+        }
+        (_, findings) => Err(Failure::Invalid(format, findings)),
+    }
 }
 
 /// All that is wrong with all files, and one line for each that is right.
 fn check(paths: &[&Path], format: Format, console: &mut Console<'_>) -> Result<Exit, Failure> {
     let mut exit = Exit::Success;
     for path in paths {
-        let (chart, diagnostics) = read(path);
+        let (what, diagnostics) = checked(path);
         report::write(console, format, &diagnostics)?;
         if diagnostics.iter().any(Diagnostic::is_error) {
             exit = Exit::Invalid;
-        } else if let (Some(chart), Format::Text) = (chart, format) {
-            let (states, transitions) = (chart.nodes().len(), chart.transitions().len());
-            writeln!(
-                console.out,
-                "{}: {states} nodes, {transitions} transitions, no errors",
-                path.display()
-            )?;
+        } else if let Format::Text = format {
+            writeln!(console.out, "{}: {what}, no errors", path.display())?;
         }
     }
     Ok(exit)
+}
+
+/// What a file holds, in a few words, and all that is to be said of it.
+fn checked(path: &Path) -> (String, Vec<Diagnostic>) {
+    let model = config::read_file(path).map(|source| aseme::convert::read(&source));
+    match model {
+        Ok((Some((Model::Role(_) | Model::Chart(_), _)), _)) | Err(_) => {
+            let (chart, diagnostics) = read(path);
+            let counts = chart.map_or((0, 0), |chart| (chart.nodes().len(), chart.transitions().len()));
+            (format!("{} nodes, {} transitions", counts.0, counts.1), diagnostics)
+        }
+        Ok((Some((model, _)), diagnostics)) => (format!("a model of the kind {}", model.kind()), diagnostics),
+        Ok((None, diagnostics)) => (String::from("nothing"), diagnostics),
+    }
 }
 
 /// The chart of a file without errors; warnings are shown.

@@ -2,6 +2,7 @@
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot be prepared fails")]
 
+mod convert;
 #[cfg(unix)]
 mod elsewhere;
 mod kit;
