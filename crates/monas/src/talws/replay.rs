@@ -254,6 +254,6 @@ impl std::fmt::Debug for Replay {
 }
 
 /// The names of those who published on a host.
-pub(super) fn names_on<'a>(company: &'a [Company], host: &str) -> impl Iterator<Item = String> {
+pub(super) fn names_on(company: &[Company], host: &str) -> impl Iterator<Item = String> {
     company.iter().filter(move |one| one.host == host).map(|one| one.publisher.clone())
 }
