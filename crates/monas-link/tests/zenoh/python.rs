@@ -41,6 +41,6 @@ fn a_client_in_python_reads_the_ball_and_commands_the_robot() {
     assert!(client.wait().unwrap().success());
     let said = std::io::read_to_string(client.stdout.take().unwrap()).unwrap();
     assert!(said.matches("ball of robot_1: ").count() >= 3, "{said}");
-    assert_eq!(robot.received("laptop", "soccer/command").delivered, 3);
+    await_that("the report", || robot.received("laptop", "soccer/command").delivered == 3);
     robot.stop();
 }
