@@ -392,7 +392,7 @@ fn a_link_is_read() {
     assert_eq!(sent, [("test/ball", Reliability::BestEffort, 2), ("test/*", Reliability::Reliable, 4)]);
     let received: Vec<_> = settings.receive.iter().map(|rule| (rule.topics.as_str(), rule.place)).collect();
     assert_eq!(received, [("monas/host", Place::Other), ("monas/cycle", Place::Own)]);
-    let budget = Budget { packets: 240, window: Duration::from_secs(1200), payload: 128 };
+    let budget = Budget { packets: 12, window: Duration::from_secs(60), payload: 128 };
     assert_eq!(settings.budget, Some(budget));
     assert!(
         settings.access.may_publish("robot_1", "test/ball")

@@ -161,11 +161,10 @@ impl LinkReader<'_> {
         });
         attributes.finish();
         match (profile, packets, window, payload) {
-            (Some((packets, seconds, payload)), None, None, None) => Some(Budget {
-                packets: (packets / robots.unwrap_or(1)).max(1),
-                window: Duration::from_secs(seconds),
-                payload,
-            }),
+            (Some((packets, seconds, payload)), None, None, None) => {
+                let length = Duration::from_secs(seconds);
+                Some(Budget::of_game(packets, length, robots.unwrap_or(1), payload))
+            }
             (None, Some(packets), Some(window), Some(payload)) if robots.is_none() => {
                 Some(Budget { packets, window, payload })
             }
