@@ -250,7 +250,13 @@ fn a_message_wakes_a_chart_in_which_everybody_waits() {
     let running = scene.start(same, "m = Wait . A");
     while scene.next(1) != ["ball 1"] {}
     scene.report_news();
-    assert_eq!(scene.next(2), ["ball 2", "A"]);
+    // A message that came while it was called wakes it once more, be it the one that it has already seen.
+    let mut told = scene.next(1);
+    while told == ["ball 1"] {
+        told = scene.next(1);
+    }
+    assert_eq!(told, ["ball 2"]);
+    assert_eq!(scene.next(1), ["A"]);
     running.stop();
 }
 
