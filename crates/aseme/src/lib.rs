@@ -65,6 +65,7 @@
 //! ```
 
 pub mod aip;
+pub mod check;
 pub mod convert;
 mod document;
 pub mod functionality;

@@ -28,12 +28,20 @@ const CANDIDATES: usize = 5;
 
 /// Gives the transitions of a chart what the entries say of them; entries that do not fit are returned, in order.
 pub fn refine(chart: &mut Statechart, entries: &[TransitionEntry]) -> Vec<Unmatched> {
+    refine_placed(chart, entries).1
+}
+
+/// The same, with the number of the entry that each transition was given.
+pub(crate) fn refine_placed(
+    chart: &mut Statechart,
+    entries: &[TransitionEntry],
+) -> (BTreeMap<TransitionId, usize>, Vec<Unmatched>) {
     let wishes: Vec<Wish<TransitionId>> = entries.iter().map(|entry| transitions_of(chart, entry)).collect();
     let (chosen, unmatched) = settle(&wishes, |id| path::shortest_transition(chart, *id));
-    for (id, index) in chosen {
+    for (&id, &index) in &chosen {
         entries[index].apply(chart, id);
     }
-    unmatched
+    (chosen, unmatched)
 }
 
 /// Gives the states of a chart what the entries say of them; entries that do not fit are returned, in order.

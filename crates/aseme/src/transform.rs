@@ -52,11 +52,19 @@ pub fn srm_to_iac(srm: &Srm) -> (Statechart, Vec<Diagnostic>) {
 
 /// The statechart of formulas alone.
 pub fn liveness_to_statechart(liveness: &Liveness) -> (Statechart, Vec<Diagnostic>) {
+    let (chart, _, diagnostics) = expanded(liveness);
+    (chart, diagnostics)
+}
+
+/// The same, with the place in the formulas that each node comes from, by [`NodeId`].
+pub(crate) fn expanded(liveness: &Liveness) -> (Statechart, Vec<Span>, Vec<Diagnostic>) {
     let name = liveness.formulas().first().map_or("", |formula| formula.name.as_str());
     let mut expansion = Expansion {
         liveness,
         formulas: liveness.by_name(),
         chart: Statechart::new(name),
+        spans: vec![liveness.formulas().first().map_or(Span::default(), |formula| formula.name_span)],
+        here: Span::default(),
         open: Vec::new(),
         bytes: 0,
         refused: None,
@@ -64,7 +72,7 @@ pub fn liveness_to_statechart(liveness: &Liveness) -> (Statechart, Vec<Diagnosti
     if !liveness.formulas().is_empty() {
         expansion.formula(Statechart::ROOT, 0, 1);
     }
-    (expansion.chart, expansion.refused.into_iter().collect())
+    (expansion.chart, expansion.spans, expansion.refused.into_iter().collect())
 }
 
 /// A chart in the making.
@@ -72,6 +80,10 @@ struct Expansion<'a> {
     liveness: &'a Liveness,
     formulas: BTreeMap<&'a str, usize>,
     chart: Statechart,
+    /// The place that each node comes from.
+    spans: Vec<Span>,
+    /// The place of the term that is being expanded.
+    here: Span,
     /// The formulas that are being expanded around the present node: one that refines itself is not followed again.
     open: Vec<usize>,
     bytes: usize,
@@ -94,6 +106,7 @@ impl<'a> Expansion<'a> {
         if self.refuses(term, level) {
             return;
         }
+        self.here = liveness.span(term);
         match liveness.term(term) {
             Term::Sequence(items) => self.sequence(node, items, level),
             Term::Choice(items) => self.choice(node, items, level),
@@ -231,6 +244,7 @@ impl Expansion<'_> {
 impl Expansion<'_> {
     fn add(&mut self, parent: NodeId, kind: NodeKind, name: String) -> NodeId {
         self.bytes += NODE_BYTES + name.len();
+        self.spans.push(self.here);
         self.chart.add(parent, Node::new(kind, name))
     }
 
@@ -242,11 +256,11 @@ impl Expansion<'_> {
     /// The node of an operand, not yet expanded.
     fn state(&mut self, parent: NodeId, term: TermId) -> NodeId {
         let name = self.liveness.compact(term);
-        if !self.is_activity(term) {
-            return self.add(parent, NodeKind::Or, name);
-        }
-        let state = self.add(parent, NodeKind::Basic, name.clone());
-        self.chart.node_mut(state).activity = Some(name);
+        let kind = if self.is_activity(term) { NodeKind::Basic } else { NodeKind::Or };
+        let activity = (kind == NodeKind::Basic).then(|| name.clone());
+        let state = self.add(parent, kind, name);
+        self.spans[state.0 as usize] = self.liveness.span(term);
+        self.chart.node_mut(state).activity = activity;
         state
     }
 
@@ -276,8 +290,9 @@ impl Expansion<'_> {
     }
 
     fn refined_state(&mut self, parent: NodeId, term: TermId, level: usize) -> NodeId {
-        let state = self.state(parent, term);
+        let (state, here) = (self.state(parent, term), self.here);
         self.refine(state, term, level + 1);
+        self.here = here;
         state
     }
 

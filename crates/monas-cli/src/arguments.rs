@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 done, 1 ran and failed, 2 usage, 3 invalid configuration or model, 4 nothing to connect to,
-5 a replay differs from its recording, 130 interrupted.
+5 a replay differs from its recording or a check of a model finds an error, 130 interrupted.
 Environment: NO_COLOR switches colours off; MONAS_LOG chooses what is logged, for example `info` or `monas=debug`.";
 
 #[derive(Subcommand, Debug)]
@@ -100,13 +100,37 @@ pub(crate) enum ModelCommand {
         format: FormatArgument,
     },
     /// Say what is wrong with models, and nothing else.
-    Check {
-        /// The model files.
-        #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
-        files: Vec<PathBuf>,
-        #[command(flatten)]
-        format: FormatArgument,
-    },
+    ///
+    /// Ends with 0 if nothing is wrong or there are warnings only, with 3 if a model cannot be read, and with 5 if a check finds an error.
+    Check(CheckArguments),
+}
+
+/// What `model check` may be told.
+#[derive(Args, Debug)]
+pub(crate) struct CheckArguments {
+    /// The model files.
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) files: Vec<PathBuf>,
+    /// An event that comes from outside: an activity, another agent or a person raises it.
+    #[arg(long = "event", value_name = "NAME")]
+    pub(crate) events: Vec<String>,
+    /// Say what is only good to know, too.
+    #[arg(long)]
+    pub(crate) all: bool,
+    /// For people, or for programs: one JSON object a line, or one document of SARIF 2.1.0 on standard output.
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    pub(crate) format: CheckFormat,
+}
+
+/// How findings about models are written.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub(crate) enum CheckFormat {
+    /// For people.
+    Text,
+    /// For programs: one object a line.
+    Json,
+    /// For programs that show findings in the text: SARIF 2.1.0.
+    Sarif,
 }
 
 /// What `model transform` may be told.

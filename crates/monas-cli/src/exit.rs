@@ -16,7 +16,7 @@ pub enum Exit {
     Invalid,
     /// 4: what it is to connect to is not there.
     Unreachable,
-    /// 5: a property that was to be checked does not hold: a replay differs from its recording.
+    /// 5: a property that was to be checked does not hold: a replay differs from its recording, a check of a model finds an error.
     Diverged,
     /// 130: it was interrupted.
     Interrupted,

@@ -1,5 +1,6 @@
 //! `monas model`: models read, transformed, converted, drawn and checked.
 
+mod check;
 mod convert;
 mod transform;
 
@@ -22,10 +23,7 @@ pub(crate) fn execute(command: &ModelCommand, console: &mut Console<'_>) -> Resu
         ModelCommand::Transform(arguments) => transform::execute(arguments, console),
         ModelCommand::Convert(arguments) => convert::execute(arguments, console),
         ModelCommand::Draw { file, output, format } => draw(file, output.as_deref(), format.value, console),
-        ModelCommand::Check { files, format } => {
-            let files: Vec<&Path> = files.iter().map(AsRef::as_ref).collect();
-            check(&files, format.value, console)
-        }
+        ModelCommand::Check(arguments) => check::execute(arguments, console),
     }
 }
 
@@ -67,35 +65,6 @@ fn valid_model(
             Ok((source, model, written, findings))
         }
         (_, findings) => Err(Failure::Invalid(format, findings)),
-    }
-}
-
-/// All that is wrong with all files, and one line for each that is right.
-fn check(paths: &[&Path], format: Format, console: &mut Console<'_>) -> Result<Exit, Failure> {
-    let mut exit = Exit::Success;
-    for path in paths {
-        let (what, diagnostics) = checked(path);
-        report::write(console, format, &diagnostics)?;
-        if diagnostics.iter().any(Diagnostic::is_error) {
-            exit = Exit::Invalid;
-        } else if let Format::Text = format {
-            writeln!(console.out, "{}: {what}, no errors", path.display())?;
-        }
-    }
-    Ok(exit)
-}
-
-/// What a file holds, in a few words, and all that is to be said of it.
-fn checked(path: &Path) -> (String, Vec<Diagnostic>) {
-    let model = config::read_file(path).map(|source| aseme::convert::read(&source));
-    match model {
-        Ok((Some((Model::Role(_) | Model::Chart(_), _)), _)) | Err(_) => {
-            let (chart, diagnostics) = read(path);
-            let counts = chart.map_or((0, 0), |chart| (chart.nodes().len(), chart.transitions().len()));
-            (format!("{} nodes, {} transitions", counts.0, counts.1), diagnostics)
-        }
-        Ok((Some((model, _)), diagnostics)) => (format!("a model of the kind {}", model.kind()), diagnostics),
-        Ok((None, diagnostics)) => (String::from("nothing"), diagnostics),
     }
 }
 

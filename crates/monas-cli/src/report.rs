@@ -36,7 +36,7 @@ fn count(diagnostics: &[Diagnostic]) -> String {
     [plural(errors, "error"), plural(others, "warning")].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-fn object(diagnostic: &Diagnostic) -> Value {
+pub(crate) fn object(diagnostic: &Diagnostic) -> Value {
     let position = diagnostic.position();
     json!({
         "code": diagnostic.code,

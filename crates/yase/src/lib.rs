@@ -127,6 +127,6 @@ pub use semantics::{
     FailureEvents, Firing, Joining, RootEnd, RunningOnExit, SegmentOrder, Semantics, Sharing, StartRest,
     TimerScope,
 };
-pub use statechart::{Node, NodeId, NodeKind, Statechart, Transition, TransitionId};
+pub use statechart::{Element, Node, NodeId, NodeKind, Statechart, Transition, TransitionId};
 pub use trace::{Occasion, TraceRecord};
 pub use vocabulary::{FieldId, FunctionId, TopicId, Value, Vocabulary};

@@ -15,6 +15,15 @@ pub struct NodeId(pub u32);
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct TransitionId(pub u32);
 
+/// A part of a chart that something can be said about.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum Element {
+    /// A node.
+    Node(NodeId),
+    /// A transition.
+    Transition(TransitionId),
+}
+
 /// What a node is. The first four are states, the others connectors that are never at rest (but for START).
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum NodeKind {

@@ -115,3 +115,49 @@ fn a_missing_file_is_answered_with_the_one_that_is_there() {
     assert_eq!(answer.code, Some(3));
     assert!(answer.err.contains("models/golie.srm") && answer.err.contains("goalie.srm`?"), "{}", answer.err);
 }
+
+#[test]
+fn what_a_check_finds_ends_with_5_and_a_warning_with_0() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let roles = "Role: r\nLiveness:\nr = look . (turn | walk)\nTransitions:\n";
+    let weights = file(
+        folder.path(),
+        "weights.srm",
+        &format!("{roles}CONDITION -> turn %0.2\nCONDITION -> walk %0.2\n"),
+    );
+    let answer = monas(&["model", "check", &weights]);
+    assert_eq!((answer.code, answer.out.as_str()), (Some(5), ""), "{}", answer.err);
+    assert!(answer.err.contains("M23") && answer.err.contains("weights.srm:3:13"), "{}", answer.err);
+    let warned = file(folder.path(), "warned.srm", roles);
+    let answer = monas(&["model", "check", &warned]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert!(answer.err.contains("M07"), "{}", answer.err);
+    let unreadable = file(folder.path(), "broken.srm", "Liveness:\nr = (\n");
+    assert_eq!(monas(&["model", "check", &weights, &unreadable]).code, Some(3));
+    assert_eq!(monas(&["model", "check", "nowhere.srm"]).code, Some(3));
+}
+
+#[test]
+fn findings_are_written_as_sarif() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = file(folder.path(), "warned.srm", "Role: r\nLiveness:\nr = look . (turn | walk)\n");
+    let answer = monas(&["model", "check", &path, "--format", "sarif"]);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    let document: Value = serde_json::from_str(&answer.out).expect("it is JSON");
+    assert_eq!(document["version"], "2.1.0");
+    let run = &document["runs"][0];
+    let result = &run["results"][0];
+    assert_eq!((&result["ruleId"], &result["level"]), (&Value::from("M07"), &Value::from("warning")));
+    assert_eq!(result["locations"][0]["physicalLocation"]["region"]["startLine"], 3);
+    let rules = run["tool"]["driver"]["rules"].as_array().expect("there are rules");
+    assert!(rules.iter().any(|rule| rule["id"] == "M07"));
+}
+
+#[test]
+fn what_is_good_to_know_is_said_when_asked_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = "Role: r\nLiveness:\nr = look . walk\nTransitions:\nSTART -> look : [Ball.found]\n";
+    let path = file(folder.path(), "waits.srm", text);
+    assert!(!monas(&["model", "check", &path]).err.contains("M25"));
+    assert!(monas(&["model", "check", &path, "--all"]).err.contains("M25"));
+}

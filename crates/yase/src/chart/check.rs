@@ -6,7 +6,7 @@ mod transitions;
 use crate::chart::Layout;
 use crate::chart::roles::{Roles, is_state};
 use crate::diagnostic::{Diagnostic, Span};
-use crate::statechart::{NodeId, NodeKind, Statechart};
+use crate::statechart::{Element, NodeId, NodeKind, Statechart};
 
 impl Statechart {
     /// Checks the structure. Each finding names states by their path; whether a chart can run is decided by its errors.
@@ -27,12 +27,18 @@ impl Statechart {
     /// What needs every way through the connectors is found by [`compile`](Statechart::compile) only: the targets of a FORK behind further
     /// connectors, and chains of connectors that multiply beyond measure.
     pub fn check(&self) -> Vec<Diagnostic> {
+        self.check_elements().into_iter().map(|(diagnostic, _)| diagnostic).collect()
+    }
+
+    /// The findings of [`check`](Statechart::check), each with the node or the transition that it is about: whoever knows where that stands in a file can
+    /// point there.
+    pub fn check_elements(&self) -> Vec<(Diagnostic, Option<Element>)> {
         let found = tree(self);
         if !found.is_empty() {
-            return found;
+            return found.into_iter().map(|diagnostic| (diagnostic, None)).collect();
         }
         let layout = Layout::new(self);
-        let mut check = Check { chart: self, layout: &layout, found };
+        let mut check = Check { chart: self, layout: &layout, found: Vec::new(), about: None };
         check.nodes();
         if check.ends_exist() {
             check.transitions();
@@ -48,7 +54,9 @@ impl Statechart {
 struct Check<'a> {
     chart: &'a Statechart,
     layout: &'a Layout,
-    found: Vec<Diagnostic>,
+    found: Vec<(Diagnostic, Option<Element>)>,
+    /// What is being looked at.
+    about: Option<Element>,
 }
 
 fn error<'f>(found: &'f mut Vec<Diagnostic>, code: &'static str, message: String) -> &'f mut Diagnostic {
@@ -77,7 +85,13 @@ fn tree(chart: &Statechart) -> Vec<Diagnostic> {
 
 impl Check<'_> {
     fn error(&mut self, code: &'static str, message: String) -> &mut Diagnostic {
-        error(&mut self.found, code, message)
+        self.report(Diagnostic::error(code, Span::default(), message))
+    }
+
+    fn report(&mut self, diagnostic: Diagnostic) -> &mut Diagnostic {
+        self.found.push((diagnostic, self.about));
+        let last = self.found.len() - 1;
+        &mut self.found[last].0
     }
 
     fn path(&self, node: NodeId) -> String {
@@ -96,6 +110,7 @@ impl Check<'_> {
     fn nodes(&mut self) {
         let chart = self.chart;
         for (id, node) in chart.nodes() {
+            self.about = Some(Element::Node(id));
             match node.kind {
                 NodeKind::Or => self.composite(id),
                 NodeKind::And => self.orthogonal(id),

@@ -6,7 +6,7 @@ use super::Check;
 use crate::chart::roles::{Role, Roles, is_state};
 use crate::chart::scope::{self, Hull};
 use crate::diagnostic::{Diagnostic, Span};
-use crate::statechart::{NodeId, NodeKind, TransitionId};
+use crate::statechart::{Element, NodeId, NodeKind, TransitionId};
 
 /// No compound transition is made of more segments.
 const MAX_SEGMENTS: usize = 256;
@@ -23,6 +23,7 @@ impl Check<'_> {
     pub(super) fn connectors(&mut self, roles: &Roles) {
         self.chains(roles);
         for (id, node) in self.chart.nodes() {
+            self.about = Some(Element::Node(id));
             match node.kind {
                 NodeKind::Fork => self.fork(id, roles),
                 NodeKind::Join => self.join(id, roles),
@@ -113,6 +114,7 @@ impl Check<'_> {
 
     /// Only a HISTORY may have no way out: then START is what it leads to without a record.
     fn close(&mut self, node: NodeId, outgoing: &[TransitionId], roles: &Roles, lengths: &mut [Length]) {
+        self.about = Some(Element::Node(node));
         if outgoing.is_empty() && roles.of(node) != Role::History {
             let message = format!("no way leads on from `{}`", self.path(node));
             self.error("M06", message);
@@ -131,6 +133,7 @@ impl Check<'_> {
     }
 
     fn circle(&mut self, target: NodeId, open: &[(NodeId, usize)]) {
+        self.about = Some(Element::Node(target));
         let begin = open.iter().position(|&(node, _)| node == target).unwrap_or(0);
         let circle: Vec<String> =
             open[begin..].iter().map(|&(node, _)| node).chain([target]).map(|node| self.path(node)).collect();
@@ -144,6 +147,7 @@ impl Check<'_> {
             if !is_start && node.kind != NodeKind::Choice {
                 continue;
             }
+            self.about = Some(Element::Node(id));
             let (targets, is_sure) = self.reach(id, roles);
             if is_start {
                 targets.into_iter().for_each(|target| self.start_target(id, target));
@@ -152,7 +156,7 @@ impl Check<'_> {
                 let (code, then) = if is_start { ("M01", "stay there") } else { ("M05", "fail there") };
                 let message =
                     format!("every way out of `{}` has a guard: the chart may {then}", self.path(id));
-                self.found.push(Diagnostic::warning(code, Span::default(), message));
+                self.report(Diagnostic::warning(code, Span::default(), message));
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::Check;
 use crate::chart::roles::is_state;
-use crate::statechart::{NodeId, NodeKind, Statechart, Transition};
+use crate::statechart::{Element, NodeId, NodeKind, Statechart, Transition};
 
 impl Check<'_> {
     /// Whether both ends of each transition are nodes of the chart.
@@ -10,6 +10,7 @@ impl Check<'_> {
         let (chart, before) = (self.chart, self.found.len());
         let missing = |node: NodeId| node.0 as usize >= chart.nodes().len();
         for (id, transition) in chart.transitions() {
+            self.about = Some(Element::Transition(id));
             if missing(transition.source) || missing(transition.target) {
                 self.error("M03", format!("transition {} names a node that does not exist", id.0));
             }
@@ -18,7 +19,8 @@ impl Check<'_> {
     }
 
     pub(super) fn transitions(&mut self) {
-        for (_, transition) in self.chart.transitions() {
+        for (id, transition) in self.chart.transitions() {
+            self.about = Some(Element::Transition(id));
             self.direction(transition);
             self.trigger(transition);
             self.internal(transition);
@@ -95,7 +97,8 @@ impl Check<'_> {
     fn weights(&mut self) {
         let chart = self.chart;
         let mut sums = vec![None; chart.nodes().len()];
-        for (_, transition) in chart.transitions() {
+        for (id, transition) in chart.transitions() {
+            self.about = Some(Element::Transition(id));
             let Some(weight) = transition.weight else { continue };
             if !(weight > 0.0 && weight <= 1.0) {
                 let message =
@@ -105,6 +108,7 @@ impl Check<'_> {
             *sums[transition.source.0 as usize].get_or_insert(0.0) += weight;
         }
         for ((node, _), sum) in chart.nodes().zip(sums) {
+            self.about = Some(Element::Node(node));
             let Some(sum) = sum.filter(|sum: &f64| (sum - 1.0).abs() > 1e-6) else { continue };
             let message = format!("the weights of the transitions out of `{}` sum to {sum}", self.path(node));
             self.error("M23", message).hint = Some("they are shares, and sum to 1".into());

@@ -1,0 +1,230 @@
+//! What is wrong with a model that can be read: the checks of `monas model check`.
+//!
+//! [`check`] reads a model of any kind and looks for faults that no grammar sees: states that nothing leads to, choices that may have no way out,
+//! guards that cannot hold. [`CHECKS`] lists them all. Their kinds say how they know:
+//!
+//! - **structure**: the tree of states and the transitions between them, whatever guards say;
+//! - **guards**: what conditions say, by the [`logic`] of comparisons. What lies outside of it (functions, products of messages) is unknown, and of what is
+//!   unknown nothing is reported.
+//!
+//! A [`Finding`] is a [`Diagnostic`] with a place in the model's file. The code `false` as a guard means *never*, and is never held against a model.
+//!
+//! ```
+//! use aseme::check::{Settings, check};
+//! use yase::Source;
+//!
+//! let source = Source::new("walker.srm", "
+//! Role: walker
+//! Liveness:
+//! walker = Look . (Turn | Walk)
+//! Transitions:
+//! CONDITION -> Turn : [Ball.distance > 2]
+//! CONDITION -> Walk : [Ball.distance < 2]
+//! ");
+//! let report = check(&source, &Settings::default());
+//! let said: Vec<String> = report.findings.iter().map(ToString::to_string).collect();
+//! assert_eq!(said, ["walker.srm:4:18: warning[M05]: the ways out of `CONDITION` leave cases open: there `Ball.distance` is 2 \
+//!     (let one of them be without a guard: it is taken when no other is)"]);
+//! ```
+
+mod events;
+mod guards;
+pub mod logic;
+mod places;
+mod profiles;
+mod roles;
+mod structure;
+mod subject;
+mod timers;
+
+use std::collections::BTreeSet;
+use std::fmt;
+use std::sync::Arc;
+
+use yase::{Diagnostic, Severity, Source};
+
+use crate::convert::{self, Model};
+use subject::Subject;
+
+/// How a check knows.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum Kind {
+    /// From states and transitions.
+    Structure,
+    /// From what guards say.
+    Guards,
+    /// From a model of roles, activities and protocols.
+    Roles,
+}
+
+/// A check.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Check {
+    /// The code of its findings.
+    pub id: &'static str,
+    /// How it knows.
+    pub kind: Kind,
+    /// How much its findings matter at most.
+    pub severity: Severity,
+    /// What it finds.
+    pub title: &'static str,
+}
+
+const fn of(id: &'static str, kind: Kind, severity: Severity, title: &'static str) -> Check {
+    Check { id, kind, severity, title }
+}
+
+/// Every check there is.
+pub const CHECKS: &[Check] = {
+    use Kind::{Guards, Roles, Structure};
+    use Severity::{Error, Information, Warning};
+    &[
+        of("M01", Structure, Error, "a composite does not begin as it should"),
+        of(
+            "M02",
+            Structure,
+            Error,
+            "START or END in a wrong place; a state that nothing leads out of and that is no END",
+        ),
+        of("M03", Structure, Error, "a transition to where none can lead"),
+        of("M04", Structure, Error, "FORK or JOIN between states that are not active together"),
+        of("M05", Guards, Error, "a branch that may have no open way"),
+        of("M06", Structure, Error, "connectors in a circle, or a way through them that is never open"),
+        of("M07", Guards, Warning, "a transition that an earlier one always wins over"),
+        of(
+            "M08",
+            Guards,
+            Warning,
+            "two transitions that may be enabled together, with nothing said of which is taken",
+        ),
+        of("M09", Guards, Warning, "a guard that never holds, or always"),
+        of("M10", Guards, Warning, "an event that one region answers by leaving and another by staying"),
+        of("M16", Structure, Warning, "an event that is never raised, or never waited for"),
+        of(
+            "M19",
+            Structure,
+            Warning,
+            "a timer that is read but not started, not read, or started again before it can expire",
+        ),
+        of("M20", Structure, Warning, "a HISTORY that may be entered with nothing recorded and no default"),
+        of("M23", Structure, Error, "weights that are no shares, or contradict priorities"),
+        of("M25", Structure, Information, "what other engines read in another way"),
+        of("S01", Roles, Warning, "an activity without a functionality"),
+        of("S02", Roles, Warning, "a functionality that no activity uses"),
+        of("S03", Roles, Warning, "an activity in no formula"),
+        of("S04", Roles, Warning, "a participant of no protocol"),
+        of("S05", Roles, Warning, "a name in a formula that is no activity of the model"),
+    ]
+};
+
+/// What a check is told beside the model.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+#[non_exhaustive]
+pub struct Settings {
+    /// Events that come from outside the chart: activities, other agents and people raise them.
+    pub events: BTreeSet<String>,
+}
+
+/// Something that a check has found.
+#[derive(Clone, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub struct Finding {
+    /// What is wrong, where, and what would be right.
+    pub diagnostic: Diagnostic,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.diagnostic.fmt(f)
+    }
+}
+
+/// What is to be said of a model.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+#[non_exhaustive]
+pub struct Report {
+    /// What kind of model it is; none if it could not be read.
+    pub what: Option<String>,
+    /// What is wrong, in the order of the file.
+    pub findings: Vec<Finding>,
+}
+
+impl Report {
+    /// What is to be said of a file that cannot be read.
+    pub fn of_unreadable(diagnostic: Diagnostic) -> Report {
+        unreadable(vec![diagnostic])
+    }
+
+    /// Whether the model could not be read: then nothing was checked.
+    pub fn is_unreadable(&self) -> bool {
+        self.what.is_none()
+    }
+
+    /// Whether something is wrong that is an error.
+    pub fn has_errors(&self) -> bool {
+        self.findings.iter().any(|finding| finding.diagnostic.is_error())
+    }
+}
+
+/// Reads a model and checks it. If it cannot be read, what is wrong with the text is all that is said; else that comes before what the checks find.
+pub fn check(source: &Arc<Source>, settings: &Settings) -> Report {
+    let (found, read) = convert::read(source);
+    let mut report = match found {
+        None => unreadable(read),
+        Some((Model::Role(file), _)) => charted(subject::of_role(file.srm()), read, settings),
+        Some((Model::Chart(_), convert::Format::Scxml)) => scxml(source, settings),
+        Some((Model::Chart(chart), _)) => charted(subject::of_chart(&chart), read, settings),
+        Some((model, _)) if !read.iter().any(Diagnostic::is_error) => {
+            let what = format!("a model of the kind {}", model.kind());
+            Report { what: Some(what), findings: findings(read, roles::check(&model)) }
+        }
+        Some(_) => unreadable(read),
+    };
+    for finding in &mut report.findings {
+        finding.diagnostic = finding.diagnostic.clone().in_source(source);
+    }
+    report.findings.sort_by_key(|finding| (finding.diagnostic.span, finding.diagnostic.code));
+    report.findings.dedup();
+    report
+}
+
+fn unreadable(read: Vec<Diagnostic>) -> Report {
+    Report { what: None, findings: findings(read, Vec::new()) }
+}
+
+fn findings(read: Vec<Diagnostic>, found: Vec<Diagnostic>) -> Vec<Finding> {
+    read.into_iter().chain(found).map(|diagnostic| Finding { diagnostic }).collect()
+}
+
+/// SCXML is read with its own meaning, and its expressions are in a language of its own, of which nothing is known here.
+fn scxml(source: &Arc<Source>, settings: &Settings) -> Report {
+    let (document, read) = yase::scxml::read(source);
+    match document {
+        Some(document) => charted((subject::of_scxml(&document), Vec::new()), read, settings),
+        None => unreadable(read),
+    }
+}
+
+fn charted(
+    (subject, made): (Subject, Vec<Diagnostic>),
+    read: Vec<Diagnostic>,
+    settings: &Settings,
+) -> Report {
+    let read: Vec<Diagnostic> = read.into_iter().chain(made).collect();
+    if read.iter().any(Diagnostic::is_error) {
+        return unreadable(read);
+    }
+    let mut found = structure::check(&subject);
+    if !found.iter().any(Diagnostic::is_error) {
+        found.extend(events::check(&subject, settings));
+        found.extend(timers::check(&subject));
+        found.extend(guards::check(&subject));
+        found.extend(profiles::check(&subject));
+    }
+    let (nodes, transitions) = (subject.chart.nodes().len(), subject.chart.transitions().len());
+    Report {
+        what: Some(format!("{nodes} nodes, {transitions} transitions")),
+        findings: findings(read, found),
+    }
+}

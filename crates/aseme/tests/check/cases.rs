@@ -1,0 +1,103 @@
+//! One folder for each check, by its code: `fault.*` has the fault and `near.*` nearly has it; `fault.txt` and `near.txt` are the findings about
+//! them. With `MONAS_BLESS=1` these are written anew.
+
+use std::path::{Path, PathBuf};
+
+use aseme::check::{CHECKS, Report, Settings, check};
+use yase::{Severity, Source};
+
+fn folder(id: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/check").join(id.to_lowercase())
+}
+
+/// The models in a folder whose names begin so, in order.
+fn models(folder: &Path, begin: &str) -> Vec<PathBuf> {
+    let files = folder.read_dir().unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let mut files: Vec<PathBuf> = files.map(|entry| entry.unwrap().path()).collect();
+    let is_meant = |file: &Path| {
+        let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        name.starts_with(begin) && !name.ends_with(".txt")
+    };
+    files.retain(|file| is_meant(file));
+    files.sort();
+    assert!(!files.is_empty(), "no {begin} in {}", folder.display());
+    files
+}
+
+fn report(file: &Path) -> Report {
+    let name = file.file_name().and_then(|name| name.to_str()).unwrap();
+    let mut settings = Settings::default();
+    settings.events.insert("kick".into());
+    let report = check(&Source::new(name, std::fs::read_to_string(file).unwrap()), &settings);
+    assert!(!report.is_unreadable(), "{}: {:?}", file.display(), report.findings);
+    report
+}
+
+fn compare(folder: &Path, name: &str, reports: &[Report]) {
+    let findings = reports.iter().flat_map(|report| &report.findings);
+    let actual: String = findings.map(|finding| format!("{finding}\n")).collect();
+    let golden = folder.join(name);
+    if std::env::var_os("MONAS_BLESS").is_some() {
+        std::fs::write(&golden, &actual).unwrap();
+    }
+    let expected = std::fs::read_to_string(&golden).unwrap_or_default();
+    assert!(actual == expected, "{} differs; MONAS_BLESS=1 accepts it:\n{actual}", golden.display());
+}
+
+#[test]
+fn each_check_finds_its_fault_and_not_what_is_near_it() {
+    for check in CHECKS {
+        let folder = folder(check.id);
+        let of_check =
+            |report: &Report| report.findings.iter().filter(|it| it.diagnostic.code == check.id).count();
+        let faults: Vec<Report> = models(&folder, "fault").iter().map(|file| report(file)).collect();
+        for (report, file) in faults.iter().zip(models(&folder, "fault")) {
+            assert!(of_check(report) > 0, "{}: {:?}", file.display(), report.findings);
+        }
+        let near: Vec<Report> = models(&folder, "near").iter().map(|file| report(file)).collect();
+        for (report, file) in near.iter().zip(models(&folder, "near")) {
+            assert_eq!(of_check(report), 0, "{}: {:?}", file.display(), report.findings);
+        }
+        compare(&folder, "fault.txt", &faults);
+        compare(&folder, "near.txt", &near);
+        let worst =
+            faults.iter().flat_map(|report| &report.findings).filter(|it| it.diagnostic.code == check.id);
+        let worst = worst.map(|it| it.diagnostic.severity).max();
+        assert_eq!(worst, Some(check.severity), "{} finds what its table says", check.id);
+    }
+}
+
+#[test]
+fn findings_point_into_the_file_and_say_what_to_do() {
+    for check in CHECKS {
+        for file in models(&folder(check.id), "fault") {
+            for finding in report(&file).findings {
+                let diagnostic = finding.diagnostic;
+                assert!(
+                    diagnostic.source.is_some() && diagnostic.span.end > diagnostic.span.start,
+                    "{diagnostic}"
+                );
+                let is_information =
+                    diagnostic.severity == Severity::Information || diagnostic.code.starts_with('E');
+                assert!(diagnostic.hint.is_some() || is_information, "{diagnostic}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_table_is_in_order_and_names_each_check_once() {
+    assert!(CHECKS.windows(2).all(|pair| pair[0].id < pair[1].id));
+    assert!(CHECKS.iter().all(|check| !check.title.ends_with('.') && !check.title.is_empty()));
+}
+
+#[test]
+fn the_projects_own_roles_are_without_findings_that_matter() {
+    for name in ["goalie.srm", "attacker.srm"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name);
+        let report = report(&path);
+        let findings = report.findings.iter().filter(|it| it.diagnostic.severity > Severity::Information);
+        let findings: Vec<String> = findings.map(ToString::to_string).collect();
+        assert_eq!(findings, [""; 0], "{name}");
+    }
+}

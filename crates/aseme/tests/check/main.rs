@@ -1,0 +1,13 @@
+//! `aseme::check`: each check on a model that has the fault, and on one that nearly has it.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "the functions around tests are tests too"
+)]
+
+mod cases;
+mod logic;
+mod shared;
+mod speed;
