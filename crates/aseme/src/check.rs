@@ -5,7 +5,8 @@
 //!
 //! - **structure**: the tree of states and the transitions between them, whatever guards say;
 //! - **guards**: what conditions say, by the [`logic`] of comparisons. What lies outside of it (functions, products of messages) is unknown, and of what is
-//!   unknown nothing is reported.
+//!   unknown nothing is reported;
+//! - **exploration**: what a chart can do, found by the machine's own steps ([`yase::explore`]). Such a finding shows a way there, which [`yase::explore::replay`] plays.
 //!
 //! A [`Finding`] is a [`Diagnostic`] with a place in the model's file. The code `false` as a guard means *never*, and is never held against a model.
 //!
@@ -27,7 +28,9 @@
 //!     (let one of them be without a guard: it is taken when no other is)"]);
 //! ```
 
+mod abstraction;
 mod events;
+mod exploration;
 mod guards;
 pub mod logic;
 mod places;
@@ -54,6 +57,8 @@ pub enum Kind {
     Structure,
     /// From what guards say.
     Guards,
+    /// From what the chart can do.
+    Exploration,
     /// From a model of roles, activities and protocols.
     Roles,
 }
@@ -77,7 +82,7 @@ const fn of(id: &'static str, kind: Kind, severity: Severity, title: &'static st
 
 /// Every check there is.
 pub const CHECKS: &[Check] = {
-    use Kind::{Guards, Roles, Structure};
+    use Kind::{Exploration, Guards, Roles, Structure};
     use Severity::{Error, Information, Warning};
     &[
         of("M01", Structure, Error, "a composite does not begin as it should"),
@@ -100,6 +105,15 @@ pub const CHECKS: &[Check] = {
         ),
         of("M09", Guards, Warning, "a guard that never holds, or always"),
         of("M10", Guards, Warning, "an event that one region answers by leaving and another by staying"),
+        of("M12", Exploration, Warning, "a state that is never reached, a transition that is never taken"),
+        of("M13", Exploration, Error, "transitions that lead on and on within one step"),
+        of("M14", Exploration, Warning, "a state that is never left and is no END"),
+        of(
+            "M15",
+            Exploration,
+            Warning,
+            "a transition that waits for a composite to complete which never can",
+        ),
         of("M16", Structure, Warning, "an event that is never raised, or never waited for"),
         of(
             "M19",
@@ -108,8 +122,16 @@ pub const CHECKS: &[Check] = {
             "a timer that is read but not started, not read, or started again before it can expire",
         ),
         of("M20", Structure, Warning, "a HISTORY that may be entered with nothing recorded and no default"),
+        of("M21", Exploration, Warning, "more activities at once than the pool runs"),
+        of(
+            "M22",
+            Exploration,
+            Warning,
+            "a transition that can only be taken while an activity that it leaves runs",
+        ),
         of("M23", Structure, Error, "weights that are no shares, or contradict priorities"),
         of("M25", Structure, Information, "what other engines read in another way"),
+        of("M26", Exploration, Information, "how large the chart is"),
         of("S01", Roles, Warning, "an activity without a functionality"),
         of("S02", Roles, Warning, "a functionality that no activity uses"),
         of("S03", Roles, Warning, "an activity in no formula"),
@@ -119,11 +141,21 @@ pub const CHECKS: &[Check] = {
 };
 
 /// What a check is told beside the model.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct Settings {
     /// Events that come from outside the chart: activities, other agents and people raise them.
     pub events: BTreeSet<String>,
+    /// How many states an exploration looks at; with 0 there is none.
+    pub states: usize,
+    /// How many activities the agent's pool runs at once; 12 if it is not said.
+    pub pool: Option<usize>,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { events: BTreeSet::new(), states: 100_000, pool: None }
+    }
 }
 
 /// Something that a check has found.
@@ -132,6 +164,26 @@ pub struct Settings {
 pub struct Finding {
     /// What is wrong, where, and what would be right.
     pub diagnostic: Diagnostic,
+    /// A way there, as text that [`yase::explore::Trace::parse`] reads on the [abstraction](explorable) of the chart.
+    pub trace: Option<String>,
+}
+
+impl From<Diagnostic> for Finding {
+    fn from(diagnostic: Diagnostic) -> Finding {
+        Finding { diagnostic, trace: None }
+    }
+}
+
+/// How far an exploration came.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub struct Explored {
+    /// How many states of the machine it found.
+    pub states: usize,
+    /// How many different configurations there are among them.
+    pub configurations: usize,
+    /// Whether these are all.
+    pub is_finished: bool,
 }
 
 impl fmt::Display for Finding {
@@ -148,6 +200,8 @@ pub struct Report {
     pub what: Option<String>,
     /// What is wrong, in the order of the file.
     pub findings: Vec<Finding>,
+    /// How far the exploration of the chart came, if it was explored.
+    pub explored: Option<Explored>,
 }
 
 impl Report {
@@ -177,7 +231,7 @@ pub fn check(source: &Arc<Source>, settings: &Settings) -> Report {
         Some((Model::Chart(chart), _)) => charted(subject::of_chart(&chart), read, settings),
         Some((model, _)) if !read.iter().any(Diagnostic::is_error) => {
             let what = format!("a model of the kind {}", model.kind());
-            Report { what: Some(what), findings: findings(read, roles::check(&model)) }
+            Report { what: Some(what), findings: findings(read, roles::check(&model)), explored: None }
         }
         Some(_) => unreadable(read),
     };
@@ -190,11 +244,11 @@ pub fn check(source: &Arc<Source>, settings: &Settings) -> Report {
 }
 
 fn unreadable(read: Vec<Diagnostic>) -> Report {
-    Report { what: None, findings: findings(read, Vec::new()) }
+    Report { what: None, findings: findings(read, Vec::new()), explored: None }
 }
 
 fn findings(read: Vec<Diagnostic>, found: Vec<Diagnostic>) -> Vec<Finding> {
-    read.into_iter().chain(found).map(|diagnostic| Finding { diagnostic }).collect()
+    read.into_iter().chain(found).map(Finding::from).collect()
 }
 
 /// SCXML is read with its own meaning, and its expressions are in a language of its own, of which nothing is known here.
@@ -222,9 +276,43 @@ fn charted(
         found.extend(guards::check(&subject));
         found.extend(profiles::check(&subject));
     }
+    let can_be_explored = settings.states > 0 && is_ours(&subject) && !found.iter().any(Diagnostic::is_error);
+    let (explored, extent) = match can_be_explored {
+        true => exploration::check(&subject, settings, &found),
+        false => (Vec::new(), None),
+    };
     let (nodes, transitions) = (subject.chart.nodes().len(), subject.chart.transitions().len());
-    Report {
-        what: Some(format!("{nodes} nodes, {transitions} transitions")),
-        findings: findings(read, found),
+    let mut findings = findings(read, found);
+    findings.extend(explored);
+    Report { what: Some(format!("{nodes} nodes, {transitions} transitions")), findings, explored: extent }
+}
+
+/// Whether a chart is read as the thesis has it: of others it is not known what their scripts do.
+fn is_ours(subject: &Subject) -> bool {
+    subject.semantics == yase::Semantics::yase()
+}
+
+/// The chart that explorations of a model run on and that their traces are about: what guards ask of data is a condition of the surroundings.
+///
+/// # Errors
+/// What keeps the model from being read or made ready to run.
+pub fn explorable(source: &Arc<Source>) -> Result<Arc<yase::Chart>, Vec<Diagnostic>> {
+    let placed = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {
+        found.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect()
+    };
+    let (found, mut read) = convert::read(source);
+    let (subject, made) = match found {
+        Some((Model::Role(file), _)) => subject::of_role(file.srm()),
+        Some((Model::Chart(chart), _)) => subject::of_chart(&chart),
+        Some((model, _)) => {
+            let message = format!("a model of the kind {} has no statechart", model.kind());
+            return Err(placed(vec![Diagnostic::error("E0230", yase::Span::default(), message)]));
+        }
+        None => return Err(read),
+    };
+    read.extend(made);
+    if read.iter().any(Diagnostic::is_error) {
+        return Err(placed(read));
     }
+    abstraction::Abstraction::new(&subject).map(|abstraction| abstraction.chart).map_err(placed)
 }

@@ -103,6 +103,22 @@ pub(crate) enum ModelCommand {
     ///
     /// Ends with 0 if nothing is wrong or there are warnings only, with 3 if a model cannot be read, and with 5 if a check finds an error.
     Check(CheckArguments),
+    /// Play a trace that `model check` has found, and print each step.
+    ///
+    /// Conditions on messages have the values that the trace says, timers expire when it says. Ends with 5 if the chart stops by itself.
+    #[command(
+        after_help = "Example: monas model check role.srm --traces . ; monas model run role.srm role-M14-1.trace"
+    )]
+    Run {
+        /// The model file.
+        #[arg(value_name = "CHART", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// The trace.
+        #[arg(value_hint = ValueHint::FilePath)]
+        trace: PathBuf,
+        #[command(flatten)]
+        format: FormatArgument,
+    },
 }
 
 /// What `model check` may be told.
@@ -114,6 +130,15 @@ pub(crate) struct CheckArguments {
     /// An event that comes from outside: an activity, another agent or a person raises it.
     #[arg(long = "event", value_name = "NAME")]
     pub(crate) events: Vec<String>,
+    /// How many states of a chart are explored at most; 0 for none.
+    #[arg(long, value_name = "NUMBER", default_value_t = 100_000)]
+    pub(crate) states: usize,
+    /// How many activities the agent's pool runs at once; 12 if not given.
+    #[arg(long, value_name = "NUMBER")]
+    pub(crate) pool: Option<usize>,
+    /// Write each way to a finding as a file into this folder, for `model run`.
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) traces: Option<PathBuf>,
     /// Say what is only good to know, too.
     #[arg(long)]
     pub(crate) all: bool,

@@ -2,6 +2,7 @@
 
 mod check;
 mod convert;
+mod run;
 mod transform;
 
 use std::fs;
@@ -24,6 +25,7 @@ pub(crate) fn execute(command: &ModelCommand, console: &mut Console<'_>) -> Resu
         ModelCommand::Convert(arguments) => convert::execute(arguments, console),
         ModelCommand::Draw { file, output, format } => draw(file, output.as_deref(), format.value, console),
         ModelCommand::Check(arguments) => check::execute(arguments, console),
+        ModelCommand::Run { file, trace, format } => run::execute(file, trace, format.value, console),
     }
 }
 

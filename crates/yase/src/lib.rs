@@ -102,6 +102,7 @@ struct Readme;
 mod bits;
 mod chart;
 pub mod diagnostic;
+pub mod explore;
 pub mod export;
 pub mod expression;
 mod host;

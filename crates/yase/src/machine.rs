@@ -9,6 +9,7 @@ mod direct;
 mod draw;
 mod enter;
 mod errors;
+pub(crate) mod explored;
 mod fire;
 mod history;
 mod leave;

@@ -22,7 +22,12 @@ pub(super) fn check(subject: &Subject) -> Vec<Diagnostic> {
 }
 
 /// A name on a blackboard, which is known by the node it belongs to.
-type Timer = (NodeId, String);
+pub(super) type Timer = (NodeId, String);
+
+/// The timers that some action starts.
+pub(super) fn started(subject: &Subject) -> BTreeSet<Timer> {
+    Timers::new(subject).started.into_keys().collect()
+}
 
 struct Timers<'a> {
     subject: &'a Subject,
@@ -114,7 +119,7 @@ impl<'a> Timers<'a> {
 }
 
 /// The blackboard that a transition works on: that of its scope.
-fn blackboard(subject: &Subject, id: TransitionId) -> NodeId {
+pub(super) fn blackboard(subject: &Subject, id: TransitionId) -> NodeId {
     let transition = subject.transition(id);
     let holds = |&node: &NodeId| node != transition.target && subject.contains(node, transition.target);
     let around = subject.chart.ancestors(transition.source).filter(holds);

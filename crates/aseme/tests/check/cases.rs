@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use aseme::check::{CHECKS, Report, Settings, check};
+use aseme::check::{CHECKS, Finding, Report, Settings, check};
 use yase::{Severity, Source};
 
 fn folder(id: &str) -> PathBuf {
@@ -27,15 +27,22 @@ fn models(folder: &Path, begin: &str) -> Vec<PathBuf> {
 fn report(file: &Path) -> Report {
     let name = file.file_name().and_then(|name| name.to_str()).unwrap();
     let mut settings = Settings::default();
-    settings.events.insert("kick".into());
+    settings.events.extend(["kick".into(), "shot".into()]);
+    settings.states = 500;
     let report = check(&Source::new(name, std::fs::read_to_string(file).unwrap()), &settings);
     assert!(!report.is_unreadable(), "{}: {:?}", file.display(), report.findings);
     report
 }
 
+/// A finding, and below it the way there.
+fn text(finding: &Finding) -> String {
+    let trace = finding.trace.iter().flat_map(|trace| trace.lines());
+    std::iter::once(format!("{finding}\n")).chain(trace.map(|line| format!("    {line}\n"))).collect()
+}
+
 fn compare(folder: &Path, name: &str, reports: &[Report]) {
     let findings = reports.iter().flat_map(|report| &report.findings);
-    let actual: String = findings.map(|finding| format!("{finding}\n")).collect();
+    let actual: String = findings.map(text).collect();
     let golden = folder.join(name);
     if std::env::var_os("MONAS_BLESS").is_some() {
         std::fs::write(&golden, &actual).unwrap();
@@ -96,6 +103,7 @@ fn the_projects_own_roles_are_without_findings_that_matter() {
     for name in ["goalie.srm", "attacker.srm"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name);
         let report = report(&path);
+        println!("{name}: {:?}", report.explored);
         let findings = report.findings.iter().filter(|it| it.diagnostic.severity > Severity::Information);
         let findings: Vec<String> = findings.map(ToString::to_string).collect();
         assert_eq!(findings, [""; 0], "{name}");

@@ -11,3 +11,4 @@ mod cases;
 mod logic;
 mod shared;
 mod speed;
+mod traces;

@@ -1,12 +1,13 @@
 //! `monas model check`: what is wrong with models.
 
 mod sarif;
+mod traces;
 
 use std::path::Path;
 
-use aseme::check::{Report, Settings};
+use aseme::check::{Finding, Report, Settings};
 use monas::config;
-use yase::{Diagnostic, Severity};
+use yase::Severity;
 
 use crate::arguments::{CheckArguments, CheckFormat, Format};
 use crate::console::Console;
@@ -17,18 +18,18 @@ use crate::report;
 pub(crate) fn execute(arguments: &CheckArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
     let mut settings = Settings::default();
     settings.events.extend(arguments.events.iter().cloned());
+    (settings.states, settings.pool) = (arguments.states, arguments.pool);
     let reports: Vec<(&Path, Report)> = arguments
         .files
         .iter()
         .map(|path| (path.as_path(), checked(path, &settings, arguments.all)))
         .collect();
+    if let Some(folder) = &arguments.traces {
+        traces::write(folder, &reports)?;
+    }
     match arguments.format {
         CheckFormat::Text => text(&reports, console)?,
-        CheckFormat::Json => {
-            for (_, report) in &reports {
-                report::write(console, Format::Json, &diagnostics(report))?;
-            }
-        }
+        CheckFormat::Json => json(&reports, console)?,
         CheckFormat::Sarif => {
             let findings = reports.iter().flat_map(|(_, report)| &report.findings);
             writeln!(console.out, "{:#}", sarif::document(findings))?;
@@ -56,17 +57,47 @@ fn checked(path: &Path, settings: &Settings, all: bool) -> Report {
     report
 }
 
-fn diagnostics(report: &Report) -> Vec<Diagnostic> {
-    report.findings.iter().map(|finding| finding.diagnostic.clone()).collect()
-}
-
 /// All that is wrong with all files, and one line for each that has no error.
 fn text(reports: &[(&Path, Report)], console: &mut Console<'_>) -> Result<(), Failure> {
     for (path, report) in reports {
-        report::write(console, Format::Text, &diagnostics(report))?;
+        for finding in &report.findings {
+            report::write(console, Format::Text, std::slice::from_ref(&finding.diagnostic))?;
+            if let Some(trace) = &finding.trace {
+                writeln!(console.err, "  a way there:\n{}", indented(trace))?;
+            }
+        }
         if let Some(what) = report.what.as_ref().filter(|_| !report.has_errors()) {
-            writeln!(console.out, "{}: {what}, no errors", path.display())?;
+            writeln!(console.out, "{}: {what}{}, no errors", path.display(), extent(report))?;
         }
     }
     Ok(())
+}
+
+fn indented(trace: &str) -> String {
+    trace.lines().map(|line| format!("    {line}\n")).collect()
+}
+
+/// How far an exploration came.
+fn extent(report: &Report) -> String {
+    match report.explored {
+        Some(explored) if explored.is_finished => format!(", {} states explored", explored.states),
+        Some(explored) => format!(", not finished exploring: {} states", explored.states),
+        None => String::new(),
+    }
+}
+
+/// One object a line; those with a way there have it as `trace`.
+fn json(reports: &[(&Path, Report)], console: &mut Console<'_>) -> Result<(), Failure> {
+    for finding in reports.iter().flat_map(|(_, report)| &report.findings) {
+        writeln!(console.err, "{}", object(finding))?;
+    }
+    Ok(())
+}
+
+fn object(finding: &Finding) -> serde_json::Value {
+    let mut object = report::object(&finding.diagnostic);
+    if let (Some(trace), Some(fields)) = (&finding.trace, object.as_object_mut()) {
+        fields.insert("trace".into(), trace.clone().into());
+    }
+    object
 }

@@ -16,7 +16,7 @@ fn file(folder: &Path, name: &str, text: &str) -> String {
 
 #[test]
 fn the_projects_roles_are_without_findings() {
-    let answer = monas(&["model", "check", ROLES[0], ROLES[1]]);
+    let answer = monas(&["model", "check", ROLES[0], ROLES[1], "--states", "2000"]);
     assert_eq!(answer.code, Some(0), "{}", answer.err);
     assert_eq!(answer.err, "");
     assert_eq!(answer.out.lines().count(), 2);
@@ -160,4 +160,33 @@ fn what_is_good_to_know_is_said_when_asked_for() {
     let path = file(folder.path(), "waits.srm", text);
     assert!(!monas(&["model", "check", &path]).err.contains("M25"));
     assert!(monas(&["model", "check", &path, "--all"]).err.contains("M25"));
+}
+
+#[test]
+fn a_way_to_a_finding_is_written_and_played() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text =
+        "Role: r\nLiveness:\nr = look . walk\nTransitions:\nlook -> walk : kick\nwalk -> END : [In(look)]\n";
+    let model = file(folder.path(), "stuck.srm", text);
+    let traces = folder.path().display().to_string();
+    let answer = monas(&["model", "check", &model, "--event", "kick", "--traces", &traces]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert!(answer.err.contains("M14") && answer.err.contains("    event kick\n"), "{}", answer.err);
+    assert!(answer.out.contains("states explored"), "{}", answer.out);
+    let trace = folder.path().join("stuck-M14-1.trace").display().to_string();
+    let played = monas(&["model", "run", &model, &trace]);
+    assert_eq!((played.code, played.err.as_str()), (Some(0), ""));
+    assert!(played.out.contains("kick: look -> walk"), "{}", played.out);
+    assert!(played.out.ends_with("  active: r, walk\n"), "{}", played.out);
+    let wrong = file(folder.path(), "wrong.trace", "start\nreturn nobody\n");
+    let refused = monas(&["model", "run", &model, &wrong]);
+    assert_eq!(refused.code, Some(3));
+    assert!(refused.err.contains("wrong.trace:2:1"), "{}", refused.err);
+}
+
+#[test]
+fn an_exploration_that_was_not_finished_says_so() {
+    let answer = monas(&["model", "check", ROLES[0], "--states", "50"]);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    assert!(answer.out.contains("not finished exploring: 50 states"), "{}", answer.out);
 }

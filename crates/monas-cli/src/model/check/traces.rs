@@ -1,0 +1,30 @@
+//! The ways to findings, each as a file of its own.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use aseme::check::Report;
+
+use crate::arguments::Format;
+use crate::failure::Failure;
+
+/// Writes `MODEL-CODE-NUMBER.trace` for each finding with a way there.
+pub(super) fn write(folder: &Path, reports: &[(&Path, Report)]) -> Result<(), Failure> {
+    let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
+    for (model, report) in reports {
+        let model = model.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        for finding in &report.findings {
+            let Some(trace) = &finding.trace else { continue };
+            let name = format!("{model}-{}", finding.diagnostic.code);
+            let number = numbers.entry(name.clone()).or_default();
+            *number += 1;
+            let path = folder.join(format!("{name}-{number}.trace"));
+            let text = format!("# {}\n{trace}", finding.diagnostic.message);
+            fs::write(&path, text).map_err(|error| {
+                Failure::Failed(Format::Text, format!("cannot write {}: {error}", path.display()))
+            })?;
+        }
+    }
+    Ok(())
+}

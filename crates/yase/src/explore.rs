@@ -1,0 +1,209 @@
+//! Everything that a chart can do, found by the machine's own steps.
+//!
+//! [`explore`] runs a chart against all that its surroundings may do, breadth first: events come, activities return, timers expire, messages arrive. What a
+//! script of the host's says is free to be true or false, as far as [`Surroundings`] allow, and stays so for the step; what the chart leaves open is taken each
+//! way. States of the machine that will do the same are one. What it finds is an [`Exploration`]: its states, the steps between them, which
+//! transitions were taken, and the shortest way to each, as a [`Trace`] that [`replay`] plays again.
+//!
+//! Time is left out: any timer that is set may expire next, whatever its length. So a chart does no more than what is found here, and may do less.
+//!
+//! An exploration is bounded. One that was not finished says so ([`Exploration::is_finished`]): what it has not found may be there all the same.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use yase::explore::{Surroundings, explore};
+//! use yase::expression::parse_transition;
+//! use yase::{Node, NodeKind, Statechart, Transition, Vocabulary};
+//!
+//! let mut door = Statechart::new("door");
+//! let start = door.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));
+//! let shut = door.add(Statechart::ROOT, Node::new(NodeKind::Basic, "shut"));
+//! let open = door.add(Statechart::ROOT, Node::new(NodeKind::Basic, "open"));
+//! let broken = door.add(Statechart::ROOT, Node::new(NodeKind::Basic, "broken"));
+//! for (source, target, text) in
+//!     [(start, shut, ""), (shut, open, "push / raise(creak)"), (open, shut, "creak"), (open, broken, "creak")]
+//! {
+//!     let expression = parse_transition(text).0;
+//!     door.connect(Transition { expression, ..Transition::new(source, target) });
+//! }
+//! let chart = Arc::new(door.compile(&Vocabulary::default()).expect("the chart is in order"));
+//!
+//! let found = explore(&chart, &mut Surroundings { events: vec!["push".into()], ..Surroundings::default() }, 1_000);
+//! assert!(found.is_finished());
+//! assert!(found.was_entered(open) && !found.was_entered(broken), "the first of the two always wins");
+//! let way = found.trace_to(found.first(|state| state.is_active(shut)).expect("it is reached"));
+//! assert_eq!(way.to_string(), "start\n");
+//! ```
+
+mod host;
+mod search;
+mod trace;
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use crate::chart::Chart;
+use crate::expression::ScriptId;
+use crate::machine::{MachineErrorKind, Status};
+use crate::statechart::{NodeId, TransitionId};
+
+pub use search::explore;
+pub use trace::{Move, ParseError, Step, Trace, replay};
+
+/// Whether a condition may have a value, given those that others have in the same step.
+pub type Allows<'a> = dyn FnMut(ScriptId, bool, &[(ScriptId, bool)]) -> bool + 'a;
+
+/// What the surroundings of a chart may do.
+pub struct Surroundings<'a> {
+    /// The events that come from outside.
+    pub events: Vec<String>,
+    /// Whether messages arrive: then a step may happen without any other cause.
+    pub messages: bool,
+    /// Which values conditions may have; any, if there is nothing that says it.
+    pub allows: Box<Allows<'a>>,
+}
+
+impl Default for Surroundings<'_> {
+    fn default() -> Self {
+        Surroundings { events: Vec::new(), messages: false, allows: Box::new(|_, _, _| true) }
+    }
+}
+
+/// A state of the machine, at rest.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// The active nodes, composites before what is in them.
+    pub configuration: Vec<NodeId>,
+    /// What the machine does.
+    pub status: Status,
+    /// The states whose activities run.
+    pub running: Vec<NodeId>,
+    /// The step that led here first, and from where.
+    came: Option<(usize, Step)>,
+}
+
+impl State {
+    /// Whether a node is active.
+    pub fn is_active(&self, node: NodeId) -> bool {
+        self.configuration.contains(&node)
+    }
+}
+
+/// A step from one state to another.
+#[derive(Clone, Debug)]
+pub struct Edge {
+    /// Where it begins, by the state's number.
+    pub from: usize,
+    /// Where it ends.
+    pub to: usize,
+    /// Whether it took any transition.
+    pub does_something: bool,
+    /// The states with activities that it entered, in order.
+    pub started: Box<[NodeId]>,
+}
+
+/// A step that the machine did not come back from.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    /// The state that it began in.
+    pub from: usize,
+    /// The step.
+    pub step: Step,
+    /// What went wrong.
+    pub kind: MachineErrorKind,
+    /// The transitions that were taken again and again.
+    pub cycle: Vec<TransitionId>,
+}
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub struct Exploration {
+    chart: Arc<Chart>,
+    is_finished: bool,
+    states: Vec<State>,
+    edges: Vec<Edge>,
+    failures: Vec<Failure>,
+    entered: BTreeSet<NodeId>,
+    left: BTreeSet<NodeId>,
+    taken: BTreeSet<TransitionId>,
+    held: BTreeSet<TransitionId>,
+}
+
+impl Exploration {
+    /// Whether all there is was found.
+    pub fn is_finished(&self) -> bool {
+        self.is_finished
+    }
+
+    /// The states, in the order in which they were found; the first is the one after the start.
+    pub fn states(&self) -> &[State] {
+        &self.states
+    }
+
+    /// The steps between states, those that lead back to where they began too.
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// The steps that failed: one for each kind and cycle.
+    pub fn failures(&self) -> &[Failure] {
+        &self.failures
+    }
+
+    /// Whether a node was active at any time.
+    pub fn was_entered(&self, node: NodeId) -> bool {
+        self.entered.contains(&node)
+    }
+
+    /// Whether a node was left at any time.
+    pub fn was_left(&self, node: NodeId) -> bool {
+        self.left.contains(&node)
+    }
+
+    /// Whether a segment was taken at any time.
+    pub fn was_taken(&self, transition: TransitionId) -> bool {
+        self.taken.contains(&transition)
+    }
+
+    /// Whether an event had to wait for running activities at a segment at any time.
+    pub fn was_held(&self, transition: TransitionId) -> bool {
+        self.held.contains(&transition)
+    }
+
+    /// The first state of which something is true.
+    pub fn first(&self, is_meant: impl Fn(&State) -> bool) -> Option<usize> {
+        self.states.iter().position(is_meant)
+    }
+
+    /// How many different configurations there are.
+    pub fn configurations(&self) -> usize {
+        let configurations: BTreeSet<&[NodeId]> =
+            self.states.iter().map(|state| state.configuration.as_slice()).collect();
+        configurations.len()
+    }
+
+    /// The shortest way to a state.
+    pub fn trace_to(&self, state: usize) -> Trace {
+        let mut steps = Vec::new();
+        let mut at = state;
+        while let Some((from, step)) = self.states.get(at).and_then(|state| state.came.as_ref()) {
+            steps.push(step.clone());
+            if matches!(step.cause, Move::Start) {
+                break;
+            }
+            at = *from;
+        }
+        steps.reverse();
+        Trace::new(self.chart.clone(), steps)
+    }
+
+    /// The shortest way to a step that failed, and that step.
+    pub fn trace_of(&self, failure: &Failure) -> Trace {
+        let mut steps = match failure.step.cause {
+            Move::Start => Vec::new(),
+            _ => self.trace_to(failure.from).into_steps(),
+        };
+        steps.push(failure.step.clone());
+        Trace::new(self.chart.clone(), steps)
+    }
+}
