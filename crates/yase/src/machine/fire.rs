@@ -131,7 +131,6 @@ impl<H: Host> Step<'_, H> {
         if self.run.terminates || self.run.status != Status::Running {
             return Ok(());
         }
-        // in phases another may have left it before
         // in phases another may have left it before, or entered it again with something inside
         let is_empty = |place: Place| {
             let first = self.chart.layout.first(place).index();
@@ -161,6 +160,7 @@ impl<H: Host> Step<'_, H> {
     fn fire_phases(&mut self) -> Result<(), Fault> {
         let chart = self.chart;
         let compound = |id: CompoundId| &chart.compounds[id.0 as usize];
+        self.drop_what_loses_its_source();
         self.each_selected(|step, id| {
             step.count_fired(id);
             if let Some((first, last)) = compound(id).exits {
@@ -189,6 +189,23 @@ impl<H: Host> Step<'_, H> {
         self.run.terminates |= stops;
         self.stop_if_terminated();
         Ok(())
+    }
+
+    /// What leads out of a composite in which nothing is active leaves nothing, and so is in conflict with none. But it does not fire beside
+    /// another that leaves that composite: what both enter would be active together.
+    fn drop_what_loses_its_source(&mut self) {
+        let mut index = 0;
+        while let Some(&id) = self.run.selection.selected.get(index) {
+            let (way, others) = (self.compound(id), &self.run.selection.selected);
+            let is_left = |source: Place| {
+                others.iter().any(|&other| other != id && self.compound(other).leaves(source))
+            };
+            if way.exits.is_some() && way.arrives.is_none() && way.sources().any(is_left) {
+                self.run.selection.selected.remove(index);
+            } else {
+                index += 1;
+            }
+        }
     }
 
     fn each_selected(

@@ -1,6 +1,6 @@
 //! R7, R12, R15: JOINs that take composites, and what their sources may still do.
 
-use yase::{ActiveAncestor, Eventless, Joining, Semantics};
+use yase::{ActiveAncestor, Eventless, Firing, Joining, Semantics};
 
 use crate::{check_with, with};
 
@@ -204,6 +204,46 @@ fn r08_what_leaves_nothing_since_its_region_was_vacated_is_in_conflict_with_noth
         0.000 s -: both/one/START -> both/one/A, both/two/START -> both/two/B; exit both/one/START, both/two/START; enter both/one/A, both/two/B
         0.001 s f: both/one/A -> both/one; exit both/one/A
         0.002 s e: both/one -> both/one/A, both/two/B -> D; exit both/one/A, both/one, both/two/B, both/two, both; enter both/one/A, D
+        ",
+    );
+}
+
+#[test]
+fn r10_in_phases_what_begins_at_a_vacated_region_that_another_leaves_does_not_fire() {
+    // or `one` would get two children; what leads nowhere fires all the same
+    check_with(
+        with(|it| {
+            it.ancestor = ActiveAncestor::Completed;
+            it.firing = Firing::Phases;
+        }),
+        "
+        START
+        & both
+          one
+            START
+            A
+            C
+          two
+            START
+            B
+          three
+        c/START -> both
+        one/START -> A
+        two/START -> B
+        A -> one : f
+        one -> A {internal} : e
+        B -> C : e
+        three -> three {internal} : e / raise(g)
+        ",
+        "1 f; 2 e; 3",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> both; exit START; enter both, both/one, both/one/START, both/two, both/two/START, both/three
+        0.000 s -: both/one/START -> both/one/A, both/two/START -> both/two/B; exit both/one/START, both/two/START; enter both/one/A, both/two/B
+        0.001 s f: both/one/A -> both/one; exit both/one/A
+        0.002 s e: both/two/B -> both/one/C, both/three -> both/three; exit both/one, both/two/B, both/two, both/three, both; do raise(g) (both/three -> both/three); enter both, both/one, both/one/C, both/two, both/two/START, both/three
+        0.002 s -: both/two/START -> both/two/B; exit both/two/START; enter both/two/B
+        0.002 s g: dropped
         ",
     );
 }

@@ -52,6 +52,7 @@ impl Stepper<'_> {
 
     /// All exits, then all effects, then all entries.
     pub(super) fn fire_phases(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
+        let ways = self.with_their_sources(ways);
         let exits: BTreeSet<NodeId> = ways.iter().flat_map(|way| self.exit_set(way)).collect();
         self.leave_all(&exits, world);
         let (mut entering, mut stops) = (vec![], false);
@@ -71,6 +72,29 @@ impl Stepper<'_> {
         self.terminates |= stops;
         self.halt_if_terminated(world);
         Ok(ways)
+    }
+
+    /// Without those that lead somewhere from a state that another one leaves: they can only be here because nothing is active in it.
+    fn with_their_sources(&self, mut ways: Vec<Way>) -> Vec<Way> {
+        let mut index = 0;
+        while index < ways.len() {
+            let way = &ways[index];
+            let stays = self.is_targetless(way)
+                || self.only_terminates(way)
+                || self.kind(way.ends[0]) == NodeKind::Join
+                || self.kind(self.scope(way)) == NodeKind::Basic; // nothing is in it that could be left
+            let mut others = ways.iter().enumerate().filter(|(other, _)| *other != index);
+            let is_left = others.any(|(_, other)| {
+                let left = self.exit_set(other);
+                way.sources.iter().any(|source| left.contains(source))
+            });
+            if is_left && !stays {
+                ways.remove(index);
+            } else {
+                index += 1;
+            }
+        }
+        ways
     }
 
     fn leave_all(&mut self, exits: &BTreeSet<NodeId>, world: &mut World) {
