@@ -6,6 +6,7 @@ mod direct;
 mod entries;
 mod events;
 mod layout;
+mod leaps;
 mod paths;
 mod roles;
 mod scope;
@@ -24,9 +25,10 @@ use crate::semantics::{EventMatching, Semantics};
 use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 use crate::vocabulary::{TopicId, Vocabulary};
 
-pub(crate) use direct::{Direct, DirectActions, DirectPlace, DirectWay};
+pub(crate) use direct::{Direct, DirectActions, DirectPlace};
 pub(crate) use events::Trigger;
 pub(crate) use layout::{Layout, Place};
+pub(crate) use leaps::{Cell, Does, Leap, More};
 pub use scripts::{ScriptEntry, ScriptPlace};
 
 /// A blackboard of a running chart: number 0 is the root's, and each region of an AND has one of its own. Composites within a

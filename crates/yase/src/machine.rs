@@ -10,8 +10,10 @@ mod draw;
 mod enter;
 mod errors;
 pub(crate) mod explored;
+mod fifo;
 mod fire;
 mod history;
+mod leap;
 mod leave;
 mod newcomers;
 mod queues;
@@ -267,8 +269,11 @@ impl Machine {
         now: Moment,
         host: &mut impl Host,
     ) -> Result<StepSummary, MachineError> {
-        if self.advance_to(now) {
+        if self.run.is_settled {
+            self.run.now = self.run.now.max(now);
             direct::run(&self.chart, &mut self.run, host)
+        } else if self.advance_to(now) {
+            self.step(host).run()
         } else {
             Ok(StepSummary::default())
         }

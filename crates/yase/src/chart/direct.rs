@@ -7,15 +7,13 @@
 
 use std::ops::Range;
 
+use crate::chart::leaps::{Leaps, PLACES};
 use crate::chart::{
     Branch, Branches, Compound, CompoundId, Condition, Entries, Layout, Place, RegionId, State, Trigger,
 };
 use crate::expression::{Effect, EventId, ScriptId};
 use crate::semantics::{Eventless, Semantics};
 use crate::statechart::{NodeId, NodeKind, Statechart};
-
-/// So many places fit into one word.
-const PLACES: usize = u64::BITS as usize;
 
 /// What the short way needs of a chart. Sets of places are words.
 #[derive(Clone, Debug)]
@@ -30,6 +28,8 @@ pub(crate) struct Direct {
     pub(crate) ways: Box<[DirectWay]>,
     /// What the ways enter.
     pub(crate) entries: Box<[Place]>,
+    /// What need not be looked for.
+    pub(crate) leaps: Leaps,
 }
 
 /// One place.
@@ -106,6 +106,7 @@ impl Direct {
             places: Box::default(),
             ways: Box::default(),
             entries: Box::default(),
+            leaps: Leaps::default(),
         };
         let (mut places, mut found) = (Vec::<DirectPlace>::new(), Found::default());
         for (place, state) in states.iter().enumerate() {
@@ -146,6 +147,7 @@ impl Direct {
         }
         (direct.places, direct.ways, direct.entries) =
             (places.into(), found.ways.into(), found.entries.into());
+        direct.leaps = Leaps::new(&direct, states);
         Some(direct)
     }
 }

@@ -28,6 +28,18 @@ impl Bound {
         (self.micro_steps, self.instant, self.steps, self.taken) = (0, now, 0, 0);
     }
 
+    /// Begins a step and counts its first micro-step, if there may be one more step at this moment.
+    #[inline(always)]
+    pub(super) fn begin_with_one(&mut self, now: Moment, limit: NonZeroU32) -> bool {
+        if self.instant != now {
+            (self.instant, self.steps, self.taken) = (now, 0, 0);
+        }
+        let may = self.steps < limit.get();
+        self.steps += u32::from(may);
+        self.micro_steps = u32::from(may);
+        may
+    }
+
     /// A step begins.
     pub(super) fn begin(&mut self, now: Moment) {
         self.micro_steps = 0;

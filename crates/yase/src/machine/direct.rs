@@ -7,7 +7,7 @@
 //! All it works with stands in the values of one struct, which are never lent as a whole: so the compiler keeps them in registers. What is
 //! seldom done is a call of the long way's own.
 
-use crate::chart::{Chart, Direct, DirectActions, DirectPlace, DirectWay, Owner, Place, RegionId};
+use crate::chart::{Chart, CompoundId, Direct, DirectActions, DirectPlace, Owner, Place, RegionId};
 use crate::expression::{EventId, ScriptId};
 use crate::host::{ActionError, ActionPlace, Host};
 use crate::machine::act::Scene;
@@ -22,19 +22,19 @@ use crate::trace::Occasion;
 
 /// A step on the short way.
 pub(super) struct ShortStep<'a, H> {
-    chart: &'a Chart,
-    direct: &'a Direct,
-    run: &'a mut Run,
+    pub(super) chart: &'a Chart,
+    pub(super) direct: &'a Direct,
+    pub(super) run: &'a mut Run,
     host: &'a mut H,
     micro_steps: u32,
-    transitions: u32,
+    pub(super) transitions: u32,
 }
 
-/// Makes a run-to-completion step, on the short way as far as that leads.
-#[inline]
+/// Makes a run-to-completion step of a settled machine, on the short way as far as that leads.
+#[inline(always)]
 pub(super) fn run<H: Host>(chart: &Chart, run: &mut Run, host: &mut H) -> Result<StepSummary, MachineError> {
     match &chart.direct {
-        Some(direct) if run.can_begin_directly(direct) => {
+        Some(direct) if run.timers.next_deadline().is_none_or(|next| next > run.now) => {
             let traced = host.wants_trace();
             run.log.wanted = traced;
             let short = ShortStep { chart, direct, run, host, micro_steps: 0, transitions: 0 };
@@ -46,25 +46,22 @@ pub(super) fn run<H: Host>(chart: &Chart, run: &mut Run, host: &mut H) -> Result
 }
 
 impl Run {
-    /// Whether a new step has nothing to do but to offer events.
-    #[inline(always)]
-    fn can_begin_directly(&self, direct: &Direct) -> bool {
-        self.is_settled
-            && self.active.first_word() & direct.detours == 0
-            && self.timers.next_deadline().is_none_or(|next| next > self.now)
+    /// Whether nothing is left of the steps that were but the configuration, timers and failed guards, and the short way leads on from here.
+    pub(super) fn can_go_on_directly(&self, chart: &Chart) -> bool {
+        self.is_at_rest() && chart.direct.as_ref().is_some_and(|direct| self.goes_on_directly(direct))
     }
 
     /// States with activities, and those that may go on without an event, are detours: so nothing runs, and nothing waits but events.
     #[inline(always)]
     fn goes_on_directly(&self, direct: &Direct) -> bool {
         self.active.first_word() & direct.detours == 0
-            && self.queues.raised.len() | self.queues.deferred.len() == 0
+            && self.queues.raised.has_none()
+            && self.queues.deferred.has_none()
             && self.status == Status::Running
     }
 
-    /// Whether nothing is left of the steps that were but the configuration, timers and failed guards.
-    pub(super) fn is_at_rest(&self) -> bool {
-        self.queues.raised.len() | self.queues.deferred.len() | self.queues.held.len() == 0
+    fn is_at_rest(&self) -> bool {
+        self.queues.held.is_empty()
             && self.pending.is_empty()
             && self.newcomers.is_empty()
             && self.completions.is_empty()
@@ -88,16 +85,26 @@ impl<H: Host> ShortStep<'_, H> {
         if self.chart.semantics_ref().delivery == Delivery::EachStep {
             self.deliver();
         }
-        while self.run.goes_on_directly(self.direct) {
-            // not copied as a whole: it was just written piece by piece, and processors wait for that
-            let Some(first) = self.run.queues.first_arrived() else { return Ok(self.finish()) };
+        // not copied as a whole: it was just written piece by piece, and processors wait for that
+        while let Some(first) = self.run.queues.first_arrived() {
             let Occurrence { event, is_known, token, .. } = *first;
             if !self.admit() {
-                break;
+                return self.go_on();
             }
             self.host.offered(event, is_known, token);
-            self.offer::<TRACED>(event);
+            if TRACED || !self.leap(event) {
+                self.offer::<TRACED>(event);
+            }
+            if !self.run.goes_on_directly(self.direct) {
+                return self.go_on();
+            }
         }
+        Ok(self.finish())
+    }
+
+    #[inline(never)]
+    fn go_on(mut self) -> Result<StepSummary, MachineError> {
+        self.run.is_settled = false;
         self.long_way().run_on()
     }
 
@@ -108,7 +115,7 @@ impl<H: Host> ShortStep<'_, H> {
 
     /// The same step on the long way.
     #[inline(always)]
-    fn long_way(&mut self) -> Step<'_, H> {
+    pub(super) fn long_way(&mut self) -> Step<'_, H> {
         let summary = self.summary();
         Step { chart: self.chart, run: self.run, host: self.host, summary }
     }
@@ -127,8 +134,9 @@ impl<H: Host> ShortStep<'_, H> {
     }
 
     #[inline(always)]
-    fn finish(mut self) -> StepSummary {
-        if !self.run.written.is_empty() {
+    fn finish(&mut self) -> StepSummary {
+        // there are no more blackboards than states
+        if self.run.written.first_word() != 0 {
             self.publish();
         }
         self.summary()
@@ -144,20 +152,20 @@ impl<H: Host> ShortStep<'_, H> {
     fn admit(&mut self) -> bool {
         let (limit, bound) = (self.chart.semantics_ref().limit, &mut self.run.bound);
         if self.micro_steps == 0 {
-            bound.begin(self.run.now);
-            if !bound.admits_step(limit) {
+            if !bound.begin_with_one(self.run.now, limit) {
                 return false;
             }
-        } else if !bound.allows_micro_step(limit) {
+        } else if bound.allows_micro_step(limit) {
+            bound.count_micro_step();
+        } else {
             return false;
         }
-        bound.count_micro_step();
         self.micro_steps += 1;
         true
     }
 
     /// Offers an event. Most lead to one transition, which happens without a list.
-    #[inline(always)]
+    #[inline(never)]
     fn offer<const TRACED: bool>(&mut self, event: EventId) {
         self.run.forget_failures_told();
         let mut search = Search::new(self.run.active.first_word(), self.direct);
@@ -180,7 +188,7 @@ impl<H: Host> ShortStep<'_, H> {
     }
 
     #[inline(never)]
-    fn keep(&mut self) {
+    pub(super) fn keep(&mut self) {
         let Some(occurrence) = self.run.queues.next_arrived() else { return };
         self.run.selection.clear();
         let mut step = self.long_way();
@@ -211,7 +219,7 @@ impl<H: Host> ShortStep<'_, H> {
     }
 
     #[inline(always)]
-    fn holds<const TRACED: bool>(&mut self, guard: u32) -> bool {
+    pub(super) fn holds<const TRACED: bool>(&mut self, guard: u32) -> bool {
         if !TRACED && self.run.erred.is_empty() {
             let scoped = &self.chart.guards[guard as usize];
             let view = View { chart: self.chart, run: self.run, host: self.host, region: scoped.region };
@@ -276,7 +284,7 @@ impl<H: Host> ShortStep<'_, H> {
             active = self.leave::<TRACED>(Place(place), active);
         }
         if way.acts {
-            self.act_on(way);
+            self.act_on(way.compound);
         }
         let entries = self.direct.entries.get(way.entries.start as usize..way.entries.end as usize);
         for &place in entries.unwrap_or_default() {
@@ -286,8 +294,8 @@ impl<H: Host> ShortStep<'_, H> {
     }
 
     #[inline(never)]
-    fn act_on(&mut self, way: &DirectWay) {
-        let compound = &self.chart.compounds[way.compound.0 as usize];
+    pub(super) fn act_on(&mut self, compound: CompoundId) {
+        let compound = &self.chart.compounds[compound.0 as usize];
         self.long_way().do_actions(compound);
     }
 
@@ -332,14 +340,14 @@ impl<H: Host> ShortStep<'_, H> {
     }
 
     #[inline(never)]
-    fn act_at_exit(&mut self, state: &DirectPlace, place: Place) {
+    pub(super) fn act_at_exit(&mut self, state: &DirectPlace, place: Place) {
         let scene = Scene { place: ActionPlace::Exit(state.node), region: state.region, owner: Owner::None };
         let actions = &self.chart.states[place.index()].exit;
         self.long_way().perform(actions, scene);
     }
 
     #[inline(never)]
-    fn act_at_entry(&mut self, state: &DirectPlace, place: Place) {
+    pub(super) fn act_at_entry(&mut self, state: &DirectPlace, place: Place) {
         let owner = Owner::State(place);
         let scene = Scene { place: ActionPlace::Entry(state.node), region: state.region, owner };
         let actions = &self.chart.states[place.index()].entry;
@@ -348,7 +356,12 @@ impl<H: Host> ShortStep<'_, H> {
 
     /// The only action of a place, which is the host's.
     #[inline(always)]
-    fn perform<const TRACED: bool>(&mut self, script: ScriptId, region: RegionId, at: ActionPlace) {
+    pub(super) fn perform<const TRACED: bool>(
+        &mut self,
+        script: ScriptId,
+        region: RegionId,
+        at: ActionPlace,
+    ) {
         if TRACED {
             self.run.log.effects.push(at);
         }

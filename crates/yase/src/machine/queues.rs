@@ -1,11 +1,10 @@
 //! Events on their way: raised, arrived, deferred and held.
 
-use std::collections::VecDeque;
-
 use smallvec::SmallVec;
 
 use crate::chart::CompoundId;
 use crate::expression::EventId;
+use crate::machine::fifo::Fifo;
 use crate::semantics::EventPool;
 
 /// An event that happened.
@@ -54,9 +53,9 @@ pub(super) struct Held {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Queues {
     pub(super) count: u64,
-    pub(super) raised: VecDeque<Occurrence>,
-    pub(super) arrived: VecDeque<Occurrence>,
-    pub(super) deferred: VecDeque<Occurrence>,
+    pub(super) raised: Fifo<Occurrence>,
+    pub(super) arrived: Fifo<Occurrence>,
+    pub(super) deferred: Fifo<Occurrence>,
     pub(super) held: Vec<Held>,
 }
 
@@ -71,7 +70,7 @@ impl Queues {
     /// Everything in them.
     pub(super) fn all(&self) -> impl Iterator<Item = &Occurrence> {
         let held = self.held.iter().map(|held| &held.occurrence);
-        self.raised.iter().chain(&self.arrived).chain(&self.deferred).chain(held)
+        self.raised.iter().chain(&*self.arrived).chain(&*self.deferred).chain(held)
     }
 
     /// Whether some event can be offered now.
@@ -83,12 +82,12 @@ impl Queues {
     pub(super) fn raise(&mut self, source: Incoming, pool: EventPool) {
         let raised = pool == EventPool::RaisedFirst;
         let occurrence = self.occurrence(source, raised);
-        if raised { &mut self.raised } else { &mut self.arrived }.push_back(occurrence);
+        if raised { &mut self.raised } else { &mut self.arrived }.push(occurrence);
     }
 
     pub(super) fn arrive(&mut self, source: Incoming) {
         let occurrence = self.occurrence(source, false);
-        self.arrived.push_back(occurrence);
+        self.arrived.push(occurrence);
     }
 
     fn occurrence(&mut self, source: Incoming, raised: bool) -> Occurrence {
@@ -98,7 +97,7 @@ impl Queues {
     }
 
     pub(super) fn next_raised(&mut self) -> Option<Occurrence> {
-        self.raised.pop_front()
+        self.raised.pop()
     }
 
     #[inline]
@@ -109,11 +108,11 @@ impl Queues {
     /// Forgets the first that has arrived, without looking at it.
     #[inline]
     pub(super) fn drop_arrived(&mut self) {
-        self.arrived.pop_front();
+        self.arrived.drop_front();
     }
 
     pub(super) fn next_arrived(&mut self) -> Option<Occurrence> {
-        self.arrived.pop_front()
+        self.arrived.pop()
     }
 
     /// The oldest held occurrence that is to be offered again.
@@ -164,7 +163,7 @@ impl Queues {
     }
 }
 
-fn insert(queue: &mut VecDeque<Occurrence>, occurrence: Occurrence) {
+fn insert(queue: &mut Fifo<Occurrence>, occurrence: Occurrence) {
     let index = queue.partition_point(|other| other.number < occurrence.number);
     queue.insert(index, occurrence);
 }

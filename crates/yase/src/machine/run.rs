@@ -26,8 +26,8 @@ pub(super) struct Run {
     pub(super) now: Moment,
     /// Whether something happened that a step may answer to, other than events and timers.
     pub(super) due: bool,
-    /// Whether the last step has ended with nothing left to be done, and nothing has happened since but arriving events. Every long step
-    /// takes it back, and says at its end.
+    /// Whether the last step has ended with nothing left to be done, in a configuration from which the short way leads, and nothing has
+    /// happened since but arriving events. Every long step takes it back, and says at its end.
     pub(super) is_settled: bool,
     /// What a step has done that is taken one micro-step at a time and has not ended.
     pub(super) under_way: Option<StepSummary>,

@@ -258,7 +258,7 @@ impl<'a, H: Host> Step<'a, H> {
             self.start_activities();
         }
         self.report_waiting_starts();
-        self.run.is_settled = self.run.is_at_rest();
+        self.run.is_settled = self.run.can_go_on_directly(self.chart);
     }
 
     /// Leaves every state, in a record of its own.
