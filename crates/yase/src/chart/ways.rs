@@ -418,7 +418,8 @@ impl Search<'_> {
             hull = hull.with(Hull::of(self.layout.place_of(node)));
         }
         for &end in &trail.ends {
-            hull = hull.with(self.hull(end).unwrap_or(self.hull_of_terminates(end)));
+            // only where it leads to nothing else: that walk may be a long one
+            hull = hull.with(self.hull(end).unwrap_or_else(|| self.hull_of_terminates(end)));
         }
         if is_internal {
             let inside = scope::lowest_node(self.chart, self.layout, hull) == source;

@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use yase::expression::{CallError, EventId, ScriptId, parse_actions, parse_transition};
 use yase::{
-    ActionPlace, Activation, Chart, Host, Machine, Moment, NodeId, Performance, RegionId, ScriptPlace,
-    Semantics, Statechart, States, TransitionId, Vocabulary,
+    ActionPlace, Activation, Chart, Host, Machine, MicroStep, Moment, NodeId, Performance, RegionId,
+    ScriptPlace, Semantics, Statechart, States, TransitionId, Vocabulary,
 };
 
 use crate::kit::chart;
 use crate::kit::chart::find;
 
-/// Understands `in PATH` as a condition, `fail` as both, and `raise NAME TOKEN` as an action.
+/// Understands `in PATH` as a condition, `fail` as both, and `raise NAME TOKEN`, `look PATH` and `see:LABEL` as actions.
 struct Reader {
     chart: Arc<Chart>,
     lines: Vec<String>,
@@ -52,6 +52,13 @@ impl Host for Reader {
                 let node = self.node(path);
                 let (active, complete) = (performance.is_active(node), performance.is_complete(node));
                 self.lines.push(format!("{path} active: {active}, complete: {complete}"));
+                Ok(())
+            }
+            [word] if word.starts_with("see:") => {
+                let chart = self.chart.statechart();
+                let active = chart.nodes().filter(|&(node, _)| performance.is_active(node));
+                let paths: Vec<String> = active.map(|(node, _)| chart.path(node)).collect();
+                self.lines.push(format!("{word} {}", paths.join(", ")));
                 Ok(())
             }
             _ => Err(CallError::new("it always fails")),
@@ -202,4 +209,80 @@ fn failures_are_events_by_their_cause_or_every_time() {
     every.failures = yase::FailureEvents::EveryTime;
     every.limit = std::num::NonZeroU32::new(4).unwrap();
     assert_eq!(offered(every), ["?", "error.execution", "error.execution"], "until the limit");
+}
+
+/// Composites, side by side and nested, whose actions write down what is active: one action, several, and none.
+const SEEING: &str = "
+    START
+    P | entry=script(\"see:+P\") | exit=script(\"see:-P\"),script(\"see:-P2\")
+      START
+      A | entry=script(\"see:+A\") | exit=script(\"see:-A\")
+      Q | entry=script(\"see:+Q\"),script(\"see:+Q2\")
+        START
+        B | exit=script(\"see:-B\")
+    & both
+      one
+        START
+        C | exit=script(\"see:-C\")
+        D | entry=script(\"see:+D\")
+      two
+        START
+        E
+        F | entry=script(\"see:+F\") | exit=script(\"see:-F\")
+    c/START -> P
+    P/START -> A
+    Q/START -> B
+    one/START -> C
+    two/START -> E
+    A -> B : in / script(\"see:in\")
+    P -> both : out / script(\"see:out\"),script(\"see:out2\")
+    C -> D : e
+    E -> F : e / script(\"see:ef\")
+    F -> E : e
+    D -> C : f [script(\"in P\")]
+    both -> B : back / script(\"see:back\")
+";
+
+#[test]
+fn r10_an_action_sees_what_has_been_left_and_entered_so_far() {
+    let lines = |long: bool| -> Vec<String> {
+        let (mut machine, mut reader) = machine(&chart(SEEING), Semantics::yase());
+        machine.start(Moment::ZERO, &mut reader);
+        machine.run_to_completion(Moment::ZERO, &mut reader).unwrap();
+        for event in ["in", "out", "e", "e", "f", "back", "x"] {
+            machine.dispatch_name(event);
+            if long {
+                while machine.micro_step(Moment::ZERO, &mut reader).unwrap() == MicroStep::Made {}
+            } else {
+                machine.run_to_completion(Moment::ZERO, &mut reader).unwrap();
+            }
+        }
+        reader.lines.retain(|line| line.starts_with("see:"));
+        reader.lines
+    };
+    let expected = "
+        see:+P c, c/P
+        see:+A c, c/P, c/P/A
+        see:-A c, c/P, c/P/A
+        see:in c, c/P
+        see:+Q c, c/P, c/P/Q
+        see:+Q2 c, c/P, c/P/Q
+        see:-B c, c/P, c/P/Q, c/P/Q/B
+        see:-P c, c/P
+        see:-P2 c, c/P
+        see:out c
+        see:out2 c
+        see:-C c, c/both, c/both/one, c/both/one/C, c/both/two, c/both/two/E
+        see:+D c, c/both, c/both/one, c/both/one/D, c/both/two, c/both/two/E
+        see:ef c, c/both, c/both/one, c/both/one/D, c/both/two
+        see:+F c, c/both, c/both/one, c/both/one/D, c/both/two, c/both/two/F
+        see:-F c, c/both, c/both/one, c/both/one/D, c/both/two, c/both/two/F
+        see:back c
+        see:+P c, c/P
+        see:+Q c, c/P, c/P/Q
+        see:+Q2 c, c/P, c/P/Q
+    ";
+    let expected: Vec<&str> = expected.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    assert_eq!(lines(false), expected);
+    assert_eq!(lines(true), expected);
 }
