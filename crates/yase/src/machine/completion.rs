@@ -85,7 +85,6 @@ impl Run {
             self.completions.retain(|&completed| completed != place);
         }
         if !chart.joins.is_empty() {
-            self.forget_arrivals(chart, place);
             self.forget_arrivals_of(chart, place);
         }
     }
@@ -106,19 +105,12 @@ impl Run {
         self.forget_arrivals_of(chart, place);
     }
 
-    /// A region that is left, or gets a child again, has not arrived at a JOIN any more.
+    /// A region that is left, by itself or with its AND, or gets a child again, has not arrived at a JOIN any more.
     fn forget_arrivals_of(&mut self, chart: &Chart, region: Place) {
         for join in &chart.joins {
             for (slot, _) in join.slots().zip(&join.regions).filter(|(_, other)| **other == region) {
                 self.arrived.remove(slot);
             }
-        }
-    }
-
-    /// An AND is left: what has arrived at its JOINs is forgotten.
-    fn forget_arrivals(&mut self, chart: &Chart, around: Place) {
-        for join in chart.joins.iter().filter(|join| join.around == around) {
-            join.slots().for_each(|slot| self.arrived.remove(slot));
         }
     }
 

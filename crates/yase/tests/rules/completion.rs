@@ -1,6 +1,7 @@
 //! R14 to R17: completion, transitions without an event, queues, charts that never rest.
 
 use std::num::NonZeroU32;
+use std::time::Duration;
 
 use yase::{Deferral, Eventless, Machine, MachineErrorKind, Moment, Semantics, Status};
 
@@ -398,4 +399,53 @@ fn r17_a_chart_that_steps_for_ever_at_one_moment_is_stopped() {
     let log =
         script::play_with(&chart("START\nA | run | for=1ms\nc/START -> A\nA -> A\n"), "50", limited(10));
     assert!(!log.iter().any(|line| line.starts_with("error")));
+}
+
+#[test]
+fn r17_steps_at_one_moment_are_counted_whoever_looks_on_and_anew_when_time_passes_or_the_chart_starts() {
+    let chart = chart("START\nA\nB\nc/START -> A\nA -> B : e\nB -> A : e\n");
+    for silent in [false, true] {
+        let mut world = World { silent, ..World::new(&chart) };
+        let mut machine = Machine::new(script::compile_with(&chart, limited(3)));
+        let mut steps = |machine: &mut Machine, now: Moment, count: usize| {
+            for _ in 0..count {
+                machine.dispatch_name("e");
+                let summary = machine.run_to_completion(now, &mut world)?;
+                assert_eq!((summary.micro_steps, summary.transitions), (1, 1));
+            }
+            Ok::<(), yase::MachineError>(())
+        };
+        for start in [Moment::ZERO, Moment::from_millis(1)] {
+            machine.start(start, &mut World::new(&chart));
+            machine.run_to_completion(start, &mut World::new(&chart)).unwrap();
+            steps(&mut machine, start, 2).unwrap();
+            steps(&mut machine, start + Duration::from_millis(1), 3).unwrap();
+            let error = steps(&mut machine, start + Duration::from_millis(1), 1).unwrap_err();
+            assert_eq!(error.kind(), MachineErrorKind::NeverAdvances);
+            assert_eq!(machine.status(), Status::Stopped);
+        }
+    }
+}
+
+#[test]
+fn r17_a_step_may_offer_as_many_events_as_it_may_have_micro_steps() {
+    let chart = chart("START\nA\nB\nc/START -> A\nA -> B : e\nB -> A : e\n");
+    for silent in [false, true] {
+        for (events, limit) in [(4, 4), (5, 4)] {
+            let mut world = World { silent, ..World::new(&chart) };
+            let mut machine = Machine::new(script::compile_with(&chart, limited(limit)));
+            machine.start(Moment::ZERO, &mut world);
+            machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+            (0..events).for_each(|_| machine.dispatch(chart_event(&machine)));
+            let found = machine.run_to_completion(Moment::from_millis(1), &mut world);
+            match found {
+                Ok(summary) => assert_eq!((events, summary.transitions), (4, 4)),
+                Err(error) => assert_eq!((events, error.kind()), (5, MachineErrorKind::NeverRests)),
+            }
+        }
+    }
+}
+
+fn chart_event(machine: &Machine) -> yase::expression::EventId {
+    machine.chart().events().find("e").unwrap()
 }

@@ -20,6 +20,7 @@ mod refusals;
 mod running;
 mod scripts;
 mod selection;
+mod short;
 mod structure;
 mod terminate;
 mod timers;

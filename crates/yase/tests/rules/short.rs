@@ -1,0 +1,147 @@
+//! What a machine does on the short way is what it does one micro-step at a time, also where a listener looks closely or a host is late.
+
+use std::time::Duration;
+
+use yase::{Machine, Moment};
+
+use crate::check;
+use crate::kit::chart;
+use crate::kit::script::{self, ByMicroSteps, Interpreter, Script};
+use crate::kit::world::World;
+
+/// Plays a script both ways, guards that are read among what is written down, and gives that.
+fn with_reads(text: &str, script: &str) -> Vec<String> {
+    let (chart, script) = (chart(text), Script::parse(script));
+    let played = |machine: &mut dyn Play| {
+        let mut world = World { reads: true, ..World::new(&chart) };
+        machine.play(&script, &mut world);
+        world.log
+    };
+    let compiled = script::compile(&chart);
+    let short = played(&mut Machine::new(compiled.clone()));
+    assert_eq!(short, played(&mut ByMicroSteps(Machine::new(compiled))));
+    short
+}
+
+trait Play {
+    fn play(&mut self, script: &Script, world: &mut World);
+}
+
+impl<T: Interpreter> Play for T {
+    fn play(&mut self, script: &Script, world: &mut World) {
+        script::run(self, script, world);
+    }
+}
+
+#[test]
+fn r23_guards_that_are_read_stand_in_the_record() {
+    let text = "
+        START
+        A
+        B
+        c/START -> A
+        A -> B : e [A.n > 0]
+        A -> A {internal} : e [A.n < 0]
+        B -> A : e
+    ";
+    let log = with_reads(text, "1 A=0; 2 e; 3 A=1; 4 e; 5 e; 6");
+    let told: Vec<&str> = log[2..].iter().map(|line| line.trim()).collect();
+    assert_eq!(
+        told,
+        [
+            "0.002 s e: dropped; read A -> B = false, A -> A = false",
+            "0.004 s e: A -> B; exit A; enter B; read A -> B = true",
+            "0.005 s e: B -> A; exit B; enter A",
+        ]
+    );
+}
+
+#[test]
+fn r03_a_guard_that_failed_is_read_again_and_told_again_when_what_it_reads_has_changed() {
+    check(
+        "
+        START
+        A
+        c/START -> A
+        A -> A {internal} : e [1 / A.n > 0] / raise(f)
+        A -> A {internal} : error.guard
+        ",
+        "1 A=0; 2 e; 3 e; 4 A=0; 5 e; 6 A=1; 7 e; 8",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> A; exit START; enter A
+        guard failed: division by zero
+        0.002 s e: dropped
+        0.002 s error.guard: A -> A
+        0.003 s e: dropped
+        guard failed: division by zero
+        0.005 s e: dropped
+        0.005 s error.guard: A -> A
+        0.007 s e: A -> A; do raise(f) (A -> A)
+        0.007 s f: dropped
+        ",
+    );
+}
+
+#[test]
+fn r21_a_timer_that_was_over_long_ago_expires_in_the_next_step() {
+    let chart = chart(
+        "
+        START
+        A
+        B
+        C
+        c/START -> A
+        A -> B : set / StartTimeout(v, 10ms)
+        B -> C : e
+        C -> A : v
+        ",
+    );
+    for silent in [false, true] {
+        let mut world = World { silent, ..World::new(&chart) };
+        let mut machine = Machine::new(script::compile(&chart));
+        machine.start(Moment::ZERO, &mut world);
+        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.dispatch_name("set");
+        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        assert_eq!(machine.next_deadline(), Some(Moment::from_millis(10)));
+        machine.dispatch_name("e");
+        let late = Moment::ZERO + Duration::from_millis(25);
+        let summary = machine.run_to_completion(late, &mut world).unwrap();
+        assert_eq!((summary.transitions, machine.next_deadline()), (2, None), "B -> C at e, C -> A at v");
+    }
+}
+
+#[test]
+fn r10_what_leaves_nothing_does_not_fire_when_another_has_left_its_source_before() {
+    // the transition of `P` comes first, in the order of the document
+    check(
+        "
+        START
+        P
+          START
+          & both
+            one
+              START
+              A
+            two
+              START
+              B
+          X
+        c/START -> P
+        P/START -> both
+        one/START -> A
+        two/START -> B
+        A -> A {internal} : e / raise(never)
+        P -> X {internal} : e
+        ",
+        "1 e; 2",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> P; exit START; enter P, P/START
+        0.000 s -: P/START -> P/both; exit P/START; enter P/both, P/both/one, P/both/one/START, P/both/two, P/both/two/START
+        0.000 s -: P/both/one/START -> P/both/one/A, P/both/two/START -> P/both/two/B; exit P/both/one/START, P/both/two/START; enter P/both/one/A, P/both/two/B
+        0.001 s e: P -> P/X; exit P/both/one/A, P/both/one, P/both/two/B, P/both/two, P/both; enter P/X
+        ",
+    );
+}
