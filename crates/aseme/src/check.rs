@@ -12,7 +12,7 @@
 //!
 //! ```
 //! use aseme::check::{Settings, check};
-//! use yase::Source;
+//! use yase::{Severity, Source};
 //!
 //! let source = Source::new("walker.srm", "
 //! Role: walker
@@ -23,15 +23,18 @@
 //! CONDITION -> Walk : [Ball.distance < 2]
 //! ");
 //! let report = check(&source, &Settings::default());
-//! let said: Vec<String> = report.findings.iter().map(ToString::to_string).collect();
+//! let matters = report.findings.iter().filter(|finding| finding.diagnostic.severity > Severity::Information);
+//! let said: Vec<String> = matters.map(ToString::to_string).collect();
 //! assert_eq!(said, ["walker.srm:4:18: warning[M05]: the ways out of `CONDITION` leave cases open: there `Ball.distance` is 2 \
 //!     (let one of them be without a guard: it is taken when no other is)"]);
 //! ```
 
 mod abstraction;
+mod conformance;
 mod events;
 mod exploration;
 mod guards;
+mod language;
 pub mod logic;
 mod places;
 mod profiles;
@@ -39,12 +42,15 @@ mod roles;
 mod structure;
 mod subject;
 mod timers;
+mod world;
 
 use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
 use yase::{Diagnostic, Severity, Source};
+
+pub use world::World;
 
 use crate::convert::{self, Model};
 use subject::Subject;
@@ -105,6 +111,7 @@ pub const CHECKS: &[Check] = {
         ),
         of("M09", Guards, Warning, "a guard that never holds, or always"),
         of("M10", Guards, Warning, "an event that one region answers by leaving and another by staying"),
+        of("M11", Structure, Warning, "a region that reads what another one may write in the same step"),
         of("M12", Exploration, Warning, "a state that is never reached, a transition that is never taken"),
         of("M13", Exploration, Error, "transitions that lead on and on within one step"),
         of("M14", Exploration, Warning, "a state that is never left and is no END"),
@@ -115,6 +122,8 @@ pub const CHECKS: &[Check] = {
             "a transition that waits for a composite to complete which never can",
         ),
         of("M16", Structure, Warning, "an event that is never raised, or never waited for"),
+        of("M17", Structure, Error, "a message, field, function or type that the program does not have"),
+        of("M18", Exploration, Warning, "a guard on a message that need not have come"),
         of(
             "M19",
             Structure,
@@ -122,7 +131,12 @@ pub const CHECKS: &[Check] = {
             "a timer that is read but not started, not read, or started again before it can expire",
         ),
         of("M20", Structure, Warning, "a HISTORY that may be entered with nothing recorded and no default"),
-        of("M21", Exploration, Warning, "more activities at once than the pool runs"),
+        of(
+            "M21",
+            Exploration,
+            Error,
+            "an activity that the program does not have; more of them at once than the pool runs",
+        ),
         of(
             "M22",
             Exploration,
@@ -130,6 +144,7 @@ pub const CHECKS: &[Check] = {
             "a transition that can only be taken while an activity that it leaves runs",
         ),
         of("M23", Structure, Error, "weights that are no shares, or contradict priorities"),
+        of("M24", Exploration, Error, "a chart that does other than its formulas say"),
         of("M25", Structure, Information, "what other engines read in another way"),
         of("M26", Exploration, Information, "how large the chart is"),
         of("S01", Roles, Warning, "an activity without a functionality"),
@@ -141,7 +156,7 @@ pub const CHECKS: &[Check] = {
 };
 
 /// What a check is told beside the model.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Settings {
     /// Events that come from outside the chart: activities, other agents and people raise them.
@@ -150,11 +165,13 @@ pub struct Settings {
     pub states: usize,
     /// How many activities the agent's pool runs at once; 12 if it is not said.
     pub pool: Option<usize>,
+    /// The messages, functions and activities that there are; names are not judged if it is not said.
+    pub world: Option<World>,
 }
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { events: BTreeSet::new(), states: 100_000, pool: None }
+        Settings { events: BTreeSet::new(), states: 100_000, pool: None, world: None }
     }
 }
 
@@ -275,6 +292,8 @@ fn charted(
         found.extend(timers::check(&subject));
         found.extend(guards::check(&subject));
         found.extend(profiles::check(&subject));
+        found.extend(world::same_step(&subject));
+        found.extend(settings.world.iter().flat_map(|world| world::names(&subject, world)));
     }
     let can_be_explored = settings.states > 0 && is_ours(&subject) && !found.iter().any(Diagnostic::is_error);
     let (explored, extent) = match can_be_explored {

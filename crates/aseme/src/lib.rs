@@ -17,6 +17,8 @@
 //! Each has a text form, and the XMI of the method's original tools; [`convert`] tells files apart, reads them, and writes them in another format, with a
 //! list of what that cannot say. [`transformations`] leads from one to the next, from goals to charts.
 //!
+//! [`check`] looks for what no grammar sees: in structure, in what guards say, and in all that a chart can do.
+//!
 //! Reading never fails. Every function that reads returns what it understood, and what was wrong as [`Diagnostic`]s with a code, a place
 //! and a hint. Nothing here opens a file, and nothing here knows how a chart is run.
 //!

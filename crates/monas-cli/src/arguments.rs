@@ -136,6 +136,9 @@ pub(crate) struct CheckArguments {
     /// How many activities the agent's pool runs at once; 12 if not given.
     #[arg(long, value_name = "NUMBER")]
     pub(crate) pool: Option<usize>,
+    /// Check names too: against the messages, functions and activities that this program has.
+    #[arg(long)]
+    pub(crate) linked: bool,
     /// Write each way to a finding as a file into this folder, for `model run`.
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) traces: Option<PathBuf>,

@@ -170,6 +170,14 @@ impl Registry {
         self.functions.keys().map(String::as_str)
     }
 
+    /// The words that expressions may use: the topics of the program and the functions of the registry.
+    ///
+    /// # Errors
+    /// [`ErrorKind::AmbiguousFunction`] if two functions have one name.
+    pub fn vocabulary(&self) -> Result<yase::Vocabulary, Error> {
+        Ok(crate::vocabulary::vocabulary(narukom::TOPICS, &self.functions()?))
+    }
+
     /// All functions, one of each name.
     ///
     /// # Errors

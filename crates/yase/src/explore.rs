@@ -37,6 +37,8 @@
 
 mod host;
 mod search;
+#[cfg(test)]
+mod tests;
 mod trace;
 
 use std::collections::BTreeSet;
@@ -78,8 +80,8 @@ pub struct State {
     pub status: Status,
     /// The states whose activities run.
     pub running: Vec<NodeId>,
-    /// The step that led here first, and from where.
-    came: Option<(usize, Step)>,
+    /// The step that led here first, by its number, and from where; that from which the chart was started leads from nowhere.
+    came: (Option<usize>, usize),
 }
 
 impl State {
@@ -98,15 +100,16 @@ pub struct Edge {
     pub to: usize,
     /// Whether it took any transition.
     pub does_something: bool,
-    /// The states with activities that it entered, in order.
-    pub started: Box<[NodeId]>,
+    /// The state whose activity returned, if that was its cause.
+    pub returned: Option<NodeId>,
+    step: usize,
 }
 
 /// A step that the machine did not come back from.
 #[derive(Clone, Debug)]
 pub struct Failure {
-    /// The state that it began in.
-    pub from: usize,
+    /// The state that it began in; none if the chart was just started.
+    pub from: Option<usize>,
     /// The step.
     pub step: Step,
     /// What went wrong.
@@ -121,7 +124,10 @@ pub struct Exploration {
     chart: Arc<Chart>,
     is_finished: bool,
     states: Vec<State>,
+    initial: BTreeSet<usize>,
     edges: Vec<Edge>,
+    /// Each different step once.
+    steps: Vec<Step>,
     failures: Vec<Failure>,
     entered: BTreeSet<NodeId>,
     left: BTreeSet<NodeId>,
@@ -140,7 +146,12 @@ impl Exploration {
         &self.states
     }
 
-    /// The steps between states, those that lead back to where they began too.
+    /// The states in which the chart may be when it has been started, by number.
+    pub fn initial(&self) -> impl Iterator<Item = usize> {
+        self.initial.iter().copied()
+    }
+
+    /// The steps between states: one for each way in which two are connected, those that do something and lead back to where they began too.
     pub fn edges(&self) -> &[Edge] {
         &self.edges
     }
@@ -184,26 +195,32 @@ impl Exploration {
 
     /// The shortest way to a state.
     pub fn trace_to(&self, state: usize) -> Trace {
+        Trace::new(self.chart.clone(), self.steps_to(Some(state)))
+    }
+
+    fn steps_to(&self, mut state: Option<usize>) -> Vec<Step> {
         let mut steps = Vec::new();
-        let mut at = state;
-        while let Some((from, step)) = self.states.get(at).and_then(|state| state.came.as_ref()) {
-            steps.push(step.clone());
-            if matches!(step.cause, Move::Start) {
-                break;
-            }
-            at = *from;
+        while let Some(at) = state.and_then(|state| self.states.get(state)) {
+            let (from, step) = at.came;
+            steps.extend(self.steps.get(step).cloned());
+            state = from;
         }
         steps.reverse();
-        Trace::new(self.chart.clone(), steps)
+        steps
     }
 
     /// The shortest way to a step that failed, and that step.
     pub fn trace_of(&self, failure: &Failure) -> Trace {
-        let mut steps = match failure.step.cause {
-            Move::Start => Vec::new(),
-            _ => self.trace_to(failure.from).into_steps(),
-        };
+        let mut steps = self.steps_to(failure.from);
         steps.push(failure.step.clone());
+        Trace::new(self.chart.clone(), steps)
+    }
+
+    /// The way to a state, and on along edges, by their places among [all](Exploration::edges).
+    pub fn trace_along(&self, state: usize, edges: &[usize]) -> Trace {
+        let mut steps = self.steps_to(Some(state));
+        let along = edges.iter().filter_map(|&edge| self.steps.get(self.edges.get(edge)?.step));
+        steps.extend(along.cloned());
         Trace::new(self.chart.clone(), steps)
     }
 }

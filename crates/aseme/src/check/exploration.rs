@@ -9,11 +9,14 @@ mod intended;
 use std::collections::BTreeSet;
 
 use yase::explore::{Exploration, Failure, Trace, explore};
-use yase::{Diagnostic, MachineErrorKind, NodeId, NodeKind, Severity, Span, Status, TransitionId};
+use yase::{
+    Diagnostic, MachineErrorKind, NodeId, NodeKind, Severity, Span, Statechart, Status, TransitionId,
+};
 
 use super::abstraction::Abstraction;
+use super::conformance::{self, Difference, DifferenceKind};
 use super::subject::Subject;
-use super::{Explored, Finding, Settings};
+use super::{Explored, Finding, Settings, world};
 use intended::Intended;
 
 /// How many activities an agent's pool runs at once, if nothing else is said.
@@ -35,6 +38,7 @@ pub(super) fn check(
         found: &found,
         intended: Intended::new(subject),
         blamed: known.iter().map(|diagnostic| diagnostic.span).collect(),
+        is_whole: known.iter().all(|diagnostic| diagnostic.severity == Severity::Information),
     };
     let explored = Explored {
         states: found.states().len(),
@@ -51,6 +55,8 @@ struct Checks<'a> {
     intended: Intended,
     /// The places of what other checks have found already: what follows from that is not said again.
     blamed: BTreeSet<Span>,
+    /// Whether no other check has found anything that matters.
+    is_whole: bool,
 }
 
 impl Checks<'_> {
@@ -69,6 +75,12 @@ impl Checks<'_> {
             findings.extend(self.unreachable_transitions(&accounted));
             findings.extend(held.into_iter().map(|(_, finding)| finding));
             findings.extend(self.dead_ends(&stuck));
+        }
+        if let Some(world) = settings.world.as_ref().filter(|_| self.found.is_finished()) {
+            findings.extend(world::undelivered(self.subject, world, self.found));
+        }
+        if findings.is_empty() && self.is_whole {
+            findings.extend(self.differences());
         }
         findings.extend(self.pool(settings));
         findings.push(self.metrics(explored).into());
@@ -278,13 +290,62 @@ impl Checks<'_> {
         Some(Self::with_trace(found, &self.found.trace_to(index)))
     }
 
+    /// M24. Where something else is wrong, what follows from it is not said again.
+    fn differences(&self) -> Vec<Finding> {
+        let Some(liveness) = &self.subject.liveness else { return Vec::new() };
+        let differences = conformance::differences(&self.subject.chart, self.found, liveness);
+        differences.into_iter().map(|difference| self.difference(difference)).collect()
+    }
+
+    fn difference(&self, difference: Difference) -> Finding {
+        let before = match difference.before.as_slice() {
+            [] => String::from("at the beginning"),
+            names => format!("after `{}`", names.join(" ")),
+        };
+        let (node, says) = match &difference.kind {
+            DifferenceKind::NotAllowed(node) => {
+                (*node, format!("`{}` is done, which the formulas do not allow", self.subject.path(*node)))
+            }
+            DifferenceKind::EndsEarly => {
+                (Statechart::ROOT, String::from("the chart ends, and the formulas go on"))
+            }
+            DifferenceKind::NeverDone(name) => {
+                (Statechart::ROOT, format!("the formulas allow `{name}`, and the chart never does it"))
+            }
+            DifferenceKind::NeverEnds => {
+                (Statechart::ROOT, String::from("the formulas may end, and the chart never does"))
+            }
+        };
+        let found = self.subject.warn("M24", node, format!("{before} {says}"));
+        let is_cut = self.found.edges().is_empty() || self.cuts_short();
+        let does_more = matches!(difference.kind, DifferenceKind::NotAllowed(_) | DifferenceKind::EndsEarly);
+        // what leaves a composite early cuts traces short, as it is meant to
+        let severity = if does_more && is_cut { Severity::Warning } else { Severity::Error };
+        let hint = match does_more {
+            true => {
+                "a composite is left before it has completed: leave it by `[false]` or without a guard to have it do all"
+            }
+            false => "some guard or transition stands in the way",
+        };
+        let trace = difference.trace.map(|trace| trace.to_string());
+        Finding { diagnostic: Diagnostic { severity, ..found }.with_hint(hint), trace }
+    }
+
+    /// Whether the chart leaves a composite by a guard or an event.
+    fn cuts_short(&self) -> bool {
+        self.subject.chart.transitions().any(|(id, transition)| {
+            let is_composite = matches!(self.subject.kind(transition.source), NodeKind::Or | NodeKind::And);
+            is_composite && !completion::waits(self.subject, id) && self.found.was_taken(id)
+        })
+    }
+
     /// M21: more activities at once than the pool runs.
     fn pool(&self, settings: &Settings) -> Option<Finding> {
         let size = settings.pool.unwrap_or(POOL);
         let state = self.found.first(|state| state.running.len() > size)?;
         let most = self.found.states().iter().map(|state| state.running.len()).max()?;
         let message = format!("up to {most} activities run at once, and the pool runs {size}");
-        let found = self.subject.warn("M21", yase::Statechart::ROOT, message);
+        let found = self.subject.warn("M21", Statechart::ROOT, message);
         let found = found.with_hint(
             "those that find no place wait: give the pool more threads, or the activities priorities",
         );
@@ -301,7 +362,7 @@ impl Checks<'_> {
             explored.configurations,
             explored.states
         );
-        let found = self.subject.warn("M26", yase::Statechart::ROOT, message);
+        let found = self.subject.warn("M26", Statechart::ROOT, message);
         Diagnostic { severity: Severity::Information, ..found }
     }
 }

@@ -32,6 +32,7 @@ use std::fmt;
 use yase::expression::Expression;
 use yase::statechart::Constant;
 
+pub(super) use formula::messages;
 use formula::{Formula, Reading, Wanted};
 use search::Search;
 

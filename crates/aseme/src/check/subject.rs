@@ -8,6 +8,7 @@ use yase::{Diagnostic, NodeId, NodeKind, Semantics, Span, Statechart, Transition
 
 use super::places::Places;
 use crate::iac::Iac;
+use crate::liveness::Liveness;
 use crate::srm::Srm;
 use crate::{path, transform};
 
@@ -20,6 +21,8 @@ pub(super) struct Subject {
     pub(super) places: Places,
     /// How it is read.
     pub(super) semantics: Semantics,
+    /// The formulas that it was made from.
+    pub(super) liveness: Option<Liveness>,
     /// The transitions out of each node, in the order in which they are tried.
     pub(super) outgoing: Vec<Vec<TransitionId>>,
     /// The transitions into each node.
@@ -44,7 +47,8 @@ pub(super) fn of_role(role: &Srm) -> (Subject, Vec<Diagnostic>) {
     let guards =
         chart.transitions().map(|(_, transition)| Some(transition.expression.guard.as_ref()?.span()));
     let places = Places { guards: guards.collect(), transitions, nodes };
-    (Subject::new(chart, places, Semantics::yase()), found)
+    let subject = Subject::new(chart, places, Semantics::yase());
+    (Subject { liveness: Some(role.liveness.clone()), ..subject }, found)
 }
 
 /// A transition that no entry refines stands where the formula names its source, or what it leads to if that is known by its place alone.
@@ -96,7 +100,7 @@ impl Subject {
                 (Reverse(transition.priority), is_unguarded)
             });
         }
-        Subject { chart, places, semantics, outgoing, incoming }
+        Subject { chart, places, semantics, liveness: None, outgoing, incoming }
     }
 
     pub(super) fn kind(&self, node: NodeId) -> NodeKind {

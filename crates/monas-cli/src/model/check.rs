@@ -5,8 +5,8 @@ mod traces;
 
 use std::path::Path;
 
-use aseme::check::{Finding, Report, Settings};
-use monas::config;
+use aseme::check::{Finding, Report, Settings, World};
+use monas::{Registry, config};
 use yase::Severity;
 
 use crate::arguments::{CheckArguments, CheckFormat, Format};
@@ -19,6 +19,7 @@ pub(crate) fn execute(arguments: &CheckArguments, console: &mut Console<'_>) -> 
     let mut settings = Settings::default();
     settings.events.extend(arguments.events.iter().cloned());
     (settings.states, settings.pool) = (arguments.states, arguments.pool);
+    settings.world = arguments.linked.then(linked).transpose()?;
     let reports: Vec<(&Path, Report)> = arguments
         .files
         .iter()
@@ -36,6 +37,20 @@ pub(crate) fn execute(arguments: &CheckArguments, console: &mut Console<'_>) -> 
         }
     }
     Ok(verdict(&reports))
+}
+
+/// The messages and functions of this program, and its activities with what they say that they publish.
+fn linked() -> Result<World, Failure> {
+    let registry = Registry::linked();
+    let vocabulary = registry.vocabulary().map_err(|error| Failure::failed(Format::Text, error))?;
+    let mut world = World { vocabulary, ..World::default() };
+    for name in registry.activity_names() {
+        let activity = registry.activity(name).map_err(|error| Failure::failed(Format::Text, error))?;
+        let topics = activity.topics();
+        let published = topics.published_paths().iter().map(|&path| path.to_owned()).collect();
+        world.activities.insert(name.to_owned(), topics.is_declared().then_some(published));
+    }
+    Ok(world)
 }
 
 /// A model that cannot be read is worse than one that is wrong.

@@ -190,3 +190,17 @@ fn an_exploration_that_was_not_finished_says_so() {
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
     assert!(answer.out.contains("not finished exploring: 50 states"), "{}", answer.out);
 }
+
+#[test]
+fn names_are_checked_against_the_program_when_asked_for() {
+    let answer = monas(&["model", "check", ROLES[0], ROLES[1], "--linked", "--states", "500"]);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = "Role: r\nLiveness:\nr = TrakBall\nTransitions:\nTrakBall -> END : [Ball.fond]\n";
+    let path = file(folder.path(), "names.srm", text);
+    assert_eq!(monas(&["model", "check", &path]).code, Some(0));
+    let answer = monas(&["model", "check", &path, "--linked"]);
+    assert_eq!(answer.code, Some(5), "{}", answer.err);
+    assert!(answer.err.contains("M17") && answer.err.contains("`found`?"), "{}", answer.err);
+    assert!(answer.err.contains("M21") && answer.err.contains("`TrackBall`?"), "{}", answer.err);
+}

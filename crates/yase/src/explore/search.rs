@@ -10,7 +10,6 @@ use crate::chart::Chart;
 use crate::host::Outcome;
 use crate::machine::explored::Key;
 use crate::machine::{Chooser, Machine, MachineError, Status};
-use crate::statechart::{NodeId, NodeKind, Statechart};
 
 /// So many ways are tried in which one step may go.
 const WAYS: usize = 2_048;
@@ -21,18 +20,21 @@ pub fn explore(chart: &Arc<Chart>, surroundings: &mut Surroundings<'_>, limit: u
         chart: chart.clone(),
         is_finished: true,
         states: Vec::new(),
+        initial: Default::default(),
         edges: Vec::new(),
+        steps: Vec::new(),
         failures: Vec::new(),
         entered: Default::default(),
         left: Default::default(),
         taken: Default::default(),
         held: Default::default(),
     };
-    let mut search = Search { surroundings, limit, found, numbers: BTreeMap::new(), open: VecDeque::new() };
-    search.step(0, &Machine::new(chart.clone()), &Move::Start);
+    let (numbers, steps, open) = (BTreeMap::new(), BTreeMap::new(), VecDeque::new());
+    let mut search = Search { surroundings, limit, found, numbers, steps, open };
+    search.step(None, &Machine::new(chart.clone()), &Move::Start);
     while let Some((number, machine)) = search.open.pop_front() {
         for cause in search.moves(&machine) {
-            search.step(number, &machine, &cause);
+            search.step(Some(number), &machine, &cause);
         }
     }
     search.found
@@ -44,6 +46,8 @@ struct Search<'s, 'a> {
     found: Exploration,
     /// The number of each state.
     numbers: BTreeMap<Key, usize>,
+    /// The number of each step.
+    steps: BTreeMap<Step, usize>,
     /// The states that were found and not yet looked at.
     open: VecDeque<(usize, Machine)>,
 }
@@ -72,7 +76,7 @@ impl Search<'_, '_> {
     }
 
     /// Takes a step in every way in which it may go.
-    fn step(&mut self, from: usize, machine: &Machine, cause: &Move) {
+    fn step(&mut self, from: Option<usize>, machine: &Machine, cause: &Move) {
         let mut plans = vec![Plan::default()];
         let mut tried = 0;
         while let Some(plan) = plans.pop() {
@@ -87,7 +91,7 @@ impl Search<'_, '_> {
 
     fn step_as_planned(
         &mut self,
-        from: usize,
+        from: Option<usize>,
         machine: &Machine,
         cause: &Move,
         plan: &Plan,
@@ -123,7 +127,7 @@ impl Search<'_, '_> {
 
     fn arrive(
         &mut self,
-        from: usize,
+        from: Option<usize>,
         machine: Machine,
         step: Step,
         notes: &Notes,
@@ -136,35 +140,65 @@ impl Search<'_, '_> {
         if let Err(error) = result {
             return self.fail(from, step, notes, &error);
         }
-        let chart = machine.chart().statechart();
-        let started = started(chart, notes);
         let key = machine.key();
-        let to = match self.numbers.get(&key) {
-            Some(&number) => number,
-            None if self.found.states.len() >= self.limit => {
-                self.found.is_finished = false;
-                return;
-            }
-            None => self.add(from, machine, step, key),
+        let known = self.numbers.get(&key).copied();
+        if known.is_none() && self.found.states.len() >= self.limit {
+            self.found.is_finished = false;
+            return;
+        }
+        let returned = match step.cause {
+            Move::Return(node) => Some(node),
+            _ => None,
         };
-        self.found.edges.push(Edge { from, to, does_something: !notes.taken.is_empty(), started });
+        let step = self.number_of(step);
+        let to = known.unwrap_or_else(|| self.add((from, step), machine, key));
+        match from {
+            Some(from) => {
+                let does_something = !notes.taken.is_empty();
+                self.connect(Edge { from, to, does_something, returned, step });
+            }
+            None => {
+                self.found.initial.insert(to);
+            }
+        }
     }
 
-    fn add(&mut self, from: usize, machine: Machine, step: Step, key: Key) -> usize {
+    /// Of steps that differ only in what was asked, one is kept, and none that does nothing.
+    fn connect(&mut self, edge: Edge) {
+        if edge.from == edge.to && !edge.does_something && edge.returned.is_none() {
+            return;
+        }
+        let before = self.found.edges.iter_mut().rev().take_while(|other| other.from == edge.from);
+        let same = before.into_iter().find(|other| other.to == edge.to && other.returned == edge.returned);
+        match same {
+            Some(same) => same.does_something |= edge.does_something,
+            None => self.found.edges.push(edge),
+        }
+    }
+
+    fn number_of(&mut self, step: Step) -> usize {
+        let steps = &mut self.found.steps;
+        *self.steps.entry(step).or_insert_with_key(|step| {
+            steps.push(step.clone());
+            steps.len() - 1
+        })
+    }
+
+    fn add(&mut self, came: (Option<usize>, usize), machine: Machine, key: Key) -> usize {
         let number = self.found.states.len();
         self.numbers.insert(key, number);
         self.found.states.push(State {
             configuration: machine.configuration(),
             status: machine.status(),
             running: machine.running().into_iter().map(|activation| activation.node).collect(),
-            came: Some((from, step)),
+            came,
         });
         self.open.push_back((number, machine));
         number
     }
 
     /// A chart that writes may leave its circle: nothing is known of what it writes.
-    fn fail(&mut self, from: usize, step: Step, notes: &Notes, error: &MachineError) {
+    fn fail(&mut self, from: Option<usize>, step: Step, notes: &Notes, error: &MachineError) {
         if notes.wrote {
             return;
         }
@@ -175,13 +209,6 @@ impl Search<'_, '_> {
             self.found.failures.push(Failure { from, step, kind: error.kind(), cycle });
         }
     }
-}
-
-/// The states with activities that were entered.
-fn started(chart: &Statechart, notes: &Notes) -> Box<[NodeId]> {
-    let has_activity =
-        |node: NodeId| chart.node(node).kind == NodeKind::Basic && chart.node(node).activity.is_some();
-    notes.entered.iter().copied().filter(|&node| has_activity(node)).collect()
 }
 
 /// Takes a step for a cause.

@@ -27,7 +27,7 @@ use crate::machine::{Machine, MachineError};
 use crate::statechart::NodeId;
 
 /// The cause of a step.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Move {
     /// The chart is started.
     Start,
@@ -42,7 +42,7 @@ pub enum Move {
 }
 
 /// A step: its cause, and what was chosen in it.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub struct Step {
     /// Why it happens.
     pub cause: Move,
@@ -72,10 +72,6 @@ pub struct ParseError {
 impl Trace {
     pub(super) fn new(chart: Arc<Chart>, steps: Vec<Step>) -> Trace {
         Trace { chart, steps }
-    }
-
-    pub(super) fn into_steps(self) -> Vec<Step> {
-        self.steps
     }
 
     /// The steps.

@@ -16,7 +16,7 @@ pub(crate) type Key = Box<[u32]>;
 impl Machine {
     pub(crate) fn key(&self) -> Key {
         let run = &self.run;
-        let mut key = vec![run.status as u32, u32::from(run.ending)];
+        let mut key = vec![0, 0, run.status as u32, u32::from(run.ending)];
         let nodes = self.chart.layout.len();
         let regions = self.chart.regions.len();
         let arrived = self.chart.joins.iter().map(|join| join.sources.len()).sum();
@@ -66,6 +66,11 @@ impl Machine {
                 key.extend(record.places.iter().map(|place| place.0));
             }
         }
+        // at the front, so that two keys seldom need be compared further
+        let sum = key.iter().fold(0xcbf2_9ce4_8422_2325_u64, |sum, &word| {
+            (sum ^ u64::from(word)).wrapping_mul(0x0100_0000_01b3)
+        });
+        (key[0], key[1]) = ((sum >> 32) as u32, sum as u32);
         key.into()
     }
 

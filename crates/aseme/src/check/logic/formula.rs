@@ -234,7 +234,7 @@ fn or_unknown(whole: &Expression, wanted: Wanted, known: Formula) -> Formula {
 }
 
 /// The messages whose fields an expression reads: their paths without the last name.
-fn messages(expression: &Expression) -> Vec<String> {
+pub(in crate::check) fn messages(expression: &Expression) -> Vec<String> {
     let (mut found, mut open): (Vec<String>, _) = (Vec::new(), vec![expression]);
     while let Some(expression) = open.pop() {
         match &expression.kind {

@@ -1,0 +1,342 @@
+//! M24: what a chart does against what its formulas say.
+//!
+//! Both are sets of traces, the order in which activities return. Every trace of the chart is to be one of the formulas, and the other way round. A
+//! chart that is left early by a guard or an event cuts traces short, on purpose.
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+use yase::explore::{Edge, Exploration, Trace};
+use yase::{NodeId, Statechart, Status};
+
+use super::language::{Language, Letter, Rest};
+use crate::liveness::Liveness;
+
+/// So many pairs of states and rests are looked at.
+const MOST: usize = 400_000;
+
+/// A way in which a chart and its formulas differ.
+#[derive(Clone, Debug)]
+pub(super) struct Difference {
+    /// The activities that have returned before, in order.
+    pub(super) before: Vec<String>,
+    /// What differs then.
+    pub(super) kind: DifferenceKind,
+    /// A way there, for what the chart does.
+    pub(super) trace: Option<Trace>,
+}
+
+/// What differs.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) enum DifferenceKind {
+    /// The chart does an activity that the formulas do not allow.
+    NotAllowed(NodeId),
+    /// The chart ends where the formulas go on.
+    EndsEarly,
+    /// The formulas allow an activity that the chart cannot do.
+    NeverDone(String),
+    /// The formulas may end, and the chart cannot.
+    NeverEnds,
+}
+
+/// The first difference in each direction: what the chart does, then what it cannot do. Nothing is said of what is too large to be judged.
+pub(super) fn differences(chart: &Statechart, found: &Exploration, liveness: &Liveness) -> Vec<Difference> {
+    let Some((language, all)) = Language::new(liveness) else { return Vec::new() };
+    let mut comparison = Comparison { chart, found, language, outgoing: outgoing(found) };
+    let does = comparison.does_more(all);
+    let cannot = if found.is_finished() { comparison.does_less(all) } else { None };
+    does.into_iter().chain(cannot).collect()
+}
+
+fn outgoing(found: &Exploration) -> Vec<Vec<usize>> {
+    let mut outgoing = vec![Vec::new(); found.states().len()];
+    for (index, edge) in found.edges().iter().enumerate() {
+        if edge.returned.is_some() || edge.from != edge.to {
+            outgoing[edge.from].push(index);
+        }
+    }
+    outgoing
+}
+
+struct Comparison<'a> {
+    chart: &'a Statechart,
+    found: &'a Exploration,
+    language: Language,
+    /// The edges out of each state.
+    outgoing: Vec<Vec<usize>>,
+}
+
+type Rests = BTreeSet<Rest>;
+
+/// A state of the chart, and what may be left of the formulas there.
+type At = (usize, Rests);
+
+/// Where each was reached from, and along which edge.
+type Came = BTreeMap<At, Option<(At, usize)>>;
+
+impl Comparison<'_> {
+    fn letter(&self, edge: &Edge) -> Option<Option<Letter>> {
+        let node = edge.returned?;
+        Some(self.language.find(&self.chart.node(node).name))
+    }
+
+    /// Follows the chart, and looks whether the formulas allow it.
+    fn does_more(&mut self, all: Rest) -> Option<Difference> {
+        let starts: Vec<At> = self.found.initial().map(|state| (state, Rests::from([all]))).collect();
+        let mut came: Came = starts.iter().map(|start| (start.clone(), None)).collect();
+        let mut open = VecDeque::from(starts);
+        while let Some(at) = open.pop_front() {
+            if came.len() > MOST || self.language.is_too_large() {
+                return None;
+            }
+            let ends = self.found.states()[at.0].status == Status::Finished;
+            if ends && !at.1.iter().any(|&rest| self.language.may_end(rest)) {
+                return Some(self.difference(DifferenceKind::EndsEarly, &came, &at, None));
+            }
+            for &index in &self.outgoing[at.0].clone() {
+                let edge = &self.found.edges()[index];
+                let rests = match (self.letter(edge), edge.returned) {
+                    (None, _) => at.1.clone(),
+                    (Some(Some(letter)), _) => self.language.after_any(&at.1, letter),
+                    (Some(None), _) => Rests::new(),
+                };
+                if let (true, Some(node)) = (rests.is_empty(), edge.returned) {
+                    return Some(self.difference(DifferenceKind::NotAllowed(node), &came, &at, Some(index)));
+                }
+                let next = (edge.to, rests);
+                if !came.contains_key(&next) {
+                    came.insert(next.clone(), Some((at.clone(), index)));
+                    open.push_back(next);
+                }
+            }
+        }
+        None
+    }
+
+    fn difference(&self, kind: DifferenceKind, came: &Came, at: &At, last: Option<usize>) -> Difference {
+        let (mut edges, mut at) = (Vec::new(), at.clone());
+        while let Some(Some((before, edge))) = came.get(&at) {
+            edges.push(*edge);
+            at = before.clone();
+        }
+        edges.reverse();
+        let before = self.names(&edges);
+        edges.extend(last);
+        Difference { before, kind, trace: Some(self.found.trace_along(at.0, &edges)) }
+    }
+
+    fn names(&self, edges: &[usize]) -> Vec<String> {
+        let returned = edges.iter().filter_map(|&edge| self.found.edges()[edge].returned);
+        returned.map(|node| self.chart.node(node).name.clone()).collect()
+    }
+
+    /// Follows the formulas, with all the states in which the chart may be after the same trace.
+    fn does_less(&mut self, all: Rest) -> Option<Difference> {
+        let start = (self.closed(self.found.initial().collect()), Rests::from([all]));
+        let mut seen = BTreeSet::from([start.clone()]);
+        let mut open = VecDeque::from([(start, Vec::new())]);
+        let mut work = 0;
+        while let Some(((states, rests), before)) = open.pop_front() {
+            work += states.len() * (1 + rests.len());
+            if work > MOST || self.language.is_too_large() {
+                return None;
+            }
+            let may_end = rests.iter().any(|&rest| self.language.may_end(rest));
+            let ends = states.iter().any(|&state| self.found.states()[state].status == Status::Finished);
+            if may_end && !ends {
+                return Some(self.missing(DifferenceKind::NeverEnds, &before));
+            }
+            for letter in 0..self.language.letters().len() as Letter {
+                let after = self.language.after_any(&rests, letter);
+                if after.is_empty() {
+                    continue;
+                }
+                let reached = self.reached(&states, letter);
+                if reached.is_empty() {
+                    let name = self.language.letters()[letter as usize].clone();
+                    return Some(self.missing(DifferenceKind::NeverDone(name), &before));
+                }
+                let next = (self.closed(reached), after);
+                if seen.insert(next.clone()) {
+                    open.push_back((next, [before.as_slice(), &[letter]].concat()));
+                }
+            }
+        }
+        None
+    }
+
+    fn missing(&self, kind: DifferenceKind, before: &[Letter]) -> Difference {
+        let before = before.iter().map(|&letter| self.language.letters()[letter as usize].clone());
+        Difference { before: before.collect(), kind, trace: None }
+    }
+
+    fn reached(&self, states: &BTreeSet<usize>, letter: Letter) -> BTreeSet<usize> {
+        let edges = states.iter().flat_map(|&state| &self.outgoing[state]);
+        let edges = edges.map(|&edge| &self.found.edges()[edge]);
+        edges.filter(|edge| self.letter(edge) == Some(Some(letter))).map(|edge| edge.to).collect()
+    }
+
+    /// All states that are reached without an activity's return.
+    fn closed(&self, mut states: BTreeSet<usize>) -> BTreeSet<usize> {
+        let mut open: Vec<usize> = states.iter().copied().collect();
+        while let Some(state) = open.pop() {
+            for &edge in &self.outgoing[state] {
+                let edge = &self.found.edges()[edge];
+                if edge.returned.is_none() && states.insert(edge.to) {
+                    open.push(edge.to);
+                }
+            }
+        }
+        states
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use proptest::prelude::*;
+    use proptest::strategy::ValueTree;
+    use proptest::test_runner::TestRunner;
+    use yase::explore::{Surroundings, explore};
+    use yase::expression::parse_transition;
+    use yase::{NodeKind, TransitionId, Vocabulary};
+
+    use super::*;
+
+    /// A formula in which no name stands twice.
+    #[derive(Clone, Debug)]
+    enum Formula {
+        Name,
+        Several(&'static str, Vec<Formula>),
+        Optional(Box<Formula>),
+        Repeated(&'static str, Box<Formula>),
+    }
+
+    impl Formula {
+        fn text(&self, count: &mut usize) -> String {
+            match self {
+                Formula::Name => {
+                    *count += 1;
+                    format!("a{count}")
+                }
+                Formula::Several(operator, parts) => {
+                    let parts: Vec<String> = parts.iter().map(|part| part.text(count)).collect();
+                    format!("({})", parts.join(operator))
+                }
+                Formula::Optional(inner) => format!("[{}]", inner.text(count)),
+                Formula::Repeated(operator, inner) => format!("({}){operator}", inner.text(count)),
+            }
+        }
+    }
+
+    fn formula() -> impl Strategy<Value = Formula> {
+        Just(Formula::Name).prop_recursive(3, 7, 3, |inner| {
+            let several = (
+                prop::sample::select(vec![" . ", " | ", " || "]),
+                prop::collection::vec(inner.clone(), 2..4),
+            );
+            let repeated = (prop::sample::select(vec!["*", "+", "~"]), inner.clone());
+            prop_oneof![
+                3 => several.prop_map(|(operator, parts)| Formula::Several(operator, parts)),
+                1 => inner.prop_map(|inner| Formula::Optional(Box::new(inner))),
+                1 => repeated.prop_map(|(operator, inner)| Formula::Repeated(operator, Box::new(inner))),
+            ]
+        })
+    }
+
+    /// The chart of formulas in which every choice is free: of the ways out of a node all but the last have a guard that may hold or not.
+    fn free(text: &str) -> (Statechart, Liveness, Vec<TransitionId>) {
+        let (liveness, _) = crate::liveness::parse(text);
+        let (mut chart, _) = crate::liveness_to_statechart(&liveness);
+        let mut guarded = Vec::new();
+        let nodes: Vec<NodeId> = chart.nodes().map(|(id, _)| id).collect();
+        for node in nodes {
+            let ways: Vec<TransitionId> =
+                chart.transitions().filter(|(_, it)| it.source == node).map(|(id, _)| id).collect();
+            for &way in &ways[..ways.len().saturating_sub(1)] {
+                set_guard(&mut chart, way, &format!("script(\"{}\")", way.0));
+                guarded.push(way);
+            }
+        }
+        (chart, liveness, guarded)
+    }
+
+    fn set_guard(chart: &mut Statechart, way: TransitionId, guard: &str) {
+        chart.transition_mut(way).expression = parse_transition(&format!("[{guard}]")).0;
+    }
+
+    /// The differences, if the chart is small enough to be explored.
+    fn compared(chart: &Statechart, liveness: &Liveness) -> Option<Vec<DifferenceKind>> {
+        let vocabulary = Vocabulary { scripts: true, ..Vocabulary::default() };
+        let compiled = Arc::new(chart.compile(&vocabulary).unwrap());
+        let mut surroundings = Surroundings { messages: true, ..Surroundings::default() };
+        let found = explore(&compiled, &mut surroundings, 1_500);
+        let kinds =
+            || differences(chart, &found, liveness).into_iter().map(|difference| difference.kind).collect();
+        found.is_finished().then(kinds)
+    }
+
+    /// The templates of formulas, judged by another way to say what formulas mean.
+    #[test]
+    fn charts_do_what_their_formulas_say_and_nothing_else() {
+        let mut runner = TestRunner::deterministic();
+        let mut judged = 0;
+        for _ in 0..80 {
+            let formula = formula().new_tree(&mut runner).unwrap().current();
+            let text = format!("r = {}", formula.text(&mut 0));
+            let (chart, liveness, _) = free(&text);
+            let Some(found) = compared(&chart, &liveness) else { continue };
+            assert_eq!(found, [], "{text}");
+            judged += 1;
+        }
+        assert!(judged >= 60, "only {judged} were small enough");
+    }
+
+    fn kinds(text: &str, change: impl Fn(&mut Statechart)) -> Vec<DifferenceKind> {
+        let (mut chart, liveness, _) = free(text);
+        change(&mut chart);
+        compared(&chart, &liveness).unwrap()
+    }
+
+    fn named(chart: &Statechart, name: &str) -> NodeId {
+        chart.nodes().find(|(_, node)| node.name == name).unwrap().0
+    }
+
+    fn between(chart: &Statechart, source: &str, target: NodeKind) -> TransitionId {
+        let source = named(chart, source);
+        let is_meant = |it: &yase::Transition| it.source == source && chart.node(it.target).kind == target;
+        chart.transitions().find(|(_, it)| is_meant(it)).unwrap().0
+    }
+
+    #[test]
+    fn each_difference_is_found() {
+        assert_eq!(kinds("r = a . b", |_| {}), []);
+        let closed = |chart: &mut Statechart| {
+            let way = between(chart, "b", NodeKind::End);
+            set_guard(chart, way, "false");
+        };
+        assert_eq!(kinds("r = a . b", closed), [DifferenceKind::NeverEnds]);
+        let skipped = |chart: &mut Statechart| {
+            let (way, end) = (between(chart, "a", NodeKind::Basic), between(chart, "b", NodeKind::End));
+            chart.transition_mut(way).target = chart.transition(end).target;
+        };
+        assert_eq!(
+            kinds("r = a . b", skipped),
+            [DifferenceKind::EndsEarly, DifferenceKind::NeverDone("b".into())]
+        );
+        let other = |chart: &mut Statechart| {
+            let way = between(chart, "a", NodeKind::Basic);
+            let target = named(chart, "c");
+            chart.transition_mut(way).target = target;
+        };
+        assert!(matches!(
+            kinds("r = a . b . c", other)[..],
+            [DifferenceKind::NotAllowed(_), DifferenceKind::NeverDone(_)]
+        ));
+        let once = |chart: &mut Statechart| {
+            let way = between(chart, "a", NodeKind::Basic);
+            set_guard(chart, way, "false");
+        };
+        assert_eq!(kinds("r = a+ . b", once), [DifferenceKind::NeverDone("a".into())]);
+    }
+}

@@ -1,0 +1,284 @@
+//! The language of liveness formulas: which activities may return next, by partial derivatives.
+//!
+//! A trace is the order in which activities return. What is left of a formula after one has returned is its derivative by that activity (Antimirov's: several, if
+//! there is more than one way to go on). `x || y` is the shuffle of both, `x~` never ends, and `|x~|n` is a shuffle of n.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::liveness::{Liveness, Term, TermId};
+
+/// What is left of a formula, by its place in a [`Language`].
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(super) struct Rest(u32);
+
+/// An activity, by its place in [`Language::letters`].
+pub(super) type Letter = u32;
+
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+enum Expression {
+    /// Nothing is left.
+    Done,
+    Name(Letter),
+    Sequence(Rest, Rest),
+    Either(Rest, Rest),
+    Shuffle(Rest, Rest),
+    /// Any number of times.
+    Star(Rest),
+    Forever(Rest),
+}
+
+/// So many different rests are told apart.
+const MOST: usize = 50_000;
+
+/// The rests of the formulas of a role.
+pub(super) struct Language {
+    expressions: Vec<Expression>,
+    places: BTreeMap<Expression, Rest>,
+    nullable: Vec<bool>,
+    letters: Vec<String>,
+    numbers: BTreeMap<String, Letter>,
+    derivatives: BTreeMap<(Rest, Letter), BTreeSet<Rest>>,
+}
+
+impl Language {
+    /// The language of formulas and all of the first one; none if they refine each other in a circle or are too large.
+    pub(super) fn new(liveness: &Liveness) -> Option<(Language, Rest)> {
+        let mut language = Language {
+            expressions: Vec::new(),
+            places: BTreeMap::new(),
+            nullable: Vec::new(),
+            letters: Vec::new(),
+            numbers: BTreeMap::new(),
+            derivatives: BTreeMap::new(),
+        };
+        let first = liveness.formulas().first()?.expression?;
+        let all = language.term(liveness, first, &mut vec![0])?;
+        Some((language, all))
+    }
+
+    fn term(&mut self, liveness: &Liveness, id: TermId, open: &mut Vec<usize>) -> Option<Rest> {
+        if open.len() > crate::transform::MAX_LEVELS || self.expressions.len() > MOST {
+            return None;
+        }
+        match liveness.term(id) {
+            Term::Name(name) => match liveness.by_name().get(name.as_str()) {
+                Some(formula) if open.contains(formula) => None,
+                Some(&formula) => {
+                    open.push(formula);
+                    let rest = self.term(liveness, liveness.formulas()[formula].expression?, open);
+                    open.pop();
+                    rest
+                }
+                None => {
+                    let letter = self.letter(name);
+                    Some(self.place(Expression::Name(letter)))
+                }
+            },
+            Term::Group(inner) => self.nested(liveness, *inner, open),
+            Term::Sequence(items) => self.several(liveness, items, open, Language::sequence),
+            Term::Choice(items) => {
+                self.several(liveness, items, open, |it, one, other| it.place(Expression::Either(one, other)))
+            }
+            Term::Parallel(items) => self.several(liveness, items, open, Language::shuffle),
+            Term::Copies { term, count } => {
+                let copies = vec![*term; (*count).min(64) as usize];
+                self.several(liveness, &copies, open, Language::shuffle)
+            }
+            Term::Optional(inner) => {
+                let (inner, done) = (self.nested(liveness, *inner, open)?, self.done());
+                Some(self.place(Expression::Either(inner, done)))
+            }
+            Term::ZeroOrMore(inner) => {
+                let inner = self.nested(liveness, *inner, open)?;
+                Some(self.place(Expression::Star(inner)))
+            }
+            Term::OneOrMore(inner) => {
+                let inner = self.nested(liveness, *inner, open)?;
+                let star = self.place(Expression::Star(inner));
+                Some(self.sequence(inner, star))
+            }
+            Term::Forever(inner) => {
+                let inner = self.nested(liveness, *inner, open)?;
+                Some(self.place(Expression::Forever(inner)))
+            }
+        }
+    }
+
+    /// A term within a term: what nests deeper than any chart is not judged.
+    fn nested(&mut self, liveness: &Liveness, id: TermId, open: &mut Vec<usize>) -> Option<Rest> {
+        // the formula that is refined stands for one level more
+        open.push(usize::MAX);
+        let rest = self.term(liveness, id, open);
+        open.pop();
+        rest
+    }
+
+    fn several(
+        &mut self,
+        liveness: &Liveness,
+        items: &[TermId],
+        open: &mut Vec<usize>,
+        join: impl Fn(&mut Language, Rest, Rest) -> Rest,
+    ) -> Option<Rest> {
+        let rests: Vec<Rest> =
+            items.iter().map(|&item| self.nested(liveness, item, open)).collect::<Option<_>>()?;
+        let (&last, before) = rests.split_last()?;
+        Some(before.iter().rev().fold(last, |rest, &item| join(self, item, rest)))
+    }
+
+    fn letter(&mut self, name: &str) -> Letter {
+        if let Some(&letter) = self.numbers.get(name) {
+            return letter;
+        }
+        self.letters.push(name.to_owned());
+        let letter = self.letters.len() as Letter - 1;
+        self.numbers.insert(name.to_owned(), letter);
+        letter
+    }
+
+    /// The letter of an activity, if a formula names it.
+    pub(super) fn find(&self, name: &str) -> Option<Letter> {
+        self.numbers.get(name).copied()
+    }
+
+    /// The activities that formulas name.
+    pub(super) fn letters(&self) -> &[String] {
+        &self.letters
+    }
+
+    /// Whether too many rests are told apart to go on.
+    pub(super) fn is_too_large(&self) -> bool {
+        self.expressions.len() > MOST
+    }
+
+    fn done(&mut self) -> Rest {
+        self.place(Expression::Done)
+    }
+
+    fn sequence(&mut self, first: Rest, then: Rest) -> Rest {
+        match self.expressions[first.0 as usize] {
+            Expression::Done => then,
+            _ => self.place(Expression::Sequence(first, then)),
+        }
+    }
+
+    fn shuffle(&mut self, one: Rest, other: Rest) -> Rest {
+        let is_done = |it: &Language, rest: Rest| it.expressions[rest.0 as usize] == Expression::Done;
+        match (is_done(self, one), is_done(self, other)) {
+            (true, _) => other,
+            (_, true) => one,
+            _ => self.place(Expression::Shuffle(one, other)),
+        }
+    }
+
+    fn place(&mut self, expression: Expression) -> Rest {
+        if let Some(&rest) = self.places.get(&expression) {
+            return rest;
+        }
+        let null = |rest: Rest| self.nullable[rest.0 as usize];
+        let nullable = match expression {
+            Expression::Done | Expression::Star(_) => true,
+            Expression::Name(_) | Expression::Forever(_) => false,
+            Expression::Sequence(one, other) | Expression::Shuffle(one, other) => null(one) && null(other),
+            Expression::Either(one, other) => null(one) || null(other),
+        };
+        let rest = Rest(self.expressions.len() as u32);
+        self.expressions.push(expression.clone());
+        self.nullable.push(nullable);
+        self.places.insert(expression, rest);
+        rest
+    }
+
+    /// Whether nothing need come any more.
+    pub(super) fn may_end(&self, rest: Rest) -> bool {
+        self.nullable.get(rest.0 as usize).copied().unwrap_or(false)
+    }
+
+    /// What is left when an activity has returned; nothing if it may not.
+    pub(super) fn after(&mut self, rest: Rest, letter: Letter) -> BTreeSet<Rest> {
+        if let Some(known) = self.derivatives.get(&(rest, letter)) {
+            return known.clone();
+        }
+        let derivatives = self.derive(rest, letter);
+        self.derivatives.insert((rest, letter), derivatives.clone());
+        derivatives
+    }
+
+    fn derive(&mut self, rest: Rest, letter: Letter) -> BTreeSet<Rest> {
+        match self.expressions[rest.0 as usize] {
+            Expression::Done => BTreeSet::new(),
+            Expression::Name(name) if name == letter => BTreeSet::from([self.done()]),
+            Expression::Name(_) => BTreeSet::new(),
+            Expression::Either(one, other) => &self.after(one, letter) | &self.after(other, letter),
+            Expression::Sequence(first, then) => {
+                let mut all = self.each(first, letter, |it, rest| it.sequence(rest, then));
+                if self.may_end(first) {
+                    all.extend(self.after(then, letter));
+                }
+                all
+            }
+            Expression::Shuffle(one, other) => {
+                let mut all = self.each(one, letter, |it, rest| it.shuffle(rest, other));
+                all.extend(self.each(other, letter, |it, rest| it.shuffle(one, rest)));
+                all
+            }
+            Expression::Star(inner) | Expression::Forever(inner) => {
+                self.each(inner, letter, |it, after| it.sequence(after, rest))
+            }
+        }
+    }
+
+    fn each(
+        &mut self,
+        rest: Rest,
+        letter: Letter,
+        make: impl Fn(&mut Language, Rest) -> Rest,
+    ) -> BTreeSet<Rest> {
+        let after = self.after(rest, letter);
+        after.into_iter().map(|rest| make(self, rest)).collect()
+    }
+
+    /// What is left of any of several when an activity has returned.
+    pub(super) fn after_any(&mut self, rests: &BTreeSet<Rest>, letter: Letter) -> BTreeSet<Rest> {
+        rests.iter().flat_map(|&rest| self.after(rest, letter)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a formula allows a trace, and whether that may be all of it.
+    fn allows(formulas: &str, trace: &str) -> (bool, bool) {
+        let (mut language, all) = Language::new(&crate::liveness::parse(formulas).0).unwrap();
+        let mut rests = BTreeSet::from([all]);
+        for name in trace.split_whitespace() {
+            let letter = language.find(name).unwrap();
+            rests = language.after_any(&rests, letter);
+        }
+        (!rests.is_empty(), rests.iter().any(|&rest| language.may_end(rest)))
+    }
+
+    #[test]
+    fn operators_allow_what_they_mean() {
+        assert_eq!(allows("r = a . b", "a"), (true, false));
+        assert_eq!(allows("r = a . b", "a b"), (true, true));
+        assert_eq!(allows("r = a . b", "b"), (false, false));
+        assert_eq!(allows("r = a | b", "b"), (true, true));
+        assert_eq!(allows("r = [a] . b", "b"), (true, true));
+        assert_eq!(allows("r = a*", ""), (true, true));
+        assert_eq!(allows("r = a+", ""), (true, false));
+        assert_eq!(allows("r = a+ . b", "a a a b"), (true, true));
+        assert_eq!(allows("r = a~", "a a a"), (true, false));
+        assert_eq!(allows("r = (a . b) || c", "a c b"), (true, true));
+        assert_eq!(allows("r = (a . b) || c", "b"), (false, false));
+        assert_eq!(allows("r = |(a.b)~|2", "a a b"), (true, false));
+        assert_eq!(allows("r = |(a.b)~|2", "a a a"), (false, false));
+        assert_eq!(allows("r = x . b\nx = a | c", "c b"), (true, true));
+    }
+
+    #[test]
+    fn formulas_in_a_circle_have_no_language() {
+        assert!(Language::new(&crate::liveness::parse("r = a . x\nx = b . x").0).is_none());
+    }
+}
