@@ -71,6 +71,7 @@ pub mod check;
 pub mod convert;
 mod document;
 pub mod functionality;
+pub mod generate;
 pub mod iac;
 mod json;
 pub mod liveness;

@@ -34,6 +34,10 @@ pub(crate) enum Command {
     /// Read, check and draw models.
     #[command(subcommand)]
     Model(ModelCommand),
+    /// Write the statechart of a model as a Rust crate that is linked into the team's program.
+    ///
+    /// Activities that nobody has written get skeletons, which are left alone ever after.
+    Generate(GenerateArguments),
     /// Look at configurations without running them.
     #[command(subcommand)]
     Config(ConfigCommand),
@@ -159,6 +163,19 @@ pub(crate) enum CheckFormat {
     Json,
     /// For programs that show findings in the text: SARIF 2.1.0.
     Sarif,
+}
+
+/// What `generate` may be told.
+#[derive(Args, Debug)]
+pub(crate) struct GenerateArguments {
+    /// The model file.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) model: PathBuf,
+    /// The folder of the crate, in `statecharts`; if not given, it is called like the model.
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) to: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
 }
 
 /// What `model transform` may be told.

@@ -31,6 +31,7 @@ mod console;
 mod duration;
 mod exit;
 mod failure;
+mod generate;
 mod model;
 mod process;
 mod report;
@@ -81,6 +82,7 @@ fn dispatch<Argument: Into<OsString> + Clone>(
 fn execute(command: Command, console: &mut Console<'_>) -> Result<Exit, Failure> {
     match command {
         Command::Run(arguments) => run::execute(&arguments, console),
+        Command::Generate(arguments) => generate::execute(&arguments, console),
         Command::Config(ConfigCommand::Check { config, format }) => {
             check::execute(&config, format.value, console)
         }

@@ -71,7 +71,11 @@ fn valid_model(
 }
 
 /// The chart of a file without errors; warnings are shown.
-fn valid_chart(path: &Path, format: Format, console: &mut Console<'_>) -> Result<Statechart, Failure> {
+pub(crate) fn valid_chart(
+    path: &Path,
+    format: Format,
+    console: &mut Console<'_>,
+) -> Result<Statechart, Failure> {
     match read(path) {
         (Some(chart), diagnostics) if !diagnostics.iter().any(Diagnostic::is_error) => {
             report::write(console, format, &diagnostics)?;

@@ -1,5 +1,6 @@
 //! Agents: what runs together under one name.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::num::NonZeroUsize;
 
@@ -7,6 +8,7 @@ use yase::{Semantics, Statechart};
 
 use crate::activity::Activity;
 use crate::frequency::Frequency;
+use crate::generated::GeneratedChart;
 
 /// What happens when an activity fails or panics. Whatever it is, the failure is logged with the agent and the cycle, and no
 /// other agent notices.
@@ -52,6 +54,8 @@ pub struct Agent {
     pub(crate) frequency: Option<Frequency>,
     pub(crate) activities: Vec<(String, Box<dyn Activity>)>,
     pub(crate) charts: Vec<Statechart>,
+    /// By their place among the charts: those that are code.
+    pub(crate) generated: BTreeMap<usize, GeneratedChart>,
     pub(crate) policy: Policy,
     pub(crate) real_time: bool,
     pub(crate) priority: i32,
@@ -79,6 +83,7 @@ impl Agent {
             frequency: None,
             activities: Vec::new(),
             charts: Vec::new(),
+            generated: BTreeMap::new(),
             policy: Policy::default(),
             real_time: false,
             priority: 0,
@@ -105,6 +110,13 @@ impl Agent {
     pub fn chart(mut self, chart: Statechart) -> Agent {
         self.charts.push(chart);
         self
+    }
+
+    /// Adds a statechart that is code, as [`Registry::chart`](crate::Registry::chart) gives it.
+    pub fn generated(mut self, chart: GeneratedChart) -> Agent {
+        let statechart = chart.statechart().clone();
+        self.generated.insert(self.charts.len(), chart);
+        self.chart(statechart)
     }
 
     /// Says what happens when an activity fails.

@@ -1,13 +1,15 @@
 //! What binds a statechart to the program: its expressions to topics and functions, its states to activities.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use narukom::TOPICS;
-use yase::{Chart, Diagnostic, Semantics, Source, Span, Statechart, Vocabulary};
+use yase::{ActivityEntry, Chart, Diagnostic, NodeId, Semantics, Source, Span, Statechart, Vocabulary};
 
 use crate::activity::Activity;
 use crate::error::{Error, ErrorKind};
 use crate::function::FunctionDeclaration;
+use crate::generated::GeneratedChart;
 use crate::registry::Registry;
 use crate::vocabulary::vocabulary;
 
@@ -71,13 +73,40 @@ impl<'a> Binder<'a> {
         }
     }
 
+    /// Makes a generated chart ready to run, with the activities it brings.
+    ///
+    /// # Errors
+    /// Everything that keeps it from running: it was generated for other messages, or from another model than its activities.
+    pub(crate) fn bind_generated(
+        &self,
+        generated: GeneratedChart,
+        semantics: Semantics,
+    ) -> Result<BoundChart, Vec<Diagnostic>> {
+        let GeneratedChart { chart, instances } = generated;
+        let chart = Arc::new(chart.compile(&self.vocabulary, semantics)?);
+        let mut activities: BTreeMap<NodeId, Box<dyn Activity>> =
+            instances.into_iter().map(|instance| (instance.node, instance.activity)).collect();
+        let lacking = |entry: &ActivityEntry<'_>| {
+            let message = format!(
+                "no activity `{}` was generated for the state `{}`",
+                entry.name,
+                chart.short_path(entry.node)
+            );
+            Diagnostic::error("E0318", Span::default(), message).with_hint("generate the chart again")
+        };
+        let taken =
+            chart.activities().map(|entry| activities.remove(&entry.node).ok_or_else(|| lacking(&entry)));
+        let taken = taken.collect::<Result<_, _>>().map_err(|diagnostic| vec![diagnostic])?;
+        Ok(BoundChart { chart, functions: self.functions.clone(), activities: taken })
+    }
+
     /// An instance for each state with an activity. A name that is wrong in several states is said once.
     fn activities(
         &self,
         chart: &Statechart,
         source: Option<&Arc<Source>>,
         diagnostics: &mut Vec<Diagnostic>,
-    ) -> Vec<(yase::NodeId, Box<dyn Activity>)> {
+    ) -> Vec<(NodeId, Box<dyn Activity>)> {
         let mut instances = Vec::new();
         let mut said: Vec<&str> = Vec::new();
         for (id, node) in chart.nodes() {
@@ -96,7 +125,7 @@ impl<'a> Binder<'a> {
     }
 }
 
-fn in_order(chart: &Chart, mut instances: Vec<(yase::NodeId, Box<dyn Activity>)>) -> Vec<Box<dyn Activity>> {
+fn in_order(chart: &Chart, mut instances: Vec<(NodeId, Box<dyn Activity>)>) -> Vec<Box<dyn Activity>> {
     let place = |node| chart.activities().position(|entry| entry.node == node);
     instances.sort_by_key(|(node, _)| place(*node));
     instances.into_iter().map(|(_, activity)| activity).collect()

@@ -23,6 +23,8 @@ pub enum ErrorKind {
     AmbiguousActivity,
     /// Several crates register a function of that name.
     AmbiguousFunction,
+    /// Several crates register a generated statechart of that name.
+    AmbiguousChart,
     /// Two hosts, or two agents of a host, have one name.
     DuplicateName,
     /// An agent has activities, but nothing says how often they run.

@@ -73,6 +73,7 @@ mod coverage;
 mod error;
 mod frequency;
 mod function;
+pub mod generated;
 mod link;
 mod list;
 mod listener;
@@ -117,6 +118,7 @@ pub mod measured {
 #[doc(hidden)]
 pub mod linked {
     pub use crate::function::{Answer, Argument, FUNCTIONS, FunctionDeclaration};
+    pub use crate::generated::{CHARTS, ChartDeclaration, assembled};
     pub use crate::registry::{ACTIVITIES, ActivityDeclaration};
     pub use linkme;
 }

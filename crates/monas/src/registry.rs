@@ -8,6 +8,7 @@ use yase::diagnostic::nearest;
 use crate::activity::Activity;
 use crate::error::{Error, ErrorKind};
 use crate::function::{FUNCTIONS, FunctionDeclaration};
+use crate::generated::{CHARTS, ChartDeclaration, GeneratedChart};
 
 /// An activity as [`activity!`](crate::activity!) registers it.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +17,10 @@ pub struct ActivityDeclaration {
     pub name: &'static str,
     /// The module it was registered in.
     pub module: &'static str,
+    /// What it is called in that module.
+    pub code: &'static str,
+    /// Whether that is a function; else it is a type.
+    pub is_function: bool,
     /// Makes an instance.
     pub make: fn() -> Box<dyn Activity>,
 }
@@ -52,18 +57,18 @@ pub static ACTIVITIES: [ActivityDeclaration];
 #[macro_export]
 macro_rules! activity {
     (fn $function:ident) => {
-        $crate::activity!(@ ::core::stringify!($function), ::std::boxed::Box::new($function));
+        $crate::activity!(@ ::core::stringify!($function), $function, true, ::std::boxed::Box::new($function));
     };
     (fn $function:ident as $name:expr) => {
-        $crate::activity!(@ $name, ::std::boxed::Box::new($function));
+        $crate::activity!(@ $name, $function, true, ::std::boxed::Box::new($function));
     };
     ($type:ident) => {
-        $crate::activity!(@ ::core::stringify!($type), ::std::boxed::Box::<$type>::default());
+        $crate::activity!(@ ::core::stringify!($type), $type, false, ::std::boxed::Box::<$type>::default());
     };
     ($type:ty as $name:expr) => {
-        $crate::activity!(@ $name, ::std::boxed::Box::<$type>::default());
+        $crate::activity!(@ $name, $type, false, ::std::boxed::Box::<$type>::default());
     };
-    (@ $name:expr, $made:expr) => {
+    (@ $name:expr, $code:ty, $is_function:literal, $made:expr) => {
         const _: () = {
             #[allow(unsafe_code)] // the section of the executable that the linker collects
             #[$crate::linked::linkme::distributed_slice($crate::linked::ACTIVITIES)]
@@ -71,6 +76,8 @@ macro_rules! activity {
             static DECLARATION: $crate::linked::ActivityDeclaration = $crate::linked::ActivityDeclaration {
                 name: $name,
                 module: ::core::module_path!(),
+                code: ::core::stringify!($code),
+                is_function: $is_function,
                 make: || $made,
             };
         };
@@ -92,6 +99,7 @@ struct Entry {
 pub struct Registry {
     activities: BTreeMap<String, Entry>,
     functions: BTreeMap<String, Vec<FunctionDeclaration>>,
+    charts: BTreeMap<String, Vec<ChartDeclaration>>,
 }
 
 impl Registry {
@@ -112,7 +120,14 @@ impl Registry {
         for declaration in FUNCTIONS {
             registry.functions.entry(declaration.name.into()).or_default().push(*declaration);
         }
+        for declaration in CHARTS {
+            let package = package(declaration.module);
+            for name in [declaration.name.into(), format!("{package}::{}", declaration.name)] {
+                registry.charts.entry(name).or_default().push(*declaration);
+            }
+        }
         // The linker's order is nobody's order.
+        registry.charts.values_mut().for_each(|same| same.sort_by_key(|chart| chart.module));
         registry.functions.values_mut().for_each(|same| same.sort_by_key(|function| function.module));
         registry.activities.values_mut().for_each(|entry| entry.makers.sort_by(|a, b| a.0.cmp(&b.0)));
         registry
@@ -151,6 +166,31 @@ impl Registry {
             Some(known) => error.with_hint(format!("did you mean `{known}`?")),
             None => error,
         }
+    }
+
+    /// A generated statechart, if there is one of that name, with a new instance of each of its activities.
+    ///
+    /// # Errors
+    /// [`ErrorKind::AmbiguousChart`] if two crates have one of that name; [`ErrorKind::Invalid`] if its code does not fit together.
+    pub fn chart(&self, name: &str) -> Option<Result<GeneratedChart, Error>> {
+        match self.charts.get(name)?.as_slice() {
+            [only] => Some((only.make)().map_err(Error::invalid)),
+            several => {
+                let modules: Vec<&str> = several.iter().map(|chart| chart.module).collect();
+                let message =
+                    format!("the statechart `{name}` is registered in {}", modules.join(" and in "));
+                let error = Error::new(ErrorKind::AmbiguousChart, message);
+                Some(Err(match modules.first() {
+                    Some(module) => error.with_hint(format!("write `{}::{name}`", package(module))),
+                    None => error,
+                }))
+            }
+        }
+    }
+
+    /// The names of all generated statecharts.
+    pub fn chart_names(&self) -> impl Iterator<Item = &str> {
+        self.charts.keys().map(String::as_str).filter(|name| !name.contains("::"))
     }
 
     /// The names of all activities, those that only their crate's name tells apart in that form.
@@ -192,6 +232,7 @@ impl std::fmt::Debug for Registry {
         f.debug_struct("Registry")
             .field("activities", &self.activity_names().collect::<Vec<_>>())
             .field("functions", &self.function_names().collect::<Vec<_>>())
+            .field("charts", &self.chart_names().collect::<Vec<_>>())
             .finish()
     }
 }

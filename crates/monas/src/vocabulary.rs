@@ -29,6 +29,16 @@ pub(crate) fn vocabulary<'a>(
     }
 }
 
+/// Each topic, and what a vocabulary calls its messages.
+pub(crate) fn message_names<'a>(
+    topics: impl IntoIterator<Item = &'a TopicDeclaration>,
+) -> Vec<(&'a TopicDeclaration, String)> {
+    let topics: Vec<&TopicDeclaration> = topics.into_iter().collect();
+    let mut types = Types::default();
+    topics.iter().for_each(|topic| types.collect(topic.descriptor()));
+    topics.into_iter().map(|topic| (topic, types.message_name(topic.descriptor()))).collect()
+}
+
 fn entry(number: usize, function: &FunctionDeclaration) -> FunctionEntry {
     FunctionEntry {
         id: FunctionId(number as u32),

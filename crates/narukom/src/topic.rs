@@ -146,6 +146,7 @@ pub struct TopicDeclaration {
     descriptor: &'static MessageDescriptor,
     module: &'static str,
     message_type: fn() -> TypeId,
+    rust_type: fn() -> &'static str,
     make: fn() -> Arc<dyn AnyMessage>,
 }
 
@@ -161,6 +162,7 @@ impl TopicDeclaration {
             descriptor: K::Message::DESCRIPTOR,
             module,
             message_type: TypeId::of::<K::Message>,
+            rust_type: std::any::type_name::<K::Message>,
             make: || Arc::new(K::Message::default()),
         }
     }
@@ -193,6 +195,11 @@ impl TopicDeclaration {
     /// The module that declares it.
     pub fn module(&self) -> &'static str {
         self.module
+    }
+
+    /// The path of the message type in Rust, for those who write Rust.
+    pub fn rust_type(&self) -> &'static str {
+        (self.rust_type)()
     }
 
     /// A message of the topic's type with nothing set.

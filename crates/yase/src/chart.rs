@@ -20,9 +20,11 @@ use std::time::Duration;
 
 use crate::bits::BitSet;
 use crate::diagnostic::Diagnostic;
-use crate::expression::{Effect, EventId, EventTable, Guard, MessageSource, ScriptId, ScriptTable};
+use crate::expression::{Effect, EventId, EventTable, Guard, MessageSource, ScriptId, ScriptTable, TimerId};
+use crate::host::ActionPlace;
 use crate::semantics::{EventMatching, Semantics};
 use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
+use crate::typed::Program;
 use crate::vocabulary::{TopicId, Vocabulary};
 
 pub(crate) use direct::{Direct, DirectActions, DirectPlace};
@@ -84,6 +86,8 @@ pub struct Chart {
     pub(crate) errors: ErrorEvents,
     /// The event that stands for all that no expression names.
     pub(crate) unnamed: EventId,
+    /// The actions of segments that no way leads through.
+    unreached: Box<[(TransitionId, RegionId, Box<[Effect]>)]>,
     reads: Box<[TopicId]>,
     sources: Box<[MessageSource]>,
     max_activities: usize,
@@ -383,11 +387,20 @@ impl Statechart {
         vocabulary: &Vocabulary,
         semantics: Semantics,
     ) -> Result<Chart, Vec<Diagnostic>> {
-        build::build(self, vocabulary, semantics)
+        Chart::build(self, vocabulary, semantics, None)
     }
 }
 
 impl Chart {
+    pub(crate) fn build(
+        statechart: &Statechart,
+        vocabulary: &Vocabulary,
+        semantics: Semantics,
+        program: Option<&Program>,
+    ) -> Result<Chart, Vec<Diagnostic>> {
+        build::build(statechart, vocabulary, semantics, program)
+    }
+
     /// The statechart it was made from; every [`NodeId`] and [`TransitionId`] is one of it.
     pub fn statechart(&self) -> &Statechart {
         &self.statechart
@@ -460,6 +473,35 @@ impl Chart {
     /// Every timer that some action starts: the blackboard it lies on, and its name.
     pub fn timers(&self) -> impl ExactSizeIterator<Item = (RegionId, &str)> {
         self.timers.iter().map(|timer| (timer.region, timer.name.as_ref()))
+    }
+
+    /// The name of a timer of a blackboard; empty for one of another.
+    pub fn timer_name(&self, region: RegionId, timer: TimerId) -> &str {
+        let first = self.regions.get(region.index()).map_or(0, |region| region.timers);
+        let timer = self.timers.get(first + timer.0 as usize);
+        timer.filter(|timer| timer.region == region).map_or("", |timer| &timer.name)
+    }
+
+    /// The guard of each segment on each blackboard on which it is taken.
+    pub fn guards(&self) -> impl ExactSizeIterator<Item = (TransitionId, RegionId, &Guard)> {
+        self.guards.iter().map(|guard| (guard.transition, guard.region, &guard.guard))
+    }
+
+    /// The actions of transitions, entries and exits, on the blackboards on which they are done.
+    pub fn effects(&self) -> impl Iterator<Item = (ActionPlace, RegionId, &[Effect])> {
+        let compounds = self.compounds.iter().flat_map(|compound| {
+            let effects = compound.effects.iter();
+            effects.map(|(id, effects)| (ActionPlace::Transition(*id), compound.region, &**effects))
+        });
+        let states = self.states.iter().zip(self.layout.places()).flat_map(|(state, place)| {
+            let node = self.layout.node(place);
+            let entry = (ActionPlace::Entry(node), state.region, &*state.entry);
+            [entry, (ActionPlace::Exit(node), state.region, &*state.exit)]
+        });
+        let unreached = self.unreached.iter();
+        let unreached =
+            unreached.map(|(id, region, effects)| (ActionPlace::Transition(*id), *region, &**effects));
+        compounds.chain(states).chain(unreached)
     }
 
     /// The largest number of activities that can be active at once: how many threads can be of use.

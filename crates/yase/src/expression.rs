@@ -199,11 +199,12 @@ mod program;
 mod reads;
 mod syntax;
 
+pub(crate) use arithmetic::{arithmetic, compare, negative as negated};
 pub use compile::{CompiledTransition, CompiledTrigger, Effect, compile_actions};
 pub use facts::{CallError, Facts, MessageSource, Origin, TimerId, TimerState};
 pub use names::{EventId, EventTable, Names, ScriptId, ScriptTable};
 pub use parser::{parse_actions, parse_actions_at, parse_condition, parse_transition, parse_transition_at};
-pub use program::{Guard, GuardError, Operand};
+pub use program::{Guard, GuardError, Literal, Operand, Term, Test};
 pub use syntax::{
     Action, ActionKind, Additive, Comparison, Expression, ExpressionKind, Multiplicative, Name, Path, Place,
     TimeoutForm, TransitionExpression, Trigger, started_timers,

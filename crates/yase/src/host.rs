@@ -1,5 +1,7 @@
 //! What a machine knows of its world.
 
+use std::any::Any;
+
 use crate::chart::{Chart, RegionId};
 use crate::expression::{CallError, EventId, GuardError, MessageSource, ScriptId};
 use crate::machine::{Performance, States};
@@ -93,6 +95,21 @@ pub trait Host {
         value: Value<'_>,
     ) -> Result<(), CallError> {
         let _ = (region, topic, path, value);
+        Err(CallError::new("this host has no messages"))
+    }
+
+    /// Changes the message that is to be published on a topic, as [`assign`](Host::assign) does, by a function of
+    /// a [typed chart](crate::typed): it is given the message itself.
+    ///
+    /// # Errors
+    /// What the function says; nothing is changed then.
+    fn edit(
+        &mut self,
+        region: RegionId,
+        topic: TopicId,
+        change: &mut dyn FnMut(&mut dyn Any) -> Result<(), CallError>,
+    ) -> Result<(), CallError> {
+        let _ = (region, topic, change);
         Err(CallError::new("this host has no messages"))
     }
 

@@ -113,6 +113,7 @@ mod semantics;
 pub mod statechart;
 pub mod swap;
 mod trace;
+pub mod typed;
 pub mod vocabulary;
 
 pub use chart::{ActivityEntry, Chart, CompoundId, RegionId, ScriptEntry, ScriptPlace};

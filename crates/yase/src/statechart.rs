@@ -155,6 +155,24 @@ pub enum ConstantValue {
     Text(String),
 }
 
+impl From<bool> for ConstantValue {
+    fn from(value: bool) -> ConstantValue {
+        ConstantValue::Bool(value)
+    }
+}
+
+impl From<f64> for ConstantValue {
+    fn from(value: f64) -> ConstantValue {
+        ConstantValue::Number(value)
+    }
+}
+
+impl From<&str> for ConstantValue {
+    fn from(value: &str) -> ConstantValue {
+        ConstantValue::Text(value.to_owned())
+    }
+}
+
 /// A statechart: nodes in a tree, transitions between them, constants for their expressions.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Statechart {

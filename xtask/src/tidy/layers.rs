@@ -25,6 +25,9 @@ const LAYERS: [(&str, u8); 13] = [
 /// Bodies: known to the binary only.
 const ROBOTS: u8 = 5;
 
+/// Generated statecharts: they name activities and messages, and programs link them.
+const STATECHARTS: u8 = 4;
+
 /// Examples, benches, whole-match tests and chores: nothing depends on them.
 const TOP: u8 = 7;
 
@@ -65,6 +68,9 @@ fn arrow(member: &Crate, layer: u8, target: &Crate, dependency: &Dependency) -> 
 }
 
 fn layer_of(member: &Crate) -> Option<u8> {
+    if member.folder.starts_with("statecharts") {
+        return Some(STATECHARTS);
+    }
     if !member.folder.starts_with("crates") {
         return Some(if member.folder.starts_with("robots") { ROBOTS } else { TOP });
     }
@@ -139,6 +145,16 @@ mod tests {
     #[test]
     fn a_new_crate_needs_a_place() {
         assert!(findings(vec![member("crates/novelty", &[])])[0].contains("no place in the table"));
+    }
+
+    #[test]
+    fn statecharts_know_the_team_and_only_programs_know_them() {
+        let charts = || member("statecharts/goalie", &[("monas-soccer", false)]);
+        let soccer = || member("crates/monas-soccer", &[]);
+        let program = member("crates/monas-cli", &[("goalie", false)]);
+        assert!(findings(vec![charts(), soccer(), program]).is_empty());
+        let engine = member("crates/monas", &[("goalie", false)]);
+        assert_eq!(findings(vec![charts(), soccer(), engine]).len(), 1);
     }
 
     #[test]

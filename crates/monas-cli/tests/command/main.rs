@@ -5,6 +5,7 @@
 mod convert;
 #[cfg(unix)]
 mod elsewhere;
+mod generate;
 mod kit;
 mod model;
 mod run;

@@ -1,5 +1,6 @@
 //! What a machine knows of its world here: a blackboard for each region, functions, and those who look on.
 
+use std::any::Any;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -117,6 +118,20 @@ impl Host for Desk {
         let blackboard = blackboard.ok_or_else(|| CallError::new("there is no such region"))?;
         let mut result = Ok(());
         let edited = blackboard.edit(slot(topic), |message| result = values::set_field(message, path, value));
+        edited.map_err(|error| CallError::new(error.to_string()))?;
+        result
+    }
+
+    fn edit(
+        &mut self,
+        region: RegionId,
+        topic: TopicId,
+        change: &mut dyn FnMut(&mut dyn Any) -> Result<(), CallError>,
+    ) -> Result<(), CallError> {
+        let blackboard = self.lending.free_mut(region, self.now);
+        let blackboard = blackboard.ok_or_else(|| CallError::new("there is no such region"))?;
+        let mut result = Ok(());
+        let edited = blackboard.edit(slot(topic), |message| result = change(message.as_any_mut()));
         edited.map_err(|error| CallError::new(error.to_string()))?;
         result
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use monas_link::Place;
 use narukom::Narukom;
+use yase::diagnostic::nearest;
 use yase::{Diagnostic, Source, Statechart};
 
 use super::links::LinkReader;
@@ -14,7 +15,7 @@ use super::xml::{self, Attribute, Attributes, Element};
 use crate::activity::Activity;
 use crate::agent::{Agent, Policy};
 use crate::binder::Binder;
-use crate::error::ErrorKind;
+use crate::error::{Error, ErrorKind};
 use crate::frequency::{Frequency, Hz};
 use crate::link::LinkConfig;
 use crate::parameters::Parameters;
@@ -205,9 +206,28 @@ impl Reader<'_> {
         let enabled = attributes.flag("enable").unwrap_or(true);
         let elsewhere = attributes.get("elsewhere").cloned();
         attributes.finish();
-        let Some(chart) = self.chart(element).filter(|_| enabled) else { return agent };
-        let named = elsewhere.map(|given| self.elsewhere(element, &given, &chart)).unwrap_or_default();
-        named.into_iter().fold(agent.chart(chart), Agent::elsewhere)
+        let agent = match self.registry.chart(element.text()) {
+            Some(Ok(generated)) if enabled => agent.generated(generated),
+            Some(Ok(_)) => return agent,
+            Some(Err(error)) => return self.unusable(element, &error, agent),
+            None => match self.chart(element).filter(|_| enabled) {
+                Some(chart) => agent.chart(chart),
+                None => return agent,
+            },
+        };
+        let chart = agent.charts().last();
+        let named = elsewhere.zip(chart).map(|(given, chart)| self.elsewhere(element, &given, chart));
+        named.unwrap_or_default().into_iter().fold(agent, Agent::elsewhere)
+    }
+
+    /// A generated chart cannot be used.
+    fn unusable(&mut self, element: &Element, error: &Error, agent: Agent) -> Agent {
+        let diagnostic = element.error("E0322", element.text_span(), error.to_string());
+        self.diagnostics.push(match error.hint() {
+            Some(hint) => diagnostic.with_hint(hint),
+            None => diagnostic,
+        });
+        agent
     }
 
     /// The activities of a chart that another process runs: each must be one of the chart's, and links must bring what it publishes.
@@ -254,9 +274,10 @@ impl Reader<'_> {
         let found = match paths::locate(self.path, element.text()) {
             Ok(found) => found,
             Err(hint) => {
-                let message = format!("no model file `{}`", element.text());
+                let message = format!("no model file and no generated statechart `{}`", element.text());
                 let diagnostic = element.error("E0316", element.text_span(), message);
-                self.diagnostics.push(match hint {
+                let known = || nearest(element.text(), self.registry.chart_names()).map(str::to_owned);
+                self.diagnostics.push(match hint.or_else(known) {
                     Some(hint) => diagnostic.with_hint(format!("did you mean `{hint}`?")),
                     None => diagnostic,
                 });

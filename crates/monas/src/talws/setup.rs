@@ -155,6 +155,7 @@ impl Crew<'_> {
             frequency,
             activities,
             charts,
+            mut generated,
             semantics,
             statistics_every,
             workers,
@@ -167,7 +168,11 @@ impl Crew<'_> {
         }
         let charts = charts.iter().zip(0..).map(|(chart, number)| {
             let home = Home { hub, agent: &name, number, seed: self.seed, listeners: &self.listeners };
-            let mut bound = self.binder.bind(chart, semantics, None).map_err(Error::invalid)?;
+            let bound = match generated.remove(&(number as usize)) {
+                Some(generated) => self.binder.bind_generated(generated, semantics),
+                None => self.binder.bind(chart, semantics, None),
+            };
+            let mut bound = bound.map_err(Error::invalid)?;
             put_elsewhere(&mut bound, &elsewhere);
             match out_of_reach(&bound.chart, reach) {
                 wrong if wrong.is_empty() => Runner::new(bound, home),

@@ -18,8 +18,10 @@ use crate::expression::{
     CompiledTrigger, Effect, EventId, EventTable, MessageSource, Origin, ScriptTable, compile_actions,
     started_timers,
 };
+use crate::host::ActionPlace;
 use crate::semantics::{Eventless, FailureEvents, Semantics};
 use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
+use crate::typed::{Program, Wiring};
 use crate::vocabulary::{TopicId, Vocabulary};
 
 /// Checks a statechart and makes it ready to run.
@@ -27,6 +29,7 @@ pub(super) fn build(
     chart: &Statechart,
     vocabulary: &Vocabulary,
     semantics: Semantics,
+    program: Option<&Program>,
 ) -> Result<Chart, Vec<Diagnostic>> {
     let mut found = chart.check();
     found.retain(Diagnostic::is_error);
@@ -42,6 +45,7 @@ pub(super) fn build(
         chart,
         vocabulary,
         semantics,
+        wiring: program.map(|program| Wiring::new(program, vocabulary)),
         layout,
         region_of,
         timer_names,
@@ -113,6 +117,8 @@ pub(super) struct Builder<'a> {
     pub(super) chart: &'a Statechart,
     pub(super) vocabulary: &'a Vocabulary,
     pub(super) semantics: Semantics,
+    /// The functions that stand for expressions, if the chart has them.
+    pub(super) wiring: Option<Wiring<'a>>,
     pub(super) layout: Layout,
     region_of: Vec<RegionId>,
     pub(super) timer_names: Vec<Vec<String>>,
@@ -138,9 +144,12 @@ impl Builder<'_> {
         let mut states = self.states(&ways.of);
         let choices = ways.choices.iter().map(|late| self.choice(late)).collect();
         let histories = self.histories(&ways.histories, &mut states);
-        for segment in unreached(self.chart, ways) {
-            self.segment(segment, self.region_of[self.chart.transition(segment).source.0 as usize]);
-        }
+        let unreached = unreached(self.chart, ways).into_iter().map(|id| {
+            let region = self.region_of[self.chart.transition(id).source.0 as usize];
+            (id, region, self.segment(id, region).effects)
+        });
+        let unreached = unreached.collect();
+        self.found.extend(self.wiring.iter_mut().flat_map(|wiring| wiring.found.drain(..)));
         if !self.found.is_empty() {
             return Err(self.found);
         }
@@ -160,6 +169,7 @@ impl Builder<'_> {
             max_activities: max_activities(&states),
             visits: visits::order(&self.layout, &joins, &self.semantics),
             joins,
+            unreached,
             statechart: self.chart.clone(),
             semantics: self.semantics,
             scripts: self.scripts,
@@ -283,8 +293,10 @@ impl Builder<'_> {
         let (chart, region) = (self.chart, self.region_of[id.0 as usize]);
         let node = chart.node(id);
         let what = |when: &str| format!("{when} of `{}`", chart.path(id));
-        let entry = self.actions(region, |names| compile_actions(&node.entry, names), || what("entry"));
-        let exit = self.actions(region, |names| compile_actions(&node.exit, names), || what("exit"));
+        let mut entry = self.actions(region, |names| compile_actions(&node.entry, names), || what("entry"));
+        let mut exit = self.actions(region, |names| compile_actions(&node.exit, names), || what("exit"));
+        self.wire(&mut entry, ActionPlace::Entry(id), region);
+        self.wire(&mut exit, ActionPlace::Exit(id), region);
         State {
             kind: node.kind,
             region,
@@ -301,6 +313,13 @@ impl Builder<'_> {
             defer: node.defer.iter().map(|event| self.events.intern(event)).collect(),
             eventless: Branches::default(),
             triggered: Branches::default(),
+        }
+    }
+
+    /// Puts functions in the places of what actions assign, if the chart has them.
+    pub(super) fn wire(&mut self, effects: &mut [Effect], place: ActionPlace, region: RegionId) {
+        if let Some(wiring) = &mut self.wiring {
+            wiring.effects(effects, place, region, &self.timer_names[region.index()]);
         }
     }
 

@@ -8,6 +8,7 @@ use crate::chart::{
 };
 use crate::diagnostic::Diagnostic;
 use crate::expression::{CompiledTransition, Effect, Names};
+use crate::host::ActionPlace;
 use crate::semantics::StartRest;
 use crate::statechart::{NodeId, NodeKind, TransitionId};
 
@@ -101,8 +102,12 @@ impl Builder<'_> {
         let transition = chart.transition(id);
         let what =
             || format!("from `{}` to `{}`", chart.path(transition.source), chart.path(transition.target));
-        let compiled: CompiledTransition =
+        let mut compiled: CompiledTransition =
             self.actions(region, |names| transition.expression.compile(names), what);
+        self.wire(&mut compiled.effects, ActionPlace::Transition(id), region);
+        if let (Some(wiring), Some(guard)) = (&mut self.wiring, &mut compiled.guard) {
+            wiring.guard(guard, id, region, &self.timer_names[region.index()]);
+        }
         let segment = Segment {
             trigger: compiled.trigger.map(|trigger| number(&mut self.triggers, trigger)),
             guard: compiled

@@ -7,13 +7,13 @@ use super::syntax::{Additive, Comparison, Multiplicative};
 use crate::vocabulary::Value;
 
 /// Zero minus a number.
-pub(super) fn negative(value: Value<'_>) -> Result<Value<'_>, GuardError> {
+pub(crate) fn negative(value: Value<'_>) -> Result<Value<'_>, GuardError> {
     arithmetic(Value::Uint(0), Operator::Minus, value)
 }
 
 /// What is done to two numbers.
 #[derive(Clone, Copy)]
-pub(super) enum Operator {
+pub(crate) enum Operator {
     Plus,
     Minus,
     Times,
@@ -65,7 +65,7 @@ impl Number {
 
 /// Sums and products of whole numbers are whole; a quotient is a floating point number. Missing if a value is
 /// missing.
-pub(super) fn arithmetic<'a>(
+pub(crate) fn arithmetic<'a>(
     left: Value<'a>,
     operator: impl Into<Operator>,
     right: Value<'a>,
@@ -101,7 +101,7 @@ fn floating(left: f64, operator: Operator, right: f64) -> Result<Value<'static>,
 
 /// Whether a comparison holds; nothing if a value is missing.
 #[inline]
-pub(super) fn compare(
+pub(crate) fn compare(
     left: Value<'_>,
     comparison: Comparison,
     right: Value<'_>,

@@ -9,6 +9,7 @@ use super::names::ScriptId;
 use super::reads::Reads;
 use super::syntax::{Additive, Comparison, Multiplicative};
 use crate::statechart::NodeId;
+use crate::typed::{Change, TypedTest, TypedValue};
 use crate::vocabulary::{FieldId, FunctionId, TopicId, Value};
 
 /// No function that an expression may call takes more arguments.
@@ -63,6 +64,16 @@ impl Guard {
     pub fn is_literally_false(&self) -> bool {
         self.test == Test::Literal(false)
     }
+
+    /// What it asks, for those who write it down in another language.
+    pub fn test(&self) -> &Test {
+        &self.test
+    }
+
+    /// From now on a function says whether it holds. What it reads remains.
+    pub(crate) fn ask(&mut self, test: TypedTest) {
+        self.test = Test::Typed(test);
+    }
 }
 
 /// A compiled value: the right side of an assignment.
@@ -71,13 +82,14 @@ pub struct Operand {
     term: Term,
     reads: Box<[TopicId]>,
     sources: Box<[MessageSource]>,
+    change: Option<Change>,
 }
 
 impl Operand {
     pub(super) fn new(term: Term) -> Operand {
         let mut reads = Reads::default();
         reads.of_term(&term);
-        Operand { term, reads: reads.topics(), sources: reads.sources() }
+        Operand { term, reads: reads.topics(), sources: reads.sources(), change: None }
     }
 
     /// The value; [`Value::Missing`] if it depends on a message that has not arrived.
@@ -96,6 +108,21 @@ impl Operand {
     /// The sources it reads messages of, each once, in order.
     pub fn sources(&self) -> &[MessageSource] {
         &self.sources
+    }
+
+    /// What it is made of, for those who write it down in another language.
+    pub fn term(&self) -> &Term {
+        &self.term
+    }
+
+    /// From now on a function gives the value, and another puts it into its message. What it reads remains.
+    pub(crate) fn ask(&mut self, value: TypedValue, change: Change) {
+        (self.term, self.change) = (Term::Typed(value), Some(change));
+    }
+
+    /// The function that puts the value into its message, if there is one.
+    pub(crate) fn change(&self) -> Option<&Change> {
+        self.change.as_ref()
     }
 }
 
@@ -161,29 +188,48 @@ impl From<Option<bool>> for Truth {
 
 /// What has a truth value.
 #[derive(Clone, PartialEq, Debug)]
-pub(super) enum Test {
+#[non_exhaustive]
+pub enum Test {
+    /// `true` or `false`.
     Literal(bool),
+    /// Each of them, looked at up to the first that is false.
     All(Box<[Test]>),
+    /// One of them, looked at up to the first that is true.
     Any(Box<[Test]>),
+    /// The contrary.
     Not(Box<Test>),
+    /// A comparison of two values.
     Compare(Term, Comparison, Term),
     /// The usual comparison, of a field with a constant, without a detour.
     FieldIs {
+        /// Whose message.
         source: MessageSource,
+        /// Which field of it.
         path: Box<[FieldId]>,
+        /// How they are compared.
         comparison: Comparison,
+        /// The constant, on the right.
         literal: Literal,
     },
+    /// Whether no message has arrived.
     Absent(MessageSource),
+    /// Whether a timer is over.
     Over {
+        /// The timer.
         timer: TimerId,
+        /// What it says of a timer that was never started.
         when_unset: bool,
     },
-    /// `TimeoutCheck` of a timer that nothing starts.
-    NeverStarted,
+    /// `TimeoutCheck` of the timer of that name, which nothing starts on the blackboard.
+    NeverStarted(Box<str>),
+    /// Whether a state is active.
     Active(NodeId),
+    /// A condition in the host's own language.
     Script(ScriptId),
+    /// A value that is true or false.
     Holds(Term),
+    /// What a function says.
+    Typed(TypedTest),
 }
 
 impl Test {
@@ -217,9 +263,10 @@ impl Test {
                 TimerState::Running => false,
                 TimerState::Over => true,
             }),
-            Test::NeverStarted => Truth::False,
+            Test::NeverStarted(_) => Truth::False,
             Test::Active(state) => Truth::from(facts.is_active(*state)),
             Test::Script(script) => Truth::from(facts.script(*script)?),
+            Test::Typed(test) => Truth::from(test.ask(facts)?),
             Test::Holds(term) => match term.evaluate(facts)? {
                 Value::Bool(value) => Truth::from(value),
                 Value::Missing => Truth::Unknown,
@@ -255,12 +302,19 @@ fn any(tests: &[Test], facts: &impl Facts) -> Result<Truth, GuardError> {
 
 /// A value that is known beforehand.
 #[derive(Clone, PartialEq, Debug)]
-pub(super) enum Literal {
+#[non_exhaustive]
+pub enum Literal {
+    /// True or false.
     Bool(bool),
+    /// A whole number with a sign.
     Int(i64),
+    /// A whole number without one.
     Uint(u64),
+    /// A number with a fraction.
     Float(f64),
+    /// A text.
     Text(Box<str>),
+    /// The number of a value of an enumeration.
     Enum(i32),
 }
 
@@ -280,15 +334,26 @@ impl Literal {
 
 /// What has a value.
 #[derive(Clone, PartialEq, Debug)]
-pub(super) enum Term {
+#[non_exhaustive]
+pub enum Term {
+    /// A value that is known beforehand.
     Literal(Literal),
+    /// A field of a message; the path leads through messages inside it.
     Field(MessageSource, Box<[FieldId]>),
+    /// A whole message.
     Message(MessageSource),
+    /// What a function makes of its arguments.
     Call(FunctionId, Box<[Term]>),
+    /// Zero minus a value.
     Negative(Box<Term>),
+    /// A sum, from left to right.
     Sum(Box<Term>, Box<[(Additive, Term)]>),
+    /// A product, from left to right.
     Product(Box<Term>, Box<[(Multiplicative, Term)]>),
+    /// Whether something holds.
     Truth(Box<Test>),
+    /// What a function says.
+    Typed(TypedValue),
 }
 
 impl Term {
@@ -302,6 +367,7 @@ impl Term {
             Term::Sum(first, rest) => chain(first, rest, facts)?,
             Term::Product(first, rest) => chain(first, rest, facts)?,
             Term::Truth(test) => test.evaluate(facts)?.value(),
+            Term::Typed(value) => value.ask(facts)?,
         })
     }
 }

@@ -29,7 +29,8 @@ impl Reads {
 
     pub(super) fn of_test(&mut self, test: &Test) {
         match test {
-            Test::Literal(_) | Test::NeverStarted | Test::Active(_) | Test::Script(_) => {}
+            Test::Literal(_) | Test::NeverStarted(_) | Test::Active(_) | Test::Script(_) | Test::Typed(_) => {
+            }
             Test::All(tests) | Test::Any(tests) => tests.iter().for_each(|test| self.of_test(test)),
             Test::Not(test) => self.of_test(test),
             Test::Compare(left, _, right) => {
@@ -44,7 +45,7 @@ impl Reads {
 
     pub(super) fn of_term(&mut self, term: &Term) {
         match term {
-            Term::Literal(_) => {}
+            Term::Literal(_) | Term::Typed(_) => {}
             Term::Field(source, _) | Term::Message(source) => drop(self.sources.insert(source.clone())),
             Term::Call(_, arguments) => arguments.iter().for_each(|term| self.of_term(term)),
             Term::Negative(term) => self.of_term(term),

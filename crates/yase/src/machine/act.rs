@@ -119,7 +119,13 @@ impl<H: Host> Step<'_, H> {
             .map_err(ActionError::from)
             .and_then(|value| detach(value, &mut text))
         {
-            Ok(value) => self.host.assign(region, topic, field, value).map_err(ActionError::from),
+            Ok(value) => match operand.change() {
+                None => self.host.assign(region, topic, field, value).map_err(ActionError::from),
+                Some(change) => {
+                    let edited = self.host.edit(region, topic, &mut |message| change.make(message, value));
+                    edited.map_err(ActionError::from)
+                }
+            },
             Err(error) => Err(error),
         };
         self.run.text = text;

@@ -1,9 +1,11 @@
 //! A world with blackboards and activities, that writes down what it is asked to do.
 
+use std::any::Any;
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 use yase::expression::{CallError, MessageSource};
+use yase::typed::set;
 use yase::vocabulary::{FieldEntry, FunctionEntry, MessageEntry, TopicEntry, TopicKind, ValueType};
 use yase::{
     Activation, Chart, FieldId, FunctionId, Host, Moment, Outcome, RegionId, Report, TopicId, TraceRecord,
@@ -42,11 +44,17 @@ pub fn vocabulary() -> Vocabulary {
     }
 }
 
-/// One blackboard: what it shows, what has arrived, what is to be published. Messages are their number `n`.
+/// A message of any of the three types.
+#[derive(Clone, Copy, Default, Debug)]
+pub struct Number {
+    pub n: i64,
+}
+
+/// One blackboard: what it shows, what has arrived, what is to be published.
 #[derive(Clone, Default, Debug)]
 pub struct Board {
-    pub shown: BTreeMap<TopicId, i64>,
-    pub inbox: BTreeMap<TopicId, i64>,
+    pub shown: BTreeMap<TopicId, Number>,
+    pub inbox: BTreeMap<TopicId, Number>,
     pub outbox: BTreeSet<TopicId>,
 }
 
@@ -107,14 +115,18 @@ impl World {
     /// A message reaches every blackboard, to be delivered there.
     pub fn send(&mut self, topic: TopicId, value: i64, regions: impl Iterator<Item = RegionId>) {
         for region in regions {
-            self.board(region).inbox.insert(topic, value);
+            self.board(region).inbox.insert(topic, Number { n: value });
         }
         self.arrivals.push(topic);
     }
 
     /// The number on a blackboard, if a message has arrived there.
     pub fn number(&self, region: RegionId, topic: TopicId) -> Option<i64> {
-        self.boards.get(&region)?.shown.get(&topic).copied()
+        Some(self.shown(region, topic)?.n)
+    }
+
+    fn shown(&self, region: RegionId, topic: TopicId) -> Option<&Number> {
+        self.boards.get(&region)?.shown.get(&topic)
     }
 
     /// How an activity returns: `ongoing…` after its third call, `failing…` never well.
@@ -134,8 +146,7 @@ impl Host for World {
     }
 
     fn message(&self, region: RegionId, source: &MessageSource) -> Value<'_> {
-        // only whether it is there matters
-        self.number(region, source.topic).map_or(Value::Missing, |_| Value::Message(&()))
+        self.shown(region, source.topic).map_or(Value::Missing, |number| Value::Message(number))
     }
 
     fn call(&self, function: FunctionId, arguments: &[Value<'_>]) -> Result<Value<'_>, CallError> {
@@ -167,32 +178,40 @@ impl Host for World {
         value: Value<'_>,
     ) -> Result<(), CallError> {
         assert_eq!(path, [FieldId(0)]);
-        let value = match value {
-            Value::Int(value) => value,
-            Value::Uint(value) => value as i64,
-            Value::Float(value) => value as i64,
-            _ => return Err(CallError::new("not a number")),
-        };
-        if value > 1_000_000 {
+        self.edit(region, topic, &mut |message| {
+            let number = message.downcast_mut::<Number>().expect("all messages are numbers");
+            set(&mut number.n, value, "n")
+        })
+    }
+
+    fn edit(
+        &mut self,
+        region: RegionId,
+        topic: TopicId,
+        change: &mut dyn FnMut(&mut dyn Any) -> Result<(), CallError>,
+    ) -> Result<(), CallError> {
+        let mut number = self.shown(region, topic).copied().unwrap_or_default();
+        change(&mut number)?;
+        if number.n > 1_000_000 {
             return Err(CallError::new("too large"));
         }
         let board = self.board(region);
-        board.shown.insert(topic, value);
+        board.shown.insert(topic, number);
         board.outbox.insert(topic);
-        self.whisper(format!("  {} on {} = {value}", TOPICS[topic.0 as usize], region.0));
+        self.whisper(format!("  {} on {} = {}", TOPICS[topic.0 as usize], region.0, number.n));
         Ok(())
     }
 
     fn publish(&mut self, region: RegionId, topic: TopicId) {
         let board = self.board(region);
-        board.shown.entry(topic).or_insert(0);
+        board.shown.entry(topic).or_default();
         board.outbox.insert(topic);
     }
 
     fn publish_all(&mut self, region: RegionId) {
         let board = self.board(region);
         let topics = std::mem::take(&mut board.outbox);
-        let values: Vec<(TopicId, i64)> =
+        let values: Vec<(TopicId, Number)> =
             topics.iter().filter_map(|topic| Some((*topic, *board.shown.get(topic)?))).collect();
         for (topic, value) in values {
             for (_, other) in self.boards.iter_mut().filter(|(other, _)| **other != region) {

@@ -49,7 +49,7 @@ impl Scope<'_> {
     fn timeout_check(&self, timer: &Path) -> Test {
         match self.timer(timer) {
             Some(timer) => Test::Over { timer, when_unset: false },
-            None => Test::NeverStarted,
+            None => Test::NeverStarted(timer.text().into()),
         }
     }
 

@@ -1,0 +1,118 @@
+//! A statechart as a Rust crate (IAC2Monas; Tables 4.2 and 4.3 of the thesis): [`generate`].
+//!
+//! The thesis's tool turns each node and each transition into a statement that makes an object of the engine, and each expression into a
+//! class. So does this one, in what Rust has for it: the states are an enumeration, the structure is a list of statements, and each guard
+//! and each assigned value is a function. Functions read messages as structs, so that a message or field that is gone is an error of the
+//! compiler, as is an activity that is not there. The engine remains the interpreter's ([`yase::typed`] says why), so that the traces of a
+//! chart do not depend on which way it is run.
+//!
+//! What names mean in Rust is told by [`Words`]. Whoever knows the program makes them: `monas generate`, a build script, a test.
+//!
+//! ```
+//! use aseme::generate::{Words, generate};
+//! use yase::Source;
+//!
+//! let (chart, found) = aseme::statechart_of(&Source::new("visitor.srm", "visitor = (look . greet)~"));
+//! assert!(found.is_empty());
+//! let files = generate(&chart, &Words::default()).expect("it can be written as Rust");
+//! let chart = &files["src/chart.rs"];
+//! assert!(chart.contains("chart.connect(State::look, State::greet, \"\");"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | code | what is wrong |
+//! |---|---|
+//! | E0920 | an expression has no counterpart in Rust |
+//! | E0921 | a message has no Rust type |
+//! | E0922 | an activity's name cannot be that of a type or function |
+
+mod body;
+mod chart;
+mod code;
+mod expressions;
+mod files;
+mod glossary;
+mod names;
+mod states;
+
+use std::collections::BTreeMap;
+
+use yase::{Diagnostic, Semantics, Span, Statechart, Vocabulary};
+
+pub use names::{identifier, path_of};
+
+/// What the names of a chart mean, in expressions and in Rust.
+#[derive(Clone, Debug)]
+pub struct Words {
+    /// What expressions may name.
+    pub vocabulary: Vocabulary,
+    /// The Rust type of each message, by its name in the vocabulary: `monas_soccer::Ball`.
+    pub messages: BTreeMap<String, String>,
+    /// Where each activity is in Rust, by its name in charts. One that is not here gets a skeleton.
+    pub activities: BTreeMap<String, RustActivity>,
+    /// The module that has [`yase::typed`]'s names.
+    pub runtime: String,
+    /// Whether the crate registers itself and makes its activities: whether the runtime is that of Monas.
+    pub registers: bool,
+    /// What the first lines of the crate say it was made from.
+    pub origin: String,
+    /// The name that configurations know the chart by; its own if it is empty.
+    pub name: String,
+}
+
+impl Default for Words {
+    /// Charts without messages, run by `yase` alone.
+    fn default() -> Words {
+        Words {
+            vocabulary: Vocabulary::default(),
+            messages: BTreeMap::new(),
+            activities: BTreeMap::new(),
+            runtime: "yase::typed".to_owned(),
+            registers: false,
+            origin: String::new(),
+            name: String::new(),
+        }
+    }
+}
+
+/// An activity in Rust.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct RustActivity {
+    /// Its path: `monas_soccer::activities::Vision`.
+    pub path: String,
+    /// Whether it is a function; else it is a type made by `Default`.
+    pub is_function: bool,
+}
+
+/// The files of a crate, by their paths within it.
+pub type Files = BTreeMap<String, String>;
+
+/// The skeletons among the files of a crate: whoever writes the files leaves alone what is there.
+pub const SKELETONS: &str = "src/activities/";
+
+/// Writes a chart as the sources of a crate. Equal charts and words give equal files, laid out as rustfmt does with this project's settings
+/// where their lines are not too long for it.
+///
+/// # Errors
+/// Everything that is wrong with the chart, as [`Statechart::compile`] finds it, and what cannot be said in Rust.
+pub fn generate(chart: &Statechart, words: &Words) -> Result<Files, Vec<Diagnostic>> {
+    let compiled = chart.compile_with(&words.vocabulary, Semantics::yase())?;
+    let states = states::States::new(chart);
+    let mut glossary = glossary::Glossary::new(chart, words);
+    let functions = expressions::functions(&compiled, &states, &mut glossary)?;
+    let mut files = Files::new();
+    files.insert("src/lib.rs".into(), files::library(chart, words));
+    files.insert("src/states.rs".into(), states.file(words));
+    files.insert("src/words.rs".into(), glossary.file());
+    files.insert("src/guards.rs".into(), functions.file(&glossary));
+    files.insert("src/chart.rs".into(), chart::file(chart, &states, &glossary, &functions));
+    if words.registers {
+        files.extend(files::activities(chart, &states, words)?);
+    }
+    Ok(files)
+}
+
+/// Something that Rust has no word for.
+fn refusal(code: &'static str, message: impl Into<String>, hint: &str) -> Diagnostic {
+    Diagnostic::error(code, Span::default(), message).with_hint(hint)
+}

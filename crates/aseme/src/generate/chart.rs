@@ -1,0 +1,193 @@
+//! The structure of a chart as statements.
+
+use std::time::Duration;
+
+use yase::{ActionPlace, NodeId, Statechart, Transition, TransitionId};
+
+use super::body::Functions;
+use super::code::{Code, WIDTH, literal};
+use super::glossary::Glossary;
+use super::states::States;
+
+pub(super) fn file(
+    chart: &Statechart,
+    states: &States,
+    glossary: &Glossary<'_>,
+    functions: &Functions,
+) -> String {
+    let writer = Writer { chart, states, functions };
+    let declarations: String = glossary.declarations().iter().map(Code::statement).collect();
+    let nodes: String =
+        chart.nodes().flat_map(|(id, _)| writer.node(id)).map(|code| code.statement()).collect();
+    let transitions: Vec<String> = chart
+        .transitions()
+        .map(|(id, transition)| writer.transition(id, transition).iter().map(Code::statement).collect())
+        .collect();
+    let transitions = transitions.concat();
+    let parts = [
+        ("words", "The words of the guards and actions.", declarations),
+        ("states", "The states and connectors, in the order of the document.", nodes),
+        ("transitions", "The transitions, in the order of the document, each with its guard.", transitions),
+    ];
+    let mut calls = String::new();
+    let mut text = String::new();
+    for (name, about, statements) in parts.iter().filter(|(.., statements)| !statements.is_empty()) {
+        calls += &format!("    {name}(&mut chart);\n");
+        text += &format!("\n/// {about}\nfn {name}(chart: &mut Draft) {{\n{statements}}}\n");
+    }
+    let is_mutated =
+        if calls.is_empty() && chart.node(Statechart::ROOT).name == chart.name { "" } else { "mut " };
+    let root = match &chart.node(Statechart::ROOT).name {
+        same if *same == chart.name => String::new(),
+        other => Code::call("chart.call_root", vec![Code::Plain(literal(other))]).statement(),
+    };
+    format!(
+        "//! The structure of the chart.\n\n{}\n\
+         /// The chart, with a function for each of its guards and values.\n///\n/// # Errors\n\
+         /// Only if it was changed by hand and no longer fits together.\n\
+         pub fn chart() -> Result<TypedChart, Vec<Diagnostic>> {{\n\
+         \x20   let {is_mutated}chart = Draft::new({});\n{root}{calls}    chart.finish()\n}}\n{text}",
+        imports(glossary, &text),
+        literal(&chart.name),
+    )
+}
+
+fn imports(glossary: &Glossary<'_>, text: &str) -> String {
+    let mut imports = String::new();
+    if text.contains("Duration::") {
+        imports += "use std::time::Duration;\n\n";
+    }
+    let mut runtime = vec!["Diagnostic", "Draft"];
+    let known = [("NodeKind", "NodeKind::"), ("Reads", "Reads::")];
+    runtime.extend(known.iter().filter(|(_, used)| text.contains(used)).map(|(name, _)| *name));
+    runtime.push("TypedChart");
+    imports += &import(&glossary.words.runtime, &runtime);
+    let mut own = String::new();
+    if text.contains("guards::") {
+        own += "use super::guards;\n";
+    }
+    if text.contains("State::") {
+        own += "use super::states::State;\n";
+    }
+    let modules: Vec<&str> =
+        glossary.modules().into_iter().filter(|name| text.contains(&format!("{name}::"))).collect();
+    if !modules.is_empty() {
+        own += &import("super::words", &modules);
+    }
+    if own.is_empty() { imports } else { format!("{imports}\n{own}") }
+}
+
+/// `use module::{names};`, with as many names in a line as fit.
+pub(super) fn import(module: &str, names: &[&str]) -> String {
+    if let [name] = names {
+        return format!("use {module}::{name};\n");
+    }
+    let line = format!("use {module}::{{{}}};\n", names.join(", "));
+    if line.chars().count() <= WIDTH + 1 {
+        return line;
+    }
+    let mut lines = vec![String::from("   ")];
+    for name in names {
+        let is_full = lines.last().is_some_and(|line| line.len() + name.len() + 2 > WIDTH);
+        if is_full {
+            lines.push(String::from("   "));
+        }
+        if let Some(line) = lines.last_mut() {
+            *line += &format!(" {name},");
+        }
+    }
+    format!("use {module}::{{\n{}\n}};\n", lines.join("\n"))
+}
+
+struct Writer<'a> {
+    chart: &'a Statechart,
+    states: &'a States,
+    functions: &'a Functions,
+}
+
+impl Writer<'_> {
+    fn state(&self, node: NodeId) -> Code {
+        Code::Plain(format!("State::{}", self.states.variant(node)))
+    }
+
+    /// The statements about a node.
+    fn node(&self, id: NodeId) -> Vec<Code> {
+        let node = self.chart.node(id);
+        let about = |method: &str, value: String| {
+            Code::call(format!("chart.{method}"), vec![self.state(id), Code::Plain(value)])
+        };
+        let mut code = Vec::new();
+        if let Some(parent) = node.parent {
+            let kind = Code::Plain(format!("NodeKind::{:?}", node.kind));
+            let arguments = vec![self.state(id), self.state(parent), kind, Code::Plain(literal(&node.name))];
+            code.push(Code::call("chart.add", arguments));
+        }
+        code.extend(node.activity.as_ref().map(|name| about("activity", literal(name))));
+        if node.priority != 0 {
+            code.push(about("priority", node.priority.to_string()));
+        }
+        code.extend(node.duration.map(|duration| about("duration", duration_text(duration))));
+        if !node.defer.is_empty() {
+            let events = node.defer.iter().map(|event| Code::Plain(literal(event))).collect();
+            code.push(Code::call("chart.defer", vec![self.state(id), Code::List(events)]));
+        }
+        for (method, actions, place) in
+            [("entry", &node.entry, ActionPlace::Entry(id)), ("exit", &node.exit, ActionPlace::Exit(id))]
+        {
+            if !actions.is_empty() {
+                let text = actions.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+                code.push(about(method, literal(&text)));
+                code.extend(self.values(place));
+            }
+        }
+        code
+    }
+
+    /// The statements about a transition.
+    fn transition(&self, id: TransitionId, transition: &Transition) -> Vec<Code> {
+        let text = match transition.expression.is_empty() {
+            true => String::new(),
+            false => transition.expression.to_string(),
+        };
+        let ends = [transition.source, transition.target].map(|node| self.state(node));
+        let [source, target] = ends;
+        let mut code = vec![Code::call("chart.connect", vec![source, target, Code::Plain(literal(&text))])];
+        let mut say = |method: &str, value: Option<String>| {
+            code.push(Code::call(format!("chart.{method}"), value.map(Code::Plain).into_iter().collect()));
+        };
+        if let Some(guard) = self.functions.guard_of(id) {
+            say("guard", Some(guard.to_owned()));
+        }
+        if transition.priority != 0 {
+            say("prefer", Some(transition.priority.to_string()));
+        }
+        if let Some(weight) = transition.weight {
+            say("weight", Some(format!("{weight:?}")));
+        }
+        if transition.interrupts {
+            say("interrupts", None);
+        }
+        if transition.internal {
+            say("internal", None);
+        }
+        code.extend(self.values(ActionPlace::Transition(id)));
+        code
+    }
+
+    fn values(&self, place: ActionPlace) -> Vec<Code> {
+        let value = |(index, names): (usize, &[String; 3])| {
+            let names = names.iter().cloned().map(Code::Plain);
+            Code::call("chart.value", std::iter::once(Code::Plain(index.to_string())).chain(names).collect())
+        };
+        self.functions.values_at(place).map(value).collect()
+    }
+}
+
+fn duration_text(duration: Duration) -> String {
+    let nanos = duration.as_nanos();
+    match (nanos % 1_000_000_000, nanos % 1_000_000) {
+        (0, _) => format!("Duration::from_secs({})", duration.as_secs()),
+        (_, 0) => format!("Duration::from_millis({})", duration.as_millis()),
+        _ => format!("Duration::new({}, {})", duration.as_secs(), duration.subsec_nanos()),
+    }
+}

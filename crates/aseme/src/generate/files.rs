@@ -1,0 +1,170 @@
+//! The root of a generated crate, and the activities of its states.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use yase::{Diagnostic, Statechart};
+
+use super::chart::import;
+use super::code::{Code, literal, quoted};
+use super::names::identifier;
+use super::states::States;
+use super::{Files, RustActivity, SKELETONS, Words, refusal};
+
+/// The root of the crate.
+pub(super) fn library(chart: &Statechart, words: &Words) -> String {
+    let origin = match words.origin.as_str() {
+        "" => String::new(),
+        origin => format!(
+            "\n//!\n//! Generated from {}: what is changed here is lost when that is done again.",
+            quoted(origin)
+        ),
+    };
+    let name = if words.name.is_empty() { &chart.name } else { &words.name };
+    let activities = if words.registers { "mod activities;\n" } else { "" };
+    let registration = match words.registers {
+        true => format!("\nmonas::statechart!({} = chart, activities::instances);\n", literal(name)),
+        false => String::new(),
+    };
+    format!(
+        "//! The statechart {}.{origin}\n//!\n\
+         //! [`State`] lists its states; the module `chart` says how they hang together, `guards` what the guards ask and what is assigned,\n\
+         //! `words` what these speak of.\n\n\
+         {activities}mod chart;\nmod guards;\nmod states;\nmod words;\n\n\
+         pub use chart::chart;\npub use states::State;\n{registration}",
+        quoted(&chart.name)
+    )
+}
+
+/// What makes the activities, and skeletons for those that are not there.
+pub(super) fn activities(
+    chart: &Statechart,
+    states: &States,
+    words: &Words,
+) -> Result<Files, Vec<Diagnostic>> {
+    let names: BTreeSet<&str> = chart.nodes().filter_map(|(_, node)| node.activity.as_deref()).collect();
+    let mut made = Activities::default();
+    for name in names {
+        match words.activities.get(name) {
+            Some(known) => made.known(name, known),
+            None => made.skeleton(name),
+        }
+    }
+    if !made.found.is_empty() {
+        return Err(made.found);
+    }
+    let instances = chart.nodes().filter_map(|(id, node)| {
+        let activity = made.called.get(node.activity.as_deref()?)?;
+        let state = Code::Plain(format!("State::{}", states.variant(id)));
+        Some(match activity.is_function {
+            true => Code::call("Instance::new", vec![state, Code::Plain(activity.path.clone())]),
+            false => Code::call(format!("Instance::of::<{}>", activity.path), vec![state]),
+        })
+    });
+    let lines: Vec<String> = instances.map(|code| format!("        {},\n", code.laid_out(8, 8, 1))).collect();
+    let text = format!(
+        "//! The activities of the states. One that is not there is an error here.\n\n{}{}\
+         use monas::generated::Instance;\n{}\n{}\
+         /// A new instance for each state that has an activity.\npub(super) fn instances() -> Vec<Instance> {{\n{}}}\n",
+        made.modules(),
+        "",
+        made.imports(),
+        if lines.is_empty() { "" } else { "use super::states::State;\n\n" },
+        match lines.is_empty() {
+            true => "    Vec::new()\n".to_owned(),
+            false => format!("    vec![\n{}    ]\n", lines.concat()),
+        },
+    );
+    let mut files = made.files;
+    files.insert("src/activities.rs".into(), text);
+    Ok(files)
+}
+
+#[derive(Default)]
+struct Activities {
+    /// What each is called in the module, by its name in the chart.
+    called: BTreeMap<String, RustActivity>,
+    /// Names by the module they are taken from.
+    imported: BTreeMap<String, Vec<String>>,
+    own: BTreeSet<String>,
+    files: Files,
+    found: Vec<Diagnostic>,
+}
+
+impl Activities {
+    /// Two of one name in Rust are both written with their paths.
+    fn known(&mut self, name: &str, activity: &RustActivity) {
+        let (module, rust) = activity.path.rsplit_once("::").unwrap_or(("", &activity.path));
+        let is_taken = self.called.values().any(|other| other.path == rust);
+        let path = if is_taken || module.is_empty() { activity.path.clone() } else { rust.to_owned() };
+        if path == rust && !module.is_empty() {
+            self.imported.entry(module.to_owned()).or_default().push(rust.to_owned());
+        }
+        self.called.insert(name.to_owned(), RustActivity { path, is_function: activity.is_function });
+    }
+
+    fn skeleton(&mut self, name: &str) {
+        let (rust, module) = (camel(name), snake(name));
+        if rust.is_empty() || !rust.starts_with(|first: char| first.is_ascii_alphabetic()) {
+            let message = format!("the activity `{name}` cannot be the name of a type");
+            self.found.push(refusal("E0922", message, "begin its name with a letter"));
+            return;
+        }
+        let is_taken = self.called.values().any(|other| other.path == rust);
+        let path = if is_taken { format!("{module}::{rust}") } else { rust.clone() };
+        if !is_taken {
+            self.imported.entry(module.clone()).or_default().push(rust.clone());
+        }
+        self.files.insert(format!("{SKELETONS}{module}.rs"), skeleton_text(name, &rust));
+        self.own.insert(module);
+        self.called.insert(name.to_owned(), RustActivity { path, is_function: false });
+    }
+
+    fn modules(&self) -> String {
+        let modules: String = self.own.iter().map(|module| format!("mod {module};\n")).collect();
+        if modules.is_empty() { modules } else { format!("{modules}\n") }
+    }
+
+    fn imports(&self) -> String {
+        let import = |(module, names): (&String, &Vec<String>)| {
+            let mut names: Vec<&str> = names.iter().map(String::as_str).collect();
+            names.sort_unstable();
+            import(module, &names)
+        };
+        self.imported.iter().map(import).collect()
+    }
+}
+
+fn skeleton_text(name: &str, rust: &str) -> String {
+    let registered = if name == rust { rust.to_owned() } else { format!("{rust} as {}", literal(name)) };
+    format!(
+        "//! The activity {}.\n\nuse monas::{{Activity, Blackboard, BoxError, Progress}};\n\n\
+         /// Has nothing to do so far.\n#[derive(Clone, Copy, Debug, Default)]\npub struct {rust};\n\n\
+         impl Activity for {rust} {{\n\
+         \x20   fn execute(&mut self, _: &mut Blackboard) -> Result<Progress, BoxError> {{\n\
+         \x20       Ok(Progress::Done)\n    }}\n}}\n\nmonas::activity!({registered});\n",
+        quoted(name)
+    )
+}
+
+/// In the style of Rust's types.
+fn camel(name: &str) -> String {
+    let capital = |word: &str| {
+        let mut letters = word.chars();
+        letters
+            .next()
+            .map_or_else(String::new, |first| first.to_ascii_uppercase().to_string() + letters.as_str())
+    };
+    identifier(&[name]).split('_').map(capital).collect()
+}
+
+/// In the style of Rust's modules.
+fn snake(name: &str) -> String {
+    let mut text = String::new();
+    for letter in camel(name).chars() {
+        if letter.is_ascii_uppercase() && !text.is_empty() && !text.ends_with('_') {
+            text.push('_');
+        }
+        text.push(letter.to_ascii_lowercase());
+    }
+    super::names::field(&text)
+}

@@ -1,0 +1,84 @@
+//! The goalie as Rust, in `tests/golden/generated`. With `MONAS_BLESS=1` the files are written anew.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use aseme::generate::{Files, Words, generate};
+use yase::{Source, Statechart};
+
+use crate::words::soccer;
+
+fn root(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(file)
+}
+
+fn chart(name: &str, text: &str) -> Statechart {
+    let (chart, findings) = aseme::statechart_of(&Source::new(name, text));
+    assert_eq!(findings, []);
+    chart
+}
+
+fn goalie() -> Statechart {
+    chart("goalie.srm", &fs::read_to_string(root("../../models/goalie.srm")).expect("a model"))
+}
+
+fn check(folder: &str, files: &Files) {
+    for (path, text) in files {
+        let golden = root("tests/golden/generated").join(folder).join(path.replace("src/", ""));
+        if std::env::var_os("MONAS_BLESS").is_some() {
+            fs::create_dir_all(golden.parent().expect("it has one")).expect("writable");
+            fs::write(&golden, text).expect("writable");
+        }
+        let expected = fs::read_to_string(&golden).expect("a golden file");
+        assert!(*text == expected, "{path} differs from its golden file; MONAS_BLESS=1 accepts it:\n{text}");
+    }
+}
+
+#[test]
+fn the_goalie_as_rust() {
+    check("goalie", &generate(&goalie(), &soccer()).expect("it can be written"));
+}
+
+/// Everything a chart may hold besides what the goalie does.
+#[test]
+fn everything_else_as_rust() {
+    let model = "
+Role: patrol
+Liveness:
+patrol = (walk . type)~ || watch+
+Constants:
+far = 2.5
+word = \"red\"
+Transitions:
+walk -> type : go | stop [Ball.place.near.x > far + Ball.type / 2 && Ball.colour != word || In(watch)] !3
+walk -> walk : [Ball == NULL] interrupts
+type -> END : [Vision.Ball.found] / Ball.place.x = -Ball.time_to_cross; Ball.colour = word; raise(go); publish.Ball
+States:
+walk : priority = 2, entry = GameState.player_state = PLAYING, exit = StartTimeout(t, 5ms), defer = stop, duration = 1500ms
+";
+    check("patrol", &generate(&chart("patrol.srm", model), &soccer()).expect("it can be written"));
+}
+
+#[test]
+fn a_crate_of_monas_has_its_activities_and_skeletons_for_those_that_are_not_there() {
+    let words = Words { registers: true, runtime: "monas::generated".into(), ..soccer() };
+    let activity = |path: &str, is_function| aseme::generate::RustActivity { path: path.into(), is_function };
+    let activities = [("look", activity("team::look", true)), ("kick", activity("team::Kick", false))];
+    let activities = activities.map(|(name, activity)| (name.to_owned(), activity));
+    let words = Words { activities: activities.into(), name: "player".into(), ..words };
+    let chart = chart("player.srm", "player = look . kick . passBall");
+    check("player", &generate(&chart, &words).expect("it can be written"));
+}
+
+#[test]
+fn rustfmt_leaves_them_as_they_are() {
+    let folder = root("tests/golden/generated");
+    let roots = ["goalie", "patrol", "player"].map(|name| folder.join(name).join("lib.rs"));
+    let config = root("../../rustfmt.toml");
+    let mut command = std::process::Command::new("rustfmt");
+    let command = command.args(["--check", "--edition", "2024", "--config-path"]).arg(config).args(roots);
+    match command.output() {
+        Ok(output) => assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout)),
+        Err(error) => println!("skipped: no rustfmt ({error})"),
+    }
+}

@@ -1,0 +1,8 @@
+//! Statecharts as Rust crates: the goalie as a folder of files to be read, and names that are mapped one to one.
+
+#![allow(clippy::expect_used, clippy::panic)] // the functions around the tests are tests too
+
+mod golden;
+mod names;
+mod refusals;
+mod words;

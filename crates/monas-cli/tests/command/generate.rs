@@ -1,0 +1,97 @@
+//! `monas generate`: what it writes, what it leaves alone, and that a match does not notice.
+
+use std::fs;
+use std::path::Path;
+
+use crate::kit::{copy, monas, root};
+
+/// The parts of the project that a generated crate is linked into, elsewhere.
+fn project() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    for part in ["models", "statecharts"] {
+        copy(&root().join(part), &folder.path().join(part));
+    }
+    fs::create_dir_all(folder.path().join("crates/monas-cli/src")).expect("the folder takes folders");
+    let files =
+        ["Cargo.toml", "rustfmt.toml", "crates/monas-cli/Cargo.toml", "crates/monas-cli/src/main.rs", LINKS];
+    for file in files {
+        fs::copy(root().join(file), folder.path().join(file)).expect("the folder takes files");
+    }
+    folder
+}
+
+const LINKS: &str = "crates/monas-cli/src/statecharts.rs";
+
+fn read(folder: &Path, file: &str) -> String {
+    fs::read_to_string(folder.join(file)).expect("the file is there")
+}
+
+fn generate(folder: &Path, model: &str) -> (Option<i32>, String, String) {
+    let answer = monas(&["generate", &folder.join(model).display().to_string()]);
+    (answer.code, answer.out, answer.err)
+}
+
+#[test]
+fn a_match_with_generated_charts_has_the_hash_of_one_with_interpreted_ones() {
+    let hash = |file| {
+        let answer = monas(&["run", file, "--seed", "7", "--for", "5s"]);
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        let line = answer.out.lines().find(|line| line.starts_with("hash: ")).map(str::to_owned);
+        line.expect("there is a hash")
+    };
+    assert_eq!(hash("config/match_generated.xml"), hash("config/match.xml"));
+}
+
+#[test]
+fn what_is_committed_is_what_the_models_give() {
+    let project = project();
+    for model in ["models/goalie.srm", "models/attacker.srm"] {
+        assert_eq!(generate(project.path(), model), (Some(0), "nothing has changed\n".into(), String::new()));
+    }
+}
+
+#[test]
+fn a_new_role_is_linked_and_its_skeletons_are_left_alone() {
+    let project = project();
+    let folder = project.path();
+    fs::write(folder.join("models/scout.srm"), "scout = (Vision . lookAround)~").expect("it takes files");
+    let (code, out, err) = generate(folder, "models/scout.srm");
+    assert_eq!(code, Some(0), "{err}");
+    let skeleton = "statecharts/scout/src/activities/look_around.rs";
+    for file in ["statecharts/scout/Cargo.toml", skeleton, "Cargo.toml", "crates/monas-cli/Cargo.toml", LINKS]
+    {
+        assert!(out.lines().any(|line| line == file), "{file} is not in\n{out}");
+    }
+    assert!(read(folder, LINKS).contains("use goalie as _;\nuse scout as _;\n"));
+    assert!(read(folder, "Cargo.toml").contains("scout = { path = \"statecharts/scout\" }\n"));
+    assert!(read(folder, "crates/monas-cli/Cargo.toml").contains("scout.workspace = true\n"));
+    assert!(read(folder, skeleton).contains("monas::activity!(LookAround as \"lookAround\");"));
+    let activities = read(folder, "statecharts/scout/src/activities.rs");
+    assert!(activities.contains("Instance::of::<LookAround>(State::lookAround)"), "{activities}");
+    assert!(activities.contains("use monas_soccer::activities::Vision;"), "{activities}");
+
+    fs::write(folder.join(skeleton), "// filled in\n").expect("it takes files");
+    assert_eq!(generate(folder, "models/scout.srm").1, "nothing has changed\n");
+    assert_eq!(read(folder, skeleton), "// filled in\n");
+}
+
+#[test]
+fn what_cannot_be_generated_is_refused_and_nothing_is_written() {
+    let project = project();
+    let folder = project.path();
+    let scout = "Liveness:\nscout = Vision . Stand\nTransitions:\nVision -> Stand : [Ball.fund]\n";
+    fs::write(folder.join("models/scout.srm"), scout).expect("it takes files");
+    let (code, _, err) = generate(folder, "models/scout.srm");
+    assert_eq!(code, Some(3));
+    assert!(err.contains("the message `Ball` has no field `fund`") && err.contains("E0134"), "{err}");
+    assert!(!folder.join("statecharts/scout").exists());
+
+    fs::write(folder.join("models/my-scout.srm"), "scout = Vision").expect("it takes files");
+    let (code, _, err) = generate(folder, "models/my-scout.srm");
+    assert!(code == Some(3) && err.contains("`my-scout` cannot be the name of a crate"), "{err}");
+
+    let manifest = read(folder, "Cargo.toml").replace("team =", "teem =");
+    fs::write(folder.join("Cargo.toml"), manifest).expect("it takes files");
+    let (code, _, err) = generate(folder, "models/goalie.srm");
+    assert!(code == Some(3) && err.contains("does not say which package links statecharts"), "{err}");
+}

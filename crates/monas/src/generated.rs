@@ -1,0 +1,130 @@
+//! Statecharts that are Rust code, as `monas generate` writes them: what their crates are made of, and how these register them.
+//!
+//! A generated crate holds a [typed chart](yase::typed) and an [`Instance`] of its activity for each state that has one. It registers
+//! both under a name with [`statechart!`](crate::statechart!), so that a configuration names it where it would name a model file:
+//!
+//! ```xml
+//! <agent><name>Goalie</name><statechart>goalie</statechart></agent>
+//! ```
+//!
+//! It runs like an interpreted chart: it has the same blackboards, wakes for the same reasons and publishes the same records.
+
+mod words;
+
+pub use words::words;
+pub use yase::typed::*;
+
+use yase::Statechart;
+
+use crate::activity::Activity;
+
+/// The activity of a state.
+pub struct Instance {
+    pub(crate) node: NodeId,
+    pub(crate) activity: Box<dyn Activity>,
+}
+
+impl Instance {
+    /// A state's activity.
+    pub fn new(state: impl Into<NodeId>, activity: impl Activity + 'static) -> Instance {
+        Instance { node: state.into(), activity: Box::new(activity) }
+    }
+
+    /// A state's activity of that type.
+    pub fn of<A: Activity + Default + 'static>(state: impl Into<NodeId>) -> Instance {
+        Instance::new(state, A::default())
+    }
+}
+
+impl std::fmt::Debug for Instance {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Instance({}, {})", self.node.0, self.activity.name())
+    }
+}
+
+/// A generated statechart with its activities.
+#[derive(Debug)]
+pub struct GeneratedChart {
+    pub(crate) chart: TypedChart,
+    pub(crate) instances: Vec<Instance>,
+}
+
+impl GeneratedChart {
+    /// A chart and the activities of its states.
+    pub fn new(chart: TypedChart, instances: Vec<Instance>) -> GeneratedChart {
+        GeneratedChart { chart, instances }
+    }
+
+    /// The chart as data.
+    pub fn statechart(&self) -> &Statechart {
+        self.chart.statechart()
+    }
+}
+
+/// A generated statechart as [`statechart!`](crate::statechart!) registers it.
+#[derive(Clone, Copy, Debug)]
+pub struct ChartDeclaration {
+    /// The name that configurations use.
+    pub name: &'static str,
+    /// The module it was registered in.
+    pub module: &'static str,
+    /// Makes the chart, with new activities.
+    pub make: fn() -> Result<GeneratedChart, Vec<Diagnostic>>,
+}
+
+/// Every statechart registered in the crates of this program.
+#[doc(hidden)]
+#[linkme::distributed_slice]
+pub static CHARTS: [ChartDeclaration];
+
+/// What [`statechart!`](crate::statechart!) expands to.
+///
+/// # Errors
+/// What the chart finds wrong with itself.
+#[doc(hidden)]
+pub fn assembled(
+    chart: fn() -> Result<TypedChart, Vec<Diagnostic>>,
+    instances: fn() -> Vec<Instance>,
+) -> Result<GeneratedChart, Vec<Diagnostic>> {
+    Ok(GeneratedChart { chart: chart()?, instances: instances() })
+}
+
+/// Puts a generated statechart into the registry, so that configurations can name it: its name, the function that makes it, and
+/// the function that makes its activities.
+///
+/// ```
+/// use monas::generated::{Diagnostic, Draft, Instance, NodeId, NodeKind, TypedChart};
+///
+/// fn chart() -> Result<TypedChart, Vec<Diagnostic>> {
+///     let mut chart = Draft::new("sleeper");
+///     chart.add(NodeId(1), NodeId(0), NodeKind::Start, "");
+///     chart.add(NodeId(2), NodeId(0), NodeKind::Basic, "sleep");
+///     chart.activity(NodeId(2), "sleep");
+///     chart.connect(NodeId(1), NodeId(2), "");
+///     chart.finish()
+/// }
+/// fn sleep(_: &mut monas::Blackboard) {}
+/// fn instances() -> Vec<Instance> {
+///     vec![Instance::new(NodeId(2), sleep)]
+/// }
+/// monas::statechart!("sleeper" = chart, instances);
+///
+/// let chart = monas::Registry::linked().chart("sleeper").expect("it is registered")?;
+/// assert_eq!(chart.statechart().nodes().len(), 3);
+/// # Ok::<(), monas::Error>(())
+/// ```
+#[macro_export]
+macro_rules! statechart {
+    ($name:literal = $chart:path, $instances:path) => {
+        const _: () = {
+            #[allow(unsafe_code)] // the section of the executable that the linker collects
+            #[$crate::linked::linkme::distributed_slice($crate::linked::CHARTS)]
+            #[linkme(crate = $crate::linked::linkme)]
+            static DECLARATION: $crate::linked::ChartDeclaration = $crate::linked::ChartDeclaration {
+                name: $name,
+                module: ::core::module_path!(),
+                make: || $crate::linked::assembled($chart, $instances),
+            };
+        };
+    };
+}

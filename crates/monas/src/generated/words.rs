@@ -1,0 +1,50 @@
+//! What the names in charts mean in this program's Rust.
+
+use std::collections::BTreeMap;
+
+use aseme::generate::{RustActivity, Words};
+use narukom::TOPICS;
+
+use crate::error::Error;
+use crate::registry::{ACTIVITIES, ActivityDeclaration, Registry};
+use crate::vocabulary::{message_names, vocabulary};
+
+/// The words for [`aseme::generate::generate`]: the topics, functions and activities of the crates of this program.
+///
+/// An activity is named by the module it is registered in. Modules below one that is called `activities` are left out: that
+/// one shows them all.
+///
+/// # Errors
+/// Two functions, or two activities, of one name.
+pub fn words(registry: &Registry) -> Result<Words, Error> {
+    let functions = registry.functions()?;
+    let mut activities = BTreeMap::new();
+    for declaration in ACTIVITIES {
+        registry.activity(declaration.name)?;
+        let path = format!("{}::{}", shown(declaration.module), code(declaration));
+        let known = RustActivity { path, is_function: declaration.is_function };
+        activities.insert(declaration.name.to_owned(), known);
+    }
+    let mut messages = BTreeMap::new();
+    for (topic, name) in message_names(TOPICS) {
+        // the module that `narukom_build` puts structs in is private, and shown by the one around it
+        messages.insert(name, topic.rust_type().replace("::generated::", "::"));
+    }
+    Ok(Words {
+        vocabulary: vocabulary(TOPICS, &functions),
+        messages,
+        activities,
+        runtime: "monas::generated".to_owned(),
+        registers: true,
+        ..Words::default()
+    })
+}
+
+fn shown(module: &str) -> String {
+    let inner = module.find("::activities::").map(|at| at + "::activities".len());
+    module[..inner.unwrap_or(module.len())].to_owned()
+}
+
+fn code(declaration: &ActivityDeclaration) -> String {
+    declaration.code.replace(' ', "")
+}

@@ -1,0 +1,151 @@
+//! Fields of messages, set to the values of expressions.
+
+use crate::expression::CallError;
+use crate::vocabulary::Value;
+
+/// A type of fields that an expression may assign.
+///
+/// Whole numbers fit wherever their value does, and into fields of floating point numbers; a number with a fraction fits into
+/// no whole field.
+pub trait Field: Sized {
+    /// What the field becomes.
+    ///
+    /// # Errors
+    /// It cannot hold the value; `field` is its name.
+    fn read(value: Value<'_>, field: &str) -> Result<Self, CallError>;
+}
+
+/// Sets a field of a message.
+///
+/// # Errors
+/// It cannot hold the value; nothing is changed then.
+pub fn set<T: Field>(place: &mut T, value: Value<'_>, field: &str) -> Result<(), CallError> {
+    *place = T::read(value, field)?;
+    Ok(())
+}
+
+/// The message inside a message, made if it is not set.
+pub fn inside_mut<T: Default>(message: &mut Option<T>) -> &mut T {
+    message.get_or_insert_default()
+}
+
+fn wrong_kind(field: &str) -> CallError {
+    CallError::new(format!("the field `{field}` does not hold such a value"))
+}
+
+fn out_of_range(field: &str) -> CallError {
+    CallError::new(format!("the number does not fit into the field `{field}`"))
+}
+
+/// A whole number, also one that comes as a float without a fraction, as constants do.
+fn whole<T: TryFrom<i128>>(value: Value<'_>, field: &str) -> Result<T, CallError> {
+    let number = match value {
+        Value::Missing => 0,
+        Value::Int(value) => i128::from(value),
+        Value::Uint(value) => i128::from(value),
+        Value::Enum(value) => i128::from(value),
+        Value::Float(value) if value.trunc() == value => value as i128,
+        Value::Float(_) => return Err(out_of_range(field)),
+        _ => return Err(wrong_kind(field)),
+    };
+    T::try_from(number).map_err(|_| out_of_range(field))
+}
+
+impl Field for bool {
+    fn read(value: Value<'_>, field: &str) -> Result<bool, CallError> {
+        match value {
+            Value::Missing => Ok(false),
+            Value::Bool(truth) => Ok(truth),
+            _ => Err(wrong_kind(field)),
+        }
+    }
+}
+
+impl Field for i32 {
+    fn read(value: Value<'_>, field: &str) -> Result<i32, CallError> {
+        whole(value, field)
+    }
+}
+
+impl Field for i64 {
+    fn read(value: Value<'_>, field: &str) -> Result<i64, CallError> {
+        whole(value, field)
+    }
+}
+
+impl Field for u32 {
+    fn read(value: Value<'_>, field: &str) -> Result<u32, CallError> {
+        whole(value, field)
+    }
+}
+
+impl Field for u64 {
+    fn read(value: Value<'_>, field: &str) -> Result<u64, CallError> {
+        whole(value, field)
+    }
+}
+
+impl Field for f64 {
+    fn read(value: Value<'_>, field: &str) -> Result<f64, CallError> {
+        match value {
+            Value::Missing => Ok(0.0),
+            Value::Int(value) => Ok(value as f64),
+            Value::Uint(value) => Ok(value as f64),
+            Value::Float(value) => Ok(value),
+            _ => Err(wrong_kind(field)),
+        }
+    }
+}
+
+impl Field for f32 {
+    fn read(value: Value<'_>, field: &str) -> Result<f32, CallError> {
+        f64::read(value, field).map(|value| value as f32)
+    }
+}
+
+impl Field for String {
+    fn read(value: Value<'_>, field: &str) -> Result<String, CallError> {
+        match value {
+            Value::Missing => Ok(String::new()),
+            Value::Text(text) => Ok(text.to_owned()),
+            _ => Err(wrong_kind(field)),
+        }
+    }
+}
+
+impl<T: Field> Field for Option<T> {
+    fn read(value: Value<'_>, field: &str) -> Result<Option<T>, CallError> {
+        match value {
+            Value::Missing => Ok(None),
+            value => T::read(value, field).map(Some),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::typed::Operand;
+
+    fn read<'a, T: Field>(value: impl Operand<'a>) -> Result<T, String> {
+        T::read(value.value(), "n").map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn what_fits_is_set_and_what_does_not_is_named() {
+        let out_of_range = Err("the number does not fit into the field `n`".to_owned());
+        assert_eq!(read::<i32>(3.0), Ok(3));
+        assert_eq!(read::<i32>(3.5), out_of_range);
+        assert_eq!(read::<u32>(-1_i64).map(i64::from), out_of_range.clone().map(i64::from));
+        assert_eq!(read::<f32>(7_u64), Ok(7.0));
+        assert_eq!(read::<bool>(1_u64), Err("the field `n` does not hold such a value".into()));
+        assert_eq!(read::<Option<String>>("a"), Ok(Some("a".into())));
+    }
+
+    #[test]
+    fn a_value_that_does_not_fit_changes_nothing() {
+        let mut number = 5_u32;
+        assert!(set(&mut number, Value::Int(-1), "n").is_err());
+        assert_eq!(number, 5);
+    }
+}

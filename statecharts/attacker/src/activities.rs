@@ -1,0 +1,29 @@
+//! The activities of the states. One that is not there is an error here.
+
+use monas::generated::Instance;
+use monas_soccer::activities::{
+    AlignWithBall, LedHandler, LeftKick, MotionController, RightKick, RobotController, SearchBall,
+    SendCalibration, Sensors, Stand, TrackBall, Vision, WaitForBallMessage, WalkTowardsBall,
+};
+
+use super::states::State;
+
+/// A new instance for each state that has an activity.
+pub(super) fn instances() -> Vec<Instance> {
+    vec![
+        Instance::of::<RobotController>(State::RobotController),
+        Instance::of::<LedHandler>(State::LedHandler),
+        Instance::of::<MotionController>(State::MotionController),
+        Instance::of::<Stand>(State::Stand),
+        Instance::of::<SendCalibration>(State::SendCalibration),
+        Instance::of::<Sensors>(State::Sensors),
+        Instance::of::<Vision>(State::Vision),
+        Instance::of::<WaitForBallMessage>(State::WaitForBallMessage),
+        Instance::of::<SearchBall>(State::SearchBall),
+        Instance::of::<TrackBall>(State::TrackBall),
+        Instance::of::<WalkTowardsBall>(State::WalkTowardsBall),
+        Instance::of::<AlignWithBall>(State::AlignWithBall),
+        Instance::of::<LeftKick>(State::LeftKick),
+        Instance::of::<RightKick>(State::RightKick),
+    ]
+}

@@ -1,0 +1,29 @@
+//! The activities of the states. One that is not there is an error here.
+
+use monas::generated::Instance;
+use monas_soccer::activities::{
+    LedHandler, LeftDive, LeftFall, MotionController, RightDive, RightFall, RobotController, SearchBall,
+    SendCalibration, Sensors, Stand, TrackBall, Vision, WaitForBallMessage,
+};
+
+use super::states::State;
+
+/// A new instance for each state that has an activity.
+pub(super) fn instances() -> Vec<Instance> {
+    vec![
+        Instance::of::<RobotController>(State::RobotController),
+        Instance::of::<LedHandler>(State::LedHandler),
+        Instance::of::<MotionController>(State::MotionController),
+        Instance::of::<Stand>(State::Stand),
+        Instance::of::<SendCalibration>(State::SendCalibration),
+        Instance::of::<Sensors>(State::Sensors),
+        Instance::of::<Vision>(State::Vision),
+        Instance::of::<WaitForBallMessage>(State::WaitForBallMessage),
+        Instance::of::<SearchBall>(State::SearchBall),
+        Instance::of::<TrackBall>(State::TrackBall),
+        Instance::of::<RightFall>(State::RightFall),
+        Instance::of::<LeftFall>(State::LeftFall),
+        Instance::of::<RightDive>(State::RightDive),
+        Instance::of::<LeftDive>(State::LeftDive),
+    ]
+}

@@ -1,0 +1,70 @@
+//! Random charts, generated as Rust and interpreted: both must leave the same traces.
+//!
+//! The charts are those with which the tests of `yase` compare the machine with its reference, and so are their scripts and semantics.
+//! `build.rs` generates 200 of them; `MONAS_CHARTS=0..5000 cargo test -p chart-tests` compares 5,000.
+
+#![cfg(test)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // all of it is test
+
+#[allow(dead_code, unreachable_pub, unused_imports)] // the rest is for other tests
+#[path = "../../../crates/yase/tests/kit/mod.rs"]
+mod kit;
+#[allow(dead_code, unreachable_pub, unused_imports)]
+#[path = "../../../crates/yase/tests/reference/oracle"]
+mod oracle {
+    pub(crate) mod chance;
+    pub(crate) mod random;
+}
+#[allow(unreachable_pub, unused_imports)] // crates of their own elsewhere
+mod generated {
+    use yase::Diagnostic;
+    use yase::typed::TypedChart;
+
+    /// What makes a chart.
+    pub(crate) type Make = fn() -> Result<TypedChart, Vec<Diagnostic>>;
+
+    include!(concat!(env!("OUT_DIR"), "/charts.rs"));
+}
+
+use std::sync::Arc;
+
+use yase::{Chart, Chooser, Machine};
+
+use kit::script;
+use kit::world::{World, vocabulary};
+use oracle::chance::Freedom;
+use oracle::random::Case;
+
+/// All that the world is asked to do and told.
+fn played(case: &Case, chart: Chart) -> Vec<String> {
+    let mut world = World { verbose: true, reads: true, ..World::new(&case.chart) };
+    let mut machine = Machine::new(Arc::new(chart));
+    machine.set_chooser(match &case.freedom {
+        Freedom::Declared => Chooser::declared(),
+        Freedom::Seeded(seed) => Chooser::seeded(*seed),
+        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
+    });
+    script::run(&mut machine, &case.script, &mut world);
+    world.say(format!("at the end {:?} {:?}", machine.status(), machine.configuration()));
+    world.log
+}
+
+#[test]
+fn generated_charts_leave_the_traces_of_interpreted_ones() {
+    let (mut guards, mut lines) = (0, 0);
+    for (number, make) in generated::CHARTS {
+        let case = Case::numbered(*number);
+        let typed = make().expect("what is generated fits together");
+        assert_eq!(*typed.statechart(), case.chart, "chart {number}");
+        let interpreted = case.chart.compile_with(&vocabulary(), case.semantics).expect("it is a chart");
+        let generated = typed.compile(&vocabulary(), case.semantics).expect("its functions fit");
+        guards += generated.guards().len();
+        let (expected, found) = (played(&case, interpreted), played(&case, generated));
+        lines += expected.len();
+        let pairs = expected.iter().zip(&found).enumerate();
+        let difference = pairs.clone().find(|(_, (expected, found))| expected != found);
+        assert!(expected == found, "chart {number} differs: {difference:?}");
+    }
+    println!("{} charts, {guards} guards, {lines} lines", generated::CHARTS.len());
+    assert!(guards > generated::CHARTS.len(), "the charts have guards");
+}
