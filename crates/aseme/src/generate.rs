@@ -24,7 +24,7 @@
 //! |---|---|
 //! | E0920 | an expression has no counterpart in Rust |
 //! | E0921 | a message has no Rust type |
-//! | E0922 | an activity's name cannot be that of a type or function |
+//! | E0922 | two activities would have one name |
 
 mod body;
 mod chart;

@@ -34,6 +34,7 @@ pub(crate) fn execute(arguments: &GenerateArguments, console: &mut Console<'_>) 
     words.name.clone_from(&name);
     forget_own(&mut words, &name);
     let files = generate::generate(&chart, &words).map_err(|found| Failure::Invalid(format, found))?;
+    let files = laid_out(files, &project, console).map_err(|error| Failure::failed(format, error))?;
     let manifest = project
         .manifest_of(&name, &crates(&files, &words))
         .map_err(|found| Failure::Invalid(format, vec![*found]))?;
@@ -45,7 +46,6 @@ pub(crate) fn execute(arguments: &GenerateArguments, console: &mut Console<'_>) 
     writing.remove_leftovers(&files)?;
     let mut changed = writing.changed;
     changed.extend(project.link().map_err(|message| Failure::Failed(format, message))?);
-    lay_out(&folder, console)?;
     tell(&changed, &project, format, console)
 }
 
@@ -147,14 +147,21 @@ impl Writing<'_> {
     }
 }
 
-/// Lines that the generator could not lay out are left to rustfmt, where it is installed.
-fn lay_out(folder: &Path, console: &mut Console<'_>) -> Result<(), Failure> {
-    let root = folder.join("src/lib.rs");
-    let done = Command::new("rustfmt").args(["--quiet", "--edition", "2024"]).arg(root).output();
-    if !done.is_ok_and(|output| output.status.success()) {
+/// What the generator could not lay out as the project's rustfmt does is left to that, where it is installed.
+fn laid_out(files: Files, project: &Project, console: &mut Console<'_>) -> std::io::Result<Files> {
+    let folder = tempfile::tempdir()?;
+    for (path, text) in &files {
+        let path = folder.path().join(path);
+        path.parent().map_or(Ok(()), fs::create_dir_all)?;
+        fs::write(path, text)?;
+    }
+    let mut command = Command::new("rustfmt");
+    command.args(["--quiet", "--edition", "2024", "--config-path"]).arg(project.root());
+    if !command.arg(folder.path().join("src/lib.rs")).output().is_ok_and(|output| output.status.success()) {
         writeln!(console.err, "rustfmt is not there: long lines are as they were generated")?;
     }
-    Ok(())
+    let read = |path: String| fs::read_to_string(folder.path().join(&path)).map(|text| (path, text));
+    files.into_keys().map(read).collect()
 }
 
 fn tell(

@@ -9,6 +9,8 @@
 //!
 //! It runs like an interpreted chart: it has the same blackboards, wakes for the same reasons and publishes the same records.
 
+#[cfg(test)]
+mod tests;
 mod words;
 
 pub use words::words;

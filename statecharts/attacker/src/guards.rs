@@ -77,7 +77,7 @@ pub(super) fn from_CONDITION_to_AlignWithBall(world: &World<'_>) -> Truth {
                     &[minus(
                         world.call(functions::abs, &[given(world.latest(messages::BALL)?.y)?])?,
                         constants::kick_y,
-                    )?,],
+                    )?],
                 )?,
                 constants::tolerance,
             )?,
@@ -99,7 +99,7 @@ pub(super) fn from_CONDITION_to_kickBall(world: &World<'_>) -> Truth {
                 &[minus(
                     world.call(functions::abs, &[given(world.latest(messages::BALL)?.y)?])?,
                     constants::kick_y,
-                )?,],
+                )?],
             )?,
             constants::tolerance,
         )?,

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use yase::{ActionPlace, Chart, NodeId, TransitionId};
 
-use super::code::{Code, quoted};
+use super::code::{Code, WIDTH, quoted};
 use super::glossary::Glossary;
 use super::names::identifier;
 
@@ -87,9 +87,17 @@ impl Functions {
 
     fn put(&mut self, wish: &str, body: &Body) -> String {
         let name = self.name(format!("set_{wish}"));
-        let head = format!("pub(super) fn {name}(message: &mut {}, value: Value<'_>)", body.rust);
+        let parameters = [format!("message: &mut {}", body.rust), "value: Value<'_>".to_owned()];
+        let line = format!("pub(super) fn {name}({}) -> Result<(), CallError> {{", parameters.join(", "));
+        let head = match line.chars().count() <= WIDTH {
+            true => line,
+            false => format!(
+                "pub(super) fn {name}(\n    {},\n) -> Result<(), CallError> {{",
+                parameters.join(",\n    ")
+            ),
+        };
         self.text.push(format!(
-            "/// Sets {}.\n{head} -> Result<(), CallError> {{\n    {}\n}}\n",
+            "/// Sets {}.\n{head}\n    {}\n}}\n",
             quoted(&format!("{}.{}", body.rust, body.field)),
             body.put.laid_out(4, 4, 0)
         ));
@@ -111,7 +119,6 @@ impl Functions {
         if self.text.is_empty() {
             return text;
         }
-        text.insert_str(0, "");
         text += "\n#![allow(non_snake_case)] // the names are those of states\n\n";
         let functions = self.text.join("\n");
         text += &super::chart::import(&glossary.words.runtime, &used(&functions, &RUNTIME));

@@ -59,7 +59,10 @@ impl Code {
         match self {
             Code::Plain(_) => flat,
             Code::Before(sign, code) => format!("{sign}{}", code.laid_out(indent, column + sign.len(), room)),
-            Code::List(items) => format!("&[{}]", broken(items, indent)),
+            Code::List(items) => match items.as_slice() {
+                [only] => format!("&[{}]", only.laid_out(indent, column + 2, room + 1)),
+                items => format!("&[{}]", broken(items, indent)),
+            },
             Code::Call { name, arguments, after } => match arguments.as_slice() {
                 [only @ (Code::Call { .. } | Code::Before(..))] => {
                     let begun = column + name.chars().count() + 1;

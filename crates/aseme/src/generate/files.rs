@@ -52,6 +52,7 @@ pub(super) fn activities(
     if !made.found.is_empty() {
         return Err(made.found);
     }
+    made.imported.entry("monas::generated".into()).or_default().push("Instance".into());
     let instances = chart.nodes().filter_map(|(id, node)| {
         let activity = made.called.get(node.activity.as_deref()?)?;
         let state = Code::Plain(format!("State::{}", states.variant(id)));
@@ -62,11 +63,9 @@ pub(super) fn activities(
     });
     let lines: Vec<String> = instances.map(|code| format!("        {},\n", code.laid_out(8, 8, 1))).collect();
     let text = format!(
-        "//! The activities of the states. One that is not there is an error here.\n\n{}{}\
-         use monas::generated::Instance;\n{}\n{}\
+        "//! The activities of the states. One that is not there is an error here.\n\n{}{}\n{}\
          /// A new instance for each state that has an activity.\npub(super) fn instances() -> Vec<Instance> {{\n{}}}\n",
         made.modules(),
-        "",
         made.imports(),
         if lines.is_empty() { "" } else { "use super::states::State;\n\n" },
         match lines.is_empty() {
@@ -104,9 +103,9 @@ impl Activities {
 
     fn skeleton(&mut self, name: &str) {
         let (rust, module) = (camel(name), snake(name));
-        if rust.is_empty() || !rust.starts_with(|first: char| first.is_ascii_alphabetic()) {
-            let message = format!("the activity `{name}` cannot be the name of a type");
-            self.found.push(refusal("E0922", message, "begin its name with a letter"));
+        if self.own.contains(&module) {
+            let message = format!("the activity `{name}` and another would have one name in Rust: `{rust}`");
+            self.found.push(refusal("E0922", message, "rename one of them"));
             return;
         }
         let is_taken = self.called.values().any(|other| other.path == rust);

@@ -50,8 +50,8 @@ Constants:
 far = 2.5
 word = \"red\"
 Transitions:
-walk -> type : go | stop [Ball.place.near.x > far + Ball.type / 2 && Ball.colour != word || In(watch)] !3
-walk -> walk : [Ball == NULL] interrupts
+walk -> type !3 interrupts : go | stop [Ball.place.near.x > far + Ball.type / 2 && Ball.colour != word || In(watch)]
+watch -> watch : [Ball == NULL]
 type -> END : [Vision.Ball.found] / Ball.place.x = -Ball.time_to_cross; Ball.colour = word; raise(go); publish.Ball
 States:
 walk : priority = 2, entry = GameState.player_state = PLAYING, exit = StartTimeout(t, 5ms), defer = stop, duration = 1500ms

@@ -34,9 +34,12 @@ fn a_script_has_no_counterpart() {
 }
 
 #[test]
-fn an_activity_that_no_type_can_be_called_after_is_refused() {
-    let (chart, found) = aseme::statechart_of(&Source::new("p.srm", "p = 9lives"));
+fn two_activities_that_would_have_one_name_are_refused() {
+    let (chart, found) = aseme::statechart_of(&Source::new("p.srm", "p = passBall . PassBall"));
     assert_eq!(found, []);
     let found = generate(&chart, &Words { registers: true, ..Words::default() }).expect_err("it is refused");
-    assert_eq!(found[0].message, "the activity `9lives` cannot be the name of a type");
+    assert_eq!(
+        found[0].message,
+        "the activity `passBall` and another would have one name in Rust: `PassBall`"
+    );
 }

@@ -53,6 +53,11 @@ impl Project {
         }
     }
 
+    /// The folder of the workspace.
+    pub(super) fn root(&self) -> &Path {
+        &self.root
+    }
+
     /// The folder of the generated crates.
     pub(super) fn statecharts(&self) -> PathBuf {
         self.root.join("statecharts")

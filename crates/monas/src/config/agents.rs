@@ -274,7 +274,11 @@ impl Reader<'_> {
         let found = match paths::locate(self.path, element.text()) {
             Ok(found) => found,
             Err(hint) => {
-                let message = format!("no model file and no generated statechart `{}`", element.text());
+                let what = match element.text().contains(['/', '.']) {
+                    true => "no model file",
+                    false => "no model file and no generated statechart",
+                };
+                let message = format!("{what} `{}`", element.text());
                 let diagnostic = element.error("E0316", element.text_span(), message);
                 let known = || nearest(element.text(), self.registry.chart_names()).map(str::to_owned);
                 self.diagnostics.push(match hint.or_else(known) {

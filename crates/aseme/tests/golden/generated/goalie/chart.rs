@@ -1,0 +1,531 @@
+//! The structure of the chart.
+
+use yase::typed::{Diagnostic, Draft, NodeKind, Reads, TypedChart};
+
+use super::guards;
+use super::states::State;
+use super::words::{constants, functions, messages, timers, values};
+
+/// The chart, with a function for each of its guards and values.
+///
+/// # Errors
+/// Only if it was changed by hand and no longer fits together.
+pub fn chart() -> Result<TypedChart, Vec<Diagnostic>> {
+    let mut chart = Draft::new("goalie");
+    words(&mut chart);
+    states(&mut chart);
+    transitions(&mut chart);
+    chart.finish()
+}
+
+/// The words of the guards and actions.
+fn words(chart: &mut Draft) {
+    chart.reads(messages::GAME_STATE, Reads::own("soccer/game_state", "GameState"));
+    chart.reads(messages::BALL, Reads::own("soccer/ball", "Ball"));
+    chart.starts(timers::robot_timeout, "robot_timeout");
+    chart.starts(timers::led_timeout, "led_timeout");
+    chart.starts(timers::motion_timeout, "motion_timeout");
+    chart.starts(timers::sensors_timeout, "sensors_timeout");
+    chart.starts(timers::vision_timeout, "vision_timeout");
+    chart.starts(timers::decision_timeout, "decision_timeout");
+    chart.calls(functions::abs, "abs");
+    chart.means("PlayerState", "PLAYING", values::PLAYING);
+    chart.constant("act_within", constants::act_within);
+    chart.constant("fall_from", constants::fall_from);
+    chart.constant("dive_from", constants::dive_from);
+}
+
+/// The states and connectors, in the order of the document.
+fn states(chart: &mut Draft) {
+    chart.add(State::START__of__goalie, State::goalie, NodeKind::Start, "");
+    chart.add(
+        State::RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::goalie,
+        NodeKind::And,
+        "RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)",
+    );
+    chart.add(State::END__of__goalie, State::goalie, NodeKind::End, "");
+    chart.add(
+        State::region1__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Or,
+        "",
+    );
+    chart.add(
+        State::START__of__region1__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::region1__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Start,
+        "",
+    );
+    chart.add(
+        State::RobotController__ever__,
+        State::region1__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Or,
+        "RobotController~",
+    );
+    chart.add(
+        State::END__of__region1__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::region1__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::End,
+        "",
+    );
+    chart.add(
+        State::region2__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Or,
+        "",
+    );
+    chart.add(
+        State::START__of__region2__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::region2__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Start,
+        "",
+    );
+    chart.add(
+        State::LedHandler__ever__,
+        State::region2__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Or,
+        "LedHandler~",
+    );
+    chart.add(
+        State::END__of__region2__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::region2__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::End,
+        "",
+    );
+    chart.add(
+        State::region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Or,
+        "",
+    );
+    chart.add(
+        State::START__of__region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Start,
+        "",
+    );
+    chart.add(
+        State::MotionController__ever__,
+        State::region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Or,
+        "MotionController~",
+    );
+    chart.add(
+        State::END__of__region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::End,
+        "",
+    );
+    chart.add(
+        State::region4,
+        State::RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Or,
+        "",
+    );
+    chart.add(State::START__of__region4, State::region4, NodeKind::Start, "");
+    chart.add(
+        State::__open__Stand__then__SendCalibration__then__active__close__,
+        State::region4,
+        NodeKind::Or,
+        "(Stand.SendCalibration.active)",
+    );
+    chart.add(State::END__of__region4, State::region4, NodeKind::End, "");
+    chart.add(State::START__of__RobotController__ever__, State::RobotController__ever__, NodeKind::Start, "");
+    chart.add(State::RobotController, State::RobotController__ever__, NodeKind::Basic, "RobotController");
+    chart.activity(State::RobotController, "RobotController");
+    chart.add(State::START__of__LedHandler__ever__, State::LedHandler__ever__, NodeKind::Start, "");
+    chart.add(State::LedHandler, State::LedHandler__ever__, NodeKind::Basic, "LedHandler");
+    chart.activity(State::LedHandler, "LedHandler");
+    chart.add(
+        State::START__of__MotionController__ever__,
+        State::MotionController__ever__,
+        NodeKind::Start,
+        "",
+    );
+    chart.add(State::MotionController, State::MotionController__ever__, NodeKind::Basic, "MotionController");
+    chart.activity(State::MotionController, "MotionController");
+    chart.add(
+        State::START__of____open__Stand__then__SendCalibration__then__active__close__,
+        State::__open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Start,
+        "",
+    );
+    chart.add(
+        State::Stand,
+        State::__open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Basic,
+        "Stand",
+    );
+    chart.activity(State::Stand, "Stand");
+    chart.add(
+        State::SendCalibration,
+        State::__open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Basic,
+        "SendCalibration",
+    );
+    chart.activity(State::SendCalibration, "SendCalibration");
+    chart.add(
+        State::active,
+        State::__open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Or,
+        "active",
+    );
+    chart.add(
+        State::END__of____open__Stand__then__SendCalibration__then__active__close__,
+        State::__open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::End,
+        "",
+    );
+    chart.add(State::START__of__active, State::active, NodeKind::Start, "");
+    chart.add(
+        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::active,
+        NodeKind::And,
+        "Sensors~||Vision~||decision~",
+    );
+    chart.add(State::END__of__active, State::active, NodeKind::End, "");
+    chart.add(
+        State::region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        NodeKind::Or,
+        "",
+    );
+    chart.add(
+        State::START__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        NodeKind::Start,
+        "",
+    );
+    chart.add(
+        State::Sensors__ever__,
+        State::region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        NodeKind::Or,
+        "Sensors~",
+    );
+    chart.add(
+        State::END__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        NodeKind::End,
+        "",
+    );
+    chart.add(
+        State::region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        NodeKind::Or,
+        "",
+    );
+    chart.add(
+        State::START__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        NodeKind::Start,
+        "",
+    );
+    chart.add(
+        State::Vision__ever__,
+        State::region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        NodeKind::Or,
+        "Vision~",
+    );
+    chart.add(
+        State::END__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        NodeKind::End,
+        "",
+    );
+    chart.add(
+        State::region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        NodeKind::Or,
+        "",
+    );
+    chart.add(
+        State::START__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        NodeKind::Start,
+        "",
+    );
+    chart.add(
+        State::decision__ever__,
+        State::region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        NodeKind::Or,
+        "decision~",
+    );
+    chart.add(
+        State::END__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        NodeKind::End,
+        "",
+    );
+    chart.add(State::START__of__Sensors__ever__, State::Sensors__ever__, NodeKind::Start, "");
+    chart.add(State::Sensors, State::Sensors__ever__, NodeKind::Basic, "Sensors");
+    chart.activity(State::Sensors, "Sensors");
+    chart.add(State::START__of__Vision__ever__, State::Vision__ever__, NodeKind::Start, "");
+    chart.add(State::Vision, State::Vision__ever__, NodeKind::Basic, "Vision");
+    chart.activity(State::Vision, "Vision");
+    chart.add(State::START__of__decision__ever__, State::decision__ever__, NodeKind::Start, "");
+    chart.add(State::decision, State::decision__ever__, NodeKind::Or, "decision");
+    chart.add(State::START__of__decision, State::decision, NodeKind::Start, "");
+    chart.add(State::WaitForBallMessage, State::decision, NodeKind::Basic, "WaitForBallMessage");
+    chart.activity(State::WaitForBallMessage, "WaitForBallMessage");
+    chart.add(
+        State::__open__SearchBall__or__takeAction__close__,
+        State::decision,
+        NodeKind::Or,
+        "(SearchBall|takeAction)",
+    );
+    chart.add(State::END__of__decision, State::decision, NodeKind::End, "");
+    chart.add(
+        State::START__of____open__SearchBall__or__takeAction__close__,
+        State::__open__SearchBall__or__takeAction__close__,
+        NodeKind::Start,
+        "",
+    );
+    chart.add(
+        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
+        State::__open__SearchBall__or__takeAction__close__,
+        NodeKind::Condition,
+        "",
+    );
+    chart.add(
+        State::SearchBall,
+        State::__open__SearchBall__or__takeAction__close__,
+        NodeKind::Basic,
+        "SearchBall",
+    );
+    chart.activity(State::SearchBall, "SearchBall");
+    chart.add(
+        State::takeAction,
+        State::__open__SearchBall__or__takeAction__close__,
+        NodeKind::Or,
+        "takeAction",
+    );
+    chart.add(
+        State::END__of____open__SearchBall__or__takeAction__close__,
+        State::__open__SearchBall__or__takeAction__close__,
+        NodeKind::End,
+        "",
+    );
+    chart.add(State::START__of__takeAction, State::takeAction, NodeKind::Start, "");
+    chart.add(State::CONDITION__of__takeAction, State::takeAction, NodeKind::Condition, "");
+    chart.add(State::TrackBall, State::takeAction, NodeKind::Basic, "TrackBall");
+    chart.activity(State::TrackBall, "TrackBall");
+    chart.add(State::action, State::takeAction, NodeKind::Or, "action");
+    chart.add(State::END__of__takeAction, State::takeAction, NodeKind::End, "");
+    chart.add(State::START__of__action, State::action, NodeKind::Start, "");
+    chart.add(State::CONDITION__of__action, State::action, NodeKind::Condition, "");
+    chart.add(State::RightFall, State::action, NodeKind::Basic, "RightFall");
+    chart.activity(State::RightFall, "RightFall");
+    chart.add(State::LeftFall, State::action, NodeKind::Basic, "LeftFall");
+    chart.activity(State::LeftFall, "LeftFall");
+    chart.add(State::RightDive, State::action, NodeKind::Basic, "RightDive");
+    chart.activity(State::RightDive, "RightDive");
+    chart.add(State::LeftDive, State::action, NodeKind::Basic, "LeftDive");
+    chart.activity(State::LeftDive, "LeftDive");
+    chart.add(State::END__of__action, State::action, NodeKind::End, "");
+}
+
+/// The transitions, in the order of the document, each with its guard.
+fn transitions(chart: &mut Draft) {
+    chart.connect(
+        State::START__of__goalie,
+        State::RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        "",
+    );
+    chart.connect(
+        State::RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::END__of__goalie,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region1__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::RobotController__ever__,
+        "",
+    );
+    chart.connect(
+        State::RobotController__ever__,
+        State::END__of__region1__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region2__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::LedHandler__ever__,
+        "",
+    );
+    chart.connect(
+        State::LedHandler__ever__,
+        State::END__of__region2__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::MotionController__ever__,
+        "",
+    );
+    chart.connect(
+        State::MotionController__ever__,
+        State::END__of__region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region4,
+        State::__open__Stand__then__SendCalibration__then__active__close__,
+        "",
+    );
+    chart.connect(
+        State::__open__Stand__then__SendCalibration__then__active__close__,
+        State::END__of__region4,
+        "[false]",
+    );
+    chart.connect(State::START__of__RobotController__ever__, State::RobotController, "");
+    chart.connect(
+        State::RobotController,
+        State::RobotController,
+        "[robot_timeout] / StartTimeout(robot_timeout, 100ms)",
+    );
+    chart.guard(guards::from_RobotController_to_RobotController);
+    chart.connect(State::START__of__LedHandler__ever__, State::LedHandler, "");
+    chart.connect(State::LedHandler, State::LedHandler, "[led_timeout] / StartTimeout(led_timeout, 100ms)");
+    chart.guard(guards::from_LedHandler_to_LedHandler);
+    chart.connect(State::START__of__MotionController__ever__, State::MotionController, "");
+    chart.connect(
+        State::MotionController,
+        State::MotionController,
+        "[motion_timeout] / StartTimeout(motion_timeout, 100ms)",
+    );
+    chart.guard(guards::from_MotionController_to_MotionController);
+    chart.connect(
+        State::START__of____open__Stand__then__SendCalibration__then__active__close__,
+        State::Stand,
+        "",
+    );
+    chart.connect(State::Stand, State::SendCalibration, "");
+    chart.connect(State::SendCalibration, State::active, "");
+    chart.connect(
+        State::active,
+        State::END__of____open__Stand__then__SendCalibration__then__active__close__,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__active,
+        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        "",
+    );
+    chart.connect(
+        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::END__of__active,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::Sensors__ever__,
+        "",
+    );
+    chart.connect(
+        State::Sensors__ever__,
+        State::END__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::Vision__ever__,
+        "",
+    );
+    chart.connect(
+        State::Vision__ever__,
+        State::END__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::decision__ever__,
+        "",
+    );
+    chart.connect(
+        State::decision__ever__,
+        State::END__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        "[false]",
+    );
+    chart.connect(State::START__of__Sensors__ever__, State::Sensors, "[GameState.player_state == PLAYING]");
+    chart.guard(guards::from_START_to_Sensors);
+    chart.connect(
+        State::Sensors,
+        State::Sensors,
+        "[sensors_timeout && GameState.player_state == PLAYING] / StartTimeout(sensors_timeout, 100ms)",
+    );
+    chart.guard(guards::from_Sensors_to_Sensors);
+    chart.connect(State::START__of__Vision__ever__, State::Vision, "[GameState.player_state == PLAYING]");
+    chart.guard(guards::from_START_to_Vision);
+    chart.connect(
+        State::Vision,
+        State::Vision,
+        "[vision_timeout && GameState.player_state == PLAYING] / StartTimeout(vision_timeout, 200ms)",
+    );
+    chart.guard(guards::from_Vision_to_Vision);
+    chart.connect(State::START__of__decision, State::WaitForBallMessage, "");
+    chart.connect(State::WaitForBallMessage, State::__open__SearchBall__or__takeAction__close__, "");
+    chart.connect(State::__open__SearchBall__or__takeAction__close__, State::END__of__decision, "");
+    chart.connect(
+        State::START__of____open__SearchBall__or__takeAction__close__,
+        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
+        "",
+    );
+    chart.connect(
+        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
+        State::SearchBall,
+        "[!Ball.found]",
+    );
+    chart.guard(guards::from_CONDITION_to_SearchBall);
+    chart.connect(
+        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
+        State::takeAction,
+        "[Ball.found]",
+    );
+    chart.guard(guards::from_CONDITION_to_takeAction);
+    chart.connect(State::takeAction, State::END__of____open__SearchBall__or__takeAction__close__, "");
+    chart.connect(State::SearchBall, State::END__of____open__SearchBall__or__takeAction__close__, "");
+    chart.connect(State::START__of__takeAction, State::CONDITION__of__takeAction, "");
+    chart.connect(
+        State::CONDITION__of__takeAction,
+        State::TrackBall,
+        "[!(Ball.approaching && Ball.time_to_cross <= act_within && abs(Ball.crossing_bearing) >= fall_from)]",
+    );
+    chart.guard(guards::from_CONDITION_to_TrackBall);
+    chart.connect(
+        State::CONDITION__of__takeAction,
+        State::action,
+        "[Ball.approaching && Ball.time_to_cross <= act_within && abs(Ball.crossing_bearing) >= fall_from]",
+    );
+    chart.guard(guards::from_CONDITION_to_action);
+    chart.connect(State::action, State::END__of__takeAction, "");
+    chart.connect(State::TrackBall, State::END__of__takeAction, "");
+    chart.connect(State::START__of__action, State::CONDITION__of__action, "");
+    chart.connect(
+        State::CONDITION__of__action,
+        State::RightFall,
+        "[Ball.crossing_bearing < 0 && Ball.crossing_bearing >= -dive_from]",
+    );
+    chart.guard(guards::from_CONDITION_to_RightFall);
+    chart.connect(
+        State::CONDITION__of__action,
+        State::LeftFall,
+        "[Ball.crossing_bearing >= 0 && Ball.crossing_bearing <= dive_from]",
+    );
+    chart.guard(guards::from_CONDITION_to_LeftFall);
+    chart.connect(State::CONDITION__of__action, State::RightDive, "[Ball.crossing_bearing < -dive_from]");
+    chart.guard(guards::from_CONDITION_to_RightDive);
+    chart.connect(State::CONDITION__of__action, State::LeftDive, "[Ball.crossing_bearing > dive_from]");
+    chart.guard(guards::from_CONDITION_to_LeftDive);
+    chart.connect(State::LeftDive, State::END__of__action, "");
+    chart.connect(State::RightDive, State::END__of__action, "");
+    chart.connect(State::LeftFall, State::END__of__action, "");
+    chart.connect(State::RightFall, State::END__of__action, "");
+    chart.connect(State::START__of__decision__ever__, State::decision, "[GameState.player_state == PLAYING]");
+    chart.guard(guards::from_START_to_decision);
+    chart.connect(
+        State::decision,
+        State::decision,
+        "[decision_timeout && GameState.player_state == PLAYING] / StartTimeout(decision_timeout, 100ms)",
+    );
+    chart.guard(guards::from_decision_to_decision);
+}

@@ -1,0 +1,121 @@
+//! The guards of transitions and the values of assignments.
+
+#![allow(non_snake_case)] // the names are those of states
+
+use yase::typed::{Truth, World, all, at_least, at_most, equal, given, holds, less, more};
+
+use super::words::{constants, functions, messages, timers, values};
+
+/// From `RobotController` to `RobotController`: `[robot_timeout]`
+pub(super) fn from_RobotController_to_RobotController(world: &World<'_>) -> Truth {
+    Ok(world.is_over(timers::robot_timeout))
+}
+
+/// From `LedHandler` to `LedHandler`: `[led_timeout]`
+pub(super) fn from_LedHandler_to_LedHandler(world: &World<'_>) -> Truth {
+    Ok(world.is_over(timers::led_timeout))
+}
+
+/// From `MotionController` to `MotionController`: `[motion_timeout]`
+pub(super) fn from_MotionController_to_MotionController(world: &World<'_>) -> Truth {
+    Ok(world.is_over(timers::motion_timeout))
+}
+
+/// From `START` in `Sensors~` to `Sensors`: `[GameState.player_state == PLAYING]`
+pub(super) fn from_START_to_Sensors(world: &World<'_>) -> Truth {
+    equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
+}
+
+/// From `Sensors` to `Sensors`: `[sensors_timeout && GameState.player_state == PLAYING]`
+pub(super) fn from_Sensors_to_Sensors(world: &World<'_>) -> Truth {
+    all!(
+        world.is_over(timers::sensors_timeout),
+        equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
+    )
+}
+
+/// From `START` in `Vision~` to `Vision`: `[GameState.player_state == PLAYING]`
+pub(super) fn from_START_to_Vision(world: &World<'_>) -> Truth {
+    equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
+}
+
+/// From `Vision` to `Vision`: `[vision_timeout && GameState.player_state == PLAYING]`
+pub(super) fn from_Vision_to_Vision(world: &World<'_>) -> Truth {
+    all!(
+        world.is_over(timers::vision_timeout),
+        equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
+    )
+}
+
+/// From `CONDITION` in `(SearchBall|takeAction)` to `SearchBall`: `[!Ball.found]`
+pub(super) fn from_CONDITION_to_SearchBall(world: &World<'_>) -> Truth {
+    Ok(!holds(world.latest(messages::BALL)?.found)?)
+}
+
+/// From `CONDITION` in `(SearchBall|takeAction)` to `takeAction`: `[Ball.found]`
+pub(super) fn from_CONDITION_to_takeAction(world: &World<'_>) -> Truth {
+    holds(world.latest(messages::BALL)?.found)
+}
+
+/// From `CONDITION` in `takeAction` to `TrackBall`: `[!(Ball.approaching && Ball.time_to_cross <= act_within && abs(Ball.crossing_bearing) >= fall_from)]`
+pub(super) fn from_CONDITION_to_TrackBall(world: &World<'_>) -> Truth {
+    Ok(!all!(
+        holds(world.latest(messages::BALL)?.approaching)?,
+        at_most(world.latest(messages::BALL)?.time_to_cross, constants::act_within)?,
+        at_least(
+            world.call(functions::abs, &[given(world.latest(messages::BALL)?.crossing_bearing)?])?,
+            constants::fall_from,
+        )?,
+    )?)
+}
+
+/// From `CONDITION` in `takeAction` to `action`: `[Ball.approaching && Ball.time_to_cross <= act_within && abs(Ball.crossing_bearing) >= fall_from]`
+pub(super) fn from_CONDITION_to_action(world: &World<'_>) -> Truth {
+    all!(
+        holds(world.latest(messages::BALL)?.approaching)?,
+        at_most(world.latest(messages::BALL)?.time_to_cross, constants::act_within)?,
+        at_least(
+            world.call(functions::abs, &[given(world.latest(messages::BALL)?.crossing_bearing)?])?,
+            constants::fall_from,
+        )?,
+    )
+}
+
+/// From `CONDITION` in `action` to `RightFall`: `[Ball.crossing_bearing < 0 && Ball.crossing_bearing >= -dive_from]`
+pub(super) fn from_CONDITION_to_RightFall(world: &World<'_>) -> Truth {
+    all!(
+        less(world.latest(messages::BALL)?.crossing_bearing, 0)?,
+        at_least(world.latest(messages::BALL)?.crossing_bearing, -constants::dive_from)?,
+    )
+}
+
+/// From `CONDITION` in `action` to `LeftFall`: `[Ball.crossing_bearing >= 0 && Ball.crossing_bearing <= dive_from]`
+pub(super) fn from_CONDITION_to_LeftFall(world: &World<'_>) -> Truth {
+    all!(
+        at_least(world.latest(messages::BALL)?.crossing_bearing, 0)?,
+        at_most(world.latest(messages::BALL)?.crossing_bearing, constants::dive_from)?,
+    )
+}
+
+/// From `CONDITION` in `action` to `RightDive`: `[Ball.crossing_bearing < -dive_from]`
+pub(super) fn from_CONDITION_to_RightDive(world: &World<'_>) -> Truth {
+    less(world.latest(messages::BALL)?.crossing_bearing, -constants::dive_from)
+}
+
+/// From `CONDITION` in `action` to `LeftDive`: `[Ball.crossing_bearing > dive_from]`
+pub(super) fn from_CONDITION_to_LeftDive(world: &World<'_>) -> Truth {
+    more(world.latest(messages::BALL)?.crossing_bearing, constants::dive_from)
+}
+
+/// From `START` in `decision~` to `decision`: `[GameState.player_state == PLAYING]`
+pub(super) fn from_START_to_decision(world: &World<'_>) -> Truth {
+    equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
+}
+
+/// From `decision` to `decision`: `[decision_timeout && GameState.player_state == PLAYING]`
+pub(super) fn from_decision_to_decision(world: &World<'_>) -> Truth {
+    all!(
+        world.is_over(timers::decision_timeout),
+        equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
+    )
+}

@@ -1,0 +1,14 @@
+//! The statechart `goalie`.
+//!
+//! Generated from `models/goalie.srm`: what is changed here is lost when that is done again.
+//!
+//! [`State`] lists its states; the module `chart` says how they hang together, `guards` what the guards ask and what is assigned,
+//! `words` what these speak of.
+
+mod chart;
+mod guards;
+mod states;
+mod words;
+
+pub use chart::chart;
+pub use states::State;

@@ -1,0 +1,68 @@
+//! The guards of transitions and the values of assignments.
+
+#![allow(non_snake_case)] // the names are those of states
+
+use yase::typed::{
+    CallError, Computed, Truth, Value, World, all, any, attempt, differ, given, holds, inside, inside_mut,
+    more, negative, over, plus, set,
+};
+
+use super::states::State;
+use super::words::{constants, messages, values};
+
+/// From `walk` to `type`: `[Ball.place.near.x > far + Ball.type / 2 && Ball.colour != word || In(watch)]`
+pub(super) fn transition_7(world: &World<'_>) -> Truth {
+    any!(
+        all!(
+            more(
+                attempt(|| Ok(inside(&inside(&world.latest(messages::BALL)?.place)?.near)?.x))?,
+                plus(constants::far, over(world.latest(messages::BALL)?.r#type, 2)?)?,
+            )?,
+            differ(&world.latest(messages::BALL)?.colour, constants::word)?,
+        )?,
+        world.is_in(State::watch),
+    )
+}
+
+/// From `type` to `END` in `(walk.type)`: `[Vision.Ball.found]`
+pub(super) fn transition_8(world: &World<'_>) -> Truth {
+    holds(world.latest(messages::VISION_BALL)?.found)
+}
+
+/// From `watch` to `watch`: `[Ball == NULL]`
+pub(super) fn from_watch_to_watch(world: &World<'_>) -> Truth {
+    Ok(world.is_absent(messages::BALL))
+}
+
+/// From `type` to `END` in `(walk.type)`: `Ball.place.x = -Ball.time_to_cross`
+pub(super) fn ball_place_x<'a>(world: &World<'a>) -> Computed<'a> {
+    negative(world.latest(messages::BALL)?.time_to_cross)
+}
+
+/// Sets `soccer::Ball.place_x`.
+pub(super) fn set_ball_place_x(message: &mut soccer::Ball, value: Value<'_>) -> Result<(), CallError> {
+    set(&mut inside_mut(&mut message.place).x, value, "x")
+}
+
+/// From `type` to `END` in `(walk.type)`: `Ball.colour = word`
+pub(super) fn ball_colour<'a>(_: &World<'a>) -> Computed<'a> {
+    given(constants::word)
+}
+
+/// Sets `soccer::Ball.colour`.
+pub(super) fn set_ball_colour(message: &mut soccer::Ball, value: Value<'_>) -> Result<(), CallError> {
+    set(&mut message.colour, value, "colour")
+}
+
+/// On the entry of `walk`: `GameState.player_state = PLAYING`
+pub(super) fn game_state_player_state<'a>(_: &World<'a>) -> Computed<'a> {
+    given(values::PLAYING)
+}
+
+/// Sets `soccer::GameState.player_state`.
+pub(super) fn set_game_state_player_state(
+    message: &mut soccer::GameState,
+    value: Value<'_>,
+) -> Result<(), CallError> {
+    set(&mut message.player_state, value, "player_state")
+}

@@ -1,0 +1,57 @@
+//! The states.
+
+use yase::typed::NodeId;
+
+/// The nodes of the chart, in its order. Each is called after the end of its path, from itself outwards, that no other has.
+#[allow(non_camel_case_types)] // the names are the model's
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum State {
+    /// OR: `patrol`
+    patrol,
+    /// START: `patrol/START`
+    START__of__patrol,
+    /// AND: `patrol/(walk.type)~||watch+`
+    __open__walk__then__type__close____ever____par__watch__more__,
+    /// END: `patrol/END`
+    END__of__patrol,
+    /// OR: `patrol/(walk.type)~||watch+/1`
+    region1,
+    /// START: `patrol/(walk.type)~||watch+/1/START`
+    START__of__region1,
+    /// OR: `patrol/(walk.type)~||watch+/1/(walk.type)~`
+    __open__walk__then__type__close____ever__,
+    /// END: `patrol/(walk.type)~||watch+/1/END`
+    END__of__region1,
+    /// OR: `patrol/(walk.type)~||watch+/2`
+    region2,
+    /// START: `patrol/(walk.type)~||watch+/2/START`
+    START__of__region2,
+    /// OR: `patrol/(walk.type)~||watch+/2/watch+`
+    watch__more__,
+    /// END: `patrol/(walk.type)~||watch+/2/END`
+    END__of__region2,
+    /// START: `patrol/(walk.type)~||watch+/1/(walk.type)~/START`
+    START__of____open__walk__then__type__close____ever__,
+    /// OR: `patrol/(walk.type)~||watch+/1/(walk.type)~/(walk.type)`
+    __open__walk__then__type__close__,
+    /// START: `patrol/(walk.type)~||watch+/1/(walk.type)~/(walk.type)/START`
+    START__of____open__walk__then__type__close__,
+    /// BASIC: `patrol/(walk.type)~||watch+/1/(walk.type)~/(walk.type)/walk`
+    walk,
+    /// BASIC: `patrol/(walk.type)~||watch+/1/(walk.type)~/(walk.type)/type`
+    __u74__ype,
+    /// END: `patrol/(walk.type)~||watch+/1/(walk.type)~/(walk.type)/END`
+    END__of____open__walk__then__type__close__,
+    /// START: `patrol/(walk.type)~||watch+/2/watch+/START`
+    START__of__watch__more__,
+    /// BASIC: `patrol/(walk.type)~||watch+/2/watch+/watch`
+    watch,
+    /// END: `patrol/(walk.type)~||watch+/2/watch+/END`
+    END__of__watch__more__,
+}
+
+impl From<State> for NodeId {
+    fn from(state: State) -> NodeId {
+        NodeId(state as u32)
+    }
+}

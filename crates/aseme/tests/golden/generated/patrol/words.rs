@@ -1,0 +1,30 @@
+//! What guards and actions speak of: each a constant with the model's own name.
+
+/// The constants of the model.
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+pub(super) mod constants {
+    /// `far`
+    pub(crate) const far: f64 = 2.5;
+    /// `word`
+    pub(crate) const word: &str = "red";
+}
+
+/// The messages that are read and written.
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+pub(super) mod messages {
+    use yase::typed::Source;
+
+    /// `soccer/ball`
+    pub(crate) const BALL: Source<soccer::Ball> = Source::new(0);
+    /// `soccer/ball`
+    pub(crate) const VISION_BALL: Source<soccer::Ball> = Source::new(1);
+    /// `soccer/game_state`
+    pub(crate) const GAME_STATE: Source<soccer::GameState> = Source::new(2);
+}
+
+/// The values of enumerations.
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+pub(super) mod values {
+    /// `PlayerState.PLAYING`
+    pub(crate) const PLAYING: i32 = 3;
+}

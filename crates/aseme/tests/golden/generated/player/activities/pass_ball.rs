@@ -1,0 +1,15 @@
+//! The activity `passBall`.
+
+use monas::{Activity, Blackboard, BoxError, Progress};
+
+/// Has nothing to do so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PassBall;
+
+impl Activity for PassBall {
+    fn execute(&mut self, _: &mut Blackboard) -> Result<Progress, BoxError> {
+        Ok(Progress::Done)
+    }
+}
+
+monas::activity!(PassBall as "passBall");

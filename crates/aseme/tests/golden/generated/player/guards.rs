@@ -1,0 +1,1 @@
+//! The guards of transitions and the values of assignments.

@@ -1,0 +1,27 @@
+//! The states.
+
+use monas::generated::NodeId;
+
+/// The nodes of the chart, in its order. Each is called after the end of its path, from itself outwards, that no other has.
+#[allow(non_camel_case_types)] // the names are the model's
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum State {
+    /// OR: `player`
+    player,
+    /// START: `player/START`
+    START,
+    /// BASIC: `player/look`
+    look,
+    /// BASIC: `player/kick`
+    kick,
+    /// BASIC: `player/passBall`
+    passBall,
+    /// END: `player/END`
+    END,
+}
+
+impl From<State> for NodeId {
+    fn from(state: State) -> NodeId {
+        NodeId(state as u32)
+    }
+}
