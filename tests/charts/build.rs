@@ -2,10 +2,9 @@
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // what is shared with tests has theirs
 
-#[allow(dead_code, unreachable_pub, unused_imports)] // the rest is for other tests
 #[path = "../../crates/yase/tests/kit/mod.rs"]
 mod kit;
-#[allow(dead_code, unreachable_pub, unused_imports)]
+#[allow(dead_code, unreachable_pub, unused_imports)] // the rest is for other tests
 #[path = "../../crates/yase/tests/reference/oracle"]
 mod oracle {
     pub(crate) mod chance;

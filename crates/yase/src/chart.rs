@@ -87,11 +87,14 @@ pub struct Chart {
     /// The event that stands for all that no expression names.
     pub(crate) unnamed: EventId,
     /// The actions of segments that no way leads through.
-    unreached: Box<[(TransitionId, RegionId, Box<[Effect]>)]>,
+    unreached: Box<[Unreached]>,
     reads: Box<[TopicId]>,
     sources: Box<[MessageSource]>,
     max_activities: usize,
 }
+
+/// A segment that no way leads through, where it would be taken, and its actions.
+type Unreached = (TransitionId, RegionId, Box<[Effect]>);
 
 /// A node as the machine sees it.
 #[derive(Clone, Debug)]

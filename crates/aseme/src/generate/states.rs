@@ -51,7 +51,7 @@ impl States {
         format!(
             "//! The states.\n\nuse {runtime}::NodeId;\n\n\
              /// The nodes of the chart, in its order. Each is called after the end of its path, from itself outwards, that no other has.\n\
-             #[allow(non_camel_case_types)] // the names are the model's\n\
+             #[allow(non_camel_case_types, clippy::upper_case_acronyms)] // the names are the model's\n\
              #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]\n\
              pub enum State {{\n{variants}}}\n\n\
              impl From<State> for NodeId {{\n    fn from(state: State) -> NodeId {{\n        NodeId(state as u32)\n    }}\n}}\n",

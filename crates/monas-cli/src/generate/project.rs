@@ -133,7 +133,7 @@ impl Project {
         changed.extend(edited(&self.team.join(LINKS), |_| links(&crates))?);
         let main = ["src/main.rs", "src/lib.rs"].map(|file| self.team.join(file));
         if let Some(main) = main.iter().find(|file| file.is_file()) {
-            changed.extend(edited(main, |text| with_module(text))?);
+            changed.extend(edited(main, with_module)?);
         }
         Ok(changed)
     }

@@ -2,7 +2,6 @@
 
 use monas_robot::{Actuators, Sensors};
 use narukom::{FieldValue, Reflect};
-use yase::Source as Text;
 
 use super::*;
 use crate::{Agent, ErrorKind, Moment, Registry, RunHash, Talws};
@@ -102,6 +101,8 @@ fn a_state_without_its_activity_is_refused() {
     assert_eq!(error.diagnostics()[0].message, message);
 }
 
+type Put = fn(&mut Sensors, Value<'_>) -> Result<(), CallError>;
+
 /// The numbers that functions set fields to are those that expressions set them to.
 #[test]
 fn fields_take_what_they_take_of_expressions() {
@@ -117,7 +118,7 @@ fn fields_take_what_they_take_of_expressions() {
         (FieldValue::Enum(4), Value::Enum(4)),
         (FieldValue::Missing, Value::Missing),
     ];
-    let fields: [(&str, fn(&mut Sensors, Value<'_>) -> Result<(), CallError>); 4] = [
+    let fields: [(&str, Put); 4] = [
         ("measured_at", |message, value| set(&mut message.measured_at, value, "measured_at")),
         ("head_yaw", |message, value| set(&mut message.head_yaw, value, "head_yaw")),
         ("chest_button", |message, value| set(&mut message.chest_button, value, "chest_button")),

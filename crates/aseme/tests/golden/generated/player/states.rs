@@ -3,7 +3,7 @@
 use monas::generated::NodeId;
 
 /// The nodes of the chart, in its order. Each is called after the end of its path, from itself outwards, that no other has.
-#[allow(non_camel_case_types)] // the names are the model's
+#[allow(non_camel_case_types, clippy::upper_case_acronyms)] // the names are the model's
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum State {
     /// OR: `player`
