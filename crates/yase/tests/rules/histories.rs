@@ -280,3 +280,40 @@ fn r10_a_deep_history_restores_a_vacated_part_by_its_start() {
         ",
     );
 }
+
+#[test]
+fn r21_a_timer_that_a_transition_to_a_history_starts_belongs_to_its_composite_and_others_to_their_target() {
+    let text = "
+        START
+        P
+          START
+          h H
+          A
+          B
+        Q
+        c/START -> P
+        P/START -> A
+        A -> B : swap
+        B -> A : swap
+        P -> Q : out
+        Q -> H : back / StartTimeout(v, 10ms)
+        Q -> A : a / StartTimeout(v, 10ms)
+        A -> A {internal} : v
+        B -> B {internal} : v
+        Q -> Q {internal} : v
+    ";
+    let taken = |script: &str| {
+        let log = crate::kit::script::play_with(
+            &crate::kit::chart(text),
+            script,
+            crate::with(|it| it.timers = yase::TimerScope::State),
+        );
+        log.last().unwrap().trim().to_owned()
+    };
+    // not unset while `P` is active
+    assert_eq!(taken("1 out; 2 back; 3 swap; 30"), "0.012 s v: P/B -> P/B");
+    assert!(taken("1 out; 2 back; 3 out; 30").starts_with("0.003 s out: P -> Q"));
+    // only while `A` is
+    assert_eq!(taken("1 out; 2 a; 30"), "0.012 s v: P/A -> P/A");
+    assert!(taken("1 out; 2 a; 3 swap; 30").starts_with("0.003 s swap: P/A -> P/B"));
+}
