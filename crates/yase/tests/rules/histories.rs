@@ -303,11 +303,7 @@ fn r21_a_timer_that_a_transition_to_a_history_starts_belongs_to_its_composite_an
         Q -> Q {internal} : v
     ";
     let taken = |script: &str| {
-        let log = crate::kit::script::play_with(
-            &crate::kit::chart(text),
-            script,
-            crate::with(|it| it.timers = yase::TimerScope::State),
-        );
+        let log = script::play_with(&chart(text), script, with(|it| it.timers = yase::TimerScope::State));
         log.last().unwrap().trim().to_owned()
     };
     // not unset while `P` is active
