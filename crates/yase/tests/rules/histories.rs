@@ -2,8 +2,8 @@
 
 use yase::{Machine, Moment, Semantics};
 
-use crate::check_with;
 use crate::kit::{World, chart, script};
+use crate::{check_with, with};
 
 #[test]
 fn r10_a_shallow_history_leads_to_the_child_which_begins_anew() {
