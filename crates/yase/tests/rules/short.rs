@@ -145,3 +145,52 @@ fn r10_what_leaves_nothing_does_not_fire_when_another_has_left_its_source_before
         ",
     );
 }
+
+#[test]
+fn r14_what_was_entered_on_the_short_way_goes_on_without_an_event() {
+    // one state, and regions beside each other: their first step is looked up, the next one is not, and all of them make it at once
+    let text = "
+        START
+        A
+        B
+        & both
+          one
+            START
+            C
+            D
+            F
+          two
+            START
+            G
+            H
+            I
+        c/START -> A
+        A -> B : e
+        B -> both : [true]
+        one/START -> C
+        two/START -> G
+        C -> D : e
+        D -> F : [true]
+        G -> H : e
+        H -> I : [true]
+    ";
+    let chart = chart(text);
+    for silent in [false, true] {
+        let mut world = World { silent, ..World::new(&chart) };
+        let mut machine = Machine::new(script::compile(&chart));
+        machine.start(Moment::ZERO, &mut world);
+        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        let counts = [1, 2].map(|millis| {
+            machine.dispatch_name("e");
+            let summary = machine.run_to_completion(Moment::from_millis(millis), &mut world).unwrap();
+            (summary.micro_steps, summary.transitions)
+        });
+        assert_eq!(counts, [(3, 4), (2, 4)]);
+        machine.start(Moment::ZERO, &mut world);
+        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.dispatch_name("e");
+        machine.dispatch_name("e");
+        let summary = machine.run_to_completion(Moment::from_millis(1), &mut world).unwrap();
+        assert_eq!((summary.micro_steps, summary.transitions), (5, 8));
+    }
+}
