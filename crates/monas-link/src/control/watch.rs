@@ -114,17 +114,20 @@ impl Watcher {
 
     /// Tells what has been published by now.
     fn tell(&mut self, mut stream: &UnixStream, run: &dyn Observed, bytes: &mut Vec<u8>) -> io::Result<()> {
-        let lost: u64 = self.feeds.iter().map(|feed| feed.subscriber.lost()).sum();
+        let mut lost: u64 = self.feeds.iter().map(|feed| feed.subscriber.lost()).sum();
         for feed in &mut self.feeds {
+            lost -= feed.subscriber.lost();
             for _ in 0..TURN {
+                // what is missing before a message is noticed when that is fetched
                 let Some(sample) = feed.subscriber.next_sample() else { break };
-                let seen = feed.seen(&sample, run, self.payload, lost);
+                let seen = feed.seen(&sample, run, self.payload, lost + feed.subscriber.lost());
                 frame::append(&Answer { seen: Some(seen), ..Answer::default() }, bytes);
                 if bytes.len() > CHUNK {
                     stream.write_all(bytes)?;
                     bytes.clear();
                 }
             }
+            lost += feed.subscriber.lost();
         }
         stream.write_all(bytes)?;
         bytes.clear();
