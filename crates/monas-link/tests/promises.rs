@@ -295,3 +295,21 @@ fn clocks_are_compared() {
     let error = given.local.distance(Moment::from_secs_f64(10.0));
     assert!(error <= Duration::from_millis(6), "{error:?}");
 }
+
+#[test]
+fn the_clock_of_a_run_that_goes_in_steps_is_learned_in_whatever_part_of_a_step_a_process_begins() {
+    for (grain, phase) in [10, 25].into_iter().flat_map(|grain| (0..grain).map(move |phase| (grain, phase))) {
+        let mut network = Network::of(2, 64, CALM, 7);
+        network.grain[0] = grain;
+        network.ahead[0] = Duration::from_secs(60);
+        network.run(1000 + phase);
+        network.restart(1);
+        network.run(3000);
+        let offset = network.nodes[1].clock_offset("a");
+        let offset =
+            offset.unwrap_or_else(|| panic!("nothing is learned, {phase} ms into a step of {grain}"));
+        let error = (offset.ahead - 60_000_000_000).unsigned_abs();
+        assert!(error <= offset.way / 2 + grain * 1_000_000, "{offset:?}, {phase} ms into a step of {grain}");
+        assert!(offset.way <= 20_000_000, "{offset:?}, {phase} ms into a step of {grain}");
+    }
+}

@@ -5,12 +5,15 @@ use narukom::Moment;
 /// Of so many measurements the one with the shortest way there and back is believed.
 const MEASUREMENTS: usize = 8;
 
+/// A clock may go in steps, as that of a run in simulated time does, of at most this many nanoseconds.
+const LONGEST_STEP: i128 = 50_000_000;
+
 /// What is known of another host's clock.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct ClockOffset {
     /// Nanoseconds by which the other clock is ahead of this one.
     pub ahead: i64,
-    /// Nanoseconds of the way there and back; the offset is wrong by at most half of it.
+    /// Nanoseconds of the way there and back; the offset is wrong by at most half of it, and by a step of the clocks if they go in steps.
     pub way: u64,
 }
 
@@ -32,15 +35,18 @@ pub(crate) struct ClockFilter {
 impl ClockFilter {
     /// Takes a measurement: this host sent at `sent`, the other received that at `heard` and answered at `answered`, which came here
     /// at `received`. The middle two are of the other's clock. What cannot be so is not taken.
+    ///
+    /// Where a clock goes in steps a way may seem to take less than no time. That is not refused, since the steps of one side and the beats
+    /// of the other may keep pace, and then all ways seem so; such a way is taken for as long as it seems too short.
     pub(crate) fn measure(&mut self, sent: Moment, heard: Moment, answered: Moment, received: Moment) {
         let [sent, heard, answered, received] =
             [sent, heard, answered, received].map(|moment| i128::from(moment.as_nanos()));
         let way = (received - sent) - (answered - heard);
         let ahead = ((heard - sent) + (answered - received)) / 2;
-        if received < sent || answered < heard || way < 0 {
+        if received < sent || answered < heard || way < -LONGEST_STEP {
             return;
         }
-        let (Ok(ahead), Ok(way)) = (i64::try_from(ahead), u64::try_from(way)) else { return };
+        let (Ok(ahead), Ok(way)) = (i64::try_from(ahead), u64::try_from(way.abs())) else { return };
         self.measured[self.next] = Some(ClockOffset { ahead, way });
         self.next = (self.next + 1) % MEASUREMENTS;
     }
@@ -80,10 +86,19 @@ mod tests {
     fn what_cannot_be_is_not_believed() {
         let mut filter = ClockFilter::default();
         filter.measure(at(100), at(5), at(4), at(200));
-        filter.measure(at(100), at(5), at(200), at(101));
+        filter.measure(at(100), at(5), at(50_000_200), at(101));
         filter.measure(at(100), at(0), at(0), at(99));
         filter.measure(at(0), at(u64::MAX), at(u64::MAX), at(0));
         assert_eq!(filter.offset(), None);
+    }
+
+    #[test]
+    fn a_way_that_seems_too_short_is_that_of_a_clock_that_goes_in_steps() {
+        let mut filter = ClockFilter::default();
+        filter.measure(at(100), at(1000), at(1040), at(130));
+        assert_eq!(filter.offset(), Some(ClockOffset { ahead: 905, way: 10 }));
+        filter.measure(at(200), at(1100), at(1132), at(230));
+        assert_eq!(filter.offset().unwrap().way, 2, "the one that seems least wrong is believed");
     }
 
     #[test]

@@ -29,6 +29,8 @@ pub struct Network {
     pub settings: Vec<NodeSettings>,
     /// By how much each node's clock is ahead of the world's.
     pub ahead: Vec<Duration>,
+    /// Each node's clock jumps to the next multiple of so many milliseconds, as that of a simulated run does.
+    pub grain: Vec<u64>,
     /// Who hears whom: nodes with equal numbers.
     pub parts: Vec<u8>,
     pub faults: Faults,
@@ -90,6 +92,7 @@ impl Network {
         Network {
             nodes: settings.iter().map(|one| Node::new(one.clone()).unwrap()).collect(),
             ahead: vec![Duration::ZERO; count],
+            grain: vec![1; count],
             parts: vec![0; count],
             faults,
             millis: 0,
@@ -110,7 +113,8 @@ impl Network {
     }
 
     pub fn now(&self, node: usize) -> Moment {
-        Moment::ZERO + Duration::from_millis(self.millis) + self.ahead[node]
+        let shown = self.millis.next_multiple_of(self.grain[node]);
+        Moment::ZERO + Duration::from_millis(shown) + self.ahead[node]
     }
 
     /// Publishes the next message on a topic; it carries its number. Two publishers take turns.
