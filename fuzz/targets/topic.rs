@@ -1,7 +1,9 @@
-//! Paths of topics and patterns of subscriptions: each is found, or an error says why not.
+//! Paths of topics and patterns of subscriptions: each is found, or an error says why not. And access lists, which are made of patterns:
+//! what a line that is understood allows, the list allows.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use monas_link::AccessList;
 use monas_robot as _;
 use narukom::Narukom;
 
@@ -14,4 +16,20 @@ fuzz_target!(|text: &str| {
         Ok(subscriber) => assert!(subscriber.topics().count() > 0),
         Err(error) => assert!(!error.to_string().is_empty()),
     }
+    access(text);
 });
+
+fn access(text: &str) {
+    let (list, errors) = AccessList::parse(text);
+    assert!(!list.is_open() && errors.len() <= text.lines().count());
+    for error in errors {
+        assert!((1..=text.lines().count()).contains(&error.line) && !error.message.is_empty());
+    }
+    for line in text.lines() {
+        let (one, errors) = AccessList::parse(line);
+        let words: Vec<&str> = line.split_whitespace().collect();
+        if let ([host, "publish", path], [], false) = (&words[..], &errors[..], line.contains(['#', '*'])) {
+            assert!(one.may_publish(host, path) && list.may_publish(host, path), "{line}");
+        }
+    }
+}

@@ -10,7 +10,7 @@
 //! [`CLIENT_LIMIT`] are served at a time, and a request has at most [`REQUEST_LIMIT`] bytes.
 
 mod client;
-mod frame;
+pub(crate) mod frame;
 mod server;
 mod watch;
 

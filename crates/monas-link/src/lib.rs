@@ -83,6 +83,9 @@ mod bridge;
 #[cfg(all(unix, feature = "local"))]
 pub mod control;
 mod error;
+#[cfg(all(unix, feature = "local"))]
+#[doc(hidden)]
+pub mod fuzzed;
 mod inbox;
 mod link;
 mod protocol;

@@ -1,7 +1,7 @@
 //! Ways for packets to travel.
 
 #[cfg(all(unix, feature = "local"))]
-mod local;
+pub(crate) mod local;
 #[cfg(feature = "zenoh")]
 mod zenoh;
 

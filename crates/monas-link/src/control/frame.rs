@@ -5,7 +5,7 @@ use std::io::{self, Read, Write};
 use prost::Message;
 
 /// Appends a message with its length.
-pub(super) fn append(message: &impl Message, bytes: &mut Vec<u8>) {
+pub(crate) fn append(message: &impl Message, bytes: &mut Vec<u8>) {
     // A message of 4 GiB does not come about: what is answered is bounded, and requests are limited.
     let length = u32::try_from(message.encoded_len()).unwrap_or(u32::MAX);
     bytes.extend(length.to_le_bytes());
@@ -20,7 +20,7 @@ pub(super) fn write(message: &impl Message, to: &mut impl Write) -> io::Result<(
 }
 
 /// Reads a message of at most `limit` bytes. Memory is taken as bytes come, not as they are announced.
-pub(super) fn read<M: Message + Default>(from: &mut impl Read, limit: usize) -> io::Result<M> {
+pub(crate) fn read<M: Message + Default>(from: &mut impl Read, limit: usize) -> io::Result<M> {
     let mut length = [0; 4];
     from.read_exact(&mut length)?;
     let length = u32::from_le_bytes(length) as usize;

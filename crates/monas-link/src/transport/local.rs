@@ -161,7 +161,7 @@ fn listen(socket: &UnixDatagram, inbox: &Inbox, stops: &AtomicBool) {
 }
 
 /// The packet that a datagram holds. What is none becomes one that nobody understands, and is counted as such.
-fn read(bytes: &[u8]) -> Packet {
+pub(crate) fn read(bytes: &[u8]) -> Packet {
     let datagram = wire::Datagram::decode(bytes).unwrap_or_default();
     Packet {
         from: datagram.from.into(),

@@ -1,0 +1,31 @@
+//! What comes through sockets: requests of a tool, answers of a run, and the datagrams of links on one computer. Each is read or refused;
+//! what is read is written and read again as the same.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use monas_link::fuzzed::{self, LIMIT};
+
+fuzz_target!(|bytes: &[u8]| {
+    let Some((choice, bytes)) = bytes.split_first() else { return };
+    match choice % 3 {
+        0 => again(bytes, fuzzed::requests),
+        1 => again(bytes, fuzzed::answers),
+        _ => datagram(bytes),
+    }
+});
+
+/// A stream of messages: those before the first that is refused, as they are written again.
+fn again(bytes: &[u8], read: fn(&[u8]) -> (usize, Vec<u8>)) {
+    let (count, written) = read(bytes);
+    assert!(count <= bytes.len() / 4, "{count} messages in {} bytes", bytes.len());
+    assert!(written.len() <= LIMIT * count.max(1));
+    assert_eq!(read(&written), (count, written.clone()), "what was written reads as something else");
+}
+
+fn datagram(bytes: &[u8]) {
+    let packet = fuzzed::datagram(bytes);
+    assert!((1..=7).contains(&packet.priority), "{packet:?}");
+    let held = packet.from.len() + packet.stamp.len() + packet.payload.len() + packet.path.as_ref().map_or(0, |path| path.len());
+    assert!(held <= bytes.len(), "{held} bytes of {}", bytes.len());
+    assert!(packet.path.is_none_or(|path| !path.is_empty()));
+}
