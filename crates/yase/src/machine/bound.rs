@@ -107,6 +107,7 @@ mod tests {
         assert_eq!(cycle_of(&[9, 1, 1, 1, 1]), [1]);
         assert_eq!(cycle_of(&[9, 8, 1, 2, 2, 1, 2, 2]), [1, 2, 2]);
         assert_eq!(cycle_of(&[1, 2, 3, 4]), [1, 2, 3, 4]);
+        assert_eq!(cycle_of(&[9, 1, 2, 3, 1, 2]), [9, 1, 2, 3, 1, 2]);
         let long: Vec<u32> = (0..1000).map(|number| number % 5).collect();
         assert_eq!(cycle_of(&long), [0, 1, 2, 3, 4]);
     }

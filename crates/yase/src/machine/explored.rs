@@ -51,6 +51,7 @@ impl Machine {
         }
         for held in &queues.held {
             note(&mut key, &held.occurrence);
+            key.push(held.compounds.len() as u32);
             key.extend(held.compounds.iter().map(|&CompoundId(number)| number));
             key.push(u32::from(held.offer));
         }

@@ -194,3 +194,39 @@ fn r14_what_was_entered_on_the_short_way_goes_on_without_an_event() {
         assert_eq!((summary.micro_steps, summary.transitions), (5, 8));
     }
 }
+
+#[test]
+fn r10_what_one_state_does_at_an_event_says_nothing_of_others() {
+    // `A` has the first place of all, and what it does can be looked up; what `both` does cannot
+    let text = "
+        A
+        START
+        B
+        & both
+          one
+            START
+            C
+          two
+            START
+            F
+        D
+        c/START -> A
+        A -> B : e
+        B -> both : e
+        one/START -> C
+        two/START -> F
+        both -> D : e
+    ";
+    let chart = chart(text);
+    for silent in [false, true] {
+        let mut world = World { silent, ..World::new(&chart) };
+        let mut machine = Machine::new(script::compile(&chart));
+        machine.start(Moment::ZERO, &mut world);
+        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        let transitions = [1, 2, 3].map(|millis| {
+            machine.dispatch_name("e");
+            machine.run_to_completion(Moment::from_millis(millis), &mut world).unwrap().transitions
+        });
+        assert_eq!(transitions, [1, 3, 1]);
+    }
+}
