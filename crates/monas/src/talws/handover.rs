@@ -5,6 +5,7 @@
 //! under it before they sleep. They are written against [`Primitives`], so that the tests run this very code on the primitives of a
 //! checker, which tries one interleaving of the threads after the other.
 
+mod habit;
 mod mailbox;
 #[cfg(test)]
 mod model;

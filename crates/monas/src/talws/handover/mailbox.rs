@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use narukom::TopicSlot;
 
+use super::habit::Habit;
 use super::primitives::{Flag, Monitor, Primitives, Threads};
 use crate::origin::{self, Origin};
 
@@ -15,6 +16,7 @@ pub(in crate::talws) struct Mailbox<R: Send + 'static, P: Primitives = Threads> 
     state: P::Monitor<State<R>>,
     /// Whether there is mail, for the owner who lingers.
     filled: P::Flag,
+    habit: Habit,
     /// By topic: whether a message on it may concern the chart.
     of_interest: Box<[P::Flag]>,
 }
@@ -49,7 +51,7 @@ impl<R: Send + 'static, P: Primitives> Mailbox<R, P> {
     pub(in crate::talws) fn new(topics: usize) -> Mailbox<R, P> {
         let of_interest = std::iter::repeat_with(P::Flag::new).take(topics).collect();
         let state = State { mail: Mail::default(), asleep: false };
-        Mailbox { state: P::Monitor::new(state), filled: P::Flag::new(), of_interest }
+        Mailbox { state: P::Monitor::new(state), filled: P::Flag::new(), habit: Habit::new(), of_interest }
     }
 
     /// From now on messages on this topic are of interest. Says whether they were not before: then one may have come unnoticed.
@@ -91,8 +93,12 @@ impl<R: Send + 'static, P: Primitives> Mailbox<R, P> {
     /// now on, has none left.
     pub(in crate::talws) fn wait(&self, mut patience: impl FnMut() -> Option<Duration>, into: &mut Mail<R>) {
         into.stop = false;
-        if !self.filled.is_set() && patience().is_some() {
-            P::linger(|| self.filled.is_set());
+        let mut wait = None;
+        if !self.filled.is_set()
+            && let Some(limit) = patience()
+        {
+            let limit = u64::try_from(limit.as_nanos()).unwrap_or(u64::MAX);
+            wait = Some(self.habit.linger::<P>(limit, || self.filled.is_set()));
         }
         let mut state = self.state.lock();
         while state.mail.is_empty() {
@@ -103,5 +109,9 @@ impl<R: Send + 'static, P: Primitives> Mailbox<R, P> {
         }
         std::mem::swap(&mut state.mail, into);
         self.filled.set(false);
+        drop(state);
+        if let Some(wait) = wait {
+            self.habit.waited::<P>(&wait);
+        }
     }
 }

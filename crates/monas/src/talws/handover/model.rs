@@ -24,7 +24,11 @@ impl<const WAKES: bool> Primitives for Checked<WAKES> {
     type Monitor<T: Send + 'static> = CheckedMonitor<T, WAKES>;
     type Flag = AtomicBool;
 
-    fn linger(worth: impl Fn() -> bool) {
+    fn nanos() -> u64 {
+        0
+    }
+
+    fn look_out(_: u64, worth: impl Fn() -> bool) {
         worth();
     }
 }

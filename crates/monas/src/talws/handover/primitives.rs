@@ -3,8 +3,9 @@
 use std::hint;
 use std::ops::DerefMut;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::sync::{Condvar, LazyLock, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// One kind of primitives.
 pub(in crate::talws) trait Primitives: 'static {
@@ -13,8 +14,10 @@ pub(in crate::talws) trait Primitives: 'static {
     /// A flag.
     type Flag: Flag;
 
-    /// Looks again and again for a short while whether it is worth it. What comes of it is a hint.
-    fn linger(worth: impl Fn() -> bool);
+    /// A clock, in nanoseconds.
+    fn nanos() -> u64;
+    /// Looks again and again whether it is worth it, for at most so many nanoseconds. What comes of it is a hint.
+    fn look_out(at_most: u64, worth: impl Fn() -> bool);
 }
 
 /// A lock around a value, with a place where those sleep who wait for the value to change.
@@ -41,24 +44,30 @@ pub(in crate::talws) trait Flag: Send + Sync {
     fn raise(&self) -> bool;
 }
 
+/// After so many nanoseconds whoever looks out lets others have the processor: what he waits for may be done on the very same.
+const ALONE: u64 = 2_000;
+
 /// The primitives of the standard library.
 pub(in crate::talws) struct Threads;
-
-/// So many rounds somebody who has nothing to do looks for something before he sleeps, each twice as long as the one before: a few
-/// microseconds. Waking a thread that sleeps takes several times as long, and whoever has just handed out an activity that does little has
-/// it back by then. He does not yield: on a busy machine that puts him behind all others, while one who sleeps is woken at once.
-const ROUNDS: u32 = 7;
 
 impl Primitives for Threads {
     type Monitor<T: Send + 'static> = ThreadMonitor<T>;
     type Flag = AtomicBool;
 
-    fn linger(worth: impl Fn() -> bool) {
-        for round in 0..ROUNDS {
-            if worth() {
-                return;
+    #[expect(clippy::disallowed_methods, reason = "how long threads sleep is the runtime's own affair")]
+    fn nanos() -> u64 {
+        static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
+        BEGIN.elapsed().as_nanos() as u64
+    }
+
+    fn look_out(at_most: u64, worth: impl Fn() -> bool) {
+        let begin = Threads::nanos();
+        while !worth() {
+            match Threads::nanos().saturating_sub(begin) {
+                waited if waited >= at_most => return,
+                waited if waited >= ALONE => thread::yield_now(),
+                _ => (0..8).for_each(|_| hint::spin_loop()),
             }
-            (0..1 << round).for_each(|_| hint::spin_loop());
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
+use super::habit::Habit;
 use super::primitives::{Flag, Monitor, Primitives, Threads};
 
 /// Jobs for a fixed number of workers: the most urgent goes first, of equally urgent ones the one that came first.
@@ -10,6 +11,7 @@ pub(in crate::talws) struct Work<J: Send + 'static, P: Primitives = Threads> {
     state: P::Monitor<State<J>>,
     /// Whether jobs wait, for those who linger.
     waiting: P::Flag,
+    habit: Habit,
 }
 
 struct State<J> {
@@ -45,7 +47,7 @@ impl<J: Send + 'static, P: Primitives> Work<J, P> {
             asleep: 0,
             closed: false,
         };
-        Work { state: P::Monitor::new(state), waiting: P::Flag::new() }
+        Work { state: P::Monitor::new(state), waiting: P::Flag::new(), habit: Habit::new() }
     }
 
     /// Adds a job. Says whether one more worker is of use: it is counted as there from now on.
@@ -79,7 +81,7 @@ impl<J: Send + 'static, P: Primitives> Work<J, P> {
         if state.jobs.is_empty() && !state.closed {
             state.idle += 1;
             drop(state);
-            P::linger(|| self.waiting.is_set());
+            let wait = self.habit.linger::<P>(u64::MAX, || self.waiting.is_set());
             state = self.state.lock();
             while state.jobs.is_empty() && !state.closed {
                 state.asleep += 1;
@@ -87,6 +89,7 @@ impl<J: Send + 'static, P: Primitives> Work<J, P> {
                 state.asleep -= 1;
             }
             state.idle -= 1;
+            self.habit.waited::<P>(&wait);
         }
         if state.closed {
             return None;
