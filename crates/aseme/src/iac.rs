@@ -202,6 +202,15 @@ impl Iac {
         labels
     }
 
+    /// The place of a variable like this one, which is added if there is none.
+    pub(crate) fn variable(&mut self, wanted: &Variable) -> usize {
+        let same = |own: &Variable| (&own.name, &own.kind) == (&wanted.name, &wanted.kind);
+        self.variables.iter().position(same).unwrap_or_else(|| {
+            self.variables.push(wanted.clone());
+            self.variables.len() - 1
+        })
+    }
+
     /// The children of each node, in order.
     pub(crate) fn children(&self) -> Vec<Vec<usize>> {
         let mut children = vec![Vec::new(); self.nodes.len()];

@@ -69,6 +69,7 @@
 pub mod aip;
 pub mod check;
 pub mod convert;
+pub mod diff;
 mod document;
 pub mod functionality;
 pub mod generate;
@@ -80,6 +81,7 @@ pub mod names;
 mod outline;
 pub mod path;
 pub mod refine;
+pub mod regenerate;
 pub mod roles;
 pub mod sag;
 pub mod srm;

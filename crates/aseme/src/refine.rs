@@ -49,10 +49,14 @@ pub fn refine_states(chart: &mut Statechart, entries: &[StateEntry]) -> Vec<Unma
     let wishes: Vec<Wish<NodeId>> = entries.iter().map(|entry| states_of(chart, entry)).collect();
     let (chosen, mut unmatched) = settle(&wishes, |id| path::shortest_path(chart, *id));
     for (id, index) in chosen {
-        let runs_activities = chart.node(id).kind == NodeKind::Basic;
-        match entries[index].is_about_activity() && !runs_activities {
-            true => unmatched.push(composite(&wishes[index], path::shortest_path(chart, id))),
-            false => entries[index].apply(chart, id),
+        let misfit: Option<fn(&Wish<'_, NodeId>, String) -> Unmatched> = match chart.node(id).kind {
+            NodeKind::Basic | NodeKind::End if entries[index].history.is_some() => Some(childless),
+            NodeKind::Basic => None,
+            _ => entries[index].is_about_activity().then_some(composite),
+        };
+        match misfit {
+            Some(misfit) => unmatched.push(misfit(&wishes[index], path::shortest_path(chart, id))),
+            None => entries[index].apply(chart, id),
         }
     }
     unmatched.sort_by_key(|unmatched| unmatched.diagnostic.span);
@@ -181,5 +185,13 @@ fn composite(wish: &Wish<'_, NodeId>, named: String) -> Unmatched {
     let diagnostic = Diagnostic::error("E0253", wish.span, message);
     let diagnostic =
         diagnostic.with_hint("activity, priority and duration belong to states without children");
+    Unmatched { text: wish.text.into(), candidates: vec![named], diagnostic }
+}
+
+/// An entry that has a state remember what was active inside, where there is nothing inside.
+fn childless(wish: &Wish<'_, NodeId>, named: String) -> Unmatched {
+    let message = format!("`{named}` has no states inside that it could remember");
+    let diagnostic = Diagnostic::error("E0254", wish.span, message);
+    let diagnostic = diagnostic.with_hint("history belongs to composites");
     Unmatched { text: wish.text.into(), candidates: vec![named], diagnostic }
 }

@@ -20,8 +20,9 @@
 //!
 //! - **Transitions**: `[scope:] source -> target [!priority] [%weight] [interrupts] [: expression]`. Paths are described in
 //!   [`path`](crate::path); `scope: a -> b` is short for `scope/a -> scope/b`. A line without `->` goes on with the entry above it.
-//! - **States**: `path : key = value, ...` with the keys `activity`, `priority`, `entry`, `exit`, `defer` and `duration`. A line
-//!   without `:` goes on with the entry above it.
+//! - **States**: `path : key = value, ...` with the keys `activity`, `priority`, `entry`, `exit`, `defer`, `duration` and, for
+//!   composites, `history`: with `shallow` or `deep` one that is entered again goes on where it was left. A line without `:` goes on with the entry
+//!   above it.
 //!
 //! What a text is, is told by its content: one that begins with `<` is XMI, the form in which the method's Eclipse tools keep a System
 //! Roles Model, of which the role's name and formulas are read; one with a section header is as above, any other is bare formulas.
@@ -34,7 +35,7 @@ mod xmi;
 
 use yase::expression::{Action, TransitionExpression};
 use yase::statechart::Constant;
-use yase::{Diagnostic, NodeId, Span, Statechart, TransitionId};
+use yase::{Diagnostic, Node, NodeId, NodeKind, Span, Statechart, TransitionId};
 
 use crate::liveness::{self, Liveness};
 use crate::path::Path;
@@ -117,6 +118,8 @@ pub struct StateEntry {
     pub defer: Option<Vec<String>>,
     /// How long its activity takes in simulated time.
     pub duration: Option<std::time::Duration>,
+    /// Of a composite: the kind of HISTORY that it is entered by.
+    pub history: Option<NodeKind>,
     /// The entry as it is written, on one line, without comments.
     pub text: String,
     /// Where it stands.
@@ -142,7 +145,19 @@ impl StateEntry {
         if let Some(defer) = &self.defer {
             node.defer.clone_from(defer);
         }
+        if let Some(kind) = self.history {
+            remember(chart, id, kind);
+        }
     }
+}
+
+/// Has what leads into a composite from outside lead to a HISTORY in it, behind its other children, so that their labels stay.
+fn remember(chart: &mut Statechart, id: NodeId, kind: NodeKind) {
+    let is_inside = |node: NodeId| node == id || chart.ancestors(node).any(|ancestor| ancestor == id);
+    let into = chart.transitions().filter(|(_, it)| it.target == id && !is_inside(it.source));
+    let into: Vec<TransitionId> = into.map(|(id, _)| id).collect();
+    let history = chart.add(id, Node::new(kind, ""));
+    into.into_iter().for_each(|id| chart.transition_mut(id).target = history);
 }
 
 /// One entry of a file and its place, without the comment behind it.

@@ -36,7 +36,7 @@ const NODE_BYTES: usize = 256;
 
 /// The statechart of a role: its formulas expanded, its transitions and states refined, its constants at hand.
 ///
-/// Findings are about entries that no longer fit (E0250 to E0253) and charts too large to be made (E0220, E0221); in the
+/// Findings are about entries that no longer fit (E0250 to E0254) and charts too large to be made (E0220, E0221); in the
 /// second case what is returned is unfinished. What was wrong with the text was said when it was read.
 pub fn srm_to_iac(srm: &Srm) -> (Statechart, Vec<Diagnostic>) {
     let (mut chart, mut diagnostics) = liveness_to_statechart(&srm.liveness);

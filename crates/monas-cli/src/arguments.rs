@@ -107,6 +107,17 @@ pub(crate) enum ModelCommand {
     ///
     /// Ends with 0 if nothing is wrong or there are warnings only, with 3 if a model cannot be read, and with 5 if a check finds an error.
     Check(CheckArguments),
+    /// Say what differs between the statecharts of two models: states, transitions, what is written on them.
+    ///
+    /// Ends with 0 if nothing differs, and with 5 if something does.
+    #[command(after_help = "Example: monas model diff before.srm after.srm -o difference.svg")]
+    Diff(DiffArguments),
+    /// Keep what was said of a role's states and transitions after its formulas were edited.
+    ///
+    /// What fits stays as it is. What no longer fits is listed, and stays in the text as a comment.
+    #[command(after_help = "Example: monas model regenerate role.srm -o role.srm
+What another role, or a chart from an editor, says is taken in by --from: monas model regenerate role.srm --from edited.stct")]
+    Regenerate(RegenerateArguments),
     /// Play a trace that `model check` has found, and print each step.
     ///
     /// Conditions on messages have the values that the trace says, timers expire when it says. Ends with 5 if the chart stops by itself.
@@ -154,6 +165,38 @@ pub(crate) struct CheckArguments {
     pub(crate) format: CheckFormat,
 }
 
+/// What `model diff` may be told.
+#[derive(Args, Debug)]
+pub(crate) struct DiffArguments {
+    /// The model file as it was.
+    #[arg(value_name = "A", value_hint = ValueHint::FilePath)]
+    pub(crate) before: PathBuf,
+    /// The model file as it is.
+    #[arg(value_name = "B", value_hint = ValueHint::FilePath)]
+    pub(crate) after: PathBuf,
+    /// Draw both in one, what was added in green, what was removed in red, what is another in orange: a file that ends in .svg or .dot.
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
+}
+
+/// What `model regenerate` may be told.
+#[derive(Args, Debug)]
+pub(crate) struct RegenerateArguments {
+    /// The role, with its formulas as they are now.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) role: PathBuf,
+    /// A role or a chart whose refinements are taken in; what the role itself says holds.
+    #[arg(long, value_name = "MODEL", value_hint = ValueHint::FilePath)]
+    pub(crate) from: Vec<PathBuf>,
+    /// Where to write it; standard output if not given.
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
+}
+
 /// How findings about models are written.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
 pub(crate) enum CheckFormat {
@@ -190,6 +233,9 @@ pub(crate) struct TransformArguments {
     /// Another model to take in: the protocols (AIP) for an SRM, a protocol's chart (EAC) for an IAC.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) with: Vec<PathBuf>,
+    /// An older statechart of the role (IAC): what it says and the role does not is kept, and what cannot be kept is listed.
+    #[arg(long, value_name = "MODEL", value_hint = ValueHint::FilePath)]
+    pub(crate) keep: Option<PathBuf>,
     /// Which one, where there are several: the name of a protocol or a role.
     #[arg(long)]
     pub(crate) name: Option<String>,

@@ -1,7 +1,9 @@
-//! `monas model`: models read, transformed, converted, drawn and checked.
+//! `monas model`: models read, transformed, converted, compared, drawn and checked.
 
 mod check;
 mod convert;
+mod diff;
+mod regenerate;
 mod run;
 mod transform;
 
@@ -25,6 +27,8 @@ pub(crate) fn execute(command: &ModelCommand, console: &mut Console<'_>) -> Resu
         ModelCommand::Convert(arguments) => convert::execute(arguments, console),
         ModelCommand::Draw { file, output, format } => draw(file, output.as_deref(), format.value, console),
         ModelCommand::Check(arguments) => check::execute(arguments, console),
+        ModelCommand::Diff(arguments) => diff::execute(arguments, console),
+        ModelCommand::Regenerate(arguments) => regenerate::execute(arguments, console),
         ModelCommand::Run { file, trace, format } => run::execute(file, trace, format.value, console),
     }
 }

@@ -1,6 +1,6 @@
 //! Charts as pictures, and as the text of other tools.
 //!
-//! [`to_svg`] draws a chart. The other functions write it for a tool: [`to_xstate`] for XState and whatever reads its machines, [`to_mermaid`] and
+//! [`to_svg`] draws a chart, [`to_svg_marked`] with some of its parts set apart. The other functions write it for a tool: [`to_xstate`] for XState and whatever reads its machines, [`to_mermaid`] and
 //! [`to_plantuml`] for documents, [`to_dot`] for Graphviz. What such a tool cannot say is in [`Exported::lost`], node by node and transition by
 //! transition: nothing vanishes in silence.
 //!
@@ -48,6 +48,7 @@ mod dot;
 mod ids;
 mod json;
 mod lost;
+mod marks;
 mod mermaid;
 pub mod notation;
 mod outline;
@@ -55,10 +56,11 @@ mod plantuml;
 mod svg;
 mod xstate;
 
-pub use dot::to_dot;
+pub use dot::{to_dot, to_dot_marked};
+pub use marks::{Mark, Marks};
 pub use mermaid::to_mermaid;
 pub use plantuml::to_plantuml;
-pub use svg::to_svg;
+pub use svg::{to_svg, to_svg_marked};
 pub use xstate::to_xstate;
 
 use crate::diagnostic::Diagnostic;

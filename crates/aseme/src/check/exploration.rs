@@ -28,7 +28,10 @@ pub(super) fn check(
     settings: &Settings,
     known: &[Diagnostic],
 ) -> (Vec<Finding>, Option<Explored>) {
-    let Ok(abstraction) = Abstraction::new(subject) else { return (Vec::new(), None) };
+    let abstraction = match Abstraction::new(subject) {
+        Ok(abstraction) => abstraction,
+        Err(reasons) => return (reasons.into_iter().map(not_explored).collect(), None),
+    };
     let mut surroundings = abstraction.surroundings();
     let found = explore(&abstraction.chart, &mut surroundings, settings.states);
     drop(surroundings);
@@ -46,6 +49,12 @@ pub(super) fn check(
         is_finished: found.is_finished(),
     };
     (checks.all(settings, &explored), Some(explored))
+}
+
+/// What keeps a chart from being explored is said: silence would look like a chart without faults.
+fn not_explored(reason: Diagnostic) -> Finding {
+    let message = format!("not explored: {}", reason.message);
+    Diagnostic { severity: Severity::Warning, message, ..reason }.into()
 }
 
 struct Checks<'a> {

@@ -81,7 +81,8 @@ fn is_scxml(subject: &Subject) -> bool {
 fn history(subject: &Subject, id: NodeId) -> Option<Diagnostic> {
     let owner = subject.chart.node(id).parent?;
     let is_history = matches!(subject.kind(id), NodeKind::ShallowHistory | NodeKind::DeepHistory);
-    if !is_history || !subject.outgoing(id).is_empty() {
+    // the `history` of a role says where it begins
+    if !is_history || subject.liveness.is_some() || !subject.outgoing(id).is_empty() {
         return None;
     }
     let before = reached_without(subject, owner);

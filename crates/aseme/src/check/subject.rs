@@ -31,7 +31,7 @@ pub(super) struct Subject {
 
 /// The chart of a role, as far as it can be made, and what does not fit.
 pub(super) fn of_role(role: &Srm) -> (Subject, Vec<Diagnostic>) {
-    let (mut chart, nodes, mut found) = transform::expanded(&role.liveness);
+    let (mut chart, mut nodes, mut found) = transform::expanded(&role.liveness);
     if found.iter().any(Diagnostic::is_error) {
         return (Subject::new(chart, Places::default(), Semantics::yase()), found);
     }
@@ -39,6 +39,11 @@ pub(super) fn of_role(role: &Srm) -> (Subject, Vec<Diagnostic>) {
     let (chosen, mut unmatched) = crate::refine::refine_placed(&mut chart, &role.transitions);
     unmatched.extend(crate::refine::refine_states(&mut chart, &role.states));
     found.extend(unmatched.into_iter().map(|unmatched| unmatched.diagnostic));
+    // what `history` has added stands where its composite does
+    for (_, node) in chart.nodes().skip(nodes.len()) {
+        let owner = node.parent.and_then(|parent| nodes.get(parent.0 as usize)).copied();
+        nodes.push(owner.unwrap_or_default());
+    }
     let place = |id: TransitionId, transition: &Transition| match chosen.get(&id) {
         Some(&entry) => role.transitions[entry].span,
         None => begin(&chart, &nodes, transition),

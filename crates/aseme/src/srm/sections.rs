@@ -32,6 +32,11 @@ impl Section {
         ("States", Section::States),
     ];
 
+    /// The word of its header.
+    pub(crate) fn word(self) -> &'static str {
+        Section::ALL.iter().find(|(_, section)| *section == self).map_or("", |(word, _)| word)
+    }
+
     fn named(name: &str) -> Option<Section> {
         Section::ALL.iter().find(|(word, _)| *word == name).map(|(_, section)| *section)
     }

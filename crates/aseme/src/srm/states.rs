@@ -3,13 +3,13 @@
 use std::time::Duration;
 
 use yase::expression::{Action, parse_actions_at};
-use yase::{Diagnostic, Span};
+use yase::{Diagnostic, NodeKind, Span};
 
 use super::entries::{entry_spans, one_line};
 use super::{Entry, Reader, Section, StateEntry};
 use crate::text;
 
-const KEYS: [&str; 6] = ["activity", "priority", "entry", "exit", "defer", "duration"];
+const KEYS: [&str; 7] = ["activity", "priority", "entry", "exit", "defer", "duration", "history"];
 
 impl Reader {
     /// Entries, each of which begins with the line that has its `:`.
@@ -35,7 +35,7 @@ impl Reader {
             self.setting(blanked, key, value, &mut settings);
         }
         let Some(path) = path else { return };
-        let Settings { activity, priority, entry, exit, defer, duration } = settings;
+        let Settings { activity, priority, entry, exit, defer, duration, history } = settings;
         self.srm.states.push(StateEntry {
             path,
             activity,
@@ -44,6 +44,7 @@ impl Reader {
             exit,
             defer,
             duration,
+            history,
             text,
             span,
         });
@@ -76,6 +77,7 @@ impl Reader {
             "priority" => set(&mut settings.priority, text.parse().ok()),
             "defer" => set(&mut settings.defer, events(text)),
             "duration" => set(&mut settings.duration, duration(text)),
+            "history" => set(&mut settings.history, history(text)),
             "entry" => set(&mut settings.entry, Some(self.actions(text, value.start))),
             "exit" => set(&mut settings.exit, Some(self.actions(text, value.start))),
             _ => {
@@ -106,6 +108,7 @@ struct Settings {
     exit: Option<Vec<Action>>,
     defer: Option<Vec<String>>,
     duration: Option<Duration>,
+    history: Option<NodeKind>,
 }
 
 fn set<T>(place: &mut Option<T>, value: Option<T>) -> bool {
@@ -119,6 +122,7 @@ fn expected(key: &str) -> &'static str {
         "activity" => "the name of an activity",
         "priority" => "a whole number; higher runs first",
         "defer" => "names of events, with blanks between",
+        "history" => "`shallow` or `deep`",
         _ => "a time such as `250ms` or `2s`",
     }
 }
@@ -129,6 +133,15 @@ pub(crate) fn events(text: &str) -> Option<Vec<String>> {
     let events: Vec<String> = words.map(String::from).collect();
     let is_event = |event: &String| event.split('.').all(text::is_name);
     (!events.is_empty() && events.iter().all(is_event)).then_some(events)
+}
+
+/// What remembers the state that was left: the one child, or all that was active inside.
+fn history(text: &str) -> Option<NodeKind> {
+    match text {
+        "shallow" => Some(NodeKind::ShallowHistory),
+        "deep" => Some(NodeKind::DeepHistory),
+        _ => None,
+    }
 }
 
 /// `250ms` or `2s`.

@@ -57,14 +57,7 @@ fn participants(eac: &Iac) -> Vec<usize> {
 
 /// The variable of the role for each of the protocol, made where it is missing.
 fn shared_variables(iac: &mut Iac, eac: &Iac) -> Vec<usize> {
-    let place = |variable: &crate::iac::Variable| {
-        let same = |own: &crate::iac::Variable| (&own.name, &own.kind) == (&variable.name, &variable.kind);
-        iac.variables.iter().position(same).unwrap_or_else(|| {
-            iac.variables.push(variable.clone());
-            iac.variables.len() - 1
-        })
-    };
-    eac.variables.iter().map(place).collect()
+    eac.variables.iter().map(|variable| iac.variable(variable)).collect()
 }
 
 struct Merging<'a> {

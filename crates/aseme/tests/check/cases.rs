@@ -122,6 +122,19 @@ fn the_table_is_in_order_and_names_each_check_once() {
 }
 
 #[test]
+fn what_cannot_be_explored_is_said_with_the_reason() {
+    let role = "Role: r\nLiveness:\nr = look . turn\nTransitions:\nlook -> turn : [In(nowhere)]\n";
+    let report = check(&Source::new("r.srm", role), &Settings::default());
+    let found: Vec<String> = report.findings.iter().map(ToString::to_string).collect();
+    assert_eq!(report.explored, None, "{found:?}");
+    let reason = "there is no state `nowhere` (from `r/look` to `r/turn`)";
+    assert!(
+        matches!(found.as_slice(), [one] if one.starts_with("r.srm:5:20: warning[E0140]: not explored: ") && one.contains(reason)),
+        "{found:?}"
+    );
+}
+
+#[test]
 fn the_projects_own_roles_are_without_findings_that_matter() {
     for name in ["goalie.srm", "attacker.srm"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name);

@@ -1,4 +1,4 @@
-//! Statecharts as Rust crates: the goalie as a folder of files to be read, and names that are mapped one to one.
+//! Statecharts as Rust crates: folders of files to be read, and names that are mapped one to one.
 
 #![allow(clippy::expect_used, clippy::panic)] // the functions around the tests are tests too
 

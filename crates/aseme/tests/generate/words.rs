@@ -19,7 +19,7 @@ fn topic(id: u32, path: &str, message: &str) -> TopicEntry {
     TopicEntry { id: TopicId(id), path: path.into(), kind: TopicKind::State, message: message.into() }
 }
 
-/// What the goalie speaks of.
+/// Messages and functions of a game.
 pub(crate) fn soccer() -> Words {
     let state = ValueType::Enumeration("PlayerState".into());
     let numbers = ["time_to_cross", "crossing_bearing", "type"].map(|name| (name, ValueType::Number));
@@ -44,5 +44,5 @@ pub(crate) fn soccer() -> Words {
         scripts: false,
     };
     let types = ["Ball", "GameState"].map(|name| (name.to_owned(), format!("soccer::{name}")));
-    Words { vocabulary, messages: types.into(), origin: "models/goalie.srm".into(), ..Words::default() }
+    Words { vocabulary, messages: types.into(), origin: "models/patrol.srm".into(), ..Words::default() }
 }

@@ -8,8 +8,10 @@
 )]
 
 mod any;
+mod diff;
 mod faults;
 mod kit;
+mod regenerate;
 mod round_trip;
 mod shared;
 mod text;

@@ -64,6 +64,7 @@ impl Transformation<'_, '_> {
             (model, _) => return Err(self.no_way(&model)),
         };
         self.judge(findings, &source)?;
+        let made = self.kept(made, kind)?;
         self.write(made, &source)
     }
 
@@ -125,6 +126,22 @@ impl Transformation<'_, '_> {
             }
         }
         Ok((charts.into_iter().map(Model::Chart).collect(), findings))
+    }
+
+    /// The chart with what an older one says besides.
+    fn kept(&mut self, made: Vec<Model>, kind: Kind) -> Result<Vec<Model>, Failure> {
+        let Some(path) = &self.arguments.keep else { return Ok(made) };
+        let mut made = self.chosen(made)?;
+        let [Model::Chart(chart)] = made.as_mut_slice() else {
+            let reason = if kind == Kind::Iac { "of one chart: say by --name which" } else { "of an IAC" };
+            return Err(Failure::Usage(format!("--keep is for what an older model says {reason}")));
+        };
+        let (source, older, ..) = valid_model(path, self.format, self.console)?;
+        let Model::Chart(older) = older else { return Err(wrong_kind(path, &older, "IAC")) };
+        let lost = aseme::regenerate::keep(&older, chart);
+        let lost: Vec<Diagnostic> = lost.into_iter().map(|found| found.in_source(&source)).collect();
+        report::write(self.console, self.format, &lost)?;
+        Ok(made)
     }
 
     fn table(&mut self, srm: &SystemRoles) -> Result<Exit, Failure> {

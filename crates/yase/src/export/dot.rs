@@ -3,6 +3,7 @@
 use super::Exported;
 use super::ids::Ids;
 use super::lost::{Lost, is_box};
+use super::marks::{Mark, Marks};
 use super::notation::{inscription, refinements};
 use super::outline::{Lines, Visit, constants, is_region, sound_transitions, title, visits};
 use super::svg::lettering::{LABEL_SIZE, wrap_condition};
@@ -15,14 +16,20 @@ const LABEL_WIDTH: f64 = 290.0;
 ///
 /// Composites are clusters, and each has an invisible point at which its transitions begin and end. Constants are a note.
 pub fn to_dot(chart: &Statechart) -> Exported {
+    to_dot_marked(chart, &Marks::default())
+}
+
+/// The same, with the parts that are marked in the colours of their marks.
+pub fn to_dot_marked(chart: &Statechart, marks: &Marks) -> Exported {
     match Lost::new(chart, "Graphviz") {
-        Ok(lost) => lost.with(Dot { chart, ids: Ids::of(chart), lines: Lines::default() }.document()),
+        Ok(lost) => lost.with(Dot { chart, marks, ids: Ids::of(chart), lines: Lines::default() }.document()),
         Err(nothing) => nothing,
     }
 }
 
 struct Dot<'a> {
     chart: &'a Statechart,
+    marks: &'a Marks,
     ids: Ids,
     lines: Lines,
 }
@@ -56,8 +63,8 @@ impl Dot<'_> {
         };
         self.lines.line(format_args!("subgraph \"cluster_{}\" {{", self.ids.of_node(id)));
         self.lines.depth += 1;
-        let label = self.label(id);
-        self.lines.line(format_args!("graph [label={label}, {style}]"));
+        let (label, colour) = (self.label(id), colour(self.marks.of_node(id)));
+        self.lines.line(format_args!("graph [label={label}, {style}{colour}]"));
         self.lines.line(format_args!("{} [shape=point, style=invis, width=0, label=\"\"]", self.anchor(id)));
     }
 
@@ -104,7 +111,8 @@ impl Dot<'_> {
             (_, true) => String::new(),
             (_, false) => format!(", xlabel={}", self.label(id)),
         };
-        self.lines.line(format_args!("\"{}\" [{look}{beside}]", self.ids.of_node(id)));
+        let colour = colour(self.marks.of_node(id));
+        self.lines.line(format_args!("\"{}\" [{look}{beside}{colour}]", self.ids.of_node(id)));
     }
 
     fn constants(&mut self) {
@@ -122,7 +130,10 @@ impl Dot<'_> {
         if !label.is_empty() {
             attributes.push(format!("label={}", quoted(&label.join("\n"))));
         }
-        if transition.expression.is_never() {
+        if let Some(mark) = self.marks.of_transition(transition) {
+            let colour = mark.colour();
+            attributes.push(format!("color=\"{colour}\", fontcolor=\"{colour}\", penwidth=2"));
+        } else if transition.expression.is_never() {
             attributes.push("color=gray, fontcolor=gray".into());
         }
         // an arrow is cut at the border of a cluster unless its other end lies inside
@@ -151,6 +162,10 @@ impl Dot<'_> {
     fn anchor(&self, id: NodeId) -> String {
         format!("\"{}:\"", self.ids.of_node(id))
     }
+}
+
+fn colour(mark: Option<Mark>) -> String {
+    mark.map_or(String::new(), |mark| format!(", color=\"{}\", penwidth=2.5", mark.colour()))
 }
 
 /// A text between double quotes. Graphviz reads the entities of HTML in labels.

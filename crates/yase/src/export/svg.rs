@@ -14,6 +14,7 @@ mod ranks;
 mod rectangle;
 mod route;
 
+use super::marks::Marks;
 use crate::statechart::Statechart;
 
 /// The chart as an SVG document.
@@ -23,5 +24,10 @@ use crate::statechart::Statechart;
 /// TERMINATE is a cross, a point of entry a circle, one of exit a circle with a cross. Transitions whose guard is `[false]` are grey. One
 /// whose ends do not exist is not drawn.
 pub fn to_svg(chart: &Statechart) -> String {
-    draw::document(chart, &layout::layout(chart))
+    to_svg_marked(chart, &Marks::default())
+}
+
+/// The same, with the parts that are marked in the colours of their marks.
+pub fn to_svg_marked(chart: &Statechart, marks: &Marks) -> String {
+    draw::document(chart, &layout::layout(chart, marks), marks)
 }

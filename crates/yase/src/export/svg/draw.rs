@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::layout::{Arrow, Layout, MARGIN, Point, Shape};
 use super::lettering::{LABEL_LINE, LABEL_SIZE, NAME_LINE, NAME_SIZE, escaped};
+use crate::export::marks::{Mark, Marks};
 use crate::export::notation::depth_first;
 use crate::export::outline::is_region;
 use crate::statechart::{NodeId, NodeKind, Statechart};
@@ -21,21 +22,31 @@ text{font-family:system-ui,-apple-system,'Segoe UI','Liberation Sans','DejaVu Sa
 .ground{fill:#fff;fill-opacity:.88}";
 
 /// Writes the whole document.
-pub(super) fn document(chart: &Statechart, layout: &Layout) -> String {
+pub(super) fn document(chart: &Statechart, layout: &Layout<'_>, marks: &Marks) -> String {
     let mut page = Page { svg: String::new() };
     let (width, height) = page_size(layout);
     page.line(format_args!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\">"
     ));
     page.line(format_args!("<title>{}</title>", escaped(&chart.name)));
-    page.line(format_args!("<style>{STYLE}</style>"));
-    page.line(format_args!("<defs>{}{}</defs>", head("head", "#3b4252"), head("unused-head", "#b6bbc4")));
+    let is_marked = *marks != Marks::default();
+    let (styles, heads) = if is_marked { marked_style() } else { Default::default() };
+    page.line(format_args!("<style>{STYLE}{styles}</style>"));
+    page.line(format_args!(
+        "<defs>{}{}{heads}</defs>",
+        head("head", "#3b4252"),
+        head("unused-head", "#b6bbc4")
+    ));
     page.line(format_args!("<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>"));
     for id in depth_first(chart) {
-        page.node(chart, id, layout.shape(id));
+        page.marked(marks.of_node(id), |page| page.node(chart, id, layout.shape(id)));
     }
-    layout.arrows.iter().for_each(|arrow| page.arrow(arrow));
-    layout.arrows.iter().for_each(|arrow| page.label(arrow));
+    for arrow in &layout.arrows {
+        page.marked(arrow.label.mark, |page| page.arrow(arrow));
+    }
+    for arrow in &layout.arrows {
+        page.marked(arrow.label.mark, |page| page.label(arrow));
+    }
     page.line(format_args!("</svg>"));
     page.svg
 }
@@ -52,6 +63,20 @@ fn head(id: &str, colour: &str) -> String {
     )
 }
 
+/// The styles and the heads of arrows of what is marked.
+fn marked_style() -> (String, String) {
+    let style = |mark: Mark| {
+        let (class, colour) = (mark.word(), mark.colour());
+        format!(
+            ".{class} rect:not(.ground),.{class} circle,.{class} path{{stroke:{colour};stroke-width:2.4}}\
+             .{class} polyline{{stroke:{colour};stroke-width:2}}.{class} text{{fill:{colour}}}"
+        )
+    };
+    let styles: String = Mark::ALL.map(style).concat();
+    let heads = Mark::ALL.map(|mark| head(&format!("{}-head", mark.word()), mark.colour())).concat();
+    (format!("{styles}.removed text{{text-decoration:line-through}}"), heads)
+}
+
 struct Page {
     svg: String,
 }
@@ -60,6 +85,19 @@ impl Page {
     fn line(&mut self, content: std::fmt::Arguments<'_>) {
         // writing to a String cannot fail
         let _ = writeln!(self.svg, "{content}");
+    }
+
+    /// Draws something within a group of its mark.
+    fn marked(&mut self, mark: Option<Mark>, draw: impl FnOnce(&mut Page)) {
+        let Some(mark) = mark else { return draw(self) };
+        let begin = self.svg.len();
+        self.line(format_args!("<g class=\"{}\">", mark.word()));
+        let empty = self.svg.len();
+        draw(self);
+        if self.svg.len() == empty {
+            return self.svg.truncate(begin);
+        }
+        self.line(format_args!("</g>"));
     }
 
     fn node(&mut self, chart: &Statechart, id: NodeId, shape: &Shape) {
@@ -171,7 +209,11 @@ impl Page {
     }
 
     fn arrow(&mut self, arrow: &Arrow) {
-        let (class, head) = if arrow.label.never { ("unused", "unused-head") } else { ("arrow", "head") };
+        let (class, head) = match (arrow.label.mark, arrow.label.never) {
+            (Some(mark), _) => ("arrow", format!("{}-head", mark.word())),
+            (None, true) => ("unused", "unused-head".into()),
+            (None, false) => ("arrow", "head".into()),
+        };
         let points: Vec<String> = arrow.points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
         let points = points.join(" ");
         self.line(format_args!(

@@ -32,7 +32,7 @@ pub(super) fn rows(
     id: NodeId,
     transitions: &[&Transition],
     leads: &[(NodeId, NodeId)],
-    layout: &mut Layout,
+    layout: &mut Layout<'_>,
 ) -> Point {
     let children = chart.children(id);
     let mut flow = Flow::new(chart, children, transitions, leads, layout);
@@ -156,7 +156,7 @@ impl Flow {
         children: &[NodeId],
         transitions: &[&Transition],
         leads: &[(NodeId, NodeId)],
-        layout: &Layout,
+        layout: &Layout<'_>,
     ) -> Flow {
         let places: BTreeMap<NodeId, usize> =
             children.iter().enumerate().map(|(place, &child)| (child, place)).collect();
@@ -174,9 +174,15 @@ impl Flow {
             Cell { size, row, left, right, height: size.1, grows, ..Cell::default() }
         };
         let cells = children.iter().zip(row_of).map(cell).collect();
-        let edge = |((&transition, &(source, target)), course): ((&&Transition, &(usize, usize)), Course)| {
-            Edge { source, target, course, label: Label::of(transition), at_target: true, offset: 0.0 }
-        };
+        let edge =
+            |((&transition, &(source, target)), course): ((&&Transition, &(usize, usize)), Course)| Edge {
+                source,
+                target,
+                course,
+                label: Label::of(transition, layout.marks),
+                at_target: true,
+                offset: 0.0,
+            };
         let edges = transitions.iter().zip(&ends).zip(courses).map(edge).collect();
         Flow { cells, edges, rows, turns: Vec::new(), left: 0.0, right: 0.0, height: 0.0 }
     }

@@ -5,6 +5,7 @@ use super::lettering::{
 };
 use super::rectangle::Rectangle;
 use super::{flow, route};
+use crate::export::marks::{Mark, Marks};
 use crate::export::notation::{inscription, refinements};
 use crate::export::outline::sound_transitions;
 use crate::statechart::{Node, NodeId, NodeKind, Statechart, Transition};
@@ -76,14 +77,17 @@ pub(super) struct Label {
     pub(super) lines: Vec<String>,
     /// Whether it says that the transition is never taken.
     pub(super) never: bool,
+    /// What the transition is set apart as.
+    pub(super) mark: Option<Mark>,
 }
 
 impl Label {
-    pub(super) fn of(transition: &Transition) -> Label {
+    pub(super) fn of(transition: &Transition, marks: &Marks) -> Label {
         let text = inscription(transition);
         Label {
             lines: wrap_condition(&text, LABEL_SIZE, LABEL_WIDTH),
             never: transition.expression.is_never(),
+            mark: marks.of_transition(transition),
         }
     }
 
@@ -98,13 +102,15 @@ impl Label {
 
 /// A drawing.
 #[derive(Debug)]
-pub(super) struct Layout {
+pub(super) struct Layout<'m> {
+    /// What is set apart.
+    pub(super) marks: &'m Marks,
     /// By node.
     pub(super) shapes: Vec<Shape>,
     pub(super) arrows: Vec<Arrow>,
 }
 
-impl Layout {
+impl Layout<'_> {
     pub(super) fn shape(&self, id: NodeId) -> &Shape {
         &self.shapes[id.0 as usize]
     }
@@ -115,9 +121,9 @@ impl Layout {
 }
 
 /// Lays a chart out.
-pub(super) fn layout(chart: &Statechart) -> Layout {
+pub(super) fn layout<'m>(chart: &Statechart, marks: &'m Marks) -> Layout<'m> {
     let shapes = chart.nodes().map(|(_, node)| lettered(node)).collect();
-    let mut layout = Layout { shapes, arrows: Vec::new() };
+    let mut layout = Layout { marks, shapes, arrows: Vec::new() };
     let (inside, leads) = (transitions_inside(chart), leads(chart));
     let outside_in: Vec<NodeId> = chart.nodes().map(|(id, _)| id).collect();
     for id in outside_in.into_iter().rev() {
@@ -274,7 +280,7 @@ fn place_on_page(chart: &Statechart, layout: &mut Layout) {
             shape.at = moved(shape.at, origin);
         }
     }
-    let Layout { shapes, arrows } = layout;
+    let Layout { shapes, arrows, .. } = layout;
     for arrow in arrows {
         let origin = content_origin(&shapes[arrow.frame.0 as usize]);
         arrow.label_at = moved(arrow.label_at, origin);

@@ -35,7 +35,7 @@ pub(super) fn across_borders(chart: &Statechart, layout: &mut Layout) {
     let mut router = Router::new(chart, layout, &open);
     for transition in open {
         let points = router.way(chart, transition);
-        let label = Label::of(transition);
+        let label = Label::of(transition, layout.marks);
         let label_at = router.label_place(&points, label.size());
         let arrow = Arrow { frame: Statechart::ROOT, points, label, label_at };
         router.occupy(&arrow);

@@ -3,12 +3,12 @@
 #![allow(non_snake_case)] // the names are those of states
 
 use yase::typed::{
-    CallError, Computed, Truth, Value, World, all, any, attempt, differ, given, holds, inside, inside_mut,
-    more, negative, over, plus, set,
+    CallError, Computed, Truth, Value, World, all, any, at_most, attempt, differ, given, holds, inside,
+    inside_mut, more, negative, over, plus, set,
 };
 
 use super::states::State;
-use super::words::{constants, messages, values};
+use super::words::{constants, functions, messages, timers, values};
 
 /// From `walk` to `type`: `[Ball.place.near.x > far + Ball.type / 2 && Ball.colour != word || In(watch)]`
 pub(super) fn transition_7(world: &World<'_>) -> Truth {
@@ -24,17 +24,25 @@ pub(super) fn transition_7(world: &World<'_>) -> Truth {
     )
 }
 
-/// From `type` to `END` in `(walk.type)`: `[Vision.Ball.found]`
+/// From `type` to `[2nd]`: `[Vision.Ball.found]`
 pub(super) fn transition_8(world: &World<'_>) -> Truth {
     holds(world.latest(messages::VISION_BALL)?.found)
 }
 
-/// From `watch` to `watch`: `[Ball == NULL]`
-pub(super) fn from_watch_to_watch(world: &World<'_>) -> Truth {
-    Ok(world.is_absent(messages::BALL))
+/// From `CONDITION` in `[2nd]` to `2nd`: `[abs(Ball.place.x) <= far]`
+pub(super) fn transition_11(world: &World<'_>) -> Truth {
+    at_most(
+        world.call(functions::abs, &[given(inside(&world.latest(messages::BALL)?.place)?.x)?])?,
+        constants::far,
+    )
 }
 
-/// From `type` to `END` in `(walk.type)`: `Ball.place.x = -Ball.time_to_cross`
+/// From `watch` to `watch`: `[watch_timeout && Ball == NULL]`
+pub(super) fn from_watch_to_watch(world: &World<'_>) -> Truth {
+    all!(world.is_over(timers::watch_timeout), world.is_absent(messages::BALL))
+}
+
+/// From `type` to `[2nd]`: `Ball.place.x = -Ball.time_to_cross`
 pub(super) fn ball_place_x<'a>(world: &World<'a>) -> Computed<'a> {
     negative(world.latest(messages::BALL)?.time_to_cross)
 }
@@ -44,7 +52,7 @@ pub(super) fn set_ball_place_x(message: &mut soccer::Ball, value: Value<'_>) -> 
     set(&mut inside_mut(&mut message.place).x, value, "x")
 }
 
-/// From `type` to `END` in `(walk.type)`: `Ball.colour = word`
+/// From `type` to `[2nd]`: `Ball.colour = word`
 pub(super) fn ball_colour<'a>(_: &World<'a>) -> Computed<'a> {
     given(constants::word)
 }

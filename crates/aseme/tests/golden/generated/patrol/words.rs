@@ -9,6 +9,15 @@ pub(super) mod constants {
     pub(crate) const word: &str = "red";
 }
 
+/// The functions that expressions call.
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+pub(super) mod functions {
+    use yase::typed::Function;
+
+    /// `abs`
+    pub(crate) const abs: Function = Function(0);
+}
+
 /// The messages that are read and written.
 #[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
 pub(super) mod messages {
@@ -20,6 +29,15 @@ pub(super) mod messages {
     pub(crate) const VISION_BALL: Source<soccer::Ball> = Source::new(1);
     /// `soccer/game_state`
     pub(crate) const GAME_STATE: Source<soccer::GameState> = Source::new(2);
+}
+
+/// The timers.
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+pub(super) mod timers {
+    use yase::typed::Timer;
+
+    /// `watch_timeout`
+    pub(crate) const watch_timeout: Timer = Timer(0);
 }
 
 /// The values of enumerations.

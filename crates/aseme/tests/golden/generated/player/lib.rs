@@ -1,6 +1,6 @@
 //! The statechart `player`.
 //!
-//! Generated from `models/goalie.srm`: what is changed here is lost when that is done again.
+//! Generated from `models/patrol.srm`: what is changed here is lost when that is done again.
 //!
 //! [`State`] lists its states; the module `chart` says how they hang together, `guards` what the guards ask and what is assigned,
 //! `words` what these speak of.

@@ -1,0 +1,219 @@
+//! Refinements that survive: what was said of states and transitions is kept when formulas are edited, and nothing vanishes.
+//!
+//! A role's entries name states by paths. [`put_aside`] goes through a role whose formulas were edited: entries that still fit stay as they are, letter by letter;
+//! each that no longer does becomes a comment where it stood, with the reason and what it might have meant. [`carry`] brings what another model says (an older
+//! role, a chart that was refined in an editor) into a role; [`keep`] brings what only a model file can say (functionalities, variables, metadata)
+//! from an older chart into a newer one.
+
+mod charts;
+mod entries;
+
+use yase::{Diagnostic, NodeId, NodeKind, Statechart, TransitionId};
+
+use crate::path;
+use crate::refine::{self, Unmatched};
+use crate::srm::{Entry, Section, SrmFile, StateEntry, TransitionEntry};
+use crate::{liveness_to_statechart, srm_to_iac};
+
+pub use charts::keep;
+pub use entries::{entries_of_chart, entries_of_role};
+
+/// A role's text with what it could keep, and what it could not.
+#[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
+pub struct Regenerated {
+    /// The text. What was lost stands in it as comments.
+    pub text: String,
+    /// How many entries are in force that were carried, or stayed.
+    pub kept: usize,
+    /// What fits no longer, in order.
+    pub lost: Vec<Unmatched>,
+}
+
+/// The role with every entry that no longer fits as a comment in its place.
+///
+/// # Errors
+/// The formulas themselves cannot be expanded, or the file is XMI, which has no comments.
+pub fn put_aside(file: &SrmFile) -> Result<Regenerated, Vec<Diagnostic>> {
+    let (mut chart, found) = liveness_to_statechart(&file.srm().liveness);
+    if found.iter().any(Diagnostic::is_error) {
+        return Err(found);
+    }
+    let srm = file.srm();
+    let mut lost = refine::refine(&mut chart, &srm.transitions);
+    lost.extend(refine::refine_states(&mut chart, &srm.states));
+    let entries: Vec<Entry> = file.entries().iter().copied().filter(is_refinement).collect();
+    let mut text = file.text().to_owned();
+    let mut count = 0;
+    // from the end, so that places before stay true
+    for entry in entries.iter().rev() {
+        if let Some(unmatched) = lost.iter().find(|it| it.diagnostic.span == entry.span) {
+            set_aside(&mut text, entry, unmatched);
+            count += 1;
+        }
+    }
+    Ok(Regenerated { text, kept: entries.len() - count, lost })
+}
+
+fn is_refinement(entry: &Entry) -> bool {
+    matches!(entry.section, Section::Transitions | Section::States)
+}
+
+/// Puts `# ` before each line of an entry, and the reason above it.
+fn set_aside(text: &mut String, entry: &Entry, unmatched: &Unmatched) {
+    let (start, end) = (entry.span.start, entry.span.end);
+    let comment = comment(&text[start..end], &unmatched.diagnostic);
+    text.replace_range(start..end, &comment);
+}
+
+/// An old text as comments, with the reason above.
+fn comment(old: &str, reason: &Diagnostic) -> String {
+    let hint = reason.hint.as_ref().map_or(String::new(), |hint| format!("; {hint}"));
+    let what = reason.message.rsplit("` ").next().unwrap_or_default();
+    let what = if reason.code == "E0250" || reason.code == "E0251" { what } else { reason.message.as_str() };
+    let lines: Vec<String> = old.lines().map(|line| format!("# {}", line.trim_end())).collect();
+    format!("# lost: this {what}{hint}\n{}", lines.join("\n"))
+}
+
+/// A role with the entries of another model besides its own. Its own hold: an entry that says another thing of the same state or transition is lost, as is one
+/// that fits nowhere, and stands as a comment at the end.
+///
+/// # Errors
+/// The formulas of the role cannot be expanded, or entries of its own do not fit: these are to be put aside first.
+pub fn carry(file: &SrmFile, entries: &[(Section, String)]) -> Result<Regenerated, Vec<Diagnostic>> {
+    let (chart, found) = srm_to_iac(file.srm());
+    if found.iter().any(Diagnostic::is_error) {
+        return Err(found);
+    }
+    let (plain, _) = liveness_to_statechart(&file.srm().liveness);
+    let mut carrying = Carrying { plain, chart, added: Vec::new(), kept: 0, lost: Vec::new() };
+    for (section, text) in entries {
+        carrying.entry(*section, text);
+    }
+    let Carrying { added, kept, lost, .. } = carrying;
+    let mut text = file.text().to_owned();
+    for section in [Section::Constants, Section::Transitions, Section::States] {
+        let lines: Vec<&str> =
+            added.iter().filter(|(of, _)| *of == section).map(|(_, line)| line.as_str()).collect();
+        text = entries::inserted(&text, section, &lines);
+    }
+    for unmatched in &lost {
+        let gap = if text.ends_with('\n') { "" } else { "\n" };
+        text = format!("{text}{gap}{}\n", comment(&unmatched.text, &unmatched.diagnostic));
+    }
+    Ok(Regenerated { text, kept, lost })
+}
+
+struct Carrying {
+    /// The chart of the formulas alone, in which paths are looked up.
+    plain: Statechart,
+    /// The chart as it is refined so far.
+    chart: Statechart,
+    added: Vec<(Section, String)>,
+    kept: usize,
+    lost: Vec<Unmatched>,
+}
+
+impl Carrying {
+    fn entry(&mut self, section: Section, text: &str) {
+        let (file, found) =
+            SrmFile::parse(format!("Role: r\nLiveness:\nr = a\n{}:\n{text}\n", section.word()));
+        let srm = file.srm();
+        let errors = found.into_iter().find(Diagnostic::is_error);
+        let outcome = match (errors, srm.transitions.first(), srm.states.first()) {
+            (Some(error), ..) => {
+                Err(Unmatched { text: text.into(), candidates: Vec::new(), diagnostic: error })
+            }
+            (None, Some(entry), _) => self.transition(entry),
+            (None, _, Some(entry)) => self.state(entry),
+            (None, None, None) => self.constants(&srm.constants, text),
+        };
+        match outcome {
+            Ok(is_new) => {
+                self.kept += 1;
+                self.added.extend(is_new.then(|| (section, text.to_owned())));
+            }
+            Err(unmatched) => self.lost.push(unmatched),
+        }
+    }
+
+    /// Whether the entry is to be added, or said already.
+    fn transition(&mut self, entry: &TransitionEntry) -> Result<bool, Unmatched> {
+        let mut scratch = self.plain.clone();
+        if let Some(unmatched) = refine::refine(&mut scratch, std::slice::from_ref(entry)).pop() {
+            return Err(unmatched);
+        }
+        let named: Vec<TransitionId> = path::transitions(&self.plain, &entry.source, &entry.target).collect();
+        let (mut is_new, mut taken) = (false, None);
+        for id in named {
+            let (own, wished) = (self.chart.transition(id), scratch.transition(id));
+            let says = |it: &yase::Transition| {
+                (it.expression.to_string(), it.priority, it.weight.map(f64::to_bits), it.interrupts)
+            };
+            if says(own) == says(self.plain.transition(id)) {
+                is_new = is_new || says(wished) != says(own);
+            } else if says(own) != says(wished)
+                && !(entry.source.has_wildcard() || entry.target.has_wildcard())
+            {
+                taken = Some(path::shortest_transition(&self.plain, id));
+            }
+        }
+        if let Some(taken) = taken {
+            return Err(conflict(&entry.text, &taken));
+        }
+        if is_new {
+            refine::refine(&mut self.chart, std::slice::from_ref(entry));
+        }
+        Ok(is_new)
+    }
+
+    fn state(&mut self, entry: &StateEntry) -> Result<bool, Unmatched> {
+        let mut scratch = self.plain.clone();
+        if let Some(unmatched) = refine::refine_states(&mut scratch, std::slice::from_ref(entry)).pop() {
+            return Err(unmatched);
+        }
+        let ids: Vec<_> =
+            self.plain.nodes().map(|(id, _)| id).filter(|&id| entry.path.matches(&self.plain, id)).collect();
+        let mut is_new = false;
+        for id in ids {
+            let (plain, own, wished) = (self.plain.node(id), self.chart.node(id), scratch.node(id));
+            if own != wished && own != plain {
+                return Err(conflict(&entry.text, &path::shortest_path(&self.plain, id)));
+            }
+            let (own_history, wished_history) = (history(&self.chart, id), history(&scratch, id));
+            if wished_history.is_some() && own_history.is_some() && own_history != wished_history {
+                return Err(conflict(&entry.text, &path::shortest_path(&self.plain, id)));
+            }
+            is_new = is_new || own != wished || own_history != wished_history;
+        }
+        if is_new {
+            refine::refine_states(&mut self.chart, std::slice::from_ref(entry));
+        }
+        Ok(is_new)
+    }
+
+    fn constants(&mut self, constants: &[yase::statechart::Constant], text: &str) -> Result<bool, Unmatched> {
+        let Some(constant) = constants.first() else { return Ok(false) };
+        match self.chart.constants.iter().find(|own| own.name == constant.name) {
+            Some(own) if own.value == constant.value => Ok(false),
+            Some(_) => Err(conflict(text, &constant.name)),
+            None => {
+                self.chart.constants.push(constant.clone());
+                Ok(true)
+            }
+        }
+    }
+}
+
+/// How a composite remembers what was active in it.
+fn history(chart: &Statechart, id: NodeId) -> Option<NodeKind> {
+    let kinds = chart.children(id).iter().map(|&child| chart.node(child).kind);
+    kinds.into_iter().find(|kind| matches!(kind, NodeKind::ShallowHistory | NodeKind::DeepHistory))
+}
+
+fn conflict(text: &str, named: &str) -> Unmatched {
+    let message = format!("`{text}`: the role says another thing of `{named}` itself");
+    let diagnostic =
+        Diagnostic::error("E0255", yase::Span::default(), message).with_hint("keep one of the two");
+    Unmatched { text: text.into(), candidates: vec![named.into()], diagnostic }
+}

@@ -1,0 +1,178 @@
+//! From an older model file of a chart to a newer one.
+
+use yase::{Diagnostic, NodeId, Span, Statechart};
+
+use crate::diff::pairs::Pairs;
+use crate::iac::{Iac, IacNode};
+
+/// Gives a chart what an older one says and it does not: of states the functionality, the variables, metadata and refinements, of transitions expression,
+/// refinements and metadata. States are the same as in [`diff`](crate::diff): also those that have another name because the formula around them is another.
+///
+/// What the newer one has no place for, or says otherwise, is returned with its old text (E0852).
+pub fn keep(older: &Iac, newer: &mut Iac) -> Vec<Diagnostic> {
+    let (before, after) = (older.to_statechart().0, newer.to_statechart().0);
+    let pairs = Pairs::between(&before, &after);
+    let mut keeping = Keeping { older, newer, pairs, lost: Vec::new() };
+    keeping.header();
+    keeping.states(&before);
+    keeping.transitions(&before);
+    keeping.lost
+}
+
+struct Keeping<'a> {
+    older: &'a Iac,
+    newer: &'a mut Iac,
+    pairs: Pairs,
+    lost: Vec<Diagnostic>,
+}
+
+impl Keeping<'_> {
+    fn lose(&mut self, place: Span, what: String) {
+        let found = Diagnostic::warning("E0852", place, what);
+        self.lost.push(found.with_hint("say it in the newer model by hand, if it is still meant"));
+    }
+
+    fn header(&mut self) {
+        for (own, old) in [
+            (&mut self.newer.description, &self.older.description),
+            (&mut self.newer.metadata, &self.older.metadata),
+        ] {
+            if own.is_empty() {
+                own.clone_from(old);
+            }
+        }
+        for constant in &self.older.constants {
+            if !self.newer.constants.iter().any(|own| own.name == constant.name) {
+                self.newer.constants.push(constant.clone());
+            }
+        }
+    }
+
+    fn states(&mut self, before: &Statechart) {
+        for (index, old) in self.older.nodes.iter().enumerate() {
+            let plain = IacNode {
+                name: old.name.clone(),
+                label: old.label.clone(),
+                kind: old.kind.clone(),
+                parent: old.parent,
+                place: old.place,
+                ..IacNode::default()
+            };
+            if *old == plain {
+                continue;
+            }
+            let id = NodeId(index as u32);
+            match self.pairs.later(id).filter(|new| (new.0 as usize) < self.newer.nodes.len()) {
+                Some(new) => self.state(old, new.0 as usize, &before.path(id)),
+                None => self.lose(
+                    old.place.0,
+                    format!("`{}` is gone, and with it: {}", before.path(id), said_of(old, self.older)),
+                ),
+            }
+        }
+    }
+
+    fn state(&mut self, old: &IacNode, new: usize, path: &str) {
+        let variables: Vec<usize> = old
+            .variables
+            .iter()
+            .filter_map(|&index| self.older.variables.get(index))
+            .map(|variable| self.newer.variable(variable))
+            .collect();
+        let node = &mut self.newer.nodes[new];
+        for variable in variables {
+            if !node.variables.contains(&variable) {
+                node.variables.push(variable);
+            }
+        }
+        let mut differing = Vec::new();
+        for (what, own, old) in [
+            ("functionality", &mut node.functionality, &old.functionality),
+            ("actions", &mut node.actions, &old.actions),
+            ("metadata", &mut node.metadata, &old.metadata),
+        ] {
+            if own.is_empty() {
+                own.clone_from(old);
+            } else if own != old && !old.is_empty() {
+                differing.push(format!("{what} = {old}"));
+            }
+        }
+        if node.refinement == Default::default() {
+            node.refinement = old.refinement.clone();
+        } else if node.refinement != old.refinement && old.refinement != Default::default() {
+            differing.push(said_of(
+                &IacNode { refinement: old.refinement.clone(), ..IacNode::default() },
+                self.older,
+            ));
+        }
+        for text in differing {
+            self.lose(old.place.0, format!("of `{path}` the newer chart says another thing than `{text}`"));
+        }
+    }
+
+    /// Those with the same ends; several between the same two are matched in order.
+    fn transitions(&mut self, before: &Statechart) {
+        let mut used = vec![false; self.newer.transitions.len()];
+        for old in &self.older.transitions {
+            let later = |node: usize| Some(self.pairs.later(NodeId(node as u32))?.0 as usize);
+            let ends = later(old.source).zip(later(old.target));
+            let place = ends.and_then(|(source, target)| {
+                let mut all = self.newer.transitions.iter().enumerate();
+                all.position(|(index, it)| !used[index] && (it.source, it.target) == (source, target))
+            });
+            let plain = old.te.is_empty() && old.metadata.is_empty() && old.refinement == Default::default();
+            if let Some(place) = place {
+                used[place] = true;
+            }
+            if plain {
+                continue;
+            }
+            let arrow = || {
+                let path = |node: usize| before.path(NodeId(node as u32));
+                format!("{} -> {} : {}", path(old.source), path(old.target), old.te)
+            };
+            let Some(place) = place else {
+                self.lose(old.place.0, format!("there is no such transition any more: `{}`", arrow()));
+                continue;
+            };
+            let new = &mut self.newer.transitions[place];
+            if new.metadata.is_empty() {
+                new.metadata.clone_from(&old.metadata);
+            }
+            if new.te.is_empty() && new.refinement == Default::default() {
+                (new.te, new.refinement) = (old.te.clone(), old.refinement.clone());
+            } else if (&new.te, &new.refinement) != (&old.te, &old.refinement) {
+                let text = format!("the newer chart says another thing than `{}`", arrow());
+                self.lose(old.place.0, text);
+            }
+        }
+    }
+}
+
+/// All that a file says of a state.
+fn said_of(node: &IacNode, iac: &Iac) -> String {
+    let refinement = &node.refinement;
+    let variables: Vec<&str> = node
+        .variables
+        .iter()
+        .filter_map(|&index| iac.variables.get(index))
+        .map(|it| it.name.as_str())
+        .collect();
+    let number = |value: i32| if value == 0 { String::new() } else { value.to_string() };
+    let duration = refinement.duration.map_or(String::new(), |it| format!("{}ms", it.as_secs_f64() * 1000.0));
+    let said = [
+        ("functionality", node.functionality.clone()),
+        ("variables", variables.join(", ")),
+        ("actions", node.actions.clone()),
+        ("metadata", node.metadata.clone()),
+        ("activity", refinement.activity.clone().unwrap_or_default()),
+        ("priority", number(refinement.priority)),
+        ("entry", refinement.entry.clone()),
+        ("exit", refinement.exit.clone()),
+        ("defer", refinement.defer.clone()),
+        ("duration", duration),
+    ];
+    let said =
+        said.iter().filter(|(_, text)| !text.is_empty()).map(|(what, text)| format!("{what} = {text}"));
+    said.collect::<Vec<_>>().join(", ")
+}

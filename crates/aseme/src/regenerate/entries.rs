@@ -1,0 +1,108 @@
+//! What a model says of states and transitions, as entries of a role.
+
+use yase::export::notation::{modifiers, refinements};
+use yase::statechart::ConstantValue;
+use yase::{NodeId, NodeKind, Statechart, Transition, TransitionId};
+
+use crate::path;
+use crate::srm::{Section, SrmFile};
+use crate::text;
+
+/// The entries of a role, each on one line, without comments.
+pub fn entries_of_role(file: &SrmFile) -> Vec<(Section, String)> {
+    let blanked = text::without_comments(file.text());
+    let carried = [Section::Constants, Section::Transitions, Section::States];
+    let entries = file.entries().iter().filter(|entry| carried.contains(&entry.section));
+    let line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    entries.map(|entry| (entry.section, line(&blanked[entry.span.start..entry.span.end]))).collect()
+}
+
+/// All that a chart says of its states and transitions besides what its formulas make, each named by the shortest path.
+pub fn entries_of_chart(chart: &Statechart) -> Vec<(Section, String)> {
+    let constants = chart.constants.iter().map(|constant| {
+        let value = match &constant.value {
+            ConstantValue::Bool(value) => value.to_string(),
+            ConstantValue::Number(value) => value.to_string(),
+            ConstantValue::Text(text) => crate::document::quoted(text),
+        };
+        (Section::Constants, format!("{} = {value}", constant.name))
+    });
+    let transitions = chart.transitions().filter(|(_, it)| says_something(it));
+    let transitions = transitions.map(|(id, it)| (Section::Transitions, transition(chart, id, it)));
+    let states = chart.nodes().filter_map(|(id, _)| state(chart, id));
+    constants.chain(transitions).chain(states.map(|line| (Section::States, line))).collect()
+}
+
+fn says_something(transition: &Transition) -> bool {
+    !transition.expression.is_empty() || !modifiers(transition).is_empty()
+}
+
+fn transition(chart: &Statechart, id: TransitionId, transition: &Transition) -> String {
+    let path = match history_of(chart, transition.target) {
+        // in a role it is the composite that is entered so
+        Some(owner) => {
+            let (source, target) =
+                (path::shortest_path(chart, transition.source), path::shortest_path(chart, owner));
+            format!("{source} -> {target}")
+        }
+        None => path::shortest_transition(chart, id),
+    };
+    let colon = if transition.expression.is_empty() {
+        String::new()
+    } else {
+        format!(" : {}", transition.expression)
+    };
+    one_line(&format!("{path}{}{colon}", modifiers(transition)))
+}
+
+fn history_of(chart: &Statechart, id: NodeId) -> Option<NodeId> {
+    let is_history = matches!(chart.node(id).kind, NodeKind::ShallowHistory | NodeKind::DeepHistory);
+    chart.node(id).parent.filter(|_| is_history)
+}
+
+fn state(chart: &Statechart, id: NodeId) -> Option<String> {
+    let mut said = refinements(chart.node(id));
+    let histories = chart.children(id).iter().filter_map(|&child| match chart.node(child).kind {
+        NodeKind::ShallowHistory => Some("history = shallow".to_owned()),
+        NodeKind::DeepHistory => Some("history = deep".to_owned()),
+        _ => None,
+    });
+    said.extend(histories);
+    (!said.is_empty()).then(|| one_line(&format!("{} : {}", path::shortest_path(chart, id), said.join(", "))))
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The text of a role with lines at the end of one of its sections, which is made where it is missing.
+pub(super) fn inserted(text: &str, section: Section, lines: &[&str]) -> String {
+    if lines.is_empty() {
+        return text.to_owned();
+    }
+    let (file, _) = SrmFile::parse(text);
+    let block = lines.join("\n");
+    let last = file.entries().iter().rfind(|entry| entry.section == section);
+    if let Some(last) = last {
+        // behind the comment on the same line
+        let end = text[last.span.end..].find('\n').map_or(text.len(), |at| last.span.end + at);
+        return format!("{}\n{block}{}", &text[..end], &text[end..]);
+    }
+    let blanked = text::without_comments(text);
+    let header = format!("{}:", section.word());
+    let mut start = 0;
+    for line in blanked.split_inclusive('\n') {
+        let end = start + line.len();
+        if line.trim() == header {
+            let gap = if line.ends_with('\n') { "" } else { "\n" };
+            return format!("{}{gap}{block}\n{}", &text[..end], &text[end..]);
+        }
+        start = end;
+    }
+    let is_bare =
+        !file.entries().iter().any(|entry| entry.section == Section::Role) && !blanked.contains("Liveness:");
+    let text =
+        if is_bare { format!("Role: {}\nLiveness:\n{text}", file.srm().role) } else { text.to_owned() };
+    let gap = if text.ends_with('\n') { "" } else { "\n" };
+    format!("{text}{gap}\n{header}\n{block}\n")
+}

@@ -1,0 +1,156 @@
+//! Refinements that survive the edit of a formula.
+
+use aseme::iac::ChartKind;
+use aseme::regenerate::{Regenerated, carry, entries_of_chart, entries_of_role, keep, put_aside};
+use aseme::{Iac, SrmFile, srm_to_iac, to_text};
+use yase::{NodeKind, Statechart};
+
+const ROLE: &str = "\
+Role: player
+Liveness:
+player = Stand . ( Search | act )   # what it does
+act = Track . Kick
+Constants:
+near = 0.25
+Transitions:
+CONDITION -> Search !2 : [!Ball.found]
+CONDITION -> act interrupts : [Ball.found]
+# nearly there
+Track -> Kick
+        : [Ball.distance < near]   # then kick
+States:
+Kick : priority = 5, entry = raise(kick), exit = raise(kicked), duration = 2s
+Search : defer = go stop
+act : history = deep
+";
+
+fn file(text: &str) -> SrmFile {
+    let (file, found) = SrmFile::parse(text);
+    assert_eq!(found, []);
+    file
+}
+
+fn chart(text: &str) -> Statechart {
+    let (chart, found) = srm_to_iac(file(text).srm());
+    assert_eq!(found, []);
+    chart
+}
+
+#[test]
+fn what_fits_stays_letter_by_letter() {
+    let Regenerated { text, kept, lost, .. } = put_aside(&file(ROLE)).unwrap();
+    assert_eq!((text.as_str(), kept, lost.len()), (ROLE, 6, 0));
+}
+
+#[test]
+fn what_no_longer_fits_becomes_a_comment_with_its_reason() {
+    let edited = ROLE
+        .replace("act = Track . Kick", "act = Track . [Align] . Kick")
+        .replace("Search | act", "Find | act");
+    let made = put_aside(&file(&edited)).unwrap();
+    assert_eq!((made.kept, made.lost.len()), (3, 3));
+    for lost in [
+        "# lost: this names no transition of the chart; did you mean one of `Track -> [Align]`, `[Align] -> Kick`?\n\
+         # Track -> Kick\n#         : [Ball.distance < near]   # then kick\n",
+        "# CONDITION -> Search !2 : [!Ball.found]\n",
+        "# Search : defer = go stop\n",
+    ] {
+        assert!(made.text.contains(lost), "{lost}\nis not in\n{}", made.text);
+    }
+    assert!(made.text.contains("# nearly there\n"), "comments stay");
+    let refined = chart(&made.text);
+    assert!(to_text(&refined).contains("-> HISTORY interrupts : [Ball.found]"), "what is left is in force");
+    let again = put_aside(&file(&made.text)).unwrap();
+    assert_eq!((again.text, again.lost), (made.text, Vec::new()), "once is enough");
+}
+
+#[test]
+fn a_composite_with_history_is_entered_where_it_was_left() {
+    let (chart, act) = (chart(ROLE), |chart: &Statechart| chart.find("act").unwrap());
+    let history = chart.children(act(&chart)).last().copied().unwrap();
+    assert_eq!(chart.node(history).kind, NodeKind::DeepHistory);
+    let into: Vec<_> = chart.transitions().filter(|(_, it)| it.target == history).collect();
+    assert_eq!(into.len(), 1);
+    assert_eq!(into[0].1.expression.to_string(), "[Ball.found]");
+    assert!(chart.transitions().all(|(_, it)| it.target != act(&chart)));
+    let (_, found) = srm_to_iac(file(&ROLE.replace("act : history", "Track : history")).srm());
+    let found: Vec<&str> = found.iter().map(|found| found.message.as_str()).collect();
+    assert_eq!(found, ["`Track` has no states inside that it could remember"]);
+    let (_, found) = SrmFile::parse(ROLE.replace("= deep", "= far"));
+    assert_eq!(
+        found[0].to_string(),
+        "error[E0245]: `far` is not a value for `history` (`shallow` or `deep`)"
+    );
+}
+
+/// The chart that a role's text describes, with all of it said in entries.
+#[test]
+fn a_chart_says_its_refinements_as_entries_and_a_role_takes_them_in() {
+    let formulas = &ROLE[..ROLE.find("Constants:").unwrap()];
+    let entries = entries_of_chart(&chart(ROLE));
+    let made = carry(&file(formulas), &entries).unwrap();
+    assert_eq!((made.kept, made.lost.len()), (7, 0), "{}", made.text);
+    assert_eq!(to_text(&chart(&made.text)), to_text(&chart(ROLE)), "{}", made.text);
+    let again = carry(&file(&made.text), &entries).unwrap();
+    assert!(again.lost.is_empty(), "{:?}", again.lost);
+    assert_eq!(to_text(&chart(&again.text)), to_text(&chart(ROLE)));
+    let bare =
+        carry(&file("player = Stand . (Search|act)\nact = Track . Kick"), &entries_of_role(&file(ROLE)))
+            .unwrap();
+    assert_eq!(to_text(&chart(&bare.text)), to_text(&chart(ROLE)), "{}", bare.text);
+}
+
+#[test]
+fn what_the_role_says_itself_holds_and_the_other_is_listed() {
+    let own = "Role: player\nLiveness:\nplayer = Stand . (Search | act)\nact = Track . [Align] . Kick\nTransitions:\nCONDITION -> act : [up]\n";
+    let made = carry(&file(own), &entries_of_role(&file(ROLE))).unwrap();
+    let lost: Vec<&str> = made.lost.iter().map(|lost| lost.text.as_str()).collect();
+    assert_eq!(
+        lost,
+        ["CONDITION -> act interrupts : [Ball.found]", "Track -> Kick : [Ball.distance < near]"]
+    );
+    assert!(
+        made.text.contains("CONDITION -> act : [up]\nCONDITION -> Search !2 : [!Ball.found]\n"),
+        "{}",
+        made.text
+    );
+    for text in lost {
+        assert!(made.text.contains(&format!("\n# {text}\n")), "{}", made.text);
+    }
+    chart(&made.text);
+}
+
+#[test]
+fn a_chart_keeps_what_only_its_file_can_say() {
+    let mut older =
+        Iac::from_statechart(&chart("player = Stand . (Search|act)\nact = Track . Kick"), ChartKind::Intra);
+    let place = |iac: &Iac, name: &str| iac.nodes.iter().position(|node| node.name == name).unwrap();
+    for (name, functionality) in [("Kick", "motion"), ("Search", "vision")] {
+        let place = place(&older, name);
+        older.nodes[place].functionality = functionality.into();
+        older.nodes[place].metadata = format!("at 10 20 of {name}");
+    }
+    let kick = place(&older, "Kick");
+    let end = older.transitions.iter_mut().find(|it| it.source == kick).unwrap();
+    end.te = "[far]".into();
+    let search = place(&older, "Search");
+    older.transitions.iter_mut().find(|it| it.target == search).unwrap().te = "[lost]".into();
+
+    let mut newer = Iac::from_statechart(
+        &chart("player = Stand . (Find|Wait|act)\nact = Track . [Align] . Kick"),
+        ChartKind::Intra,
+    );
+    let lost = keep(&older, &mut newer);
+    let node = &newer.nodes[place(&newer, "Kick")];
+    assert_eq!((node.functionality.as_str(), node.metadata.as_str()), ("motion", "at 10 20 of Kick"));
+    let kick = place(&newer, "Kick");
+    assert_eq!(newer.transitions.iter().find(|it| it.source == kick).unwrap().te, "[far]");
+    let lost: Vec<&str> = lost.iter().map(|lost| lost.message.as_str()).collect();
+    assert_eq!(
+        lost,
+        [
+            "`player/(Search|act)/Search` is gone, and with it: functionality = vision, metadata = at 10 20 of Search",
+            "there is no such transition any more: `player/(Search|act)/CONDITION -> player/(Search|act)/Search : [lost]`",
+        ]
+    );
+}
