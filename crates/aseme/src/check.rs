@@ -38,6 +38,7 @@ mod language;
 pub mod logic;
 mod places;
 mod profiles;
+mod protocol;
 mod roles;
 mod structure;
 mod subject;
@@ -50,6 +51,7 @@ use std::sync::Arc;
 
 use yase::{Diagnostic, Severity, Source};
 
+pub use protocol::{Conformance, chart_conforms, player_conforms};
 pub use world::World;
 
 use crate::convert::{self, Model};

@@ -122,7 +122,7 @@ impl Carrying {
         let errors = found.into_iter().find(Diagnostic::is_error);
         let outcome = match (errors, srm.transitions.first(), srm.states.first()) {
             (Some(error), ..) => {
-                Err(Unmatched { text: text.into(), candidates: Vec::new(), diagnostic: error })
+                Err(Box::new(Unmatched { text: text.into(), candidates: Vec::new(), diagnostic: error }))
             }
             (None, Some(entry), _) => self.transition(entry),
             (None, _, Some(entry)) => self.state(entry),
@@ -133,15 +133,15 @@ impl Carrying {
                 self.kept += 1;
                 self.added.extend(is_new.then(|| (section, text.to_owned())));
             }
-            Err(unmatched) => self.lost.push(unmatched),
+            Err(unmatched) => self.lost.push(*unmatched),
         }
     }
 
     /// Whether the entry is to be added, or said already.
-    fn transition(&mut self, entry: &TransitionEntry) -> Result<bool, Unmatched> {
+    fn transition(&mut self, entry: &TransitionEntry) -> Result<bool, Box<Unmatched>> {
         let mut scratch = self.plain.clone();
         if let Some(unmatched) = refine::refine(&mut scratch, std::slice::from_ref(entry)).pop() {
-            return Err(unmatched);
+            return Err(Box::new(unmatched));
         }
         let named: Vec<TransitionId> = path::transitions(&self.plain, &entry.source, &entry.target).collect();
         let (mut is_new, mut taken) = (false, None);
@@ -167,10 +167,10 @@ impl Carrying {
         Ok(is_new)
     }
 
-    fn state(&mut self, entry: &StateEntry) -> Result<bool, Unmatched> {
+    fn state(&mut self, entry: &StateEntry) -> Result<bool, Box<Unmatched>> {
         let mut scratch = self.plain.clone();
         if let Some(unmatched) = refine::refine_states(&mut scratch, std::slice::from_ref(entry)).pop() {
-            return Err(unmatched);
+            return Err(Box::new(unmatched));
         }
         let ids: Vec<_> =
             self.plain.nodes().map(|(id, _)| id).filter(|&id| entry.path.matches(&self.plain, id)).collect();
@@ -192,7 +192,11 @@ impl Carrying {
         Ok(is_new)
     }
 
-    fn constants(&mut self, constants: &[yase::statechart::Constant], text: &str) -> Result<bool, Unmatched> {
+    fn constants(
+        &mut self,
+        constants: &[yase::statechart::Constant],
+        text: &str,
+    ) -> Result<bool, Box<Unmatched>> {
         let Some(constant) = constants.first() else { return Ok(false) };
         match self.chart.constants.iter().find(|own| own.name == constant.name) {
             Some(own) if own.value == constant.value => Ok(false),
@@ -211,9 +215,9 @@ fn history(chart: &Statechart, id: NodeId) -> Option<NodeKind> {
     kinds.into_iter().find(|kind| matches!(kind, NodeKind::ShallowHistory | NodeKind::DeepHistory))
 }
 
-fn conflict(text: &str, named: &str) -> Unmatched {
+fn conflict(text: &str, named: &str) -> Box<Unmatched> {
     let message = format!("`{text}`: the role says another thing of `{named}` itself");
     let diagnostic =
         Diagnostic::error("E0255", yase::Span::default(), message).with_hint("keep one of the two");
-    Unmatched { text: text.into(), candidates: vec![named.into()], diagnostic }
+    Box::new(Unmatched { text: text.into(), candidates: vec![named.into()], diagnostic })
 }

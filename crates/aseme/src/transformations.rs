@@ -24,8 +24,10 @@ mod suc_to_aip;
 mod suc_to_srm;
 
 pub use aip_to_eac::aip_to_eac;
+pub(crate) use aip_to_eac::{conditions, protocol_formulas};
 pub use functionality_table::functionality_table;
 pub use merge::merge_eac;
+pub(crate) use merge::{Found, participants, same_shape};
 pub use roles_to_iac::roles_to_iac;
 pub use sag_to_suc::sag_to_suc;
 pub use suc_to_aip::suc_to_aip;

@@ -107,6 +107,20 @@ pub(crate) enum ModelCommand {
     ///
     /// Ends with 0 if nothing is wrong or there are warnings only, with 3 if a model cannot be read, and with 5 if a check finds an error.
     Check(CheckArguments),
+    /// Say whether charts hold to a protocol: that of the protocol itself, and those of its players.
+    ///
+    /// What a file is, is told by its kind: the protocols (AIP), their charts (EAC; made from the protocols if none is given), the charts or roles of players.
+    /// Ends with 0 if they conform, and with 5 if one does not.
+    #[command(
+        after_help = "Example: monas model conform models/extended_attacker.iac models/attack.eac models/attack.aip"
+    )]
+    Conform {
+        /// The model files.
+        #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        files: Vec<PathBuf>,
+        #[command(flatten)]
+        format: FormatArgument,
+    },
     /// Say what differs between the statecharts of two models: states, transitions, what is written on them.
     ///
     /// Ends with 0 if nothing differs, and with 5 if something does.

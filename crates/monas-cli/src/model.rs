@@ -1,6 +1,7 @@
 //! `monas model`: models read, transformed, converted, compared, drawn and checked.
 
 mod check;
+mod conform;
 mod convert;
 mod diff;
 mod regenerate;
@@ -27,6 +28,7 @@ pub(crate) fn execute(command: &ModelCommand, console: &mut Console<'_>) -> Resu
         ModelCommand::Convert(arguments) => convert::execute(arguments, console),
         ModelCommand::Draw { file, output, format } => draw(file, output.as_deref(), format.value, console),
         ModelCommand::Check(arguments) => check::execute(arguments, console),
+        ModelCommand::Conform { files, format } => conform::execute(files, format.value, console),
         ModelCommand::Diff(arguments) => diff::execute(arguments, console),
         ModelCommand::Regenerate(arguments) => regenerate::execute(arguments, console),
         ModelCommand::Run { file, trace, format } => run::execute(file, trace, format.value, console),

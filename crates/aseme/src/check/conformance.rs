@@ -40,11 +40,30 @@ pub(super) enum DifferenceKind {
 
 /// The first difference in each direction: what the chart does, then what it cannot do. Nothing is said of what is too large to be judged.
 pub(super) fn differences(chart: &Statechart, found: &Exploration, liveness: &Liveness) -> Vec<Difference> {
-    let Some((language, all)) = Language::new(liveness) else { return Vec::new() };
-    let mut comparison = Comparison { chart, found, language, outgoing: outgoing(found) };
+    compared(chart, found, liveness, false).0
+}
+
+/// The same of a chart that may be left early: that it ends where the formulas go on is no difference. And whether all of it was judged.
+pub(super) fn differences_of_what_is_left_early(
+    chart: &Statechart,
+    found: &Exploration,
+    liveness: &Liveness,
+) -> (Vec<Difference>, bool) {
+    compared(chart, found, liveness, true)
+}
+
+fn compared(
+    chart: &Statechart,
+    found: &Exploration,
+    liveness: &Liveness,
+    may_end_early: bool,
+) -> (Vec<Difference>, bool) {
+    let Some((language, all)) = Language::new(liveness) else { return (Vec::new(), false) };
+    let outgoing = outgoing(found);
+    let mut comparison = Comparison { chart, found, language, may_end_early, outgoing, is_whole: true };
     let does = comparison.does_more(all);
     let cannot = if found.is_finished() { comparison.does_less(all) } else { None };
-    does.into_iter().chain(cannot).collect()
+    (does.into_iter().chain(cannot).collect(), comparison.is_whole)
 }
 
 fn outgoing(found: &Exploration) -> Vec<Vec<usize>> {
@@ -61,8 +80,12 @@ struct Comparison<'a> {
     chart: &'a Statechart,
     found: &'a Exploration,
     language: Language,
+    /// Whether it may end where the formulas go on.
+    may_end_early: bool,
     /// The edges out of each state.
     outgoing: Vec<Vec<usize>>,
+    /// Whether nothing was too large to be looked at.
+    is_whole: bool,
 }
 
 type Rests = BTreeSet<Rest>;
@@ -86,10 +109,11 @@ impl Comparison<'_> {
         let mut open = VecDeque::from(starts);
         while let Some(at) = open.pop_front() {
             if came.len() > MOST || self.language.is_too_large() {
+                self.is_whole = false;
                 return None;
             }
             let ends = self.found.states()[at.0].status == Status::Finished;
-            if ends && !at.1.iter().any(|&rest| self.language.may_end(rest)) {
+            if ends && !self.may_end_early && !at.1.iter().any(|&rest| self.language.may_end(rest)) {
                 return Some(self.difference(DifferenceKind::EndsEarly, &came, &at, None));
             }
             for &index in &self.outgoing[at.0].clone() {
@@ -138,6 +162,7 @@ impl Comparison<'_> {
         while let Some(((states, rests), before)) = open.pop_front() {
             work += states.len() * (1 + rests.len());
             if work > MOST || self.language.is_too_large() {
+                self.is_whole = false;
                 return None;
             }
             let may_end = rests.iter().any(|&rest| self.language.may_end(rest));
@@ -266,7 +291,7 @@ mod tests {
     }
 
     /// The differences, if the chart is small enough to be explored.
-    fn compared(chart: &Statechart, liveness: &Liveness) -> Option<Vec<DifferenceKind>> {
+    fn found_in(chart: &Statechart, liveness: &Liveness) -> Option<Vec<DifferenceKind>> {
         let vocabulary = Vocabulary { scripts: true, ..Vocabulary::default() };
         let compiled = Arc::new(chart.compile(&vocabulary).unwrap());
         let mut surroundings = Surroundings { messages: true, ..Surroundings::default() };
@@ -285,7 +310,7 @@ mod tests {
             let formula = formula().new_tree(&mut runner).unwrap().current();
             let text = format!("r = {}", formula.text(&mut 0));
             let (chart, liveness, _) = free(&text);
-            let Some(found) = compared(&chart, &liveness) else { continue };
+            let Some(found) = found_in(&chart, &liveness) else { continue };
             assert_eq!(found, [], "{text}");
             judged += 1;
         }
@@ -295,7 +320,7 @@ mod tests {
     fn kinds(text: &str, change: impl Fn(&mut Statechart)) -> Vec<DifferenceKind> {
         let (mut chart, liveness, _) = free(text);
         change(&mut chart);
-        compared(&chart, &liveness).unwrap()
+        found_in(&chart, &liveness).unwrap()
     }
 
     fn named(chart: &Statechart, name: &str) -> NodeId {

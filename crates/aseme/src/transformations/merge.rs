@@ -44,7 +44,7 @@ pub fn merge_eac(iac: &mut Iac, eac: &Iac) -> (Vec<String>, Vec<Diagnostic>) {
 }
 
 /// The composites in the regions of the protocol's AND; of a protocol with a single participant, the one beside START and END.
-fn participants(eac: &Iac) -> Vec<usize> {
+pub(crate) fn participants(eac: &Iac) -> Vec<usize> {
     let children = eac.children();
     let of_kind = |nodes: &[usize], kind: &str| -> Vec<usize> {
         nodes.iter().copied().filter(|&node| eac.nodes[node].kind == kind).collect()
@@ -87,7 +87,7 @@ impl Merging<'_> {
     }
 
     fn composite(&mut self, participant: usize, place: usize) {
-        let pairs = match same_shape(self.eac, participant, self.iac, place) {
+        let pairs = match same_shape(self.eac, participant, self.iac, place, Found::Refined) {
             Ok(pairs) => pairs,
             Err((wanted, found)) => return self.misfit(participant, place, &wanted, &found),
         };
@@ -105,6 +105,8 @@ impl Merging<'_> {
             }
         }
         self.transitions(&pairs);
+        self.ways_in(participant, place);
+        self.ways_out(participant, place);
         self.merged.push(self.iac.nodes[place].label.clone());
     }
 
@@ -117,6 +119,50 @@ impl Merging<'_> {
         let hint = "take the formula of the participant over as it is";
         let span = self.iac.nodes[place].place.0;
         self.diagnostics.push(Diagnostic::error("E0835", span, message).with_hint(hint));
+    }
+
+    /// What the protocol asks of those who engage in a part, wherever the role does.
+    fn ways_in(&mut self, participant: usize, place: usize) {
+        let rule = |it: &&IacTransition| it.target == participant && it.source != participant;
+        let Some(theirs) = self.eac.transitions.iter().find(rule) else { return };
+        let own = self.iac.transitions.iter_mut().filter(|it| it.target == place && it.source != place);
+        for own in own {
+            // how the role chooses among its ways stays its own
+            let refinement = std::mem::take(&mut own.refinement);
+            self.diagnostics.extend(carry(theirs, own));
+            own.refinement = refinement;
+        }
+    }
+
+    /// The exits of a part lead where the role goes on after it.
+    fn ways_out(&mut self, participant: usize, place: usize) {
+        let theirs: Vec<&IacTransition> = self
+            .eac
+            .transitions
+            .iter()
+            .filter(|it| it.source == participant && it.target != participant)
+            .collect();
+        let own: Vec<usize> = (0..self.iac.transitions.len())
+            .filter(|&index| {
+                self.iac.transitions[index].source == place && self.iac.transitions[index].target != place
+            })
+            .collect();
+        for (number, theirs) in theirs.into_iter().enumerate() {
+            match own.get(number) {
+                Some(&own) => self.diagnostics.extend(carry(theirs, &mut self.iac.transitions[own])),
+                None => {
+                    let Some(&first) = own.first() else { return };
+                    let target = self.iac.transitions[first].target;
+                    let name = self.iac.usual_name(place, target);
+                    self.iac.transitions.push(IacTransition {
+                        source: place,
+                        target,
+                        name,
+                        ..theirs.clone()
+                    });
+                }
+            }
+        }
     }
 
     /// Those with both ends inside; several between the same two ends are matched in order.
@@ -158,12 +204,22 @@ fn carry(theirs: &IacTransition, own: &mut IacTransition) -> Option<Diagnostic> 
     found
 }
 
+/// How alike two composites are to be.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Found {
+    /// The same.
+    Same,
+    /// The second may do in several steps what is an activity of the first.
+    Refined,
+}
+
 /// For each node in one composite the node at the same place in another, the composites themselves first; or the first two that differ.
-fn same_shape(
+pub(crate) fn same_shape(
     eac: &Iac,
     participant: usize,
     iac: &Iac,
     place: usize,
+    wanted: Found,
 ) -> Result<BTreeMap<usize, usize>, (String, String)> {
     let (theirs, own) = (eac.children(), iac.children());
     let mut pairs = BTreeMap::new();
@@ -174,6 +230,9 @@ fn same_shape(
         for index in 0..longest {
             match (theirs[a].get(index), own[b].get(index)) {
                 (Some(&a), Some(&b)) if said(eac, a) == said(iac, b) => open.push((a, b)),
+                (Some(&a), Some(&b)) if wanted == Found::Refined && is_refined(eac, a, iac, b) => {
+                    pairs.insert(a, b);
+                }
                 (a, b) => {
                     let shown = |chart: &Iac, node: Option<&usize>| {
                         node.map_or("nothing".into(), |&node| said(chart, node))
@@ -184,6 +243,12 @@ fn same_shape(
         }
     }
     Ok(pairs)
+}
+
+/// Whether an activity of one chart is a composite of that name in another.
+fn is_refined(eac: &Iac, a: usize, iac: &Iac, b: usize) -> bool {
+    let (theirs, own) = (&eac.nodes[a], &iac.nodes[b]);
+    theirs.name == own.name && theirs.kind == "BASIC" && matches!(own.kind.as_str(), "OR" | "AND")
 }
 
 /// What a node is, apart from its label.

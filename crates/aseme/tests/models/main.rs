@@ -11,6 +11,7 @@ mod any;
 mod diff;
 mod faults;
 mod kit;
+mod protocol;
 mod regenerate;
 mod round_trip;
 mod shared;

@@ -8,6 +8,7 @@ mod elsewhere;
 mod generate;
 mod kit;
 mod model;
+mod protocol;
 mod refinement;
 mod run;
 #[cfg(unix)]
