@@ -136,7 +136,8 @@ fn what_cannot_be_explored_is_said_with_the_reason() {
 
 #[test]
 fn the_projects_own_roles_are_without_findings_that_matter() {
-    for name in ["goalie.srm", "attacker.srm"] {
+    for name in ["goalie.srm", "attacker.srm", "extended_attacker.srm", "extended_attacker.iac", "attack.eac"]
+    {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name);
         let report = report(&path);
         println!("{name}: {:?}", report.explored);

@@ -33,7 +33,11 @@ fn eac() -> Iac {
 }
 
 fn player() -> Iac {
-    let Model::Role(role) = clean(&text("extended_attacker.srm")) else { panic!("a role") };
+    role(&text("extended_attacker.srm"))
+}
+
+fn role(text: &str) -> Iac {
+    let Model::Role(role) = clean(text) else { panic!("a role") };
     let (chart, found) = srm_to_iac(role.srm());
     assert_eq!(found, []);
     Iac::from_statechart(&chart, ChartKind::Intra)
@@ -82,6 +86,18 @@ fn the_protocol_goes_into_the_chart_of_the_player() {
         made == text("extended_attacker.iac"),
         "models/extended_attacker.iac is not up to date; MONAS_BLESS=1 writes it:\n{made}"
     );
+}
+
+#[test]
+fn a_role_that_says_nothing_of_the_protocol_gets_its_rules_guards_and_exits() {
+    let text = text("extended_attacker.srm");
+    let lines = text.lines().map(|line| line.split_once(" : [Attack.").map_or(line, |(before, _)| before));
+    let bare: String = lines.map(|line| format!("{line}\n")).collect();
+    let mut made = role(&bare);
+    assert!(!made.transitions.iter().any(|it| it.te.contains("Attack.")));
+    let (_, found) = transformations::merge_eac(&mut made, &eac());
+    assert_eq!(found, []);
+    assert_eq!(made, merged(&eac()));
 }
 
 #[test]

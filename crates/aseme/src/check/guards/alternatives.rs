@@ -100,7 +100,14 @@ impl Guards<'_> {
         let (one, other) = (self.subject.transition(first), self.subject.transition(later));
         let is_decided = one.priority != other.priority || one.weight.is_some() || other.weight.is_some();
         let alike = self.needs(first) == self.needs(later);
-        if is_decided || !alike || !meet(one.expression.trigger.as_ref(), other.expression.trigger.as_ref()) {
+        // whichever is taken, it comes to the same
+        let is_same = (one.target, one.interrupts, one.internal, &one.expression.actions)
+            == (other.target, other.interrupts, other.internal, &other.expression.actions);
+        if is_same
+            || is_decided
+            || !alike
+            || !meet(one.expression.trigger.as_ref(), other.expression.trigger.as_ref())
+        {
             return None;
         }
         let claims = [Claim::Holds(self.guard(first)?), Claim::Holds(self.guard(later)?)];
