@@ -157,6 +157,8 @@ fn first_bit(from: usize, last: usize, word: impl Fn(usize) -> u64) -> Option<us
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
 
     fn members(set: &BitSet) -> Vec<usize> {
@@ -178,6 +180,66 @@ mod tests {
         assert_eq!(set.last(64, 129), Some(64));
         assert_eq!(set.last(65, 129), None);
         assert_eq!((set.last(0, 199), set.last(0, 0), set.last(1, 62)), (Some(199), Some(0), None));
+    }
+
+    /// All sets of up to three numbers at the borders of words.
+    fn sets() -> Vec<(BitSet, BTreeSet<usize>)> {
+        let numbers = [0, 1, 62, 63, 64, 65, 127, 128, 190];
+        let mut sets = BTreeSet::from([BTreeSet::new()]);
+        for _ in 0..3 {
+            let larger = |set: &BTreeSet<usize>| {
+                let set = set.clone();
+                numbers.map(|number| set.iter().copied().chain([number]).collect::<BTreeSet<usize>>())
+            };
+            sets.extend(sets.clone().iter().flat_map(larger));
+        }
+        let with_bits = |members: BTreeSet<usize>| {
+            let mut set = BitSet::new(191);
+            members.iter().for_each(|&number| set.insert(number));
+            (set, members)
+        };
+        sets.into_iter().map(with_bits).collect()
+    }
+
+    #[test]
+    fn a_set_of_bits_is_a_set() {
+        for (set, expected) in sets() {
+            assert_eq!(members(&set), expected.iter().copied().collect::<Vec<_>>());
+            assert_eq!(set.is_empty(), expected.is_empty());
+            for number in 0..192 {
+                let next = expected.range(number..).next().copied();
+                assert_eq!(
+                    (set.next(number, 191), set.next(number, number).is_some()),
+                    (next, set.contains(number))
+                );
+                assert_eq!(set.last(0, number), expected.range(..=number).next_back().copied());
+                let mut without = set.clone();
+                without.remove(number);
+                let rest = expected.iter().copied().filter(|&member| member != number);
+                assert_eq!(members(&without), rest.collect::<Vec<_>>());
+            }
+            let mut copy = BitSet::new(191);
+            copy.copy_from(&set);
+            assert_eq!(copy, set);
+            copy.clear();
+            assert_eq!(copy, BitSet::new(191));
+        }
+    }
+
+    #[test]
+    fn two_sets_of_bits_are_two_sets() {
+        let sets = sets();
+        for (one, its) in sets.iter().step_by(3) {
+            for (other, others) in &sets {
+                assert_eq!(one.meets(other), !its.is_disjoint(others));
+                for from in [0, 1, 63, 64, 70, 128] {
+                    let common = its.intersection(others).copied().find(|&number| number >= from);
+                    assert_eq!(one.next_common(other, from, 190), common);
+                    let without = its.difference(others).copied().find(|&number| number >= from);
+                    assert_eq!(one.next_without(other, from, 190), without);
+                }
+            }
+        }
     }
 
     #[test]

@@ -102,12 +102,7 @@ impl Chooser {
     pub(super) fn draw(&mut self, weights: &[f64]) -> usize {
         self.decide(weights.len(), |number| {
             let unit = (number >> 11) as f64 / (1_u64 << 53) as f64;
-            let (drawn, mut sum) = (unit * weights.iter().sum::<f64>(), 0.0);
-            let taken = weights.iter().position(|weight| {
-                sum += weight;
-                sum > drawn
-            });
-            taken.unwrap_or(weights.len() - 1)
+            share(weights, unit)
         })
     }
 
@@ -131,9 +126,45 @@ impl Chooser {
     }
 }
 
+/// In whose share a part of all weights ends.
+fn share(weights: &[f64], part: f64) -> usize {
+    let (drawn, mut sum) = (part * weights.iter().sum::<f64>(), 0.0);
+    let taken = weights.iter().position(|weight| {
+        sum += weight;
+        sum > drawn
+    });
+    taken.unwrap_or(weights.len() - 1)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn shares_are_of_what_the_weights_sum_to_and_end_before_the_next_begins() {
+        let taken = |part| share(&[0.25, 0.125, 0.125], part);
+        assert_eq!([0.0, 0.25, 0.49, 0.5, 0.74, 0.75, 0.99].map(taken), [0, 0, 0, 1, 1, 2, 2]);
+        assert_eq!(taken(1.0), 2, "rounding does not lead beyond the last");
+    }
+
+    #[test]
+    fn a_chooser_that_is_brought_back_goes_on() {
+        let mut chooser = Chooser::seeded(7);
+        assert_eq!(chooser.seed(), Some(7));
+        let draw = |times: usize, chooser: &mut Chooser| -> Vec<usize> {
+            (0..times).map(|_| chooser.choose(1000)).collect()
+        };
+        draw(5, &mut chooser);
+        let mut again = Chooser::restored(&chooser.record());
+        assert_eq!((again.seed(), again.is_declared()), (Some(7), false));
+        assert_eq!(draw(5, &mut chooser), draw(5, &mut again));
+
+        let mut scripted = Chooser::scripted(vec![1, 2]);
+        scripted.choose(3);
+        let mut again = Chooser::restored(&scripted.record());
+        assert_eq!((again.choose(3), again.choices()), (2, [(1, 3), (2, 3)].as_slice()));
+        assert!(Chooser::restored(&Chooser::declared().record()).is_declared());
+    }
 
     #[test]
     fn a_scripted_chooser_replays_and_notes_what_it_chose() {

@@ -318,3 +318,127 @@ fn r12_what_has_arrived_at_a_join_and_is_then_left_arrives_again() {
         ",
     );
 }
+
+#[test]
+fn r06_a_region_that_gets_a_child_again_is_complete_no_more() {
+    check_with(
+        with(|it| it.ancestor = ActiveAncestor::Completed),
+        "
+        START
+        & both
+          one
+            START
+            A
+          two
+            START
+            B
+            END
+        D
+        c/START -> both
+        one/START -> A
+        two/START -> B
+        A -> one : f
+        one -> A {internal} : e
+        B -> two/END : g
+        both -> D
+        ",
+        "1 f; 2 e; 3 g; 4 f; 5",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> both; exit START; enter both, both/one, both/one/START, both/two, both/two/START
+        0.000 s -: both/one/START -> both/one/A, both/two/START -> both/two/B; exit both/one/START, both/two/START; enter both/one/A, both/two/B
+        0.001 s f: both/one/A -> both/one; exit both/one/A
+        0.002 s e: both/one -> both/one/A; enter both/one/A
+        0.003 s g: both/two/B -> both/two/END; exit both/two/B; enter both/two/END
+        0.004 s f: both/one/A -> both/one; exit both/one/A
+        0.004 s -: both -> D; exit both/one, both/two/END, both/two, both; enter D
+        ",
+    );
+}
+
+#[test]
+fn r12_a_region_without_states_that_is_left_has_to_arrive_again() {
+    check_with(
+        with(|it| it.join = Joining::Each),
+        "
+        START
+        & both
+          one
+            START
+            A
+            END
+          r
+        > j
+        E
+        c/START -> both
+        one/START -> A
+        A -> END : f
+        one -> j
+        r -> j : [A.n == 0]
+        both -> both : h
+        j -> E
+        ",
+        "1 A=0; 2 A=1; 3 h; 4 f; 5 A=0; 6",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> both; exit START; enter both, both/one, both/one/START, both/r
+        0.000 s -: both/one/START -> both/one/A; exit both/one/START; enter both/one/A
+        0.001 s -: both/r -> j
+        0.003 s h: both -> both; exit both/one/A, both/one, both/r, both; enter both, both/one, both/one/START, both/r
+        0.003 s -: both/one/START -> both/one/A; exit both/one/START; enter both/one/A
+        0.004 s f: both/one/A -> both/one/END; exit both/one/A; enter both/one/END
+        0.004 s -: both/one -> j; exit both/one/END
+        0.005 s -: both/r -> j
+        0.005 s -: j -> E; exit both/one, both/r, both; enter E
+        ",
+    );
+}
+
+#[test]
+fn r12_a_join_of_some_regions_is_looked_at_when_the_last_of_them_arrives() {
+    for eventless in [Eventless::Once, Eventless::Quiescent, Eventless::AsWritten, Eventless::Always] {
+        check_with(
+            with(|it| {
+                it.join = Joining::Each;
+                it.eventless = eventless;
+            }),
+            "
+            START
+            & both
+              one
+                START
+                A
+                END
+              two
+                START
+                B
+                END
+              three
+                START
+                C
+            > j
+            E
+            c/START -> both
+            one/START -> A
+            two/START -> B
+            three/START -> C
+            A -> one/END : f
+            B -> two/END : g
+            one -> j
+            two -> j
+            j -> E
+            ",
+            "1 f; 2 g; 3",
+            "
+            0.000 s start; enter c, START
+            0.000 s -: START -> both; exit START; enter both, both/one, both/one/START, both/two, both/two/START, both/three, both/three/START
+            0.000 s -: both/one/START -> both/one/A, both/two/START -> both/two/B, both/three/START -> both/three/C; exit both/one/START, both/two/START, both/three/START; enter both/one/A, both/two/B, both/three/C
+            0.001 s f: both/one/A -> both/one/END; exit both/one/A; enter both/one/END
+            0.001 s -: both/one -> j; exit both/one/END
+            0.002 s g: both/two/B -> both/two/END; exit both/two/B; enter both/two/END
+            0.002 s -: both/two -> j; exit both/two/END
+            0.002 s -: j -> E; exit both/one, both/two, both/three/C, both/three, both; enter E
+            ",
+        );
+    }
+}

@@ -241,6 +241,7 @@ const SEEING: &str = "
     F -> E : e
     D -> C : f [script(\"in P\")]
     both -> B : back / script(\"see:back\")
+    B -> D : across
 ";
 
 #[test]
@@ -249,7 +250,7 @@ fn r10_an_action_sees_what_has_been_left_and_entered_so_far() {
         let (mut machine, mut reader) = machine(&chart(SEEING), Semantics::yase());
         machine.start(Moment::ZERO, &mut reader);
         machine.run_to_completion(Moment::ZERO, &mut reader).unwrap();
-        for event in ["in", "out", "e", "e", "f", "back", "x"] {
+        for event in ["in", "out", "e", "e", "f", "back", "across", "x"] {
             machine.dispatch_name(event);
             if long {
                 while machine.micro_step(Moment::ZERO, &mut reader).unwrap() == MicroStep::Made {}
@@ -281,6 +282,10 @@ fn r10_an_action_sees_what_has_been_left_and_entered_so_far() {
         see:+P c, c/P
         see:+Q c, c/P, c/P/Q
         see:+Q2 c, c/P, c/P/Q
+        see:-B c, c/P, c/P/Q, c/P/Q/B
+        see:-P c, c/P
+        see:-P2 c, c/P
+        see:+D c, c/both, c/both/one, c/both/one/D
     ";
     let expected: Vec<&str> = expected.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
     assert_eq!(lines(false), expected);

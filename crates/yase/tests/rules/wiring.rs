@@ -117,3 +117,34 @@ fn r18_events_by_number_or_by_name_are_the_same() {
     assert_eq!(lines, ["0.000 s e: S -> S", "0.000 s e: S -> S", "0.000 s ?: S -> S"]);
     assert!(world.wants_trace());
 }
+
+#[test]
+fn r14_what_ran_before_a_start_is_forgotten() {
+    let chart = chart(
+        "
+        START
+        S | run
+        T
+        c/START -> S
+        S -> T : v
+        S -> S {internal} : e / StartTimeout(v, 10ms)
+        ",
+    );
+    let mut world = World::new(&chart);
+    let mut machine = Machine::new(script::compile(&chart));
+    machine.start(Moment::ZERO, &mut world);
+    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    let first = world.jobs[0].activation;
+    machine.activity_returned(first, Outcome::Done);
+    machine.dispatch_name("e");
+    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    assert_eq!(machine.next_deadline(), Some(Moment::from_millis(10)));
+
+    machine.start(Moment::from_millis(1), &mut world);
+    machine.run_to_completion(Moment::from_millis(1), &mut world).unwrap();
+    assert_eq!(machine.next_deadline(), None);
+    assert_eq!(world.jobs.len(), 2, "the activity is started again");
+    machine.start(Moment::from_millis(2), &mut world);
+    machine.run_to_completion(Moment::from_millis(2), &mut world).unwrap();
+    assert_eq!(world.jobs.len(), 3, "also if it has not returned");
+}
