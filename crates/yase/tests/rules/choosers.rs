@@ -204,3 +204,141 @@ fn r22_what_leaves_a_connector_is_drawn_among_though_it_lies_on_several_blackboa
     let open = reached(text, "1 A=1; 2 e; 3", Semantics::yase(), &[&[0], &[1]]);
     assert_eq!(open, [("D".to_owned(), vec![(0, 2)]), ("both/two/C".to_owned(), vec![(1, 2)])]);
 }
+
+/// With weights at a state and behind a connector.
+const DEEP: &str = "
+    START
+    A
+    ? c
+    B
+    C
+    D
+    E
+    c/START -> A
+    A -> c {w0.5} : e
+    A -> D {w0.2} : e
+    A -> E {w0.3} : e | f
+    c -> B {w0.5} : [A.n != 3]
+    c -> C {w0.5} : [A.n > 9]
+";
+
+#[test]
+fn r22_what_is_drawn_at_a_state_and_behind_it_is_drawn_in_this_order() {
+    let choices: [&[u32]; 4] = [&[0, 0], &[0, 1], &[1], &[2]];
+    let found = reached(DEEP, "1 A=10; 2 e; 3", Semantics::yase(), &choices);
+    let expected =
+        [("B", vec![(0, 3), (0, 2)]), ("C", vec![(0, 3), (1, 2)]), ("D", vec![(1, 3)]), ("E", vec![(2, 3)])];
+    assert_eq!(found, expected.map(|(name, log)| (name.to_owned(), log)));
+    // nothing behind the connector is open: `D` and `E` are left
+    let found = reached(DEEP, "1 A=3; 2 e; 3", Semantics::yase(), &[&[0, 1, 1]]);
+    assert_eq!(found, [("E".to_owned(), vec![(0, 3), (1, 2), (1, 2)])]);
+    let found = reached(DEEP, "1 f; 2", Semantics::yase(), &[&[7]]);
+    assert_eq!(found, [("E".to_owned(), vec![])], "what does not match is not drawn");
+}
+
+#[test]
+fn r22_behind_a_connector_that_is_not_come_by_nothing_is_drawn() {
+    let text = "
+        START
+        A
+        ? c
+        B
+        C
+        D
+        c/START -> A
+        A -> c : e [A.n > 0]
+        A -> D : e
+        c -> B {w0.5}
+        c -> C {w0.5}
+    ";
+    let found = reached(text, "1 A=0; 2 e; 3", Semantics::yase(), &[&[1]]);
+    assert_eq!(found, [("D".to_owned(), vec![])]);
+    let found = reached(text, "1 A=1; 2 e; 3", Semantics::yase(), &[&[1]]);
+    assert_eq!(found, [("C".to_owned(), vec![(1, 2)])]);
+}
+
+#[test]
+fn r22_weights_are_drawn_where_the_first_that_matches_stands() {
+    let behind = "A -> k {w0.5} : e\nk -> D {w0.5}\nk -> E {w0.5}";
+    for (node, weighted, last) in [("", "A -> D {w0.5} : e", "D"), ("? k", behind, "E")] {
+        let text = format!(
+            "START\nA\n{node}\nB\nC\nD\nE\nc/START -> A\nA -> B {{w0.5}} : f\nA -> C : e [A.n > 0]\n{weighted}"
+        );
+        let found = reached(&text, "1 A=1; 2 e; 3", Semantics::yase(), &[&[0, 1]]);
+        assert_eq!(found, [("C".to_owned(), vec![])], "it is declared before");
+        let found = reached(&text, "1 A=0; 2 e; 3", Semantics::yase(), &[&[1]]);
+        assert_eq!(found[0].0, last);
+    }
+}
+
+#[test]
+fn r22_a_drawn_way_is_open_only_if_all_behind_it_is() {
+    let text = "
+        START
+        A
+        ? c
+        ? k
+        B
+        C
+        G
+        c/START -> A
+        A -> k {w0.5} : e
+        A -> c {w0.5} : e
+        k -> G : [A.n > 0]
+        c -> B {w0.5}
+        c -> C {w0.5}
+    ";
+    let found = reached(text, "1 A=0; 2 e; 3", Semantics::yase(), &[&[0, 1]]);
+    assert_eq!(found, [("C".to_owned(), vec![(0, 2), (1, 2)])]);
+    let found = reached(text, "1 A=1; 2 e; 3", Semantics::yase(), &[&[0]]);
+    assert_eq!(found, [("G".to_owned(), vec![(0, 2)])]);
+}
+
+#[test]
+fn r22_what_is_drawn_at_one_connector_says_nothing_of_another() {
+    let text = "
+        START
+        & both
+          one
+            START
+            A
+            ? c
+            B
+            C
+          two
+            START
+            D
+            ? k
+            E
+            F
+        c/START -> both
+        one/START -> A
+        two/START -> D
+        A -> one/c : e
+        D -> k : e
+        one/c -> B {w0.5}
+        one/c -> C {w0.5}
+        k -> E {w0.5}
+        k -> F {w0.5}
+    ";
+    let found = reached(text, "1 e; 2", Semantics::yase(), &[&[1, 1], &[0, 1], &[1, 0]]);
+    let expected = [
+        ("both/two/F", vec![(1, 2), (1, 2)]),
+        ("both/two/F", vec![(0, 2), (1, 2)]),
+        ("both/two/E", vec![(1, 2), (0, 2)]),
+    ];
+    assert_eq!(found, expected.map(|(name, log)| (name.to_owned(), log)));
+}
+
+#[test]
+fn r22_if_nothing_drawn_is_open_nothing_happens() {
+    let text = "
+        START
+        A
+        c/START -> A
+        A -> A {internal,w0.5} : e [A.n > 0]
+        A -> A {internal,w0.5} : e [A.n > 0]
+    ";
+    let found = reached(text, "1 A=0; 2 e; 3", Semantics::yase(), &[&[1]]);
+    assert_eq!(found, [("A".to_owned(), vec![(1, 2)])]);
+}

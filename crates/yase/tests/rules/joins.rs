@@ -416,28 +416,37 @@ fn r12_a_join_of_some_regions_is_looked_at_when_the_last_of_them_arrives() {
               three
                 START
                 C
+              four
+                START
+                D
+                END
             > j
             E
             c/START -> both
             one/START -> A
             two/START -> B
             three/START -> C
+            four/START -> D
+            D -> four/END : h
+            four -> j
             A -> one/END : f
             B -> two/END : g
             one -> j
             two -> j
             j -> E
             ",
-            "1 f; 2 g; 3",
+            "1 f; 2 g; 3 h; 4",
             "
             0.000 s start; enter c, START
-            0.000 s -: START -> both; exit START; enter both, both/one, both/one/START, both/two, both/two/START, both/three, both/three/START
-            0.000 s -: both/one/START -> both/one/A, both/two/START -> both/two/B, both/three/START -> both/three/C; exit both/one/START, both/two/START, both/three/START; enter both/one/A, both/two/B, both/three/C
+            0.000 s -: START -> both; exit START; enter both, both/one, both/one/START, both/two, both/two/START, both/three, both/three/START, both/four, both/four/START
+            0.000 s -: both/one/START -> both/one/A, both/two/START -> both/two/B, both/three/START -> both/three/C, both/four/START -> both/four/D; exit both/one/START, both/two/START, both/three/START, both/four/START; enter both/one/A, both/two/B, both/three/C, both/four/D
             0.001 s f: both/one/A -> both/one/END; exit both/one/A; enter both/one/END
             0.001 s -: both/one -> j; exit both/one/END
             0.002 s g: both/two/B -> both/two/END; exit both/two/B; enter both/two/END
             0.002 s -: both/two -> j; exit both/two/END
-            0.002 s -: j -> E; exit both/one, both/two, both/three/C, both/three, both; enter E
+            0.003 s h: both/four/D -> both/four/END; exit both/four/D; enter both/four/END
+            0.003 s -: both/four -> j; exit both/four/END
+            0.003 s -: j -> E; exit both/one, both/two, both/three/C, both/three, both/four, both; enter E
             ",
         );
     }

@@ -1,6 +1,8 @@
 //! R9: running activities lock, hold and are interrupted.
 
-use crate::check;
+use yase::Eventless;
+
+use crate::{check, check_with, with};
 
 #[test]
 fn r09_a_region_that_runs_an_activity_contributes_nothing() {
@@ -429,6 +431,33 @@ fn r09_an_ongoing_activity_is_not_called_again_when_its_state_is_about_to_be_lef
         A returns Done
         stop ongoing
         0.010 s e: both -> X; exit both/one/A, both/one, both/two/ongoing, both/two, both; enter X
+        ",
+    );
+}
+
+#[test]
+fn r15_what_interrupts_but_asks_nothing_waits_under_quiescent() {
+    let text = "
+        START
+        P
+          START
+          S | run | for=20ms
+        X
+        c/START -> P
+        P/START -> S
+        P -> X {interrupts}
+    ";
+    check_with(
+        with(|it| it.eventless = Eventless::Quiescent),
+        text,
+        "10; 30",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> P; exit START; enter P, P/START
+        0.000 s -: P/START -> P/S; exit P/START; enter P/S
+        start S
+        S returns Done
+        0.020 s -: P -> X; exit P/S, P; enter X
         ",
     );
 }
