@@ -1,9 +1,9 @@
 //! R10: what HISTORYs remember, and where they lead.
 
-use yase::{Machine, Moment, Semantics};
+use yase::{ActiveAncestor, Machine, Moment, Semantics};
 
 use crate::kit::{World, chart, script};
-use crate::{check_with, with};
+use crate::{check, check_with, with};
 
 #[test]
 fn r10_a_shallow_history_leads_to_the_child_which_begins_anew() {
@@ -312,4 +312,70 @@ fn r21_a_timer_that_a_transition_to_a_history_starts_belongs_to_its_composite_an
     // only while `A` is
     assert_eq!(taken("1 out; 2 a; 30"), "0.012 s v: P/A -> P/A");
     assert!(taken("1 out; 2 a; 3 swap; 30").starts_with("0.003 s swap: P/A -> P/B"));
+}
+
+#[test]
+fn r10_a_composite_that_was_left_with_nothing_in_it_has_no_history() {
+    check_with(
+        with(|it| it.ancestor = ActiveAncestor::Completed),
+        "
+        START
+        P
+          START
+          h last
+          A
+          B
+        X
+        c/START -> P
+        P/START -> A
+        last -> B
+        A -> P : f
+        P -> X : g
+        X -> last : g
+        ",
+        "1 f; 2 g; 3 g; 4",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> P; exit START; enter P, P/START
+        0.000 s -: P/START -> P/A; exit P/START; enter P/A
+        0.001 s f: P/A -> P; exit P/A
+        0.002 s g: P -> X; exit P; enter X
+        0.003 s g: X -> P/last; exit X; then P/last -> P/B; enter P, P/B
+        ",
+    );
+}
+
+#[test]
+fn r10_the_shallow_history_of_an_and_is_that_it_was_active() {
+    check(
+        "
+        START
+        & both
+          h last
+          one
+            START
+            A
+            B
+          two
+            START
+            C
+        X
+        c/START -> X
+        one/START -> A
+        two/START -> C
+        last -> B
+        X -> last : g
+        both -> X : f
+                ",
+        "1 g; 2 f; 3 g; 4",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> X; exit START; enter X
+        0.001 s g: X -> both/last; exit X; then both/last -> both/one/B; enter both, both/one, both/one/B, both/two, both/two/START
+        0.001 s -: both/two/START -> both/two/C; exit both/two/START; enter both/two/C
+        0.002 s f: both -> X; exit both/one/B, both/one, both/two/C, both/two, both; enter X
+        0.003 s g: X -> both/last; exit X; enter both, both/one, both/one/START, both/two, both/two/START
+        0.003 s -: both/one/START -> both/one/A, both/two/START -> both/two/C; exit both/one/START, both/two/START; enter both/one/A, both/two/C
+        ",
+    );
 }

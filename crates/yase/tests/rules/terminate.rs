@@ -1,6 +1,6 @@
 //! R13: TERMINATE.
 
-use yase::{Semantics, StartRest};
+use yase::{Firing, Semantics, StartRest};
 
 use crate::{check_with, refusal, with};
 
@@ -163,4 +163,64 @@ fn r13_a_fork_that_leads_to_terminate_is_refused() {
     assert_eq!(refusal(&chart(&format!("f -> stop\n            {dead_end}"))), refused("stop"));
     assert_eq!(refusal(&chart("f -> ch\n            ch -> stop")), refused("ch"));
     assert_eq!(refusal(&chart("f -> ch\n            ch -> stop : [A.n == 1]\n            ch -> D")), "none");
+}
+
+#[test]
+fn r13_in_phases_a_start_that_stops_the_chart_keeps_what_comes_after_from_being_entered() {
+    check_with(
+        with(|it| {
+            it.start = StartRest::SameStep;
+            it.firing = Firing::Phases;
+        }),
+        "
+        START
+        & both
+          one
+            START
+            A
+            P
+              START
+              x stop
+          two
+            START
+            C
+            D
+        c/START -> both
+        one/START -> A
+        two/START -> C
+        P/START -> stop
+        A -> P : e
+        C -> D : e
+        ",
+        "1 e; 2",
+        "
+        0.000 s start; then START -> both + both/one/START -> both/one/A + both/two/START -> both/two/C; enter c, both, both/one, both/one/A, both/two, both/two/C
+        0.001 s e: both/one/A -> both/one/P, both/two/C -> both/two/D; exit both/one/A, both/two/C; then both/one/P/START -> both/one/P/stop; enter both/one/P
+        ",
+    );
+}
+
+#[test]
+fn r13_behind_a_history_that_stops_the_chart_no_start_is_left() {
+    check_with(
+        with(|it| it.start = StartRest::SameStep),
+        "
+        START
+        A
+        P
+          START
+          H h
+          B
+          x stop
+        c/START -> A
+        P/START -> B : / raise(never)
+        h -> stop : / raise(s)
+        A -> h : e
+        ",
+        "1 e; 2",
+        "
+        0.000 s start; then START -> A; enter c, A
+        0.001 s e: A -> P/h; exit A; then P/h -> P/stop; do raise(s) (P/h -> P/stop); enter P
+        ",
+    );
 }
