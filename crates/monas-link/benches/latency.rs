@@ -194,8 +194,9 @@ impl Pair {
         hubs[0].set_waker(links[0].waker());
         let sleeper = Arc::new(Mutex::new(None::<Thread>));
         let woken = sleeper.clone();
-        hubs[1]
-            .set_waker(Arc::new(move |_: TopicSlot| woken.lock().unwrap().iter().for_each(Thread::unpark)));
+        hubs[1].set_waker(Arc::new(move |_: TopicSlot, _: HostId| {
+            woken.lock().unwrap().iter().for_each(Thread::unpark)
+        }));
         while links.iter().any(|link| link.report().peers.is_empty()) {
             thread::park_timeout(Duration::from_millis(1));
         }

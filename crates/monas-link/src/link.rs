@@ -4,11 +4,11 @@ use std::collections::hash_map::RandomState;
 use std::fmt;
 use std::hash::{BuildHasher, Hasher};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use narukom::{Moment, Narukom, Waker};
+use narukom::{HostId, Moment, Narukom, Waker};
 
 use crate::bridge::Bridge;
 use crate::error::{Error, ErrorKind};
@@ -85,25 +85,36 @@ impl Link {
         let transport = connect(&bridge, inbox.clone())?;
         bridge.set_largest(transport.largest());
         let shared = Arc::new(Shared { stops: AtomicBool::new(false), report: Mutex::default() });
-        let mut worker = Worker {
+        let worker = Worker {
             bridge,
             transport,
+            clock: Box::new(clock),
             inbox: inbox.clone(),
             shared: shared.clone(),
             next_report: Moment::ZERO,
+            comes_again: Moment::ZERO,
         };
+        let desk = Arc::new(Desk(Mutex::new(Some(worker))));
+        let bringer = desk.clone();
+        let (waiting, stops) = (inbox.clone(), shared.clone());
         let name = format!("{} link", hub.host());
         let thread = thread::Builder::new()
             .name(name)
-            .spawn(move || worker.run(clock))
+            .spawn(move || desk.attend(&waiting, &stops.stops))
             .map_err(|error| Error::new(ErrorKind::Thread, format!("no thread for the link: {error}")))?;
+        inbox.set_taker(Box::new(move || bringer.take_in()));
         Ok(Link { inbox, shared, thread: Some(thread) })
     }
 
     /// Wakes the link when something is published; to be given to [`Narukom::set_waker`].
     pub fn waker(&self) -> Arc<dyn Waker> {
         let inbox = self.inbox.clone();
-        Arc::new(move |_| inbox.wake())
+        Arc::new(move |_, host: HostId| {
+            // What has come is not sent on.
+            if host == HostId::LOCAL {
+                inbox.wake();
+            }
+        })
     }
 
     /// What is known of the link, not older than a beat.

@@ -13,7 +13,7 @@ mod values;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use narukom::{Moment, Narukom, TopicSlot};
+use narukom::{HostId, Moment, Narukom, TopicSlot};
 use yase::{Activation, Chooser, Machine, MachineError, Outcome, Status, TopicId};
 
 use crate::activity::Progress;
@@ -43,6 +43,7 @@ const DOUBLINGS: u32 = 6;
 pub(crate) struct Runner {
     /// Unlike every other runner's in this program.
     number: u64,
+    hub: Narukom,
     machine: Machine,
     desk: Desk,
     posts: Posts,
@@ -81,7 +82,7 @@ impl Runner {
         let mut machine = Machine::new(chart);
         machine.set_chooser(Chooser::seeded(home.chance()));
         let number = RUNNERS.fetch_add(1, Ordering::Relaxed);
-        Ok(Runner { number, machine, desk, posts, micro_steps: 0 })
+        Ok(Runner { number, hub: home.hub.clone(), machine, desk, posts, micro_steps: 0 })
     }
 
     /// Enters the root. The first transitions are those of the first step.
@@ -91,13 +92,27 @@ impl Runner {
     }
 
     /// Takes note of a message, and of the activity that published it, if one of a chart did.
-    pub(crate) fn message_arrived(&mut self, topic: TopicSlot, origin: Option<Origin>, now: Moment) {
+    pub(crate) fn message_arrived(
+        &mut self,
+        topic: TopicSlot,
+        host: HostId,
+        origin: Option<Origin>,
+        now: Moment,
+    ) {
         let id = TopicId(topic.number());
         if self.machine.reads_topic(id) {
-            self.machine.message_arrived(id, 1);
+            self.tell(id, host);
         }
         let own = origin.filter(|origin| origin.runner == self.number).map(|origin| origin.activation);
         self.posts.message_arrived(topic, own, now);
+    }
+
+    fn tell(&mut self, topic: TopicId, host: HostId) {
+        if host == HostId::LOCAL {
+            self.machine.message_arrived(topic, 1);
+        } else if let Some(host) = self.hub.host_name(host) {
+            self.machine.message_arrived_from(&host, topic, 1);
+        }
     }
 
     /// Takes note of an event from outside. False if no expression names it.

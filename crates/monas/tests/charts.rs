@@ -496,6 +496,48 @@ fn a_guard_reads_what_a_link_brings_from_another_host() {
     referee.receive(phase(Phase::default()), arrives(30)).unwrap();
     simulation.run_until(at(40)).unwrap();
     assert_eq!(calls.taken(), ["C 30"]);
+    let slot = |path: &str| hub.topic(path).unwrap().number();
+    let of = |topic: &str, sequence: u64, publisher: &str| {
+        let topic = slot(topic);
+        format!(
+            "topic: {topic}, sequence: {sequence}, region: 0, host: \"striker\", publisher: \"{publisher}\""
+        )
+    };
+    let records = records.lock().unwrap();
+    for (record, read) in records.iter().zip([of("test/ball", 10, ""), of("test/game", 30, "Vision")]) {
+        assert!(record.contains(&read), "{record} tells nothing of {read}");
+    }
+    assert_eq!(records.len(), 2, "the referee's game is nothing that a guard reads: {records:?}");
+}
+
+#[test]
+fn a_trigger_is_fired_by_messages_of_the_own_host_unless_it_names_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let calls_of = |trigger: &str| {
+        let link = LinkConfig {
+            settings: monas_link::LinkSettings::default().receiving("test/*"),
+            transport: LinkTransport::Local { folder: Some(folder.path().into()) },
+            clock: None,
+        };
+        let (calls, registry) = noting();
+        let text = format!("Liveness:\nm = A~\nTransitions:\nA -> A : {trigger}");
+        let talws = Talws::new().registry(registry).link(link);
+        let mut simulation = talws.agent(Agent::statechart("m", chart(&text))).simulate_linked(1).unwrap();
+        let hub = simulation.hub("local").unwrap().clone();
+        for (millis, host) in [(10, "striker"), (20, "goalie")] {
+            simulation.run_until(at(millis)).unwrap();
+            let arrival = Arrival { sequence: 1, published: at(0), local: at(millis), received: at(millis) };
+            let mut ball = hub.receiver(host, "Vision", "test/ball").unwrap();
+            ball.receive(Box::new(Ball::default()), arrival).unwrap();
+        }
+        simulation.run_until(at(30)).unwrap();
+        hub.publisher(BALL, "Vision").unwrap().publish(Ball::default(), at(30));
+        simulation.run_until(at(40)).unwrap();
+        calls.taken()
+    };
+    assert_eq!(calls_of("ball.State.Ball"), ["A 0", "A 30"]);
+    assert_eq!(calls_of("striker.ball.State.Ball"), ["A 0", "A 10"]);
+    assert_eq!(calls_of("goalie.ball.State.Ball | ball.State.Ball"), ["A 0", "A 20", "A 30"]);
 }
 
 #[test]

@@ -279,7 +279,7 @@ impl Narukom {
             outgoing.iter_mut().for_each(|message| self.show(&mut observers, host, sender, message));
         }
         if let Some(waker) = waker {
-            outgoing.iter().for_each(|message| waker.wake(message.header.topic));
+            outgoing.iter().for_each(|message| waker.wake(message.header.topic, message.header.host));
         }
     }
 

@@ -1,7 +1,7 @@
 //! Those whom a hub tells of publications: observers see every message, a waker learns which topics moved.
 
 use crate::encoding::Encoding;
-use crate::sample::{AnySample, TopicSlot};
+use crate::sample::{AnySample, HostId, TopicSlot};
 use crate::topic::TopicDeclaration;
 
 /// A message as it is published, with the names behind its header's numbers.
@@ -52,12 +52,12 @@ impl<F: FnMut(Publication<'_>) + Send> Observer for F {
 ///
 /// It is called on the publisher's thread, when no lock of the hub is held and the messages can be fetched.
 pub trait Waker: Send + Sync {
-    /// A message was published on `topic`.
-    fn wake(&self, topic: TopicSlot);
+    /// A message of `host` was published on `topic`.
+    fn wake(&self, topic: TopicSlot, host: HostId);
 }
 
-impl<F: Fn(TopicSlot) + Send + Sync> Waker for F {
-    fn wake(&self, topic: TopicSlot) {
-        self(topic);
+impl<F: Fn(TopicSlot, HostId) + Send + Sync> Waker for F {
+    fn wake(&self, topic: TopicSlot, host: HostId) {
+        self(topic, host);
     }
 }

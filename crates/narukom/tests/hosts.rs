@@ -268,13 +268,14 @@ fn observers_and_wakers_learn_of_what_comes_from_elsewhere() {
     let (seen, woken) = (Arc::new(Mutex::new(Vec::new())), Arc::new(Mutex::new(Vec::new())));
     hub.observe(Box::new(Watch(seen.clone())));
     let bell = woken.clone();
-    hub.set_waker(Arc::new(move |slot: TopicSlot| bell.lock().unwrap().push(slot)));
+    hub.set_waker(Arc::new(move |slot: TopicSlot, host: HostId| bell.lock().unwrap().push((slot, host))));
     let mut left = hub.receiver("left", "vision", "test/state").unwrap();
     left.receive(mark(1), arrival(1, at(1))).unwrap();
     hub.publisher(STATE, "body").unwrap().publish(Mark::new(2), at(2));
     let expected = [("left".to_owned(), true, 1), ("robot".to_owned(), false, 2)];
     assert_eq!(*seen.lock().unwrap(), expected);
-    assert_eq!(*woken.lock().unwrap(), [hub.topic("test/state").unwrap(); 2]);
+    let topic = hub.topic("test/state").unwrap();
+    assert_eq!(*woken.lock().unwrap(), [(topic, left.host()), (topic, HostId::LOCAL)]);
 }
 
 #[test]

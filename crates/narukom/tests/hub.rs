@@ -7,7 +7,8 @@ use std::sync::{Arc, Mutex};
 
 use messages::*;
 use narukom::{
-    Data, ErrorKind, Keep, Narukom, Publication, State, Subscriber, TOPICS, TopicDeclaration, TopicSlot,
+    Data, ErrorKind, HostId, Keep, Narukom, Publication, State, Subscriber, TOPICS, TopicDeclaration,
+    TopicSlot,
 };
 
 fn start_error(declarations: &[TopicDeclaration]) -> (ErrorKind, String) {
@@ -220,7 +221,7 @@ fn wakers_are_called_when_the_messages_can_be_fetched() {
     let hub = hub();
     let woken = Arc::new(Mutex::new(Vec::new()));
     let (writer, reader) = (woken.clone(), Mutex::new(hub.blackboard("reader")));
-    hub.set_waker(Arc::new(move |slot: TopicSlot| {
+    hub.set_waker(Arc::new(move |slot: TopicSlot, _: HostId| {
         let mut reader = reader.lock().unwrap();
         reader.process_messages(at(1));
         let number = reader.latest_sample(slot).unwrap().downcast::<Mark>().unwrap().number;

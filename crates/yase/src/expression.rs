@@ -185,7 +185,7 @@
 //! | E0143 | a delay is too short |
 //! | E0144 | a message is raised |
 //! | E0145 | a whole message is assigned, or a field published |
-//! | E0146 | a trigger names a field or another host's message |
+//! | E0146 | a trigger names a field or one publisher's messages |
 //! | E0147 | a script stands where there are none |
 
 mod arithmetic;

@@ -30,7 +30,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::chart::{Chart, RegionId};
-use crate::expression::EventId;
+use crate::expression::{EventId, EventTable};
 use crate::host::{Activation, Host, Outcome};
 use crate::moment::Moment;
 use crate::semantics::Semantics;
@@ -226,15 +226,24 @@ impl Machine {
         is_known
     }
 
-    /// Notes that messages have arrived on a topic: each is one occurrence for triggers that name the message, and guards that read
-    /// the topic will be read again.
+    /// Notes that messages of the own host have arrived on a topic: each is one occurrence for triggers that name the message, and guards
+    /// that read the topic will be read again.
     pub fn message_arrived(&mut self, topic: TopicId, count: usize) {
+        self.arrived(topic, count, |events| events.message(topic));
+    }
+
+    /// The same for messages of another host: they are occurrences for triggers that name that host, and for no others.
+    pub fn message_arrived_from(&mut self, host: &str, topic: TopicId, count: usize) {
+        self.arrived(topic, count, |events| events.message_of(host, topic));
+    }
+
+    fn arrived(&mut self, topic: TopicId, count: usize, event: impl Fn(&EventTable) -> Option<EventId>) {
         if self.run.status != Status::Running || count == 0 || !self.reads_topic(topic) {
             return;
         }
         self.run.due = true;
         self.run.topic_changed(&self.chart, topic, None);
-        if let Some(event) = self.chart.events().message(topic) {
+        if let Some(event) = event(self.chart.events()) {
             for _ in 0..count {
                 self.run.queues.arrive(event.into());
             }

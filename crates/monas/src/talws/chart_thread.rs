@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use narukom::{Moment, TopicSlot};
+use narukom::{HostId, Moment, TopicSlot};
 
 use super::ENDED;
 use super::clock::Clock;
@@ -93,7 +93,9 @@ impl ChartThread {
             return Err(ENDED.into());
         }
         let now = self.clock.now();
-        mail.messages.drain(..).for_each(|(topic, origin)| self.runner.message_arrived(topic, origin, now));
+        mail.messages
+            .drain(..)
+            .for_each(|(topic, host, origin)| self.runner.message_arrived(topic, host, origin, now));
         while let Some(called) = mail.returned.pop_front() {
             self.returned(called, now)?;
             self.rest(now)?;
@@ -151,7 +153,7 @@ impl ChartThread {
             .filter(|topic| self.mailbox.follow(**topic))
             .copied()
             .collect();
-        news.into_iter().for_each(|topic| self.runner.message_arrived(topic, None, now));
+        news.into_iter().for_each(|topic| self.runner.message_arrived(topic, HostId::LOCAL, None, now));
         let Err(failure) = result else { return Ok(()) };
         let activity = self.runner.activity_name(activation);
         let cycle = self.teller.number();

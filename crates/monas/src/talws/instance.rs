@@ -1,6 +1,6 @@
 //! An agent in simulated time: its list, its charts, and when each has something to do.
 
-use narukom::{Moment, TopicSlot};
+use narukom::{HostId, Moment, TopicSlot};
 
 use super::ENDED;
 use super::setup::Member;
@@ -50,8 +50,14 @@ impl Instance {
     }
 
     /// Takes note that a message was published on a topic of its host.
-    pub(super) fn message_arrived(&mut self, topic: TopicSlot, origin: Option<Origin>, now: Moment) {
-        self.charts.iter_mut().for_each(|chart| chart.message_arrived(topic, origin, now));
+    pub(super) fn message_arrived(
+        &mut self,
+        topic: TopicSlot,
+        host: HostId,
+        origin: Option<Origin>,
+        now: Moment,
+    ) {
+        self.charts.iter_mut().for_each(|chart| chart.message_arrived(topic, host, origin, now));
     }
 
     /// Does what is due: a cycle of its list, then the steps of each chart until it rests.

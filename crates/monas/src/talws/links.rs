@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use monas_link::{Bridge, Inbox, Link, Place, Transport};
-use narukom::{Moment, Narukom, TopicSlot};
+use narukom::{HostId, Moment, Narukom, TopicSlot};
 
 use super::clock::Clock;
 use super::stopper::Stopper;
@@ -61,11 +61,11 @@ impl RunningLink {
     }
 
     /// What it is to be told of publications.
-    pub(super) fn waker(&self) -> impl Fn(TopicSlot) + Send + Sync + 'static {
+    pub(super) fn waker(&self) -> impl Fn(TopicSlot, HostId) + Send + Sync + 'static {
         let (sent, waker) = (self.sent.clone(), self.link.waker());
-        move |topic| {
+        move |topic, host| {
             if sent.get(topic.number() as usize).is_some_and(|sent| *sent) {
-                waker.wake(topic);
+                waker.wake(topic, host);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use narukom::{Moment, TopicSlot};
+use narukom::{HostId, Moment, TopicSlot};
 
 use super::instance::Instance;
 use crate::origin::{self, Origin};
@@ -15,15 +15,15 @@ pub(super) struct Moved {
     looked_through: Vec<News>,
 }
 
-/// A message was published: its topic, and the activity of a chart that did it, if one did.
-type News = (TopicSlot, Option<Origin>);
+/// A message was published: its topic and its host, and the activity of a chart that did it, if one did.
+type News = (TopicSlot, HostId, Option<Origin>);
 
 impl Moved {
     /// What takes note of a topic, for the waker of a hub.
-    pub(super) fn noting(&self) -> impl Fn(TopicSlot) + Send + Sync + 'static {
+    pub(super) fn noting(&self) -> impl Fn(TopicSlot, HostId) + Send + Sync + 'static {
         let news = self.news.clone();
-        move |topic| {
-            news.lock().unwrap_or_else(PoisonError::into_inner).push((topic, origin::publishing()));
+        move |topic, host| {
+            news.lock().unwrap_or_else(PoisonError::into_inner).push((topic, host, origin::publishing()));
         }
     }
 
@@ -38,8 +38,8 @@ impl Moved {
             return;
         }
         for instance in instances {
-            for (topic, origin) in &self.looked_through {
-                instance.message_arrived(*topic, *origin, now);
+            for (topic, host, origin) in &self.looked_through {
+                instance.message_arrived(*topic, *host, *origin, now);
             }
         }
     }

@@ -164,9 +164,9 @@ impl Running {
         // Before anybody publishes, so that nobody misses anything.
         let linked: Vec<_> = links.iter().map(RunningLink::waker).collect();
         self.links.extend(links);
-        hub.set_waker(Arc::new(move |topic| {
-            mailboxes.iter().for_each(|mailbox| mailbox.message(topic));
-            linked.iter().for_each(|wake| wake(topic));
+        hub.set_waker(Arc::new(move |topic, host| {
+            mailboxes.iter().for_each(|mailbox| mailbox.message(topic, host));
+            linked.iter().for_each(|wake| wake(topic, host));
         }));
         for (member, switch) in members.into_iter().zip(switches) {
             self.launch_member(member, hub.host(), switch)?;

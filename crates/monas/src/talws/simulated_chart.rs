@@ -1,6 +1,6 @@
 //! A chart in simulated time: its activities are called at once, and return when their declared duration is over.
 
-use narukom::{Moment, TopicSlot};
+use narukom::{HostId, Moment, TopicSlot};
 
 use super::teller::Teller;
 use crate::agent::Policy;
@@ -50,8 +50,14 @@ impl SimulatedChart {
         self.frequency.map_or(Moment::MAX, |frequency| frequency.due(self.ticks))
     }
 
-    pub(super) fn message_arrived(&mut self, topic: TopicSlot, origin: Option<Origin>, now: Moment) {
-        self.runner.message_arrived(topic, origin, now);
+    pub(super) fn message_arrived(
+        &mut self,
+        topic: TopicSlot,
+        host: HostId,
+        origin: Option<Origin>,
+        now: Moment,
+    ) {
+        self.runner.message_arrived(topic, host, origin, now);
     }
 
     pub(super) fn raise(&mut self, event: &str) -> bool {

@@ -203,9 +203,9 @@ impl Host {
             running.push(link);
         }
         let note = moved.noting();
-        hub.set_waker(Arc::new(move |topic| {
-            note(topic);
-            linked.iter().for_each(|wake| wake(topic));
+        hub.set_waker(Arc::new(move |topic, host| {
+            note(topic, host);
+            linked.iter().for_each(|wake| wake(topic, host));
         }));
         let instances = members.into_iter().map(Instance::new).collect();
         Ok(Host { hub, moved, body: body.map(|body| (body, 0)), instances })

@@ -8,7 +8,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use arc_swap::ArcSwap;
-use narukom::{Blackboard, Keep, Moment, Topic, TopicSlot};
+use narukom::{Blackboard, HostId, Keep, Moment, Topic, TopicSlot};
 use tokio::sync::broadcast;
 
 use crate::messages::{LARGE, LARGE_SIZE, Large, SMALL, Small, hub};
@@ -337,7 +337,7 @@ impl Sleeper {
     pub(crate) fn new(hub: &narukom::Narukom) -> Sleeper {
         let threads = Arc::new(Mutex::new(Vec::<thread::Thread>::new()));
         let sleepers = threads.clone();
-        hub.set_waker(Arc::new(move |_: TopicSlot| {
+        hub.set_waker(Arc::new(move |_: TopicSlot, _: HostId| {
             sleepers.lock().unwrap().iter().for_each(thread::Thread::unpark);
         }));
         Sleeper { threads, entered: false }

@@ -347,18 +347,21 @@ impl Builder<'_> {
     fn reads(&self, triggers: &[Trigger]) -> Box<[TopicId]> {
         let mut topics: BTreeSet<TopicId> =
             self.guards.iter().flat_map(|guard| guard.guard.reads().iter().copied()).collect();
-        topics.extend(self.arrivals(triggers));
+        topics.extend(self.arrivals(triggers).map(|(topic, _)| topic));
         topics.into_iter().collect()
     }
 
-    /// The topics whose messages triggers wait for.
-    fn arrivals<'t>(&'t self, triggers: &'t [Trigger]) -> impl Iterator<Item = TopicId> + 't {
+    /// The topics whose messages triggers wait for, and the host if it is another.
+    fn arrivals<'t>(&'t self, triggers: &'t [Trigger]) -> impl Iterator<Item = (TopicId, Option<&'t str>)> {
         let events = triggers.iter().flat_map(|trigger| trigger.events().iter());
-        events.filter_map(|&event| self.events.topic(event))
+        events.filter_map(|&event| Some((self.events.topic(event)?, self.events.host(event))))
     }
 
     fn sources(&self, states: &[State], triggers: &[Trigger]) -> Box<[MessageSource]> {
-        let arrivals = self.arrivals(triggers).map(|topic| MessageSource { topic, origin: Origin::Own });
+        let arrivals = self.arrivals(triggers).map(|(topic, host)| MessageSource {
+            topic,
+            origin: host.map_or(Origin::Own, |host| Origin::Host(host.into())),
+        });
         let mut sources: BTreeSet<MessageSource> = arrivals.collect();
         sources.extend(self.guards.iter().flat_map(|guard| guard.guard.sources()).cloned());
         let segments = self.segments.values().map(|segment| &segment.effects);

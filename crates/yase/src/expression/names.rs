@@ -81,12 +81,16 @@ pub struct EventTable {
     entries: Vec<EventEntry>,
     by_name: BTreeMap<String, EventId>,
     by_topic: BTreeMap<TopicId, EventId>,
+    /// Arrivals of messages of other hosts.
+    of_hosts: Vec<EventId>,
 }
 
 #[derive(Clone, Debug)]
 struct EventEntry {
     name: String,
     topic: Option<TopicId>,
+    /// The other host, if it is one's message.
+    host: Option<Box<str>>,
 }
 
 impl EventTable {
@@ -100,25 +104,35 @@ impl EventTable {
         if let Some(&id) = self.by_name.get(name) {
             return id;
         }
-        let id = self.push(name, None);
+        let id = self.push(name, None, None);
         self.by_name.insert(name.to_owned(), id);
         id
     }
 
-    /// The event that is each arrival of a message on a topic, added if it is new; `name` is what traces call
-    /// it.
+    /// The event that is each arrival of a message of the own host on a topic, added if it is new; `name` is what traces
+    /// call it.
     pub fn intern_message(&mut self, topic: TopicId, name: &str) -> EventId {
         if let Some(&id) = self.by_topic.get(&topic) {
             return id;
         }
-        let id = self.push(name, Some(topic));
+        let id = self.push(name, Some(topic), None);
         self.by_topic.insert(topic, id);
         id
     }
 
-    fn push(&mut self, name: &str, topic: Option<TopicId>) -> EventId {
+    /// The same for messages of another host.
+    pub fn intern_message_of(&mut self, host: &str, topic: TopicId, name: &str) -> EventId {
+        if let Some(id) = self.message_of(host, topic) {
+            return id;
+        }
+        let id = self.push(name, Some(topic), Some(host.into()));
+        self.of_hosts.push(id);
+        id
+    }
+
+    fn push(&mut self, name: &str, topic: Option<TopicId>, host: Option<Box<str>>) -> EventId {
         let id = EventId(self.entries.len() as u32);
-        self.entries.push(EventEntry { name: name.to_owned(), topic });
+        self.entries.push(EventEntry { name: name.to_owned(), topic, host });
         id
     }
 
@@ -152,9 +166,20 @@ impl EventTable {
         self.find(name).into_iter().chain(others.map(|(_, &event)| event))
     }
 
-    /// The event that is each arrival on a topic, if some trigger names it.
+    /// The event that is each arrival of a message of the own host on a topic, if some trigger names it.
     pub fn message(&self, topic: TopicId) -> Option<EventId> {
         self.by_topic.get(&topic).copied()
+    }
+
+    /// The same for messages of another host.
+    pub fn message_of(&self, host: &str, topic: TopicId) -> Option<EventId> {
+        let is_it = |id: &EventId| self.topic(*id) == Some(topic) && self.host(*id) == Some(host);
+        self.of_hosts.iter().copied().find(is_it)
+    }
+
+    /// The other host whose messages an event stands for, if it is not the own.
+    pub fn host(&self, event: EventId) -> Option<&str> {
+        self.entries.get(event.0 as usize).and_then(|entry| entry.host.as_deref())
     }
 
     /// What an event is called; empty for one of another table.

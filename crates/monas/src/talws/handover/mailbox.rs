@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use narukom::TopicSlot;
+use narukom::{HostId, TopicSlot};
 
 use super::habit::Habit;
 use super::primitives::{Flag, Monitor, Primitives, Threads};
@@ -29,7 +29,7 @@ struct State<R> {
 
 /// What has come.
 pub(in crate::talws) struct Mail<R> {
-    pub(in crate::talws) messages: Vec<(TopicSlot, Option<Origin>)>,
+    pub(in crate::talws) messages: Vec<(TopicSlot, HostId, Option<Origin>)>,
     pub(in crate::talws) returned: VecDeque<R>,
     pub(in crate::talws) stop: bool,
 }
@@ -61,10 +61,10 @@ impl<R: Send + 'static, P: Primitives> Mailbox<R, P> {
     }
 
     /// A message was published.
-    pub(in crate::talws) fn message(&self, topic: TopicSlot) {
+    pub(in crate::talws) fn message(&self, topic: TopicSlot, host: HostId) {
         let interest = self.of_interest.get(topic.number() as usize);
         if interest.is_some_and(Flag::is_set) {
-            self.put(|mail| mail.messages.push((topic, origin::publishing())));
+            self.put(|mail| mail.messages.push((topic, host, origin::publishing())));
         }
     }
 

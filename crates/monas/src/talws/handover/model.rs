@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use narukom::TopicSlot;
+use narukom::{HostId, TopicSlot};
 use shuttle::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use shuttle::sync::{Condvar, Mutex, MutexGuard};
 use shuttle::thread::{self, JoinHandle};
@@ -154,7 +154,7 @@ impl<const WAKES: bool> Stage<WAKES> {
     fn publish(&self, messages: usize) {
         for message in 1..=messages {
             *self.published.lock().unwrap() = message;
-            self.mailbox.message(TOPIC);
+            self.mailbox.message(TOPIC, HostId::LOCAL);
         }
     }
 

@@ -9,11 +9,19 @@ use crate::expression::names::{EventId, EventTable};
 use crate::expression::syntax::{Name, Path};
 use crate::vocabulary::{TopicEntry, TopicKind};
 
+/// A message of the chart's own host.
+fn own(topic: &TopicEntry) -> Option<(&TopicEntry, Option<Box<str>>)> {
+    Some((topic, None))
+}
+
 impl Scope<'_> {
     /// The event that a trigger waits for.
     pub(super) fn event(&self, path: &Path, events: &mut EventTable) -> Checked<EventId> {
         Ok(match self.arrival(path)? {
-            Some(topic) => events.intern_message(topic.id, &topic.path),
+            Some((topic, None)) => events.intern_message(topic.id, &topic.path),
+            Some((topic, Some(host))) => {
+                events.intern_message_of(&host, topic.id, &format!("{} of {host}", topic.path))
+            }
             None => events.intern(&path.text()),
         })
     }
@@ -28,29 +36,33 @@ impl Scope<'_> {
         Err(vec![diagnostic.with_hint("give the event another name, or use `publish`")])
     }
 
-    /// The topic whose messages are meant, if the path does not name an event of the chart.
-    fn arrival(&self, path: &Path) -> Checked<Option<&TopicEntry>> {
+    /// The topic whose messages are meant, and the host if it is another, if the path does not name an event of the chart.
+    fn arrival(&self, path: &Path) -> Checked<Option<(&TopicEntry, Option<Box<str>>)>> {
         if self.timer(path).is_some() {
             return Ok(None);
         }
         match path.segments.as_slice() {
             [_, kind, _, ..] if kind_of(kind).is_some() => self.arrival_of_path(path).map(Some),
             [_, _, kind, _, ..] if kind_of(kind).is_some() => self.arrival_of_path(path).map(Some),
-            [prefix, message] if prefix.text == "Message" => self.topic_of_message(message).map(Some),
-            [message] if self.is_message(message) => self.topic_of_message(message).map(Some),
-            [name] => self.arrival_of_topic(name),
+            [prefix, message] if prefix.text == "Message" => self.topic_of_message(message).map(own),
+            [message] if self.is_message(message) => self.topic_of_message(message).map(own),
+            [name] => self.arrival_of_topic(name).map(|topic| topic.and_then(own)),
             _ => Ok(None),
         }
     }
 
-    fn arrival_of_path(&self, path: &Path) -> Checked<&TopicEntry> {
+    fn arrival_of_path(&self, path: &Path) -> Checked<(&TopicEntry, Option<Box<str>>)> {
         let (source, fields) = self.message(path)?;
-        let fault = match (&source.origin, fields.first()) {
-            (Origin::Own, None) => return Ok(source.entry),
-            (Origin::Own, Some(field)) => {
+        let fault = match (source.origin, fields.first()) {
+            (Origin::Own, None) => return Ok((source.entry, None)),
+            (Origin::Host(host), None) => return Ok((source.entry, Some(host))),
+            (Origin::Own | Origin::Host(_), Some(field)) => {
                 (field.place, format!("`{}` is a field; a trigger names a message", field.text))
             }
-            _ => (path.place, format!("`{path}` is a message of another host; only own messages are events")),
+            _ => (
+                path.place,
+                format!("`{path}` is a message of one publisher; all of its host are events, or none"),
+            ),
         };
         Err(vec![
             Diagnostic::error("E0146", fault.0.0, fault.1).with_hint("read it in a condition, in brackets"),

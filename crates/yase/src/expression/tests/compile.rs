@@ -118,6 +118,23 @@ fn triggers_name_events_and_arrivals_of_messages() {
     assert_eq!(events.len(), 4);
 }
 
+#[test]
+fn triggers_name_arrivals_from_other_hosts_which_are_other_events() {
+    let mut events = EventTable::new();
+    let text = "ball.State.Ball | striker.ball.State.Ball | goalie.ball.State.Ball | striker.ball.State.Ball";
+    let trigger = compile_with(text, &mut events).unwrap().trigger.unwrap();
+    let own = events.message(BALL).unwrap();
+    let [striker, goalie] = ["striker", "goalie"].map(|host| events.message_of(host, BALL).unwrap());
+    assert_eq!(trigger, CompiledTrigger::OneOf([own, striker, goalie, striker].into()));
+    assert_eq!(
+        [own, striker, goalie].map(|event| events.host(event)),
+        [None, Some("striker"), Some("goalie")]
+    );
+    assert_eq!(events.topic(goalie), Some(BALL));
+    assert_eq!(events.name(goalie), "soccer/ball of goalie");
+    assert_eq!((events.len(), events.message_of("striker", GAME)), (3, None));
+}
+
 /// A topic that keeps its messages is no event unless it is written as one; nor is a timer's name a topic.
 #[test]
 fn names_of_events_are_not_taken_for_topics() {

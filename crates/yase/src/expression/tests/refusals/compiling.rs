@@ -343,9 +343,9 @@ pub(super) const COMPILING: Table = &[
         ],
     ),
     (
-        "striker.ball.State.Ball",
+        "striker.ball.State.Ball.found",
         &[
-            "E0146 <striker.ball.State.Ball>: `striker.ball.State.Ball` is a message of another host; only own messages are events (read it in a condition, in brackets)",
+            "E0146 <found>: `found` is a field; a trigger names a message (read it in a condition, in brackets)",
         ],
     ),
     (
