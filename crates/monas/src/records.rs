@@ -21,7 +21,12 @@ impl Delivery {
         blackboard.arrivals().enumerate().filter_map(move |(place, topic)| {
             let is_last = !blackboard.arrivals().skip(place + 1).any(|later| later == topic);
             let sample = blackboard.latest_sample(topic).filter(|_| is_last)?;
-            Some(Delivery { topic: topic.number(), sequence: sample.header.sequence, region })
+            Some(Delivery {
+                topic: topic.number(),
+                sequence: sample.header.sequence,
+                region,
+                ..Delivery::default()
+            })
         })
     }
 }

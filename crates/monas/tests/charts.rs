@@ -473,7 +473,16 @@ fn a_guard_reads_what_a_link_brings_from_another_host() {
     let text = "Liveness:\nm = A . B . C\nTransitions:\nA -> B : [striker.ball.State.Ball.x > 1]\n\
                 B -> C : [striker.Vision.Game.phase == PLAY]";
     let talws = Talws::new().registry(registry).link(link).agent(Agent::statechart("m", chart(text)));
-    let mut simulation = talws.agent(balls(&[5])).simulate_linked(1).unwrap();
+    let mut talws = talws.agent(balls(&[5]));
+    let records = Arc::new(Mutex::new(Vec::new()));
+    let noted = records.clone();
+    talws.observe(Box::new(move |publication: narukom::Publication<'_>| {
+        let text = format!("{:?}", publication.sample.message);
+        if publication.topic.path() == "monas/cycle" && text.contains("striker") {
+            noted.lock().unwrap().push(text);
+        }
+    }));
+    let mut simulation = talws.simulate_linked(1).unwrap();
     let hub = simulation.hub("local").unwrap().clone();
     let arrives =
         |millis| Arrival { sequence: millis, published: at(0), local: at(millis), received: at(millis) };
@@ -661,7 +670,8 @@ fn the_records_name_what_happens() {
     );
     let cycle =
         records.iter().find(|record| record.starts_with("monas/cycle") && record.contains("time: 10000000"));
-    let delivery = |topic| format!("Delivery {{ topic: {topic}, sequence: 1, region: 0 }}");
+    let delivery =
+        |topic| format!("Delivery {{ topic: {topic}, sequence: 1, region: 0, host: \"\", publisher: \"\" }}");
     let expected = format!(
         "monas/cycle Cycle {{ number: 3, time: 10000000, delivered: [{}, {}] }}",
         delivery(ball),

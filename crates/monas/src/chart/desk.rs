@@ -101,6 +101,7 @@ impl Host for Desk {
     fn deliver(&mut self, region: RegionId) {
         let Some(blackboard) = self.lending.deliver(region, self.now) else { return };
         self.delivered.extend(Delivery::all(blackboard, region.0));
+        self.delivered.extend(self.lending.followed(region));
     }
 
     fn inherit(&mut self, region: RegionId, from: RegionId) {

@@ -11,6 +11,7 @@ use yase::Chart;
 use yase::expression::{MessageSource, Origin};
 
 use crate::error::Error;
+use crate::records::Delivery;
 
 /// What a region knows of the sources that its chart names.
 pub(super) struct Following {
@@ -29,6 +30,8 @@ struct Feed {
     age: Option<Duration>,
     subscriber: Subscriber,
     newest: Option<AnySample>,
+    /// Whether the last delivery brought the newest.
+    is_fresh: bool,
 }
 
 impl Following {
@@ -45,6 +48,11 @@ impl Following {
     /// Takes what was published since the last time.
     pub(super) fn deliver(&mut self, hub: &Narukom) {
         self.feeds.iter_mut().for_each(|feed| feed.deliver(hub));
+    }
+
+    /// What the last delivery brought, for the records.
+    pub(super) fn fresh(&self, region: u32) -> impl Iterator<Item = Delivery> {
+        self.feeds.iter().filter(|feed| feed.is_fresh).filter_map(move |feed| feed.record(region))
     }
 
     /// Takes over what another region knows.
@@ -98,6 +106,7 @@ impl Feed {
             age: topic.and_then(|topic| topic.age()),
             subscriber: hub.subscriber_of(host, topic.map_or("", |topic| topic.path()))?,
             newest: None,
+            is_fresh: false,
         })
     }
 
@@ -105,11 +114,30 @@ impl Feed {
         if self.kind == Kind::Signal {
             self.newest = None;
         }
+        self.is_fresh = false;
         while let Some(sample) = self.subscriber.next_sample() {
             if self.is_meant(&sample, hub) {
                 self.newest = Some(sample);
+                self.is_fresh = true;
             }
         }
+    }
+
+    fn record(&self, region: u32) -> Option<Delivery> {
+        let header = self.newest.as_ref()?.header;
+        let (host, publisher) = match &self.source.origin {
+            Origin::Host(host) => (&**host, ""),
+            Origin::Publisher(publisher) => ("", &**publisher),
+            Origin::HostPublisher { host, publisher } => (&**host, &**publisher),
+            _ => ("", ""),
+        };
+        Some(Delivery {
+            topic: header.topic.number(),
+            sequence: header.sequence,
+            region,
+            host: host.into(),
+            publisher: publisher.into(),
+        })
     }
 
     /// Whether a message is by the publisher that is meant, which is looked up until it is met.

@@ -15,6 +15,7 @@ use yase::{Activation, Chart, RegionId};
 use super::Home;
 use super::following::Following;
 use crate::error::Error;
+use crate::records::Delivery;
 use crate::talws::component_seed;
 
 /// The blackboards of a chart.
@@ -127,6 +128,12 @@ impl Lending {
         let blackboard = region.here.as_deref_mut()?;
         blackboard.process_messages(now);
         Some(blackboard)
+    }
+
+    /// What the last delivery brought to a region of certain hosts and publishers.
+    pub(super) fn followed(&self, region: RegionId) -> impl Iterator<Item = Delivery> {
+        let following = self.regions.get(region.0 as usize).map(|region| &region.following);
+        following.into_iter().flat_map(move |following| following.fresh(region.0))
     }
 
     /// The newest message of a source that guards read.
