@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use monas::Registry;
+use monas::{Registry, Talws};
 use monas_match::Match;
 use yase::Diagnostic;
 
@@ -17,10 +17,14 @@ pub(crate) fn execute(config: &Path, format: Format, console: &mut Console<'_>) 
     let registry = Registry::linked();
     let diagnostics = match kind_of(config) {
         Ok(Kind::Match) => match Match::load(config, &registry) {
-            Ok(plan) => plan.warnings().to_vec(),
+            Ok(plan) => {
+                let warnings = plan.warnings().to_vec();
+                let found = plan.check().map_err(|error| Failure::failed(format, error))?;
+                [warnings, found].concat()
+            }
             Err(diagnostics) => diagnostics,
         },
-        Ok(Kind::Agents) => monas::config::load(config, &registry).1,
+        Ok(Kind::Agents) => agents(config, registry),
         Err(unread) => vec![*unread],
     };
     if diagnostics.iter().any(Diagnostic::is_error) {
@@ -31,4 +35,14 @@ pub(crate) fn execute(config: &Path, format: Format, console: &mut Console<'_>) 
         writeln!(console.out, "{}: no errors", config.display())?;
     }
     Ok(Exit::Success)
+}
+
+/// What is wrong with a file of agents, and, if it can be read, what is wrong with them together.
+fn agents(config: &Path, registry: Registry) -> Vec<Diagnostic> {
+    let (setup, mut diagnostics) = monas::config::load(config, &registry);
+    if !diagnostics.iter().any(Diagnostic::is_error) {
+        let talws = setup.agents.into_iter().fold(Talws::new().registry(registry), Talws::agent);
+        diagnostics.extend(setup.links.into_iter().fold(talws, Talws::link).check());
+    }
+    diagnostics
 }

@@ -38,6 +38,13 @@ impl Error {
         Error { kind: ErrorKind::Recording, message, source: Some(error.into()) }
     }
 
+    /// What is wrong with what a person wrote, if that is it.
+    pub fn diagnostics(&self) -> &[yase::Diagnostic] {
+        let source = self.source.as_deref();
+        let agents = source.and_then(|source| source.downcast_ref::<monas::Error>());
+        agents.map_or(&[], monas::Error::diagnostics)
+    }
+
     /// What has gone wrong.
     pub fn kind(&self) -> ErrorKind {
         self.kind

@@ -172,12 +172,42 @@ impl MatchPlan {
         Duration::from_secs_f64(2.0 * self.rules.half_duration)
     }
 
+    /// What [`start`](MatchPlan::start) would say of the agents, without a start.
+    ///
+    /// # Errors
+    /// The field refuses its parameters or the line-up.
+    pub fn check(self) -> Result<Vec<Diagnostic>, Error> {
+        Ok(self.set_up(0)?.0.check())
+    }
+
     /// Begins the match.
     ///
     /// # Errors
     /// The recording cannot be written, or a part refuses to be set up.
     pub fn start(self, options: Options) -> Result<RunningMatch, Error> {
-        let length = self.length();
+        let (length, is_linked, files) = (self.length(), self.is_linked, self.files.clone());
+        let hosts: Vec<String> = self.robots.iter().map(|robot| robot.host.clone()).collect();
+        let (mut talws, pitch) = self.set_up(options.seed)?;
+        let hash = RunHash::new();
+        talws.observe(Box::new(hash.clone()));
+        let tape = options.record.map(|path| {
+            let tape = label::simulated(&path, &files, options.seed, &hosts);
+            Ok((tape.map_err(|error| Error::recording(&path, error))?, path))
+        });
+        let tape = tape.transpose()?;
+        if let Some((tape, _)) = &tape {
+            talws.observe(Box::new(tape.clone()));
+        }
+        let simulation = match is_linked {
+            true => talws.simulate_linked(options.seed),
+            false => talws.simulate(options.seed),
+        };
+        let simulation = simulation.map_err(Error::agents)?;
+        Ok(RunningMatch::new(simulation, pitch, hash, tape, length))
+    }
+
+    /// The robots with their bodies on the field.
+    fn set_up(self, seed: u64) -> Result<(Talws, Pitch), Error> {
         let lineup =
             self.robots.iter().map(|robot| monas_sim::RobotSetup { team: robot.team, number: robot.number });
         let setup = Setup {
@@ -186,10 +216,9 @@ impl MatchPlan {
             rules: self.rules,
             teams: self.teams,
             robots: lineup.collect(),
-            seed: options.seed,
+            seed,
         };
         let pitch = Pitch::new(World::new(setup).map_err(Error::field)?);
-        let hosts: Vec<String> = self.robots.iter().map(|robot| robot.host.clone()).collect();
         let mut talws = Talws::new().registry(self.registry);
         for (index, RobotPlan { team, number, host, agents, links }) in self.robots.into_iter().enumerate() {
             let body = pitch.body(index).map(|body| Box::new(body) as _);
@@ -200,22 +229,6 @@ impl MatchPlan {
         for listener in self.listeners {
             talws.listen(listener);
         }
-        let hash = RunHash::new();
-        talws.observe(Box::new(hash.clone()));
-        let files = &self.files;
-        let tape = options.record.map(|path| {
-            let tape = label::simulated(&path, files, options.seed, &hosts);
-            Ok((tape.map_err(|error| Error::recording(&path, error))?, path))
-        });
-        let tape = tape.transpose()?;
-        if let Some((tape, _)) = &tape {
-            talws.observe(Box::new(tape.clone()));
-        }
-        let simulation = match self.is_linked {
-            true => talws.simulate_linked(options.seed),
-            false => talws.simulate(options.seed),
-        };
-        let simulation = simulation.map_err(Error::agents)?;
-        Ok(RunningMatch::new(simulation, pitch, hash, tape, length))
+        Ok((talws, pitch))
     }
 }

@@ -25,6 +25,7 @@ use monas_robot::Robot;
 use narukom::{Blackboard, Moment, Observer};
 use std::path::Path;
 use std::time::Duration;
+use yase::{Diagnostic, Span};
 
 use crate::activity::BoxError;
 use crate::agent::Agent;
@@ -221,6 +222,16 @@ impl Talws {
         Simulation::new(self, seed)
     }
 
+    /// What a run would say before anything starts: charts that do not fit the program, sources that can never be heard, names that
+    /// stand twice. Nothing runs, and no link is opened.
+    pub fn check(self) -> Vec<Diagnostic> {
+        match setup::Stage::new(self, 0) {
+            Ok(_) => Vec::new(),
+            Err(error) if error.kind() == ErrorKind::Invalid => error.diagnostics().to_vec(),
+            Err(error) => vec![refusal(&error)],
+        }
+    }
+
     /// Starts a run in real time: a thread for each list of activities, each chart, each body and the world, and a pool of threads
     /// for the activities of each agent's charts.
     ///
@@ -243,5 +254,14 @@ impl Talws {
 impl std::fmt::Debug for Talws {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Talws").field("hosts", &self.hosts).finish_non_exhaustive()
+    }
+}
+
+/// What is said of the whole run and of no place in a file.
+fn refusal(error: &Error) -> Diagnostic {
+    let diagnostic = Diagnostic::error("E0323", Span::default(), error.to_string());
+    match error.hint() {
+        Some(hint) => diagnostic.with_hint(hint),
+        None => diagnostic,
     }
 }

@@ -52,7 +52,10 @@ fn play(
     let failed = |error: monas_match::Error| Failure::failed(arguments.format.value, error);
     let length = arguments.length.unwrap_or_else(|| plan.length());
     let options = Options { seed: arguments.seed.unwrap_or_default(), record: arguments.record.clone() };
-    let mut running = plan.start(options).map_err(failed)?;
+    let mut running = plan.start(options).map_err(|error| match error.diagnostics() {
+        [] => failed(error),
+        wrong => Failure::Invalid(arguments.format.value, wrong.to_vec()),
+    })?;
     // It ends when this function does, since then nobody advances the match any more.
     let _control = control::serve(arguments, running.simulation().overview(), console)?;
     let look = if arguments.realtime { PACED_LOOK } else { LOOK };

@@ -143,6 +143,27 @@ fn each_mistake_is_found_before_anything_runs() {
 }
 
 #[test]
+fn what_can_never_be_heard_is_found_before_anything_runs() {
+    let guard = "CONDITION -> SearchBall : [!Ball.found]";
+    for (other, said) in [
+        ("CONDITION -> SearchBall : [!striker.ball.State.Ball.found]", ["E0320", "host `striker`"]),
+        ("CONDITION -> SearchBall : [!Visoin.Ball.found]", ["E0321", "`Goalie`"]),
+    ] {
+        let (folder, _) = changed("models/goalie.srm", guard, other);
+        for config in [MATCH, "config/roles/goalie.xml"] {
+            let config = folder.path().join(config).display().to_string();
+            for arguments in [&["run", &config, "--for", "1s"][..], &["config", "check", &config]] {
+                let answer = monas(arguments);
+                assert_eq!((answer.code, answer.out.as_str()), (Some(3), ""), "{arguments:?}: {answer:?}");
+                for part in said {
+                    assert!(answer.err.contains(part), "{arguments:?}: no {part} in\n{}", answer.err);
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn a_missing_configuration_is_named() {
     let answer = monas(&["run", "config/mtach.xml"]);
     assert_eq!(answer.code, Some(3));
