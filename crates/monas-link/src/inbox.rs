@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 #[cfg(test)]
 use std::sync::Arc;
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Duration;
 
 use crate::protocol::Packet;
@@ -15,11 +15,15 @@ const PACKETS: usize = 16_384;
 const BYTES: usize = 64 << 20;
 
 /// Packets that have come. What does not fit is dropped and counted; the protocol asks for it again.
-#[derive(Default, Debug)]
+#[derive(Default)]
 pub struct Inbox {
     content: Mutex<Content>,
     changed: Condvar,
+    taker: OnceLock<Taker>,
 }
+
+/// Takes what is there, on the thread that has brought it; false if it cannot now, and whoever waits is to be woken.
+type Taker = Box<dyn Fn() -> bool + Send + Sync>;
 
 #[derive(Default, Debug)]
 struct Content {
@@ -40,7 +44,16 @@ impl Inbox {
         }
         content.bytes += size(&packet);
         content.packets.push_back(packet);
-        self.wake_with(content);
+        drop(content);
+        if !self.taker.get().is_some_and(|take| take()) {
+            self.wake();
+        }
+    }
+
+    /// Whom to call when something is put in; once.
+    pub(crate) fn set_taker(&self, taker: Taker) {
+        // There is one link to an inbox.
+        let _ = self.taker.set(taker);
     }
 
     /// The next packet.
@@ -96,6 +109,12 @@ impl Inbox {
 
     fn content(&self) -> MutexGuard<'_, Content> {
         self.content.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl std::fmt::Debug for Inbox {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Inbox").field("content", &self.content).finish_non_exhaustive()
     }
 }
 

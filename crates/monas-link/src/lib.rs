@@ -11,7 +11,7 @@
 //!
 //! A *transport* ([`Transport`]) carries packets and may lose them: sockets of one computer (feature `local`), or sessions of zenoh
 //! between computers (feature `zenoh`). Between the two, a [`Bridge`] takes messages from a hub and brings them in, and a [`Link`] is
-//! the thread that drives it.
+//! the thread that drives it; what comes is taken in by the transport's own thread if the link's is not at work.
 //!
 //! # The protocol
 //!

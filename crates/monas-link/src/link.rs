@@ -148,37 +148,75 @@ impl fmt::Debug for Link {
     }
 }
 
+/// Where the work is done, by one at a time: the link's thread, or a thread of the transport that has brought something and finds nobody
+/// there, which saves it the way through the link's thread. Sending is for the link's thread alone, since it may take its time.
+struct Desk(Mutex<Option<Worker>>);
+
 struct Worker {
     bridge: Bridge,
     transport: Box<dyn Transport>,
+    clock: Box<dyn Fn() -> Moment + Send>,
     inbox: Arc<Inbox>,
     shared: Arc<Shared>,
     next_report: Moment,
+    /// When the link's thread looks again if nobody wakes it.
+    comes_again: Moment,
+}
+
+impl Desk {
+    /// Takes what has come, if nobody is at work. False if the link's thread is to be woken, for that or for what follows from it.
+    fn take_in(&self) -> bool {
+        let Ok(mut place) = self.0.try_lock() else { return false };
+        let Some(worker) = place.as_mut() else { return true };
+        worker.take_in();
+        worker.inbox.is_empty() && worker.bridge.poll_at() >= worker.comes_again
+    }
+
+    /// The link's thread.
+    fn attend(&self, inbox: &Inbox, stops: &AtomicBool) {
+        while !stops.load(Ordering::SeqCst) {
+            let wait = self.place().as_mut().map_or(Duration::ZERO, Worker::work);
+            if !wait.is_zero() && inbox.is_empty() {
+                inbox.wait(wait);
+            }
+        }
+        // The transport ends after the lock is free: its threads may be waiting for it, and it for them.
+        let worker = self.place().take();
+        worker.into_iter().for_each(Worker::end);
+    }
+
+    fn place(&self) -> MutexGuard<'_, Option<Worker>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 impl Worker {
-    fn run(&mut self, clock: impl Fn() -> Moment) {
-        while !self.shared.stops.load(Ordering::SeqCst) {
-            let now = clock();
-            self.pump(&clock);
-            if now >= self.next_report {
-                self.next_report = now + LONGEST_WAIT;
-                self.tell(now);
-            }
-            let wait = self.bridge.poll_at().since(clock()).min(LONGEST_WAIT);
-            if !wait.is_zero() && self.inbox.is_empty() {
-                self.inbox.wait(wait);
-            }
+    /// Does what there is to do; for how long there is nothing then.
+    fn work(&mut self) -> Duration {
+        let now = (self.clock)();
+        self.pump();
+        if now >= self.next_report {
+            self.next_report = now + LONGEST_WAIT;
+            self.tell(now);
         }
-        self.pump(&clock);
-        self.tell(clock());
+        self.comes_again = self.bridge.poll_at();
+        self.comes_again.since((self.clock)()).min(LONGEST_WAIT)
     }
 
-    fn pump(&mut self, clock: &impl Fn() -> Moment) {
+    fn end(mut self) {
+        self.pump();
+        self.tell((self.clock)());
+    }
+
+    fn take_in(&mut self) {
         for packet in (0..ROUND).map_while(|_| self.inbox.take()) {
-            self.bridge.handle(&packet, clock());
+            self.bridge.handle(&packet, (self.clock)());
         }
-        while let Some(packet) = self.bridge.poll(clock()) {
+    }
+
+    fn pump(&mut self) {
+        self.take_in();
+        while let Some(packet) = self.bridge.poll((self.clock)()) {
             if self.transport.send(&packet).is_err() {
                 self.bridge.count_failed();
             }
