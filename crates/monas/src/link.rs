@@ -27,7 +27,7 @@ pub enum LinkTransport {
         /// The folder of the sockets; `$XDG_RUNTIME_DIR/monas` if it is not said.
         folder: Option<PathBuf>,
     },
-    /// Zenoh, in programs that have it.
+    /// Zenoh, in programs that are built with the feature `zenoh`.
     Zenoh(Endpoints),
 }
 
@@ -46,6 +46,28 @@ pub struct Endpoints {
     pub shared_memory: bool,
     /// The files of the certificates, where endpoints are `tls/`.
     pub certificates: Option<Certificates>,
+}
+
+#[cfg(feature = "zenoh")]
+impl Endpoints {
+    /// The same for the transport.
+    pub(crate) fn settings(&self) -> monas_link::ZenohSettings {
+        let Endpoints { realm, listen, connect, scouting, shared_memory, certificates } = self.clone();
+        let usual = monas_link::ZenohSettings::default();
+        monas_link::ZenohSettings {
+            realm: realm.unwrap_or(usual.realm),
+            listen,
+            connect,
+            scouting,
+            shared_memory,
+            tls: certificates.map(|Certificates { authority, certificate, key }| monas_link::Tls {
+                authority,
+                certificate,
+                key,
+            }),
+            ..usual
+        }
+    }
 }
 
 /// Files of certificates. Both sides show one, and both check it.

@@ -482,6 +482,7 @@ fn what_is_wrong_with_a_link_is_said_with_its_place_and_what_would_be_right() {
     );
 }
 
+#[cfg(not(feature = "zenoh"))]
 #[test]
 fn zenoh_in_a_program_without_it_is_said_beside_what_else_is_wrong() {
     check_link(
@@ -489,7 +490,7 @@ fn zenoh_in_a_program_without_it_is_said_beside_what_else_is_wrong() {
         "<send topics='test/ball'/><listen>7447</listen><connect>10.0.0.2</connect>",
         &[
             "agents.xml:2:57: error[E0333]: `10.0.0.2` is no endpoint (`tcp/192.168.1.20:7447` or `tls/robot_2:7447`)",
-            "agents.xml:1:18: error[E0337]: the transport `zenoh` is not in this program (between processes of one computer there is `transport=\"local\"`)",
+            "agents.xml:1:18: error[E0337]: the transport `zenoh` is not in this program (build it with `--features zenoh`; between processes of one computer there is `transport=\"local\"`)",
         ],
     );
     check_link(
@@ -498,10 +499,60 @@ fn zenoh_in_a_program_without_it_is_said_beside_what_else_is_wrong() {
         <certificates authority='team.pem' certificate='team.pem' key='team.key'/>",
         &[
             "agents.xml:3:64: error[E0316]: no file `team.key` (did you mean `team.pem`?)",
-            "agents.xml:1:18: error[E0337]: the transport `zenoh` is not in this program (between processes of one computer there is `transport=\"local\"`)",
+            "agents.xml:1:18: error[E0337]: the transport `zenoh` is not in this program (build it with `--features zenoh`; between processes of one computer there is `transport=\"local\"`)",
             "agents.xml:1:2: error[E0333]: an endpoint begins with `tls/`, and the link has no certificates \
          (`<certificates authority=\"team.pem\" certificate=\"robot_1.pem\" key=\"robot_1.key\"/>`)",
         ],
+    );
+}
+
+#[cfg(feature = "zenoh")]
+#[test]
+fn zenoh_in_a_program_with_it_is_checked_as_far_as_it_can_be_before_it_is_opened() {
+    let send = "<send topics='test/ball'/>";
+    let text = format!(
+        "<link transport='zenoh' realm='cup' shared_memory='0'>{send}<listen>7447</listen><connect>tcp/10.0.0.2:7447</connect></link>"
+    );
+    let (read, diagnostics) = links(&text, &[]);
+    assert_eq!(diagnostics, [""; 0]);
+    let LinkTransport::Zenoh(endpoints) = &read[0].transport else { panic!("{read:?}") };
+    assert_eq!(endpoints.listen, ["tcp/127.0.0.1:7447"], "a port alone is of this computer");
+    assert_eq!(endpoints.connect, ["tcp/10.0.0.2:7447"]);
+    assert_eq!(endpoints.realm.as_deref(), Some("cup"));
+    assert!(!endpoints.scouting && !endpoints.shared_memory && endpoints.certificates.is_none());
+    check_link(
+        "transport='zenoh'",
+        send,
+        &[
+            "agents.xml:1:2: error[E0333]: the link neither listens nor connects, and does not look for others \
+           (add `<listen>7447</listen>`, `<connect>tcp/192.168.1.20:7447</connect>` or `scouting=\"1\"`)",
+        ],
+    );
+    check_link(
+        "transport='zenoh'",
+        &format!("{send}<listen>udp/0.0.0.0:7447</listen>"),
+        &[
+            "agents.xml:2:35: error[E0333]: `udp/0.0.0.0:7447` is no endpoint (`tcp/127.0.0.1:7447` or `tls/0.0.0.0:7447`; a port alone, such as `7447`, is for this computer only)",
+            "agents.xml:1:2: error[E0333]: the link neither listens nor connects, and does not look for others \
+           (add `<listen>7447</listen>`, `<connect>tcp/192.168.1.20:7447</connect>` or `scouting=\"1\"`)",
+        ],
+    );
+    let certificates = "<certificates authority='team.pem' certificate='team.pem' key='team.pem'/>";
+    check_link(
+        "transport='zenoh'",
+        &format!("{send}<listen>7447</listen>{certificates}"),
+        &[
+            "agents.xml:1:2: error[E0333]: the link has certificates, and its endpoint `tcp/127.0.0.1:7447` does not ask for them \
+           (endpoints that ask for certificates begin with `tls/`)",
+        ],
+    );
+    let (_, diagnostics) = links(
+        &format!("<link transport='zenoh'>{send}<listen>tls/0.0.0.0:7447</listen>{certificates}</link>"),
+        &[("team.pem", "")],
+    );
+    assert!(
+        diagnostics[0].contains("E0336") && diagnostics[0].contains("holds no certificate in PEM"),
+        "{diagnostics:?}"
     );
 }
 

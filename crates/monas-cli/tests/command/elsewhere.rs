@@ -12,7 +12,7 @@ use crate::running::{Running, ask, objects};
 const LOOKS: usize = 100;
 
 /// The project's configuration and models in a folder, with a referee who does not dwell on what comes before play.
-fn project(folder: &Path) {
+pub(crate) fn project(folder: &Path) {
     for part in ["config", "models"] {
         copy(&root().join(part), &folder.join(part));
     }
@@ -27,7 +27,7 @@ fn project(folder: &Path) {
 }
 
 /// The first message of a topic of the robot for which something holds.
-fn await_message(folder: &Path, topic: &str, holds: impl Fn(&Value) -> bool) -> Value {
+pub(crate) fn await_message(folder: &Path, topic: &str, holds: impl Fn(&Value) -> bool) -> Value {
     for _ in 0..LOOKS {
         let echo = [
             "topic", "echo", topic, "--run", "game", "--host", "blue-2", "--for", "300ms", "--format", "json",
@@ -80,12 +80,17 @@ fn the_vision_of_a_robot_runs_in_a_second_process() {
     let (vision, game) = (vision.interrupt(), game.interrupt());
     assert_eq!((vision.code, game.code), (Some(130), Some(130)), "{vision:?} {game:?}");
     for (answer, topic) in [(&game, "soccer/ball"), (&game, "soccer/robots"), (&vision, "body/sensors")] {
-        let figures = figures(answer, topic);
-        let [arrived, delivered, duplicates, late, refused, held, _gaps] = figures[..] else { panic!() };
-        assert!(delivered > 0, "{topic}: {figures:?}");
-        assert_eq!(arrived, delivered + duplicates + late + refused + held, "{topic}: {figures:?}");
-        assert_eq!(refused, 0, "{topic}: {figures:?}");
+        assert_counted(answer, topic);
     }
+}
+
+/// Something of the topic has come, and the figures add up.
+pub(crate) fn assert_counted(answer: &Answer, topic: &str) {
+    let figures = figures(answer, topic);
+    let [arrived, delivered, duplicates, late, refused, held, _gaps] = figures[..] else { panic!() };
+    assert!(delivered > 0, "{topic}: {figures:?}");
+    assert_eq!(arrived, delivered + duplicates + late + refused + held, "{topic}: {figures:?}");
+    assert_eq!(refused, 0, "{topic}: {figures:?}");
 }
 
 #[test]

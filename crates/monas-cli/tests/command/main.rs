@@ -17,3 +17,5 @@ mod tape;
 #[cfg(unix)]
 mod topic;
 mod usage;
+#[cfg(all(unix, feature = "zenoh"))]
+mod zenoh;

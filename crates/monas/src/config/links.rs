@@ -65,7 +65,7 @@ impl LinkReader<'_> {
         self.content(element, &mut draft);
         self.contradictions(element, &draft.settings, errors);
         let transport = match way {
-            true => self.zenoh(element, draft.endpoints),
+            true => self.zenoh(element, draft.endpoints, &draft.settings.access, errors),
             false => LinkTransport::Local { folder: draft.folder },
         };
         (enabled && self.errors() == errors).then_some(LinkConfig {
@@ -267,12 +267,14 @@ impl LinkReader<'_> {
         }
     }
 
-    fn zenoh(&mut self, element: &Element, endpoints: Endpoints) -> LinkTransport {
-        let given = element.attributes().iter().find(|given| xml::is_written(&given.name, "transport"));
-        let span = given.map_or(element.name_span(), |given| given.value_span);
-        let message = "the transport `zenoh` is not in this program";
-        let hint = "between processes of one computer there is `transport=\"local\"`";
-        self.diagnostics.push(element.error("E0337", span, message).with_hint(hint));
+    fn zenoh(
+        &mut self,
+        element: &Element,
+        endpoints: Endpoints,
+        access: &AccessList,
+        errors: usize,
+    ) -> LinkTransport {
+        self.lacking_zenoh(element);
         if endpoints.listen.is_empty() && endpoints.connect.is_empty() && !endpoints.scouting {
             let message = "the link neither listens nor connects, and does not look for others";
             let hint =
@@ -287,8 +289,42 @@ impl LinkReader<'_> {
                 "`<certificates authority=\"team.pem\" certificate=\"robot_1.pem\" key=\"robot_1.key\"/>`";
             self.diagnostics.push(element.error("E0333", element.name_span(), message).with_hint(hint));
         }
+        let open = endpoints.listen.iter().chain(&endpoints.connect).find(|endpoint| !secured(endpoint));
+        if let (Some(open), Some(_)) = (open, &endpoints.certificates) {
+            let message =
+                format!("the link has certificates, and its endpoint `{open}` does not ask for them");
+            let hint = "endpoints that ask for certificates begin with `tls/`";
+            self.diagnostics.push(element.error("E0333", element.name_span(), message).with_hint(hint));
+        }
+        if self.errors() == errors {
+            self.unusable(element, &endpoints, access);
+        }
         LinkTransport::Zenoh(endpoints)
     }
+
+    /// A program that is built without zenoh.
+    #[cfg(not(feature = "zenoh"))]
+    fn lacking_zenoh(&mut self, element: &Element) {
+        let given = element.attributes().iter().find(|given| xml::is_written(&given.name, "transport"));
+        let span = given.map_or(element.name_span(), |given| given.value_span);
+        let message = "the transport `zenoh` is not in this program";
+        let hint = "build it with `--features zenoh`; between processes of one computer there is `transport=\"local\"`";
+        self.diagnostics.push(element.error("E0337", span, message).with_hint(hint));
+    }
+
+    #[cfg(feature = "zenoh")]
+    fn lacking_zenoh(&mut self, _: &Element) {}
+
+    /// What zenoh itself does not take: files of certificates that hold none.
+    #[cfg(feature = "zenoh")]
+    fn unusable(&mut self, element: &Element, endpoints: &Endpoints, access: &AccessList) {
+        if let Err(error) = endpoints.settings().check(access) {
+            self.diagnostics.push(element.error("E0336", element.name_span(), error.to_string()));
+        }
+    }
+
+    #[cfg(not(feature = "zenoh"))]
+    fn unusable(&mut self, _: &Element, _: &Endpoints, _: &AccessList) {}
 }
 
 fn is_plain(text: &str) -> bool {
@@ -299,11 +335,11 @@ fn beat(text: &str) -> Option<Duration> {
     xml::duration(text).filter(|beat| *beat >= Duration::from_millis(1))
 }
 
-/// `tcp/HOST:PORT`, with other protocols that zenoh knows.
+/// `tcp/HOST:PORT` or `tls/HOST:PORT`: what zenoh is built with here.
 fn is_endpoint(text: &str) -> bool {
     let Some((protocol, address)) = text.split_once('/') else { return false };
     let Some((host, port)) = address.rsplit_once(':') else { return false };
-    ["tcp", "tls", "udp", "quic"].contains(&protocol) && !host.is_empty() && port.parse::<u16>().is_ok()
+    ["tcp", "tls"].contains(&protocol) && !host.is_empty() && port.parse::<u16>().is_ok()
 }
 
 /// Where a line stands, counted from 1.

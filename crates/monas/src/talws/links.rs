@@ -104,6 +104,9 @@ enum Way {
     /// Sockets in a folder.
     #[cfg(unix)]
     Local(PathBuf),
+    /// A session of zenoh.
+    #[cfg(feature = "zenoh")]
+    Zenoh(monas_link::ZenohSettings),
 }
 
 impl Way {
@@ -119,7 +122,12 @@ impl Way {
             },
             #[cfg(not(unix))]
             LinkTransport::Local { .. } => refused("local sockets are those of Unix"),
-            LinkTransport::Zenoh(_) => refused("this program has no zenoh"),
+            #[cfg(feature = "zenoh")]
+            LinkTransport::Zenoh(endpoints) => Ok(Way::Zenoh(endpoints.settings())),
+            #[cfg(not(feature = "zenoh"))]
+            LinkTransport::Zenoh(_) => {
+                refused("this program has no zenoh; one that is built with `--features zenoh` has it")
+            }
         }
     }
 
@@ -127,6 +135,8 @@ impl Way {
         match self {
             #[cfg(unix)]
             Way::Local(folder) => Ok(Box::new(monas_link::Local::new(&folder, bridge.node().host(), inbox)?)),
+            #[cfg(feature = "zenoh")]
+            Way::Zenoh(settings) => Ok(Box::new(monas_link::Zenoh::open(&settings, bridge.node(), inbox)?)),
         }
     }
 }

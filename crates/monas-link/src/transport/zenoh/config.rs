@@ -58,6 +58,14 @@ impl Default for ZenohSettings {
 }
 
 impl ZenohSettings {
+    /// Whether zenoh can be opened with them, as far as that can be told beforehand.
+    ///
+    /// # Errors
+    /// An endpoint is none, or a file of the certificates is not there or holds none.
+    pub fn check(&self, access: &AccessList) -> Result<(), Error> {
+        self.config(access).map(drop)
+    }
+
     pub(super) fn config(&self, access: &AccessList) -> Result<Config, Error> {
         let mut words = Words(Config::default());
         words.set("mode", text("peer"))?;
