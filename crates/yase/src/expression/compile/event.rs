@@ -9,8 +9,11 @@ use crate::expression::names::{EventId, EventTable};
 use crate::expression::syntax::{Name, Path};
 use crate::vocabulary::{TopicEntry, TopicKind};
 
+/// The topic of a message, and its host if that is not the chart's own.
+type Arrival<'a> = (&'a TopicEntry, Option<Box<str>>);
+
 /// A message of the chart's own host.
-fn own(topic: &TopicEntry) -> Option<(&TopicEntry, Option<Box<str>>)> {
+fn own(topic: &TopicEntry) -> Option<Arrival<'_>> {
     Some((topic, None))
 }
 
@@ -37,7 +40,7 @@ impl Scope<'_> {
     }
 
     /// The topic whose messages are meant, and the host if it is another, if the path does not name an event of the chart.
-    fn arrival(&self, path: &Path) -> Checked<Option<(&TopicEntry, Option<Box<str>>)>> {
+    fn arrival(&self, path: &Path) -> Checked<Option<Arrival<'_>>> {
         if self.timer(path).is_some() {
             return Ok(None);
         }
@@ -51,7 +54,7 @@ impl Scope<'_> {
         }
     }
 
-    fn arrival_of_path(&self, path: &Path) -> Checked<(&TopicEntry, Option<Box<str>>)> {
+    fn arrival_of_path(&self, path: &Path) -> Checked<Arrival<'_>> {
         let (source, fields) = self.message(path)?;
         let fault = match (source.origin, fields.first()) {
             (Origin::Own, None) => return Ok((source.entry, None)),
