@@ -33,9 +33,12 @@ pub(crate) fn main() -> Exit {
     crate::dispatch(std::env::args_os(), &mut console)
 }
 
+/// What is logged if MONAS_LOG does not say. What zenoh warns of is no fault of a run, and what fails is told as an error of the link.
+const USUAL: &str = "warn,zenoh=error";
+
 /// Warnings and errors, or what MONAS_LOG asks for, above whatever bars there are.
 fn log_to_standard_error(bars: &MultiProgress) {
-    let asked = std::env::var("MONAS_LOG").unwrap_or_else(|_| "warn".into());
+    let asked = std::env::var("MONAS_LOG").unwrap_or_else(|_| USUAL.into());
     let (filter, mistake) = match EnvFilter::try_new(asked) {
         Ok(filter) => (filter, None),
         Err(mistake) => (EnvFilter::new("warn"), Some(mistake)),

@@ -127,8 +127,11 @@ impl std::fmt::Debug for Zenoh {
     }
 }
 
+/// Why zenoh does not do it. It says of each error where in its sources it comes from, and of each of these what it comes from.
 fn refused(error: impl Display) -> Error {
-    Error::new(ErrorKind::Connection, format!("zenoh: {error}"))
+    let text = error.to_string().replace('[', "");
+    let reason = text.split(" at /").next().unwrap_or_default();
+    Error::new(ErrorKind::Connection, format!("zenoh: {reason}"))
 }
 
 fn check_name(name: &str) -> Result<(), Error> {
