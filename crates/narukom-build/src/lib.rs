@@ -35,6 +35,7 @@
 //! No `protoc` is needed: the compiler is protox, which is written in Rust.
 
 mod error;
+mod folder;
 mod generate;
 mod names;
 mod types;
@@ -50,6 +51,7 @@ use prost_types::{FileDescriptorProto, FileDescriptorSet};
 use crate::types::Types;
 
 pub use error::{Error, ErrorKind};
+pub use folder::{compile_folder, modules};
 
 /// Compiles `protos`, whose imports are found under `includes`, into `OUT_DIR`.
 ///
