@@ -187,6 +187,33 @@ fn names_match_by_tokens_where_that_is_meant_and_tokens_come_along() {
 }
 
 #[test]
+fn events_are_deferred_by_tokens_where_that_is_meant() {
+    let text = "
+        START
+        A | defer=w
+        B
+        START -> A
+        A -> B : go
+        B -> B {internal} : w / raise(seen)
+        A -> A {internal} : w.x [false]
+    ";
+    let transitions = |matching| -> Vec<u32> {
+        let mut semantics = Semantics::yase();
+        semantics.matching = matching;
+        let (mut machine, mut reader) = machine(&chart(text), semantics);
+        machine.start(Moment::ZERO, &mut reader);
+        machine.run_to_completion(Moment::ZERO, &mut reader).unwrap();
+        let mut play = |name: &str| {
+            machine.dispatch_name(name);
+            machine.run_to_completion(Moment::ZERO, &mut reader).unwrap().transitions
+        };
+        vec![play("w.x"), play("go"), play("w.x")]
+    };
+    assert_eq!(transitions(yase::EventMatching::TokenPrefix), [0, 2, 1], "`w.x` waits until `B` is active");
+    assert_eq!(transitions(yase::EventMatching::Exact), [0, 1, 0]);
+}
+
+#[test]
 fn failures_are_events_by_their_cause_or_every_time() {
     let text = "
         START
