@@ -1,6 +1,6 @@
 //! R4 to R8: events, guards, paths, and who wins.
 
-use yase::FailureEvents;
+use yase::{FailureEvents, Semantics};
 
 use crate::{check, check_with, compare, kit, refusal, with};
 
@@ -439,4 +439,40 @@ fn r05_a_guard_that_errs_is_told_once_in_a_micro_step_however_often_it_is_read()
     check(text, "1 e; 2 e; 3", &format!("{}0.002 s e: dropped", told("error.guard")));
     let every_time = with(|it| it.failures = FailureEvents::EveryTime);
     check_with(every_time, text, "1 e; 2 e; 3", &format!("{}{again}", told("error.execution")));
+}
+
+#[test]
+fn r15_what_can_step_in_another_region_keeps_no_composite_from_being_left() {
+    let one = "
+          one
+            START
+            P
+              START
+              A
+            X";
+    let two = "
+          two
+            START
+            B
+            C";
+    for (first, second) in [(one, two), (two, one)] {
+        let text = format!(
+            "
+        START
+        & both{first}{second}
+        c/START -> both
+        one/START -> P
+        P/START -> A
+        two/START -> B
+        P -> X : [A.n > 0]
+        B -> C : [A.n > 0]
+            "
+        );
+        let lines = kit::script::play_with(&kit::chart(&text), "1 A=1; 2", Semantics::yase());
+        let last = lines.last().unwrap();
+        assert!(
+            last.contains("both/one/P -> both/one/X") && last.contains("both/two/B -> both/two/C"),
+            "{lines:#?}"
+        );
+    }
 }

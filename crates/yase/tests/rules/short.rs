@@ -42,6 +42,7 @@ fn r23_guards_that_are_read_stand_in_the_record() {
         c/START -> A
         A -> B : e [A.n > 0]
         A -> A {internal} : e [A.n < 0]
+        A -> A {internal,!-1} : e [false]
         B -> A : e
     ";
     let log = with_reads(text, "1 A=0; 2 e; 3 A=1; 4 e; 5 e; 6");
@@ -229,4 +230,34 @@ fn r10_what_one_state_does_at_an_event_says_nothing_of_others() {
         });
         assert_eq!(transitions, [1, 3, 1]);
     }
+}
+
+#[test]
+fn r03_a_guard_that_failed_is_told_again_when_its_own_blackboard_was_written_and_not_when_another_topic_was()
+{
+    check(
+        "
+        START
+        A
+        c/START -> A
+        A -> A {internal} : e [1 / A.n > 0]
+        A -> A {internal} : w / A.n = 0
+        A -> A {internal} : v / B.n = 1
+        ",
+        "1 A=0; 2 e; 3 v; 4 e; 5 w; 6 e; 7 B=1; 8 e; 9",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> A; exit START; enter A
+        guard failed: division by zero
+        0.002 s e: dropped
+        0.002 s error.guard: dropped
+        0.003 s v: A -> A; do B.n = 1 (A -> A)
+        0.004 s e: dropped
+        0.005 s w: A -> A; do A.n = 0 (A -> A)
+        guard failed: division by zero
+        0.006 s e: dropped
+        0.006 s error.guard: dropped
+        0.008 s e: dropped
+        ",
+    );
 }
