@@ -32,7 +32,8 @@
 //!   counted. A late reader begins with the last value of a state, and with what is said from then on of all else.
 //! - On a topic that is sent with the best effort a message that comes is delivered at once, unless a newer one was before.
 //! - States are equal on all sides within two beats and two ways there and back after the network is whole, if nothing more is lost;
-//!   with a budget, within four beats and two ways, since then nothing is said out of turn, if what there is to say fits into it.
+//!   with a budget, within four beats and two ways, since then nothing is said out of turn, if what there is to say fits into it. A process that
+//!   is started again may be taken for an earlier one for three beats more, if something that one said comes late.
 //! - In no window does a link with a budget send more packets than it allows, and none is larger. Controls count like messages. A link
 //!   does not know what it has sent before it was started, so it is silent for the first window.
 //! - Nothing grows without bound. Of each topic that is sent as many messages are kept as it is deep and at most 8 MiB besides the last; of

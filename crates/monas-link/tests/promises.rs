@@ -69,6 +69,11 @@ fn heal(network: &mut Network) {
     network.run(2 * 200 + 4 * 40 + 4);
 }
 
+/// Waits until nobody takes an earlier life of a host for its present one, which a Hello that comes late may bring about.
+fn outlive_what_is_late(network: &mut Network) {
+    network.run(3 * 200 + 2 * 200);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -77,6 +82,9 @@ proptest! {
         let mut network = Network::of(3, 64, ROUGH, seed);
         play(&mut network, &turns);
         heal(&mut network);
+        if turns.iter().any(|turn| matches!(turn, Turn::Restart(_))) {
+            outlive_what_is_late(&mut network);
+        }
         network.check_counters();
         for reader in 0..3 {
             for sender in (0..3).filter(|sender| *sender != reader) {
@@ -311,5 +319,25 @@ fn the_clock_of_a_run_that_goes_in_steps_is_learned_in_whatever_part_of_a_step_a
         let error = (offset.ahead - 60_000_000_000).unsigned_abs();
         assert!(error <= offset.way / 2 + grain * 1_000_000, "{offset:?}, {phase} ms into a step of {grain}");
         assert!(offset.way <= 20_000_000, "{offset:?}, {phase} ms into a step of {grain}");
+    }
+}
+
+#[test]
+fn a_life_that_was_never_heard_of_does_not_silence_the_next() {
+    let turns = [
+        Turn::Publish { node: 0, topic: 0, count: 7 },
+        Turn::Publish { node: 1, topic: 0, count: 8 },
+        Turn::Wait(1),
+        Turn::Restart(0),
+    ];
+    for seed in 0..=255 {
+        let mut network = Network::of(3, 64, ROUGH, seed);
+        play(&mut network, &turns);
+        heal(&mut network);
+        outlive_what_is_late(&mut network);
+        for (reader, host, published) in [(0, "b", 8), (2, "b", 8)] {
+            let read = network.numbers(reader, host, STATE).last().copied();
+            assert_eq!(read, Some(published), "{host} by {reader}, seed {seed}");
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::sync::Arc;
+use std::time::Duration;
 
 use narukom::Moment;
 
@@ -27,6 +28,8 @@ pub(crate) struct Peer {
     /// Of its link; none before its Hello.
     pub(crate) incarnation: Option<u64>,
     past: VecDeque<u64>,
+    /// When something of its present life was heard last.
+    alive: Moment,
     /// Whether something of another life was heard, whose Hello is missing.
     is_doubted: bool,
     /// By place; those that are not known yet are none.
@@ -61,6 +64,7 @@ impl Peer {
             name,
             incarnation: None,
             past: VecDeque::new(),
+            alive: now,
             is_doubted: false,
             topics: Vec::new(),
             clock: ClockFilter::default(),
@@ -69,15 +73,26 @@ impl Peer {
         }
     }
 
-    /// Whether the Hello of this life is one of an earlier life that has come late.
-    pub(crate) fn is_past(&self, incarnation: u64) -> bool {
-        self.past.contains(&incarnation)
+    /// Whether what comes of this life is of an earlier one and has come late.
+    ///
+    /// Lives have no order: a late Hello of a life that was never heard of looks like a new life, and the true one then like a past one. So
+    /// one that is taken for past is believed again when the one that is taken for present has been silent for `silence`.
+    pub(crate) fn is_past(&self, incarnation: u64, now: Moment, silence: Duration) -> bool {
+        self.past.contains(&incarnation) && now.since(self.alive) <= silence
     }
 
     /// Begins another life, with `total` topics. What waited in the last one is delivered.
-    pub(crate) fn begin(&mut self, incarnation: u64, total: usize, deliver: &mut impl FnMut(usize, Message)) {
+    pub(crate) fn begin(
+        &mut self,
+        incarnation: u64,
+        total: usize,
+        now: Moment,
+        deliver: &mut impl FnMut(usize, Message),
+    ) {
         self.end(deliver);
+        self.alive = now;
         self.is_doubted = false;
+        self.past.retain(|past| *past != incarnation);
         if self.past.len() == REMEMBERED_LIVES {
             self.past.pop_front();
         }
@@ -97,9 +112,12 @@ impl Peer {
     }
 
     /// Hears something of a life; whether it is the one that is known.
-    pub(crate) fn is_in(&mut self, incarnation: u64) -> bool {
+    pub(crate) fn is_in(&mut self, incarnation: u64, now: Moment, silence: Duration) -> bool {
         let is_known = self.incarnation == Some(incarnation);
-        self.is_doubted |= !is_known && !self.is_past(incarnation);
+        if is_known {
+            self.alive = now;
+        }
+        self.is_doubted |= !is_known && !self.is_past(incarnation, now, silence);
         is_known
     }
 

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::sync::Arc;
+use std::time::Duration;
 
 use narukom::Moment;
 use prost::Message as _;
@@ -89,7 +90,8 @@ impl Node {
             self.introductions.is_asked = true;
             self.hurry(now);
         }
-        if !self.peers[place].is_in(control.incarnation) {
+        let silence = self.silence();
+        if !self.peers[place].is_in(control.incarnation, now, silence) {
             // It is asked for its Hello.
             return self.hurry(now);
         }
@@ -107,14 +109,15 @@ impl Node {
             self.counters.malformed += 1;
             return;
         }
+        let silence = self.silence();
         let peer = &mut self.peers[place];
-        if peer.is_past(incarnation) {
+        if peer.is_past(incarnation, now, silence) {
             return;
         }
         if peer.incarnation != Some(incarnation) {
             let name = peer.name.clone();
             let mut desk = Desk::new(&name, peer.clock.offset(), now, &mut self.deliveries);
-            peer.begin(incarnation, total, &mut |topic, message| desk.deliver(topic, message));
+            peer.begin(incarnation, total, now, &mut |topic, message| desk.deliver(topic, message));
             self.mismatches.retain(|(host, _), _| **host != *name);
             // Who has just come does not know this host.
             self.introductions.is_asked = true;
@@ -203,6 +206,11 @@ impl Node {
         }
     }
 
+    /// Who says nothing for so long is no more.
+    fn silence(&self) -> Duration {
+        self.beat * 3
+    }
+
     fn hurry_if_missing(&mut self, place: usize, now: Moment) {
         let is_missing = |reading: &Reading| matches!(&reading.state, ReadingState::Read { incoming, .. } if incoming.is_missing());
         if self.peers[place].topics.iter().flatten().any(is_missing) {
@@ -254,9 +262,9 @@ impl Node {
             return;
         }
         let place = self.peer(&packet.from, now);
-        let held: usize = self.held_bytes();
+        let (held, silence) = (self.held_bytes(), self.silence());
         let peer = &mut self.peers[place];
-        let is_current = peer.is_in(stamp.incarnation);
+        let is_current = peer.is_in(stamp.incarnation, now, silence);
         let reading = peer.topics.get_mut(stamp.offer as usize).and_then(Option::as_mut);
         let Some(reading) = reading.filter(|reading| is_current && reading.path == *path) else {
             self.counters.strangers += 1;
