@@ -2,11 +2,13 @@
 //!
 //! - `tidy` holds the house to what ARCHITECTURE.md and STYLE.md promise.
 //! - `faults` puts classic faults into the engine, one at a time, and requires that the tests catch them.
+//! - `project` makes a project with `monas new`, builds, tests and runs it, and adds to it.
 //! - `season` plays a season and writes its golden table; with `--check` it compares.
 //! - `picture` draws the match that README.md shows.
 
 mod faults;
 mod play;
+mod project;
 mod tidy;
 
 use std::path::{Path, PathBuf};
@@ -17,6 +19,7 @@ cargo xtask NAME
 
   tidy            check layers, absences, dependencies, texts and documents
   faults          put classic faults into a copy and see that the tests catch each
+  project         make a project with `monas new`, build, test and run it, and add to it
   season          play a season and write its golden table (tests/golden)
   season --check  play a season and compare it with its golden table
   picture         draw docs/match.svg";
@@ -27,6 +30,7 @@ fn main() -> ExitCode {
     let result = match arguments[..] {
         ["tidy"] => tidy::run(&root()),
         ["faults"] => faults::run(&root()),
+        ["project"] => project::run(&root()),
         ["season"] => play::season(&root(), &[]),
         ["season", "--check"] => play::season(&root(), &["--check"]),
         ["picture"] => play::season(&root(), &["picture", "docs/match.svg"]),

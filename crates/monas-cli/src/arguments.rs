@@ -30,6 +30,7 @@ Environment: NO_COLOR switches colours off; MONAS_LOG chooses what is logged, fo
 #[derive(Subcommand, Debug)]
 pub(crate) enum Command {
     /// Run a match or a set of agents.
+    #[command(after_help = "Example: monas run config/match.xml --seed 7 --for 60s")]
     Run(RunArguments),
     /// Read, check and draw models.
     #[command(subcommand)]
@@ -37,6 +38,7 @@ pub(crate) enum Command {
     /// Write the statechart of a model as a Rust crate that is linked into the team's program.
     ///
     /// Activities that nobody has written get skeletons, which are left alone ever after.
+    #[command(after_help = "Example: monas generate models/goalie.srm")]
     Generate(GenerateArguments),
     /// Look at configurations without running them.
     #[command(subcommand)]
@@ -48,6 +50,15 @@ pub(crate) enum Command {
     /// Look at recordings, mend, cut and merge them, write them as text, replay them.
     #[command(subcommand)]
     Tape(TapeCommand),
+    /// Begin a project, or an activity in one.
+    ///
+    /// `monas new my-team` makes a folder that builds, runs and passes its tests at once. `monas new activity Vision`, in a project, makes
+    /// a file that is found when the project is built.
+    #[command(after_help = "Example: monas new my-team && cd my-team && cargo test")]
+    New(NewArguments),
+    /// Look at toolchain, permissions, clock, ports and configuration, and say what to do about what is missing.
+    #[command(after_help = "Example: monas doctor config/agents.xml")]
+    Doctor(DoctorArguments),
     /// Print a completion script for a shell.
     #[command(after_help = "Example: source <(monas completions bash)")]
     Completions {
@@ -59,9 +70,11 @@ pub(crate) enum Command {
 /// What `run` may be told.
 #[derive(Args, Debug)]
 pub(crate) struct RunArguments {
-    /// A match (`<match>`) or a file of agents (`<agents>`).
+    /// A match or a file of agents, in XML or TOML.
     #[arg(default_value = DEFAULT_CONFIGURATION, value_hint = ValueHint::FilePath)]
     pub(crate) config: PathBuf,
+    #[command(flatten)]
+    pub(crate) layers: LayerArguments,
     /// The seed of everything random in a match; the same seed gives the same match. 0 if not given.
     #[arg(long)]
     pub(crate) seed: Option<u64>,
@@ -87,12 +100,15 @@ pub(crate) struct RunArguments {
 #[derive(Subcommand, Debug)]
 pub(crate) enum ModelCommand {
     /// Transform a model into the next one of the method; without --to, into the statechart it describes.
+    #[command(after_help = "Example: monas model transform models/goalie.srm")]
     Transform(TransformArguments),
     /// Write a model in another format of its kind.
     ///
     /// What the format cannot say is listed, and nothing is written unless --lossy is given.
+    #[command(after_help = "Example: monas model convert models/goalie.srm goalie.scxml")]
     Convert(ConvertArguments),
     /// Draw the statechart of a model as SVG.
+    #[command(after_help = "Example: monas model draw models/goalie.srm -o goalie.svg")]
     Draw {
         /// The model file.
         #[arg(value_hint = ValueHint::FilePath)]
@@ -106,6 +122,7 @@ pub(crate) enum ModelCommand {
     /// Say what is wrong with models, and nothing else.
     ///
     /// Ends with 0 if nothing is wrong or there are warnings only, with 3 if a model cannot be read, and with 5 if a check finds an error.
+    #[command(after_help = "Example: monas model check models/goalie.srm --linked")]
     Check(CheckArguments),
     /// Say whether charts hold to a protocol: that of the protocol itself, and those of its players.
     ///
@@ -148,6 +165,30 @@ What another role, or a chart from an editor, says is taken in by --from: monas 
         #[command(flatten)]
         format: FormatArgument,
     },
+}
+
+/// What `new` may be told.
+#[derive(Args, Debug)]
+pub(crate) struct NewArguments {
+    /// The folder of a new project, or `activity` and a name.
+    #[arg(required = true, num_args = 1..=2, value_name = "NAME")]
+    pub(crate) names: Vec<String>,
+    /// Where a project finds Monas: a checkout, the address of a git repository, or a version; the checkout that this command was built from,
+    /// if not given.
+    #[arg(long, value_name = "PATH|GIT|VERSION")]
+    pub(crate) monas: Option<String>,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
+}
+
+/// What `doctor` may be told.
+#[derive(Args, Debug)]
+pub(crate) struct DoctorArguments {
+    /// The configuration to look at: a match or a file of agents, in XML or TOML.
+    #[arg(default_value = DEFAULT_CONFIGURATION, value_hint = ValueHint::FilePath)]
+    pub(crate) config: PathBuf,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
 }
 
 /// What `model check` may be told.
@@ -306,13 +347,47 @@ pub(crate) struct ConvertArguments {
 #[derive(Subcommand, Debug)]
 pub(crate) enum ConfigCommand {
     /// Read a configuration and everything it names, bind its charts, and say what is wrong.
-    Check {
-        /// A match (`<match>`) or a file of agents (`<agents>`).
-        #[arg(default_value = DEFAULT_CONFIGURATION, value_hint = ValueHint::FilePath)]
-        config: PathBuf,
-        #[command(flatten)]
-        format: FormatArgument,
+    #[command(after_help = "Example: monas config check config/match.xml")]
+    Check(ConfigArguments),
+    /// Print every value of a configuration with where it comes from: a default, a file, a robot or the command line.
+    ///
+    /// Names of activities and models are not looked up: `config check` does that. A line begins with what `--set` takes.
+    #[command(after_help = "Example: monas config show config/agents.xml --set agent.Motion.frequency=50")]
+    Show(ConfigArguments),
+    /// Print what a configuration may hold, for editors: an XML schema for XML, a JSON schema for TOML.
+    #[command(after_help = "Example: monas config schema --xsd > monas.xsd")]
+    #[command(group(clap::ArgGroup::new("language").required(true)))]
+    Schema {
+        /// XML Schema 1.0.
+        #[arg(long, group = "language")]
+        xsd: bool,
+        /// JSON Schema 2020-12.
+        #[arg(long, group = "language")]
+        json: bool,
     },
+}
+
+/// Which configuration is meant.
+#[derive(Args, Debug)]
+pub(crate) struct ConfigArguments {
+    /// A match or a file of agents, in XML or TOML.
+    #[arg(default_value = DEFAULT_CONFIGURATION, value_hint = ValueHint::FilePath)]
+    pub(crate) config: PathBuf,
+    #[command(flatten)]
+    pub(crate) layers: LayerArguments,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
+}
+
+/// What goes over a configuration.
+#[derive(Args, Debug, Default)]
+pub(crate) struct LayerArguments {
+    /// Set a value, for example agent.Motion.frequency=50; in a match every role that has such an agent. May be given several times.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) settings: Vec<String>,
+    /// Put what is said of one robot over the configuration: robots/NAME.xml or .toml, beside it or in a folder above.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) robot: Option<String>,
 }
 
 #[derive(Args, Clone, Copy, Debug)]
@@ -340,6 +415,53 @@ mod tests {
     #[test]
     fn definitions_hold_together() {
         Arguments::command().debug_assert();
+    }
+
+    /// The commands that do something, each with the words that lead to it.
+    fn leaves(command: &clap::Command, words: &str, found: &mut Vec<(String, clap::Command)>) {
+        let below: Vec<&clap::Command> =
+            command.get_subcommands().filter(|below| below.get_name() != "help").collect();
+        if below.is_empty() {
+            found.push((words.to_owned(), command.clone()));
+        }
+        for command in below {
+            leaves(command, &format!("{words} {}", command.get_name()), found);
+        }
+    }
+
+    /// The words of a line; single quotes hold one together.
+    fn shell_words(line: &str) -> Vec<String> {
+        let parts = line.split('\'').enumerate();
+        let words = |(index, part): (usize, &str)| match index % 2 {
+            0 => part.split_whitespace().map(str::to_owned).collect(),
+            _ => vec![part.to_owned()],
+        };
+        parts.flat_map(words).collect()
+    }
+
+    #[test]
+    fn every_help_shows_an_example_that_is_understood() {
+        let mut found = Vec::new();
+        leaves(&Arguments::command(), "monas", &mut found);
+        assert!(found.len() > 20, "{}", found.len());
+        for (words, command) in found {
+            let help = command.clone().render_long_help().to_string();
+            let example = help.lines().find_map(|line| line.trim().strip_prefix("Example: "));
+            let example = example.unwrap_or_else(|| panic!("no example for `{words}`:\n{help}"));
+            if words == "monas completions" {
+                continue; // its example is for the shell
+            }
+            let mut lines = example.split([';', '>', '&']).map(str::trim);
+            let line = lines.find(|line| line.starts_with(&words));
+            let line =
+                line.unwrap_or_else(|| panic!("`{words}` has an example of something else: {example}"));
+            let parsed = Arguments::try_parse_from(shell_words(line));
+            assert!(
+                parsed.is_ok(),
+                "{line}: {}",
+                parsed.err().map(|error| error.to_string()).unwrap_or_default()
+            );
+        }
     }
 
     #[test]

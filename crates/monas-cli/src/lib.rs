@@ -26,13 +26,16 @@
 //! that writes into a closed pipe ends quietly.
 
 mod arguments;
-mod check;
+mod config;
 mod console;
+mod doctor;
 mod duration;
 mod exit;
 mod failure;
 mod generate;
+mod handover;
 mod model;
+mod new;
 mod process;
 mod report;
 mod run;
@@ -47,7 +50,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser};
 use clap_complete::env::Shells;
 
-use arguments::{Arguments, Command, ConfigCommand};
+use arguments::{Arguments, Command};
 use console::Console;
 use failure::Failure;
 
@@ -83,13 +86,13 @@ fn execute(command: Command, console: &mut Console<'_>) -> Result<Exit, Failure>
     match command {
         Command::Run(arguments) => run::execute(&arguments, console),
         Command::Generate(arguments) => generate::execute(&arguments, console),
-        Command::Config(ConfigCommand::Check { config, format }) => {
-            check::execute(&config, format.value, console)
-        }
+        Command::Config(command) => config::execute(&command, console),
         Command::Model(command) => model::execute(&command, console),
         #[cfg(unix)]
         Command::Topic(command) => topic::execute(&command, console),
         Command::Tape(command) => tape::execute(&command, console),
+        Command::New(arguments) => new::execute(&arguments, console),
+        Command::Doctor(arguments) => doctor::execute(&arguments, console),
         Command::Completions { shell } => completions(shell, console).map_err(Failure::from),
     }
 }

@@ -11,6 +11,7 @@ use tracing_subscriber::EnvFilter;
 use crate::arguments::Arguments;
 use crate::console::Console;
 use crate::exit::Exit;
+use crate::handover;
 
 /// Runs the command as this process.
 pub(crate) fn main() -> Exit {
@@ -18,6 +19,7 @@ pub(crate) fn main() -> Exit {
     CompleteEnv::with_factory(Arguments::command).complete();
     let bars = MultiProgress::new();
     log_to_standard_error(&bars);
+    handover::hand_over();
     // Whoever catches a panic decides what becomes of it; the log says where it was.
     panic::set_hook(Box::new(|panic| tracing::error!("{panic}")));
     let (mut out, mut err) = (io::stdout(), io::stderr());

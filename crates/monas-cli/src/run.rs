@@ -12,9 +12,10 @@ pub(crate) mod table;
 
 use std::path::Path;
 
-use monas::config::{self, xml};
+use monas::config;
 
 use crate::arguments::RunArguments;
+use crate::config::layers;
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::failure::Failure;
@@ -32,16 +33,22 @@ pub(crate) enum Kind {
 }
 
 pub(crate) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
-    match kind_of(&arguments.config)
-        .map_err(|unread| Failure::Invalid(arguments.format.value, vec![*unread]))?
-    {
-        Kind::Match => play::execute(arguments, console),
-        Kind::Agents => live::execute(arguments, console),
+    let invalid = |diagnostics| Failure::Invalid(arguments.format.value, diagnostics);
+    let kind = kind_of(&arguments.config).map_err(|unread| invalid(vec![*unread]))?;
+    if kind == Kind::Match && arguments.layers.robot.is_some() {
+        let message =
+            "--robot is for the agents of one robot; a match says what holds for each in its `<robot>`";
+        return Err(Failure::Usage(message.into()));
+    }
+    let layers = layers::of(&arguments.config, &arguments.layers).map_err(invalid)?;
+    match kind {
+        Kind::Match => play::execute(arguments, &layers, console),
+        Kind::Agents => live::execute(arguments, &layers, console),
     }
 }
 
 /// What a configuration describes, by the name of its first element.
 pub(crate) fn kind_of(config: &Path) -> Result<Kind, Box<yase::Diagnostic>> {
-    let (elements, _) = xml::parse(&config::read_file(config)?);
+    let (elements, _) = monas_match::grammar().parse(&config::read_file(config)?);
     Ok(if elements.first().is_some_and(|root| root.is("match")) { Kind::Match } else { Kind::Agents })
 }

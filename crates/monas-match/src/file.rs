@@ -4,23 +4,28 @@
 //! <match field="config/fields/thesis.xml" simulator="config/simulator.xml" half="300s">
 //!   <team number="1" name="Blue" colour="blue" side="left">
 //!     <robot number="1" role="config/roles/goalie.xml"/>
+//!     <robot number="2" role="config/roles/attacker.xml">
+//!       <agent priority="2"><name>Attacker</name></agent>
+//!     </robot>
 //!   </team>
 //!   ...
 //! </match>
 //! ```
 //!
-//! A file that the match file names is looked for as [`monas::config::locate`] says: beside it, then in each folder above.
+//! A file that the match file names is looked for as [`monas::config::locate`] says: beside it, then in each folder above. What stands in a
+//! `<robot>` goes over its role, what the command line sets goes over both.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use monas::config;
-use monas::config::xml::{self, Attribute, Attributes, Element};
+use monas::config::{self, Attribute, Element, Grammar, Layers, Values};
 use monas_sim::{FieldGeometry, FieldSide, Physics, Rules, TeamColour, TeamSetup};
 use yase::{Diagnostic, Source, Span};
 
+use crate::grammar;
 use crate::parameters;
+use crate::settings::Settings;
 
 /// What a match file says, with the files it names; roles are still paths.
 #[derive(Clone, Debug)]
@@ -44,40 +49,118 @@ pub(crate) struct RobotFile {
     pub(crate) number: u8,
     /// The file of its role.
     pub(crate) role: PathBuf,
+    /// What goes over the role, for this robot alone.
+    pub(crate) own: Layers,
 }
 
-/// Reads a match file; everything that is wrong with it is added to `diagnostics`.
-pub(crate) fn read(path: &Path, diagnostics: &mut Vec<Diagnostic>) -> Option<MatchFile> {
-    let root = read_root(path, "match", diagnostics)?;
-    let mut attributes = Attributes::new(&root, diagnostics);
-    let field = attributes.get("field").cloned();
-    let simulator = attributes.get("simulator").cloned();
-    let half = attributes.duration("half");
-    attributes.finish();
-    let field = field.and_then(|attribute| named(path, &root, &attribute, diagnostics));
-    let simulator = simulator.and_then(|attribute| named(path, &root, &attribute, diagnostics));
-    let geometry = field.map(|path| read_field(&path, diagnostics)).unwrap_or_default();
-    let (physics, mut rules) = simulator.map(|path| read_simulator(&path, diagnostics)).unwrap_or_default();
-    set_half(&mut rules, half, &root, diagnostics);
-    root.expect_children(&["team"], diagnostics);
-    let teams = root.children_named("team").filter_map(|team| read_team(team, path, diagnostics)).collect();
+/// Reads a match file with what goes over it; everything that is wrong with it is added to `diagnostics`.
+pub(crate) fn read(path: &Path, layers: &Layers, diagnostics: &mut Vec<Diagnostic>) -> Option<MatchFile> {
+    let files = Files { grammar: &grammar::of_matches(), layers };
+    let root = files.root(path, "match", diagnostics)?;
+    let (field, simulator) = files.environment(&root, path, diagnostics);
+    let geometry = geometry(field, files.grammar, diagnostics);
+    let (physics, mut rules) =
+        simulator.map(|root| physics_and_rules(&root, files.grammar)).unwrap_or_default();
+    set_half(&mut rules, Values::of(&root, files.grammar).duration("half"), &root, diagnostics);
+    let team = |team| read_team(team, path, files.grammar, diagnostics);
+    let teams = root.children_named("team").filter_map(team).collect();
     let file = MatchFile { geometry, physics, rules, teams };
     check(&file, &root, diagnostics);
     Some(file)
 }
 
-/// The file that an attribute names; none, and why, if there is no such file.
-fn named(
+/// The elements of a match: itself, with what its robots run in them, its field and its simulator.
+pub(crate) fn elements(path: &Path, layers: &Layers, diagnostics: &mut Vec<Diagnostic>) -> Vec<Element> {
+    let files = Files { grammar: &grammar::of_matches(), layers };
+    let Some(root) = files.root(path, "match", diagnostics) else { return Vec::new() };
+    let (field, simulator) = files.environment(&root, path, diagnostics);
+    let nowhere = |name: &str| Element::new(name, root.source());
+    let mut simulator = simulator.unwrap_or_else(|| nowhere("simulator"));
+    for part in ["physics", "rules"] {
+        if simulator.children_named(part).next().is_none() {
+            simulator = simulator.with_children([nowhere(part)]);
+        }
+    }
+    let field = field.unwrap_or_else(|| nowhere("field"));
+    let mut settings = Settings::new(layers);
+    let root = root.map_children(&mut |team| {
+        team.map_children(&mut |robot| with_role(robot, path, &mut settings, diagnostics))
+    });
+    diagnostics.extend(settings.of_nobody());
+    vec![root, field, simulator]
+}
+
+/// A robot with its role in it.
+fn with_role(
+    robot: Element,
     path: &Path,
-    element: &Element,
-    attribute: &Attribute,
+    settings: &mut Settings,
     diagnostics: &mut Vec<Diagnostic>,
-) -> Option<PathBuf> {
+) -> Element {
+    let Some(role) = robot.attribute("role").and_then(|role| named(path, role, diagnostics)) else {
+        return robot;
+    };
+    let own = Layers::new().robot(robot.children().iter().cloned());
+    let resolved = config::resolve(&role, &Grammar::agents(), &settings.over(&own));
+    diagnostics.extend(resolved.diagnostics);
+    diagnostics.extend(settings.unmatched(&own, resolved.unmatched));
+    robot.without_children().with_children(resolved.elements)
+}
+
+/// Where elements come from.
+struct Files<'a> {
+    grammar: &'a Grammar,
+    layers: &'a Layers,
+}
+
+impl Files<'_> {
+    /// The one root element of a file, which has to have that name, with what goes over it.
+    fn root(&self, path: &Path, name: &str, diagnostics: &mut Vec<Diagnostic>) -> Option<Element> {
+        match config::read_file(path) {
+            Ok(source) => {
+                let resolved = config::resolve_text(&source, self.grammar, &self.layers.of(&[name]));
+                let elements = resolved.elements.clone();
+                let found = resolved.into_diagnostics();
+                let is_broken = found.iter().any(Diagnostic::is_error);
+                diagnostics.extend(found);
+                only(elements, name, &source, is_broken, diagnostics)
+            }
+            Err(diagnostic) => {
+                diagnostics.push(*diagnostic);
+                None
+            }
+        }
+    }
+
+    /// Field and simulator, each from the file that the match names; none, if it names none and nothing is set.
+    fn environment(
+        &self,
+        root: &Element,
+        path: &Path,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> (Option<Element>, Option<Element>) {
+        let [field, simulator] = ["field", "simulator"].map(|name| match root.attribute(name) {
+            Some(file) => {
+                let file = named(path, file, diagnostics)?;
+                self.root(&file, name, diagnostics)
+            }
+            None => {
+                let mut elements = Vec::new();
+                self.layers.of(&[name]).apply(&mut elements, self.grammar);
+                self.grammar.check(&elements, diagnostics);
+                elements.pop()
+            }
+        });
+        (field, simulator)
+    }
+}
+
+/// The file that an attribute names; none, and why, if there is no such file.
+fn named(path: &Path, attribute: &Attribute, diagnostics: &mut Vec<Diagnostic>) -> Option<PathBuf> {
     match config::locate(path, &attribute.value) {
         Ok(found) => Some(found),
         Err(near) => {
-            let diagnostic =
-                element.error("E0403", attribute.value_span, format!("no file `{}`", attribute.value));
+            let diagnostic = attribute.error("E0403", format!("no file `{}`", attribute.value));
             diagnostics.push(match near {
                 Some(near) => diagnostic.with_hint(format!("did you mean `{near}`?")),
                 None => diagnostic,
@@ -87,52 +170,42 @@ fn named(
     }
 }
 
-/// The root of the file at a path, which has to be an element of that name.
-fn read_root(path: &Path, name: &str, diagnostics: &mut Vec<Diagnostic>) -> Option<Element> {
-    match config::read_file(path) {
-        Ok(source) => root(&source, name, diagnostics),
-        Err(diagnostic) => {
-            diagnostics.push(*diagnostic);
-            None
-        }
-    }
-}
-
 /// The one root element of a file.
-fn root(source: &Arc<Source>, name: &str, diagnostics: &mut Vec<Diagnostic>) -> Option<Element> {
-    let (elements, found) = xml::parse(source);
-    let broken = found.iter().any(Diagnostic::is_error);
-    diagnostics.extend(found);
+fn only(
+    elements: Vec<Element>,
+    name: &str,
+    source: &Arc<Source>,
+    is_broken: bool,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<Element> {
     let mut elements = elements.into_iter();
-    match (elements.next(), elements.next()) {
-        (Some(root), None) if root.is(name) => Some(root),
+    let first = elements.next();
+    let hint = format!("a file of this kind holds one `{name}`");
+    let diagnostic = match (&first, elements.next()) {
+        (Some(root), None) if root.is(name) => return first,
+        // The grammar has said what is wrong with the name.
+        _ if is_broken => return None,
         (Some(root), None) => {
-            diagnostics.push(root.unknown(&[name]));
-            None
+            let message = format!("expected a `{name}`, not a `{}`", root.name());
+            root.error("E0404", root.name_span(), message)
         }
-        (Some(_), Some(second)) => {
-            diagnostics.push(second.error(
-                "E0404",
-                second.name_span(),
-                format!("expected one `<{name}>` and no more"),
-            ));
-            None
+        (_, Some(second)) => {
+            let message = format!("expected one `{name}` and no more");
+            second.error("E0404", second.name_span(), message)
         }
-        (None, _) => {
-            if !broken {
-                let message = format!("expected a `<{name}>`, the file holds none");
-                diagnostics.push(Diagnostic::error("E0404", Span::default(), message).in_source(source));
-            }
-            None
+        (None, None) => {
+            let message = format!("expected a `{name}`, the file holds none");
+            Diagnostic::error("E0404", Span::default(), message).in_source(source)
         }
-    }
+    };
+    diagnostics.push(diagnostic.with_hint(hint));
+    None
 }
 
-fn read_field(path: &Path, diagnostics: &mut Vec<Diagnostic>) -> FieldGeometry {
+fn geometry(field: Option<Element>, grammar: &Grammar, diagnostics: &mut Vec<Diagnostic>) -> FieldGeometry {
     let mut geometry = FieldGeometry::default();
-    if let Some(root) = read_root(path, "field", diagnostics) {
-        root.expect_children(&[], diagnostics);
-        parameters::from_attributes(&root, FieldGeometry::keys(), diagnostics, |key, value| {
+    if let Some(root) = field {
+        parameters::from_attributes(&root, grammar, FieldGeometry::keys(), |key, value| {
             // The key and the range have been checked against the same table.
             let _ = geometry.set(key, value);
         });
@@ -143,21 +216,17 @@ fn read_field(path: &Path, diagnostics: &mut Vec<Diagnostic>) -> FieldGeometry {
     geometry
 }
 
-fn read_simulator(path: &Path, diagnostics: &mut Vec<Diagnostic>) -> (Physics, Rules) {
+fn physics_and_rules(root: &Element, grammar: &Grammar) -> (Physics, Rules) {
     let (mut physics, mut rules) = (Physics::default(), Rules::default());
-    if let Some(root) = read_root(path, "simulator", diagnostics) {
-        Attributes::new(&root, diagnostics).finish();
-        root.expect_children(&["physics", "rules"], diagnostics);
-        for part in root.children_named("physics") {
-            parameters::from_children(part, Physics::keys(), diagnostics, |key, value| {
-                let _ = physics.set(key, value);
-            });
-        }
-        for part in root.children_named("rules") {
-            parameters::from_children(part, Rules::keys(), diagnostics, |key, value| {
-                let _ = rules.set(key, value);
-            });
-        }
+    for part in root.children_named("physics") {
+        parameters::from_children(part, grammar, |key, value| {
+            let _ = physics.set(key, value);
+        });
+    }
+    for part in root.children_named("rules") {
+        parameters::from_children(part, grammar, |key, value| {
+            let _ = rules.set(key, value);
+        });
     }
     (physics, rules)
 }
@@ -176,33 +245,34 @@ fn set_half(rules: &mut Rules, half: Option<Duration>, root: &Element, diagnosti
 const COLOURS: [(&str, TeamColour); 2] = [("blue", TeamColour::Blue), ("red", TeamColour::Red)];
 const SIDES: [(&str, FieldSide); 2] = [("left", FieldSide::Left), ("right", FieldSide::Right)];
 
-fn read_team(team: &Element, path: &Path, diagnostics: &mut Vec<Diagnostic>) -> Option<TeamFile> {
-    let mut attributes = Attributes::new(team, diagnostics);
-    for key in ["number", "name", "colour", "side"] {
-        attributes.required(key);
-    }
-    let number = attributes.integer("number");
-    let name = attributes.text("name").map(str::to_owned);
-    let colour = attributes.one_of("colour", &COLOURS);
-    let plays = attributes.one_of("side", &SIDES);
-    attributes.finish();
-    team.expect_children(&["robot"], diagnostics);
-    let robots =
-        team.children_named("robot").filter_map(|robot| read_robot(robot, path, diagnostics)).collect();
-    let setup = TeamSetup { number: number?, name: name?, colour: colour?, plays: plays? };
+fn read_team(
+    team: &Element,
+    path: &Path,
+    grammar: &Grammar,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<TeamFile> {
+    let robots = team.children_named("robot");
+    let robots = robots.filter_map(|robot| read_robot(robot, path, grammar, diagnostics)).collect();
+    let values = Values::of(team, grammar);
+    let setup = TeamSetup {
+        number: values.number("number")?,
+        name: values.text("name")?.to_owned(),
+        colour: values.word("colour", &COLOURS)?,
+        plays: values.word("side", &SIDES)?,
+    };
     Some(TeamFile { setup, robots })
 }
 
-fn read_robot(robot: &Element, path: &Path, diagnostics: &mut Vec<Diagnostic>) -> Option<RobotFile> {
-    let mut attributes = Attributes::new(robot, diagnostics);
-    attributes.required("number");
-    attributes.required("role");
-    let number = attributes.integer("number");
-    let role = attributes.get("role").cloned();
-    attributes.finish();
-    robot.expect_children(&[], diagnostics);
-    let role = role.and_then(|attribute| named(path, robot, &attribute, diagnostics));
-    Some(RobotFile { number: number?, role: role? })
+fn read_robot(
+    robot: &Element,
+    path: &Path,
+    grammar: &Grammar,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<RobotFile> {
+    let values = Values::of(robot, grammar);
+    let role = values.given("role").and_then(|role| named(path, role, diagnostics));
+    let own = Layers::new().robot(robot.children().iter().cloned());
+    Some(RobotFile { number: values.number("number")?, role: role?, own })
 }
 
 /// What only the teams together can have wrong.
@@ -250,7 +320,8 @@ mod tests {
         let path = folder.path().join("match.xml");
         std::fs::write(&path, text).unwrap();
         let mut diagnostics = Vec::new();
-        read(&path, &mut diagnostics);
+        read(&path, &Layers::new(), &mut diagnostics);
+        config::sort_diagnostics(&mut diagnostics);
         let prefix = format!("{}/", folder.path().display());
         diagnostics.iter().map(|diagnostic| diagnostic.to_string().replace(&prefix, "")).collect()
     }

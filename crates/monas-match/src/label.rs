@@ -10,6 +10,9 @@ use monas_tape::{Error, Tape};
 /// (`simulated` or `real`), `seed` if time is simulated, and `robots`, the hosts, with blanks between them.
 pub const RUN: &str = "run";
 
+/// The fact that says what the command line had set over the configuration, a line each; it is there if it had.
+pub const SETTINGS: &str = "settings";
+
 /// The name of the facts about its end: `nanoseconds`, the moment up to which everything happened. What is recorded later was
 /// published while agents were being stopped.
 pub const END: &str = "end";
@@ -18,11 +21,16 @@ pub const END: &str = "end";
 pub(crate) fn simulated(
     path: &Path,
     files: &Provenance,
+    settings: &str,
     seed: u64,
     robots: &[String],
 ) -> Result<Tape, Error> {
     let tape = Tape::create(path)?;
-    label(&tape, files, robots, &[("time", "simulated".to_owned()), ("seed", seed.to_string())])?;
+    let mut facts = vec![("time", "simulated".to_owned()), ("seed", seed.to_string())];
+    if !settings.is_empty() {
+        facts.push((SETTINGS, settings.to_owned()));
+    }
+    label(&tape, files, robots, &facts)?;
     Ok(tape)
 }
 

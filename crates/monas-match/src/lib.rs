@@ -23,16 +23,19 @@
 
 mod error;
 mod file;
+mod grammar;
 mod incidents;
 mod label;
 mod parameters;
 mod plan;
 mod running;
+mod settings;
 mod stage;
 mod summary;
 
 pub use error::{Error, ErrorKind};
-pub use label::{END, RUN, label_real_time};
+pub use grammar::of_matches as grammar;
+pub use label::{END, RUN, SETTINGS, label_real_time};
 pub use parameters::simulator_file;
 pub use plan::{Match, MatchPlan, Options};
 pub use running::RunningMatch;

@@ -1,65 +1,32 @@
 //! Parameters in files: each a number set by name, with its unit, range and meaning beside it.
 
-use monas::config::xml::{Attribute, Element};
+use monas::config::{Element, Grammar, Values};
 use monas_sim::Parameter;
-use yase::Diagnostic;
 
-/// Sets parameters from the attributes of an element: `<field length="6.0" width="4.0"/>`.
+/// Sets parameters from the attributes of an element that has been checked: `<field length="6.0" width="4.0"/>`.
 pub(crate) fn from_attributes(
     element: &Element,
+    grammar: &Grammar,
     known: &[Parameter],
-    diagnostics: &mut Vec<Diagnostic>,
     mut set: impl FnMut(&str, f64),
 ) {
-    for Attribute { name, name_span, value, value_span } in element.attributes() {
-        match read(name, value, known) {
-            Ok(number) => set(name, number),
-            Err(Mistake::Name(message)) => {
-                let diagnostic = element.error("E0401", *name_span, message);
-                diagnostics.push(diagnostic.with_nearest(name, known.iter().map(|parameter| parameter.key)));
-            }
-            Err(Mistake::Value(message)) => diagnostics.push(element.error("E0402", *value_span, message)),
+    let values = Values::of(element, grammar);
+    for Parameter { key, .. } in known {
+        if let Some(number) = values.number(key) {
+            set(key, number);
         }
     }
 }
 
-/// Sets parameters from the elements in an element: `<physics><ball_radius>0.0325</ball_radius></physics>`.
-pub(crate) fn from_children(
-    element: &Element,
-    known: &[Parameter],
-    diagnostics: &mut Vec<Diagnostic>,
-    mut set: impl FnMut(&str, f64),
-) {
+/// Sets parameters from the elements in one that has been checked: `<physics><ball_radius>0.0325</ball_radius></physics>`.
+pub(crate) fn from_children(element: &Element, grammar: &Grammar, mut set: impl FnMut(&str, f64)) {
     for child in element.children() {
-        match read(child.name(), child.text(), known) {
-            Ok(number) => set(child.name(), number),
-            Err(Mistake::Name(message)) => {
-                let diagnostic = child.error("E0401", child.name_span(), message);
-                diagnostics
-                    .push(diagnostic.with_nearest(child.name(), known.iter().map(|parameter| parameter.key)));
-            }
-            Err(Mistake::Value(message)) => {
-                diagnostics.push(child.error("E0402", child.text_span(), message))
-            }
+        let rule = grammar.element(child.name());
+        let allowed = rule.is_some_and(|rule| rule.allows_text(child.text()));
+        if let (Some(rule), Ok(number), true) = (rule, child.text().parse(), allowed) {
+            set(rule.name(), number);
         }
     }
-}
-
-enum Mistake {
-    Name(String),
-    Value(String),
-}
-
-fn read(key: &str, text: &str, known: &[Parameter]) -> Result<f64, Mistake> {
-    let Some(parameter) = known.iter().find(|parameter| parameter.key == key) else {
-        return Err(Mistake::Name(format!("there is no parameter `{key}`")));
-    };
-    let number: f64 = text.trim().parse().map_err(|_| Mistake::Value(format!("`{text}` is not a number")))?;
-    if parameter.allows(number) {
-        return Ok(number);
-    }
-    let Parameter { least, most, unit, .. } = parameter;
-    Err(Mistake::Value(format!("`{key}` is {number}, but must lie from {least} to {most} ({unit})")))
 }
 
 /// Every parameter of the simulator with its default, as the text of a file that documents itself.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use monas::config::{self, Element, Grammar, Layers};
 use monas::{Agent, ChartListener, HostConfig, LinkConfig, Provenance, Registry, RunHash, Talws};
 use monas_sim::{FieldGeometry, Physics, Pitch, Rules, Setup, TeamSetup, World};
 use yase::Diagnostic;
@@ -11,6 +12,7 @@ use crate::error::Error;
 use crate::file::{self, MatchFile};
 use crate::label;
 use crate::running::RunningMatch;
+use crate::settings::Settings;
 use crate::stage::Stage;
 
 /// Where matches come from.
@@ -23,32 +25,67 @@ impl Match {
     /// # Errors
     /// Every diagnostic of every file, each once.
     pub fn load(path: impl AsRef<Path>, registry: &Registry) -> Result<MatchPlan, Vec<Diagnostic>> {
+        Match::load_with(path, registry, &Layers::new())
+    }
+
+    /// As [`load`](Match::load), with layers over the files.
+    ///
+    /// # Errors
+    /// Every diagnostic of every file, each once.
+    pub fn load_with(
+        path: impl AsRef<Path>,
+        registry: &Registry,
+        layers: &Layers,
+    ) -> Result<MatchPlan, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
-        let file = file::read(path.as_ref(), &mut diagnostics);
-        let robots = file.iter().flat_map(|file| robots(file, registry, &mut diagnostics)).collect();
+        let file = file::read(path.as_ref(), layers, &mut diagnostics);
+        let robots =
+            file.as_ref().map(|file| robots(file, registry, layers, &mut diagnostics)).unwrap_or_default();
+        config::sort_diagnostics(&mut diagnostics);
         let once = each_once(diagnostics);
         match file.filter(|_| !once.iter().any(Diagnostic::is_error)) {
             Some(file) => match MatchPlan::new(file, robots, registry.clone()) {
-                Some(plan) => Ok(MatchPlan { warnings: once, files: Provenance::of(path), ..plan }),
+                Some(plan) => {
+                    let settings = layers.settings().collect::<Vec<_>>().join("\n");
+                    Ok(MatchPlan { warnings: once, files: Provenance::of(path), settings, ..plan })
+                }
                 None => Err(once),
             },
             None => Err(once),
         }
     }
+
+    /// What a match file and all it names come to, with layers over them, and what is wrong with them; names of activities and models
+    /// are not looked up. The elements are those of [`grammar`](crate::grammar).
+    pub fn elements(path: impl AsRef<Path>, layers: &Layers) -> (Vec<Element>, Vec<Diagnostic>) {
+        let mut diagnostics = Vec::new();
+        let elements = file::elements(path.as_ref(), layers, &mut diagnostics);
+        config::sort_diagnostics(&mut diagnostics);
+        (elements, each_once(diagnostics))
+    }
 }
 
 /// The robots of a match file with their agents.
-fn robots(file: &MatchFile, registry: &Registry, diagnostics: &mut Vec<Diagnostic>) -> Vec<RobotPlan> {
+fn robots(
+    file: &MatchFile,
+    registry: &Registry,
+    layers: &Layers,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Vec<RobotPlan> {
     let mut robots = Vec::new();
+    let mut settings = Settings::new(layers);
     for team in &file.teams {
         for robot in &team.robots {
-            let (setup, found) = monas::config::load(&robot.role, registry);
-            diagnostics.extend(found);
-            let monas::config::Setup { agents, links } = setup;
+            let resolved = config::resolve(&robot.role, &Grammar::agents(), &settings.over(&robot.own));
+            diagnostics.extend(resolved.diagnostics);
+            diagnostics.extend(settings.unmatched(&robot.own, resolved.unmatched));
+            let setup = config::assemble(&resolved.elements, &robot.role, registry, diagnostics);
+            let config::Setup { agents, links } = setup;
             let host = format!("{}-{}", file::host_name(&team.setup.name), robot.number);
             robots.push(RobotPlan { team: team.setup.number, number: robot.number, host, agents, links });
         }
     }
+    diagnostics.extend(settings.of_nobody());
     robots
 }
 
@@ -74,6 +111,7 @@ pub struct MatchPlan {
     warnings: Vec<Diagnostic>,
     is_linked: bool,
     files: Provenance,
+    settings: String,
 }
 
 impl std::fmt::Debug for MatchPlan {
@@ -122,6 +160,7 @@ impl MatchPlan {
             warnings: Vec::new(),
             is_linked: false,
             files: Provenance::default(),
+            settings: String::new(),
         })
     }
 
@@ -186,12 +225,13 @@ impl MatchPlan {
     /// The recording cannot be written, or a part refuses to be set up.
     pub fn start(self, options: Options) -> Result<RunningMatch, Error> {
         let (length, is_linked, files) = (self.length(), self.is_linked, self.files.clone());
+        let settings = self.settings.clone();
         let hosts: Vec<String> = self.robots.iter().map(|robot| robot.host.clone()).collect();
         let (mut talws, pitch) = self.set_up(options.seed)?;
         let hash = RunHash::new();
         talws.observe(Box::new(hash.clone()));
         let tape = options.record.map(|path| {
-            let tape = label::simulated(&path, &files, options.seed, &hosts);
+            let tape = label::simulated(&path, &files, &settings, options.seed, &hosts);
             Ok((tape.map_err(|error| Error::recording(&path, error))?, path))
         });
         let tape = tape.transpose()?;

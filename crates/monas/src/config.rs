@@ -22,11 +22,35 @@
 //! | `enable` | `0` leaves it out |
 //! | `on_failure` | what happens when an activity fails: `restart`, `skip`, `stop-agent`, `safe-state` |
 //!
-//! All other attributes of an `activity` are its [parameters](crate::Parameters). A `provider` is an agent with the one activity
+//! `frequency` is short for `thread_frequency`. All other attributes of an `activity` are its [parameters](crate::Parameters). A `provider` is an agent with the one activity
 //! that it is named after. Files may hold any number of agents, in an `<agents>` or not.
 //!
 //! A `<statechart elsewhere="Vision">` leaves the named activities to another process: their states do nothing here, and a link brings what
 //! they publish.
+//!
+//! # TOML
+//!
+//! A file whose name ends with `.toml` says the same in TOML, with the same diagnostics: a table is an element, an array of tables or
+//! values several of one name, a key an attribute. What stands between the tags of an activity, a provider or an agent's name is its `name`,
+//! that of a statechart its `model`.
+//!
+//! ```toml
+//! [[agent]]
+//! name = "Motion"
+//! thread_frequency = 10
+//! activity = ["Vision", { name = "MotionController", gait = "quick" }]
+//! ```
+//!
+//! # Layers
+//!
+//! Defaults, the file, what is said of one robot, and the command line go over each other in this order ([`Layers`]): a setting such as
+//! `agent.Motion.frequency=50` is a way through elements and what tells them apart, to an attribute. [`entries`] lists every value with the
+//! layer and the place it comes from. What may be written is one table, the [`Grammar`], which schemas for editors are written from too.
+//!
+//! # Files of an activity's own
+//!
+//! [`XmlConfig`] keeps names, numbers and tables in a file, and [`Xml`] asks a tree; both read what the thesis prints, and what is
+//! changed leaves everything else in the file as it was.
 //!
 //! # Links
 //!
@@ -70,12 +94,34 @@
 //! [`Registry`](crate::Registry) does not know, of model files, formulas and expressions. Nothing runs before there is none.
 
 mod agents;
+mod edit;
+mod element;
+mod grammar;
+mod layers;
 mod links;
 mod model;
 mod paths;
 mod repair;
+mod resolve;
+mod schema;
+mod toml;
+mod tree;
+mod values;
 pub mod xml;
+mod xml_config;
 
-pub use agents::{Setup, load, read};
+pub use agents::{Setup, assemble, load, load_with, read};
+pub use element::{Attribute, Element, Layer, is_written};
+pub use grammar::{AttributeRule, ElementRule, Grammar, Identity, Kind};
+pub use layers::{Layers, Unmatched};
 pub use model::load as load_model;
 pub use paths::{locate, read as read_file};
+pub use resolve::{Entry, Resolved, entries, resolve, resolve_text, sort as sort_diagnostics};
+pub use tree::{Xml, XmlNode};
+pub use values::Values;
+pub use xml_config::{ValueError, XmlConfig};
+
+/// Reads a length of time: a number and `ns`, `us`, `ms`, `s` or `min`.
+pub fn duration(text: &str) -> Option<std::time::Duration> {
+    grammar::duration(text)
+}

@@ -79,7 +79,7 @@ impl Parameters {
 
     /// A length of time, such as `100ms`.
     pub fn duration(&self, key: &'static str) -> Option<Duration> {
-        self.read(key, "a time such as `300s` or `100ms`", crate::config::xml::duration)
+        self.read(key, "a time such as `300s` or `100ms`", crate::config::duration)
     }
 
     /// Whatever `parse` makes of the text; if nothing, the parameter is at fault and `expected` says what it should be.

@@ -6,11 +6,16 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 
 use crate::config;
-use crate::config::xml::{self, Element};
+use crate::config::{Element, Grammar};
 
 /// What the names of configurations and models end with. Nothing else that a configuration names belongs to it: least of all keys.
-const PARTS: [(&str, &str); 4] =
-    [("xml", "text/xml"), ("srm", "text/plain"), ("xmi", "text/xml"), ("scxml", "text/xml")];
+const PARTS: [(&str, &str); 5] = [
+    ("xml", "text/xml"),
+    ("toml", "application/toml"),
+    ("srm", "text/plain"),
+    ("xmi", "text/xml"),
+    ("scxml", "text/xml"),
+];
 
 /// A configuration and every configuration and model that it names, directly or not, so that the same agents can be put together
 /// again elsewhere and later.
@@ -100,8 +105,8 @@ fn collect(path: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
     }
     let Ok(source) = config::read_file(path) else { return };
     found.insert(path.to_owned(), source.text.clone().into_bytes());
-    if path.extension().is_some_and(|extension| extension == "xml") {
-        xml::parse(&source).0.iter().for_each(|element| collect_named(path, element, found));
+    if path.extension().is_some_and(|extension| extension == "xml" || extension == "toml") {
+        Grammar::agents().parse(&source).0.iter().for_each(|element| collect_named(path, element, found));
     }
 }
 

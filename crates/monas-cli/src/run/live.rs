@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::time::Duration;
 
+use monas::config::Layers;
 use monas::{AgentStatistics, ErrorKind, Provenance, Registry, Statistics, Talws};
 use monas_tape::Tape;
 use serde_json::{Value, json};
@@ -17,12 +18,16 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::report;
 
-pub(super) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
+pub(super) fn execute(
+    arguments: &RunArguments,
+    layers: &Layers,
+    console: &mut Console<'_>,
+) -> Result<Exit, Failure> {
     let format = arguments.format.value;
     if arguments.seed.is_some() {
         return Err(Failure::Usage("--seed is for simulated time; these agents run in real time".into()));
     }
-    let mut talws = talws(arguments, console)?;
+    let mut talws = talws(arguments, layers, console)?;
     let tape = arguments.record.as_ref().map(Tape::create_real_time).transpose();
     let tape = tape.map_err(|error| Failure::failed(format, error))?;
     if let Some(tape) = &tape {
@@ -64,9 +69,9 @@ fn not_started(format: Format, error: monas::Error) -> Failure {
 }
 
 /// The agents and links of the configuration, ready to run.
-fn talws(arguments: &RunArguments, console: &mut Console<'_>) -> Result<Talws, Failure> {
+fn talws(arguments: &RunArguments, layers: &Layers, console: &mut Console<'_>) -> Result<Talws, Failure> {
     let format = arguments.format.value;
-    let (setup, diagnostics) = monas::config::load(&arguments.config, &Registry::linked());
+    let (setup, diagnostics) = monas::config::load_with(&arguments.config, &Registry::linked(), layers);
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(Failure::Invalid(format, diagnostics));
     }

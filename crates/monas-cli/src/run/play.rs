@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use monas::config::Layers;
 use monas_match::{Match, MatchPlan, Options, RunningMatch};
 
 use super::interrupt::Interrupt;
@@ -18,9 +19,13 @@ const LOOK: Duration = Duration::from_millis(100);
 /// The same where it is held back to real time, so that others see it flow.
 const PACED_LOOK: Duration = Duration::from_millis(10);
 
-pub(super) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
+pub(super) fn execute(
+    arguments: &RunArguments,
+    layers: &Layers,
+    console: &mut Console<'_>,
+) -> Result<Exit, Failure> {
     let format = arguments.format.value;
-    let plan = Match::load(&arguments.config, &monas::Registry::linked())
+    let plan = Match::load_with(&arguments.config, &monas::Registry::linked(), layers)
         .map_err(|diagnostics| Failure::Invalid(format, diagnostics))?;
     report::write(console, format, plan.warnings())?;
     let plan = match plan.has_links() {

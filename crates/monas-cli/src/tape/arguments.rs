@@ -11,6 +11,7 @@ use crate::duration;
 #[derive(Subcommand, Debug)]
 pub(crate) enum TapeCommand {
     /// Say what a tape holds: where it comes from, its files, its channels.
+    #[command(after_help = "Example: monas tape info match.mcap")]
     Info {
         /// The tape.
         #[arg(value_hint = ValueHint::FilePath)]
@@ -19,8 +20,12 @@ pub(crate) enum TapeCommand {
         format: FormatArgument,
     },
     /// Write messages as text: a table (csv) or one JSON object a line (jsonl).
+    #[command(
+        after_help = "Example: monas tape export match.mcap --topic soccer/ball --format csv -o ball.csv"
+    )]
     Export(ExportArguments),
     /// Mend a tape that was cut off or damaged: everything that can be read becomes a whole tape.
+    #[command(after_help = "Example: monas tape recover match.mcap -o mended.mcap")]
     Recover {
         /// The tape.
         #[arg(value_hint = ValueHint::FilePath)]
@@ -32,10 +37,13 @@ pub(crate) enum TapeCommand {
         format: FormatArgument,
     },
     /// Write a part of a tape to a tape of its own: a time, some topics, some hosts.
+    #[command(after_help = "Example: monas tape cut match.mcap --from 10s --to 20s -o part.mcap")]
     Cut(CutArguments),
     /// Run agents again on what was recorded, and compare what they publish with what they published then.
+    #[command(after_help = "Example: monas tape replay match.mcap --agents goalie --verify")]
     Replay(ReplayArguments),
     /// Write several tapes into one, ordered by time.
+    #[command(after_help = "Example: monas tape merge one.mcap two.mcap -o both.mcap")]
     Merge {
         /// The tapes.
         #[arg(required = true, num_args = 2.., value_name = "FILE", value_hint = ValueHint::FilePath)]

@@ -2,17 +2,21 @@
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot be prepared fails")]
 
+mod config;
 mod convert;
+mod doctor;
 #[cfg(unix)]
 mod elsewhere;
 mod generate;
 mod kit;
 mod model;
+mod new;
 mod protocol;
 mod refinement;
 mod run;
 #[cfg(unix)]
 mod running;
+mod schema;
 mod tape;
 #[cfg(unix)]
 mod topic;

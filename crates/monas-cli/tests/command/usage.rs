@@ -20,6 +20,8 @@ fn help_lists_the_commands_and_exit_codes() {
         "run",
         "model",
         "config",
+        "new",
+        "doctor",
         "tape",
         "topic",
         "completions",
@@ -47,6 +49,58 @@ fn usage_mistakes_end_with_2_and_say_what_was_meant() {
         assert_eq!(answer.code, Some(2), "{arguments:?}");
         assert!(answer.err.contains(expected), "{arguments:?}:\n{}", answer.err);
         assert_eq!(answer.out, "", "{arguments:?}");
+    }
+}
+
+/// One way to each code that ends a command by itself; 130 is what an interrupted run ends with, and tested with runs.
+#[test]
+fn each_exit_code_means_one_thing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (arguments, code) in [
+        (&["config", "check", "config/match.xml"][..], 0),
+        (&["config", "show", "config/match.xml"], 0),
+        (&["config", "schema", "--xsd"], 0),
+        (&["model", "transform", "models/goalie.srm"], 0),
+        (&["tape", "info", "README.md"], 1),
+        (&["generate", "models/goalie.srm", "--to", "models/elsewhere"], 2),
+        (&["config", "schema"], 2),
+        (&["config", "schema", "--xsd", "--json"], 2),
+        (&["run", "nowhere.xml"], 3),
+        (&["config", "show", "nowhere.xml"], 3),
+        (&["model", "draw", "nowhere.srm"], 3),
+        #[cfg(unix)]
+        (&["topic", "list", "--run", "nobody-runs-this"], 4),
+    ] {
+        let answer = command(arguments).env("XDG_RUNTIME_DIR", folder.path()).output().expect("it starts");
+        assert_eq!(
+            answer.status.code(),
+            Some(code),
+            "{arguments:?}\n{}",
+            String::from_utf8_lossy(&answer.stderr)
+        );
+    }
+}
+
+/// Commands that have nothing to compute answer at once. One of many tries has to: the machine may be busy with others.
+#[test]
+fn what_needs_no_computing_takes_under_50_ms() {
+    for arguments in [
+        &["--version"][..],
+        &["--help"],
+        &["run", "--help"],
+        &["completions", "bash"],
+        &["config", "schema", "--json"],
+        &["config", "show", "config/match.xml"],
+        &["config", "check", "config/roles/goalie.xml"],
+        &["new", "activity", "Nowhere"],
+    ] {
+        let mut times = (0..20).map(|_| {
+            #[expect(clippy::disallowed_methods, reason = "what is measured is the time a person waits")]
+            let start = std::time::Instant::now();
+            monas(arguments);
+            start.elapsed().as_millis()
+        });
+        assert!(times.any(|time| time < 50), "{arguments:?}");
     }
 }
 

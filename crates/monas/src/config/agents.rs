@@ -1,4 +1,4 @@
-//! Agents and links from a file: Listing 4.17 of the thesis, read with diagnostics.
+//! Agents and links from elements: Listing 4.17 of the thesis, read with diagnostics.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -8,15 +8,19 @@ use narukom::Narukom;
 use yase::diagnostic::nearest;
 use yase::{Diagnostic, Source, Statechart};
 
+use super::element::{Attribute, Element};
+use super::grammar::Grammar;
+use super::layers::Layers;
 use super::links::LinkReader;
 use super::model;
 use super::paths;
-use super::xml::{self, Attribute, Attributes, Element};
+use super::resolve::{resolve, sort};
+use super::values::Values;
 use crate::activity::Activity;
 use crate::agent::{Agent, Policy};
 use crate::binder::Binder;
 use crate::error::{Error, ErrorKind};
-use crate::frequency::{Frequency, Hz};
+use crate::frequency::Hz;
 use crate::link::LinkConfig;
 use crate::parameters::Parameters;
 use crate::registry::Registry;
@@ -34,33 +38,56 @@ pub struct Setup {
 ///
 /// A file whose diagnostics hold no [error](Diagnostic::is_error) can be run.
 pub fn load(path: impl AsRef<Path>, registry: &Registry) -> (Setup, Vec<Diagnostic>) {
-    match paths::read(path.as_ref()) {
-        Ok(source) => read(&source, path.as_ref(), registry),
-        Err(diagnostic) => (Setup::default(), vec![*diagnostic]),
-    }
+    load_with(path, registry, &Layers::new())
+}
+
+/// As [`load`], with layers over the file.
+pub fn load_with(path: impl AsRef<Path>, registry: &Registry, layers: &Layers) -> (Setup, Vec<Diagnostic>) {
+    let resolved = resolve(path.as_ref(), &Grammar::agents(), layers);
+    let elements = resolved.elements.clone();
+    assembled(&elements, path.as_ref(), registry, resolved.into_diagnostics())
 }
 
 /// As [`load`], of a text that is at hand; models are looked for from where `path` would be.
 pub fn read(source: &Arc<Source>, path: &Path, registry: &Registry) -> (Setup, Vec<Diagnostic>) {
-    let (elements, diagnostics) = xml::parse(source);
-    let mut reader = Reader { path, registry, diagnostics, setup: Setup::default() };
+    let (elements, diagnostics) = Grammar::agents().read(source);
+    assembled(&elements, path, registry, diagnostics)
+}
+
+fn assembled(
+    elements: &[Element],
+    path: &Path,
+    registry: &Registry,
+    mut diagnostics: Vec<Diagnostic>,
+) -> (Setup, Vec<Diagnostic>) {
+    let setup = assemble(elements, path, registry, &mut diagnostics);
+    sort(&mut diagnostics);
+    (setup, diagnostics)
+}
+
+/// The agents and links that checked elements describe, and everything that the grammar could not know to be wrong; models are looked
+/// for from where `path` is.
+pub fn assemble(
+    elements: &[Element],
+    path: &Path,
+    registry: &Registry,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Setup {
+    let grammar = Grammar::agents();
+    let mut reader = Reader { path, registry, grammar: &grammar, diagnostics, setup: Setup::default() };
     // What runs elsewhere is held against the links, wherever these stand.
-    reader.links(&elements);
-    reader.agents(&elements);
-    (reader.setup, reader.diagnostics)
+    reader.links(elements);
+    reader.agents(elements);
+    reader.setup
 }
 
 struct Reader<'a> {
     path: &'a Path,
     registry: &'a Registry,
-    diagnostics: Vec<Diagnostic>,
+    grammar: &'a Grammar,
+    diagnostics: &'a mut Vec<Diagnostic>,
     setup: Setup,
 }
-
-/// The elements that stand for an agent or a link, or hold some.
-const TOP: [&str; 4] = ["agent", "provider", "link", "agents"];
-/// The elements within an agent.
-const WITHIN: [&str; 3] = ["name", "activity", "statechart"];
 
 impl Reader<'_> {
     fn links(&mut self, elements: &[Element]) {
@@ -68,7 +95,8 @@ impl Reader<'_> {
             if element.is("agents") {
                 self.links(element.children());
             } else if element.is("link") {
-                let mut reader = LinkReader { path: self.path, diagnostics: &mut self.diagnostics };
+                let mut reader =
+                    LinkReader { path: self.path, grammar: self.grammar, diagnostics: self.diagnostics };
                 self.setup.links.extend(reader.link(element));
             }
         }
@@ -77,27 +105,24 @@ impl Reader<'_> {
     fn agents(&mut self, elements: &[Element]) {
         for element in elements {
             if element.is("agents") {
-                Attributes::new(element, &mut self.diagnostics).finish();
                 self.agents(element.children());
             } else if element.is("agent") {
                 self.agent(element);
             } else if element.is("provider") {
                 self.provider(element);
-            } else if !element.is("link") {
-                self.diagnostics.push(element.unknown(&TOP));
             }
         }
     }
 
     fn agent(&mut self, element: &Element) {
-        element.expect_children(&WITHIN, &mut self.diagnostics);
-        let name = self.agent_name(element);
-        let (mut agent, enabled) = self.settings(element, name);
+        let name = element.children_named("name").next().map(Element::text).unwrap_or_default();
+        let (mut agent, enabled) = self.settings(element, name.to_owned());
         let parts = element.children_named("activity").chain(element.children_named("statechart"));
         let parts: Vec<&Element> = parts.collect();
         if parts.is_empty() && element.children().iter().all(|child| child.is("name")) {
             let message = format!("agent `{}` has no activity and no statechart", agent.name);
-            self.diagnostics.push(element.error("E0319", element.name_span(), message));
+            let hint = "give it an `activity`, or a `statechart` that names a model";
+            self.diagnostics.push(element.error("E0319", element.name_span(), message).with_hint(hint));
         }
         for part in parts {
             agent =
@@ -108,51 +133,35 @@ impl Reader<'_> {
 
     /// A provider is an agent with the one activity that it is named after.
     fn provider(&mut self, element: &Element) {
-        element.expect_children(&[], &mut self.diagnostics);
         let name = element.text().to_owned();
         let (agent, enabled) = self.settings(element, name.clone());
-        let activity = self.instance(element, &name, &Parameters::new());
-        let agent = match activity {
+        let agent = match self.instance(element, &name, &Parameters::new()) {
             Some(activity) => agent.named_activity(name, activity),
             None => agent,
         };
         self.add(element, agent, enabled);
     }
 
-    fn agent_name(&mut self, element: &Element) -> String {
-        let Some(name) = element.only_child("name", &mut self.diagnostics) else { return String::new() };
-        Attributes::new(name, &mut self.diagnostics).finish();
-        if name.text().is_empty() {
-            self.diagnostics.push(name.error("E0310", name.name_span(), "an agent's name is empty"));
-        }
-        name.text().to_owned()
-    }
-
     /// The attributes of an agent, and whether it is wanted.
     fn settings(&mut self, element: &Element, name: String) -> (Agent, bool) {
-        let mut attributes = Attributes::new(element, &mut self.diagnostics);
-        let real_time = attributes.flag("is_real_time").unwrap_or(false);
-        let priority = attributes.integer("priority").unwrap_or(0);
-        let frequency = frequency(&mut attributes);
-        let statistics = attributes.integer("stats_cycle").unwrap_or(0);
-        let workers = attributes.read("workers", "a whole number from 1", |text| text.parse().ok());
-        let enabled = attributes.flag("enable").unwrap_or(true);
-        let policy = attributes.one_of("on_failure", &Policy::NAMES).unwrap_or_default();
-        attributes.finish();
+        let values = Values::of(element, self.grammar);
         let mut agent = Agent::idle(name);
-        (agent.frequency, agent.workers) = (frequency, workers);
-        let agent = agent.urgency(priority, real_time).statistics_every(statistics).on_failure(policy);
-        (agent, enabled)
+        agent.frequency = values.number("thread_frequency").map(|hertz: f64| Hz(hertz));
+        agent.workers = values.number("workers");
+        let real_time = values.flag("is_real_time").unwrap_or_default();
+        let agent = agent
+            .urgency(values.number("priority").unwrap_or_default(), real_time)
+            .statistics_every(values.number("stats_cycle").unwrap_or_default())
+            .on_failure(values.word("on_failure", &Policy::NAMES).unwrap_or_default());
+        (agent, is_enabled(&values))
     }
 
     fn activity(&mut self, element: &Element, agent: Agent) -> Agent {
-        element.expect_children(&[], &mut self.diagnostics);
-        let mut attributes = Attributes::new(element, &mut self.diagnostics);
-        let enabled = attributes.flag("enable").unwrap_or(true);
-        let rest = attributes.rest();
-        let parameters = rest.iter().fold(Parameters::new(), |all, one| all.with(&*one.name, &*one.value));
+        let values = Values::of(element, self.grammar);
+        let parameters =
+            values.parameters().fold(Parameters::new(), |all, one| all.with(&*one.name, &*one.value));
         let activity = self.instance(element, element.text(), &parameters);
-        match activity.filter(|_| enabled) {
+        match activity.filter(|_| is_enabled(&values)) {
             Some(activity) => agent.named_activity(element.text(), activity),
             None => agent,
         }
@@ -165,6 +174,9 @@ impl Reader<'_> {
         name: &str,
         parameters: &Parameters,
     ) -> Option<Box<dyn Activity>> {
+        if name.is_empty() {
+            return None; // which has been said
+        }
         match self.registry.activity(name) {
             Ok(mut activity) => {
                 activity.configure(parameters);
@@ -186,13 +198,12 @@ impl Reader<'_> {
     fn faults(&mut self, element: &Element, parameters: &Parameters) {
         for fault in parameters.faults() {
             let given = element.attributes().iter().find(|attribute| attribute.name == fault.key);
-            let (code, span) = match given {
-                Some(attribute) if fault.unknown => ("E0314", attribute.name_span),
-                Some(attribute) => ("E0315", attribute.value_span),
-                None => ("E0315", element.name_span()),
+            let message = format!("activity `{}`: {}", element.text(), fault.message);
+            let diagnostic = match given {
+                Some(attribute) if fault.unknown => attribute.name_error("E0314", message),
+                Some(attribute) => attribute.error("E0315", message),
+                None => element.error("E0315", element.name_span(), message),
             };
-            let diagnostic =
-                element.error(code, span, format!("activity `{}`: {}", element.text(), fault.message));
             self.diagnostics.push(match fault.nearest {
                 Some(known) => diagnostic.with_hint(format!("did you mean `{known}`?")),
                 None => diagnostic,
@@ -201,11 +212,11 @@ impl Reader<'_> {
     }
 
     fn statechart(&mut self, element: &Element, agent: Agent) -> Agent {
-        element.expect_children(&[], &mut self.diagnostics);
-        let mut attributes = Attributes::new(element, &mut self.diagnostics);
-        let enabled = attributes.flag("enable").unwrap_or(true);
-        let elsewhere = attributes.get("elsewhere").cloned();
-        attributes.finish();
+        if element.text().is_empty() {
+            return agent; // which has been said
+        }
+        let values = Values::of(element, self.grammar);
+        let (enabled, elsewhere) = (is_enabled(&values), values.given("elsewhere").cloned());
         let agent = match self.registry.chart(element.text()) {
             Some(Ok(generated)) if enabled => agent.generated(generated),
             Some(Ok(_)) => return agent,
@@ -216,7 +227,7 @@ impl Reader<'_> {
             },
         };
         let chart = agent.charts().last();
-        let named = elsewhere.zip(chart).map(|(given, chart)| self.elsewhere(element, &given, chart));
+        let named = elsewhere.zip(chart).map(|(given, chart)| self.elsewhere(&given, chart));
         named.unwrap_or_default().into_iter().fold(agent, Agent::elsewhere)
     }
 
@@ -231,7 +242,7 @@ impl Reader<'_> {
     }
 
     /// The activities of a chart that another process runs: each must be one of the chart's, and links must bring what it publishes.
-    fn elsewhere(&mut self, element: &Element, given: &Attribute, chart: &Statechart) -> Vec<String> {
+    fn elsewhere(&mut self, given: &Attribute, chart: &Statechart) -> Vec<String> {
         let names: Vec<String> = given.value.split_whitespace().map(str::to_owned).collect();
         let mut known: Vec<&str> = chart.nodes().filter_map(|(_, node)| node.activity.as_deref()).collect();
         known.sort_unstable();
@@ -239,7 +250,7 @@ impl Reader<'_> {
         for name in &names {
             if !known.contains(&name.as_str()) {
                 let message = format!("the chart `{}` has no activity `{name}`", chart.name);
-                let diagnostic = element.error("E0338", given.value_span, message);
+                let diagnostic = given.error("E0338", message);
                 self.diagnostics.push(diagnostic.with_nearest(name, known.iter().copied()));
             } else if let Ok(activity) = self.registry.activity(name) {
                 let topics = activity.topics();
@@ -248,7 +259,7 @@ impl Reader<'_> {
                 for topic in missing {
                     let message = format!("`{name}` runs elsewhere, and no link brings its `{topic}`");
                     let hint = format!("add to a `<link>`: `<receive topics=\"{topic}\" as=\"own\"/>`");
-                    self.diagnostics.push(element.error("E0339", given.value_span, message).with_hint(hint));
+                    self.diagnostics.push(given.error("E0339", message).with_hint(hint));
                 }
             }
         }
@@ -303,10 +314,11 @@ impl Reader<'_> {
 
     fn add(&mut self, element: &Element, agent: Agent, enabled: bool) {
         if agent.frequency.is_none() && !agent.activities.is_empty() {
-            let given = element.attributes().iter().any(|a| xml::is_written(&a.name, "thread_frequency"));
-            if !given {
+            let values = Values::of(element, self.grammar);
+            if values.given("thread_frequency").is_none() {
                 let message = format!("agent `{}` has activities and no `thread_frequency`", agent.name);
-                self.diagnostics.push(element.error("E0305", element.name_span(), message));
+                let hint = "say how many cycles a second it has: `thread_frequency=\"10\"`";
+                self.diagnostics.push(element.error("E0305", element.name_span(), message).with_hint(hint));
             }
         }
         if enabled {
@@ -319,16 +331,13 @@ impl Reader<'_> {
         if !name.is_empty() && self.setup.agents.iter().any(|agent| agent.name == name) {
             let named = element.children_named("name").next().unwrap_or(element);
             let message = format!("another agent is named `{name}`");
-            self.diagnostics.push(element.error("E0311", named.text_span(), message));
+            let hint = "each agent of a host has a name of its own";
+            self.diagnostics.push(element.error("E0311", named.text_span(), message).with_hint(hint));
         }
     }
 }
 
-/// Cycles a second, if that is said.
-fn frequency(attributes: &mut Attributes<'_>) -> Option<Frequency> {
-    let fits = |hertz: &f64| (Frequency::LOWEST..=Frequency::HIGHEST).contains(hertz);
-    let expected = format!("a number from {} to {}", Frequency::LOWEST, Frequency::HIGHEST);
-    attributes
-        .read("thread_frequency", &expected, |text| text.parse().ok().filter(fits))
-        .map(|hertz: f64| Hz(hertz))
+/// Whether an element is not left out.
+fn is_enabled(values: &Values<'_>) -> bool {
+    values.flag("enable").unwrap_or(true)
 }

@@ -7,13 +7,13 @@ use monas_link::{AccessList, Bridge, Budget, LinkSettings, Place, ReceiveRule, R
 use narukom::Narukom;
 use yase::{Diagnostic, Span};
 
+use super::element::{Attribute, Element};
+use super::grammar::Grammar;
 use super::paths;
-use super::xml::{self, Attributes, Element};
+use super::values::Values;
 use crate::link::{Certificates, Endpoints, LinkConfig, LinkTransport};
 
-/// The elements within a link.
-const WITHIN: [&str; 6] = ["send", "receive", "budget", "connect", "listen", "certificates"];
-/// Those of them, and those attributes, that mean something for zenoh only.
+/// The elements that mean something for zenoh only.
 const OF_ZENOH: [&str; 3] = ["connect", "listen", "certificates"];
 
 /// What may be sent by rules of games: how many packets by a whole team in a game, how long the game is, s, and how many bytes each has.
@@ -32,6 +32,7 @@ struct Draft {
 /// Reads links.
 pub(super) struct LinkReader<'a> {
     pub(super) path: &'a Path,
+    pub(super) grammar: &'a Grammar,
     pub(super) diagnostics: &'a mut Vec<Diagnostic>,
 }
 
@@ -39,39 +40,46 @@ impl LinkReader<'_> {
     /// A link, if nothing is wrong with it, and whether it is wanted.
     pub(super) fn link(&mut self, element: &Element) -> Option<LinkConfig> {
         let errors = self.errors();
-        element.expect_children(&WITHIN, self.diagnostics);
-        let mut attributes = Attributes::new(element, self.diagnostics);
-        let enabled = attributes.flag("enable").unwrap_or(true);
-        let way = attributes.one_of("transport", &[("local", false), ("zenoh", true)]).unwrap_or(false);
-        let plain = |text: &str| is_plain(text).then(|| text.to_owned());
+        let is_refused = self.is_refused(element);
+        let values = Values::of(element, self.grammar);
+        let way = values.word("transport", &[("local", false), ("zenoh", true)]).unwrap_or(false);
         let mut draft = Draft::default();
-        let expected = "a name of letters, digits, `_` and `-`";
-        draft.settings.name = attributes.read("name", expected, plain).unwrap_or_default();
-        draft.settings.guests = attributes.flag("guests").unwrap_or(false);
-        if let Some(beat) = attributes.read("beat", "a time of at least `1ms`, such as `200ms`", beat) {
+        draft.settings.name = values.text("name").unwrap_or_default().to_owned();
+        draft.settings.guests = values.flag("guests").unwrap_or_default();
+        if let Some(beat) = values.duration("beat") {
             draft.settings.beat = beat;
         }
-        let clock = attributes.read("clock", "the name of the link's other end", plain);
-        draft.folder = attributes.text("folder").map(PathBuf::from);
-        draft.endpoints.realm = attributes.read("realm", expected, plain);
-        draft.endpoints.scouting = attributes.flag("scouting").unwrap_or(false);
-        draft.endpoints.shared_memory = attributes.flag("shared_memory").unwrap_or(true);
-        let access = attributes.get("access").map(|given| (given.value.clone(), given.value_span));
-        attributes.finish();
+        let clock = values.text("clock").map(str::to_owned);
+        draft.folder = values.text("folder").map(PathBuf::from);
+        draft.endpoints.realm = values.text("realm").map(str::to_owned);
+        draft.endpoints.scouting = values.flag("scouting").unwrap_or_default();
+        draft.endpoints.shared_memory = values.flag("shared_memory").unwrap_or(true);
         self.misplaced(element, way);
-        if let Some((named, span)) = access {
-            draft.settings.access = self.access(element, &named, span).unwrap_or_default();
+        if let Some(named) = values.given("access") {
+            draft.settings.access = self.access(named).unwrap_or_default();
         }
         self.content(element, &mut draft);
-        self.contradictions(element, &draft.settings, errors);
+        if !is_refused {
+            self.contradictions(element, &draft.settings, errors);
+        }
         let transport = match way {
             true => self.zenoh(element, draft.endpoints, &draft.settings.access, errors),
             false => LinkTransport::Local { folder: draft.folder },
         };
-        (enabled && self.errors() == errors).then_some(LinkConfig {
+        let enabled = values.flag("enable").unwrap_or(true);
+        (enabled && !is_refused && self.errors() == errors).then_some(LinkConfig {
             settings: draft.settings,
             transport,
             clock,
+        })
+    }
+
+    /// Whether the grammar has found something wrong with it.
+    fn is_refused(&self, element: &Element) -> bool {
+        let span = element.span();
+        self.diagnostics.iter().any(|found| {
+            let is_here = found.source.as_ref().is_some_and(|source| source.name == element.source().name);
+            found.is_error() && is_here && (span.start..=span.end).contains(&found.span.start)
         })
     }
 
@@ -81,7 +89,6 @@ impl LinkReader<'_> {
 
     fn content(&mut self, element: &Element, draft: &mut Draft) {
         for child in element.children() {
-            child.expect_children(&[], self.diagnostics);
             if child.is("send") {
                 draft.settings.send.extend(self.send(child));
             } else if child.is("receive") {
@@ -105,35 +112,28 @@ impl LinkReader<'_> {
     }
 
     fn send(&mut self, element: &Element) -> Option<SendRule> {
-        let mut attributes = Attributes::new(element, self.diagnostics);
+        let values = Values::of(element, self.grammar);
         let words = [("reliable", Reliability::Reliable), ("best_effort", Reliability::BestEffort)];
-        let reliability = attributes.one_of("reliability", &words).unwrap_or_default();
-        let fits = |text: &str| text.parse().ok().filter(|number: &u8| (1..=7).contains(number));
-        let expected = "a number from 1, sent first, to 7, sent last";
-        let priority = attributes.read("priority", expected, fits).unwrap_or(4);
-        let topics = attributes.required("topics").map(str::to_owned);
-        attributes.finish();
-        Some(SendRule { topics: self.pattern(element, topics?)?, reliability, priority })
+        let reliability = values.word("reliability", &words).unwrap_or_default();
+        let priority = values.number("priority")?;
+        let topics = values.given("topics")?;
+        Some(SendRule { topics: self.pattern(element, topics)?, reliability, priority })
     }
 
     fn receive(&mut self, element: &Element) -> Option<ReceiveRule> {
-        let mut attributes = Attributes::new(element, self.diagnostics);
-        let place =
-            attributes.one_of("as", &[("other", Place::Other), ("own", Place::Own)]).unwrap_or_default();
-        let topics = attributes.required("topics").map(str::to_owned);
-        attributes.finish();
-        Some(ReceiveRule { topics: self.pattern(element, topics?)?, place })
+        let values = Values::of(element, self.grammar);
+        let place = values.word("as", &[("other", Place::Other), ("own", Place::Own)]).unwrap_or_default();
+        let topics = values.given("topics")?;
+        Some(ReceiveRule { topics: self.pattern(element, topics)?, place })
     }
 
     /// A pattern that fits a topic of the program.
-    fn pattern(&mut self, element: &Element, topics: String) -> Option<String> {
+    fn pattern(&mut self, element: &Element, topics: &Attribute) -> Option<String> {
         let hub = self.hub(element)?;
-        match hub.matching(&topics) {
-            Ok(_) => Some(topics),
+        match hub.matching(&topics.value) {
+            Ok(_) => Some(topics.value.clone()),
             Err(error) => {
-                let given = element.attributes().iter().find(|given| xml::is_written(&given.name, "topics"));
-                let span = given.map_or(element.name_span(), |given| given.value_span);
-                self.diagnostics.push(element.error("E0331", span, error.to_string()));
+                self.diagnostics.push(topics.error("E0331", error.to_string()));
                 None
             }
         }
@@ -149,17 +149,10 @@ impl LinkReader<'_> {
     }
 
     fn budget(&mut self, element: &Element) -> Option<Budget> {
-        let mut attributes = Attributes::new(element, self.diagnostics);
-        let profile = attributes.one_of("profile", &PROFILES);
-        let robots = attributes
-            .read("robots", "a whole number from 1", |text| text.parse::<u32>().ok().filter(|n| *n > 0));
-        let packets = attributes
-            .read("packets", "a whole number from 1", |text| text.parse().ok().filter(|n: &u32| *n > 0));
-        let window = attributes.duration("window");
-        let payload = attributes.read("payload", "a whole number of bytes from 1", |text| {
-            text.parse().ok().filter(|bytes: &usize| *bytes > 0)
-        });
-        attributes.finish();
+        let values = Values::of(element, self.grammar);
+        let (profile, robots) = (values.word("profile", &PROFILES), values.number::<u32>("robots"));
+        let (packets, payload) = (values.number("packets"), values.number("payload"));
+        let window = values.duration("window");
         match (profile, packets, window, payload) {
             (Some((packets, seconds, payload)), None, None, None) => {
                 let length = Duration::from_secs(seconds);
@@ -179,7 +172,6 @@ impl LinkReader<'_> {
 
     /// An endpoint; a port alone is one of this computer.
     fn endpoint(&mut self, element: &Element, listens: bool) -> Option<String> {
-        Attributes::new(element, self.diagnostics).finish();
         let text = element.text();
         if listens && text.parse::<u16>().is_ok() {
             return Some(format!("tcp/127.0.0.1:{text}"));
@@ -199,23 +191,18 @@ impl LinkReader<'_> {
     }
 
     fn certificates(&mut self, element: &Element) -> Option<Certificates> {
-        let mut attributes = Attributes::new(element, self.diagnostics);
-        let named = ["authority", "certificate", "key"].map(|key| {
-            let text = attributes.required(key)?.to_owned();
-            attributes.get(key).map(|given| (text, given.value_span))
-        });
-        attributes.finish();
+        let values = Values::of(element, self.grammar);
         let [authority, certificate, key] =
-            named.map(|named| named.and_then(|(text, span)| self.file(element, &text, span)));
+            ["authority", "certificate", "key"].map(|key| self.file(values.given(key)?));
         Some(Certificates { authority: authority?, certificate: certificate?, key: key? })
     }
 
     /// A file that is named; it must be there.
-    fn file(&mut self, element: &Element, named: &str, span: Span) -> Option<PathBuf> {
-        match paths::locate(self.path, named) {
+    fn file(&mut self, named: &Attribute) -> Option<PathBuf> {
+        match paths::locate(self.path, &named.value) {
             Ok(found) => Some(found),
             Err(hint) => {
-                let diagnostic = element.error("E0316", span, format!("no file `{named}`"));
+                let diagnostic = named.error("E0316", format!("no file `{}`", named.value));
                 self.diagnostics.push(match hint {
                     Some(hint) => diagnostic.with_hint(format!("did you mean `{hint}`?")),
                     None => diagnostic,
@@ -225,8 +212,8 @@ impl LinkReader<'_> {
         }
     }
 
-    fn access(&mut self, element: &Element, named: &str, span: Span) -> Option<AccessList> {
-        let found = self.file(element, named, span)?;
+    fn access(&mut self, named: &Attribute) -> Option<AccessList> {
+        let found = self.file(named)?;
         let source = paths::read(&found).map_err(|unread| self.diagnostics.push(*unread)).ok()?;
         let (list, errors) = AccessList::parse(&source.text);
         for error in errors {
@@ -242,9 +229,13 @@ impl LinkReader<'_> {
         let keys: &[&str] = if zenoh { &["folder"] } else { &["realm", "scouting", "shared_memory"] };
         let way = if zenoh { "zenoh" } else { "local" };
         for given in element.attributes() {
-            if keys.iter().any(|key| xml::is_written(&given.name, key)) {
+            if keys.iter().any(|key| given.is(key)) {
                 let message = format!("`{}` means nothing where the transport is `{way}`", given.name);
-                self.diagnostics.push(element.error("E0335", given.name_span, message));
+                let hint = match zenoh {
+                    true => "the sockets of a `folder` are those of `transport=\"local\"`",
+                    false => "other computers are reached with `transport=\"zenoh\"`",
+                };
+                self.diagnostics.push(given.name_error("E0335", message).with_hint(hint));
             }
         }
         for child in element.children().iter().filter(|_| !zenoh) {
@@ -305,11 +296,12 @@ impl LinkReader<'_> {
     /// A program that is built without zenoh.
     #[cfg(not(feature = "zenoh"))]
     fn lacking_zenoh(&mut self, element: &Element) {
-        let given = element.attributes().iter().find(|given| xml::is_written(&given.name, "transport"));
-        let span = given.map_or(element.name_span(), |given| given.value_span);
         let message = "the transport `zenoh` is not in this program";
         let hint = "build it with `--features zenoh`; between processes of one computer there is `transport=\"local\"`";
-        self.diagnostics.push(element.error("E0337", span, message).with_hint(hint));
+        self.diagnostics.push(match element.attribute("transport") {
+            Some(given) => given.error("E0337", message).with_hint(hint),
+            None => element.error("E0337", element.name_span(), message).with_hint(hint),
+        });
     }
 
     #[cfg(feature = "zenoh")]
@@ -325,14 +317,6 @@ impl LinkReader<'_> {
 
     #[cfg(not(feature = "zenoh"))]
     fn unusable(&mut self, _: &Element, _: &Endpoints, _: &AccessList) {}
-}
-
-fn is_plain(text: &str) -> bool {
-    !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
-}
-
-fn beat(text: &str) -> Option<Duration> {
-    xml::duration(text).filter(|beat| *beat >= Duration::from_millis(1))
 }
 
 /// `tcp/HOST:PORT` or `tls/HOST:PORT`: what zenoh is built with here.

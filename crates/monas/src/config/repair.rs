@@ -78,6 +78,8 @@ pub(super) fn repair(source: &str) -> Repaired {
         out: Repaired { text: String::with_capacity(source.len() + 64), diagnostics: vec![], pieces: vec![] },
     };
     writer.insert(&format!("<{ROOT}>"));
+    // Some editors put a mark in front of a text that says that it is UTF-8.
+    writer.at = source.len() - source.trim_start_matches('\u{feff}').len();
     while writer.at < source.len() {
         writer.item();
     }
@@ -107,7 +109,7 @@ impl<'a> Writer<'a> {
         } else if rest.starts_with("<?") {
             self.skip_to("?>", "this declaration is not closed");
         } else if rest.starts_with("<!") {
-            self.say(self.at..self.at + 2, "document types are not read");
+            self.say(self.at..self.at + 2, "document types are not read", "leave it out");
             self.skip_to(">", "this document type is not closed");
         } else if rest.starts_with("</") {
             self.closing_tag();
@@ -122,9 +124,9 @@ impl<'a> Writer<'a> {
         &self.source[self.at..]
     }
 
-    fn say(&mut self, span: impl Into<Span>, message: impl Into<String>) {
+    fn say(&mut self, span: impl Into<Span>, message: impl Into<String>, hint: impl Into<String>) {
         let span = within(self.source, span.into());
-        self.out.diagnostics.push(Diagnostic::error("E0301", span, message));
+        self.out.diagnostics.push(Diagnostic::error("E0301", span, message).with_hint(hint));
     }
 
     fn insert(&mut self, text: &str) {
@@ -143,7 +145,7 @@ impl<'a> Writer<'a> {
         match self.rest().find(terminator) {
             Some(found) => self.at += found + terminator.len(),
             None => {
-                self.say(self.at..self.at + 2, otherwise);
+                self.say(self.at..self.at + 2, otherwise, format!("it ends with `{terminator}`"));
                 self.at = self.source.len();
             }
         }
@@ -159,7 +161,7 @@ impl<'a> Writer<'a> {
     /// Text up to the next tag; a `<` that begins none is taken as it stands, and said.
     fn text(&mut self) {
         if self.rest().starts_with('<') {
-            self.say(self.at..self.at + 1, "`<` begins no tag here; write `&lt;`");
+            self.say(self.at..self.at + 1, "`<` begins no tag here", "write `&lt;`");
             self.insert("&lt;");
             self.at += 1;
         }
@@ -167,7 +169,8 @@ impl<'a> Writer<'a> {
         let text = &self.source[self.at..end];
         if self.open.is_empty() && !text.trim().is_empty() {
             let start = self.at + (text.len() - text.trim_start().len());
-            self.say(start..start + text.trim().len(), "text outside of an element");
+            let hint = "a text stands between tags: `<name>text</name>`";
+            self.say(start..start + text.trim().len(), "text outside of an element", hint);
         }
         self.escaped_to(end);
     }
@@ -215,7 +218,7 @@ impl<'a> Writer<'a> {
             self.at = self.source.len() - rest.len();
             self.copy_to(self.at + 1);
         } else {
-            self.say(span, format!("the tag `</{name}` has no `>`"));
+            self.say(span, format!("the tag `</{name}` has no `>`"), format!("write `</{name}>`"));
             self.insert(">");
         }
     }
@@ -227,7 +230,7 @@ impl<'a> Writer<'a> {
         let names = open.iter().map(|(open, _)| *open);
         let diagnostic = Diagnostic::error("E0301", span, message).with_nearest(name, names);
         let slip = diagnostic.hint.is_some();
-        self.out.diagnostics.push(diagnostic);
+        self.out.diagnostics.push(if slip { diagnostic } else { diagnostic.with_hint("leave it out") });
         if let (true, Some((open, _))) = (slip, open) {
             self.open.pop();
             self.insert(&format!("</{open}>"));
@@ -238,7 +241,7 @@ impl<'a> Writer<'a> {
     fn close_down_to(&mut self, depth: usize) {
         while self.open.len() > depth {
             if let Some((name, span)) = self.open.pop() {
-                self.say(span, format!("`<{name}>` is not closed"));
+                self.say(span, format!("`<{name}>` is not closed"), format!("write `</{name}>` behind it"));
                 self.insert(&format!("</{name}>"));
             }
         }
@@ -259,7 +262,8 @@ impl<'a> Writer<'a> {
     fn leave_out(&mut self, name: &str, span: Span) {
         if self.too_deep == 0 {
             let message = format!("`<{name}>` is nested more than {DEPTH} levels deep");
-            self.out.diagnostics.push(Diagnostic::error("E0302", span, message));
+            let diagnostic = Diagnostic::error("E0302", span, message);
+            self.out.diagnostics.push(diagnostic.with_hint("no configuration is as deep as that"));
         }
         self.skip_to(">", "this tag is not closed");
         if !self.source[..self.at].ends_with("/>") {
@@ -279,14 +283,15 @@ impl<'a> Writer<'a> {
                 self.open.push((element, span));
                 return self.copy_to(self.at + 1);
             } else if rest.is_empty() || rest.starts_with('<') {
-                self.say(span, format!("the tag `<{element}` has no `>`"));
+                self.say(span, format!("the tag `<{element}` has no `>`"), "a tag ends with `>` or `/>`");
                 self.open.push((element, span));
                 return self.insert(">");
             } else if starts_name(rest) {
                 self.attribute(&mut seen);
             } else {
                 let wrong = rest.chars().next().map_or(0, char::len_utf8);
-                self.say(self.at..self.at + wrong, format!("`{}` has no meaning here", &rest[..wrong]));
+                let message = format!("`{}` has no meaning here", &rest[..wrong]);
+                self.say(self.at..self.at + wrong, message, "in a tag stand `name=\"value\"` and its end");
                 self.at += wrong;
             }
         }
@@ -307,7 +312,7 @@ impl<'a> Writer<'a> {
         let length = self.out.text.len();
         if repeated {
             let diagnostic = Diagnostic::error("E0307", span, format!("attribute `{name}` is given twice"));
-            self.out.diagnostics.push(diagnostic);
+            self.out.diagnostics.push(diagnostic.with_hint("leave one of them out"));
         } else {
             seen.push(name);
             self.insert(" ");
@@ -353,7 +358,8 @@ impl<'a> Writer<'a> {
                 self.at += 1;
             }
             _ => {
-                self.say(start..start + 1 + line, format!("the value of `{name}` is not closed"));
+                let message = format!("the value of `{name}` is not closed");
+                self.say(start..start + 1 + line, message, "it ends with the quote that it begins with");
                 self.enclosed(start + 1 + line);
             }
         }
@@ -380,6 +386,11 @@ fn starts_name(text: &str) -> bool {
 fn name_at(text: &str) -> &str {
     let end = text.find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '-' | '.')));
     &text[..end.unwrap_or(text.len())]
+}
+
+/// Whether a text is a name.
+pub(super) fn is_name(text: &str) -> bool {
+    starts_name(text) && name_at(text).len() == text.len()
 }
 
 /// Whether a text begins with an entity of XML's own, or a numbered character.

@@ -12,7 +12,8 @@ use yase::Diagnostic;
 use super::super::arguments::ReplayArguments;
 use super::super::failed;
 use super::super::select::unknown;
-use crate::arguments::Format;
+use crate::arguments::{Format, LayerArguments};
+use crate::config::layers;
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::run::{Kind, kind_of};
@@ -21,6 +22,8 @@ use crate::run::{Kind, kind_of};
 pub(super) struct Run {
     version: String,
     configuration: String,
+    /// What the command line had set, a line each.
+    settings: String,
     seed: u64,
 }
 
@@ -51,7 +54,8 @@ pub(super) fn run_of(overview: &Overview) -> Result<Run, String> {
     }
     let seed = fact("seed")?;
     let seed = seed.parse().map_err(|_| format!("the tape's seed `{seed}` is no number"))?;
-    Ok(Run { version: fact("version")?, configuration: fact("configuration")?, seed })
+    let settings = facts.get(monas_match::SETTINGS).cloned().unwrap_or_default();
+    Ok(Run { version: fact("version")?, configuration: fact("configuration")?, settings, seed })
 }
 
 impl Run {
@@ -74,12 +78,12 @@ pub(super) fn hosts(
 ) -> Result<Vec<HostConfig>, Failure> {
     let format = arguments.format.value;
     let hosts = match &arguments.config {
-        Some(path) => load(path, format, console)?,
+        Some(path) => load(path, "", format, console)?,
         None => {
             let folder = tempfile::tempdir().map_err(|error| Failure::failed(format, error))?;
             let files = files(recording, run).map_err(failed(format))?;
             let path = files.unpack(folder.path()).map_err(|error| Failure::failed(format, error))?;
-            load(&path, format, console)?
+            load(&path, &run.settings, format, console)?
         }
     };
     choose(hosts, &arguments.agents)
@@ -97,13 +101,20 @@ fn files(recording: &Recording, run: &Run) -> Result<Provenance, monas_tape::Err
 }
 
 /// The agents of a configuration; warnings have been given when it was recorded, or are given when it is run.
-fn load(path: &Path, format: Format, _: &mut Console<'_>) -> Result<Vec<HostConfig>, Failure> {
+fn load(
+    path: &Path,
+    settings: &str,
+    format: Format,
+    _: &mut Console<'_>,
+) -> Result<Vec<HostConfig>, Failure> {
     let registry = Registry::linked();
     let invalid = |diagnostics| Failure::Invalid(format, diagnostics);
+    let settings = settings.lines().map(str::to_owned).collect();
+    let layers = layers::of(path, &LayerArguments { settings, robot: None }).map_err(invalid)?;
     match kind_of(path).map_err(|unread| invalid(vec![*unread]))? {
-        Kind::Match => Ok(Match::load(path, &registry).map_err(invalid)?.agents()),
+        Kind::Match => Ok(Match::load_with(path, &registry, &layers).map_err(invalid)?.agents()),
         Kind::Agents => {
-            let (setup, diagnostics) = monas::config::load(path, &registry);
+            let (setup, diagnostics) = monas::config::load_with(path, &registry, &layers);
             if diagnostics.iter().any(Diagnostic::is_error) {
                 return Err(invalid(diagnostics));
             }

@@ -1,8 +1,4 @@
 //! Agents from XML: what the thesis writes is read, and everything that is wrong is said at once, with its place.
-#![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
-
-mod kit;
-
 use std::fs;
 use std::time::Duration;
 
@@ -12,6 +8,8 @@ use monas::{
 };
 use monas_link::{Budget, Place, Reliability};
 use yase::Source;
+
+use crate::kit;
 
 #[derive(Default)]
 struct Walk;
@@ -30,7 +28,7 @@ impl Activity for Walk {
 
 fn plain(_: &mut Blackboard) {}
 
-fn registry() -> Registry {
+pub(crate) fn registry() -> Registry {
     let names = ["Vision", "Behavior", "Sensors", "RobotController"];
     names.into_iter().fold(Registry::empty().with("Walk", Walk::default), |r, name| r.with(name, || plain))
 }
@@ -60,13 +58,7 @@ fn check_agent(attributes: &str, elements: &str, expected: &[&str]) {
 }
 
 /// Listing 4.17 of the thesis.
-const LISTING: &str = "\
-<agent IsRealTime=1 Priority=1 ThreadFrequency=10 StatsCycle=15>
-  <name>Motion</name>
-  <activity>Vision</activity>
-  <activity>Behavior</activity>
-</agent>
-";
+const LISTING: &str = include_str!("../listings/4.17.xml");
 
 #[test]
 fn the_listing_of_the_thesis_is_read_as_it_stands() {
@@ -184,28 +176,42 @@ fn values_that_cannot_be_meant_are_said() {
 fn what_an_agent_lacks_is_said() {
     check(
         "<agent thread_frequency='1'><activity>Vision</activity></agent>",
-        &["agents.xml:1:2: error[E0305]: `agent` has no `<name>`"],
+        &["agents.xml:1:2: error[E0305]: `agent` has no `name` (give it a `name`)"],
     );
     check(
         "<agent thread_frequency='1'><name> </name><activity>Vision</activity></agent>",
-        &["agents.xml:1:30: error[E0310]: an agent's name is empty"],
+        &["agents.xml:1:30: error[E0310]: `name` is empty (it is the name of the agent)"],
     );
     check(
         "<agent thread_frequency='1'><name>a</name></agent>",
-        &["agents.xml:1:2: error[E0319]: agent `a` has no activity and no statechart"],
+        &[
+            "agents.xml:1:2: error[E0319]: agent `a` has no activity and no statechart (give it an `activity`, or a `statechart` that names a model)",
+        ],
     );
     check(
         "<agent><name>a</name><activity>Vision</activity></agent>",
-        &["agents.xml:1:2: error[E0305]: agent `a` has activities and no `thread_frequency`"],
+        &[
+            "agents.xml:1:2: error[E0305]: agent `a` has activities and no `thread_frequency` (say how many cycles a second it has: `thread_frequency=\"10\"`)",
+        ],
     );
 }
 
 #[test]
 fn two_agents_of_one_name_are_said() {
     let agent = "<agent thread_frequency='1'><name>a</name><activity>Vision</activity></agent>\n";
-    check(&agent.repeat(2), &["agents.xml:2:35: error[E0311]: another agent is named `a`"]);
+    check(
+        &agent.repeat(2),
+        &[
+            "agents.xml:2:35: error[E0311]: another agent is named `a` (each agent of a host has a name of its own)",
+        ],
+    );
     let provider = "<provider thread_frequency='1'>Vision</provider>";
-    check(&provider.repeat(2), &["agents.xml:1:80: error[E0311]: another agent is named `Vision`"]);
+    check(
+        &provider.repeat(2),
+        &[
+            "agents.xml:1:80: error[E0311]: another agent is named `Vision` (each agent of a host has a name of its own)",
+        ],
+    );
 }
 
 #[test]
@@ -233,7 +239,11 @@ fn parameters_are_checked_by_the_activity_that_has_them() {
 
 #[test]
 fn ill_formed_xml_is_repaired_and_said() {
-    check_agent("", "<activity>Vision", &["agents.xml:3:2: error[E0301]: `<activity>` is not closed"]);
+    check_agent(
+        "",
+        "<activity>Vision",
+        &["agents.xml:3:2: error[E0301]: `<activity>` is not closed (write `</activity>` behind it)"],
+    );
     check_agent(
         "",
         "<activity>Vision</activty>",
@@ -247,10 +257,18 @@ fn ill_formed_xml_is_repaired_and_said() {
     check_agent(
         "priority='1' priority='2'",
         "<activity>Vision</activity>",
-        &["agents.xml:1:43: error[E0307]: attribute `priority` is given twice"],
+        &["agents.xml:1:43: error[E0307]: attribute `priority` is given twice (leave one of them out)"],
     );
-    check("hello", &["agents.xml:1:1: error[E0301]: text outside of an element"]);
-    check("<agents>", &["agents.xml:1:2: error[E0301]: `<agents>` is not closed"]);
+    check(
+        "hello",
+        &[
+            "agents.xml:1:1: error[E0301]: text outside of an element (a text stands between tags: `<name>text</name>`)",
+        ],
+    );
+    check(
+        "<agents>",
+        &["agents.xml:1:2: error[E0301]: `<agents>` is not closed (write `</agents>` behind it)"],
+    );
 }
 
 #[test]
@@ -343,7 +361,7 @@ fn a_wrong_entry_does_not_hide_what_is_wrong_elsewhere_in_the_model() {
     let entries = "Vision -> Behavior : [ball.fuond]\nVsion -> Behavior : [false]";
     let unknown_path = "models/m.srm:5:1: error[E0250]: `Vsion -> Behavior : [false]` names no transition of the chart (did \
                         you mean `Vision`?)";
-    check_model(&refined(entries), &[unknown_path, UNKNOWN_FIELD]);
+    check_model(&refined(entries), &[UNKNOWN_FIELD, unknown_path]);
 }
 
 #[test]
@@ -444,8 +462,8 @@ fn what_is_wrong_with_a_link_is_said_with_its_place_and_what_would_be_right() {
         "",
         "<send topics='test/ball' priority='9' reliability='relaible'/>",
         &[
+            "agents.xml:2:36: error[E0306]: `priority` is `9`, expected a whole number from 1 to 7",
             "agents.xml:2:52: error[E0306]: `reliability` is `relaible`, expected one of `reliable` or `best_effort` (did you mean `reliable`?)",
-            "agents.xml:2:36: error[E0306]: `priority` is `9`, expected a number from 1, sent first, to 7, sent last",
         ],
     );
     check_link(
@@ -475,7 +493,8 @@ fn what_is_wrong_with_a_link_is_said_with_its_place_and_what_would_be_right() {
         "scouting='1'",
         &format!("{send}<listen>7447</listen>"),
         &[
-            "agents.xml:1:7: error[E0335]: `scouting` means nothing where the transport is `local`",
+            "agents.xml:1:7: error[E0335]: `scouting` means nothing where the transport is `local` \
+         (other computers are reached with `transport=\"zenoh\"`)",
             "agents.xml:2:28: error[E0335]: `<listen>` means nothing where the transport is `local` \
          (other computers are reached with `transport=\"zenoh\"`)",
         ],
@@ -489,8 +508,8 @@ fn zenoh_in_a_program_without_it_is_said_beside_what_else_is_wrong() {
         "transport='zenoh'",
         "<send topics='test/ball'/><listen>7447</listen><connect>10.0.0.2</connect>",
         &[
-            "agents.xml:2:57: error[E0333]: `10.0.0.2` is no endpoint (`tcp/192.168.1.20:7447` or `tls/robot_2:7447`)",
             "agents.xml:1:18: error[E0337]: the transport `zenoh` is not in this program (build it with `--features zenoh`; between processes of one computer there is `transport=\"local\"`)",
+            "agents.xml:2:57: error[E0333]: `10.0.0.2` is no endpoint (`tcp/192.168.1.20:7447` or `tls/robot_2:7447`)",
         ],
     );
     check_link(
@@ -498,10 +517,10 @@ fn zenoh_in_a_program_without_it_is_said_beside_what_else_is_wrong() {
         "<send topics='test/ball'/><connect>tls/10.0.0.2:7447</connect>\n\
         <certificates authority='team.pem' certificate='team.pem' key='team.key'/>",
         &[
-            "agents.xml:3:64: error[E0316]: no file `team.key` (did you mean `team.pem`?)",
-            "agents.xml:1:18: error[E0337]: the transport `zenoh` is not in this program (build it with `--features zenoh`; between processes of one computer there is `transport=\"local\"`)",
             "agents.xml:1:2: error[E0333]: an endpoint begins with `tls/`, and the link has no certificates \
          (`<certificates authority=\"team.pem\" certificate=\"robot_1.pem\" key=\"robot_1.key\"/>`)",
+            "agents.xml:1:18: error[E0337]: the transport `zenoh` is not in this program (build it with `--features zenoh`; between processes of one computer there is `transport=\"local\"`)",
+            "agents.xml:3:64: error[E0316]: no file `team.key` (did you mean `team.pem`?)",
         ],
     );
 }
@@ -532,9 +551,9 @@ fn zenoh_in_a_program_with_it_is_checked_as_far_as_it_can_be_before_it_is_opened
         "transport='zenoh'",
         &format!("{send}<listen>udp/0.0.0.0:7447</listen>"),
         &[
-            "agents.xml:2:35: error[E0333]: `udp/0.0.0.0:7447` is no endpoint (`tcp/127.0.0.1:7447` or `tls/0.0.0.0:7447`; a port alone, such as `7447`, is for this computer only)",
             "agents.xml:1:2: error[E0333]: the link neither listens nor connects, and does not look for others \
            (add `<listen>7447</listen>`, `<connect>tcp/192.168.1.20:7447</connect>` or `scouting=\"1\"`)",
+            "agents.xml:2:35: error[E0333]: `udp/0.0.0.0:7447` is no endpoint (`tcp/127.0.0.1:7447` or `tls/0.0.0.0:7447`; a port alone, such as `7447`, is for this computer only)",
         ],
     );
     let certificates = "<certificates authority='team.pem' certificate='team.pem' key='team.pem'/>";

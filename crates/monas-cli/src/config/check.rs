@@ -2,21 +2,27 @@
 
 use std::path::Path;
 
+use monas::config::Layers;
 use monas::{Registry, Talws};
 use monas_match::Match;
 use yase::Diagnostic;
 
-use crate::arguments::Format;
+use super::layers;
+use crate::arguments::{ConfigArguments, Format};
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::report;
 use crate::run::{Kind, kind_of};
 
-pub(crate) fn execute(config: &Path, format: Format, console: &mut Console<'_>) -> Result<Exit, Failure> {
+pub(super) fn execute(arguments: &ConfigArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
+    let (config, format) = (&arguments.config, arguments.format.value);
+    let invalid = |diagnostics| Failure::Invalid(format, diagnostics);
     let registry = Registry::linked();
-    let diagnostics = match kind_of(config) {
-        Ok(Kind::Match) => match Match::load(config, &registry) {
+    let kind = kind_of(config).map_err(|unread| invalid(vec![*unread]))?;
+    let layers = layers::of(config, &arguments.layers).map_err(invalid)?;
+    let diagnostics = match kind {
+        Kind::Match => match Match::load_with(config, &registry, &layers) {
             Ok(plan) => {
                 let warnings = plan.warnings().to_vec();
                 let found = plan.check().map_err(|error| Failure::failed(format, error))?;
@@ -24,11 +30,10 @@ pub(crate) fn execute(config: &Path, format: Format, console: &mut Console<'_>) 
             }
             Err(diagnostics) => diagnostics,
         },
-        Ok(Kind::Agents) => agents(config, registry),
-        Err(unread) => vec![*unread],
+        Kind::Agents => agents(config, registry, &layers),
     };
     if diagnostics.iter().any(Diagnostic::is_error) {
-        return Err(Failure::Invalid(format, diagnostics));
+        return Err(invalid(diagnostics));
     }
     report::write(console, format, &diagnostics)?;
     if format == Format::Text {
@@ -38,8 +43,8 @@ pub(crate) fn execute(config: &Path, format: Format, console: &mut Console<'_>) 
 }
 
 /// What is wrong with a file of agents, and, if it can be read, what is wrong with them together.
-fn agents(config: &Path, registry: Registry) -> Vec<Diagnostic> {
-    let (setup, mut diagnostics) = monas::config::load(config, &registry);
+fn agents(config: &Path, registry: Registry, layers: &Layers) -> Vec<Diagnostic> {
+    let (setup, mut diagnostics) = monas::config::load_with(config, &registry, layers);
     if !diagnostics.iter().any(Diagnostic::is_error) {
         let talws = setup.agents.into_iter().fold(Talws::new().registry(registry), Talws::agent);
         diagnostics.extend(setup.links.into_iter().fold(talws, Talws::link).check());

@@ -1,0 +1,175 @@
+//! What a value may be.
+
+use std::str::FromStr;
+use std::time::Duration;
+
+use super::super::element::listed;
+
+/// What an attribute's value or an element's text may be.
+#[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
+pub enum Kind {
+    /// Yes or no: `1`, `0`, `true` or `false`.
+    Flag,
+    /// A whole number within these limits.
+    Whole {
+        /// The least.
+        least: i64,
+        /// The greatest.
+        most: i64,
+    },
+    /// A finite number within these limits.
+    Number {
+        /// The least.
+        least: f64,
+        /// The greatest.
+        most: f64,
+    },
+    /// A length of time with its unit: `300s`, `100ms` or `10min`.
+    Duration {
+        /// The shortest.
+        least: Duration,
+    },
+    /// One of these words.
+    Word(Vec<&'static str>),
+    /// A name of letters, digits, `_` and `-`.
+    Name,
+    /// The path of a file, from the configuration or a folder above it.
+    File,
+    /// Several words with blanks between them; TOML may have them in an array.
+    List,
+    /// Any text.
+    Text,
+}
+
+impl Kind {
+    /// Any whole number.
+    pub const fn whole() -> Kind {
+        Kind::Whole { least: i32::MIN as i64, most: i32::MAX as i64 }
+    }
+
+    /// A whole number that is large enough.
+    pub const fn whole_from(least: i64) -> Kind {
+        Kind::Whole { least, most: u32::MAX as i64 }
+    }
+
+    /// A whole number in a range.
+    pub const fn whole_in(least: i64, most: i64) -> Kind {
+        Kind::Whole { least, most }
+    }
+
+    /// A number that is large enough.
+    pub const fn number_from(least: f64) -> Kind {
+        Kind::Number { least, most: f64::MAX }
+    }
+
+    /// A number in a range.
+    pub const fn number_in(least: f64, most: f64) -> Kind {
+        Kind::Number { least, most }
+    }
+
+    /// Whether a text is such a value.
+    pub fn allows(&self, text: &str) -> bool {
+        let text = text.trim();
+        match self {
+            Kind::Flag => flag(text).is_some(),
+            Kind::Whole { least, most } => {
+                i64::from_str(text).is_ok_and(|number| (*least..=*most).contains(&number))
+            }
+            Kind::Number { least, most } => {
+                f64::from_str(text).is_ok_and(|number| (*least..=*most).contains(&number))
+            }
+            Kind::Duration { least } => duration(text).is_some_and(|length| length >= *least),
+            Kind::Word(words) => words.contains(&text),
+            Kind::Name => {
+                !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+            }
+            Kind::File => !text.is_empty(),
+            Kind::List | Kind::Text => true,
+        }
+    }
+
+    /// What is expected, as a person reads it.
+    pub fn expected(&self) -> String {
+        match self {
+            Kind::Flag => format!("one of {}", listed(&FLAGS.map(|(word, _)| word))),
+            Kind::Whole { least, most } => match (*least, *most) {
+                (least, most) if least <= i32::MIN.into() && most >= i32::MAX.into() => {
+                    "a whole number".into()
+                }
+                (least, most) if most >= u32::MAX.into() => format!("a whole number from {least}"),
+                (least, most) => format!("a whole number from {least} to {most}"),
+            },
+            Kind::Number { least, most: f64::MAX } => format!("a number of at least {least}"),
+            Kind::Number { least, most } => format!("a number from {least} to {most}"),
+            Kind::Duration { least: Duration::ZERO } => "a time such as `300s` or `100ms`".into(),
+            Kind::Duration { least } => format!("a time of at least `{least:?}`, such as `200ms`"),
+            Kind::Word(words) => format!("one of {}", listed(words)),
+            Kind::Name => "a name of letters, digits, `_` and `-`".into(),
+            Kind::File => "the path of a file".into(),
+            Kind::List => "words with blanks between them".into(),
+            Kind::Text => "a text".into(),
+        }
+    }
+
+    /// The word that was meant, where there are words.
+    pub(super) fn nearest(&self, text: &str) -> Option<String> {
+        let Kind::Word(words) = self else { return None };
+        let near = yase::diagnostic::nearest(text, words.iter().copied());
+        near.map(|word| format!("did you mean `{word}`?"))
+    }
+}
+
+const FLAGS: [(&str, bool); 4] = [("1", true), ("0", false), ("true", true), ("false", false)];
+
+/// Reads yes or no: `1`, `0`, `true` or `false`.
+pub(in super::super) fn flag(text: &str) -> Option<bool> {
+    FLAGS.iter().find(|(word, _)| *word == text).map(|(_, value)| *value)
+}
+
+/// Reads a length of time: a number and `ns`, `us`, `ms`, `s` or `min`.
+pub(in super::super) fn duration(text: &str) -> Option<Duration> {
+    let unit_start = text.find(|c: char| c.is_alphabetic())?;
+    let seconds = match &text[unit_start..] {
+        "ns" => 1e-9,
+        "us" => 1e-6,
+        "ms" => 1e-3,
+        "s" => 1.0,
+        "min" => 60.0,
+        _ => return None,
+    };
+    let number = f64::from_str(text[..unit_start].trim()).ok()?;
+    Duration::try_from_secs_f64(number * seconds).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_allowed_or_not() {
+        let tick = Kind::Duration { least: Duration::from_millis(1) };
+        for (kind, right, wrong) in [
+            (Kind::Flag, &["1", "0", "true", "false", " 1 "][..], &["yes", "2", ""][..]),
+            (Kind::whole_in(1, 7), &["1", "7"], &["0", "8", "1.5", "one", ""]),
+            (Kind::number_in(0.5, 2.0), &["0.5", "2", "1e0"], &["0.4", "NaN", "inf", "x"]),
+            (tick, &["1ms", "2s", "1.5min"], &["1", "999us", "-1s", "ms"]),
+            (Kind::Word(vec!["left", "right"]), &["left"], &["up", "Left"]),
+            (Kind::Name, &["robot_2", "a-b"], &["", "a b", "a/b"]),
+            (Kind::File, &["a.xml"], &["", " "]),
+            (Kind::Text, &["", "anything"], &[]),
+        ] {
+            assert!(right.iter().all(|text| kind.allows(text)), "{kind:?}");
+            assert!(!wrong.iter().any(|text| kind.allows(text)), "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_expected_is_said() {
+        assert_eq!(Kind::whole().expected(), "a whole number");
+        assert_eq!(Kind::whole_from(1).expected(), "a whole number from 1");
+        assert_eq!(Kind::whole_in(1, 7).expected(), "a whole number from 1 to 7");
+        assert_eq!(Kind::number_from(2.0).expected(), "a number of at least 2");
+        assert_eq!(Kind::Word(vec!["a", "b"]).nearest("a"), Some("did you mean `a`?".into()));
+    }
+}
