@@ -48,14 +48,21 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
         command.args(arguments).current_dir(folder).env("CARGO_TARGET_DIR", &target);
         command
     };
-    let manifest = root.join("Cargo.toml").display().to_string();
-    let monas =
-        ["run", "--quiet", "--manifest-path", &manifest, "--package", "monas-cli", "--bin", "monas", "--"];
-    done(&mut cargo(&folder, &[&monas[..], &["new", "my-team"]].concat()))?;
+    // as the tests have built it, so that nothing is built twice for another choice of features
+    done(
+        cargo(root, &["test", "--quiet", "--workspace", "--no-run"]).stderr(std::process::Stdio::inherit()),
+    )?;
+    let program = target.join("debug").join(format!("monas{}", std::env::consts::EXE_SUFFIX));
+    let monas = |folder: &Path, arguments: &[&str]| {
+        let mut command = Command::new(&program);
+        command.args(arguments).current_dir(folder).env("CARGO_TARGET_DIR", &target);
+        command
+    };
+    done(&mut monas(&folder, &["new", "my-team"]))?;
     done(&mut cargo(&team, &["test", "--offline", "--workspace"]))?;
     let said = done(&mut cargo(&team, &["run", "--offline", "--quiet", "--", "run", "--for", "2s"]))?;
     expect(&said, "hello for the 1. time")?;
-    done(&mut cargo(&team, &[&monas[..], &["new", "activity", "Juggle"]].concat()))?;
+    done(&mut monas(&team, &["new", "activity", "Juggle"]))?;
     for (file, text) in DROPPED {
         fs::write(team.join(file), text)?;
     }
