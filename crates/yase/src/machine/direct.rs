@@ -164,10 +164,10 @@ impl<H: Host> ShortStep<'_, H> {
         true
     }
 
-    /// Offers an event. Most lead to one transition, which happens without a list.
+    /// Offers an event. Most lead to one transition, which happens without a list. Which failures of guards have been told in the micro-step
+    /// before need not be forgotten: each of them raised an event, with which the long way has begun one more since.
     #[inline(never)]
     fn offer<const TRACED: bool>(&mut self, event: EventId) {
-        self.run.forget_failures_told();
         let mut search = Search::new(self.run.active.first_word(), self.direct);
         let first = self.next_way::<TRACED>(&mut search, event);
         if TRACED {

@@ -134,7 +134,7 @@ impl<H: Host> Step<'_, H> {
         // in phases another may have left it before, or entered it again with something inside
         let is_empty = |place: Place| {
             let first = self.chart.layout.first(place).index();
-            self.run.is_active(place) && self.run.active.next(first, place.index()) == Some(place.index())
+            self.run.active.next(first, place.index()) == Some(place.index())
         };
         if let Some(place) = compound.vacates.filter(|&place| is_empty(place)) {
             self.run.vacate(self.chart, place, compound.arrives.is_some());

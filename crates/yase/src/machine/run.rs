@@ -268,12 +268,6 @@ impl Run {
         self.drawn.clear();
     }
 
-    /// A micro-step of the short way begins, of which nothing else is noted.
-    #[inline(always)]
-    pub(super) fn forget_failures_told(&mut self) {
-        self.told.clear();
-    }
-
     /// A guard has had no value: says whether that is to be told.
     pub(super) fn note_failure(&mut self, chart: &Chart, guard: usize) -> bool {
         let is_new = !self.erred.iter().any(|erred| erred.guard == guard);

@@ -179,3 +179,36 @@ fn r10_a_region_that_another_member_of_the_step_has_left_does_not_fire() {
         ",
     );
 }
+
+#[test]
+fn r01_an_entry_point_with_two_ways_into_one_region_is_no_fork() {
+    check_with(
+        Semantics::yase(),
+        "
+        START
+        A
+        & both
+          i in
+          one
+            START
+            B
+            C
+          two
+            START
+            D
+        c/START -> A
+        one/START -> B
+        two/START -> D
+        A -> in : e
+        in -> C
+        in -> B
+        ",
+        "1 e; 2",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> A; exit START; enter A
+        0.001 s e: A -> both/in -> both/one/C; exit A; enter both, both/one, both/one/C, both/two, both/two/START
+        0.001 s -: both/two/START -> both/two/D; exit both/two/START; enter both/two/D
+        ",
+    );
+}

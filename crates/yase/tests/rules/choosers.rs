@@ -342,3 +342,27 @@ fn r22_if_nothing_drawn_is_open_nothing_happens() {
     let found = reached(text, "1 A=0; 2 e; 3", Semantics::yase(), &[&[1]]);
     assert_eq!(found, [("A".to_owned(), vec![(1, 2)])]);
 }
+
+#[test]
+fn r22_what_was_drawn_in_vain_is_not_drawn_for_the_next_with_a_weight() {
+    let text = "
+        START
+        A
+        ? c
+        B
+        C
+        D
+        c/START -> A
+        A -> c : e
+        c -> B {w0.5} : [A.n == 1]
+        c -> C {w0.5} : [A.n == 2]
+        c -> D
+    ";
+    let chart = chart(text);
+    let mut machine = Machine::new(script::compile(&chart));
+    machine.set_chooser(Chooser::scripted(vec![1]));
+    let mut world = World { reads: true, ..World::new(&chart) };
+    script::run(&mut machine, &script::Script::parse("1 A=0; 2 e; 3"), &mut world);
+    let expected = "0.002 s e: A -> c -> D; exit A; enter D; read c -> C = false, c -> B = false";
+    crate::compare(&world.log[2..], expected);
+}

@@ -7,7 +7,7 @@ use crate::kit::{chart, script};
 use crate::{check, check_with, compare};
 
 /// Plays a script and gives every line, with those of the blackboards, of a chart whose text begins at margin zero.
-fn verbose(text: &str, script: &str, semantics: Semantics) -> Vec<String> {
+pub(crate) fn verbose(text: &str, script: &str, semantics: Semantics) -> Vec<String> {
     let chart = chart(text);
     let mut machine = yase::Machine::new(script::compile_with(&chart, semantics));
     let mut world = World { verbose: true, ..World::new(&chart) };

@@ -5,6 +5,7 @@
 #[path = "../kit/mod.rs"]
 mod kit;
 
+mod arrivals;
 mod borders;
 mod choosers;
 mod completion;

@@ -2,6 +2,7 @@
 
 use yase::{Firing, Semantics, StartRest};
 
+use crate::data::verbose;
 use crate::{check_with, refusal, with};
 
 #[test]
@@ -223,4 +224,31 @@ fn r13_behind_a_history_that_stops_the_chart_no_start_is_left() {
         0.001 s e: A -> P/h; exit A; then P/h -> P/stop; do raise(s) (P/h -> P/stop); enter P
         ",
     );
+}
+
+#[test]
+fn r13_a_way_that_only_stops_works_on_the_blackboard_around_where_it_stops() {
+    let written = |inside: &str, around: &str| {
+        let text = format!(
+            "START
+& both
+  one
+    START
+    A
+    {inside}
+  two
+    START
+    B
+{around}
+c/START -> both
+one/START -> A
+two/START -> B
+A -> k : e / B.n = 1
+k -> stop"
+        );
+        let log = verbose(&text, "1 e; 2", Semantics::yase());
+        log.into_iter().filter(|line| line.contains(" on ")).collect::<String>()
+    };
+    assert_eq!(written("! k", "x stop"), "  B on 0 = 1");
+    assert_eq!(written("x stop", "! k"), "  B on 1 = 1");
 }

@@ -352,3 +352,51 @@ fn r21_timers_of_the_chart_survive_their_state() {
         ",
     );
 }
+
+#[test]
+fn r21_a_timer_of_a_way_behind_a_choice_belongs_to_where_that_leads() {
+    let mut semantics = Semantics::yase();
+    semantics.timers = TimerScope::State;
+    let chart = "
+        START
+        A
+        ! k
+        P
+          START
+          B
+          H h
+        D
+        X
+        c/START -> A
+        P/START -> B
+        A -> k : e / StartTimeout(v, 5ms)
+        k -> h : [A.n == 1]
+        k -> D
+        D -> X : f
+        P -> X : f
+        X -> X {internal} : v
+        ";
+    check_with(
+        semantics,
+        chart,
+        "1 e; 2 f; 20",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> A; exit START; enter A
+        0.001 s e: A -> k; exit A; then k -> D; do StartTimeout(v, 5ms) (A -> k); enter D
+        0.002 s f: D -> X; exit D; enter X
+        ",
+    );
+    check_with(
+        semantics,
+        chart,
+        "1 A=1; 2 e; 3 f; 20",
+        "
+        0.000 s start; enter c, START
+        0.000 s -: START -> A; exit START; enter A
+        0.002 s e: A -> k; exit A; then k -> P/h; do StartTimeout(v, 5ms) (A -> k); enter P, P/START
+        0.002 s -: P/START -> P/B; exit P/START; enter P/B
+        0.003 s f: P -> X; exit P/B, P; enter X
+        ",
+    );
+}
