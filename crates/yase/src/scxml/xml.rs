@@ -9,7 +9,7 @@ pub(super) const NAMESPACE: &str = "http://www.w3.org/2005/07/scxml";
 
 /// Whether an element is one of SCXML; a document without any namespace is taken for one.
 pub(super) fn is_scxml(node: Node<'_, '_>) -> bool {
-    matches!(node.tag_name().namespace(), None | Some(NAMESPACE))
+    matches!(node.tag_name().namespace(), None | Some("" | NAMESPACE))
 }
 
 /// Where the name of an element stands.
@@ -31,19 +31,20 @@ pub(super) fn text_of(node: Node<'_, '_>) -> String {
     node.children().filter(|child| child.is_text()).filter_map(|child| child.text()).collect()
 }
 
-/// An element with all that is in it, as text that needs no surroundings.
+/// An element with all that is in it, as text that means the same in any surroundings: so it says its namespace, be it none.
 pub(super) fn markup(node: Node<'_, '_>) -> String {
     let mut text = String::new();
     write_element(node, None, &mut text);
     text
 }
 
-fn write_element(node: Node<'_, '_>, outer: Option<&str>, text: &mut String) {
-    let (name, namespace) = (node.tag_name().name(), node.tag_name().namespace());
+/// Writes an element whose surroundings are of a namespace, the empty one if they have none; or anywhere.
+fn write_element(node: Node<'_, '_>, surroundings: Option<&str>, text: &mut String) {
+    let (name, namespace) = (node.tag_name().name(), node.tag_name().namespace().unwrap_or_default());
     text.push('<');
     text.push_str(name);
-    if namespace != outer {
-        attribute(text, "xmlns", namespace.unwrap_or_default());
+    if surroundings != Some(namespace) {
+        attribute(text, "xmlns", namespace);
     }
     for (index, given) in node.attributes().enumerate() {
         match given.namespace() {
@@ -65,7 +66,7 @@ fn write_element(node: Node<'_, '_>, outer: Option<&str>, text: &mut String) {
     for child in node.children() {
         match child.text().filter(|_| child.is_text()) {
             Some(part) => escape(part, false, text),
-            None if child.is_element() => write_element(child, namespace, text),
+            None if child.is_element() => write_element(child, Some(namespace), text),
             None => {}
         }
     }

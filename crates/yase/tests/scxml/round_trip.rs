@@ -217,3 +217,11 @@ fn texts_keep_their_odd_characters() {
     let text = write(&chart).unwrap();
     assert_eq!(read_back(&text).statechart(), &chart, "{text}");
 }
+
+#[test]
+fn what_a_document_without_namespaces_holds_is_written_once_and_for_all() {
+    let text = "<scxml version='1.0'><state id='a'><invoke type='scxml'><content><scxml version='1.0'><final/></scxml></content></invoke></state></scxml>";
+    let written = read_back(text).write().unwrap();
+    assert!(written.contains("<scxml xmlns=\"\" version=\"1.0\"><final/></scxml>"), "{written}");
+    assert_eq!(read_back(&written).write().unwrap(), written);
+}

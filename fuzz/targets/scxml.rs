@@ -1,0 +1,42 @@
+//! SCXML documents: findings fit, what is written reads back and is written alike, and a session of whatever could be read comes to its end or
+//! says why not.
+#![no_main]
+
+use std::time::Duration;
+
+use libfuzzer_sys::fuzz_target;
+use monas_fuzz::assert_findings_fit;
+use yase::scxml::{self, Event, NoPlatform, Session};
+use yase::{Moment, Source};
+
+fuzz_target!(|text: &str| {
+    let (document, findings) = scxml::read(&Source::new("document", text));
+    assert_findings_fit(text, &findings);
+    let Some(document) = document else { return assert!(!findings.is_empty()) };
+    if let Ok(written) = document.write() {
+        let (again, findings) = scxml::read(&Source::new("again", written.as_str()));
+        let again = again.unwrap_or_else(|| panic!("{findings:?}\n{written}"));
+        assert_eq!(again.write().as_deref(), Ok(written.as_str()));
+    }
+    match Session::new(&document, NoPlatform) {
+        Ok(session) => play(session, text),
+        Err(findings) => assert!(!findings.is_empty()),
+    }
+});
+
+/// Some events, and time: a session that cannot go on says so.
+fn play(mut session: Session<NoPlatform>, text: &str) {
+    if session.start(Moment::ZERO).is_err() {
+        return;
+    }
+    for (round, name) in (1..).zip(["e", "ball.near", "whistle", "stop", "error.execution"]) {
+        let moment = Moment::ZERO + Duration::from_secs(round);
+        let next = session.next_deadline().map_or(moment, |deadline| deadline.min(moment));
+        if session.send(Event::new(name)).is_err() || session.advance_to(next).is_err() {
+            return;
+        }
+        for state in session.configuration() {
+            assert!(session.is_active(state), "{state} in {text}");
+        }
+    }
+}
