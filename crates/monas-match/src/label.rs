@@ -55,6 +55,9 @@ fn label(tape: &Tape, files: &Provenance, robots: &[String], more: &[(&str, Stri
 }
 
 /// Writes on a tape when its run ended.
-pub(crate) fn ended(tape: &Tape, now: Moment) -> Result<(), Error> {
+///
+/// # Errors
+/// The tape cannot be written.
+pub fn ended(tape: &Tape, now: Moment) -> Result<(), Error> {
     tape.describe(END, &BTreeMap::from([("nanoseconds".to_owned(), now.as_nanos().to_string())]))
 }

@@ -4,6 +4,7 @@
 //! in simulated time, on a pool in real time), and brings back what they returned.
 
 mod desk;
+mod fetching;
 mod following;
 mod lending;
 mod post;
@@ -23,11 +24,14 @@ use crate::coverage::ChartCoverage;
 use crate::error::Error;
 use crate::listener::Listeners;
 use crate::origin::{self, Origin};
+use crate::records;
 use crate::statistics::ActivityStatistics;
 use crate::talws::component_seed;
 
 use desk::Desk;
 pub(crate) use desk::transition_name;
+use fetching::Fetching;
+pub(crate) use fetching::Lead;
 pub(crate) use post::{Assignment, Posts, Returned};
 
 /// How long the first pause is of an activity that is restarted; each further one in a row is twice as long, up to 64 times.
@@ -159,7 +163,7 @@ impl Runner {
             if let Err(failure) = call::stop(activity, blackboard) {
                 tracing::error!(agent = %self.desk.agent, "activity failed to stop: {failure}");
             }
-            blackboard.publish_all(now);
+            self.desk.lending.publish_all(activation.region, now);
         }
     }
 
@@ -179,9 +183,7 @@ impl Runner {
             let activation = self.posts.due(now)?;
             if self.machine.activity_resumed(activation) {
                 self.desk.now = now;
-                let blackboard = self.desk.lending.free_mut(activation.region, now)?;
-                blackboard.cancellation().withdraw();
-                blackboard.process_messages(now);
+                self.desk.lending.refresh(activation.region, now)?;
                 return self.assign(activation);
             }
         }
@@ -216,11 +218,11 @@ impl Runner {
         let (activation, blackboard) = self.posts.take_back(assignment, took);
         let current = is_current(&self.machine, &self.posts, activation);
         let here = self.desk.lending.take_back(activation, blackboard, current);
-        match here.filter(|_| current) {
-            Some(blackboard) => {
+        match here.filter(|_| current).map(|blackboard| blackboard.take_events()) {
+            Some(events) => {
                 let origin = Origin { runner: self.number, activation };
-                origin::publish_as(origin, || blackboard.publish_all(now));
-                for event in blackboard.take_events() {
+                origin::publish_as(origin, || self.desk.lending.publish_all(activation.region, now));
+                for event in events {
                     self.machine.dispatch_name(&event);
                 }
                 self.conclude(activation, returned, restart, now)
@@ -271,6 +273,49 @@ impl Runner {
         }
     }
 
+    /// Notes from now on at which points of the hub's history messages are fetched.
+    pub(crate) fn note_fetches(&mut self) {
+        self.desk.lending.fetching = Fetching::Noted(Vec::new());
+    }
+
+    /// What was noted since the last [`forget_fetches`](Runner::forget_fetches): how many publications the hub had taken at each fetch.
+    pub(crate) fn fetches(&self) -> &[u64] {
+        self.desk.lending.fetching.noted()
+    }
+
+    /// Begins a new turn of notes.
+    pub(crate) fn forget_fetches(&mut self) {
+        self.desk.lending.fetching.forget();
+    }
+
+    /// Is led from now on through what was recorded.
+    pub(crate) fn be_led(&mut self, lead: Box<dyn Lead>) {
+        self.desk.lending.fetching = Fetching::Led(lead);
+    }
+
+    /// What says that an activity of this chart publishes; none if the state has no activity.
+    pub(crate) fn origin(&self, node: u32, number: u64) -> Option<Origin> {
+        let entry = self.machine.chart().activity(yase::NodeId(node))?;
+        let activation = Activation { node: entry.node, region: entry.region, number };
+        Some(Origin { runner: self.number, activation })
+    }
+
+    /// The activity by which the chart is told of a message, as records name it: none if it is not one of this chart.
+    pub(crate) fn call_of(&self, origin: Option<Origin>) -> Option<records::Call> {
+        let Origin { activation, .. } = origin.filter(|origin| origin.runner == self.number)?;
+        Some(call_record(activation))
+    }
+
+    /// The hub on which its agent publishes.
+    pub(crate) fn hub(&self) -> &Narukom {
+        &self.hub
+    }
+
+    /// The chart's place among the charts of the agent.
+    pub(crate) fn place(&self) -> u32 {
+        self.desk.number
+    }
+
     /// An activation that was asked to return since the last step began.
     pub(crate) fn next_cancelled(&mut self) -> Option<Activation> {
         self.desk.cancelled.pop()
@@ -319,7 +364,7 @@ impl Runner {
     }
 
     /// What each blackboard received at the beginning of the last step.
-    pub(crate) fn delivered(&self) -> &[crate::records::Delivery] {
+    pub(crate) fn delivered(&self) -> &[records::Delivery] {
         &self.desk.delivered
     }
 
@@ -335,6 +380,11 @@ impl Runner {
     pub(crate) fn max_activities(&self) -> usize {
         self.machine.chart().max_activities()
     }
+}
+
+/// An activity as records name it.
+pub(crate) fn call_record(activation: Activation) -> records::Call {
+    records::Call { node: activation.node.0, number: activation.number }
 }
 
 /// Whether an activation is still that of its state, so that its return matters.

@@ -103,7 +103,7 @@ pub use run_hash::RunHash;
 pub use statistics::{ActivityStatistics, AgentStatistics, Average, Statistics};
 pub use talws::{HostConfig, Overview, Running, Simulation, Stopper, Talws, World};
 
-/// Running agents again on what was recorded: [`Talws::replay`].
+/// Running agents again on what was recorded: [`Talws::replay`], and [`Talws::replay_real_time`].
 pub mod replay {
     pub use crate::talws::{Company, Difference, Input, Recorded, RecordedMessage, Replay, Tally};
 }

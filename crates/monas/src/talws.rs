@@ -20,6 +20,7 @@ mod simulated_chart;
 mod simulation;
 mod stopper;
 mod teller;
+mod turn;
 
 use monas_robot::Robot;
 use narukom::{Blackboard, Moment, Observer};
@@ -43,6 +44,9 @@ pub use replay::{Company, Difference, Input, Recorded, RecordedMessage, Replay, 
 pub(crate) use seeds::component_seed;
 pub use simulation::Simulation;
 pub use stopper::Stopper;
+
+/// The seed of a run in real time, where chance comes in anyway: one is as good as any.
+const REAL_TIME_SEED: u64 = 0;
 
 /// Why an agent stops when nothing is wrong.
 const ENDED: &str = "the run has ended";
@@ -238,8 +242,7 @@ impl Talws {
     /// # Errors
     /// As in [`simulate`](Talws::simulate), and when the system gives no thread.
     pub fn start(self) -> Result<Running, Error> {
-        // Nobody can repeat a run in real time, so one seed is as good as any.
-        Running::start(self, 0)
+        Running::start(self, REAL_TIME_SEED)
     }
 
     /// Runs in real time until somebody [stops](Stopper::stop) it.

@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
 
 mod kit;
+#[path = "real_time/replayed.rs"]
+mod replayed;
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Barrier, Mutex};

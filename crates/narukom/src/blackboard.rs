@@ -117,6 +117,16 @@ impl Blackboard {
         }
     }
 
+    /// How many publications of the hub, of whatever topic, had happened when messages were last delivered here, or when it was made.
+    pub fn position(&self) -> u64 {
+        self.window.since.max(self.window.delivered)
+    }
+
+    /// Whether something was written that [`publish_all`](Blackboard::publish_all) has yet to publish.
+    pub fn has_unpublished(&self) -> bool {
+        !self.outbox.is_empty()
+    }
+
     /// The moment at which the cycle began.
     pub fn now(&self) -> Moment {
         self.now

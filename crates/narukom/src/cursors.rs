@@ -40,6 +40,11 @@ impl Cursors {
         hub.head() == self.seen
     }
 
+    /// The number of the last publication that was looked at.
+    pub(crate) fn seen(&self) -> u64 {
+        self.seen
+    }
+
     pub(crate) fn lost(&self) -> u64 {
         self.lost
     }

@@ -209,6 +209,11 @@ impl Narukom {
         self.shared.is_observed.store(true, Ordering::Release);
     }
 
+    /// Whether anybody observes it.
+    pub fn is_observed(&self) -> bool {
+        self.shared.is_observed.load(Ordering::Acquire)
+    }
+
     /// Lets `waker` know of publications from now on, in place of the one before.
     pub fn set_waker(&self, waker: Arc<dyn Waker>) {
         self.exchange().waker = Some(waker);
@@ -268,7 +273,7 @@ impl Narukom {
         if outgoing.is_empty() {
             return;
         }
-        let observers = self.shared.is_observed.load(Ordering::Acquire).then(|| self.observers());
+        let observers = self.is_observed().then(|| self.observers());
         let mut exchange = self.exchange();
         outgoing.iter_mut().for_each(|message| enter(&mut exchange, message, observers.is_some()));
         let waker = exchange.waker.clone();

@@ -49,6 +49,11 @@ impl Subscriber {
         self.cursors.lost()
     }
 
+    /// How many publications of the hub, of whatever topic, had happened when it last looked for messages.
+    pub fn position(&self) -> u64 {
+        self.cursors.seen()
+    }
+
     /// The topics that it reads.
     pub fn topics(&self) -> impl Iterator<Item = TopicSlot> {
         self.cursors.topics()

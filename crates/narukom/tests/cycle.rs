@@ -34,6 +34,23 @@ fn messages_of_others_come_when_they_are_published_and_delivered() {
 }
 
 #[test]
+fn readers_say_up_to_which_publication_they_have_looked() {
+    let hub = hub();
+    let (mut writer, mut reader) = (hub.blackboard("writer"), hub.blackboard("reader"));
+    let mut subscriber = hub.subscriber("**").unwrap();
+    writer.publish(STATE, Mark::new(1)).unwrap();
+    assert!(writer.has_unpublished());
+    writer.publish(STATE, Mark::new(2)).unwrap();
+    writer.publish_all(at(1));
+    assert!(!writer.has_unpublished());
+    assert_eq!((reader.position(), subscriber.position()), (0, 0), "they have not looked yet");
+    reader.process_messages(at(2));
+    while subscriber.next_sample().is_some() {}
+    assert_eq!((reader.position(), subscriber.position()), (2, 2));
+    assert_eq!(hub.blackboard("late").position(), 2, "signals from before are not for it");
+}
+
+#[test]
 fn a_first_read_finds_what_the_last_delivery_would_have_brought() {
     let hub = hub();
     let (mut giver, mut taker) = (hub.blackboard("giver"), hub.blackboard("taker"));

@@ -42,7 +42,11 @@ pub(super) fn execute(
     writeln!(console.err, "running, Ctrl-C stops")?;
     WallClock::start().wait_until(arguments.length.unwrap_or(Duration::MAX), &interrupt);
     drop(control);
+    let overview = running.overview();
     let Statistics { agents, links } = running.stop();
+    tape.iter()
+        .try_for_each(|tape| monas_match::ended(tape, overview.now()))
+        .map_err(|error| Failure::failed(format, error))?;
     let recorded = tape.map(|tape| Ok((tape.finish()?, tape.dropped()))).transpose();
     let recorded = recorded.map_err(|error: monas_tape::Error| Failure::failed(format, error))?;
     write(console.out, format, &agents, recorded)?;

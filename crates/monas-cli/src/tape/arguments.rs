@@ -112,7 +112,7 @@ pub(crate) struct CutArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct ReplayArguments {
-    /// The tape; its run was in simulated time.
+    /// The tape, with all topics of a run from its beginning, in simulated or in real time.
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) file: PathBuf,
     /// The agents to run: a name, on all hosts that have it (`goalie`), on one (`blue-1/goalie`), or all of a host (`blue-1`). All agents

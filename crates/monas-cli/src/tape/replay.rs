@@ -89,7 +89,7 @@ fn play(
     if let Some(end) = end.filter(|_| !has_ended) {
         replay.end(end, &mut told);
     }
-    let tallies = replay.finish(end.is_some(), &mut told);
+    let tallies = replay.finish(end.is_some(), &mut told).map_err(|error| Failure::failed(format, error))?;
     let length = end.or(overview.span.map(|(_, last)| last)).unwrap_or_default().since(Moment::ZERO);
     Ok(Outcome { first, tallies, length, took: clock.elapsed() })
 }

@@ -149,14 +149,41 @@ fn what_cannot_be_replayed_says_why() {
     let answer = monas(&["tape", "replay", &text(&part)]);
     assert_eq!(answer.code, Some(1));
     assert!(answer.err.contains("does not begin with its run"), "{}", answer.err);
+}
 
-    let (_folder, live) = fresh("live.mcap");
-    done(&["run", "config/roles/goalie.xml", "--for", "200ms", "--record", &text(&live)]);
-    let info = done(&["tape", "info", &text(&live)]);
+/// A run in real time for a moment.
+fn live(folder: &Path) -> String {
+    let live = text(&folder.join("live.mcap"));
+    done(&["run", "config/roles/goalie.xml", "--for", "300ms", "--record", &live]);
+    live
+}
+
+#[test]
+fn what_was_recorded_in_real_time_is_replayed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let live = live(folder.path());
+    let info = done(&["tape", "info", &live]);
     assert!(info.out.contains("time                real") && info.out.contains("dropped  0"), "{}", info.out);
-    let answer = monas(&["tape", "replay", &text(&live)]);
-    assert_eq!(answer.code, Some(1));
-    assert!(answer.err.contains("real time"), "{}", answer.err);
+    let replayed = objects(&done(&["tape", "replay", &live, "--verify", "--format", "json"]).out);
+    let last = replayed.last().expect("a summary");
+    assert_eq!(last["differences"], 0, "{replayed:?}");
+    assert!(last["compared"].as_u64().is_some_and(|compared| compared > 20), "{last}");
+
+    let (changed, _) = changed("models/goalie.srm", "motion_timeout, 100ms", "motion_timeout, 20ms");
+    let config = text(&changed.path().join("config/roles/goalie.xml"));
+    let answer = monas(&["tape", "replay", &live, "--verify", "--config", &config]);
+    assert_eq!(answer.code, Some(5), "{answer:?}");
+    assert!(answer.out.contains("first difference: local/Goalie, cycle "), "{}", answer.out);
+}
+
+#[test]
+fn a_part_of_what_was_recorded_in_real_time_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (live, part) = (live(folder.path()), text(&folder.path().join("part.mcap")));
+    done(&["tape", "cut", &live, "--topic", "monas/**", "-o", &part]);
+    let answer = monas(&["tape", "replay", &part]);
+    assert_eq!(answer.code, Some(1), "{answer:?}");
+    assert!(answer.err.contains("the recording lacks messages of `local`"), "{}", answer.err);
 }
 
 #[test]

@@ -25,7 +25,7 @@ use crate::records::{self, CHART, Delivery, MODEL};
 pub(super) struct Desk {
     pub(super) host: String,
     pub(super) agent: String,
-    number: u32,
+    pub(super) number: u32,
     pub(super) now: Moment,
     pub(super) lending: Lending,
     pub(super) urgency: Urgency,
@@ -146,10 +146,7 @@ impl Host for Desk {
     }
 
     fn publish_all(&mut self, region: RegionId) {
-        let now = self.now;
-        if let Some(blackboard) = self.lending.free_mut(region, now) {
-            blackboard.publish_all(now);
-        }
+        self.lending.publish_all(region, self.now);
     }
 
     fn start(&mut self, activation: Activation) {
@@ -176,6 +173,7 @@ impl Host for Desk {
     fn trace(&mut self, chart: &Chart, record: &TraceRecord<'_>) {
         self.coverage.count(chart, record);
         self.urgency.note(chart, record);
+        self.lending.fetching.publishing();
         self.records.publish(self.record(chart, record), self.now);
         self.listeners.tell(&self.host, &self.agent, chart, record);
     }

@@ -10,6 +10,7 @@ use narukom::{AnySample, HostId, Kind, Moment, Narukom, PublisherId, Subscriber,
 use yase::Chart;
 use yase::expression::{MessageSource, Origin};
 
+use super::fetching::Fetching;
 use crate::error::Error;
 use crate::records::Delivery;
 
@@ -46,8 +47,12 @@ impl Following {
     }
 
     /// Takes what was published since the last time.
-    pub(super) fn deliver(&mut self, hub: &Narukom) {
-        self.feeds.iter_mut().for_each(|feed| feed.deliver(hub));
+    pub(super) fn deliver(&mut self, hub: &Narukom, fetching: &mut Fetching) {
+        for feed in &mut self.feeds {
+            fetching.begin();
+            feed.deliver(hub);
+            fetching.end(feed.subscriber.position());
+        }
     }
 
     /// What the last delivery brought, for the records.

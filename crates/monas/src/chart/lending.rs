@@ -13,6 +13,7 @@ use yase::expression::MessageSource;
 use yase::{Activation, Chart, RegionId};
 
 use super::Home;
+use super::fetching::Fetching;
 use super::following::Following;
 use crate::error::Error;
 use crate::records::Delivery;
@@ -26,6 +27,7 @@ pub(super) struct Lending {
     /// The topics that guards read, in order.
     read: Box<[TopicSlot]>,
     regions: Vec<Region>,
+    pub(super) fetching: Fetching,
 }
 
 struct Region {
@@ -61,8 +63,14 @@ impl Lending {
             Ok(Region { path, made: 0, here: None, loan: None, shown, following })
         });
         let regions = regions.collect::<Result<_, Error>>()?;
-        let mut lending =
-            Lending { hub: home.hub.clone(), agent: home.agent.into(), seed: home.seed, read, regions };
+        let mut lending = Lending {
+            hub: home.hub.clone(),
+            agent: home.agent.into(),
+            seed: home.seed,
+            read,
+            regions,
+            fetching: Fetching::default(),
+        };
         (0..lending.regions.len()).for_each(|place| lending.furnish(place));
         Ok(lending)
     }
@@ -102,9 +110,19 @@ impl Lending {
             loan.cancellation.request();
         }
         self.regions[place].shown.fill(None);
+        // It is no reader of the signals from before its time, so that counts as a fetch too.
+        self.fetching.begin();
         self.furnish(place);
+        self.regions[place].here.iter().for_each(|blackboard| self.fetching.end(blackboard.position()));
+        self.fetch(place, now);
+    }
+
+    /// Delivers what arrived to a blackboard that is here.
+    fn fetch(&mut self, place: usize, now: Moment) {
         if let Some(blackboard) = &mut self.regions[place].here {
+            self.fetching.begin();
             blackboard.process_messages(now);
+            self.fetching.end(blackboard.position());
         }
     }
 
@@ -123,11 +141,26 @@ impl Lending {
     /// What arrived is delivered to a region's blackboard, which is given.
     pub(super) fn deliver(&mut self, region: RegionId, now: Moment) -> Option<&Blackboard> {
         self.free_mut(region, now)?;
-        let region = &mut self.regions[region.0 as usize];
-        region.following.deliver(&self.hub);
-        let blackboard = region.here.as_deref_mut()?;
-        blackboard.process_messages(now);
-        Some(blackboard)
+        let place = region.0 as usize;
+        self.regions[place].following.deliver(&self.hub, &mut self.fetching);
+        self.fetch(place, now);
+        self.regions[place].here.as_deref()
+    }
+
+    /// What arrived is delivered to a region's blackboard, for an activity that is called again.
+    pub(super) fn refresh(&mut self, region: RegionId, now: Moment) -> Option<()> {
+        self.free_mut(region, now)?.cancellation().withdraw();
+        self.fetch(region.0 as usize, now);
+        Some(())
+    }
+
+    /// Publishes what was written on a region's blackboard.
+    pub(super) fn publish_all(&mut self, region: RegionId, now: Moment) {
+        if self.free_mut(region, now).is_none_or(|blackboard| !blackboard.has_unpublished()) {
+            return;
+        }
+        self.fetching.publishing();
+        self.regions[region.0 as usize].here.iter_mut().for_each(|blackboard| blackboard.publish_all(now));
     }
 
     /// What the last delivery brought to a region of certain hosts and publishers.

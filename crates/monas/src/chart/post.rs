@@ -62,6 +62,11 @@ pub(crate) struct Assignment {
 pub(crate) type Returned = Result<Progress, Failure>;
 
 impl Assignment {
+    /// Asks the activity to return soon.
+    pub(crate) fn ask_to_return(&self) {
+        self.blackboard.cancellation().request();
+    }
+
     /// Calls the activity, where it is.
     pub(crate) fn call(&mut self) -> Returned {
         if !self.started {

@@ -10,10 +10,12 @@ use super::handover::{Mail, Mailbox};
 use super::pool::{Called, Pool};
 use super::real_time::Switch;
 use super::teller::{self, Teller};
+use super::turn::{Told, TurnNotes};
 use crate::agent::Policy;
 use crate::call::Failure;
 use crate::chart::{Assignment, Runner};
 use crate::frequency::Frequency;
+use crate::records::Turn;
 use crate::statistics::{AgentStatistics, Average};
 
 /// What the thread of a chart owns.
@@ -34,6 +36,7 @@ pub(super) struct ChartThread {
     pub(super) step_time: Average,
     /// How many activities are being called, or wait for it on the pool.
     pub(super) out: usize,
+    pub(super) notes: TurnNotes,
 }
 
 impl ChartThread {
@@ -42,7 +45,10 @@ impl ChartThread {
         for topic in self.runner.topics_of_guards() {
             self.mailbox.follow(topic);
         }
-        self.runner.start(self.clock.now());
+        let now = self.clock.now();
+        self.runner.note_fetches();
+        self.runner.start(now);
+        self.tell_turn(Turn::Start, now);
         let mut mail = Mail::<Called>::default();
         let mut stopped = None;
         while stopped.is_none() && !self.runner.is_over() {
@@ -60,6 +66,7 @@ impl ChartThread {
         self.runner.cancel_all();
         loop {
             let now = self.clock.now();
+            self.notes.begin_stop(&mut self.runner, &mail.returned);
             while let Some(called) = mail.returned.pop_front() {
                 let activity = self.runner.activity_name(called.assignment.activation);
                 if let Err(failure) = self.take_back(called, false, now) {
@@ -67,8 +74,10 @@ impl ChartThread {
                 }
             }
             if self.out == 0 {
-                return self.runner.stop(now);
+                self.runner.stop(now);
+                return self.tell_turn(Turn::Stop, now);
             }
+            self.tell_turn(Turn::Stop, now);
             self.wait(Moment::MAX, mail);
         }
     }
@@ -93,6 +102,19 @@ impl ChartThread {
             return Err(ENDED.into());
         }
         let now = self.clock.now();
+        self.notes.begin(&mut self.runner, mail);
+        let result = self.live(now, mail);
+        self.tell_turn(Turn::Round, now);
+        result
+    }
+
+    fn tell_turn(&mut self, turn: Turn, now: Moment) {
+        let due = self.runner.due(now).min(self.tick());
+        let first_tick = if turn == Turn::Start { self.ticks } else { 0 };
+        self.notes.tell(Told { turn, now, due, first_tick }, &self.runner, &mut self.teller);
+    }
+
+    fn live(&mut self, now: Moment, mail: &mut Mail<Called>) -> Result<(), String> {
         mail.messages
             .drain(..)
             .for_each(|(topic, host, origin)| self.runner.message_arrived(topic, host, origin, now));

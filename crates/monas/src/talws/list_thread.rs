@@ -51,7 +51,8 @@ impl ListThread {
 
     fn cycle(&mut self, now: Moment) -> Outcome {
         self.list.begin(now);
-        self.teller.tell(now, Delivery::all(self.list.blackboard(), 0).collect());
+        let blackboard = self.list.blackboard();
+        self.teller.tell_noted(now, Delivery::all(blackboard, 0).collect(), &[blackboard.position()]);
         self.list.cycle(now, Some(&self.clock))
     }
 

@@ -18,6 +18,7 @@ use super::overview::Overview;
 use super::pool::{self, Called, Pool};
 use super::setup::{Environment, Member, Stage, Station, first_tick, tick};
 use super::stopper::Stopper;
+use super::turn::TurnNotes;
 use super::{ENDED, Talws};
 use crate::error::{Error, ErrorKind};
 use crate::statistics::{AgentStatistics, Average, Statistics};
@@ -194,6 +195,7 @@ impl Running {
                 steps: 0,
                 step_time: Average::default(),
                 out: 0,
+                notes: TurnNotes::default(),
             };
             self.agents.push(spawn(&name, move || thread.run())?);
         }

@@ -1,17 +1,22 @@
 //! Runs agents again on what was recorded, and compares what they publish with what they published then.
+//!
+//! A recording of simulated time is followed message by message, see [`simulated`]. One of real time is followed turn by turn, see
+//! [`real_time`]: when threads ran was chance, but records of cycles tell of it.
 
 mod compare;
+mod feed;
+mod real_time;
+mod repeated;
 mod scene;
+mod simulated;
 
-use narukom::{AnyPublisher, Arrival, Moment, Receiver, TopicSlot};
+use narukom::Moment;
 
 use super::Talws;
-use super::setup::Stage;
 use crate::error::{Error, ErrorKind};
-use crate::records::{CHART, HOST, MODEL};
 
-use compare::Ledger;
-use scene::{Scene, Spy};
+use real_time::RealTime;
+use simulated::Simulated;
 
 /// A publisher of a host, as it was when the host was recorded.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -99,52 +104,41 @@ impl Tally {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Input(usize);
 
-/// Agents that run again, in simulated time, on what was recorded. What others published is published again, at the moments of
-/// then; what the agents publish is compared, byte by byte, with what they published then.
+/// Agents that run again on what was recorded. What others published is published again, at the moments of then; what the agents publish
+/// is compared, byte by byte, with what they published then.
 ///
-/// It follows the recording message by message, in the order of publication. In simulated time agents have turns: those of a moment
-/// in the order of their names, again and again until none has anything left to do. The messages of those that are not replayed say
-/// when it is the turn of those that are.
+/// In simulated time the agents make one run, in which they read each other's messages as they are now. In real time each agent repeats
+/// its own recorded turns, at the moments of then, and is given what was delivered to it in each: of the other agents, replayed or not,
+/// what was recorded.
 ///
-/// What comes from outside and is no message, an event that somebody raised by hand, is not in a recording and so not in a replay.
+/// What comes from outside and is no message, an event that somebody raised by hand, is not in a recording and so not in a replay. Nor is
+/// what an activity learns in other ways: from a clock, a device or another thread. That shows as a difference.
 pub struct Replay {
-    scenes: Vec<Scene>,
-    spy: Spy,
-    inputs: Vec<Route>,
-    ledger: Ledger,
+    course: Course,
 }
 
-/// What becomes of recorded messages.
-enum Route {
-    /// They are what an agent is compared with.
-    Compared { scene: usize, actor: usize, topic: Option<TopicSlot>, path: usize },
-    /// They are published again. Those of an agent are published when it is its turn.
-    Published { scene: usize, publisher: AnyPublisher, place: Option<usize>, sets_up: bool },
-    /// They came from another host, and come from it again.
-    Received { scene: usize, receiver: Receiver },
-    /// Nothing: their host is not replayed, or nobody here declares the topic.
-    Ignored,
+/// What is followed.
+enum Course {
+    Simulated(Simulated),
+    RealTime(RealTime),
 }
 
 impl Talws {
-    /// Prepares a replay of the agents of these hosts, which need no bodies. The seed is that of the recorded run; `company` are all
-    /// who published on the hosts.
+    /// Prepares a replay of the agents of these hosts, which need no bodies, on a recording of simulated time. The seed is that of the
+    /// recorded run; `company` are all who published on the hosts.
     ///
     /// # Errors
     /// As in [`simulate`](Talws::simulate).
-    pub fn replay(mut self, seed: u64, company: &[Company]) -> Result<Replay, Error> {
-        let spy = Spy::default();
-        self.observe(Box::new(spy.clone()));
-        self.company = company.to_vec();
-        let Stage { stations, .. } = Stage::new(self, seed)?;
-        let mut scenes: Vec<Scene> =
-            stations.into_iter().map(|station| Scene::new(station, company)).collect();
-        for produced in spy.take() {
-            let scene = scenes.iter_mut().find(|scene| scene.hub.host() == produced.host);
-            scene.into_iter().for_each(|scene| scene.was_set_up(&produced));
-        }
-        spy.mute(true);
-        Ok(Replay { scenes, spy, inputs: Vec::new(), ledger: Ledger::default() })
+    pub fn replay(self, seed: u64, company: &[Company]) -> Result<Replay, Error> {
+        Ok(Replay { course: Course::Simulated(Simulated::new(self, seed, company)?) })
+    }
+
+    /// As [`replay`](Talws::replay), on a recording of real time.
+    ///
+    /// # Errors
+    /// As there, and if the messages of several threads cannot be told apart: if an agent has charts and a list, or several charts.
+    pub fn replay_real_time(self, company: &[Company]) -> Result<Replay, Error> {
+        Ok(Replay { course: Course::RealTime(RealTime::new(self, company)?) })
     }
 }
 
@@ -154,103 +148,64 @@ impl Replay {
     /// # Errors
     /// A message of another host names the host that it came to, or there are too many hosts.
     pub fn input(&mut self, recorded: Recorded<'_>) -> Result<Input, Error> {
-        let route = self.route(recorded)?;
-        self.inputs.push(route);
-        Ok(Input(self.inputs.len() - 1))
-    }
-
-    fn route(&mut self, recorded: Recorded<'_>) -> Result<Route, Error> {
-        let Recorded { host, received_by, publisher, topic } = recorded;
-        let recorder = received_by.unwrap_or(host);
-        let Some(scene) = self.scenes.iter().position(|scene| scene.hub.host() == recorder) else {
-            return Ok(Route::Ignored);
+        let number = match &mut self.course {
+            Course::Simulated(course) => course.input(recorded),
+            Course::RealTime(course) => course.input(recorded),
         };
-        let hub = self.scenes[scene].hub.clone();
-        let slot = hub.topic(topic);
-        if received_by.is_some() {
-            let receiver = slot.map(|_| hub.receiver(host, publisher, topic)).transpose();
-            let receiver = receiver.map_err(Error::hub)?;
-            return Ok(receiver.map_or(Route::Ignored, |receiver| Route::Received { scene, receiver }));
-        }
-        if let Some(actor) = self.scenes[scene].actor(publisher) {
-            let path = self.ledger.line(host, publisher, topic);
-            return Ok(Route::Compared { scene, actor, topic: slot, path });
-        }
-        // The host has introduced itself here too.
-        if slot.is_none() || (topic == HOST.path() && publisher == "monas") {
-            return Ok(Route::Ignored);
-        }
-        let place = self.scenes[scene].place(publisher);
-        let publisher = hub.publisher_by_name(topic, publisher).map_err(Error::hub)?;
-        let sets_up = [HOST.path(), MODEL.path(), CHART.path()].contains(&topic);
-        Ok(Route::Published { scene, publisher, place, sets_up })
+        number.map(Input)
     }
 
     /// Goes on to the next recorded message. `told` hears of each difference that is certain by now.
     ///
     /// # Errors
-    /// The bytes are no message of the topic's type.
+    /// The bytes are no message of the topic's type; or the recording of a run in real time lacks what its cycles were given.
     pub fn feed(
         &mut self,
         input: Input,
         message: RecordedMessage<'_>,
         told: &mut dyn FnMut(Difference),
     ) -> Result<(), Error> {
-        let Replay { scenes, spy, inputs, ledger } = self;
-        let Some(route) = inputs.get_mut(input.0) else {
-            return Err(Error::new(ErrorKind::Invalid, "no such input of this replay"));
-        };
-        match route {
-            Route::Ignored => {}
-            Route::Compared { scene, actor, topic, path } => {
-                let scene = &mut scenes[*scene];
-                scene.reach(message.received, spy, ledger, told);
-                scene.expect(*actor, *topic, *path, message.bytes, spy);
-            }
-            Route::Published { scene, publisher, place, sets_up } => {
-                let scene = &mut scenes[*scene];
-                scene.reach(message.received, spy, ledger, told);
-                scene.turn_of_another(*place, *sets_up, spy);
-                publisher.publish_bytes(message.bytes, scene.now).map_err(Error::hub)?;
-            }
-            Route::Received { scene, receiver } => {
-                let scene = &mut scenes[*scene];
-                scene.reach(message.received, spy, ledger, told);
-                let arrival = Arrival {
-                    sequence: message.sequence.into(),
-                    published: message.published,
-                    local: message.published,
-                    received: message.received,
-                };
-                receiver.receive_bytes(message.bytes, arrival).map_err(Error::hub)?;
-            }
+        match &mut self.course {
+            Course::Simulated(course) => course.feed(input.0, message, told),
+            Course::RealTime(course) => course.feed(input.0, message, told),
         }
-        Ok(())
     }
 
     /// The recorded run ended at this moment: what is recorded from now on was published while its agents were being stopped.
     pub fn end(&mut self, moment: Moment, told: &mut dyn FnMut(Difference)) {
-        for scene in &mut self.scenes {
-            scene.reach(moment, &self.spy, &mut self.ledger, told);
-            scene.stop(&self.spy);
+        match &mut self.course {
+            Course::Simulated(course) => course.end(moment, told),
+            // How each agent stopped is recorded.
+            Course::RealTime(_) => {}
         }
     }
 
     /// Ends the replay, and tells what was compared, by host, agent and topic. The end of a recording that was cut off is not taken
     /// for an end of the run: what agents would have published then is no difference.
-    pub fn finish(mut self, is_whole: bool, told: &mut dyn FnMut(Difference)) -> Vec<Tally> {
-        for scene in &mut self.scenes {
-            scene.close(is_whole, &self.spy, &mut self.ledger, told);
+    ///
+    /// # Errors
+    /// As in [`feed`](Replay::feed).
+    pub fn finish(self, is_whole: bool, told: &mut dyn FnMut(Difference)) -> Result<Vec<Tally>, Error> {
+        match self.course {
+            Course::Simulated(course) => Ok(course.finish(is_whole, told)),
+            Course::RealTime(course) => course.finish(is_whole, told),
         }
-        self.ledger.tallies()
     }
 }
 
 impl std::fmt::Debug for Replay {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let hosts: Vec<&str> = self.scenes.iter().map(|scene| scene.hub.host()).collect();
+        let hosts = match &self.course {
+            Course::Simulated(course) => course.hosts(),
+            Course::RealTime(course) => course.hosts(),
+        };
         f.debug_struct("Replay").field("hosts", &hosts).finish_non_exhaustive()
     }
+}
+
+/// An input that this replay does not have.
+fn no_input() -> Error {
+    Error::new(ErrorKind::Invalid, "no such input of this replay")
 }
 
 /// The names of those who published on a host.

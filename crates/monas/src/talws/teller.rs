@@ -30,8 +30,22 @@ impl Teller {
 
     /// A cycle has begun, and brought this.
     pub(super) fn tell(&mut self, now: Moment, delivered: Vec<Delivery>) {
+        self.tell_noted(now, delivered, &[]);
+    }
+
+    /// As [`tell`](Teller::tell), with the points of the hub's history at which it was brought.
+    pub(super) fn tell_noted(&mut self, now: Moment, delivered: Vec<Delivery>, seen: &[u64]) {
         let number = self.number.fetch_add(1, Ordering::Relaxed) + 1;
-        self.cycles.publish(records::Cycle { number, time: now.as_nanos(), delivered }, now);
+        let make = |cycle: &mut records::Cycle| {
+            (cycle.number, cycle.time, cycle.delivered) = (number, now.as_nanos(), delivered);
+            cycle.seen.extend_from_slice(seen);
+        };
+        self.cycles.publish_with(make, now);
+    }
+
+    /// A turn of a chart is over. `make` says what it was.
+    pub(super) fn tell_turn(&mut self, now: Moment, make: impl FnOnce(&mut records::Cycle)) {
+        self.cycles.publish_with(make, now);
     }
 
     /// How many cycles there were.

@@ -24,7 +24,13 @@ pub(super) struct Run {
     configuration: String,
     /// What the command line had set, a line each.
     settings: String,
-    seed: u64,
+    time: Time,
+}
+
+/// How its time passed.
+enum Time {
+    Simulated { seed: u64 },
+    Real,
 }
 
 /// The run of a tape.
@@ -39,10 +45,14 @@ pub(super) fn run_of(overview: &Overview) -> Result<Run, String> {
         &facts.ok_or("the tape does not say of which run it is: it was not recorded by `monas run`")?.entries;
     let fact =
         |key: &str| facts.get(key).cloned().ok_or(format!("the tape does not say the {key} of its run"));
-    if fact("time")? != "simulated" {
-        return Err(
-            "the run was in real time: when its threads ran is not recorded, so it cannot be repeated".into(),
-        );
+    let time = match fact("time")?.as_str() {
+        "simulated" => Time::Simulated { seed: seed(&fact("seed")?)? },
+        _ => Time::Real,
+    };
+    if let Some(dropped) = dropped(overview) {
+        return Err(format!(
+            "{dropped} messages were left out of the tape because the disk was too slow: what agents were given is not on it"
+        ));
     }
     let begun_late =
         overview.channels.iter().find(|one| one.channel.received_by.is_none() && one.first_sequence != 1);
@@ -52,10 +62,18 @@ pub(super) fn run_of(overview: &Overview) -> Result<Run, String> {
             "the tape does not begin with its run: the first message on `{topic}` is number {number}"
         ));
     }
-    let seed = fact("seed")?;
-    let seed = seed.parse().map_err(|_| format!("the tape's seed `{seed}` is no number"))?;
     let settings = facts.get(monas_match::SETTINGS).cloned().unwrap_or_default();
-    Ok(Run { version: fact("version")?, configuration: fact("configuration")?, settings, seed })
+    Ok(Run { version: fact("version")?, configuration: fact("configuration")?, settings, time })
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("the tape's seed `{text}` is no number"))
+}
+
+/// How many messages were left out, if any were.
+fn dropped(overview: &Overview) -> Option<&str> {
+    let dropped = overview.facts.iter().filter_map(|facts| facts.entries.get("dropped"));
+    dropped.map(String::as_str).find(|dropped| *dropped != "0")
 }
 
 impl Run {
@@ -174,7 +192,10 @@ pub(super) fn replay(hosts: Vec<HostConfig>, run: &Run, overview: &Overview) -> 
     for host in hosts {
         talws.host(host);
     }
-    talws.replay(run.seed, &company)
+    match run.time {
+        Time::Simulated { seed } => talws.replay(seed, &company),
+        Time::Real => talws.replay_real_time(&company),
+    }
 }
 
 #[cfg(test)]

@@ -48,7 +48,7 @@ fn write_text(out: &mut dyn Write, first: Option<&First<'_>>, outcome: &Outcome)
     let (length, took) = (outcome.length.as_secs_f64(), outcome.took.as_secs_f64());
     writeln!(
         out,
-        "{length:.1} s of {} replayed in {took:.1} s: {:.0} simulated seconds per wall second",
+        "{length:.1} s of {} replayed in {took:.1} s: {:.0} recorded seconds per wall second",
         counted(agents.len() as u64, "agent"),
         length / took.max(1e-9)
     )?;

@@ -1,0 +1,371 @@
+//! The replay of a recording of real time.
+//!
+//! There it was chance when a thread ran, so records of cycles tell what it found when it did: at which moment, which messages had been
+//! published by then, which activities had come back. Each agent repeats its turns on a hub of its own, to which the messages of all
+//! others come from the recording, each before the agent's own message that followed it then.
+
+use std::sync::Arc;
+
+use narukom::prost::Message as _;
+use narukom::{Arrival, Moment, Narukom, TopicSlot};
+
+use super::super::setup::Stage;
+use super::super::{HostConfig, REAL_TIME_SEED, Talws};
+use super::compare::{Ledger, Window};
+use super::feed::{Ear, Feed, Foreign, Inlet};
+use super::repeated::Repeated;
+use super::{Company, Difference, Recorded, RecordedMessage, Tally, no_input};
+use crate::error::{Error, ErrorKind};
+use crate::records::{CYCLE, Cycle, HOST, Turn};
+
+/// Agents that repeat their turns.
+pub(super) struct RealTime {
+    /// The hosts that were recorded, and how many messages of the hub of each have come.
+    hubs: Vec<(String, u64)>,
+    parts: Vec<Part>,
+    inputs: Vec<Entrance>,
+    ledger: Ledger,
+}
+
+/// Where the messages of one publisher on one topic go.
+struct Entrance {
+    /// The place of the hub that was recorded.
+    hub: usize,
+    /// The agents of its host, and what the messages are to them.
+    routes: Vec<(usize, Route)>,
+}
+
+#[derive(Clone, Copy)]
+enum Route {
+    /// What the agent is compared with.
+    Own { topic: Option<TopicSlot>, line: usize, is_cycle: bool },
+    /// What it is given, through an inlet of this number.
+    Other(usize),
+}
+
+/// An agent.
+struct Part {
+    host: String,
+    agent: String,
+    hub: Narukom,
+    repeated: Repeated,
+    ear: Ear,
+    feed: Feed,
+    window: Window,
+    /// What the agent has published since the last turn.
+    own: Vec<Own>,
+    /// The cycle of a list that has begun.
+    begun: Option<Cycle>,
+    /// The recording tells of the agent's turns.
+    is_told: bool,
+    has_diverged: bool,
+}
+
+/// A message that the agent published when it was recorded.
+struct Own {
+    position: u64,
+    topic: Option<TopicSlot>,
+    line: usize,
+    bytes: Vec<u8>,
+}
+
+impl RealTime {
+    pub(super) fn new(talws: Talws, company: &[Company]) -> Result<RealTime, Error> {
+        let Talws { registry, hosts, .. } = talws;
+        let mut parts = Vec::new();
+        for HostConfig { name, team, number, agents, links, .. } in hosts {
+            for agent in agents {
+                let (name, links) = (name.clone(), links.clone());
+                let agents = vec![agent];
+                let mut alone = Talws { registry: registry.clone(), ..Talws::new() };
+                alone.company = company.to_vec();
+                alone.host(HostConfig { name, team, number, agents, links, ..HostConfig::default() });
+                parts.push(Part::new(alone)?);
+            }
+        }
+        Ok(RealTime { hubs: Vec::new(), parts, inputs: Vec::new(), ledger: Ledger::default() })
+    }
+
+    /// The hosts.
+    pub(super) fn hosts(&self) -> Vec<&str> {
+        let mut hosts: Vec<&str> = self.parts.iter().map(|part| part.host.as_str()).collect();
+        hosts.dedup();
+        hosts
+    }
+
+    pub(super) fn input(&mut self, recorded: Recorded<'_>) -> Result<usize, Error> {
+        let hub = self.hub(recorded.received_by.unwrap_or(recorded.host));
+        let mut routes = Vec::new();
+        for (place, part) in self.parts.iter().enumerate() {
+            if let Some(route) = part.route(recorded, &mut self.ledger)? {
+                routes.push((place, route));
+            }
+        }
+        self.inputs.push(Entrance { hub, routes });
+        Ok(self.inputs.len() - 1)
+    }
+
+    /// The place of a hub that was recorded.
+    fn hub(&mut self, host: &str) -> usize {
+        self.hubs.iter().position(|(name, _)| name == host).unwrap_or_else(|| {
+            self.hubs.push((host.to_owned(), 0));
+            self.hubs.len() - 1
+        })
+    }
+
+    pub(super) fn feed(
+        &mut self,
+        input: usize,
+        message: RecordedMessage<'_>,
+        told: &mut dyn FnMut(Difference),
+    ) -> Result<(), Error> {
+        let Entrance { hub, routes } = self.inputs.get(input).ok_or_else(no_input)?;
+        let count = &mut self.hubs[*hub].1;
+        *count += 1;
+        let position = *count;
+        let mut shared: Option<Arc<[u8]>> = None;
+        for (place, route) in routes {
+            let part = &mut self.parts[*place];
+            match *route {
+                Route::Own { topic, line, is_cycle } => {
+                    let bytes = message.bytes.to_vec();
+                    let own = Own { position, topic, line, bytes };
+                    part.published(own, is_cycle, &mut self.ledger, told)?;
+                }
+                Route::Other(inlet) => {
+                    let bytes = shared.get_or_insert_with(|| message.bytes.into()).clone();
+                    part.feed.add(Foreign { position, inlet, arrival: arrival(&message), bytes });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn finish(
+        mut self,
+        is_whole: bool,
+        told: &mut dyn FnMut(Difference),
+    ) -> Result<Vec<Tally>, Error> {
+        for part in &mut self.parts {
+            part.finish(is_whole, &mut self.ledger, told)?;
+        }
+        Ok(self.ledger.tallies())
+    }
+}
+
+fn arrival(message: &RecordedMessage<'_>) -> Arrival {
+    Arrival {
+        sequence: message.sequence.into(),
+        published: message.published,
+        local: message.published,
+        received: message.received,
+    }
+}
+
+impl Part {
+    /// The one agent of a host, with a hub of its own.
+    fn new(mut talws: Talws) -> Result<Part, Error> {
+        let names = talws.hosts.iter().find_map(|host| Some((host.name.clone(), host.agents.first()?)));
+        let (host, agent) = names.map(|(host, agent)| (host, agent.name().to_owned())).unwrap_or_default();
+        let ear = Ear::new(&agent);
+        talws.observe(Box::new(ear.clone()));
+        let Stage { mut stations, .. } = Stage::new(talws, REAL_TIME_SEED)?;
+        let station = stations.pop().map(|station| (station.hub, station.members));
+        let member = station.and_then(|(hub, mut members)| Some((hub, members.pop()?)));
+        let feed = Feed::new(ear.clone());
+        let repeated = member.and_then(|(hub, member)| Some((hub, Repeated::new(member, &feed)?)));
+        let (hub, repeated) = repeated.ok_or_else(|| not_alone(&agent))?;
+        let window = Window::new(&host, &agent);
+        let (own, begun) = (Vec::new(), None);
+        Ok(Part {
+            host,
+            agent,
+            hub,
+            repeated,
+            ear,
+            feed,
+            window,
+            own,
+            begun,
+            is_told: false,
+            has_diverged: false,
+        })
+    }
+
+    /// What the messages of a publisher on a topic are to this agent.
+    fn route(&self, recorded: Recorded<'_>, ledger: &mut Ledger) -> Result<Option<Route>, Error> {
+        let Recorded { host, received_by, publisher, topic } = recorded;
+        if received_by.unwrap_or(host) != self.host {
+            return Ok(None);
+        }
+        let slot = self.hub.topic(topic);
+        if received_by.is_none() && publisher == self.agent {
+            let (line, is_cycle) = (ledger.line(host, publisher, topic), topic == CYCLE.path());
+            return Ok(Some(Route::Own { topic: slot, line, is_cycle }));
+        }
+        // The host has introduced itself here too.
+        if slot.is_none() || (topic == HOST.path() && publisher == "monas") {
+            return Ok(None);
+        }
+        let inlet = match received_by {
+            Some(_) => self.hub.receiver(host, publisher, topic).map(Inlet::Received),
+            None => self.hub.publisher_by_name(topic, publisher).map(Inlet::Published),
+        };
+        Ok(Some(Route::Other(self.feed.add_inlet(inlet.map_err(Error::hub)?))))
+    }
+
+    /// The agent published this.
+    fn published(
+        &mut self,
+        own: Own,
+        is_cycle: bool,
+        ledger: &mut Ledger,
+        told: &mut dyn FnMut(Difference),
+    ) -> Result<(), Error> {
+        if !is_cycle {
+            self.own.push(own);
+            return Ok(());
+        }
+        let record = Cycle::decode(&own.bytes[..]).map_err(|error| {
+            let message = format!("a record of a cycle of `{}` cannot be read: {error}", self.agent);
+            Error::new(ErrorKind::Invalid, message)
+        })?;
+        if record.seen.iter().any(|seen| *seen >= own.position) {
+            let message = format!("the recording lacks messages of `{}`", self.host);
+            let hint =
+                "agents are given what they were given then: only a recording of all topics can be replayed";
+            return Err(Error::new(ErrorKind::Invalid, message).with_hint(hint));
+        }
+        match (&self.repeated, record.turn()) {
+            (Repeated::Chart(_), Turn::None) if self.is_told => self.own.push(own),
+            (Repeated::Chart(_), Turn::None) => return Err(self.untold()),
+            (Repeated::List(_), Turn::None) if record.seen.is_empty() => return Err(self.untold()),
+            (Repeated::List(_), Turn::None) => {
+                self.run_begun(true, ledger, told)?;
+                self.own.push(Own { bytes: plain(&record), ..own });
+                self.begun = Some(record);
+            }
+            (Repeated::List(_), _) => {}
+            (Repeated::Chart(_), turn) => {
+                self.is_told |= turn == Turn::Start;
+                self.run(turn, &record, true, ledger, told)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn untold(&self) -> Error {
+        let message = format!(
+            "the recording does not tell what each turn of `{}` was given: it was made by an earlier version",
+            self.agent
+        );
+        Error::new(ErrorKind::Invalid, message)
+    }
+
+    /// Repeats the cycle of the list that has begun, of which everything is known by now.
+    fn run_begun(
+        &mut self,
+        is_whole: bool,
+        ledger: &mut Ledger,
+        told: &mut dyn FnMut(Difference),
+    ) -> Result<(), Error> {
+        match self.begun.take() {
+            Some(record) => self.run(Turn::None, &record, is_whole, ledger, told),
+            None => Ok(()),
+        }
+    }
+
+    /// Repeats a turn and compares.
+    fn run(
+        &mut self,
+        turn: Turn,
+        record: &Cycle,
+        is_whole: bool,
+        ledger: &mut Ledger,
+        told: &mut dyn FnMut(Difference),
+    ) -> Result<(), Error> {
+        self.run_unrecorded(Moment::from_nanos(record.time), ledger, told)?;
+        self.feed.begin(&record.seen, self.own.iter().map(|own| own.position));
+        let now = Moment::from_nanos(record.time);
+        match &mut self.repeated {
+            Repeated::List(list) => list.cycle(now),
+            Repeated::Chart(chart) => chart.turn(turn, record, self.has_diverged),
+        }
+        self.feed.failure()?;
+        self.compare(now, is_whole, ledger, told);
+        Ok(())
+    }
+
+    /// What a chart that is not what it was does between its recorded turns.
+    fn run_unrecorded(
+        &mut self,
+        until: Moment,
+        ledger: &mut Ledger,
+        told: &mut dyn FnMut(Difference),
+    ) -> Result<(), Error> {
+        let recorded = std::mem::take(&mut self.own);
+        while let Repeated::Chart(chart) = &mut self.repeated
+            && let Some(due) = chart.due_before(until)
+        {
+            self.feed.begin_unrecorded(due);
+            chart.turn_by_itself(due);
+            self.feed.failure()?;
+            self.compare(due, true, ledger, told);
+        }
+        self.own = recorded;
+        Ok(())
+    }
+
+    fn compare(
+        &mut self,
+        now: Moment,
+        is_whole: bool,
+        ledger: &mut Ledger,
+        told: &mut dyn FnMut(Difference),
+    ) {
+        for Own { topic, line, bytes, .. } in self.own.drain(..) {
+            self.window.recorded(topic, line, bytes);
+        }
+        for produced in self.ear.take() {
+            self.window.produced(produced.topic, produced.bytes);
+        }
+        if !is_whole {
+            self.window.forget_what_is_ahead();
+        }
+        let has_diverged = &mut self.has_diverged;
+        self.window.compare(&self.hub, now, ledger, &mut |difference| {
+            *has_diverged = true;
+            told(difference);
+        });
+    }
+
+    /// There are no more recorded messages.
+    fn finish(
+        &mut self,
+        is_whole: bool,
+        ledger: &mut Ledger,
+        told: &mut dyn FnMut(Difference),
+    ) -> Result<(), Error> {
+        let last = self.begun.as_ref().map(|record| Moment::from_nanos(record.time));
+        self.run_begun(is_whole, ledger, told)?;
+        // Of a turn whose record was cut off nobody knows what it began with.
+        if is_whole {
+            self.compare(last.unwrap_or_default(), is_whole, ledger, told);
+        }
+        Ok(())
+    }
+}
+
+fn not_alone(agent: &str) -> Error {
+    let message = format!(
+        "agent `{agent}` has several threads, for its list and its charts, whose messages are recorded under one name: they cannot \
+         be replayed one by one"
+    );
+    Error::new(ErrorKind::Invalid, message).with_hint("give each chart an agent of its own")
+}
+
+/// The record as it is without what is recorded in real time only.
+fn plain(record: &Cycle) -> Vec<u8> {
+    let Cycle { number, time, delivered, .. } = record.clone();
+    Cycle { number, time, delivered, ..Cycle::default() }.encode_to_vec()
+}

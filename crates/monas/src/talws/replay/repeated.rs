@@ -1,0 +1,261 @@
+//! Agents that repeat what they did in real time, turn by turn.
+
+use narukom::{HostId, Moment, TopicSlot};
+
+use super::feed::Feed;
+use crate::agent::Policy;
+use crate::chart::{Assignment, Lead, Runner, call_record};
+use crate::frequency::Frequency;
+use crate::list::List;
+use crate::records::{Call, Cycle, Delivery, News, Turn};
+use crate::talws::setup::Member;
+use crate::talws::teller::Teller;
+use crate::talws::turn::due_record;
+
+/// The list or the chart of an agent.
+pub(super) enum Repeated {
+    List(Box<RepeatedList>),
+    Chart(Box<RepeatedChart>),
+}
+
+impl Repeated {
+    /// None if the agent has more than one of them, or none: its messages are told apart by its name alone.
+    pub(super) fn new(member: Member, feed: &Feed) -> Option<Repeated> {
+        let Member { policy, frequency, list, mut charts, teller, .. } = member;
+        match (list, charts.pop()) {
+            (Some(list), None) => {
+                let list = RepeatedList { list, teller, feed: feed.clone(), is_over: false };
+                Some(Repeated::List(Box::new(list)))
+            }
+            (None, Some(runner)) if charts.is_empty() => {
+                let chart = RepeatedChart::new(runner, policy, frequency, teller, feed);
+                Some(Repeated::Chart(Box::new(chart)))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// A list.
+pub(super) struct RepeatedList {
+    list: List,
+    teller: Teller,
+    feed: Feed,
+    is_over: bool,
+}
+
+impl RepeatedList {
+    /// A cycle that began at a moment.
+    pub(super) fn cycle(&mut self, now: Moment) {
+        if self.is_over {
+            return;
+        }
+        self.feed.fetching();
+        self.list.begin(now);
+        self.feed.publishing();
+        self.teller.tell(now, Delivery::all(self.list.blackboard(), 0).collect());
+        self.feed.publishing();
+        self.list.cycle(now, None);
+        self.is_over = self.list.stopped().is_some();
+    }
+}
+
+/// A chart. It does what its thread did, but for the pool: an activity is called when it is known to have come back. So one that looks
+/// whether it is asked to return finds that it is, if it was.
+pub(super) struct RepeatedChart {
+    runner: Runner,
+    policy: Policy,
+    frequency: Option<Frequency>,
+    ticks: u64,
+    teller: Teller,
+    feed: Feed,
+    /// The activities that are with the pool, in the order in which they went there.
+    out: Vec<Assignment>,
+    /// By topic: whether the chart is told of its messages.
+    followed: Vec<bool>,
+    /// The moment of the last turn.
+    now: Moment,
+    /// When it was to do something by itself next, by the record of its last turn.
+    was_due: u64,
+    has_failed: bool,
+    is_stopping: bool,
+}
+
+impl RepeatedChart {
+    fn new(
+        mut runner: Runner,
+        policy: Policy,
+        frequency: Option<Frequency>,
+        teller: Teller,
+        feed: &Feed,
+    ) -> RepeatedChart {
+        runner.be_led(Box::new(feed.clone()));
+        let followed = vec![false; runner.hub().topics().len()];
+        RepeatedChart {
+            runner,
+            policy,
+            frequency,
+            ticks: 0,
+            teller,
+            feed: feed.clone(),
+            out: Vec::new(),
+            followed,
+            now: Moment::ZERO,
+            was_due: 0,
+            has_failed: false,
+            is_stopping: false,
+        }
+    }
+
+    /// Repeats a turn. `has_diverged` says that the chart has done something else than it did before: the recording may not tell any more
+    /// when activities come back, and those that it does not know come back in the next turn.
+    pub(super) fn turn(&mut self, turn: Turn, record: &Cycle, has_diverged: bool) {
+        let now = Moment::from_nanos(record.time);
+        (self.now, self.was_due) = (now, record.due);
+        let back = self.back(&record.returned, has_diverged);
+        match turn {
+            Turn::None => {}
+            Turn::Start => self.start(record.first_tick, now),
+            Turn::Round => self.round(record, back, now),
+            Turn::Stop => self.stop(back, now),
+        }
+    }
+
+    /// When the chart does something by itself before a moment, at which its next recorded turn was. It has no such turn if it waits for
+    /// what it waited for then: threads wake late.
+    pub(super) fn due_before(&self, next: Moment) -> Option<Moment> {
+        let due = self.runner.due(self.now).min(self.tick());
+        let is_over = self.has_failed || self.is_stopping || self.runner.is_over();
+        let is_new = due > self.now && due < next && due_record(due) != self.was_due;
+        (is_new && !is_over).then_some(due)
+    }
+
+    /// A turn that was not recorded.
+    pub(super) fn turn_by_itself(&mut self, now: Moment) {
+        self.now = now;
+        let back = self.back(&[], true);
+        self.round(&Cycle::default(), back, now);
+    }
+
+    fn start(&mut self, first_tick: u64, now: Moment) {
+        self.ticks = first_tick;
+        for topic in self.runner.topics_of_guards() {
+            self.follow(topic);
+        }
+        self.runner.start(now);
+    }
+
+    fn round(&mut self, record: &Cycle, back: Vec<Assignment>, now: Moment) {
+        if self.has_failed || self.runner.is_over() {
+            return;
+        }
+        record.news.iter().for_each(|news| self.hear(news, now));
+        let mut back = back.into_iter();
+        for assignment in back.by_ref() {
+            self.has_failed |= !self.returned(assignment, now);
+            if self.has_failed || !self.rest(now) {
+                break;
+            }
+        }
+        // What the chart does not come to any more waits for its end.
+        self.out.extend(back);
+        if !self.has_failed {
+            self.rest(now);
+        }
+    }
+
+    /// The activities that have come back, in the order in which they did.
+    fn back(&mut self, calls: &[Call], has_diverged: bool) -> Vec<Assignment> {
+        let mut back = Vec::new();
+        for call in calls {
+            let place = self.out.iter().position(|assignment| call_record(assignment.activation) == *call);
+            back.extend(place.map(|place| self.out.remove(place)));
+        }
+        if has_diverged {
+            self.out.iter().for_each(Assignment::ask_to_return);
+            back.append(&mut self.out);
+        }
+        back
+    }
+
+    fn hear(&mut self, news: &News, now: Moment) {
+        let host = match news.host.as_str() {
+            "" => HostId::LOCAL,
+            // A hub that has no number for it has no message of it either.
+            name => match self.runner.hub().host_id(name) {
+                Ok(host) => host,
+                Err(_) => return,
+            },
+        };
+        let origin = news.by.and_then(|call| self.runner.origin(call.node, call.number));
+        self.runner.message_arrived(TopicSlot::new(news.topic), host, origin, now);
+    }
+
+    /// True if the chart goes on.
+    fn rest(&mut self, now: Moment) -> bool {
+        while !self.has_failed {
+            if let Some(assignment) = self.runner.next_started() {
+                self.out.push(assignment);
+            } else if self.runner.needs_step(now) || self.tick() <= now {
+                self.has_failed = !self.step(now);
+            } else if let Some(assignment) = self.runner.next_waiting(now) {
+                self.out.push(assignment);
+            } else {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn tick(&self) -> Moment {
+        self.frequency.map_or(Moment::MAX, |frequency| frequency.due(self.ticks))
+    }
+
+    fn step(&mut self, now: Moment) -> bool {
+        while self.tick() <= now {
+            self.ticks += 1;
+        }
+        let stepped = self.runner.step(now);
+        self.feed.publishing();
+        self.teller.tell(now, self.runner.delivered().to_vec());
+        stepped.is_ok()
+    }
+
+    /// An activity has come back: it is called. False if the agent is to stop.
+    fn returned(&mut self, assignment: Assignment, now: Moment) -> bool {
+        let activation = assignment.activation;
+        let has_failed = self.take_back(assignment, self.policy == Policy::Restart, now);
+        // What came on a topic before it was followed has to be assumed.
+        for topic in self.runner.waits_for(activation).to_vec() {
+            if self.follow(topic) {
+                self.runner.message_arrived(topic, HostId::LOCAL, None, now);
+            }
+        }
+        !has_failed || matches!(self.policy, Policy::Restart | Policy::Skip)
+    }
+
+    /// Whether the activity failed.
+    fn take_back(&mut self, mut assignment: Assignment, restart: bool, now: Moment) -> bool {
+        let returned = assignment.call();
+        self.runner.returned(assignment, returned, None, restart, now).is_err()
+    }
+
+    /// Whether the topic was not followed before.
+    fn follow(&mut self, topic: TopicSlot) -> bool {
+        let followed = self.followed.get_mut(topic.number() as usize);
+        followed.is_some_and(|followed| !std::mem::replace(followed, true))
+    }
+
+    fn stop(&mut self, back: Vec<Assignment>, now: Moment) {
+        if !self.is_stopping {
+            self.runner.cancel_all();
+        }
+        self.is_stopping = true;
+        for assignment in back {
+            self.take_back(assignment, false, now);
+        }
+        if self.out.is_empty() {
+            self.runner.stop(now);
+        }
+    }
+}
