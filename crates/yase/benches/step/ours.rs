@@ -191,11 +191,14 @@ impl Toggle for Ours {
     fn handle(&mut self, event: Event) {
         // a machine whose time stands still is stopped after a while
         self.now += 1;
+        let now = Moment::from_nanos(self.now);
         match event {
-            Event::Toggle => self.machine.dispatch(self.toggle),
-            Event::Other => assert!(!self.machine.dispatch_name("other")),
-        }
-        self.machine.run_to_completion(Moment::from_nanos(self.now), &mut self.world).expect("it rests");
+            Event::Toggle => self.machine.handle(self.toggle, now, &mut self.world).expect("it rests"),
+            Event::Other => {
+                assert!(!self.machine.dispatch_name("other"));
+                self.machine.run_to_completion(now, &mut self.world).expect("it rests")
+            }
+        };
     }
 
     fn counts(&self) -> Counts {

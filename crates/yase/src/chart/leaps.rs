@@ -28,6 +28,15 @@ pub(crate) struct Leaps {
     pub(crate) moves: Box<[Move]>,
 }
 
+impl Leaps {
+    /// What an event does where one innermost state is active, if others have nothing to do with it.
+    #[inline(always)]
+    pub(crate) fn of_one(&self, event: EventId, leaves: u64) -> Option<Cell> {
+        let cells = self.cells.get(event.0 as usize).filter(|_| leaves.is_power_of_two())?;
+        Some(cells[leaves.trailing_zeros() as usize % PLACES]).filter(|&cell| cell != Cell::ENTANGLED)
+    }
+}
+
 /// What an event leads to from an innermost state.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Cell(pub(crate) u16);

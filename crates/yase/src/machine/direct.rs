@@ -7,7 +7,7 @@
 //! All it works with stands in the values of one struct, which are never lent as a whole: so the compiler keeps them in registers. What is
 //! seldom done is a call of the long way's own.
 
-use crate::chart::{Chart, CompoundId, Direct, DirectActions, DirectPlace, Owner, Place, RegionId};
+use crate::chart::{Cell, Chart, CompoundId, Direct, DirectActions, DirectPlace, Owner, Place, RegionId};
 use crate::expression::{EventId, ScriptId};
 use crate::host::{ActionError, ActionPlace, Host};
 use crate::machine::act::Scene;
@@ -43,6 +43,33 @@ pub(super) fn run<H: Host>(chart: &Chart, run: &mut Run, host: &mut H) -> Result
         }
         _ => Step::new(chart, run, host).run(),
     }
+}
+
+/// Offers one event to a settled machine and makes the step. If nothing else waits, and what the event does can be looked up, it need not
+/// queue.
+#[inline(always)]
+pub(super) fn handle<H: Host>(
+    chart: &Chart,
+    run: &mut Run,
+    host: &mut H,
+    event: EventId,
+) -> Result<StepSummary, MachineError> {
+    if run.status != Status::Running {
+        return self::run(chart, run, host);
+    }
+    let occurrence = run.queues.occurrence(event.into(), false);
+    if let Some(direct) = &chart.direct
+        && run.timers.next_deadline().is_none_or(|next| next > run.now)
+        && run.queues.arrived.has_none()
+        && !host.wants_trace()
+        && let Some(cell) = direct.leaps.of_one(event, run.active.first_word() & direct.leaves)
+    {
+        run.log.wanted = false;
+        let short = ShortStep { chart, direct, run, host, micro_steps: 0, transitions: 0 };
+        return short.handle(occurrence, cell);
+    }
+    run.queues.arrived.push(occurrence);
+    self::run(chart, run, host)
 }
 
 impl Run {
@@ -81,10 +108,7 @@ impl<H: Host> ShortStep<'_, H> {
         if TRACED {
             self.run.log.clear();
         }
-        self.run.due = false;
-        if self.chart.semantics_ref().delivery == Delivery::EachStep {
-            self.deliver();
-        }
+        self.begin();
         // not copied as a whole: it was just written piece by piece, and processors wait for that
         while let Some(first) = self.run.queues.first_arrived() {
             let Occurrence { event, is_known, token, .. } = *first;
@@ -100,6 +124,32 @@ impl<H: Host> ShortStep<'_, H> {
             }
         }
         Ok(self.finish())
+    }
+
+    #[inline(always)]
+    fn handle(mut self, occurrence: Occurrence, cell: Cell) -> Result<StepSummary, MachineError> {
+        self.begin();
+        if !self.admit() {
+            self.run.queues.arrived.push(occurrence);
+            return self.go_on();
+        }
+        self.host.offered(occurrence.event, occurrence.is_known, occurrence.token);
+        if !self.leap_from(cell) {
+            self.run.queues.arrived.push(occurrence);
+            self.keep();
+        }
+        if !self.run.goes_on_directly(self.direct) || !self.run.queues.arrived.has_none() {
+            return self.go_on();
+        }
+        Ok(self.finish())
+    }
+
+    #[inline(always)]
+    fn begin(&mut self) {
+        self.run.due = false;
+        if self.chart.semantics_ref().delivery == Delivery::EachStep {
+            self.deliver();
+        }
     }
 
     #[inline(never)]

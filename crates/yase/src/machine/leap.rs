@@ -61,6 +61,15 @@ impl<'a, H: Host> ShortStep<'a, H> {
         true
     }
 
+    /// What an event does to the one innermost state that is active; false if nothing.
+    #[inline(always)]
+    pub(super) fn leap_from(&mut self, cell: Cell) -> bool {
+        let Some(leap) = self.find(cell) else { return false };
+        self.take(leap);
+        self.note_tips();
+        true
+    }
+
     /// The first transition whose guard holds.
     #[inline(always)]
     fn find(&mut self, cell: Cell) -> Option<&'a Leap> {

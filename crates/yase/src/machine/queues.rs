@@ -90,7 +90,8 @@ impl Queues {
         self.arrived.push(occurrence);
     }
 
-    fn occurrence(&mut self, source: Incoming, raised: bool) -> Occurrence {
+    /// Numbers an event that has come.
+    pub(super) fn occurrence(&mut self, source: Incoming, raised: bool) -> Occurrence {
         self.count += 1;
         let Incoming { event, expiry, token, is_known } = source;
         Occurrence { event, number: self.count, raised, expiry, token, is_known }
