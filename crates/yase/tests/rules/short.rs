@@ -261,3 +261,41 @@ fn r03_a_guard_that_failed_is_told_again_when_its_own_blackboard_was_written_and
         ",
     );
 }
+
+/// What one call takes: how many micro-steps, and where it leads.
+fn handled(prepare: impl Fn(&mut Machine), at: u64) -> (u32, String) {
+    let text = "
+        START
+        S | entry=StartTimeout(v, 10ms)
+        A
+        B
+        c/START -> S
+        S -> A : e
+        A -> B : v
+        S -> B : f
+    ";
+    let chart = chart(text);
+    let mut machine = Machine::new(script::compile(&chart));
+    let mut world = World { silent: true, ..World::new(&chart) };
+    machine.start(Moment::ZERO, &mut world);
+    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    prepare(&mut machine);
+    let (event, _) = machine.chart().event("e");
+    let summary = machine.handle(event, Moment::from_millis(at), &mut world).unwrap();
+    let leaf = machine.configuration().pop().unwrap();
+    (summary.micro_steps, machine.chart().short_path(leaf))
+}
+
+#[test]
+fn r21_an_event_that_is_handed_over_when_a_deadline_has_come_is_taken_with_its_expiry() {
+    assert_eq!(handled(|_| {}, 9), (1, "A".to_owned()));
+    for at in [10, 12] {
+        assert_eq!(handled(|_| {}, at), (2, "B".to_owned()), "at {at} ms");
+    }
+}
+
+#[test]
+fn r04_an_event_that_is_handed_over_waits_for_those_that_came_before() {
+    let before = |machine: &mut Machine| assert!(machine.dispatch_name("f"));
+    assert_eq!(handled(before, 5), (2, "B".to_owned()));
+}
