@@ -6,8 +6,10 @@ use std::time::Duration;
 
 use monas::replay::{Company, Difference, Recorded, RecordedMessage, Tally};
 use monas::{
-    Agent, Blackboard, BoxError, Error, HostConfig, Hz, Moment, Policy, Progress, Registry, Talws, records,
+    Agent, Blackboard, BoxError, Error, HostConfig, Hz, LinkConfig, Moment, Policy, Progress, Registry,
+    Talws, records,
 };
+use monas_link::{LinkSettings, Place, ReceiveRule};
 use narukom::prost::Message as _;
 use narukom::{Observer, Publication};
 
@@ -190,6 +192,22 @@ fn one_agent_is_replayed_without_the_other() {
     assert_eq!(outcome.differences, []);
     assert!(outcome.compared("keeper", "test/news") > 10);
     assert_eq!(outcome.compared("thrower", "test/ball"), 0);
+}
+
+#[test]
+fn what_a_link_brings_under_the_agents_own_name_is_not_the_agents() {
+    let mut messages = recorded();
+    for kept in messages.iter_mut().filter(|kept| kept.topic == "test/ball") {
+        kept.publisher = "keeper".into();
+    }
+    let (registry, keeper) = keeper(-3.0, &channel().0);
+    let rule = ReceiveRule { topics: "test/ball".into(), place: Place::Own };
+    let settings = LinkSettings { receive: vec![rule], ..LinkSettings::default() };
+    let talws = Talws::new().registry(registry).agent(keeper);
+    let outcome = replay(talws.link(LinkConfig { settings, ..LinkConfig::default() }), &messages).unwrap();
+    assert_eq!(outcome.differences, []);
+    assert!(outcome.compared("keeper", "test/news") > 10);
+    assert_eq!(outcome.compared("keeper", "test/ball"), 0);
 }
 
 #[test]

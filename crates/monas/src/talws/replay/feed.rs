@@ -14,11 +14,18 @@ pub(super) struct Produced {
     pub(super) bytes: Vec<u8>,
 }
 
-/// Hears what an agent publishes.
+/// Hears what an agent publishes, but not what comes under its name from the recording.
 #[derive(Clone)]
 pub(super) struct Ear {
     agent: String,
-    heard: Arc<Mutex<Vec<Produced>>>,
+    heard: Arc<Mutex<Heard>>,
+}
+
+#[derive(Default)]
+struct Heard {
+    produced: Vec<Produced>,
+    /// What is published now comes from the recording.
+    is_deaf: bool,
 }
 
 impl Ear {
@@ -26,21 +33,22 @@ impl Ear {
         Ear { agent: agent.to_owned(), heard: Arc::default() }
     }
 
-    fn heard(&self) -> MutexGuard<'_, Vec<Produced>> {
+    fn heard(&self) -> MutexGuard<'_, Heard> {
         self.heard.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// What was heard since the last time.
     pub(super) fn take(&self) -> Vec<Produced> {
-        std::mem::take(&mut *self.heard())
+        std::mem::take(&mut self.heard().produced)
     }
 }
 
 impl Observer for Ear {
     fn observe(&mut self, publication: Publication<'_>) {
-        if publication.publisher == self.agent {
+        let mut heard = self.heard();
+        if publication.publisher == self.agent && !heard.is_deaf {
             let topic = publication.sample.header.topic;
-            self.heard().push(Produced { topic, bytes: publication.bytes().to_vec() });
+            heard.produced.push(Produced { topic, bytes: publication.bytes().to_vec() });
         }
     }
 }
@@ -128,6 +136,12 @@ impl Feed {
 impl State {
     /// Gives the messages up to a position.
     fn give(&mut self, until: u64) {
+        self.ear.heard().is_deaf = true;
+        self.publish_waiting(until);
+        self.ear.heard().is_deaf = false;
+    }
+
+    fn publish_waiting(&mut self, until: u64) {
         while self.waiting.front().is_some_and(|message| message.position <= until) {
             let Some(message) = self.waiting.pop_front() else { return };
             let given = match self.inlets.get_mut(message.inlet) {
@@ -153,7 +167,7 @@ impl Lead for Feed {
 
     fn publishing(&mut self) {
         let mut state = self.state();
-        let published = state.ear.heard().len();
+        let published = state.ear.heard().produced.len();
         if let Some(place) = state.own.get(published).copied() {
             state.give(place.saturating_sub(1));
         }

@@ -9,7 +9,8 @@ use std::sync::Arc;
 use narukom::prost::Message as _;
 use narukom::{Arrival, Moment, Narukom, TopicSlot};
 
-use super::super::setup::Stage;
+use super::super::links::Brought;
+use super::super::setup::{Stage, Station};
 use super::super::{HostConfig, REAL_TIME_SEED, Talws};
 use super::compare::{Ledger, Window};
 use super::feed::{Ear, Feed, Foreign, Inlet};
@@ -48,6 +49,8 @@ struct Part {
     host: String,
     agent: String,
     hub: Narukom,
+    /// The topics that links bring to the host as its own: what is published there under the agent's name comes from another process.
+    brought: Vec<TopicSlot>,
     repeated: Repeated,
     ear: Ear,
     feed: Feed,
@@ -170,17 +173,20 @@ impl Part {
         let ear = Ear::new(&agent);
         talws.observe(Box::new(ear.clone()));
         let Stage { mut stations, .. } = Stage::new(talws, REAL_TIME_SEED)?;
-        let station = stations.pop().map(|station| (station.hub, station.members));
-        let member = station.and_then(|(hub, mut members)| Some((hub, members.pop()?)));
+        let Some(Station { hub, mut members, links, .. }) = stations.pop() else {
+            return Err(not_alone(&agent));
+        };
+        let brought = Brought::by(&links, &hub)?.own;
         let feed = Feed::new(ear.clone());
-        let repeated = member.and_then(|(hub, member)| Some((hub, Repeated::new(member, &feed)?)));
-        let (hub, repeated) = repeated.ok_or_else(|| not_alone(&agent))?;
+        let repeated = members.pop().and_then(|member| Repeated::new(member, &feed));
+        let repeated = repeated.ok_or_else(|| not_alone(&agent))?;
         let window = Window::new(&host, &agent);
         let (own, begun) = (Vec::new(), None);
         Ok(Part {
             host,
             agent,
             hub,
+            brought,
             repeated,
             ear,
             feed,
@@ -199,7 +205,8 @@ impl Part {
             return Ok(None);
         }
         let slot = self.hub.topic(topic);
-        if received_by.is_none() && publisher == self.agent {
+        let is_brought = slot.is_some_and(|slot| self.brought.contains(&slot));
+        if received_by.is_none() && publisher == self.agent && !is_brought {
             let (line, is_cycle) = (ledger.line(host, publisher, topic), topic == CYCLE.path());
             return Ok(Some(Route::Own { topic: slot, line, is_cycle }));
         }
