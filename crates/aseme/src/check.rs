@@ -55,6 +55,8 @@ pub use protocol::{Conformance, chart_conforms, player_conforms};
 pub use world::World;
 
 use crate::convert::{self, Model};
+use crate::iac::Variable;
+use crate::ontology;
 use subject::Subject;
 
 /// How a check knows.
@@ -245,9 +247,9 @@ pub fn check(source: &Arc<Source>, settings: &Settings) -> Report {
     let (found, read) = convert::read(source);
     let mut report = match found {
         None => unreadable(read),
-        Some((Model::Role(file), _)) => charted(subject::of_role(file.srm()), read, settings),
+        Some((Model::Role(file), _)) => about(subject::of_role(file.srm()), &[], read, settings),
         Some((Model::Chart(_), convert::Format::Scxml)) => scxml(source, settings),
-        Some((Model::Chart(chart), _)) => charted(subject::of_chart(&chart), read, settings),
+        Some((Model::Chart(chart), _)) => about(subject::of_chart(&chart), &chart.variables, read, settings),
         Some((model, _)) if !read.iter().any(Diagnostic::is_error) => {
             let what = format!("a model of the kind {}", model.kind());
             Report { what: Some(what), findings: findings(read, roles::check(&model)), explored: None }
@@ -277,6 +279,20 @@ fn scxml(source: &Arc<Source>, settings: &Settings) -> Report {
         Some(document) => charted((subject::of_scxml(&document), Vec::new()), read, settings),
         None => unreadable(read),
     }
+}
+
+/// A chart in our own language, and what it says of messages.
+fn about(
+    (subject, made): (Subject, Vec<Diagnostic>),
+    variables: &[Variable],
+    read: Vec<Diagnostic>,
+    settings: &Settings,
+) -> Report {
+    let (_, mut found) = ontology::of(&subject.chart, variables);
+    found.extend(settings.world.iter().flat_map(|world| ontology::check(variables, &world.vocabulary)));
+    let mut report = charted((subject, made), read, settings);
+    report.findings.extend(findings(found, Vec::new()));
+    report
 }
 
 fn charted(

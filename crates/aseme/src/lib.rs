@@ -78,6 +78,7 @@ mod json;
 pub mod liveness;
 mod meta;
 pub mod names;
+pub mod ontology;
 mod outline;
 pub mod path;
 pub mod refine;

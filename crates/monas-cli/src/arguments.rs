@@ -119,6 +119,25 @@ pub(crate) enum ModelCommand {
         #[command(flatten)]
         format: FormatArgument,
     },
+    /// Write the messages that a chart is about as a `.proto` file: what its variables name, and the fields that its expressions use.
+    ///
+    /// What a field is follows from how it is used; the file is a beginning, to be completed by hand.
+    #[command(
+        after_help = "Example: monas model ontology models/extended_attacker.iac --package team -o messages/team.proto"
+    )]
+    Ontology {
+        /// The model file.
+        #[arg(value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// The package of the messages.
+        #[arg(long, value_name = "NAME", default_value = "messages")]
+        package: String,
+        /// Where to write them; standard output if not given.
+        #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        output: Option<PathBuf>,
+        #[command(flatten)]
+        format: FormatArgument,
+    },
     /// Say what is wrong with models, and nothing else.
     ///
     /// Ends with 0 if nothing is wrong or there are warnings only, with 3 if a model cannot be read, and with 5 if a check finds an error.

@@ -4,6 +4,7 @@ mod check;
 mod conform;
 mod convert;
 mod diff;
+mod ontology;
 mod regenerate;
 mod run;
 mod transform;
@@ -27,6 +28,9 @@ pub(crate) fn execute(command: &ModelCommand, console: &mut Console<'_>) -> Resu
         ModelCommand::Transform(arguments) => transform::execute(arguments, console),
         ModelCommand::Convert(arguments) => convert::execute(arguments, console),
         ModelCommand::Draw { file, output, format } => draw(file, output.as_deref(), format.value, console),
+        ModelCommand::Ontology { file, package, output, format } => {
+            ontology::execute(file, package, output.as_deref(), format.value, console)
+        }
         ModelCommand::Check(arguments) => check::execute(arguments, console),
         ModelCommand::Conform { files, format } => conform::execute(files, format.value, console),
         ModelCommand::Diff(arguments) => diff::execute(arguments, console),

@@ -204,3 +204,52 @@ fn names_are_checked_against_the_program_when_asked_for() {
     assert!(answer.err.contains("M17") && answer.err.contains("`found`?"), "{}", answer.err);
     assert!(answer.err.contains("M21") && answer.err.contains("`TrackBall`?"), "{}", answer.err);
 }
+
+#[test]
+fn the_messages_of_a_chart_are_written_and_can_be_built() {
+    let answer = monas(&["model", "ontology", "models/extended_attacker.iac", "--package", "team"]);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    let attack = "
+message Attack {
+  // The values of `part`.
+  enum Part {
+    CENTER = 0;
+    CENTER_FOR = 1;
+  }
+  bool ball_is_free = 1;
+";
+    assert!(answer.out.contains(attack), "{}", answer.out);
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("team.proto");
+    std::fs::write(&path, &answer.out).expect("written");
+    protox::compile([&path], [folder.path()]).expect("it is in order");
+    let role = monas(&["model", "ontology", "models/goalie.srm", "-o", &path.display().to_string()]);
+    assert_eq!((role.code, role.out.as_str()), (Some(0), ""));
+    assert!(std::fs::read_to_string(&path).expect("read").contains("message Ball {"));
+}
+
+#[test]
+fn variables_that_are_no_messages_and_topics_of_two_kinds_are_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = |guard: &str, kind: &str| {
+        format!(
+            "IAC: tiny\n\nVariable: v\n  type = {kind}\n\nStates:\n  r OR\n    START\n    a BASIC\n      variables = v\n    END\n\n\
+                 Transitions:\n  START -> a\n  a -> END : [{guard}]\n"
+        )
+    };
+    let odd = file(folder.path(), "odd.iac", &text("Ball.x > 0", "bool"));
+    let answer = monas(&["model", "check", &odd]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert!(answer.err.contains("E0880") && answer.err.contains("odd.iac:3:"), "{}", answer.err);
+    let double = file(folder.path(), "double.iac", &text("a.Data.Ball.x > 0", "a.State.Ball"));
+    let answer = monas(&["model", "check", &double]);
+    assert_eq!(answer.code, Some(5), "{}", answer.err);
+    assert!(answer.err.contains("E0884"), "{}", answer.err);
+    let unknown = file(folder.path(), "unknown.iac", &text("Ball.x > 0", "ball.State.Bal"));
+    let answer = monas(&["model", "check", "--linked", &unknown]);
+    assert!(answer.err.contains("E0881") && answer.err.contains("did you mean `Ball`?"), "{}", answer.err);
+    let none = file(folder.path(), "none.iac", &text("In(a)", "bool"));
+    let answer = monas(&["model", "ontology", &none]);
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    assert!(answer.err.contains("is about no messages"), "{}", answer.err);
+}

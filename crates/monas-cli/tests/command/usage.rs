@@ -68,6 +68,8 @@ fn each_exit_code_means_one_thing() {
         (&["run", "nowhere.xml"], 3),
         (&["config", "show", "nowhere.xml"], 3),
         (&["model", "draw", "nowhere.srm"], 3),
+        (&["model", "ontology", "nowhere.srm"], 3),
+        (&["model", "ontology", "models/goalie.srm", "--package", "1"], 2),
         #[cfg(unix)]
         (&["topic", "list", "--run", "nobody-runs-this"], 4),
     ] {

@@ -1,0 +1,151 @@
+//! The ontology: what the expressions of a chart are about.
+//!
+//! A chart's variables name message types (`worldstate.State.GameStateMessage`), and its expressions use their fields. [`of`] gathers both:
+//! which messages there have to be, on which topics, and what can be said of their fields from how they are used. [`Ontology::to_proto`]
+//! writes them as a `.proto` file to begin with; [`check`] holds what the variables say against the messages that a program knows.
+//!
+//! A message is the first name of a path that begins with a capital letter, or the one behind `State`, `Signal` or `Data`. A field that is
+//! calculated with or compared with a number is a number, one that is compared with a text is a text, one that is compared with a bare name that
+//! is no constant has that as one of its values; whatever else is asked is a condition.
+//!
+//! ```
+//! let (chart, _) = aseme::statechart_of(&yase::Source::new("dog", "Role: dog\nLiveness:\ndog = Sit . Bark\nTransitions:\nSit -> Bark : [Cat.distance < 2 && Cat.mood == LAZY]\n"));
+//! let (ontology, found) = aseme::ontology::of(&chart, &[]);
+//! assert!(found.is_empty());
+//! assert!(ontology.to_proto("pets").ends_with("\
+//! message Cat {
+//!   // The values of `mood`.
+//!   enum Mood {
+//!     LAZY = 0;
+//!   }
+//!   double distance = 1;
+//!   Mood mood = 2;
+//! }
+//! "));
+//! ```
+
+mod gather;
+mod proto;
+
+use yase::vocabulary::TopicKind;
+use yase::{Diagnostic, Statechart, Vocabulary};
+
+use crate::iac::Variable;
+use gather::Gatherer;
+
+/// The messages that a chart is about, in the order in which they are met.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Ontology {
+    /// The messages.
+    pub messages: Vec<Message>,
+}
+
+/// A message that a chart is about.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Message {
+    /// Its name.
+    pub name: String,
+    /// The topics on which it is looked for, where the chart says that.
+    pub topics: Vec<Topic>,
+    /// What is asked of it.
+    pub fields: Vec<Field>,
+}
+
+/// A topic, as a path or a variable's type names it.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Topic {
+    /// Its name.
+    pub name: String,
+    /// `State`, `Signal` or `Data`.
+    pub kind: String,
+}
+
+/// A field of a message.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Field {
+    /// Its name.
+    pub name: String,
+    /// What can be said of it.
+    pub kind: FieldKind,
+}
+
+/// What can be said of a field from how it is used.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum FieldKind {
+    /// It is only compared with other fields.
+    Unknown,
+    /// A condition.
+    Condition,
+    /// A number.
+    Number,
+    /// A text.
+    Text,
+    /// One of these, and perhaps others.
+    OneOf(Vec<String>),
+    /// It has fields itself.
+    Fields(Vec<Field>),
+}
+
+/// What a chart and the variables of its model are about, and which of them do not fit together.
+pub fn of(chart: &Statechart, variables: &[Variable]) -> (Ontology, Vec<Diagnostic>) {
+    let mut gatherer = Gatherer::new(chart);
+    variables.iter().for_each(|variable| gatherer.variable(variable));
+    chart.transitions().for_each(|(_, transition)| gatherer.transition(&transition.expression));
+    for (_, node) in chart.nodes() {
+        node.entry.iter().chain(&node.exit).for_each(|action| gatherer.action(action));
+    }
+    gatherer.finish()
+}
+
+/// Which variables name messages or topics that the vocabulary of a program does not have.
+pub fn check(variables: &[Variable], vocabulary: &Vocabulary) -> Vec<Diagnostic> {
+    variables.iter().filter_map(|variable| fits(variable, vocabulary)).collect()
+}
+
+fn fits(variable: &Variable, vocabulary: &Vocabulary) -> Option<Diagnostic> {
+    let (topic, kind, message) = parts(&variable.kind)?;
+    let (place, name) = (variable.place.0, &variable.name);
+    if !vocabulary.messages.iter().any(|known| known.name == message) {
+        let names = vocabulary.messages.iter().map(|known| known.name.as_str());
+        let text = format!("the variable `{name}` is of a message `{message}`, which nobody knows");
+        return Some(Diagnostic::error("E0881", place, text).with_nearest(message, names));
+    }
+    let known = vocabulary
+        .topics
+        .iter()
+        .find(|known| known.path.rsplit('/').next().is_some_and(|last| last == topic))?;
+    if known.message != message {
+        let text = format!(
+            "the variable `{name}` is of `{message}`, but `{}` carries `{}`",
+            known.path, known.message
+        );
+        return Some(Diagnostic::error("E0882", place, text));
+    }
+    let is_kept = kind_word(known.kind);
+    (is_kept != kind).then(|| {
+        let text = format!("the variable `{name}` is kept as `{kind}`, but `{}` as `{is_kept}`", known.path);
+        Diagnostic::error("E0883", place, text)
+    })
+}
+
+fn kind_word(kind: TopicKind) -> &'static str {
+    match kind {
+        TopicKind::State => "State",
+        TopicKind::Signal => "Signal",
+        TopicKind::Data => "Data",
+    }
+}
+
+/// Topic, kind and message of a type `topic.Kind.Message`.
+fn parts(kind: &str) -> Option<(&str, &str, &str)> {
+    let (front, message) = kind.rsplit_once('.')?;
+    let (topic, kind) = front.rsplit_once('.')?;
+    (is_kind(kind) && !topic.is_empty() && !message.is_empty()).then_some((topic, kind, message))
+}
+
+fn is_kind(word: &str) -> bool {
+    matches!(word, "State" | "Signal" | "Data")
+}
+
+#[cfg(test)]
+mod tests;

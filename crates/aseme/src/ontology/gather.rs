@@ -1,0 +1,212 @@
+//! Going through expressions, and noting what they say of fields.
+
+use yase::expression::{Action, ActionKind, Expression, ExpressionKind, Path, TransitionExpression, Trigger};
+use yase::{Diagnostic, Span, Statechart};
+
+use super::{Field, FieldKind, Message, Ontology, Topic, is_kind, parts};
+use crate::iac::Variable;
+
+/// What has been found so far.
+pub(super) struct Gatherer<'a> {
+    constants: Vec<&'a str>,
+    ontology: Ontology,
+    found: Vec<Diagnostic>,
+}
+
+impl<'a> Gatherer<'a> {
+    pub(super) fn new(chart: &'a Statechart) -> Gatherer<'a> {
+        let constants = chart.constants.iter().map(|constant| constant.name.as_str()).collect();
+        Gatherer { constants, ontology: Ontology::default(), found: Vec::new() }
+    }
+
+    pub(super) fn finish(self) -> (Ontology, Vec<Diagnostic>) {
+        (self.ontology, self.found)
+    }
+
+    pub(super) fn variable(&mut self, variable: &Variable) {
+        match parts(&variable.kind) {
+            Some((topic, kind, message)) => self.message(message, Some((topic, kind)), variable.place.0),
+            None => {
+                let (name, kind) = (&variable.name, &variable.kind);
+                let text = format!("the variable `{name}` is of the type `{kind}`, which is no message");
+                let hint = "types of messages are written topic.State.Message, topic.Signal.Message or topic.Data.Message";
+                self.found.push(Diagnostic::warning("E0880", variable.place.0, text).with_hint(hint));
+            }
+        }
+    }
+
+    pub(super) fn transition(&mut self, expression: &TransitionExpression) {
+        match &expression.trigger {
+            Some(Trigger::OneOf(events)) => events.iter().for_each(|event| self.arrival(event)),
+            Some(Trigger::Not(event)) => self.arrival(event),
+            Some(Trigger::Any) | None => {}
+        }
+        if let Some(guard) = &expression.guard {
+            self.visit(guard, &FieldKind::Condition);
+        }
+        expression.actions.iter().for_each(|action| self.action(action));
+    }
+
+    pub(super) fn action(&mut self, action: &Action) {
+        match &action.kind {
+            ActionKind::Assign { target, value } => {
+                self.path(target, &self.kind_of(value));
+                self.visit(value, &FieldKind::Unknown);
+            }
+            ActionKind::Publish(message) => self.path(message, &FieldKind::Unknown),
+            ActionKind::ProcessMessages
+            | ActionKind::PublishAll
+            | ActionKind::StartTimeout { .. }
+            | ActionKind::Raise(_)
+            | ActionKind::Script(_) => {}
+        }
+    }
+
+    /// A trigger may name a message, where it says how that is kept; other names are those of events.
+    fn arrival(&mut self, event: &Path) {
+        if event.segments.iter().any(|segment| is_kind(&segment.text)) {
+            self.path(event, &FieldKind::Unknown);
+        }
+    }
+
+    /// An expression that is used as something.
+    fn visit(&mut self, expression: &Expression, used_as: &FieldKind) {
+        match &expression.kind {
+            ExpressionKind::Or(operands) | ExpressionKind::And(operands) => {
+                operands.iter().for_each(|operand| self.visit(operand, &FieldKind::Condition));
+            }
+            ExpressionKind::Not(operand) => self.visit(operand, &FieldKind::Condition),
+            ExpressionKind::Compare(left, _, right) => {
+                let kinds = (self.kind_of(left), self.kind_of(right));
+                self.visit(left, &kinds.1);
+                self.visit(right, &kinds.0);
+            }
+            ExpressionKind::Sum(first, rest) => {
+                self.visit(first, &FieldKind::Number);
+                rest.iter().for_each(|(_, operand)| self.visit(operand, &FieldKind::Number));
+            }
+            ExpressionKind::Product(first, rest) => {
+                self.visit(first, &FieldKind::Number);
+                rest.iter().for_each(|(_, operand)| self.visit(operand, &FieldKind::Number));
+            }
+            ExpressionKind::Negative(operand) => self.visit(operand, &FieldKind::Number),
+            ExpressionKind::Call(_, arguments) => {
+                arguments.iter().for_each(|argument| self.visit(argument, &FieldKind::Unknown));
+            }
+            ExpressionKind::Absent(path) | ExpressionKind::Present(path) => {
+                self.path(path, &FieldKind::Unknown);
+            }
+            ExpressionKind::Variable(path) => self.path(path, used_as),
+            ExpressionKind::Bool(_)
+            | ExpressionKind::Integer(_)
+            | ExpressionKind::Decimal(_)
+            | ExpressionKind::Text(_)
+            | ExpressionKind::TimeoutCheck(_)
+            | ExpressionKind::In(_)
+            | ExpressionKind::Script(_) => {}
+        }
+    }
+
+    /// What something is that is compared with this, or gets this as its value.
+    fn kind_of(&self, expression: &Expression) -> FieldKind {
+        match &expression.kind {
+            ExpressionKind::Integer(_)
+            | ExpressionKind::Decimal(_)
+            | ExpressionKind::Sum(..)
+            | ExpressionKind::Product(..)
+            | ExpressionKind::Negative(_) => FieldKind::Number,
+            ExpressionKind::Text(_) => FieldKind::Text,
+            ExpressionKind::Variable(path) => match path.bare() {
+                Some(name) if self.constants.contains(&name) => FieldKind::Number,
+                Some(name) => FieldKind::OneOf(vec![name.to_owned()]),
+                None => FieldKind::Unknown,
+            },
+            ExpressionKind::Call(..) | ExpressionKind::Absent(_) | ExpressionKind::Present(_) => {
+                FieldKind::Unknown
+            }
+            ExpressionKind::Bool(_)
+            | ExpressionKind::Or(_)
+            | ExpressionKind::And(_)
+            | ExpressionKind::Not(_)
+            | ExpressionKind::Compare(..)
+            | ExpressionKind::TimeoutCheck(_)
+            | ExpressionKind::In(_)
+            | ExpressionKind::Script(_) => FieldKind::Condition,
+        }
+    }
+
+    /// A path to a message or to one of its fields. A bare name is something else.
+    fn path(&mut self, path: &Path, kind: &FieldKind) {
+        let names: Vec<&str> = path.segments.iter().map(|segment| segment.text.as_str()).collect();
+        let kept =
+            names.iter().position(|name| is_kind(name)).filter(|&index| 0 < index && index + 1 < names.len());
+        let capital = |name: &&str| name.starts_with(|letter: char| letter.is_ascii_uppercase());
+        let at = match kept {
+            Some(index) => index + 1,
+            None if names.len() > 1 => names.iter().position(|name| capital(&name)).unwrap_or(names.len()),
+            None => return,
+        };
+        let Some(message) = names.get(at) else { return };
+        let topic = kept.map(|index| (names[index - 1], names[index]));
+        self.message(message, topic, path.place.0);
+        let Some(known) = self.ontology.messages.iter_mut().find(|known| known.name == *message) else {
+            return;
+        };
+        note(&mut known.fields, &names[at + 1..], kind);
+    }
+
+    /// A message that is met, perhaps on a topic.
+    fn message(&mut self, name: &str, topic: Option<(&str, &str)>, place: Span) {
+        let messages = &mut self.ontology.messages;
+        let index = messages.iter().position(|known| known.name == name).unwrap_or_else(|| {
+            messages.push(Message { name: name.to_owned(), topics: Vec::new(), fields: Vec::new() });
+            messages.len() - 1
+        });
+        let Some((topic, kind)) = topic else { return };
+        let others = messages
+            .iter()
+            .enumerate()
+            .flat_map(|(other, known)| known.topics.iter().map(move |it| (other, it)));
+        match others.clone().find(|(_, other)| other.name == topic) {
+            Some((other, known)) if other == index && known.kind == kind => {}
+            Some((other, known)) => {
+                let text = format!(
+                    "the topic `{topic}` is named with `{kind}.{name}`, and elsewhere with `{}.{}`",
+                    known.kind, messages[other].name
+                );
+                self.found.push(Diagnostic::error("E0884", place, text));
+            }
+            None => messages[index].topics.push(Topic { name: topic.to_owned(), kind: kind.to_owned() }),
+        }
+    }
+}
+
+/// Notes a field, and the fields in it.
+fn note(fields: &mut Vec<Field>, names: &[&str], kind: &FieldKind) {
+    let [name, rest @ ..] = names else { return };
+    let index = fields.iter().position(|field| field.name == *name).unwrap_or_else(|| {
+        fields.push(Field { name: (*name).to_owned(), kind: FieldKind::Unknown });
+        fields.len() - 1
+    });
+    let known = &mut fields[index].kind;
+    if !rest.is_empty() {
+        if !matches!(known, FieldKind::Fields(_)) {
+            *known = FieldKind::Fields(Vec::new());
+        }
+        if let FieldKind::Fields(inner) = known {
+            note(inner, rest, kind);
+        }
+        return;
+    }
+    match (known, kind) {
+        (FieldKind::OneOf(values), FieldKind::OneOf(more)) => {
+            let new = more.iter().filter(|value| !values.contains(value)).cloned().collect::<Vec<_>>();
+            values.extend(new);
+        }
+        // what was said first counts; what is asked by itself is only then a condition if nothing else is known of it
+        (known @ (FieldKind::Unknown | FieldKind::Condition), kind) if *kind != FieldKind::Unknown => {
+            *known = kind.clone();
+        }
+        _ => {}
+    }
+}
