@@ -221,11 +221,11 @@ message Attack {
     assert!(answer.out.contains(attack), "{}", answer.out);
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("team.proto");
-    std::fs::write(&path, &answer.out).expect("written");
+    fs::write(&path, &answer.out).expect("written");
     protox::compile([&path], [folder.path()]).expect("it is in order");
     let role = monas(&["model", "ontology", "models/goalie.srm", "-o", &path.display().to_string()]);
     assert_eq!((role.code, role.out.as_str()), (Some(0), ""));
-    assert!(std::fs::read_to_string(&path).expect("read").contains("message Ball {"));
+    assert!(fs::read_to_string(&path).expect("read").contains("message Ball {"));
 }
 
 #[test]
