@@ -86,7 +86,7 @@ pub enum FieldKind {
     Fields(Vec<Field>),
 }
 
-/// What a chart and the variables of its model are about, and which of them do not fit together.
+/// What a chart and the variables of its model are about, with warnings of those that are no messages or are kept in two ways.
 pub fn of(chart: &Statechart, variables: &[Variable]) -> (Ontology, Vec<Diagnostic>) {
     let mut gatherer = Gatherer::new(chart);
     variables.iter().for_each(|variable| gatherer.variable(variable));

@@ -163,21 +163,16 @@ impl<'a> Gatherer<'a> {
             messages.len() - 1
         });
         let Some((topic, kind)) = topic else { return };
-        let others = messages
-            .iter()
-            .enumerate()
-            .flat_map(|(other, known)| known.topics.iter().map(move |it| (other, it)));
-        match others.clone().find(|(_, other)| other.name == topic) {
-            Some((other, known)) if other == index && known.kind == kind => {}
-            Some((other, known)) => {
-                let text = format!(
-                    "the topic `{topic}` is named with `{kind}.{name}`, and elsewhere with `{}.{}`",
-                    known.kind, messages[other].name
-                );
-                self.found.push(Diagnostic::error("E0884", place, text));
-            }
-            None => messages[index].topics.push(Topic { name: topic.to_owned(), kind: kind.to_owned() }),
+        let topics = &mut messages[index].topics;
+        if topics.iter().any(|known| known.name == topic && known.kind == kind) {
+            return;
         }
+        if let Some(known) = topics.iter().find(|known| known.name == topic) {
+            let text =
+                format!("`{name}` is kept as `{kind}` on `{topic}` here, and as `{}` elsewhere", known.kind);
+            self.found.push(Diagnostic::warning("E0884", place, text));
+        }
+        topics.push(Topic { name: topic.to_owned(), kind: kind.to_owned() });
     }
 }
 

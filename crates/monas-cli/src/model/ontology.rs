@@ -36,9 +36,6 @@ pub(crate) fn execute(
     };
     let (ontology, found) = ontology::of(&chart, variables);
     let found: Vec<Diagnostic> = found.into_iter().map(|diagnostic| diagnostic.in_source(&source)).collect();
-    if found.iter().any(Diagnostic::is_error) {
-        return Err(Failure::Invalid(format, found));
-    }
     report::write(console, format, &found)?;
     if ontology.messages.is_empty() {
         let text = format!("{} is about no messages", file.display());
