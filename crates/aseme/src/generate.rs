@@ -50,6 +50,8 @@ pub struct Words {
     pub messages: BTreeMap<String, String>,
     /// Where each activity is in Rust, by its name in charts. One that is not here gets a skeleton.
     pub activities: BTreeMap<String, RustActivity>,
+    /// What activities are about, by their names: variables of the model with their types. Skeletons say it.
+    pub subjects: BTreeMap<String, Vec<(String, String)>>,
     /// The module that has [`yase::typed`]'s names.
     pub runtime: String,
     /// Whether the crate registers itself and makes its activities: whether the runtime is that of Monas.
@@ -67,6 +69,7 @@ impl Default for Words {
             vocabulary: Vocabulary::default(),
             messages: BTreeMap::new(),
             activities: BTreeMap::new(),
+            subjects: BTreeMap::new(),
             runtime: "yase::typed".to_owned(),
             registers: false,
             origin: String::new(),

@@ -27,10 +27,12 @@
 mod gather;
 mod proto;
 
+use std::collections::BTreeMap;
+
 use yase::vocabulary::TopicKind;
 use yase::{Diagnostic, Statechart, Vocabulary};
 
-use crate::iac::Variable;
+use crate::iac::{Iac, Variable};
 use gather::Gatherer;
 
 /// The messages that a chart is about, in the order in which they are met.
@@ -100,6 +102,22 @@ pub fn of(chart: &Statechart, variables: &[Variable]) -> (Ontology, Vec<Diagnost
 /// Which variables name messages or topics that the vocabulary of a program does not have.
 pub fn check(variables: &[Variable], vocabulary: &Vocabulary) -> Vec<Diagnostic> {
     variables.iter().filter_map(|variable| fits(variable, vocabulary)).collect()
+}
+
+/// What each activity of a chart's model is about: the variables of its states, with their types.
+pub fn subjects(chart: &Iac) -> BTreeMap<String, Vec<(String, String)>> {
+    let mut subjects: BTreeMap<String, Vec<(String, String)>> = BTreeMap::new();
+    for node in chart.nodes.iter().filter(|node| !node.variables.is_empty()) {
+        let activity = node.refinement.activity.as_ref().unwrap_or(&node.name);
+        let known = subjects.entry(activity.clone()).or_default();
+        for variable in node.variables.iter().filter_map(|&index| chart.variables.get(index)) {
+            let subject = (variable.name.clone(), variable.kind.clone());
+            if !known.contains(&subject) {
+                known.push(subject);
+            }
+        }
+    }
+    subjects
 }
 
 fn fits(variable: &Variable, vocabulary: &Vocabulary) -> Option<Diagnostic> {

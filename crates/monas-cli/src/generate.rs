@@ -10,8 +10,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use aseme::convert::{self, Model};
 use aseme::generate::{self, Files, SKELETONS, Words};
-use monas::{Registry, generated};
+use aseme::ontology;
+use monas::{Registry, config, generated};
 use yase::Diagnostic;
 
 use crate::arguments::{Format, GenerateArguments};
@@ -32,6 +34,11 @@ pub(crate) fn execute(arguments: &GenerateArguments, console: &mut Console<'_>) 
     let mut words = generated::words(&Registry::linked()).map_err(|error| Failure::failed(format, error))?;
     words.origin = project.relative(&arguments.model);
     words.name.clone_from(&name);
+    let source =
+        config::read_file(&arguments.model).map_err(|unread| Failure::Invalid(format, vec![*unread]))?;
+    if let (Some((Model::Chart(chart), _)), _) = convert::read(&source) {
+        words.subjects = ontology::subjects(&chart);
+    }
     forget_own(&mut words, &name);
     let files = generate::generate(&chart, &words).map_err(|found| Failure::Invalid(format, found))?;
     let files = laid_out(files, &project, console).map_err(|error| Failure::failed(format, error))?;

@@ -46,7 +46,7 @@ pub(super) fn activities(
     for name in names {
         match words.activities.get(name) {
             Some(known) => made.known(name, known),
-            None => made.skeleton(name),
+            None => made.skeleton(name, words.subjects.get(name).map_or(&[], Vec::as_slice)),
         }
     }
     if !made.found.is_empty() {
@@ -101,7 +101,7 @@ impl Activities {
         self.called.insert(name.to_owned(), RustActivity { path, is_function: activity.is_function });
     }
 
-    fn skeleton(&mut self, name: &str) {
+    fn skeleton(&mut self, name: &str, subjects: &[(String, String)]) {
         let (rust, module) = (camel(name), snake(name));
         if self.own.contains(&module) {
             let message = format!("the activity `{name}` and another would have one name in Rust: `{rust}`");
@@ -113,7 +113,7 @@ impl Activities {
         if !is_taken {
             self.imported.entry(module.clone()).or_default().push(rust.clone());
         }
-        self.files.insert(format!("{SKELETONS}{module}.rs"), skeleton_text(name, &rust));
+        self.files.insert(format!("{SKELETONS}{module}.rs"), skeleton_text(name, &rust, subjects));
         self.own.insert(module);
         self.called.insert(name.to_owned(), RustActivity { path, is_function: false });
     }
@@ -133,10 +133,18 @@ impl Activities {
     }
 }
 
-fn skeleton_text(name: &str, rust: &str) -> String {
+fn skeleton_text(name: &str, rust: &str, subjects: &[(String, String)]) -> String {
+    let subject = |(name, kind): &(String, String)| format!("//! - {}: {}\n", quoted(name), quoted(kind));
+    let about = match subjects {
+        [] => String::new(),
+        subjects => format!(
+            "//!\n//! What it is about, by the model:\n//!\n{}",
+            subjects.iter().map(subject).collect::<String>()
+        ),
+    };
     let registered = if name == rust { rust.to_owned() } else { format!("{rust} as {}", literal(name)) };
     format!(
-        "//! The activity {}.\n\nuse monas::{{Activity, Blackboard, BoxError, Progress}};\n\n\
+        "//! The activity {}.\n{about}\nuse monas::{{Activity, Blackboard, BoxError, Progress}};\n\n\
          /// Has nothing to do so far.\n#[derive(Clone, Copy, Debug, Default)]\npub struct {rust};\n\n\
          impl Activity for {rust} {{\n\
          \x20   fn execute(&mut self, _: &mut Blackboard) -> Result<Progress, BoxError> {{\n\

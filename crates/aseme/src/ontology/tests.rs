@@ -101,3 +101,14 @@ fn variables_are_held_against_what_a_program_knows() {
         "E0883 the variable `v` is kept as `Data`, but `soccer/ball` as `State`"
     );
 }
+
+#[test]
+fn activities_are_about_the_variables_of_their_states() {
+    let text = "IAC: r\n\nVariable: gsm\n  type = worldstate.State.GameState\n\nStates:\n  r OR\n    START\n    a BASIC\n      variables = gsm\n    \
+                b BASIC\n      activity = a\n      variables = gsm\n    END\n\nTransitions:\n  START -> a\n  a -> b\n  b -> END\n";
+    let (model, read) = crate::convert::read(&Source::new("r", text));
+    assert_eq!(read, []);
+    let Some((crate::convert::Model::Chart(chart), _)) = model else { panic!("it is a chart") };
+    let subject = ("gsm".to_owned(), "worldstate.State.GameState".to_owned());
+    assert_eq!(subjects(&chart), [("a".to_owned(), vec![subject])].into());
+}

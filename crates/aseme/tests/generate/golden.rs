@@ -57,7 +57,8 @@ fn a_crate_of_monas_has_its_activities_and_skeletons_for_those_that_are_not_ther
     let activity = |path: &str, is_function| aseme::generate::RustActivity { path: path.into(), is_function };
     let activities = [("look", activity("team::look", true)), ("kick", activity("team::Kick", false))];
     let activities = activities.map(|(name, activity)| (name.to_owned(), activity));
-    let words = Words { activities: activities.into(), name: "player".into(), ..words };
+    let subjects = [("passBall".to_owned(), vec![("mate".to_owned(), "team.State.Mate".to_owned())])].into();
+    let words = Words { activities: activities.into(), subjects, name: "player".into(), ..words };
     let chart = chart("player.srm", "player = look . kick . passBall");
     check("player", &generate(&chart, &words).expect("it can be written"));
 }

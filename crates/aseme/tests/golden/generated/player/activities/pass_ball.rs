@@ -1,4 +1,8 @@
 //! The activity `passBall`.
+//!
+//! What it is about, by the model:
+//!
+//! - `mate`: `team.State.Mate`
 
 use monas::{Activity, Blackboard, BoxError, Progress};
 
