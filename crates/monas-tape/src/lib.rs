@@ -63,6 +63,7 @@ mod playback;
 mod queue;
 mod recorder;
 mod records;
+mod schema;
 mod tape;
 mod value;
 mod writer;
@@ -73,5 +74,6 @@ pub use overview::{ChannelOverview, Overview};
 pub use playback::{
     Attachment, Channel, Content, Contents, Facts, Message, Messages, Recording, Schema, read,
 };
+pub use schema::descriptor_pool;
 pub use tape::Tape;
 pub use value::{Decoder, FieldDifference, Value};

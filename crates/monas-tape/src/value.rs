@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use prost_reflect::{
-    DescriptorPool, DynamicMessage, FieldDescriptor, Kind, MapKey, MessageDescriptor, ReflectMessage,
-};
+use prost_reflect::{DynamicMessage, FieldDescriptor, Kind, MapKey, MessageDescriptor, ReflectMessage};
 
 use crate::error::Error;
 use crate::playback::{Channel, PROTOBUF, Schema};
+use crate::schema::descriptor_pool;
 
 /// A message with more values than this, those that are not set included, is not taken apart. A schema may give each of many
 /// small messages many fields.
@@ -86,7 +85,7 @@ impl Decoder {
 
 fn read(schema: &Schema) -> Option<MessageDescriptor> {
     let is_protobuf = schema.encoding == PROTOBUF;
-    let pool = is_protobuf.then(|| DescriptorPool::decode(&*schema.data).ok()).flatten()?;
+    let pool = is_protobuf.then(|| descriptor_pool(&schema.data).ok()).flatten()?;
     pool.get_message_by_name(&schema.name)
 }
 

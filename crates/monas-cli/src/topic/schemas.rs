@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use monas_link::control::ControlClient;
-use prost_reflect::{DescriptorPool, DynamicMessage, MessageDescriptor, SerializeOptions};
+use prost_reflect::{DynamicMessage, MessageDescriptor, SerializeOptions};
 use serde_json::Value;
 
 use super::connect::failure;
@@ -33,8 +33,7 @@ impl Schemas {
         let odd = |what: String| {
             Failure::failed(self.format, format!("the schema of `{topic}` cannot be used: {what}"))
         };
-        let pool =
-            DescriptorPool::decode(schema.descriptors.as_slice()).map_err(|error| odd(error.to_string()))?;
+        let pool = monas_tape::descriptor_pool(&schema.descriptors).map_err(odd)?;
         let message = pool.get_message_by_name(&schema.r#type);
         let message = message.ok_or_else(|| odd(format!("it does not hold `{}`", schema.r#type)))?;
         self.by_topic.insert(topic.to_owned(), message.clone());

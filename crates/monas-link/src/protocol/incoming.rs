@@ -159,11 +159,14 @@ impl Incoming {
         self.held_bytes
     }
 
-    /// A message that was delivered has turned out to be none.
-    pub(crate) fn take_back(&mut self) {
-        self.counted.delivered = self.counted.delivered.saturating_sub(1);
+    /// A message that was delivered has turned out to be none. False if it cannot have been delivered here: then it came from a stream
+    /// that has begun anew since, and its counters are gone.
+    pub(crate) fn take_back(&mut self) -> bool {
+        let Some(delivered) = self.counted.delivered.checked_sub(1) else { return false };
+        self.counted.delivered = delivered;
         self.counted.refused += 1;
         self.counted.gaps += 1;
+        true
     }
 
     pub(crate) fn counted(&self) -> Received {
@@ -218,6 +221,17 @@ mod tests {
             counted.last - counted.start,
             counted.delivered + counted.gaps + counted.held + counted.missing
         );
+    }
+
+    #[test]
+    fn what_was_delivered_by_a_stream_before_is_not_taken_back() {
+        let mut incoming = Incoming::new(true, 0);
+        assert!(!incoming.take_back());
+        assert_eq!(incoming.counted(), Incoming::new(true, 0).counted());
+        deliver(&mut incoming, &[1]);
+        assert!(incoming.take_back());
+        let counted = incoming.counted();
+        assert_eq!((counted.delivered, counted.refused, counted.gaps), (0, 1, 1));
     }
 
     #[test]

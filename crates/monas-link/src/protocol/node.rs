@@ -414,16 +414,19 @@ impl Node {
     /// Notes that a delivered message was not of its topic's type after all.
     pub fn take_back(&mut self, delivery: &Delivery) {
         if let Some(counted) = self.guests.get_mut(&(delivery.host.clone(), delivery.topic)) {
-            counted.delivered = counted.delivered.saturating_sub(1);
+            let Some(delivered) = counted.delivered.checked_sub(1) else { return };
+            counted.delivered = delivered;
             counted.refused += 1;
             counted.gaps += 1;
             return;
         }
         let peer = self.peers.iter_mut().find(|peer| peer.name == delivery.host);
         for reading in peer.into_iter().flat_map(|peer| peer.topics.iter_mut().flatten()) {
-            match &mut reading.state {
-                ReadingState::Read { topic, incoming } if *topic == delivery.topic => incoming.take_back(),
-                _ => {}
+            if let ReadingState::Read { topic, incoming } = &mut reading.state
+                && *topic == delivery.topic
+                && incoming.take_back()
+            {
+                return;
             }
         }
     }
