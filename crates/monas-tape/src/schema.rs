@@ -2,7 +2,7 @@
 
 use prost_reflect::DescriptorPool;
 use prost_reflect::prost::Message;
-use prost_types::FileDescriptorSet;
+use prost_reflect::prost_types::FileDescriptorSet;
 
 /// The types that an encoded `FileDescriptorSet` from elsewhere describes.
 ///
@@ -23,7 +23,7 @@ pub fn descriptor_pool(bytes: &[u8]) -> Result<DescriptorPool, String> {
 
 #[cfg(test)]
 mod tests {
-    use prost_types::FileDescriptorProto;
+    use prost_reflect::prost_types::FileDescriptorProto;
 
     use super::*;
 
