@@ -6,6 +6,8 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 
+#[cfg(unix)]
+use crate::agent::AgentCommand;
 use crate::duration;
 use crate::tape::arguments::TapeCommand;
 #[cfg(unix)]
@@ -47,6 +49,10 @@ pub(crate) enum Command {
     #[cfg(unix)]
     #[command(subcommand)]
     Topic(TopicCommand),
+    /// Look at the agents of a run while it runs, and change them.
+    #[cfg(unix)]
+    #[command(subcommand)]
+    Agent(AgentCommand),
     /// Look at recordings, mend, cut and merge them, write them as text, replay them.
     #[command(subcommand)]
     Tape(TapeCommand),

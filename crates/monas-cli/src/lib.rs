@@ -25,6 +25,8 @@
 //! What a command is asked for goes to standard output; diagnostics, progress and the log go to standard error. A command
 //! that writes into a closed pipe ends quietly.
 
+#[cfg(unix)]
+mod agent;
 mod arguments;
 mod config;
 mod console;
@@ -90,6 +92,8 @@ fn execute(command: Command, console: &mut Console<'_>) -> Result<Exit, Failure>
         Command::Model(command) => model::execute(&command, console),
         #[cfg(unix)]
         Command::Topic(command) => topic::execute(&command, console),
+        #[cfg(unix)]
+        Command::Agent(command) => agent::execute(&command, console),
         Command::Tape(command) => tape::execute(&command, console),
         Command::New(arguments) => new::execute(&arguments, console),
         Command::Doctor(arguments) => doctor::execute(&arguments, console),

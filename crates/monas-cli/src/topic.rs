@@ -1,7 +1,7 @@
 //! `monas topic`: the topics of a run, while it runs.
 
-mod arguments;
-mod connect;
+pub(crate) mod arguments;
+pub(crate) mod connect;
 mod echo;
 mod figures;
 mod list;

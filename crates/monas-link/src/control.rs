@@ -44,6 +44,15 @@ pub trait Observed: Send + Sync {
     /// # Errors
     /// Why not: lower case.
     fn publish(&self, host: &str, path: &str, bytes: &[u8]) -> Result<(), String>;
+
+    /// Answers what is asked of the agents: in words of their own, which the socket does not know.
+    ///
+    /// # Errors
+    /// Why not: lower case.
+    fn manage(&self, inquiry: &[u8]) -> Result<Vec<u8>, String> {
+        let _ = inquiry;
+        Err("this run has no agents that could be managed".into())
+    }
 }
 
 /// What is asked and answered.

@@ -1,12 +1,13 @@
 //! A match that was read and found to be right, not yet begun.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 use monas::config::{self, Element, Grammar, Layers};
 use monas::{Agent, ChartListener, HostConfig, LinkConfig, Provenance, Registry, RunHash, Talws};
 use monas_sim::{FieldGeometry, Physics, Pitch, Rules, Setup, TeamSetup, World};
-use yase::Diagnostic;
+use yase::{Diagnostic, Source};
 
 use crate::error::Error;
 use crate::file::{self, MatchFile};
@@ -80,9 +81,16 @@ fn robots(
             diagnostics.extend(resolved.diagnostics);
             diagnostics.extend(settings.unmatched(&robot.own, resolved.unmatched));
             let setup = config::assemble(&resolved.elements, &robot.role, registry, diagnostics);
-            let config::Setup { agents, links } = setup;
+            let config::Setup { agents, links, source } = setup;
             let host = format!("{}-{}", file::host_name(&team.setup.name), robot.number);
-            robots.push(RobotPlan { team: team.setup.number, number: robot.number, host, agents, links });
+            robots.push(RobotPlan {
+                team: team.setup.number,
+                number: robot.number,
+                host,
+                agents,
+                links,
+                source,
+            });
         }
     }
     diagnostics.extend(settings.of_nobody());
@@ -131,6 +139,8 @@ struct RobotPlan {
     host: String,
     agents: Vec<Agent>,
     links: Vec<LinkConfig>,
+    /// The text of its role.
+    source: Option<Arc<Source>>,
 }
 
 /// How a match is to be played.
@@ -202,6 +212,7 @@ impl MatchPlan {
             agents: robot.agents,
             // Who is heard of is known by them; a replay opens none.
             links: robot.links,
+            configuration: robot.source,
         };
         self.robots.into_iter().map(host).collect()
     }
@@ -260,10 +271,13 @@ impl MatchPlan {
         };
         let pitch = Pitch::new(World::new(setup).map_err(Error::field)?);
         let mut talws = Talws::new().registry(self.registry);
-        for (index, RobotPlan { team, number, host, agents, links }) in self.robots.into_iter().enumerate() {
+        for (index, RobotPlan { team, number, host, agents, links, source }) in
+            self.robots.into_iter().enumerate()
+        {
             let body = pitch.body(index).map(|body| Box::new(body) as _);
             let (team, number) = (team.into(), number.into());
-            talws.host(HostConfig { name: host, team, number, body, agents, links });
+            let configuration = source;
+            talws.host(HostConfig { name: host, team, number, body, agents, links, configuration });
         }
         talws.world(Box::new(Stage::new(pitch.clone())));
         for listener in self.listeners {

@@ -1,14 +1,20 @@
 //! Agents: what runs together under one name.
 
+mod profile;
+
 use std::collections::BTreeMap;
 use std::fmt;
 use std::num::NonZeroUsize;
+use std::time::Duration;
 
 use yase::{Semantics, Statechart};
 
 use crate::activity::Activity;
 use crate::frequency::Frequency;
 use crate::generated::GeneratedChart;
+use crate::parameters::Parameters;
+
+pub(crate) use profile::{ActivityProfile, ChartProfile, Profile};
 
 /// What happens when an activity fails or panics. Whatever it is, the failure is logged with the agent and the cycle, and no
 /// other agent notices.
@@ -52,7 +58,7 @@ impl Policy {
 pub struct Agent {
     pub(crate) name: String,
     pub(crate) frequency: Option<Frequency>,
-    pub(crate) activities: Vec<(String, Box<dyn Activity>)>,
+    pub(crate) activities: Vec<Listed>,
     pub(crate) charts: Vec<Statechart>,
     /// By their place among the charts: those that are code.
     pub(crate) generated: BTreeMap<usize, GeneratedChart>,
@@ -63,6 +69,20 @@ pub struct Agent {
     pub(crate) workers: Option<NonZeroUsize>,
     pub(crate) semantics: Semantics,
     pub(crate) elsewhere: Vec<String>,
+    /// Where each chart comes from, by its place.
+    pub(crate) models: Vec<String>,
+    pub(crate) cores: Vec<usize>,
+    pub(crate) stuck_after: Option<Duration>,
+}
+
+/// An activity of a list.
+pub(crate) struct Listed {
+    pub(crate) name: String,
+    /// Those it was configured with.
+    pub(crate) parameters: Parameters,
+    /// What happens when it fails, if that is not what happens when any of the agent's does.
+    pub(crate) policy: Option<Policy>,
+    pub(crate) activity: Box<dyn Activity>,
 }
 
 impl Agent {
@@ -91,6 +111,9 @@ impl Agent {
             workers: None,
             semantics: Semantics::yase(),
             elsewhere: Vec::new(),
+            models: Vec::new(),
+            cores: Vec::new(),
+            stuck_after: None,
         }
     }
 
@@ -101,27 +124,53 @@ impl Agent {
     }
 
     /// Adds an activity at the end of the list, under the name it is registered as.
-    pub fn named_activity(mut self, name: impl Into<String>, activity: Box<dyn Activity>) -> Agent {
-        self.activities.push((name.into(), activity));
+    pub fn named_activity(self, name: impl Into<String>, activity: Box<dyn Activity>) -> Agent {
+        self.listed(Listed { name: name.into(), parameters: Parameters::new(), policy: None, activity })
+    }
+
+    /// Adds an activity that was configured at the end of the list.
+    pub(crate) fn listed(mut self, listed: Listed) -> Agent {
+        self.activities.push(listed);
         self
     }
 
     /// Adds a statechart.
-    pub fn chart(mut self, chart: Statechart) -> Agent {
+    pub fn chart(self, chart: Statechart) -> Agent {
+        let name = chart.name.clone();
+        self.chart_of(name, chart)
+    }
+
+    /// Adds a statechart that comes from a file, or has that name in the registry.
+    pub(crate) fn chart_of(mut self, model: impl Into<String>, chart: Statechart) -> Agent {
+        self.models.push(model.into());
         self.charts.push(chart);
         self
     }
 
     /// Adds a statechart that is code, as [`Registry::chart`](crate::Registry::chart) gives it.
-    pub fn generated(mut self, chart: GeneratedChart) -> Agent {
+    pub fn generated(self, chart: GeneratedChart) -> Agent {
+        let name = chart.statechart().name.clone();
+        self.generated_as(name, chart)
+    }
+
+    /// Adds a statechart that is code, under the name it is registered as.
+    pub(crate) fn generated_as(mut self, name: impl Into<String>, chart: GeneratedChart) -> Agent {
         let statechart = chart.statechart().clone();
         self.generated.insert(self.charts.len(), chart);
-        self.chart(statechart)
+        self.chart_of(name, statechart)
     }
 
     /// Says what happens when an activity fails.
     pub fn on_failure(mut self, policy: Policy) -> Agent {
         self.policy = policy;
+        self
+    }
+
+    /// Says what happens when the activity fails that was added last to the list.
+    pub fn activity_on_failure(mut self, policy: Policy) -> Agent {
+        if let Some(listed) = self.activities.last_mut() {
+            listed.policy = Some(policy);
+        }
         self
     }
 
@@ -131,10 +180,24 @@ impl Agent {
         self
     }
 
-    /// Says how urgent it is, and whether the system's real-time scheduling is wanted for it. Threads are still left to ordinary
-    /// scheduling.
+    /// Says how urgent it is, from 1 to 99, the higher the sooner, and whether the system's real-time scheduling is wanted for its threads.
+    /// Where that is not permitted the log says so, and they run on like others.
     pub fn urgency(mut self, priority: i32, real_time: bool) -> Agent {
         (self.priority, self.real_time) = (priority, real_time);
+        self
+    }
+
+    /// Says on which of the computer's cores its threads may run, by their numbers; on any, if none is named.
+    pub fn cores(mut self, cores: impl IntoIterator<Item = usize>) -> Agent {
+        self.cores = cores.into_iter().collect();
+        self
+    }
+
+    /// Says how long a cycle of its list may take in real time before it counts as stuck: nothing that it does is published then, and the
+    /// agent stops when it comes back. If it is not said, ten times its period, and a second at least. A call of a chart's
+    /// activity is reported after this time; after ten seconds, if it is not said.
+    pub fn stuck_after(mut self, time: Duration) -> Agent {
+        self.stuck_after = Some(time);
         self
     }
 
@@ -176,7 +239,7 @@ impl Agent {
 
     /// The names of the activities in its list, in order.
     pub fn activity_names(&self) -> impl Iterator<Item = &str> {
-        self.activities.iter().map(|(name, _)| name.as_str())
+        self.activities.iter().map(|listed| listed.name.as_str())
     }
 
     /// Its statecharts.

@@ -8,6 +8,7 @@ mod fetching;
 mod following;
 mod lending;
 mod post;
+mod swap;
 mod urgency;
 mod values;
 
@@ -32,7 +33,8 @@ use desk::Desk;
 pub(crate) use desk::transition_name;
 use fetching::Fetching;
 pub(crate) use fetching::Lead;
-pub(crate) use post::{Assignment, Posts, Returned};
+pub(crate) use post::{Assignment, Posts, Returned, Took};
+pub(crate) use swap::Swap;
 
 /// How long the first pause is of an activity that is restarted; each further one in a row is twice as long, up to 64 times.
 const FIRST_PAUSE: Duration = Duration::from_millis(10);
@@ -63,6 +65,8 @@ pub(crate) struct Home<'a> {
     pub(crate) number: u32,
     pub(crate) seed: u64,
     pub(crate) listeners: &'a Listeners,
+    /// When it is set up.
+    pub(crate) now: Moment,
 }
 
 impl Home<'_> {
@@ -211,7 +215,7 @@ impl Runner {
         &mut self,
         assignment: Assignment,
         returned: Returned,
-        took: Option<Duration>,
+        took: Option<Took>,
         restart: bool,
         now: Moment,
     ) -> Result<(), Failure> {
@@ -357,6 +361,19 @@ impl Runner {
 
     pub(crate) fn activity_name(&self, activation: Activation) -> String {
         self.posts.name(activation).to_owned()
+    }
+
+    /// The activation of an activity that is being called: the chart may be another one than when the call began.
+    pub(crate) fn known_as(&self, assignment: &Assignment) -> Activation {
+        self.posts.known_as(assignment)
+    }
+
+    /// The paths of the BASIC states that are active.
+    pub(crate) fn active(&self) -> Vec<String> {
+        let chart = self.machine.chart();
+        let is_basic = |node: &yase::NodeId| chart.statechart().node(*node).kind == yase::NodeKind::Basic;
+        let active = self.machine.configuration();
+        active.into_iter().filter(is_basic).map(|node| chart.short_path(node)).collect()
     }
 
     pub(crate) fn name(&self) -> &str {

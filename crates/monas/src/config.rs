@@ -15,14 +15,15 @@
 //!
 //! | attribute of `agent` and `provider` | means |
 //! |---|---|
-//! | `thread_frequency` | cycles a second; needed by a list of activities |
-//! | `priority`, `is_real_time` | how urgent it is, and whether real-time scheduling is wanted; kept with the agent, while threads are still left to the system's ordinary scheduling |
+//! | `thread_frequency` | cycles a second, 0 for as many as there can be; needed by a list of activities |
+//! | `is_real_time`, `priority` | whether the system's real-time scheduling is wanted for its threads, and how urgent they are then, from 1 to 99; where it is not permitted the log says so, and they run on like others |
+//! | `cores` | the numbers of the cores that its threads may run on, such as `2 3`; any, if it is not said |
 //! | `stats_cycle` | after how many cycles its times are written to the log; 0 for never |
 //! | `workers` | how many threads the activities of its statecharts have in real time; as many as can be active at once, at most twelve, if it is not said |
 //! | `enable` | `0` leaves it out |
 //! | `on_failure` | what happens when an activity fails: `restart`, `skip`, `stop-agent`, `safe-state` |
 //!
-//! `frequency` is short for `thread_frequency`. All other attributes of an `activity` are its [parameters](crate::Parameters). A `provider` is an agent with the one activity
+//! `frequency` is short for `thread_frequency`. An `activity` may have `enable` and an `on_failure` of its own; all its other attributes are its [parameters](crate::Parameters). A `provider` is an agent with the one activity
 //! that it is named after. Files may hold any number of agents, in an `<agents>` or not.
 //!
 //! A `<statechart elsewhere="Vision">` leaves the named activities to another process: their states do nothing here, and a link brings what
@@ -106,6 +107,7 @@ mod resolve;
 mod schema;
 mod toml;
 mod tree;
+mod update;
 mod values;
 pub mod xml;
 mod xml_config;
@@ -118,8 +120,14 @@ pub use model::load as load_model;
 pub use paths::{locate, read as read_file};
 pub use resolve::{Entry, Resolved, entries, resolve, resolve_text, sort as sort_diagnostics};
 pub use tree::{Xml, XmlNode};
+pub(crate) use update::{updated, written_anew};
 pub use values::Values;
 pub use xml_config::{ValueError, XmlConfig};
+
+/// Whether a file of that name is TOML.
+pub(crate) fn is_toml(name: &str) -> bool {
+    std::path::Path::new(name).extension().is_some_and(|ending| ending == "toml")
+}
 
 /// Reads a length of time: a number and `ns`, `us`, `ms`, `s` or `min`.
 pub fn duration(text: &str) -> Option<std::time::Duration> {

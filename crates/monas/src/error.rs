@@ -25,8 +25,12 @@ pub enum ErrorKind {
     AmbiguousFunction,
     /// Several crates register a generated statechart of that name.
     AmbiguousChart,
+    /// No generated statechart is registered under that name.
+    UnknownChart,
     /// Two hosts, or two agents of a host, have one name.
     DuplicateName,
+    /// There is no host of that name.
+    UnknownHost,
     /// An agent has activities, but nothing says how often they run.
     NoFrequency,
     /// Something people wrote cannot be used; [`Error::diagnostics`] says what.
@@ -51,6 +55,14 @@ impl Error {
     pub(crate) fn with_hint(mut self, hint: impl Into<String>) -> Error {
         self.hint = Some(hint.into());
         self
+    }
+
+    /// Says which of those that there are could be meant.
+    pub(crate) fn with_nearest<'a>(self, wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Error {
+        match yase::diagnostic::nearest(wrong, known) {
+            Some(near) => self.with_hint(format!("did you mean `{near}`?")),
+            None => self,
+        }
     }
 
     pub(crate) fn caused_by(mut self, source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Error {

@@ -85,6 +85,7 @@ pub mod records;
 mod registry;
 mod run_hash;
 mod statistics;
+mod stopwatch;
 mod talws;
 mod vocabulary;
 
@@ -100,7 +101,8 @@ pub use parameters::{ParameterFault, Parameters};
 pub use provenance::Provenance;
 pub use registry::Registry;
 pub use run_hash::RunHash;
-pub use statistics::{ActivityStatistics, AgentStatistics, Average, Statistics};
+pub use statistics::{ActivityStatistics, AgentStatistics, Average, Percentiles, Statistics};
+pub use stopwatch::{Histogram, Lap, Plain, Stopwatch, TimeSource, TimingPolicy};
 pub use talws::{HostConfig, Overview, Running, Simulation, Stopper, Talws, World};
 
 /// Running agents again on what was recorded: [`Talws::replay`], and [`Talws::replay_real_time`].

@@ -1,12 +1,18 @@
 //! A list of activities that run one after the other: one pass is one cycle, and one transaction.
 
+mod edit;
+
+use std::time::Duration;
+
 use narukom::{Blackboard, Moment};
 
 use crate::activity::Activity;
-use crate::agent::Policy;
+use crate::agent::{Listed, Policy};
 use crate::call::{self, Failure};
-use crate::statistics::{ActivityStatistics, Average};
-use crate::talws::Clock;
+use crate::statistics::{ActivityStatistics, Timing};
+use crate::talws::{Clock, Pulse, cpu_time};
+
+pub(crate) use edit::ListEdit;
 
 /// How many calls an activity that keeps failing misses at most before it is tried again.
 const LONGEST_PAUSE: u64 = 64;
@@ -18,17 +24,31 @@ pub(crate) struct List {
     entries: Vec<Entry>,
     blackboard: Blackboard,
     cycles: u64,
+    /// When the last cycle began.
+    last_cycle: Option<Moment>,
     /// Why no more cycles happen.
     stopped: Option<String>,
+}
+
+/// What a cycle is measured with.
+pub(crate) struct Watch<'a> {
+    pub(crate) clock: &'a Clock,
+    /// When the last call ended, or the cycle began.
+    pub(crate) since: Moment,
+    /// The processor's time at that moment, if it is measured.
+    pub(crate) cpu: Option<Duration>,
+    pub(crate) pulse: &'a Pulse,
 }
 
 struct Entry {
     name: String,
     activity: Box<dyn Activity>,
+    /// What happens when it fails, if it has a policy of its own.
+    policy: Option<Policy>,
     health: Health,
     calls: u64,
     failures: u64,
-    time: Option<Average>,
+    timing: Timing,
 }
 
 /// Whether an activity may be called.
@@ -51,32 +71,30 @@ pub(crate) enum Outcome {
 }
 
 impl List {
-    pub(crate) fn new(
-        agent: &str,
-        policy: Policy,
-        activities: Vec<(String, Box<dyn Activity>)>,
-        blackboard: Blackboard,
-    ) -> List {
-        let down = || Health::Down { since_failures: 0, retry: 0 };
-        let entry =
-            |(name, activity)| Entry { name, activity, health: down(), calls: 0, failures: 0, time: None };
-        let entries = activities.into_iter().map(entry).collect();
-        List { agent: agent.into(), policy, entries, blackboard, cycles: 0, stopped: None }
+    pub(crate) fn new(agent: &str, policy: Policy, activities: Vec<Listed>, blackboard: Blackboard) -> List {
+        let entries = activities.into_iter().map(Entry::new).collect();
+        List { agent: agent.into(), policy, entries, blackboard, cycles: 0, last_cycle: None, stopped: None }
     }
 
     /// Begins a cycle: delivers what has arrived.
     pub(crate) fn begin(&mut self, now: Moment) {
         self.cycles += 1;
+        self.last_cycle = Some(now);
         self.blackboard.process_messages(now);
     }
 
-    /// Goes through the cycle: calls each activity in turn, and publishes what they wrote. With a clock, measures how long each takes.
-    pub(crate) fn cycle(&mut self, now: Moment, clock: Option<&Clock>) -> Outcome {
-        let mut watch = clock.map(|clock| (clock, clock.now()));
+    /// Goes through the cycle: calls each activity in turn, and publishes what they wrote. With a watch, measures how long each takes.
+    pub(crate) fn cycle(&mut self, now: Moment, mut watch: Option<Watch<'_>>) -> Outcome {
         for index in 0..self.entries.len() {
+            if let Some(watch) = &watch {
+                watch.pulse.calls(index);
+            }
             let result = self.entries[index].run(self.cycles, &mut self.blackboard);
-            if let Some((clock, since)) = &mut watch {
-                self.entries[index].measure(clock, since);
+            if let Some(watch) = &mut watch {
+                self.entries[index].measure(watch);
+                if watch.pulse.is_cut() {
+                    return self.was_stuck(index);
+                }
             }
             let Err(failure) = result else { continue };
             let outcome = self.failed(index, &failure);
@@ -89,17 +107,32 @@ impl List {
         Outcome::Continues
     }
 
+    /// An activity has returned after everybody had given it up: nothing of what was done in the cycle matters any more.
+    fn was_stuck(&mut self, index: usize) -> Outcome {
+        let entry = &mut self.entries[index];
+        entry.failures += 1;
+        let policy = entry.policy.unwrap_or(self.policy);
+        let reason = format!("activity `{}` was stuck in cycle {}", entry.name, self.cycles);
+        self.stop(&reason);
+        // Whatever was written there is dropped with it.
+        let random = self.blackboard.random().clone();
+        self.blackboard = self.blackboard.hub().blackboard(&self.agent);
+        *self.blackboard.random() = random;
+        if policy == Policy::SafeState { Outcome::SafeState } else { Outcome::Stopped }
+    }
+
     fn failed(&mut self, index: usize, failure: &Failure) -> Outcome {
         let entry = &mut self.entries[index];
         entry.failures += 1;
         tracing::error!(agent = %self.agent, activity = %entry.name, cycle = self.cycles, "activity failed: {failure}");
-        match self.policy {
+        let policy = entry.policy.unwrap_or(self.policy);
+        match policy {
             Policy::Restart => entry.back_off(self.cycles),
             Policy::Skip => {}
             Policy::StopAgent | Policy::SafeState => {
                 let reason = format!("activity `{}` failed in cycle {}: {failure}", entry.name, self.cycles);
                 self.stop(&reason);
-                return if self.policy == Policy::SafeState { Outcome::SafeState } else { Outcome::Stopped };
+                return if policy == Policy::SafeState { Outcome::SafeState } else { Outcome::Stopped };
             }
         }
         Outcome::Continues
@@ -111,19 +144,24 @@ impl List {
             return;
         }
         self.stopped = Some(reason.to_owned());
-        for entry in self.entries.iter_mut().filter(|entry| matches!(entry.health, Health::Up)) {
-            if let Err(failure) = call::stop(entry.activity.as_mut(), &mut self.blackboard) {
-                tracing::error!(agent = %self.agent, activity = %entry.name, "activity failed to stop: {failure}");
-            }
-        }
+        (0..self.entries.len()).for_each(|place| self.end(place));
     }
 
     pub(crate) fn stopped(&self) -> Option<&str> {
         self.stopped.as_deref()
     }
 
+    pub(crate) fn last_cycle(&self) -> Option<Moment> {
+        self.last_cycle
+    }
+
     pub(crate) fn blackboard(&self) -> &Blackboard {
         &self.blackboard
+    }
+
+    /// The number of its last cycle.
+    pub(crate) fn number(&self) -> u64 {
+        self.cycles
     }
 
     pub(crate) fn activity_statistics(&self) -> impl Iterator<Item = ActivityStatistics> {
@@ -131,13 +169,34 @@ impl List {
             name: entry.name.clone(),
             calls: entry.calls,
             failures: entry.failures,
-            call_time: entry.time,
+            call_time: entry.timing.wall(),
+            call_cpu: entry.timing.cpu(),
+            call_percentiles: entry.timing.percentiles(),
             state: None,
         })
     }
 }
 
+impl Health {
+    /// That of what has not been called yet.
+    fn new() -> Health {
+        Health::Down { since_failures: 0, retry: 0 }
+    }
+}
+
 impl Entry {
+    fn new(Listed { name, activity, policy, .. }: Listed) -> Entry {
+        Entry {
+            name,
+            activity,
+            policy,
+            health: Health::new(),
+            calls: 0,
+            failures: 0,
+            timing: Timing::default(),
+        }
+    }
+
     fn run(&mut self, cycle: u64, blackboard: &mut Blackboard) -> Result<(), Failure> {
         if let Health::Down { retry, .. } = self.health {
             if cycle < retry {
@@ -153,10 +212,12 @@ impl Entry {
     }
 
     /// Takes the time since the one before it ended, which one reading of the clock serves for both.
-    fn measure(&mut self, clock: &Clock, since: &mut Moment) {
-        let now = clock.now();
-        self.time.get_or_insert_default().add(now.since(*since));
-        *since = now;
+    fn measure(&mut self, watch: &mut Watch<'_>) {
+        let now = watch.clock.now();
+        let cpu_now = watch.cpu.and_then(|_| cpu_time());
+        let cpu = cpu_now.zip(watch.cpu).map(|(now, since)| now.saturating_sub(since));
+        self.timing.add(now.since(watch.since), cpu);
+        (watch.since, watch.cpu) = (now, cpu_now);
     }
 
     /// The first failure costs no call, the n-th in a row 2^(n-1) - 1 of them.

@@ -1,6 +1,7 @@
 //! What the runtime publishes about itself: every cycle of every agent and every micro-step of every chart.
 //!
-//! Numbers stand for names in the records of a cycle; [`HOST`] and [`MODEL`], published before anything runs, say which.
+//! Numbers stand for names in the records of a cycle; [`HOST`] and [`MODEL`], published before anything runs, say which. What is published on
+//! [`CHANGE`] changes the agents of the host, and is answered on [`CHANGED`].
 
 narukom::include_messages!("monas.runtime");
 
@@ -13,6 +14,12 @@ narukom::topic! {
     pub CYCLE: narukom::Data<Cycle, 64> = "monas/cycle";
     /// Each micro-step of each chart.
     pub CHART: narukom::Data<Chart, 64> = "monas/chart";
+    /// What is asked for while agents run.
+    pub CHANGE: narukom::Data<Change, 64> = "monas/change";
+    /// What became of it.
+    pub CHANGED: narukom::Data<Changed, 64> = "monas/changed";
+    /// What was counted and measured of each agent, in real time, as often as the agent is to say it.
+    pub STATISTICS: narukom::Data<AgentEntry, 16> = "monas/statistics";
 }
 
 impl Delivery {

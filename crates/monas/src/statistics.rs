@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use crate::link::LinkStatistics;
+use crate::stopwatch::{Histogram, Stopwatch};
 
 /// What a run has done so far, agent by agent in the order in which they run.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -24,12 +25,18 @@ pub struct AgentStatistics {
     pub cycles: u64,
     /// Cycles that ended after the next was due. In simulated time there are none.
     pub overruns: u64,
+    /// Cycles that were left out because of that.
+    pub missed: u64,
     /// Micro-steps of its charts.
     pub micro_steps: u64,
     /// Each of its activities.
     pub activities: Vec<ActivityStatistics>,
     /// How long a cycle takes; measured in real time only.
     pub cycle_time: Option<Average>,
+    /// The processor's time in it, of one cycle in 64 and of the one after each that took too long.
+    pub cycle_cpu: Option<Average>,
+    /// How long cycles take, one with another. Of several threads those of the one with the longer cycles.
+    pub cycle_percentiles: Option<Percentiles>,
     /// Why it has stopped, if it has.
     pub stopped: Option<String>,
 }
@@ -47,6 +54,57 @@ pub struct ActivityStatistics {
     pub failures: u64,
     /// How long a call takes; measured in real time only.
     pub call_time: Option<Average>,
+    /// The processor's time in it, as often as it is measured for cycles.
+    pub call_cpu: Option<Average>,
+    /// How long calls take, one with another.
+    pub call_percentiles: Option<Percentiles>,
+}
+
+/// The lengths that so many of a hundred times do not exceed, to within a sixteenth.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
+pub struct Percentiles {
+    /// That of 99.9 %.
+    pub p999: Duration,
+    /// That of 99 %.
+    pub p99: Duration,
+    /// That of 90 %.
+    pub p90: Duration,
+    /// That of a half.
+    pub p50: Duration,
+}
+
+/// What is measured of something that happens again and again.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Timing {
+    wall: Stopwatch<(Average, Histogram)>,
+    cpu: Stopwatch<Average>,
+}
+
+impl Timing {
+    /// It has taken so long, and so much of the processor's time if that is known.
+    pub(crate) fn add(&mut self, wall: Duration, cpu: Option<Duration>) {
+        self.wall.add(wall);
+        cpu.into_iter().for_each(|cpu| self.cpu.add(cpu));
+    }
+
+    pub(crate) fn wall(&self) -> Option<Average> {
+        let (average, _) = self.wall.policy();
+        (average.count() > 0).then_some(*average)
+    }
+
+    pub(crate) fn cpu(&self) -> Option<Average> {
+        (self.cpu.policy().count() > 0).then(|| *self.cpu.policy())
+    }
+
+    pub(crate) fn percentiles(&self) -> Option<Percentiles> {
+        let (_, histogram) = self.wall.policy();
+        (histogram.count() > 0).then(|| Percentiles {
+            p50: histogram.percentile(50.0),
+            p90: histogram.percentile(90.0),
+            p99: histogram.percentile(99.0),
+            p999: histogram.percentile(99.9),
+        })
+    }
 }
 
 impl AgentStatistics {
@@ -54,12 +112,18 @@ impl AgentStatistics {
     pub(crate) fn add(&mut self, part: AgentStatistics) {
         self.cycles += part.cycles;
         self.overruns += part.overruns;
+        self.missed += part.missed;
         self.micro_steps += part.micro_steps;
         self.activities.extend(part.activities);
         self.cycle_time = match (self.cycle_time, part.cycle_time) {
             (Some(one), Some(other)) => Some(one.together(other)),
             (one, other) => one.or(other),
         };
+        self.cycle_cpu = match (self.cycle_cpu, part.cycle_cpu) {
+            (Some(one), Some(other)) => Some(one.together(other)),
+            (one, other) => one.or(other),
+        };
+        self.cycle_percentiles = self.cycle_percentiles.max(part.cycle_percentiles);
         self.stopped = self.stopped.take().or(part.stopped);
     }
 }

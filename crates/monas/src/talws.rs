@@ -3,30 +3,40 @@
 mod body;
 mod chart_thread;
 mod clock;
+mod crew;
 mod deadlines;
+mod entry;
 mod handover;
 mod instance;
 mod links;
 mod list_thread;
+mod management;
 pub(crate) mod measured;
 mod moved;
+mod orders;
 mod overview;
 mod pool;
+mod pulse;
 mod real_time;
 mod replay;
+mod scheduling;
 mod seeds;
 mod setup;
 mod simulated_chart;
 mod simulation;
 mod stopper;
+mod supervisor;
 mod teller;
 mod turn;
+mod unit;
+mod workforce;
 
 use monas_robot::Robot;
 use narukom::{Blackboard, Moment, Observer};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Duration;
-use yase::{Diagnostic, Span};
+use yase::{Diagnostic, Source, Span};
 
 use crate::activity::BoxError;
 use crate::agent::Agent;
@@ -37,8 +47,9 @@ use crate::listener::ChartListener;
 use crate::registry::Registry;
 use crate::statistics::Statistics;
 
-pub(crate) use clock::Clock;
+pub(crate) use clock::{Clock, cpu_time};
 pub use overview::Overview;
+pub(crate) use pulse::Pulse;
 pub use real_time::Running;
 pub use replay::{Company, Difference, Input, Recorded, RecordedMessage, Replay, Tally};
 pub(crate) use seeds::component_seed;
@@ -66,6 +77,8 @@ pub struct HostConfig {
     pub agents: Vec<Agent>,
     /// Its links to other processes and hosts.
     pub links: Vec<LinkConfig>,
+    /// The text that its agents were read from, which they are saved into.
+    pub configuration: Option<Arc<Source>>,
 }
 
 impl std::fmt::Debug for HostConfig {
@@ -148,8 +161,18 @@ impl Talws {
             return Err(Error::invalid(diagnostics));
         }
         diagnostics.iter().for_each(|diagnostic| tracing::warn!("{diagnostic}"));
-        let talws = setup.agents.into_iter().fold(Talws::new().registry(registry), Talws::agent);
-        Ok(setup.links.into_iter().fold(talws, Talws::link))
+        Ok(Talws::new().registry(registry).setup(setup))
+    }
+
+    /// Adds the agents and links of a configuration to the host [`LOCAL`](Talws::LOCAL). What is changed while they run can be saved into
+    /// its text.
+    pub fn setup(mut self, setup: config::Setup) -> Talws {
+        let config::Setup { agents, links, source } = setup;
+        let local = self.local();
+        local.agents.extend(agents);
+        local.links.extend(links);
+        local.configuration = source.or(local.configuration.take());
+        self
     }
 
     /// Takes activities and functions from this registry instead of the linked ones.

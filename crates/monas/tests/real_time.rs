@@ -204,7 +204,7 @@ fn a_body_senses_and_acts_and_the_world_moves_on() {
         number: 1,
         body: Some(Box::new(body)),
         agents,
-        links: Vec::new(),
+        ..HostConfig::default()
     });
     let running = talws.start().unwrap();
     while next(&acted, 1) != [1.0] {}

@@ -238,7 +238,14 @@ fn embodied(agents: Vec<Agent>) -> (Talws, Log) {
     let body = Body(log.clone(), Anatomy::new("test", Duration::from_millis(10)));
     let mut talws = Talws::new();
     let body = Some(Box::new(body) as _);
-    talws.host(HostConfig { name: "red-1".into(), team: 1, number: 1, body, agents, links: Vec::new() });
+    talws.host(HostConfig {
+        name: "red-1".into(),
+        team: 1,
+        number: 1,
+        body,
+        agents,
+        ..HostConfig::default()
+    });
     (talws, log)
 }
 

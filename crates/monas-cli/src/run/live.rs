@@ -40,7 +40,8 @@ pub(super) fn execute(
     let running = talws.start().map_err(|error| not_started(format, error))?;
     let control = control::serve(arguments, running.overview(), console)?;
     writeln!(console.err, "running, Ctrl-C stops")?;
-    WallClock::start().wait_until(arguments.length.unwrap_or(Duration::MAX), &interrupt);
+    let length = arguments.length.unwrap_or(Duration::MAX);
+    WallClock::start().wait_until_or(length, || interrupt.is_requested() || running.has_ended());
     drop(control);
     let overview = running.overview();
     let Statistics { agents, links } = running.stop();
@@ -80,8 +81,7 @@ fn talws(arguments: &RunArguments, layers: &Layers, console: &mut Console<'_>) -
         return Err(Failure::Invalid(format, diagnostics));
     }
     report::write(console, format, &diagnostics)?;
-    let talws = setup.agents.into_iter().fold(Talws::new(), Talws::agent);
-    Ok(setup.links.into_iter().fold(talws, Talws::link))
+    Ok(Talws::new().setup(setup))
 }
 
 fn write(

@@ -27,12 +27,17 @@ impl WallClock {
     }
 
     /// Waits until it shows `time`, or until somebody interrupts.
+    pub(crate) fn wait_until(&self, time: Duration, interrupt: &Interrupt) {
+        self.wait_until_or(time, || interrupt.is_requested());
+    }
+
+    /// Waits until it shows `time`, or until something else is so.
     #[expect(
         clippy::disallowed_methods,
         reason = "simulated time is held back to the wall clock for those who watch"
     )]
-    pub(crate) fn wait_until(&self, time: Duration, interrupt: &Interrupt) {
-        while !interrupt.is_requested() {
+    pub(crate) fn wait_until_or(&self, time: Duration, is_over: impl Fn() -> bool) {
+        while !is_over() {
             match time.checked_sub(self.elapsed()) {
                 None | Some(Duration::ZERO) => return,
                 Some(left) => std::thread::sleep(left.min(LOOK_UP)),

@@ -11,14 +11,14 @@ use crate::arguments::Format;
 use crate::failure::Failure;
 
 /// A run that answers, by the name and place of its socket.
-pub(super) fn live_runs() -> Vec<(String, PathBuf)> {
+pub(crate) fn live_runs() -> Vec<(String, PathBuf)> {
     let Some(folder) = monas_link::default_folder() else { return Vec::new() };
     let sockets = control_sockets(&folder).into_iter();
     sockets.filter(|(_, path)| ControlClient::connect(path).is_ok()).collect()
 }
 
 /// The run that is meant.
-pub(super) fn socket(choice: &RunChoice) -> Result<PathBuf, Failure> {
+pub(crate) fn socket(choice: &RunChoice) -> Result<PathBuf, Failure> {
     let unreachable = |message: String| Err(Failure::Unreachable(choice.format.value, message));
     let Some(folder) = monas_link::default_folder() else {
         return unreachable(
@@ -47,12 +47,12 @@ fn nobody(folder: &std::path::Path) -> String {
 }
 
 /// A connection to the run that is meant.
-pub(super) fn client(choice: &RunChoice) -> Result<ControlClient, Failure> {
+pub(crate) fn client(choice: &RunChoice) -> Result<ControlClient, Failure> {
     ControlClient::connect(&socket(choice)?).map_err(failure(choice.format.value))
 }
 
 /// What an error of the connection means for the command.
-pub(super) fn failure(format: Format) -> impl Fn(monas_link::Error) -> Failure {
+pub(crate) fn failure(format: Format) -> impl Fn(monas_link::Error) -> Failure {
     move |error| match error.kind() {
         ErrorKind::Connection => Failure::Unreachable(format, error.to_string()),
         _ => Failure::failed(format, error),
@@ -60,14 +60,14 @@ pub(super) fn failure(format: Format) -> impl Fn(monas_link::Error) -> Failure {
 }
 
 /// The paths of the topics of all runs.
-pub(super) fn known_topics() -> Vec<String> {
+pub(crate) fn known_topics() -> Vec<String> {
     let clients = live_runs().into_iter().filter_map(|(_, path)| ControlClient::connect(&path).ok());
     let topics = clients.filter_map(|mut client| client.topics("", "").ok()).flatten();
     topics.map(|topic| topic.path).collect::<BTreeSet<_>>().into_iter().collect()
 }
 
 /// The hosts of all runs.
-pub(super) fn known_hosts() -> Vec<String> {
+pub(crate) fn known_hosts() -> Vec<String> {
     let clients = live_runs().into_iter().filter_map(|(_, path)| ControlClient::connect(&path).ok());
     let hosts = clients.filter_map(|mut client| client.describe().ok()).flat_map(|run| run.hosts);
     hosts.collect::<BTreeSet<_>>().into_iter().collect()

@@ -2,6 +2,8 @@
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot be prepared fails")]
 
+#[cfg(unix)]
+mod agent;
 mod config;
 mod convert;
 mod doctor;

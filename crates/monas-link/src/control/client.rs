@@ -10,7 +10,7 @@ use prost::Message;
 
 use super::frame;
 use super::messages::{
-    Answer, Describe, FetchSchema, ListTopics, Publish, Request, Run, Schema, Seen, TopicEntry, Watch,
+    Answer, Describe, FetchSchema, ListTopics, Manage, Publish, Request, Run, Schema, Seen, TopicEntry, Watch,
 };
 use crate::error::{Error, ErrorKind};
 
@@ -99,6 +99,16 @@ impl ControlClient {
     pub fn publish(&mut self, host: &str, path: &str, payload: Vec<u8>) -> Result<(), Error> {
         let publish = Some(Publish { host: host.into(), path: path.into(), payload });
         self.ask(&Request { publish, ..Request::default() })?.published.map(drop).ok_or_else(odd)
+    }
+
+    /// Asks something of the agents, in their own words.
+    ///
+    /// # Errors
+    /// The run does not answer, or refuses.
+    pub fn manage(&mut self, inquiry: Vec<u8>) -> Result<Vec<u8>, Error> {
+        let manage = Some(Manage { inquiry });
+        let answer = self.ask(&Request { manage, ..Request::default() })?;
+        answer.managed.map(|managed| managed.reply).ok_or_else(odd)
     }
 
     /// Watches topics, as [`topics`](ControlClient::topics) names them; with their messages, or only what is known of these.

@@ -15,8 +15,8 @@ use narukom::Narukom;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use super::messages::{
-    Answer, FetchSchema, Last, ListTopics, Publish, Published, Refused, Request, Run, Schema, TopicEntry,
-    Topics,
+    Answer, FetchSchema, Last, ListTopics, Manage, Managed, Publish, Published, Refused, Request, Run,
+    Schema, TopicEntry, Topics,
 };
 use super::watch::Watcher;
 use super::{CLIENT_LIMIT, Observed, REQUEST_LIMIT, frame};
@@ -259,6 +259,9 @@ impl Desk {
             Request { publish: Some(Publish { host, path, payload }), .. } => {
                 self.run.publish(&host, &path, &payload)?;
                 answer.published = Some(Published::default());
+            }
+            Request { manage: Some(Manage { inquiry }), .. } => {
+                answer.managed = Some(Managed { reply: self.run.manage(&inquiry)? });
             }
             _ => return Err("this run does not know the request".into()),
         }

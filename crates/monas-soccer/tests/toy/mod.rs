@@ -62,7 +62,15 @@ impl Shared {
         let body: Option<Box<dyn Robot>> = Some(Box::new(Body::new(self.clone())));
         let number = self.lock().number;
         let (agents, links) = (setup.agents, setup.links);
-        talws.host(HostConfig { name: "robot".into(), team: 1, number, body, agents, links });
+        talws.host(HostConfig {
+            name: "robot".into(),
+            team: 1,
+            number,
+            body,
+            agents,
+            links,
+            configuration: None,
+        });
         talws.simulate(1).unwrap()
     }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use narukom::{Moment, Publisher, TopicSlot};
 use yase::expression::{CallError, MessageSource};
 use yase::{
-    Activation, Chart, FieldId, FunctionId, Host, Occasion, RegionId, Report, TopicId, TraceRecord,
+    Activation, Chart, FieldId, FunctionId, Host, NodeId, Occasion, RegionId, Report, TopicId, TraceRecord,
     TransitionId, Value,
 };
 
@@ -52,12 +52,12 @@ impl Desk {
         home.hub
             .publisher(MODEL, home.agent)
             .map_err(Error::hub)?
-            .publish(model(chart, home.number), Moment::ZERO);
+            .publish(model(chart, home.number), home.now);
         Ok(Desk {
             host: home.hub.host().into(),
             agent: home.agent.into(),
             number: home.number,
-            now: Moment::ZERO,
+            now: home.now,
             lending: Lending::new(chart, home)?,
             urgency: Urgency::new(chart),
             functions,
@@ -69,6 +69,33 @@ impl Desk {
             records: home.hub.publisher(CHART, home.agent).map_err(Error::hub)?,
             listeners: home.listeners.clone(),
         })
+    }
+
+    /// Takes over from the desk of a chart that this one replaces.
+    pub(super) fn take_over(
+        &mut self,
+        old: Desk,
+        regions: &[(RegionId, RegionId)],
+        known: impl Fn(Activation) -> Option<Activation> + Copy,
+        counterpart: impl Fn(NodeId) -> Option<NodeId>,
+    ) {
+        self.started = old.started.into_iter().filter_map(known).collect();
+        self.cancelled = old.cancelled.into_iter().filter_map(known).collect();
+        self.left = old.left.into_iter().filter_map(known).collect();
+        self.urgency.take_over(&old.urgency, counterpart);
+        self.lending.take_over(old.lending, regions, known);
+    }
+
+    pub(super) fn number(&self) -> u32 {
+        self.number
+    }
+
+    pub(super) fn seed(&self) -> u64 {
+        self.lending.seed()
+    }
+
+    pub(super) fn listeners(&self) -> &Listeners {
+        &self.listeners
     }
 
     pub(super) fn begin_step(&mut self, now: Moment) {
@@ -201,7 +228,7 @@ impl Desk {
         let segments = |list: &[yase::CompoundId]| -> Vec<u32> {
             list.iter().flat_map(|&compound| chart.segments(compound)).map(|segment| segment.0).collect()
         };
-        let nodes = |list: &[yase::NodeId]| list.iter().map(|node| node.0).collect();
+        let nodes = |list: &[NodeId]| list.iter().map(|node| node.0).collect();
         records::Chart {
             chart: self.number,
             time: record.time.as_nanos(),

@@ -67,6 +67,15 @@ impl Following {
         }
     }
 
+    /// Takes over the feeds of a chart that this one replaces, as far as it reads the same sources.
+    pub(super) fn take_over(&mut self, old: Following) {
+        for feed in old.feeds {
+            if let Some(successor) = self.feeds.iter_mut().find(|known| known.source == feed.source) {
+                *successor = feed;
+            }
+        }
+    }
+
     /// The newest message of a source; none if it is not one that is followed. `shown` is the newest message of the topic on the region's
     /// blackboard, which holds what the region itself has written.
     pub(super) fn newest<'a>(

@@ -28,6 +28,8 @@ pub(super) struct Lending {
     read: Box<[TopicSlot]>,
     regions: Vec<Region>,
     pub(super) fetching: Fetching,
+    /// Whether the chart has taken the place of another.
+    was_swapped: bool,
 }
 
 struct Region {
@@ -70,9 +72,44 @@ impl Lending {
             read,
             regions,
             fetching: Fetching::default(),
+            was_swapped: false,
         };
         (0..lending.regions.len()).for_each(|place| lending.furnish(place));
         Ok(lending)
+    }
+
+    /// Takes over from a chart that this one replaces: what its regions had, by `regions` from old to new; `known` says what became of an
+    /// activation.
+    pub(super) fn take_over(
+        &mut self,
+        old: Lending,
+        regions: &[(RegionId, RegionId)],
+        known: impl Fn(Activation) -> Option<Activation>,
+    ) {
+        self.was_swapped = true;
+        self.fetching = old.fetching;
+        let mut left: Vec<Option<Region>> = old.regions.into_iter().map(Some).collect();
+        for (from, to) in regions {
+            let before = left.get_mut(from.0 as usize).and_then(Option::take);
+            let (Some(before), Some(region)) = (before, self.regions.get_mut(to.0 as usize)) else {
+                continue;
+            };
+            region.path = before.path;
+            region.made = before.made;
+            region.following.take_over(before.following);
+            let sample = |topic| before.shown[old.read.binary_search(topic).ok()?].clone();
+            region.shown = self.read.iter().map(sample).collect();
+            region.loan = before
+                .loan
+                .and_then(|loan| known(loan.activation).map(|activation| Loan { activation, ..loan }));
+            // One that is away comes back, unless nobody waits for it.
+            if before.here.is_some() || region.loan.is_some() {
+                region.here = before.here;
+            }
+            if let Some(here) = &mut region.here {
+                self.read.iter().for_each(|topic| here.interest(*topic));
+            }
+        }
     }
 
     /// Gives a region a new blackboard.
@@ -214,6 +251,10 @@ impl Lending {
         region.loan.take_if(|loan| loan.activation == activation)?;
         region.shown.fill(None);
         region.here = of_use.then_some(blackboard);
+        if let Some(here) = region.here.as_deref().filter(|_| self.was_swapped) {
+            // It may not know yet what the guards of another chart read.
+            self.read.iter().for_each(|topic| here.interest(*topic));
+        }
         region.here.as_deref_mut()
     }
 
@@ -231,6 +272,10 @@ impl Lending {
     pub(super) fn cancel_all(&self) {
         let loans = self.regions.iter().filter_map(|region| region.loan.as_ref());
         loans.for_each(|loan| loan.cancellation.request());
+    }
+
+    pub(super) fn seed(&self) -> u64 {
+        self.seed
     }
 
     /// The hub that all blackboards are of.
@@ -260,7 +305,7 @@ mod tests {
         let chart = Binder::new(&registry).unwrap().bind(&chart, Semantics::yase(), None).unwrap().chart;
         let hub = Narukom::with_linked_topics("local").unwrap();
         let listeners = Listeners::default();
-        let home = Home { hub: &hub, agent: "m", number: 0, seed: 1, listeners: &listeners };
+        let home = Home { hub: &hub, agent: "m", number: 0, seed: 1, listeners: &listeners, now: NOW };
         let lending = Lending::new(&chart, home).unwrap();
         let entry = chart.activities().next().unwrap();
         let activation = Activation { node: entry.node, region: entry.region, number: 1 };

@@ -7,7 +7,7 @@ use yase::{Activation, Chart, NodeId};
 
 use crate::activity::{Activity, Progress, Topics};
 use crate::call::{self, Failure};
-use crate::statistics::{ActivityStatistics, Average};
+use crate::statistics::{ActivityStatistics, Timing};
 
 /// One for each BASIC state with an activity, in the order of the document.
 pub(crate) struct Posts {
@@ -24,6 +24,8 @@ struct Post {
     declared: Option<Box<[TopicSlot]>>,
     /// None while it is being called.
     activity: Option<Box<dyn Activity>>,
+    /// The number of the activation for which it is being called.
+    called_for: Option<u64>,
     /// Whether `start` has been called since it was made or failed.
     started: bool,
     /// The topics on which messages have arrived while it is being called, which it has not seen.
@@ -33,7 +35,7 @@ struct Post {
     /// The activation that waits for its next call, and when that is.
     waits: Option<Waiting>,
     calls: u64,
-    call_time: Option<Average>,
+    timing: Timing,
     failures: u64,
     failures_in_a_row: u32,
 }
@@ -58,6 +60,13 @@ pub(crate) struct Assignment {
     called: bool,
 }
 
+/// How long a call took, and how much of the processor's time, if that was measured.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Took {
+    pub(crate) wall: Duration,
+    pub(crate) cpu: Option<Duration>,
+}
+
 /// What an activity returned.
 pub(crate) type Returned = Result<Progress, Failure>;
 
@@ -65,6 +74,11 @@ impl Assignment {
     /// Asks the activity to return soon.
     pub(crate) fn ask_to_return(&self) {
         self.blackboard.cancellation().request();
+    }
+
+    /// The place of the activity among those of the chart, as its statistics have them.
+    pub(crate) fn place(&self) -> usize {
+        self.post
     }
 
     /// Calls the activity, where it is.
@@ -90,12 +104,13 @@ impl Posts {
                 duration: entry.duration.unwrap_or_default(),
                 declared: declared(&activity.topics(), hub),
                 activity: Some(activity),
+                called_for: None,
                 started: false,
                 missed: Vec::new(),
                 newest: None,
                 waits: None,
                 calls: 0,
-                call_time: None,
+                timing: Timing::default(),
                 failures: 0,
                 failures_in_a_row: 0,
             }
@@ -141,6 +156,7 @@ impl Posts {
         let activity = post.activity.take()?;
         post.waits = None;
         post.missed.clear();
+        post.called_for = Some(activation.number);
         post.calls += 1;
         Some(Assignment {
             activation,
@@ -154,22 +170,72 @@ impl Posts {
         })
     }
 
-    /// Takes an activity back from where it was called, if it was, and how long that took, if anybody knows. Gives its blackboard.
+    /// Takes an activity back from where it was called, if it was, and how long that took, if anybody knows. Gives its blackboard, and the
+    /// activation as it is known now, since the chart may be another one than when the call began.
     pub(crate) fn take_back(
         &mut self,
         assignment: Assignment,
-        took: Option<Duration>,
+        took: Option<Took>,
     ) -> (Activation, Box<Blackboard>) {
         let Assignment { activation, post, activity, started, blackboard, called, .. } = assignment;
-        let post = &mut self.posts[post];
+        let Some(post) = self.caller(post, activation.number) else {
+            return (activation, blackboard);
+        };
+        let newest = post.newest.filter(|newest| newest.number == activation.number);
+        let activation = newest.unwrap_or(Activation { node: post.node, ..activation });
+        post.called_for = None;
         post.activity = Some(activity);
         post.started = started;
         match (called, took) {
-            (true, Some(took)) => post.call_time.get_or_insert_default().add(took),
+            (true, Some(took)) => post.timing.add(took.wall, took.cpu),
             (true, None) => {}
             (false, _) => post.calls -= 1,
         }
         (activation, blackboard)
+    }
+
+    /// The activation of an activity that is being called, as it is known now.
+    pub(crate) fn known_as(&self, assignment: &Assignment) -> Activation {
+        let number = assignment.activation.number;
+        let newest = self.posts.iter().filter_map(|post| post.newest).find(|newest| newest.number == number);
+        newest.unwrap_or(assignment.activation)
+    }
+
+    /// The post from which an activity is away for an activation: the `place`th, unless the chart has changed since.
+    fn caller(&mut self, place: usize, number: u64) -> Option<&mut Post> {
+        let is_it = |post: &Post| post.called_for == Some(number);
+        let place = match self.posts.get(place).is_some_and(is_it) {
+            true => place,
+            false => self.posts.iter().position(is_it)?,
+        };
+        self.posts.get_mut(place)
+    }
+
+    /// Takes over from the posts of a chart that this one replaces; `counterpart` says which node an old one is.
+    pub(super) fn take_over(
+        &mut self,
+        old: Posts,
+        counterpart: impl Fn(NodeId) -> Option<NodeId>,
+        known: impl Fn(Activation) -> Option<Activation>,
+    ) {
+        for post in old.posts {
+            let node = counterpart(post.node);
+            let place = node.and_then(|node| self.of_node.get(node.0 as usize).copied().flatten());
+            let Some(successor) = place.map(|place| &mut self.posts[place]) else { continue };
+            if successor.name != post.name {
+                continue;
+            }
+            let waits = post.waits.and_then(|waiting| {
+                known(waiting.activation).map(|activation| Waiting { activation, ..waiting })
+            });
+            *successor = Post {
+                node: successor.node,
+                duration: successor.duration,
+                newest: post.newest.and_then(&known),
+                waits,
+                ..post
+            };
+        }
     }
 
     /// The topics whose messages call a waiting activation early.
@@ -272,7 +338,9 @@ impl Posts {
             state: Some(chart.short_path(post.node)),
             calls: post.calls,
             failures: post.failures,
-            call_time: post.call_time,
+            call_time: post.timing.wall(),
+            call_cpu: post.timing.cpu(),
+            call_percentiles: post.timing.percentiles(),
         })
     }
 }

@@ -16,6 +16,16 @@ impl Urgency {
         Urgency { of_entry: vec![0; of_state.len()], of_state }
     }
 
+    /// Takes over from a chart that this one replaces.
+    pub(super) fn take_over(&mut self, old: &Urgency, counterpart: impl Fn(NodeId) -> Option<NodeId>) {
+        for (node, priority) in (0..).map(NodeId).zip(&old.of_entry) {
+            let place = counterpart(node).map(|node| node.0 as usize);
+            if let Some(known) = place.and_then(|place| self.of_entry.get_mut(place)) {
+                *known = *priority;
+            }
+        }
+    }
+
     /// Takes note of a micro-step.
     pub(super) fn note(&mut self, chart: &Chart, record: &TraceRecord<'_>) {
         for node in record.entries {

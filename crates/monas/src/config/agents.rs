@@ -17,7 +17,7 @@ use super::paths;
 use super::resolve::{resolve, sort};
 use super::values::Values;
 use crate::activity::Activity;
-use crate::agent::{Agent, Policy};
+use crate::agent::{Agent, Listed, Policy};
 use crate::binder::Binder;
 use crate::error::{Error, ErrorKind};
 use crate::frequency::Hz;
@@ -32,6 +32,8 @@ pub struct Setup {
     pub agents: Vec<Agent>,
     /// Its links to other processes and hosts.
     pub links: Vec<LinkConfig>,
+    /// The text they were read from.
+    pub source: Option<Arc<Source>>,
 }
 
 /// Reads the agents and links in a file, and everything that is wrong with it or with a model it names.
@@ -75,6 +77,7 @@ pub fn assemble(
 ) -> Setup {
     let grammar = Grammar::agents();
     let mut reader = Reader { path, registry, grammar: &grammar, diagnostics, setup: Setup::default() };
+    reader.setup.source = elements.first().map(|element| element.source().clone());
     // What runs elsewhere is held against the links, wherever these stand.
     reader.links(elements);
     reader.agents(elements);
@@ -148,6 +151,7 @@ impl Reader<'_> {
         let mut agent = Agent::idle(name);
         agent.frequency = values.number("thread_frequency").map(|hertz: f64| Hz(hertz));
         agent.workers = values.number("workers");
+        agent.cores = self.cores(&values);
         let real_time = values.flag("is_real_time").unwrap_or_default();
         let agent = agent
             .urgency(values.number("priority").unwrap_or_default(), real_time)
@@ -156,13 +160,29 @@ impl Reader<'_> {
         (agent, is_enabled(&values))
     }
 
+    /// The cores that its threads may run on.
+    fn cores(&mut self, values: &Values<'_>) -> Vec<usize> {
+        let Some(given) = values.given("cores") else { return Vec::new() };
+        let cores: Result<Vec<usize>, _> = given.value.split_whitespace().map(str::parse).collect();
+        cores.unwrap_or_else(|_| {
+            let message = format!("`cores` is `{}`, expected numbers of cores, such as `2 3`", given.value);
+            self.diagnostics.push(given.error("E0306", message));
+            Vec::new()
+        })
+    }
+
     fn activity(&mut self, element: &Element, agent: Agent) -> Agent {
         let values = Values::of(element, self.grammar);
         let parameters =
             values.parameters().fold(Parameters::new(), |all, one| all.with(&*one.name, &*one.value));
         let activity = self.instance(element, element.text(), &parameters);
         match activity.filter(|_| is_enabled(&values)) {
-            Some(activity) => agent.named_activity(element.text(), activity),
+            Some(activity) => agent.listed(Listed {
+                name: element.text().to_owned(),
+                parameters,
+                policy: values.word("on_failure", &Policy::NAMES),
+                activity,
+            }),
             None => agent,
         }
     }
@@ -218,11 +238,11 @@ impl Reader<'_> {
         let values = Values::of(element, self.grammar);
         let (enabled, elsewhere) = (is_enabled(&values), values.given("elsewhere").cloned());
         let agent = match self.registry.chart(element.text()) {
-            Some(Ok(generated)) if enabled => agent.generated(generated),
+            Some(Ok(generated)) if enabled => agent.generated_as(element.text(), generated),
             Some(Ok(_)) => return agent,
             Some(Err(error)) => return self.unusable(element, &error, agent),
             None => match self.chart(element).filter(|_| enabled) {
-                Some(chart) => agent.chart(chart),
+                Some(chart) => agent.chart_of(element.text(), chart),
                 None => return agent,
             },
         };

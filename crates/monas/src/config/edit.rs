@@ -41,6 +41,10 @@ impl Document {
         &self.diagnostics
     }
 
+    pub(super) fn roots(&self) -> &[Element] {
+        &self.elements
+    }
+
     /// Every element in the order of the text, however deep.
     pub(super) fn all(&self) -> Vec<&Element> {
         fn below<'a>(elements: &'a [Element], found: &mut Vec<&'a Element>) {
@@ -90,7 +94,7 @@ impl Document {
         &before[before.trim_end().len()..]
     }
 
-    fn splice(&mut self, mut splices: Vec<(Range<usize>, String)>) {
+    pub(super) fn splice(&mut self, mut splices: Vec<(Range<usize>, String)>) {
         let mut text = self.source.text.clone();
         // From the end on, so that the places in front stay right.
         splices.sort_by_key(|(range, _)| std::cmp::Reverse((range.start, range.end)));
@@ -100,7 +104,7 @@ impl Document {
         *self = Document::new(Source::new(self.source.name.clone(), text));
     }
 
-    fn attribute_splices(
+    pub(super) fn attribute_splices(
         &self,
         element: &Element,
         values: &[(String, String)],
@@ -217,12 +221,12 @@ fn written(name: &str, content: &Content<'_>) -> String {
 }
 
 /// A value as it stands between quotes. A reader takes an unescaped end of line for a blank.
-fn attribute_text(value: &str) -> String {
+pub(super) fn attribute_text(value: &str) -> String {
     let escaped = escape::escape(value).replace('\t', "&#9;").replace('\n', "&#10;");
     escaped.replace('\r', "&#13;")
 }
 
 /// A text as it stands in an element.
-fn element_text(text: &str) -> String {
+pub(super) fn element_text(text: &str) -> String {
     escape::partial_escape(text).replace('\r', "&#13;")
 }

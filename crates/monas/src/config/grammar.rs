@@ -236,7 +236,7 @@ impl ElementRule {
     }
 
     /// The attribute of that name, written in any way.
-    pub(super) fn attribute_named(&self, name: &str) -> Option<&AttributeRule> {
+    pub(crate) fn attribute_named(&self, name: &str) -> Option<&AttributeRule> {
         self.attributes.iter().find(|attribute| attribute.is(name))
     }
 
@@ -281,6 +281,14 @@ impl AttributeRule {
     }
 
     /// Whether a name in a file means it.
+    pub(crate) fn key(&self) -> &'static str {
+        self.key
+    }
+
+    pub(crate) fn kind(&self) -> &Kind {
+        &self.kind
+    }
+
     pub(super) fn is(&self, name: &str) -> bool {
         super::element::is_written(name, self.key) || self.alias == Some(name)
     }

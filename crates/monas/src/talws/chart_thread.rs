@@ -6,112 +6,159 @@ use narukom::{HostId, Moment, TopicSlot};
 
 use super::ENDED;
 use super::clock::Clock;
-use super::handover::{Mail, Mailbox};
+use super::handover::Mail;
+use super::orders::{Directive, Orders, TOLD};
 use super::pool::{Called, Pool};
-use super::real_time::Switch;
+use super::scheduling::Scheduling;
 use super::teller::{self, Teller};
 use super::turn::{Told, TurnNotes};
+use super::unit::{Batch, Part, Unit};
 use crate::agent::Policy;
 use crate::call::Failure;
 use crate::chart::{Assignment, Runner};
 use crate::frequency::Frequency;
 use crate::records::Turn;
-use crate::statistics::{AgentStatistics, Average};
+use crate::statistics::{AgentStatistics, Timing};
 
 /// What the thread of a chart owns.
 pub(super) struct ChartThread {
-    pub(super) agent: String,
+    pub(super) unit: Arc<Unit>,
+    pub(super) part: Arc<Part>,
     pub(super) runner: Runner,
     pub(super) policy: Policy,
+    pub(super) scheduling: Scheduling,
     pub(super) frequency: Option<Frequency>,
     pub(super) statistics_every: Option<u64>,
-    pub(super) mailbox: Arc<Mailbox<Called>>,
     pub(super) pool: Arc<Pool>,
     pub(super) teller: Teller,
-    pub(super) switch: Arc<Switch>,
     pub(super) clock: Clock,
     /// When it is woken beside what happens, counted from 0.
     pub(super) ticks: u64,
     pub(super) steps: u64,
-    pub(super) step_time: Average,
+    pub(super) timing: Timing,
     /// How many activities are being called, or wait for it on the pool.
     pub(super) out: usize,
+    /// The activations whose activities are being called or wait for it, with their places, in the order of the calls.
+    pub(super) calls: Vec<(u64, usize, Moment)>,
     pub(super) notes: TurnNotes,
+    /// Whether the run ends.
+    pub(super) run_ends: bool,
+    /// Whether the chart has been ended.
+    pub(super) has_ended: bool,
 }
 
 impl ChartThread {
-    /// Steps whenever something has happened, until the agent is stopped.
+    /// Steps whenever something has happened, until the run ends.
     pub(super) fn run(mut self) -> AgentStatistics {
-        for topic in self.runner.topics_of_guards() {
-            self.mailbox.follow(topic);
+        let mut mail = Mail::<Called>::default();
+        self.unit.schedule(&self.scheduling, &Scheduling::default());
+        self.begin();
+        while !self.run_ends {
+            self.turn(&mut mail);
         }
+        self.end(&mut mail);
+        self.statistics()
+    }
+
+    fn begin(&mut self) {
+        self.follow_guards();
         let now = self.clock.now();
         self.runner.note_fetches();
         self.runner.start(now);
         self.tell_turn(Turn::Start, now);
-        let mut mail = Mail::<Called>::default();
-        let mut stopped = None;
-        while stopped.is_none() && !self.runner.is_over() {
-            stopped = self.turn(&mut mail).err();
+        self.has_ended = false;
+        self.show(true);
+    }
+
+    fn follow_guards(&self) {
+        for topic in self.runner.topics_of_guards() {
+            self.part.mailbox.follow(topic);
         }
-        if let Some(reason) = &stopped {
-            self.switch.stop(reason);
-        }
-        self.wind_up(&mut mail);
-        self.statistics(stopped)
     }
 
     /// Asks the activities that are being called to return, waits for them, and ends the chart.
-    fn wind_up(&mut self, mail: &mut Mail<Called>) {
+    fn end(&mut self, mail: &mut Mail<Called>) {
+        if self.has_ended {
+            return;
+        }
+        self.has_ended = true;
         self.runner.cancel_all();
         loop {
             let now = self.clock.now();
+            mail.messages.clear();
             self.notes.begin_stop(&mut self.runner, &mail.returned);
             while let Some(called) = mail.returned.pop_front() {
-                let activity = self.runner.activity_name(called.assignment.activation);
+                let activation = self.runner.known_as(&called.assignment);
+                let activity = self.runner.activity_name(activation);
                 if let Err(failure) = self.take_back(called, false, now) {
-                    tracing::error!(agent = %self.agent, %activity, "activity failed: {failure}");
+                    tracing::error!(agent = %self.unit.name, %activity, "activity failed: {failure}");
                 }
             }
             if self.out == 0 {
                 self.runner.stop(now);
-                return self.tell_turn(Turn::Stop, now);
+                self.tell_turn(Turn::Stop, now);
+                break;
             }
             self.tell_turn(Turn::Stop, now);
             self.wait(Moment::MAX, mail);
         }
+        self.unit.is_over_for(&self.part);
+        self.show(true);
     }
 
-    fn wait(&self, until: Moment, mail: &mut Mail<Called>) {
+    fn wait(&mut self, until: Moment, mail: &mut Mail<Called>) {
         let clock = self.clock;
         let patience = || {
             let now = clock.now();
             (now < until).then(|| until.since(now))
         };
-        self.mailbox.wait(patience, mail);
+        self.part.mailbox.wait(patience, mail);
+        self.run_ends |= mail.stop;
     }
 
-    /// Takes the mail, and steps until the chart rests.
-    ///
-    /// # Errors
-    /// Why the agent is to stop.
-    fn turn(&mut self, mail: &mut Mail<Called>) -> Result<(), String> {
-        let until = self.runner.due(self.clock.now()).min(self.tick());
+    /// Takes the mail, does what it has been told, and steps until the chart rests.
+    fn turn(&mut self, mail: &mut Mail<Called>) {
+        let until = match self.rests() {
+            true => Moment::MAX,
+            false => self.runner.due(self.clock.now()).min(self.tick()),
+        };
         self.wait(until, mail);
-        if mail.stop {
-            return Err(ENDED.into());
+        if self.run_ends {
+            return;
         }
-        let now = self.clock.now();
-        self.notes.begin(&mut self.runner, mail);
-        let result = self.live(now, mail);
-        self.tell_turn(Turn::Round, now);
-        result
+        if self.unit.has_stopped() {
+            self.end(mail);
+        }
+        self.look_up(mail);
+        if self.has_ended {
+            mail.messages.clear();
+        } else if let Err(reason) = self.go_on(mail) {
+            self.unit.fail(&reason, self.policy == Policy::SafeState);
+            self.end(mail);
+        }
+        if self.runner.is_over() {
+            self.end(mail);
+        }
+        self.show(false);
+    }
+
+    /// Whether it makes no steps, whatever happens.
+    fn rests(&self) -> bool {
+        self.has_ended || self.unit.pauses() || self.runner.is_over()
     }
 
     fn tell_turn(&mut self, turn: Turn, now: Moment) {
         let due = self.runner.due(now).min(self.tick());
         let first_tick = if turn == Turn::Start { self.ticks } else { 0 };
         self.notes.tell(Told { turn, now, due, first_tick }, &self.runner, &mut self.teller);
+    }
+
+    fn go_on(&mut self, mail: &mut Mail<Called>) -> Result<(), String> {
+        let now = self.clock.now();
+        self.notes.begin(&mut self.runner, mail);
+        let result = self.live(now, mail);
+        self.tell_turn(Turn::Round, now);
+        result
     }
 
     fn live(&mut self, now: Moment, mail: &mut Mail<Called>) -> Result<(), String> {
@@ -126,7 +173,7 @@ impl ChartThread {
     }
 
     fn rest(&mut self, now: Moment) -> Result<(), String> {
-        loop {
+        while !self.rests() {
             if let Some(assignment) = self.runner.next_started() {
                 self.submit(assignment)?;
             } else if self.runner.needs_step(now) || self.tick() <= now {
@@ -137,6 +184,7 @@ impl ChartThread {
                 return Ok(());
             }
         }
+        Ok(())
     }
 
     fn step(&mut self, now: Moment) -> Result<(), String> {
@@ -147,54 +195,131 @@ impl ChartThread {
         let began = self.clock.now();
         let stepped = self.runner.step(now);
         self.teller.tell(now, self.runner.delivered().to_vec());
-        self.step_time.add(self.clock.now().since(began));
-        self.tell_times();
+        self.timing.add(self.clock.now().since(began), None);
+        self.tell_times(now);
         stepped.map_err(|error| format!("chart `{}`: {error}", self.runner.name()))
     }
 
     fn submit(&mut self, assignment: Assignment) -> Result<(), String> {
-        self.pool.submit(assignment, &self.mailbox).map_err(|error| error.to_string())?;
+        self.calls.push((assignment.activation.number, assignment.place(), self.clock.now()));
+        self.pool.submit(assignment, &self.part.mailbox).map_err(|error| error.to_string())?;
         self.out += 1;
+        self.beat();
         Ok(())
     }
 
     fn take_back(&mut self, called: Called, restart: bool, now: Moment) -> Result<(), Failure> {
         let Called { assignment, returned, took } = called;
         self.out -= 1;
+        self.calls.retain(|(number, ..)| *number != assignment.activation.number);
+        self.beat();
         self.runner.returned(assignment, returned, Some(took), restart, now)
     }
 
+    /// Shows the call that has lasted longest.
+    fn beat(&self) {
+        match self.calls.first() {
+            Some((_, place, since)) => {
+                self.part.pulse.calls(*place);
+                self.part.pulse.begins(*since, self.steps);
+            }
+            None => self.part.pulse.ends(),
+        }
+    }
+
     fn returned(&mut self, called: Called, now: Moment) -> Result<(), String> {
-        let activation = called.assignment.activation;
+        let activation = self.runner.known_as(&called.assignment);
         let result = self.take_back(called, self.policy == Policy::Restart, now);
         // What came on a topic before it was followed has to be assumed.
         let news: Vec<TopicSlot> = self
             .runner
             .waits_for(activation)
             .iter()
-            .filter(|topic| self.mailbox.follow(**topic))
+            .filter(|topic| self.part.mailbox.follow(**topic))
             .copied()
             .collect();
         news.into_iter().for_each(|topic| self.runner.message_arrived(topic, HostId::LOCAL, None, now));
         let Err(failure) = result else { return Ok(()) };
         let activity = self.runner.activity_name(activation);
         let cycle = self.teller.number();
-        tracing::error!(agent = %self.agent, %activity, cycle, "activity failed: {failure}");
+        tracing::error!(agent = %self.unit.name, %activity, cycle, "activity failed: {failure}");
         match self.policy {
             Policy::Restart | Policy::Skip => Ok(()),
             Policy::StopAgent | Policy::SafeState => {
-                if self.policy == Policy::SafeState {
-                    self.switch.rest_body();
-                }
                 Err(format!("activity `{activity}` failed in cycle {cycle}: {failure}"))
             }
         }
     }
 
+    fn look_up(&mut self, mail: &mut Mail<Called>) {
+        while let Some(batch) = self.part.next_batch() {
+            let (orders, answer) = batch.open();
+            let said = self.obey(orders, mail);
+            self.show(true);
+            Batch::answer(&answer, said);
+        }
+    }
+
+    fn obey(&mut self, orders: Orders, mail: &mut Mail<Called>) -> Result<Vec<String>, Vec<String>> {
+        let mut said = Vec::new();
+        let now = self.clock.now();
+        if let Some((_, swap)) = orders.swap {
+            said = self.runner.swap(*swap, now)?;
+            self.follow_guards();
+        }
+        for runner in orders.charts {
+            self.end(mail);
+            self.runner = runner;
+            self.begin();
+            self.skip_ticks(now);
+        }
+        for directive in orders.directives {
+            match directive {
+                Directive::Stop => self.end(mail),
+                Directive::Step => self.step_once(mail).map_err(|reason| vec![reason])?,
+                Directive::Frequency(frequency) => {
+                    self.frequency = Some(frequency);
+                    self.skip_ticks(now);
+                }
+                Directive::Policy(policy) => self.policy = policy,
+                Directive::StatisticsEvery(cycles) => self.statistics_every = cycles,
+                Directive::Scheduling(priority, real_time) => {
+                    let wanted = Scheduling { priority, real_time, ..self.scheduling.clone() };
+                    let was = std::mem::replace(&mut self.scheduling, wanted);
+                    said.extend(self.unit.schedule(&self.scheduling, &was));
+                }
+                Directive::Start | Directive::Pause | Directive::Resume => {}
+            }
+        }
+        Ok(said)
+    }
+
+    /// Does one step if there is one to be made, and has the activities called that it starts.
+    fn step_once(&mut self, mail: &mut Mail<Called>) -> Result<(), String> {
+        let now = self.clock.now();
+        self.go_on(mail)?;
+        while let Some(assignment) = self.runner.next_waiting(now) {
+            self.submit(assignment)?;
+        }
+        if !self.runner.is_over() && (self.runner.needs_step(now) || self.tick() <= now) {
+            self.step(now)?;
+        }
+        while let Some(assignment) = self.runner.next_started() {
+            self.submit(assignment)?;
+        }
+        Ok(())
+    }
+
+    fn skip_ticks(&mut self, now: Moment) {
+        self.ticks = self.frequency.map_or(0, |frequency| frequency.first_due(now));
+    }
+
     /// Writes to the log what steps and calls take, as often as that is wanted.
-    fn tell_times(&self) {
+    fn tell_times(&mut self, now: Moment) {
         if self.statistics_every.is_some_and(|every| self.steps.is_multiple_of(every)) {
-            teller::log_times(&self.agent, self.steps, self.step_time, self.runner.activity_statistics());
+            let statistics = self.statistics();
+            teller::log_times(&statistics);
+            self.teller.tell_statistics(&statistics, now);
         }
     }
 
@@ -202,15 +327,20 @@ impl ChartThread {
         self.frequency.map_or(Moment::MAX, |frequency| frequency.due(self.ticks))
     }
 
-    fn statistics(&self, stopped: Option<String>) -> AgentStatistics {
+    fn show(&self, always: bool) {
+        self.part.show(self.clock.now(), always, || (self.statistics(), self.runner.active()));
+    }
+
+    fn statistics(&self) -> AgentStatistics {
         AgentStatistics {
             host: self.runner.host().into(),
-            agent: self.agent.clone(),
+            agent: self.unit.name.clone(),
             cycles: self.steps,
             micro_steps: self.runner.micro_steps(),
             activities: self.runner.activity_statistics().collect(),
-            cycle_time: (self.step_time.count() > 0).then_some(self.step_time),
-            stopped: stopped.filter(|reason| reason != ENDED),
+            cycle_time: self.timing.wall(),
+            cycle_percentiles: self.timing.percentiles(),
+            stopped: self.unit.reason().filter(|reason| reason != ENDED && reason != TOLD),
             ..AgentStatistics::default()
         }
     }

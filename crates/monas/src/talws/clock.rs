@@ -1,8 +1,24 @@
 //! The only clock: wall time since the run began, or since that of another process did.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use narukom::Moment;
+
+/// Reading the processor's time takes long, so it is read for one cycle or call in so many.
+pub(crate) const CPU_EVERY: u64 = 64;
+
+/// How long the processor has worked for this thread, where the system tells.
+#[cfg(unix)]
+pub(crate) fn cpu_time() -> Option<Duration> {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Duration::try_from(time).ok()
+}
+
+/// How long the processor has worked for this thread, where the system tells.
+#[cfg(not(unix))]
+pub(crate) fn cpu_time() -> Option<Duration> {
+    None
+}
 
 /// Tells how long a run has lasted.
 #[derive(Clone, Copy, Debug)]

@@ -12,16 +12,31 @@ pub(super) struct Deadlines {
     /// The next cycle, by its number on the grid.
     next: u64,
     overruns: u64,
+    missed: u64,
 }
 
 impl Deadlines {
     pub(super) fn new(frequency: Frequency, begin: Moment) -> Deadlines {
-        Deadlines { frequency, next: frequency.first_due(begin), overruns: 0 }
+        Deadlines { frequency, next: frequency.first_due(begin), overruns: 0, missed: 0 }
     }
 
     /// When the next cycle begins.
     pub(super) fn next(&self) -> Moment {
+        if self.frequency.is_free() {
+            return Moment::ZERO;
+        }
         self.frequency.due(self.next)
+    }
+
+    /// Another grid from a moment on.
+    pub(super) fn set_frequency(&mut self, frequency: Frequency, now: Moment) {
+        self.frequency = frequency;
+        self.skip_to(now);
+    }
+
+    /// Nothing is due before a moment.
+    pub(super) fn skip_to(&mut self, now: Moment) {
+        self.next = self.frequency.first_due(now);
     }
 
     /// How many cycles ended after the next was due.
@@ -29,16 +44,23 @@ impl Deadlines {
         self.overruns
     }
 
+    /// How many cycles were left out because of that.
+    pub(super) fn missed(&self) -> u64 {
+        self.missed
+    }
+
     /// A cycle has ended. If the next was due before, tells since when; it then begins at once, and those that were missed besides are
     /// left out.
     pub(super) fn ended(&mut self, moment: Moment) -> Option<Duration> {
         self.next += 1;
         let due = self.next();
-        if due >= moment {
+        if due >= moment || self.frequency.is_free() {
             return None;
         }
         self.overruns += 1;
-        self.next = self.last_due(moment).max(self.next);
+        let last = self.last_due(moment).max(self.next);
+        self.missed += last - self.next;
+        self.next = last;
         Some(moment.since(due))
     }
 
@@ -80,6 +102,13 @@ mod tests {
     }
 
     #[test]
+    fn what_runs_freely_is_always_due_and_never_late() {
+        let mut deadlines = Deadlines::new(Hz(0), at(0));
+        assert_eq!((deadlines.next(), deadlines.ended(at(500)), deadlines.next()), (at(0), None, at(0)));
+        assert_eq!((deadlines.overruns(), deadlines.missed()), (0, 0));
+    }
+
+    #[test]
     fn a_run_that_begins_late_has_missed_nothing() {
         let mut deadlines = Deadlines::new(Hz(100), at(5005));
         assert_eq!(deadlines.next(), at(5010));
@@ -90,6 +119,7 @@ mod tests {
     fn cycles_that_were_missed_are_not_made_up_for() {
         let mut deadlines = Deadlines::new(Hz(100), at(0));
         assert_eq!(deadlines.ended(at(57)), Some(Duration::from_millis(47)));
+        assert_eq!((deadlines.overruns(), deadlines.missed()), (1, 4));
         assert_eq!(deadlines.next(), at(50));
         assert_eq!(deadlines.ended(at(58)), None);
         assert_eq!(deadlines.next(), at(60));

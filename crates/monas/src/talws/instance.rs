@@ -3,7 +3,8 @@
 use narukom::{HostId, Moment, TopicSlot};
 
 use super::ENDED;
-use super::setup::Member;
+use super::crew::Member;
+use super::orders::{Directive, Orders, Standing, TOLD};
 use super::simulated_chart::SimulatedChart;
 use super::teller::Teller;
 use crate::agent::Policy;
@@ -18,9 +19,11 @@ use crate::statistics::AgentStatistics;
 pub(super) struct Instance {
     name: String,
     policy: Policy,
+    frequency: Option<Frequency>,
     list: Option<Scheduled>,
     charts: Vec<SimulatedChart>,
     teller: Teller,
+    pauses: bool,
     stopped: Option<String>,
 }
 
@@ -33,16 +36,16 @@ struct Scheduled {
 
 impl Instance {
     /// Takes over an agent, and starts its charts.
-    pub(super) fn new(member: Member) -> Instance {
+    pub(super) fn new(member: Member, now: Moment) -> Instance {
         let Member { name, policy, frequency, list, charts, teller, .. } = member;
-        let list = list.zip(frequency).map(|(list, frequency)| Scheduled { list, frequency, next: 0 });
-        let charts = charts.into_iter().map(|runner| SimulatedChart::new(runner, frequency)).collect();
-        Instance { name, policy, list, charts, teller, stopped: None }
+        let list = list.zip(frequency).map(|(list, frequency)| Scheduled::new(list, frequency, now));
+        let charts = charts.into_iter().map(|runner| SimulatedChart::new(runner, frequency, now)).collect();
+        Instance { name, policy, frequency, list, charts, teller, pauses: false, stopped: None }
     }
 
     /// When it has something to do, if nothing happens before.
     pub(super) fn due(&self, now: Moment) -> Moment {
-        if self.stopped.is_some() {
+        if self.stopped.is_some() || self.pauses {
             return Moment::MAX;
         }
         let list = self.list.iter().map(Scheduled::due);
@@ -62,16 +65,32 @@ impl Instance {
 
     /// Does what is due: a cycle of its list, then the steps of each chart until it rests.
     pub(super) fn run(&mut self, now: Moment) -> Outcome {
-        if let Some(scheduled) = self.list.as_mut().filter(|scheduled| scheduled.due() <= now) {
-            let outcome = scheduled.cycle(now, &mut self.teller);
-            if outcome != Outcome::Continues {
-                let reason = scheduled.list.stopped().unwrap_or_default().to_owned();
-                self.stop(&reason, now);
-                return outcome;
-            }
+        let is_due = self.list.as_ref().is_some_and(|scheduled| scheduled.due() <= now);
+        let outcome = if is_due { self.cycle(now) } else { Outcome::Continues };
+        if outcome != Outcome::Continues {
+            return outcome;
         }
+        self.each_chart(now, SimulatedChart::run)
+    }
+
+    fn cycle(&mut self, now: Moment) -> Outcome {
+        let Some(scheduled) = &mut self.list else { return Outcome::Continues };
+        let outcome = scheduled.cycle(now, &mut self.teller);
+        if outcome != Outcome::Continues {
+            let reason = scheduled.list.stopped().unwrap_or_default().to_owned();
+            self.stop(&reason, now);
+        }
+        outcome
+    }
+
+    fn each_chart(
+        &mut self,
+        now: Moment,
+        act: impl Fn(&mut SimulatedChart, Moment, &str, Policy, &mut Teller) -> Result<(), String>,
+    ) -> Outcome {
         for index in 0..self.charts.len() {
-            if let Err(reason) = self.charts[index].run(now, &self.name, self.policy, &mut self.teller) {
+            if let Err(reason) = act(&mut self.charts[index], now, &self.name, self.policy, &mut self.teller)
+            {
                 self.stop(&reason, now);
                 return if self.policy == Policy::SafeState { Outcome::SafeState } else { Outcome::Stopped };
             }
@@ -98,8 +117,108 @@ impl Instance {
         self.charts.iter_mut().for_each(|chart| chart.stop(now));
     }
 
+    /// Does what it is told. Says what became of it, and what there is to say of that.
+    ///
+    /// # Errors
+    /// What stands against it; nothing has changed then.
+    pub(super) fn obey(
+        &mut self,
+        orders: Orders,
+        now: Moment,
+    ) -> Result<(Outcome, Vec<String>), Vec<String>> {
+        let mut said = Vec::new();
+        if let Some((place, swap)) = orders.swap
+            && let Some(chart) = self.charts.get_mut(place)
+        {
+            said = chart.swap(*swap, now)?;
+        }
+        if let Some((list, frequency)) = orders.list.zip(self.frequency) {
+            self.list = Some(Scheduled::new(*list, frequency, now));
+        }
+        if let Some(scheduled) = &mut self.list {
+            orders.edits.into_iter().for_each(|edit| scheduled.list.edit(edit));
+        }
+        if !orders.charts.is_empty() {
+            let frequency = self.frequency;
+            let anew = orders.charts.into_iter();
+            self.charts = anew.map(|runner| SimulatedChart::new(runner, frequency, now)).collect();
+        }
+        let mut outcome = Outcome::Continues;
+        for directive in orders.directives {
+            outcome = self.follow(directive, now);
+        }
+        Ok((outcome, said))
+    }
+
+    fn follow(&mut self, directive: Directive, now: Moment) -> Outcome {
+        match directive {
+            Directive::Start => self.start(now),
+            Directive::Stop => self.stop(TOLD, now),
+            Directive::Pause => self.pauses = true,
+            Directive::Resume => {
+                self.pauses = false;
+                self.list.iter_mut().for_each(|scheduled| scheduled.skip_to(now));
+            }
+            Directive::Step => return self.step(now),
+            Directive::Frequency(frequency) => self.set_frequency(frequency, now),
+            Directive::Policy(policy) => {
+                self.policy = policy;
+                self.list.iter_mut().for_each(|scheduled| scheduled.list.set_policy(policy));
+            }
+            // In simulated time nothing is measured, and nobody waits for anybody.
+            Directive::StatisticsEvery(_) | Directive::Scheduling(..) => {}
+        }
+        Outcome::Continues
+    }
+
+    fn start(&mut self, now: Moment) {
+        (self.stopped, self.pauses) = (None, false);
+        if let Some(scheduled) = &mut self.list {
+            scheduled.list.restart();
+            scheduled.skip_to(now);
+        }
+    }
+
+    fn step(&mut self, now: Moment) -> Outcome {
+        match self.cycle(now) {
+            Outcome::Continues => self.each_chart(now, SimulatedChart::step_once),
+            other => other,
+        }
+    }
+
+    fn set_frequency(&mut self, frequency: Frequency, now: Moment) {
+        self.frequency = Some(frequency);
+        if let Some(scheduled) = &mut self.list {
+            scheduled.frequency = frequency;
+            scheduled.skip_to(now);
+        }
+        self.charts.iter_mut().for_each(|chart| chart.set_frequency(frequency, now));
+    }
+
+    pub(super) fn standing(&self) -> Standing {
+        match (&self.stopped, self.pauses) {
+            (Some(_), _) => Standing::Stopped,
+            (None, true) => Standing::Pauses,
+            (None, false) => Standing::Runs,
+        }
+    }
+
+    /// Whether it will never do anything again by itself.
+    pub(super) fn is_over(&self) -> bool {
+        self.stopped.is_some() || self.list.is_none() && self.charts.iter().all(SimulatedChart::is_over)
+    }
+
     pub(super) fn name(&self) -> &str {
         &self.name
+    }
+
+    pub(super) fn cycles(&self) -> u64 {
+        self.teller.number()
+    }
+
+    /// The active states of each chart.
+    pub(super) fn active(&self) -> Vec<Vec<String>> {
+        self.charts.iter().map(SimulatedChart::active).collect()
     }
 
     pub(super) fn statistics(&self, host: &str) -> AgentStatistics {
@@ -111,7 +230,7 @@ impl Instance {
             cycles: self.teller.number(),
             micro_steps: self.charts.iter().map(SimulatedChart::micro_steps).sum(),
             activities: listed.chain(charted).collect(),
-            stopped: self.stopped.clone().filter(|reason| reason != ENDED),
+            stopped: self.stopped.clone().filter(|reason| reason != ENDED && reason != TOLD),
             ..AgentStatistics::default()
         }
     }
@@ -122,8 +241,20 @@ impl Instance {
 }
 
 impl Scheduled {
+    fn new(list: List, frequency: Frequency, now: Moment) -> Scheduled {
+        Scheduled { list, frequency, next: frequency.first_due(now) }
+    }
+
     fn due(&self) -> Moment {
         self.frequency.due(self.next)
+    }
+
+    /// What is due before now is left out; and so is what is due now, if the last cycle was at this moment.
+    fn skip_to(&mut self, now: Moment) {
+        self.next = self.frequency.first_due(now);
+        if self.list.last_cycle() == Some(now) && self.due() == now {
+            self.next += 1;
+        }
     }
 
     fn cycle(&mut self, now: Moment, teller: &mut Teller) -> Outcome {

@@ -35,7 +35,8 @@ impl RoundTrip {
         let bound = Binder::new(&registry)?.bind(&chart, Semantics::yase(), None).map_err(Error::invalid)?;
         let hub = Narukom::with_linked_topics("bench").map_err(Error::hub)?;
         let listeners = Listeners::default();
-        let home = Home { hub: &hub, agent: "bench", number: 0, seed: 0, listeners: &listeners };
+        let (number, seed, now) = (0, 0, Moment::ZERO);
+        let home = Home { hub: &hub, agent: "bench", number, seed, listeners: &listeners, now };
         let mut runner = Runner::new(bound, home)?;
         runner.start(Moment::ZERO);
         // The chart does not come into this: whatever its limits are, the first step is within them.

@@ -7,10 +7,14 @@ use std::time::Duration;
 
 use narukom::{Moment, Narukom};
 
+use prost::Message;
+
 use super::clock::Clock;
+use super::supervisor::SupervisorLine;
+use crate::records::{AgentEntry, Agents, Change, Changed, Configuration, Inquiry, Reply};
 
 /// Whoever publishes from outside does so under this name.
-const PUBLISHER: &str = "outside";
+pub(super) const OUTSIDE: &str = "outside";
 
 /// So many messages from outside wait at most for the next moment of a simulated run.
 const WAITING: usize = 64;
@@ -27,7 +31,7 @@ pub struct Overview {
 
 #[derive(Clone)]
 enum Time {
-    Real(Clock),
+    Real(Clock, SupervisorLine),
     Simulated(Arc<ShownMoment>, SyncSender<HandedIn>),
 }
 
@@ -45,12 +49,18 @@ impl ShownMoment {
     }
 }
 
-/// A message that waits for the next moment of a run.
-struct HandedIn {
-    hub: Narukom,
-    path: String,
-    bytes: Vec<u8>,
-    answer: SyncSender<Result<(), String>>,
+/// What waits for the next moment of a run.
+pub(super) enum HandedIn {
+    Message { hub: Narukom, path: String, bytes: Vec<u8>, answer: SyncSender<Result<(), String>> },
+    Change { host: String, change: Box<Change>, answer: SyncSender<Result<Changed, String>> },
+    Look { answer: SyncSender<Vec<View>> },
+}
+
+/// A host as it is now.
+pub(super) struct View {
+    pub(super) host: String,
+    pub(super) agents: Vec<AgentEntry>,
+    pub(super) configuration: Configuration,
 }
 
 /// Where a simulated run finds what was handed in.
@@ -69,26 +79,21 @@ impl Inlet {
         self.sender.clone()
     }
 
-    /// Publishes what waits; false if nothing did.
-    pub(super) fn publish_waiting(&self, now: Moment) -> bool {
-        let mut any = false;
-        while let Ok(HandedIn { hub, path, bytes, answer }) = self.waiting.try_recv() {
-            any = true;
-            // Whoever has given up is not told.
-            let _ = answer.try_send(publish(&hub, &path, &bytes, now));
-        }
-        any
+    /// What waits longest.
+    pub(super) fn next(&self) -> Option<HandedIn> {
+        self.waiting.try_recv().ok()
     }
 }
 
-fn publish(hub: &Narukom, path: &str, bytes: &[u8], now: Moment) -> Result<(), String> {
-    let publisher = hub.publisher_by_name(path, PUBLISHER);
+/// Publishes the message that `bytes` encode.
+pub(super) fn publish(hub: &Narukom, path: &str, bytes: &[u8], now: Moment) -> Result<(), String> {
+    let publisher = hub.publisher_by_name(path, OUTSIDE);
     publisher.and_then(|mut publisher| publisher.publish_bytes(bytes, now)).map_err(|error| error.to_string())
 }
 
 impl Overview {
-    pub(super) fn real(hubs: Vec<Narukom>, clock: Clock) -> Overview {
-        Overview { hubs, time: Time::Real(clock) }
+    pub(super) fn real(hubs: Vec<Narukom>, clock: Clock, supervisor: SupervisorLine) -> Overview {
+        Overview { hubs, time: Time::Real(clock, supervisor) }
     }
 
     pub(super) fn simulated(hubs: Vec<Narukom>, shown: Arc<ShownMoment>, inlet: &Inlet) -> Overview {
@@ -103,7 +108,7 @@ impl Overview {
     /// How far it is.
     pub fn now(&self) -> Moment {
         match &self.time {
-            Time::Real(clock) => clock.now(),
+            Time::Real(clock, _) => clock.now(),
             Time::Simulated(shown, _) => shown.get(),
         }
     }
@@ -122,23 +127,108 @@ impl Overview {
         let hub = self.hubs.iter().find(|hub| hub.host() == host);
         let hub = hub.ok_or_else(|| format!("no host is named `{host}`"))?;
         match &self.time {
-            Time::Real(clock) => publish(hub, path, bytes, clock.now()),
+            Time::Real(clock, _) => publish(hub, path, bytes, clock.now()),
             Time::Simulated(_, inlet) => {
-                let (answer, answered) = sync_channel(1);
-                let handed_in = HandedIn { hub: hub.clone(), path: path.into(), bytes: bytes.into(), answer };
-                inlet.try_send(handed_in).map_err(|error| match error {
-                    TrySendError::Full(_) => format!("{WAITING} messages from outside wait already"),
-                    TrySendError::Disconnected(_) => "the run has ended".to_owned(),
-                })?;
-                answered.recv_timeout(PATIENCE).unwrap_or_else(|error| {
-                    Err(match error {
-                        RecvTimeoutError::Timeout => "the run stands still and takes nothing".to_owned(),
-                        RecvTimeoutError::Disconnected => "the run has ended".to_owned(),
-                    })
-                })
+                let (path, bytes) = (path.into(), bytes.into());
+                handed_in(inlet, |answer| HandedIn::Message { hub: hub.clone(), path, bytes, answer })?
             }
         }
     }
+
+    /// Asks for a change of the agents of a host, as [`CHANGE`](crate::records::CHANGE) has it. It is made between two of their cycles.
+    ///
+    /// # Errors
+    /// Why nobody could be asked; that the change is refused is said by the answer.
+    pub fn change(&self, host: &str, change: Change) -> Result<Changed, String> {
+        match &self.time {
+            Time::Real(_, supervisor) => supervisor.change(host, change),
+            Time::Simulated(_, inlet) => {
+                let (host, change) = (host.into(), Box::new(change));
+                handed_in(inlet, |answer| HandedIn::Change { host, change, answer })?
+            }
+        }
+    }
+
+    /// The agents of a host as they are now, or those of all hosts.
+    ///
+    /// # Errors
+    /// There is no such host, or the run stands still.
+    pub fn agents(&self, host: Option<&str>) -> Result<Vec<AgentEntry>, String> {
+        Ok(self.views(host)?.into_iter().flat_map(|view| view.agents).collect())
+    }
+
+    /// What the agents of a host are made of now, as a text that can be read again: the one they were read from, brought up to date.
+    ///
+    /// # Errors
+    /// There is no such host, or the run stands still.
+    pub fn configuration(&self, host: &str) -> Result<Configuration, String> {
+        let view = self.views(Some(host))?.into_iter().next();
+        view.map(|view| view.configuration).ok_or_else(|| format!("no agents run on `{host}`"))
+    }
+
+    fn views(&self, host: Option<&str>) -> Result<Vec<View>, String> {
+        let mut views = match &self.time {
+            Time::Real(_, supervisor) => supervisor.views()?,
+            Time::Simulated(_, inlet) => handed_in(inlet, |answer| HandedIn::Look { answer })?,
+        };
+        if let Some(host) = host {
+            let known: Vec<String> = views.iter().map(|view| format!("`{}`", view.host)).collect();
+            views.retain(|view| view.host == host);
+            if views.is_empty() {
+                return Err(format!("no host is named `{host}`; there are {}", known.join(", ")));
+            }
+        }
+        Ok(views)
+    }
+
+    /// Answers what a tool asks of the run: an [`Inquiry`] in its encoding is answered by a [`Reply`] in its.
+    ///
+    /// # Errors
+    /// Why not.
+    pub fn manage(&self, inquiry: &[u8]) -> Result<Vec<u8>, String> {
+        let inquiry = Inquiry::decode(inquiry).map_err(|_| "what is asked is not understood".to_owned())?;
+        let host = (!inquiry.host.is_empty()).then_some(inquiry.host.as_str());
+        let mut reply = Reply::default();
+        if inquiry.agents {
+            reply.agents = Some(Agents { agents: self.agents(host)? });
+        } else if inquiry.configuration {
+            reply.configuration = Some(self.configuration(&self.only(host)?)?);
+        } else if let Some(change) = inquiry.change {
+            reply.changed = Some(self.change(&self.only(host)?, change)?);
+        } else {
+            return Err("nothing is asked".into());
+        }
+        Ok(reply.encode_to_vec())
+    }
+
+    /// The host that is meant, if it is not named.
+    fn only(&self, host: Option<&str>) -> Result<String, String> {
+        if let Some(host) = host {
+            return Ok(host.to_owned());
+        }
+        let hosts: Vec<String> = self.views(None)?.into_iter().map(|view| view.host).collect();
+        match &hosts[..] {
+            [only] => Ok(only.clone()),
+            [] => Err("the run has no host".into()),
+            several => Err(format!("there are several hosts: say which of {}", several.join(", "))),
+        }
+    }
+}
+
+/// Hands something in, and waits for the answer.
+fn handed_in<T>(
+    inlet: &SyncSender<HandedIn>,
+    what: impl FnOnce(SyncSender<T>) -> HandedIn,
+) -> Result<T, String> {
+    let (answer, answered) = sync_channel(1);
+    inlet.try_send(what(answer)).map_err(|error| match error {
+        TrySendError::Full(_) => format!("{WAITING} messages from outside wait already"),
+        TrySendError::Disconnected(_) => "the run has ended".to_owned(),
+    })?;
+    answered.recv_timeout(PATIENCE).map_err(|error| match error {
+        RecvTimeoutError::Timeout => "the run stands still and takes nothing".to_owned(),
+        RecvTimeoutError::Disconnected => "the run has ended".to_owned(),
+    })
 }
 
 #[cfg(unix)]
@@ -157,6 +247,10 @@ impl monas_link::control::Observed for Overview {
 
     fn publish(&self, host: &str, path: &str, bytes: &[u8]) -> Result<(), String> {
         Overview::publish(self, host, path, bytes)
+    }
+
+    fn manage(&self, inquiry: &[u8]) -> Result<Vec<u8>, String> {
+        Overview::manage(self, inquiry)
     }
 }
 

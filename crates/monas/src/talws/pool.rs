@@ -6,11 +6,10 @@
 use std::num::NonZeroUsize;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
 
-use super::clock::Clock;
+use super::clock::{CPU_EVERY, Clock, cpu_time};
 use super::handover::{Mailbox, Work};
-use crate::chart::{Assignment, Returned};
+use crate::chart::{Assignment, Returned, Took};
 use crate::error::{Error, ErrorKind};
 
 /// The largest number of threads of a pool whose agent does not say how many there are to be.
@@ -35,7 +34,7 @@ pub(super) struct Called {
     pub(super) assignment: Assignment,
     pub(super) returned: Returned,
     /// How long the call took.
-    pub(super) took: Duration,
+    pub(super) took: Took,
 }
 
 /// How many threads a pool has whose charts have so many activities at once, if its agent does not say.
@@ -81,10 +80,17 @@ impl Pool {
 
 /// What a worker does: it calls one activity after the other. A panic of an activity does not get here.
 fn run(work: &Work<Job>, clock: Clock) {
+    let mut calls = 0_u64;
     while let Some(Job { mut assignment, mailbox }) = work.next() {
+        calls += 1;
+        let cpu = if calls % CPU_EVERY == 1 { cpu_time() } else { None };
         let began = clock.now();
         let returned = assignment.call();
-        let took = clock.now().since(began);
+        let wall = clock.now().since(began);
+        let cpu = cpu
+            .and_then(|before| Some((before, cpu_time()?)))
+            .map(|(before, after)| after.saturating_sub(before));
+        let took = Took { wall, cpu };
         mailbox.returned(Called { assignment, returned, took });
     }
 }

@@ -1,34 +1,32 @@
 //! Puts a team on its hubs: what a run in simulated time and one in real time begin with.
 
-use std::num::NonZeroUsize;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use narukom::{Blackboard, Moment, Narukom, Observer, Publication};
 
+use yase::Source;
+
 use super::body::Body;
+use super::crew::{Crew, Ground, Member};
 use super::links::Brought;
-use super::replay::{Company, names_on};
+use super::replay::names_on;
 use super::seeds::component_seed;
-use super::teller::Teller;
 use super::{HostConfig, Talws, World};
 use crate::activity::BoxError;
-use crate::agent::{Agent, Policy};
-use crate::binder::{Binder, BoundChart};
-use crate::chart::{Home, Runner};
+use crate::agent::Profile;
+use crate::binder::Binder;
 use crate::error::{Error, ErrorKind};
-use crate::frequency::Frequency;
-use crate::link::{Elsewhere, LinkConfig};
-use crate::list::List;
+use crate::link::LinkConfig;
 use crate::listener::Listeners;
-use crate::reach::{Reach, out_of_reach};
-use crate::records::{self, HOST};
+use crate::records::{self, CHANGE, HOST};
 use crate::registry::Registry;
 
 /// Everything that runs, in the order in which it runs.
 pub(super) struct Stage {
     pub(super) world: Option<Environment>,
     pub(super) stations: Vec<Station>,
+    pub(super) crew: Arc<Crew>,
 }
 
 /// A host.
@@ -37,18 +35,11 @@ pub(super) struct Station {
     pub(super) body: Option<Body>,
     pub(super) members: Vec<Member>,
     pub(super) links: Vec<LinkConfig>,
-}
-
-/// An agent with its list and its charts, each with its blackboards.
-pub(super) struct Member {
-    pub(super) name: String,
-    pub(super) policy: Policy,
-    pub(super) frequency: Option<Frequency>,
-    pub(super) statistics_every: Option<u64>,
-    pub(super) workers: Option<NonZeroUsize>,
-    pub(super) list: Option<List>,
-    pub(super) charts: Vec<Runner>,
-    pub(super) teller: Teller,
+    pub(super) ground: Ground,
+    /// What its agents are made of.
+    pub(super) profiles: Vec<Profile>,
+    /// The text they were read from.
+    pub(super) configuration: Option<Arc<Source>>,
 }
 
 /// The world and when it moves on.
@@ -58,18 +49,9 @@ pub(super) struct Environment {
     ticks: u64,
 }
 
-/// What every agent is set up with.
-struct Crew<'a> {
-    binder: Binder<'a>,
-    listeners: Listeners,
-    observers: Observers,
-    seed: u64,
-    company: Vec<Company>,
-}
-
 /// The observers of all hubs, called one at a time.
 #[derive(Clone)]
-struct Observers(Arc<Mutex<Vec<Box<dyn Observer>>>>);
+pub(super) struct Observers(Arc<Mutex<Vec<Box<dyn Observer>>>>);
 
 impl Observers {
     fn each(&self, act: impl FnMut(&mut Box<dyn Observer>)) {
@@ -94,21 +76,21 @@ impl Stage {
         configs.sort_by(|a, b| (a.team, a.number, &a.name).cmp(&(b.team, b.number, &b.name)));
         let names = configs.iter().map(|host| host.name.as_str());
         distinct("hosts", names.chain(world.iter().map(|world| world.name())))?;
-        let registry = registry.unwrap_or_else(Registry::linked);
         let crew = Crew {
-            binder: Binder::new(&registry)?,
+            registry: registry.unwrap_or_else(Registry::linked),
             listeners: Listeners::new(listeners),
             observers: Observers(Arc::new(Mutex::new(observers))),
             seed,
             company,
         };
         let world = world.map(|world| crew.environment(world)).transpose()?;
-        let stations = configs.into_iter().map(|config| crew.station(config));
-        Ok(Stage { world, stations: collect_all(stations)? })
+        let binder = Binder::new(&crew.registry)?;
+        let stations = collect_all(configs.into_iter().map(|config| crew.station(&binder, config)))?;
+        Ok(Stage { world, stations, crew: Arc::new(crew) })
     }
 }
 
-impl Crew<'_> {
+impl Crew {
     fn environment(&self, mut world: Box<dyn World>) -> Result<Environment, Error> {
         let hub = self.hub(world.name())?;
         let mut blackboard = hub.blackboard(world.name());
@@ -124,79 +106,53 @@ impl Crew<'_> {
         Ok(hub)
     }
 
-    fn station(&self, config: HostConfig) -> Result<Station, Error> {
-        let HostConfig { name, team, number, body, mut agents, links } = config;
+    fn station(&self, binder: &Binder<'_>, config: HostConfig) -> Result<Station, Error> {
+        let HostConfig { name, team, number, body, mut agents, links, configuration } = config;
         agents.sort_by(|a, b| a.name.cmp(&b.name));
         distinct("agents", agents.iter().map(|agent| agent.name.as_str()))
             .map_err(|error| error.with_hint(format!("both are on host `{name}`")))?;
         let hub = self.hub(&name)?;
         introduce(&hub, team, number)?;
         let body = body.map(|robot| Body::new(robot, &hub)).transpose()?;
-        let mut publishers: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
-        publishers.extend(body.iter().map(|_| Body::PUBLISHER.to_owned()));
-        publishers.extend(names_on(&self.company, hub.host()));
-        let brought = Brought::by(&links, &hub)?;
-        let reach = Reach {
-            hub: &hub,
-            publishers: &publishers,
-            from_others: &brought.others,
-            from_own: &brought.own,
-        };
-        let members = agents.into_iter().map(|agent| self.member(agent, &reach));
+        let mut others: Vec<String> = names_on(&self.company, hub.host()).collect();
+        others.extend(body.iter().map(|_| Body::PUBLISHER.to_owned()));
+        let ground = Ground { brought: Brought::by(&links, &hub)?, others, hub: hub.clone() };
+        refuse_changes_from_strangers(&ground, &links)?;
+        let names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
+        let profiles = agents.iter().map(Profile::of).collect();
+        let members =
+            agents.into_iter().map(|agent| self.member(binder, agent, &ground, &names, Moment::ZERO));
         let members = collect_all(members)?;
-        Ok(Station { hub, body, members, links })
-    }
-
-    fn member(&self, agent: Agent, reach: &Reach<'_>) -> Result<Member, Error> {
-        let hub = reach.hub;
-        let Agent {
-            name,
-            policy,
-            frequency,
-            activities,
-            charts,
-            mut generated,
-            semantics,
-            statistics_every,
-            workers,
-            elsewhere,
-            ..
-        } = agent;
-        if frequency.is_none() && !activities.is_empty() {
-            let message = format!("agent `{name}` has activities, but nothing says how often they run");
-            return Err(Error::new(ErrorKind::NoFrequency, message).with_hint("say so with `every`"));
-        }
-        let charts = charts.iter().zip(0..).map(|(chart, number)| {
-            let home = Home { hub, agent: &name, number, seed: self.seed, listeners: &self.listeners };
-            let bound = match generated.remove(&(number as usize)) {
-                Some(generated) => self.binder.bind_generated(generated, semantics),
-                None => self.binder.bind(chart, semantics, None),
-            };
-            let mut bound = bound.map_err(Error::invalid)?;
-            put_elsewhere(&mut bound, &elsewhere);
-            match out_of_reach(&bound.chart, reach) {
-                wrong if wrong.is_empty() => Runner::new(bound, home),
-                wrong => Err(Error::invalid(wrong)),
-            }
-        });
-        let charts = collect_all(charts)?;
-        let list = (!activities.is_empty()).then(|| {
-            let mut blackboard = hub.blackboard(&name);
-            blackboard.set_random(component_seed(self.seed, &format!("{}/{name}", hub.host())));
-            List::new(&name, policy, activities, blackboard)
-        });
-        let teller = Teller::new(hub, &name)?;
-        Ok(Member { name, policy, frequency, statistics_every, workers, list, charts, teller })
+        Ok(Station { hub, body, members, links, ground, profiles, configuration })
     }
 }
 
-/// Takes the activities out of a chart that another process runs.
-fn put_elsewhere(bound: &mut BoundChart, names: &[String]) {
-    for (entry, activity) in bound.chart.activities().zip(&mut bound.activities) {
-        if names.iter().any(|name| name == entry.name) {
-            *activity = Box::new(Elsewhere::new(entry.name));
+/// Whoever may publish changes on a host may do anything to its agents. What comes over a link as the host's own may be such a change, so
+/// the link has to name those who may, and say that they may manage.
+fn refuse_changes_from_strangers(ground: &Ground, links: &[LinkConfig]) -> Result<(), Error> {
+    for link in links {
+        let brought = Brought::by(std::slice::from_ref(link), &ground.hub)?;
+        if !brought.own.iter().any(|slot| Some(*slot) == ground.hub.topic(CHANGE.path())) {
+            continue;
         }
+        let access = &link.settings.access;
+        let mut hosts = access.publishers().map(|(host, _)| host);
+        let stranger = hosts.find(|host| access.may_publish(host, CHANGE.path()) && !access.may_manage(host));
+        let host = ground.hub.host();
+        let (message, hint) = match (access.is_open(), stranger) {
+            (true, _) => (
+                format!("a link of `{host}` lets anybody change its agents"),
+                "give the link an `access` list that says who may, or do not receive `monas/change` as its own".into(),
+            ),
+            (false, Some(stranger)) => (
+                format!("a link of `{host}` lets `{stranger}` publish changes of its agents, who may not manage them"),
+                format!("add `{stranger} manage` to the access list, or name the topics that `{stranger}` may publish"),
+            ),
+            (false, None) => continue,
+        };
+        return Err(Error::new(ErrorKind::Link, message).with_hint(hint));
     }
+    Ok(())
 }
 
 impl Environment {
@@ -244,7 +200,7 @@ fn world_failed(error: BoxError) -> Error {
 }
 
 /// All values, or all diagnostics of those that are invalid, or the first other error.
-fn collect_all<T>(results: impl Iterator<Item = Result<T, Error>>) -> Result<Vec<T>, Error> {
+pub(super) fn collect_all<T>(results: impl Iterator<Item = Result<T, Error>>) -> Result<Vec<T>, Error> {
     let mut values = Vec::new();
     let mut diagnostics = Vec::new();
     for result in results {

@@ -4,7 +4,7 @@ use narukom::{HostId, Moment, TopicSlot};
 
 use super::teller::Teller;
 use crate::agent::Policy;
-use crate::chart::{Assignment, Returned, Runner};
+use crate::chart::{Assignment, Returned, Runner, Swap};
 use crate::coverage::ChartCoverage;
 use crate::frequency::Frequency;
 use crate::origin::Origin;
@@ -33,9 +33,55 @@ struct UnderWay {
 }
 
 impl SimulatedChart {
-    pub(super) fn new(mut runner: Runner, frequency: Option<Frequency>) -> SimulatedChart {
-        runner.start(Moment::ZERO);
-        SimulatedChart { runner, under_way: Vec::new(), frequency, ticks: 0, calls: 0, instant: Moment::ZERO }
+    /// Starts a chart.
+    pub(super) fn new(mut runner: Runner, frequency: Option<Frequency>, now: Moment) -> SimulatedChart {
+        runner.start(now);
+        let ticks = frequency.map_or(0, |frequency| frequency.first_due(now));
+        SimulatedChart { runner, under_way: Vec::new(), frequency, ticks, calls: 0, instant: now }
+    }
+
+    /// Wakes it as often as that from now on.
+    pub(super) fn set_frequency(&mut self, frequency: Frequency, now: Moment) {
+        self.frequency = Some(frequency);
+        self.ticks = frequency.first_due(now);
+    }
+
+    /// Goes on with another model.
+    ///
+    /// # Errors
+    /// What stands against it.
+    pub(super) fn swap(&mut self, swap: Swap, now: Moment) -> Result<Vec<String>, Vec<String>> {
+        self.runner.swap(swap, now)
+    }
+
+    pub(super) fn active(&self) -> Vec<String> {
+        self.runner.active()
+    }
+
+    /// Does one step if there is one to be made, and calls the activities that it starts.
+    ///
+    /// # Errors
+    /// Why the agent is to stop.
+    pub(super) fn step_once(
+        &mut self,
+        now: Moment,
+        agent: &str,
+        policy: Policy,
+        teller: &mut Teller,
+    ) -> Result<(), String> {
+        while let Some(over) = self.next_return(now) {
+            self.returned(over, now, agent, policy, teller.number())?;
+        }
+        while let Some(assignment) = self.runner.next_waiting(now) {
+            self.call(assignment, now)?;
+        }
+        if !self.runner.is_over() && (self.runner.needs_step(now) || self.tick() <= now) {
+            self.step(now, teller)?;
+        }
+        while let Some(assignment) = self.runner.next_started() {
+            self.call(assignment, now)?;
+        }
+        Ok(())
     }
 
     pub(super) fn due(&self, now: Moment) -> Moment {
@@ -122,7 +168,8 @@ impl SimulatedChart {
         let stepped = self.runner.step(now);
         teller.tell(now, self.runner.delivered().to_vec());
         while let Some(cancelled) = self.runner.next_cancelled() {
-            let under_way = self.under_way.iter_mut().filter(|one| one.assignment.activation == cancelled);
+            let under_way =
+                self.under_way.iter_mut().filter(|one| one.assignment.activation.number == cancelled.number);
             under_way.for_each(|one| one.until = now);
         }
         stepped.map_err(|error| format!("chart `{}`: {error}", self.runner.name()))
@@ -144,7 +191,7 @@ impl SimulatedChart {
         cycle: u64,
     ) -> Result<(), String> {
         let UnderWay { assignment, returned, .. } = over;
-        let activation = assignment.activation;
+        let activation = self.runner.known_as(&assignment);
         let result = self.runner.returned(assignment, returned, None, policy == Policy::Restart, now);
         let Err(failure) = result else { return Ok(()) };
         let activity = self.runner.activity_name(activation);
@@ -155,6 +202,10 @@ impl SimulatedChart {
                 Err(format!("activity `{activity}` failed in cycle {cycle}: {failure}"))
             }
         }
+    }
+
+    pub(super) fn is_over(&self) -> bool {
+        self.runner.is_over()
     }
 
     pub(super) fn stop(&mut self, now: Moment) {

@@ -1,22 +1,25 @@
 //! Runs in simulated time: one thread, exact nanoseconds, a defined order.
 
+mod host;
+
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use narukom::{Moment, Narukom};
 
-use super::body::Body;
+use super::Talws;
 use super::clock::Clock;
 use super::instance::Instance;
 use super::links::RunningLink;
-use super::moved::Moved;
-use super::overview::{Inlet, Overview, ShownMoment};
-use super::setup::{Environment, Stage, Station, tick};
+use super::overview::{self, HandedIn, Inlet, Overview, ShownMoment};
+use super::setup::{Environment, Stage};
 use super::stopper::Stopper;
-use super::{ENDED, Talws};
 use crate::coverage::ChartCoverage;
 use crate::error::{Error, ErrorKind};
-use crate::list::Outcome;
+use crate::records::{Change, Changed};
 use crate::statistics::Statistics;
+
+use host::Host;
 
 /// A run in simulated time.
 ///
@@ -31,24 +34,19 @@ pub struct Simulation {
     hosts: Vec<Host>,
     links: Vec<RunningLink>,
     inlet: Inlet,
-}
-
-/// A host with all that runs on it.
-struct Host {
-    hub: Narukom,
-    moved: Moved,
-    body: Option<(Body, u64)>,
-    instances: Vec<Instance>,
+    /// Changes of agents at moments to come, by these and the order in which they were written.
+    script: BTreeMap<(Moment, usize), (usize, Change)>,
 }
 
 impl Simulation {
     pub(super) fn new(talws: Talws, seed: u64) -> Result<Simulation, Error> {
-        let Stage { world, stations } = Stage::new(talws, seed)?;
+        let Stage { world, stations, crew } = Stage::new(talws, seed)?;
         let shown = Arc::new(ShownMoment::default());
         let mut links = Vec::new();
-        let hosts = stations.into_iter().map(|station| Host::new(station, &shown, &mut links));
+        let hosts = stations.into_iter().map(|station| Host::new(station, &crew, &shown, &mut links));
         let hosts = hosts.collect::<Result<_, Error>>()?;
-        Ok(Simulation { now: Moment::ZERO, shown, world, hosts, links, inlet: Inlet::new() })
+        let (inlet, script) = (Inlet::new(), BTreeMap::new());
+        Ok(Simulation { now: Moment::ZERO, shown, world, hosts, links, inlet, script })
     }
 
     /// The moment up to which everything has happened.
@@ -70,6 +68,7 @@ impl Simulation {
                 return Ok(());
             }
             self.pass(next);
+            self.follow_script();
             self.happen(next)?;
         }
     }
@@ -88,15 +87,53 @@ impl Simulation {
                 return Ok(());
             }
             self.pass(next);
+            self.follow_script();
             self.happen(next)?;
         }
         self.run_until(end)
     }
 
+    /// Makes a change of the agents of a host now, between two of their cycles; it is published like one that anybody asks for, and so is
+    /// the answer.
+    ///
+    /// # Errors
+    /// There is no such host. That a change is refused is said by the answer.
+    pub fn change(&mut self, host: &str, change: Change) -> Result<Changed, Error> {
+        let (place, now) = (self.place(host)?, self.now);
+        Ok(self.hosts[place].change(change, now))
+    }
+
+    /// Has a change made when its moment comes, before anything else happens then; the answer is published. The same script gives the
+    /// same run.
+    ///
+    /// # Errors
+    /// There is no such host.
+    pub fn change_at(&mut self, moment: Moment, host: &str, change: Change) -> Result<(), Error> {
+        let place = self.place(host)?;
+        self.script.insert((moment.max(self.now), self.script.len()), (place, change));
+        Ok(())
+    }
+
+    fn place(&self, host: &str) -> Result<usize, Error> {
+        self.hosts.iter().position(|known| known.name() == host).ok_or_else(|| {
+            let known = self.hosts.iter().map(Host::name);
+            Error::new(ErrorKind::UnknownHost, format!("no host is named `{host}`")).with_nearest(host, known)
+        })
+    }
+
+    fn follow_script(&mut self) {
+        while let Some(entry) = self.script.first_entry().filter(|entry| entry.key().0 <= self.now) {
+            let (host, change) = entry.remove();
+            self.hosts[host].change(change, self.now);
+        }
+    }
+
     /// What agents have done so far.
     pub fn statistics(&self) -> Statistics {
-        let agents =
-            self.hosts.iter().flat_map(|host| host.instances.iter().map(|i| i.statistics(host.hub.host())));
+        let agents = self
+            .hosts
+            .iter()
+            .flat_map(|host| host.instances().iter().map(|agent| agent.statistics(host.name())));
         let links = self.links.iter().map(RunningLink::statistics).collect();
         Statistics { agents: agents.collect(), links }
     }
@@ -105,39 +142,39 @@ impl Simulation {
     /// as somebody lets it run.
     pub fn overview(&self) -> Overview {
         let world = self.world.iter().map(Environment::hub);
-        let hubs = self.hosts.iter().map(|host| &host.hub).chain(world).cloned();
+        let hubs = self.hosts.iter().map(Host::hub).chain(world).cloned();
         Overview::simulated(hubs.collect(), self.shown.clone(), &self.inlet)
     }
 
     /// The hub of a host or of the world, for those who look on.
     pub fn hub(&self, host: &str) -> Option<&Narukom> {
         let world = self.world.iter().map(Environment::hub);
-        let hosts = self.hosts.iter().map(|host| &host.hub);
+        let hosts = self.hosts.iter().map(Host::hub);
         world.chain(hosts).find(|hub| hub.host() == host)
     }
 
     /// Stops all agents; their activities are told so.
     pub fn stop(&mut self) {
-        let instances = self.hosts.iter_mut().flat_map(|host| &mut host.instances);
-        instances.for_each(|instance| instance.stop(ENDED, self.now));
+        self.hosts.iter_mut().for_each(|host| host.stop(self.now));
     }
 
     /// Which states and transitions of each chart there was use of.
     pub fn coverage(&self) -> Vec<ChartCoverage> {
-        self.hosts.iter().flat_map(|host| host.instances.iter().flat_map(Instance::coverage)).collect()
+        self.hosts.iter().flat_map(|host| host.instances().iter().flat_map(Instance::coverage)).collect()
     }
 
     /// Raises an event in the charts of an agent, to be taken in the next step; false if there is no such agent, or none of its charts
     /// names the event.
     pub fn raise(&mut self, host: &str, agent: &str, event: &str) -> bool {
-        let host = self.hosts.iter_mut().find(|known| known.hub.host() == host);
-        let agent = host.and_then(|host| host.instances.iter_mut().find(|known| known.name() == agent));
-        agent.is_some_and(|agent| agent.raise(event))
+        let host = self.hosts.iter_mut().find(|known| known.name() == host);
+        host.is_some_and(|host| host.raise(agent, event))
     }
 
     fn due(&self) -> Moment {
         let world = self.world.iter().map(Environment::due);
-        world.chain(self.hosts.iter().map(|host| host.due(self.now))).min().unwrap_or(Moment::MAX)
+        let script = self.script.keys().next().map(|(moment, _)| *moment);
+        let hosts = self.hosts.iter().map(|host| host.due(self.now));
+        world.chain(script).chain(hosts).min().unwrap_or(Moment::MAX)
     }
 
     /// Time comes to a moment.
@@ -146,12 +183,38 @@ impl Simulation {
         self.shown.set(now);
     }
 
-    /// Publishes what was handed in from outside since the last moment, and tells agents of it and of what links have brought.
+    /// Takes what was handed in from outside since the last moment, makes the changes that were asked for, and tells agents of that and of
+    /// what links have brought.
     fn let_in(&mut self) {
         let now = self.now;
-        if self.inlet.publish_waiting(now) || !self.links.is_empty() {
-            self.hosts.iter_mut().for_each(|host| host.wake(now));
+        let mut any = !self.links.is_empty();
+        while let Some(handed_in) = self.inlet.next() {
+            any = true;
+            self.take(handed_in);
         }
+        for host in &mut self.hosts {
+            host.attend(now);
+            if any {
+                host.wake(now);
+            }
+        }
+    }
+
+    fn take(&mut self, handed_in: HandedIn) {
+        let now = self.now;
+        // Whoever has given up is not told.
+        let _ = match handed_in {
+            HandedIn::Message { hub, path, bytes, answer } => {
+                answer.try_send(overview::publish(&hub, &path, &bytes, now)).is_ok()
+            }
+            HandedIn::Change { host, change, answer } => match self.change(&host, *change) {
+                Ok(changed) => answer.try_send(Ok(changed)).is_ok(),
+                Err(error) => answer.try_send(Err(error.to_string())).is_ok(),
+            },
+            HandedIn::Look { answer } => {
+                answer.try_send(self.hosts.iter_mut().map(Host::view).collect()).is_ok()
+            }
+        };
     }
 
     fn happen(&mut self, now: Moment) -> Result<(), Error> {
@@ -177,81 +240,7 @@ impl Simulation {
 
 impl std::fmt::Debug for Simulation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let hosts: Vec<&str> = self.hosts.iter().map(|host| host.hub.host()).collect();
+        let hosts: Vec<&str> = self.hosts.iter().map(Host::name).collect();
         f.debug_struct("Simulation").field("now", &self.now).field("hosts", &hosts).finish_non_exhaustive()
-    }
-}
-
-impl Host {
-    fn new(
-        station: Station,
-        shown: &Arc<ShownMoment>,
-        running: &mut Vec<RunningLink>,
-    ) -> Result<Host, Error> {
-        let Station { hub, body, members, links } = station;
-        let moved = Moved::default();
-        let mut linked = Vec::new();
-        for link in links {
-            if let Some(other) = &link.clock {
-                let message =
-                    format!("the time of `{}` is simulated, and cannot be that of `{other}`", hub.host());
-                return Err(Error::new(ErrorKind::Link, message));
-            }
-            let shown = shown.clone();
-            let link = RunningLink::start(&hub, link, move || shown.get())?;
-            linked.push(link.waker());
-            running.push(link);
-        }
-        let note = moved.noting();
-        hub.set_waker(Arc::new(move |topic, host| {
-            note(topic, host);
-            linked.iter().for_each(|wake| wake(topic, host));
-        }));
-        let instances = members.into_iter().map(Instance::new).collect();
-        Ok(Host { hub, moved, body: body.map(|body| (body, 0)), instances })
-    }
-
-    fn due(&self, now: Moment) -> Moment {
-        let body = self.body.iter().map(|(body, ticks)| tick(body.period(), *ticks));
-        body.chain(self.instances.iter().map(|instance| instance.due(now))).min().unwrap_or(Moment::MAX)
-    }
-
-    fn sense(&mut self, now: Moment) -> Result<(), Error> {
-        if let Some((body, ticks)) = &mut self.body
-            && tick(body.period(), *ticks) <= now
-        {
-            *ticks += 1;
-            body.sense(now)?;
-            self.wake(now);
-        }
-        Ok(())
-    }
-
-    /// Gives each agent its turn; false if none had anything to do.
-    fn run_agents(&mut self, now: Moment) -> Result<bool, Error> {
-        let mut any = false;
-        for index in 0..self.instances.len() {
-            if self.instances[index].due(now) > now {
-                continue;
-            }
-            any = true;
-            if self.instances[index].run(now) == Outcome::SafeState
-                && let Some((body, _)) = &mut self.body
-            {
-                body.rest(now)?;
-            }
-            self.wake(now);
-        }
-        Ok(any)
-    }
-
-    /// Tells every agent which topics have moved.
-    fn wake(&mut self, now: Moment) {
-        self.moved.tell(self.instances.iter_mut(), now);
-    }
-
-    /// Hands the newest commands to the body, which may move no topic.
-    fn act(&mut self, now: Moment) -> Result<(), Error> {
-        self.body.as_mut().map_or(Ok(()), |(body, _)| body.act(now))
     }
 }

@@ -12,10 +12,20 @@ pub struct Stopper {
     shared: Arc<Shared>,
 }
 
-#[derive(Debug, Default)]
+#[derive(Default)]
 struct Shared {
     stopped: Mutex<bool>,
     changed: Condvar,
+    /// What is called when the run is to end, for those who do not wait here.
+    bells: Mutex<Vec<Bell>>,
+}
+
+type Bell = Box<dyn Fn() + Send + Sync>;
+
+impl std::fmt::Debug for Shared {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Shared").field("stopped", &self.stopped).finish_non_exhaustive()
+    }
 }
 
 impl Stopper {
@@ -28,6 +38,12 @@ impl Stopper {
     pub fn stop(&self) {
         *self.shared.stopped.lock().unwrap_or_else(PoisonError::into_inner) = true;
         self.shared.changed.notify_all();
+        self.shared.bells.lock().unwrap_or_else(PoisonError::into_inner).iter().for_each(|ring| ring());
+    }
+
+    /// Calls `bell` when the run is to end.
+    pub(super) fn on_stop(&self, bell: Bell) {
+        self.shared.bells.lock().unwrap_or_else(PoisonError::into_inner).push(bell);
     }
 
     /// Whether the run is to end.

@@ -161,12 +161,12 @@ fn values_that_cannot_be_meant_are_said() {
          `safe-state` (did you mean `restart`?)",
         ],
     );
-    for frequency in ["0", "-5", "NaN", "inf", "quick"] {
+    for frequency in ["-5", "NaN", "inf", "quick"] {
         let text = format!(
             "<agent thread_frequency='{frequency}'><name>a</name><activity>Vision</activity></agent>"
         );
         let expected = format!(
-            "agents.xml:1:26: error[E0306]: `thread_frequency` is `{frequency}`, expected a number from 0.001 to 1000000"
+            "agents.xml:1:26: error[E0306]: `thread_frequency` is `{frequency}`, expected a number from 0 to 1000000"
         );
         check(&text, &[&expected]);
     }

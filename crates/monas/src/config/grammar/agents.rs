@@ -44,13 +44,18 @@ fn enable() -> AttributeRule {
 }
 
 /// The attributes of agents and providers.
-fn settings() -> [AttributeRule; 7] {
-    let hertz = Kind::number_in(Frequency::LOWEST, Frequency::HIGHEST);
+fn settings() -> [AttributeRule; 8] {
+    let hertz = Kind::number_in(0.0, Frequency::HIGHEST);
     let policies = Kind::Word(Policy::NAMES.map(|(name, _)| name).to_vec());
     [
-        attribute("thread_frequency", hertz, "cycles a second; needed by a list of activities")
-            .alias("frequency"),
-        attribute("priority", Kind::whole(), "how urgent it is").or("0"),
+        attribute(
+            "thread_frequency",
+            hertz,
+            "cycles a second, 0 for as many as there can be; needed by a list of activities",
+        )
+        .alias("frequency"),
+        attribute("priority", Kind::whole(), "how urgent it is, from 1 to 99 with real-time scheduling")
+            .or("0"),
         attribute("is_real_time", Kind::Flag, "whether real-time scheduling is wanted").or("0"),
         attribute(
             "stats_cycle",
@@ -63,6 +68,11 @@ fn settings() -> [AttributeRule; 7] {
             Kind::whole_from(1),
             "how many threads the activities of its statecharts have in real time; as many as can be active at once, \
              at most twelve, if it is not said",
+        ),
+        attribute(
+            "cores",
+            Kind::List,
+            "the numbers of the computer's cores that its threads may run on; any, if it is not said",
         ),
         enable(),
         attribute("on_failure", policies, "what happens when an activity fails").or("restart"),
@@ -91,6 +101,11 @@ fn provider() -> ElementRule {
 fn activity() -> ElementRule {
     ElementRule::new("activity", "an activity by its name; other attributes are its parameters")
         .attribute(enable())
+        .attribute(attribute(
+            "on_failure",
+            Kind::Word(Policy::NAMES.map(|(name, _)| name).to_vec()),
+            "what happens when it fails; as its agent says, if it is not said",
+        ))
         .text("name", Kind::Text)
         .with_parameters()
         .identified_by(Identity::Text)

@@ -32,17 +32,19 @@ pub(in crate::talws) struct Mail<R> {
     pub(in crate::talws) messages: Vec<(TopicSlot, HostId, Option<Origin>)>,
     pub(in crate::talws) returned: VecDeque<R>,
     pub(in crate::talws) stop: bool,
+    /// The owner is to look up.
+    pub(in crate::talws) nudge: bool,
 }
 
 impl<R> Default for Mail<R> {
     fn default() -> Mail<R> {
-        Mail { messages: Vec::new(), returned: VecDeque::new(), stop: false }
+        Mail { messages: Vec::new(), returned: VecDeque::new(), stop: false, nudge: false }
     }
 }
 
 impl<R> Mail<R> {
     fn is_empty(&self) -> bool {
-        self.messages.is_empty() && self.returned.is_empty() && !self.stop
+        self.messages.is_empty() && self.returned.is_empty() && !self.stop && !self.nudge
     }
 }
 
@@ -78,6 +80,11 @@ impl<R: Send + 'static, P: Primitives> Mailbox<R, P> {
         self.put(|mail| mail.stop = true);
     }
 
+    /// The owner is to look up: there are orders.
+    pub(in crate::talws) fn nudge(&self) {
+        self.put(|mail| mail.nudge = true);
+    }
+
     fn put(&self, put: impl FnOnce(&mut Mail<R>)) {
         let mut state = self.state.lock();
         put(&mut state.mail);
@@ -92,7 +99,7 @@ impl<R: Send + 'static, P: Primitives> Mailbox<R, P> {
     /// Swaps the mail for `into`, whose lists are empty, when there is some, or when `patience`, which says how long to wait at most from
     /// now on, has none left.
     pub(in crate::talws) fn wait(&self, mut patience: impl FnMut() -> Option<Duration>, into: &mut Mail<R>) {
-        into.stop = false;
+        (into.stop, into.nudge) = (false, false);
         let mut wait = None;
         if !self.filled.is_set()
             && let Some(limit) = patience()

@@ -8,7 +8,7 @@ use crate::chart::{Assignment, Lead, Runner, call_record};
 use crate::frequency::Frequency;
 use crate::list::List;
 use crate::records::{Call, Cycle, Delivery, News, Turn};
-use crate::talws::setup::Member;
+use crate::talws::crew::Member;
 use crate::talws::teller::Teller;
 use crate::talws::turn::due_record;
 

@@ -98,10 +98,10 @@ impl Scene {
             .chain(members.iter().map(|member| member.name.clone()))
             .collect();
         let places: Vec<String> = names.into_iter().collect();
-        let actor = |member: super::super::setup::Member| {
+        let actor = |member: super::super::crew::Member| {
             let place = places.binary_search(&member.name).unwrap_or_default();
             let window = Window::new(hub.host(), &member.name);
-            Actor { place, instance: Instance::new(member), window }
+            Actor { place, instance: Instance::new(member, Moment::ZERO), window }
         };
         let actors = members.into_iter().map(actor).collect();
         let (turn, now) = (None, Moment::ZERO);

@@ -1,0 +1,282 @@
+//! What a change comes to: everything it needs, made ready, or why it cannot be made.
+
+use std::path::Path;
+
+use narukom::Moment;
+use yase::{Diagnostic, Source};
+
+use super::findings::{Refusal, refusal, refusal_with, unknown, unusable};
+use super::roster::Roster;
+use super::settings;
+use super::staff::Staff;
+use crate::agent::{ActivityProfile, ChartProfile, Listed, Profile};
+use crate::binder::Binder;
+use crate::chart::Swap;
+use crate::config;
+use crate::error::Error;
+use crate::list::ListEdit;
+use crate::parameters::Parameters;
+use crate::records::{Action, Change};
+use crate::talws::crew::{Member, Place};
+use crate::talws::orders::{Directive, Orders, Standing};
+
+/// A change that can be made.
+pub(super) struct Plan {
+    /// What is odd about it.
+    pub(super) warnings: Vec<Diagnostic>,
+    pub(super) step: Step,
+}
+
+/// What is to be done.
+pub(super) enum Step {
+    /// An agent is told something, and is made of this then.
+    Tell(Box<Profile>, Box<Orders>),
+    /// Agents begin.
+    Launch(Vec<(Profile, Member)>),
+    /// An agent leaves.
+    Dismiss(String),
+}
+
+/// What a change is held against.
+struct Desk<'a> {
+    change: &'a Change,
+    roster: &'a Roster,
+    staff: &'a dyn Staff,
+    now: Moment,
+}
+
+impl Plan {
+    /// What a change comes to.
+    pub(super) fn of(
+        change: &Change,
+        roster: &Roster,
+        staff: &dyn Staff,
+        now: Moment,
+    ) -> Result<Plan, Refusal> {
+        let desk = Desk { change, roster, staff, now };
+        match change.action() {
+            Action::NoAction => Err(refusal("E0350", "the change does not say what is to be done")),
+            Action::AddAgents => desk.add_agents(),
+            Action::RemoveAgent => desk.agent().map(|profile| Step::Dismiss(profile.name).into()),
+            Action::Start => desk.start(),
+            Action::Stop => desk.direct(Directive::Stop, &[Standing::Runs, Standing::Pauses]),
+            Action::Pause => desk.direct(Directive::Pause, &[Standing::Runs]),
+            Action::Resume => desk.direct(Directive::Resume, &[Standing::Pauses]),
+            Action::Step => desk.direct(Directive::Step, &[Standing::Pauses]),
+            Action::AddActivity => desk.add_activity(),
+            Action::RemoveActivity => desk.remove_activity(),
+            Action::MoveActivity => desk.move_activity(),
+            Action::ReplaceActivity => desk.replace_activity(),
+            Action::Set => desk.set(),
+            Action::SwapModel => desk.swap(),
+        }
+    }
+}
+
+impl From<Step> for Plan {
+    fn from(step: Step) -> Plan {
+        Plan { warnings: Vec::new(), step }
+    }
+}
+
+fn tell(profile: Profile, orders: Orders) -> Plan {
+    Step::Tell(Box::new(profile), Box::new(orders)).into()
+}
+
+impl Desk<'_> {
+    /// What the agent that is meant is made of.
+    fn agent(&self) -> Result<Profile, Refusal> {
+        let name = &self.change.agent;
+        let known = self.roster.profiles.iter().find(|profile| profile.name == *name);
+        known.cloned().ok_or_else(|| {
+            let host = self.roster.hub().host();
+            let message = format!("no agent of `{host}` is named `{name}`");
+            unknown("E0351", message, name, self.roster.profiles.iter().map(|profile| profile.name.as_str()))
+        })
+    }
+
+    /// Tells an agent that stands like this.
+    fn direct(&self, directive: Directive, from: &[Standing]) -> Result<Plan, Refusal> {
+        let profile = self.agent()?;
+        let standing = self.staff.standing(&profile.name);
+        if from.contains(&standing) {
+            return Ok(tell(profile, Orders::of([directive])));
+        }
+        let is = match standing {
+            Standing::Runs => "runs",
+            Standing::Pauses => "pauses already",
+            Standing::Stopped => "has stopped",
+            Standing::Stuck => "is stuck",
+        };
+        let message = format!("`{}` {is}", profile.name);
+        Err(match (directive, standing) {
+            (Directive::Resume, Standing::Runs) | (Directive::Stop, Standing::Stopped) => {
+                refusal("E0352", format!("{message} already"))
+            }
+            (Directive::Step, Standing::Runs) => {
+                refusal_with("E0352", message, "one that pauses can be stepped: pause it first")
+            }
+            (_, Standing::Stopped) => refusal_with("E0352", message, "start it first"),
+            _ => refusal("E0352", message),
+        })
+    }
+
+    /// A stopped agent begins anew: what it is made of has not been forgotten.
+    fn start(&self) -> Result<Plan, Refusal> {
+        let profile = self.agent()?;
+        if self.staff.standing(&profile.name) != Standing::Stopped {
+            return Err(refusal("E0352", format!("`{}` has not stopped", profile.name)));
+        }
+        let names = self.names();
+        let charts = self.roster.crew.charts_anew(&profile, &self.place(&profile, &names));
+        let charts = charts.map_err(|error| unusable("E0354", &error))?;
+        Ok(tell(profile, Orders { charts, ..Orders::of([Directive::Start]) }))
+    }
+
+    fn names(&self) -> Vec<String> {
+        self.roster.profiles.iter().map(|profile| profile.name.clone()).collect()
+    }
+
+    fn place<'a>(&'a self, profile: &'a Profile, names: &'a [String]) -> Place<'a> {
+        let Profile { name, elsewhere, .. } = profile;
+        Place { ground: &self.roster.ground, names, agent: name, elsewhere, now: self.now }
+    }
+
+    fn add_agents(&self) -> Result<Plan, Refusal> {
+        let file = if self.change.file.is_empty() { "agents.xml" } else { &self.change.file };
+        let source = Source::new(file, self.change.text.clone());
+        let (setup, diagnostics) = config::read(&source, Path::new(file), &self.roster.crew.registry);
+        if diagnostics.iter().any(Diagnostic::is_error) {
+            return Err(diagnostics);
+        }
+        if !setup.links.is_empty() {
+            let message = "links are opened when a run begins, and cannot be added to it";
+            return Err(vec![Diagnostic::error("E0358", 0..0, message).in_source(&source)]);
+        }
+        if setup.agents.is_empty() {
+            return Err(vec![Diagnostic::error("E0358", 0..0, "the text holds no agent").in_source(&source)]);
+        }
+        let mut names = self.names();
+        if let Some(agent) = setup.agents.iter().find(|agent| names.contains(&agent.name)) {
+            let message = format!("another agent is named `{}`", agent.name);
+            return Err(refusal_with("E0311", message, "each agent of a host has a name of its own"));
+        }
+        names.extend(setup.agents.iter().map(|agent| agent.name.clone()));
+        let Roster { crew, ground, .. } = self.roster;
+        let failed = |error: Error| unusable("E0354", &error);
+        let binder = Binder::new(&crew.registry).map_err(failed)?;
+        let members = setup.agents.into_iter().map(|agent| {
+            let profile = Profile::of(&agent);
+            Ok((profile, crew.member(&binder, agent, ground, &names, self.now).map_err(failed)?))
+        });
+        let members = members.collect::<Result<Vec<_>, Refusal>>()?;
+        Ok(Plan { warnings: diagnostics, step: Step::Launch(members) })
+    }
+
+    fn add_activity(&self) -> Result<Plan, Refusal> {
+        let mut profile = self.agent()?;
+        let listed = self.listed(&self.change.activity)?;
+        let count = profile.activities.len();
+        let place = self.position(count + 1, count)?;
+        profile.activities.insert(place, ActivityProfile::of(&listed));
+        if count > 0 {
+            return Ok(self.edited(profile, ListEdit::Insert(place, listed)));
+        }
+        if profile.frequency.is_none() {
+            let message = format!("nothing says how often the list of `{}` is to run", profile.name);
+            return Err(refusal_with("E0305", message, "set its `frequency` first"));
+        }
+        let Roster { crew, ground, .. } = self.roster;
+        let list = Box::new(crew.list(&profile.name, profile.policy, vec![listed], &ground.hub));
+        Ok(tell(profile, Orders { list: Some(list), ..Orders::default() }))
+    }
+
+    fn remove_activity(&self) -> Result<Plan, Refusal> {
+        let mut profile = self.agent()?;
+        let place = self.activity(&profile)?;
+        profile.activities.remove(place);
+        Ok(self.edited(profile, ListEdit::Remove(place)))
+    }
+
+    fn move_activity(&self) -> Result<Plan, Refusal> {
+        let mut profile = self.agent()?;
+        let from = self.activity(&profile)?;
+        let count = profile.activities.len();
+        let to = self.position(count, count - 1)?;
+        let activity = profile.activities.remove(from);
+        profile.activities.insert(to, activity);
+        Ok(self.edited(profile, ListEdit::Move(from, to)))
+    }
+
+    fn replace_activity(&self) -> Result<Plan, Refusal> {
+        let mut profile = self.agent()?;
+        let place = self.activity(&profile)?;
+        let listed = self.listed(&self.change.replacement)?;
+        profile.activities[place] = ActivityProfile::of(&listed);
+        Ok(self.edited(profile, ListEdit::Replace(place, listed)))
+    }
+
+    fn edited(&self, profile: Profile, edit: ListEdit) -> Plan {
+        tell(profile, Orders { edits: vec![edit], ..Orders::default() })
+    }
+
+    /// The place in its list of the activity that is meant, from 0.
+    fn activity(&self, profile: &Profile) -> Result<usize, Refusal> {
+        settings::activity(profile, &self.change.activity)
+    }
+
+    /// The place that is asked for among so many, from 0; or the one that is taken if none is.
+    fn position(&self, count: usize, otherwise: usize) -> Result<usize, Refusal> {
+        match self.change.place as usize {
+            0 => Ok(otherwise),
+            place if place <= count => Ok(place - 1),
+            place => Err(refusal("E0353", format!("there is no place {place}: places are 1 to {count}"))),
+        }
+    }
+
+    /// A new activity with the parameters that the change sets.
+    fn listed(&self, name: &str) -> Result<Listed, Refusal> {
+        let given = &self.change.settings;
+        let parameters = given.iter().fold(Parameters::new(), |all, one| all.with(&one.key, &one.value));
+        let activity = settings::instance(&self.roster.crew.registry, name, &parameters)?;
+        Ok(Listed { name: name.to_owned(), parameters, policy: None, activity })
+    }
+
+    fn set(&self) -> Result<Plan, Refusal> {
+        let mut profile = self.agent()?;
+        let orders = settings::set(&mut profile, &self.change.settings, &self.roster.crew.registry)?;
+        Ok(tell(profile, orders))
+    }
+
+    fn swap(&self) -> Result<Plan, Refusal> {
+        let mut profile = self.agent()?;
+        if self.staff.standing(&profile.name) == Standing::Stopped {
+            let message = format!("`{}` has stopped", profile.name);
+            return Err(refusal_with("E0352", message, "start it first: a model is swapped while it runs"));
+        }
+        let place = settings::chart(&profile, &self.change.chart)?;
+        let Change { file, text, states, accept_losses, .. } = self.change;
+        let crew = &self.roster.crew;
+        let failed = |error: Error| unusable("E0355", &error);
+        let binder = Binder::new(&crew.registry).map_err(failed)?;
+        let (bound, warnings) = match text.is_empty() {
+            true => (crew.generated(&binder, file, profile.semantics).map_err(failed)?, Vec::new()),
+            false => {
+                let source = Source::new(file, text.clone());
+                let (chart, diagnostics) = aseme::statechart_of(&source);
+                if diagnostics.iter().any(Diagnostic::is_error) {
+                    return Err(diagnostics);
+                }
+                (binder.bind(&chart, profile.semantics, Some(&source))?, diagnostics)
+            }
+        };
+        let statechart = bound.chart.statechart().clone();
+        let names = self.names();
+        let bound = crew.fitting(bound, &self.place(&profile, &names)).map_err(failed)?;
+        profile.charts[place] =
+            ChartProfile { model: file.clone(), statechart, is_generated: text.is_empty() };
+        let states = states.iter().map(|state| (state.key.clone(), state.value.clone())).collect();
+        let swap = Box::new(Swap { bound, states, accepts_losses: *accept_losses });
+        Ok(Plan { warnings, ..tell(profile, Orders { swap: Some((place, swap)), ..Orders::default() }) })
+    }
+}

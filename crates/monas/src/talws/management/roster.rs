@@ -1,0 +1,135 @@
+//! Who runs on a host, and what is asked about them.
+
+use std::sync::Arc;
+
+use narukom::{HostId, Moment, Narukom, Publisher, Subscriber};
+use yase::Source;
+
+use super::findings::{Refusal, finding, refusal, remark};
+use super::plan::{Plan, Step};
+use super::save;
+use super::staff::Staff;
+use crate::agent::Profile;
+use crate::error::Error;
+use crate::records::{AgentEntry, CHANGE, CHANGED, Change, Changed, Configuration, Finding};
+use crate::talws::crew::{Crew, Ground};
+use crate::talws::overview::OUTSIDE;
+
+/// The host publishes under this name what is not an agent's.
+const HOST_ITSELF: &str = "monas";
+
+/// The agents of a host as data, with what it takes to change them.
+pub(in crate::talws) struct Roster {
+    pub(super) ground: Ground,
+    pub(super) crew: Arc<Crew>,
+    /// By name.
+    pub(super) profiles: Vec<Profile>,
+    /// The text they were read from.
+    configuration: Option<Arc<Source>>,
+    asked: Subscriber,
+    from_outside: Publisher<Change>,
+    answers: Publisher<Changed>,
+}
+
+impl Roster {
+    pub(in crate::talws) fn new(
+        ground: Ground,
+        crew: Arc<Crew>,
+        profiles: Vec<Profile>,
+        configuration: Option<Arc<Source>>,
+    ) -> Result<Roster, Error> {
+        let hub = &ground.hub;
+        Ok(Roster {
+            asked: hub.subscriber_of(HostId::LOCAL, CHANGE.path()).map_err(Error::hub)?,
+            from_outside: hub.publisher(CHANGE, OUTSIDE).map_err(Error::hub)?,
+            answers: hub.publisher(CHANGED, HOST_ITSELF).map_err(Error::hub)?,
+            ground,
+            crew,
+            profiles,
+            configuration,
+        })
+    }
+
+    pub(in crate::talws) fn hub(&self) -> &Narukom {
+        &self.ground.hub
+    }
+
+    /// Publishes a change from outside and makes it; also those that were published before it.
+    pub(in crate::talws) fn ask(&mut self, change: Change, staff: &mut dyn Staff, now: Moment) -> Changed {
+        self.from_outside.publish(change, now);
+        self.attend(staff, now).unwrap_or_default()
+    }
+
+    /// Makes the changes that were published, one after the other. The answer to the last is given too.
+    pub(in crate::talws) fn attend(&mut self, staff: &mut dyn Staff, now: Moment) -> Option<Changed> {
+        let mut last = None;
+        while let Some(sample) = self.asked.next_sample() {
+            let Some(change) = sample.downcast::<Change>() else { continue };
+            let changed = self.make(change.message, staff, now);
+            self.answers.publish(changed.clone(), now);
+            last = Some(changed);
+        }
+        last
+    }
+
+    fn make(&mut self, change: &Change, staff: &mut dyn Staff, now: Moment) -> Changed {
+        let made = Plan::of(change, self, staff, now).and_then(|plan| self.carry_out(plan, staff));
+        let (done, findings) = match made {
+            Ok(said) => (true, said),
+            Err(reasons) => (false, reasons.iter().map(finding).collect()),
+        };
+        let (host, agent) = (self.ground.hub.host(), &change.agent);
+        match done {
+            true => tracing::info!(%host, %agent, action = ?change.action(), "changed"),
+            false => tracing::warn!(%host, %agent, action = ?change.action(), "a change was refused"),
+        }
+        Changed {
+            number: change.number,
+            action: change.action,
+            agent: change.agent.clone(),
+            done,
+            cycle: staff.cycles(&change.agent),
+            findings,
+        }
+    }
+
+    fn carry_out(&mut self, plan: Plan, staff: &mut dyn Staff) -> Result<Vec<Finding>, Refusal> {
+        let Plan { warnings, step } = plan;
+        let mut said: Vec<Finding> = warnings.iter().map(finding).collect();
+        match step {
+            Step::Tell(profile, orders) => {
+                let objected = |reasons: Vec<String>| {
+                    reasons.into_iter().flat_map(|reason| refusal("E0356", reason)).collect::<Refusal>()
+                };
+                let remarks = staff.obey(&profile.name, *orders).map_err(objected)?;
+                said.extend(remarks.into_iter().map(remark));
+                if let Some(known) = self.profiles.iter_mut().find(|known| known.name == profile.name) {
+                    *known = *profile;
+                }
+            }
+            Step::Launch(agents) => {
+                for (profile, member) in agents {
+                    staff.launch(member).map_err(|reason| refusal("E0357", reason))?;
+                    let place = self.profiles.partition_point(|known| known.name < profile.name);
+                    self.profiles.insert(place, profile);
+                }
+            }
+            Step::Dismiss(name) => {
+                staff.dismiss(&name).map_err(|reason| refusal("E0357", reason))?;
+                self.profiles.retain(|profile| profile.name != name);
+            }
+        }
+        Ok(said)
+    }
+
+    /// All agents as they are now.
+    pub(in crate::talws) fn entries(&self, staff: &dyn Staff) -> Vec<AgentEntry> {
+        self.profiles.iter().map(|profile| staff.entry(profile)).collect()
+    }
+
+    /// The present set-up, as it is saved.
+    pub(in crate::talws) fn configuration(&self) -> Configuration {
+        let file = self.configuration.as_ref().map(|source| source.name.clone()).unwrap_or_default();
+        Configuration { file, text: save::text(self.configuration.as_ref(), &self.profiles) }
+    }
+}

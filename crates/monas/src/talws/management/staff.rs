@@ -1,0 +1,36 @@
+//! The agents of a host at work, whatever time they run in.
+
+use crate::agent::Profile;
+use crate::records::AgentEntry;
+use crate::talws::crew::Member;
+use crate::talws::orders::{Orders, Standing};
+
+/// Agents that can be told what to do.
+pub(in crate::talws) trait Staff {
+    /// Whether an agent does anything.
+    fn standing(&self, agent: &str) -> Standing;
+
+    /// How many cycles it has had.
+    fn cycles(&self, agent: &str) -> u64;
+
+    /// Tells it what to do, and what there is to say of that.
+    ///
+    /// # Errors
+    /// What stands against it: nothing has changed.
+    fn obey(&mut self, agent: &str, orders: Orders) -> Result<Vec<String>, Vec<String>>;
+
+    /// A new agent begins.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    fn launch(&mut self, member: Member) -> Result<(), String>;
+
+    /// An agent leaves for good.
+    ///
+    /// # Errors
+    /// It cannot be stopped.
+    fn dismiss(&mut self, agent: &str) -> Result<(), String>;
+
+    /// An agent as it is now.
+    fn entry(&self, profile: &Profile) -> AgentEntry;
+}

@@ -1,0 +1,68 @@
+//! What agents are told between two cycles.
+
+use crate::agent::Policy;
+use crate::chart::{Runner, Swap};
+use crate::frequency::Frequency;
+use crate::list::{List, ListEdit};
+
+/// Everything that one change means for an agent. Its list and its charts each take their part at the edge of a cycle of their own.
+#[derive(Default)]
+pub(super) struct Orders {
+    pub(super) directives: Vec<Directive>,
+    pub(super) edits: Vec<ListEdit>,
+    /// A list for an agent that had none.
+    pub(super) list: Option<Box<List>>,
+    /// For an agent that starts: its charts from their beginning.
+    pub(super) charts: Vec<Runner>,
+    /// Another model for the chart at a place.
+    pub(super) swap: Option<(usize, Box<Swap>)>,
+}
+
+/// What concerns an agent as a whole.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) enum Directive {
+    /// It begins anew.
+    Start,
+    Stop,
+    Pause,
+    Resume,
+    /// One cycle while it pauses.
+    Step,
+    Frequency(Frequency),
+    Policy(Policy),
+    StatisticsEvery(Option<u64>),
+    /// How urgent it is, and whether real-time scheduling is wanted.
+    Scheduling(i32, bool),
+}
+
+/// Whether an agent does anything.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Standing {
+    Runs,
+    Pauses,
+    Stopped,
+    /// A call does not come to its end.
+    Stuck,
+}
+
+impl Standing {
+    /// As people read it.
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Standing::Runs => "runs",
+            Standing::Pauses => "pauses",
+            Standing::Stopped => "stopped",
+            Standing::Stuck => "stuck",
+        }
+    }
+}
+
+/// Why an agent has stopped that was told to.
+pub(super) const TOLD: &str = "it was told to";
+
+impl Orders {
+    /// Nothing but what concerns the whole agent.
+    pub(super) fn of(directives: impl IntoIterator<Item = Directive>) -> Orders {
+        Orders { directives: directives.into_iter().collect(), ..Orders::default() }
+    }
+}
