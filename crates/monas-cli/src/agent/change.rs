@@ -27,11 +27,11 @@ pub(super) fn execute(command: &AgentCommand, console: &mut Console<'_>) -> Resu
 fn asked(command: &AgentCommand) -> Result<Option<(Change, &RunChoice)>, Failure> {
     Ok(Some(match command {
         AgentCommand::List { .. } | AgentCommand::Save { .. } => return Ok(None),
-        AgentCommand::Start(one) => one_agent(Action::Start, one),
-        AgentCommand::Stop(one) => one_agent(Action::Stop, one),
-        AgentCommand::Pause(one) => one_agent(Action::Pause, one),
-        AgentCommand::Resume(one) => one_agent(Action::Resume, one),
-        AgentCommand::Step(one) => one_agent(Action::Step, one),
+        AgentCommand::Start(one) => one_agent(Action::StartAgent, one),
+        AgentCommand::Stop(one) => one_agent(Action::StopAgent, one),
+        AgentCommand::Pause(one) => one_agent(Action::PauseAgent, one),
+        AgentCommand::Resume(one) => one_agent(Action::ResumeAgent, one),
+        AgentCommand::Step(one) => one_agent(Action::StepAgent, one),
         AgentCommand::Remove(one) => one_agent(Action::RemoveAgent, one),
         AgentCommand::Add { file, run } => {
             let (text, file) = text_of(file, run)?;
@@ -129,11 +129,11 @@ fn sentence(changed: &Changed) -> String {
     match changed.action() {
         Action::AddAgents => "the agents are added".into(),
         Action::RemoveAgent => format!("`{agent}` is removed"),
-        Action::Start => format!("`{agent}` starts after its cycle {cycle}"),
-        Action::Stop => format!("`{agent}` has stopped after its cycle {cycle}"),
-        Action::Pause => format!("`{agent}` pauses after its cycle {cycle}"),
-        Action::Resume => format!("`{agent}` goes on after its cycle {cycle}"),
-        Action::Step => format!("`{agent}` has done its cycle {cycle}"),
+        Action::StartAgent => format!("`{agent}` starts after its cycle {cycle}"),
+        Action::StopAgent => format!("`{agent}` has stopped after its cycle {cycle}"),
+        Action::PauseAgent => format!("`{agent}` pauses after its cycle {cycle}"),
+        Action::ResumeAgent => format!("`{agent}` goes on after its cycle {cycle}"),
+        Action::StepAgent => format!("`{agent}` has done its cycle {cycle}"),
         _ => format!("`{agent}` is changed after its cycle {cycle}"),
     }
 }

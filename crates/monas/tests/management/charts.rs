@@ -95,14 +95,14 @@ fn a_chart_pauses_steps_stops_and_starts_anew() {
     let (mut simulation, told) = simulation("m = (A . B)~");
     told.taken();
     let mut ask = |action| made(&simulation.change("local", change(action, "m")).unwrap());
-    ask(Action::Pause);
-    ask(Action::Stop);
-    ask(Action::Start);
+    ask(Action::PauseAgent);
+    ask(Action::StopAgent);
+    ask(Action::StartAgent);
     simulation.run_until(at(200)).unwrap();
     assert_eq!(told.taken(), ["A", "B first"], "it begins at its START, with new activities");
-    simulation.change("local", change(Action::Pause, "m")).unwrap();
+    simulation.change("local", change(Action::PauseAgent, "m")).unwrap();
     simulation.run_until(at(1000)).unwrap();
     assert_eq!(told.taken(), [""; 0]);
-    made(&simulation.change("local", change(Action::Step, "m")).unwrap());
+    made(&simulation.change("local", change(Action::StepAgent, "m")).unwrap());
     assert_eq!(told.taken(), ["B again"]);
 }

@@ -66,12 +66,12 @@ fn simulation(seen: &Seen) -> Simulation {
 fn any_change(number: u64, random: &mut Random) -> Change {
     let mut below = |count: usize| (random.uniform() * count as f64) as usize;
     let actions = [
-        Action::Start,
-        Action::Stop,
-        Action::Pause,
-        Action::Resume,
-        Action::Resume,
-        Action::Step,
+        Action::StartAgent,
+        Action::StopAgent,
+        Action::PauseAgent,
+        Action::ResumeAgent,
+        Action::ResumeAgent,
+        Action::StepAgent,
         Action::AddAgents,
         Action::RemoveAgent,
         Action::AddActivity,
@@ -80,7 +80,7 @@ fn any_change(number: u64, random: &mut Random) -> Change {
         Action::ReplaceActivity,
         Action::Set,
         Action::SwapModel,
-        Action::Start,
+        Action::StartAgent,
     ];
     let action = actions[below(actions.len())];
     let agent = match action {

@@ -40,28 +40,28 @@ fn lists_are_changed_while_they_run() {
         Change { settings: settings(&[("frequency", "500"), ("A.speed", "2")]), ..change(Action::Set, "a") },
     ));
     until(&told, "A 2");
-    made(&ask(&run, change(Action::Pause, "a")));
+    made(&ask(&run, change(Action::PauseAgent, "a")));
     let paused = run.agents(None).unwrap();
     assert_eq!((paused[0].state.as_str(), paused[0].frequency), ("pauses", 500.0));
     let cycles = paused[0].cycles;
-    let stepped = ask(&run, change(Action::Step, "a"));
+    let stepped = ask(&run, change(Action::StepAgent, "a"));
     assert_eq!((stepped.done, stepped.cycle), (true, cycles + 1));
-    made(&ask(&run, change(Action::Resume, "a")));
+    made(&ask(&run, change(Action::ResumeAgent, "a")));
     until(&told, "A");
-    made(&ask(&run, change(Action::Stop, "a")));
+    made(&ask(&run, change(Action::StopAgent, "a")));
     until(&told, "A stop");
-    made(&ask(&run, change(Action::Start, "a")));
+    made(&ask(&run, change(Action::StartAgent, "a")));
     until(&told, "A start");
     let text = "<agent frequency='1000'><name>b</name><activity>B</activity></agent>";
     made(&ask(&run, Change { text: text.into(), ..change(Action::AddAgents, "") }));
     until(&told, "B");
     made(&ask(&run, change(Action::RemoveAgent, "b")));
     until(&told, "B stop");
-    assert_eq!(refused(&ask(&run, change(Action::Stop, "b"))).0, "E0351");
+    assert_eq!(refused(&ask(&run, change(Action::StopAgent, "b"))).0, "E0351");
     assert_eq!(run.agents(None).unwrap().len(), 1);
     let statistics = running.stop();
     assert!(statistics.calls("local", "B") > 0, "what a removed agent has done is not forgotten");
-    assert_eq!(run.change("local", change(Action::Stop, "a")).unwrap_err(), "the run has ended");
+    assert_eq!(run.change("local", change(Action::StopAgent, "a")).unwrap_err(), "the run has ended");
 }
 
 #[test]
@@ -83,8 +83,8 @@ fn charts_stop_start_and_take_another_model_while_they_run() {
     made(&ask(&run, Change { file: "new.srm".into(), text, ..change(Action::SwapModel, "m") }));
     until(&told, "B");
     assert_eq!(run.agents(None).unwrap()[0].charts[0].model, "new.srm");
-    made(&ask(&run, change(Action::Stop, "m")));
-    made(&ask(&run, change(Action::Start, "m")));
+    made(&ask(&run, change(Action::StopAgent, "m")));
+    made(&ask(&run, change(Action::StartAgent, "m")));
     until(&told, "A start");
     until(&told, "B");
     let wrong = Change { file: "new.srm".into(), text: "m = A".into(), ..change(Action::SwapModel, "m") };
@@ -114,7 +114,7 @@ fn an_agent_in_a_cycle_that_does_not_end_keeps_nobody_waiting_and_its_list_stays
     let changed = ask(&run, Change { activity: "A".into(), ..change(Action::AddActivity, "a") });
     let reason = "`a` is in the middle of a cycle that does not end".to_owned();
     assert_eq!(refused(&changed), ("E0356".into(), reason));
-    made(&ask(&run, change(Action::Pause, "b")));
+    made(&ask(&run, change(Action::PauseAgent, "b")));
     others.wait();
     made(&ask(&run, Change { activity: "A".into(), ..change(Action::AddActivity, "a") }));
     let entry = &run.agents(None).unwrap()[0];

@@ -56,21 +56,21 @@ fn activities_come_go_and_change_places_between_two_cycles() {
 #[test]
 fn an_agent_pauses_steps_goes_on_stops_and_starts() {
     let (mut simulation, told) = simulation();
-    made(&ask(&mut simulation, change(Action::Pause, "a")));
+    made(&ask(&mut simulation, change(Action::PauseAgent, "a")));
     simulation.run_until(at(1000)).unwrap();
     assert_eq!(told.taken(), [""; 0]);
-    let stepped = ask(&mut simulation, change(Action::Step, "a"));
+    let stepped = ask(&mut simulation, change(Action::StepAgent, "a"));
     assert_eq!((stepped.done, stepped.cycle), (true, 2));
     assert_eq!(told.taken(), ["A", "B"]);
-    made(&ask(&mut simulation, change(Action::Resume, "a")));
+    made(&ask(&mut simulation, change(Action::ResumeAgent, "a")));
     simulation.run_until(at(1101)).unwrap();
     // It was stepped at 1000 ms, where its next cycle would have been; what it missed is not made up for.
     assert_eq!(told.taken(), ["A", "B"]);
-    made(&ask(&mut simulation, change(Action::Stop, "a")));
+    made(&ask(&mut simulation, change(Action::StopAgent, "a")));
     assert_eq!(told.taken(), ["A stop", "B stop"]);
     simulation.run_until(at(2000)).unwrap();
     assert_eq!(told.taken(), [""; 0]);
-    made(&ask(&mut simulation, change(Action::Start, "a")));
+    made(&ask(&mut simulation, change(Action::StartAgent, "a")));
     simulation.run_until(at(2100)).unwrap();
     assert_eq!(told.taken(), ["A start", "A", "B start", "B"]);
     assert_eq!(simulation.statistics().agents[0].stopped, None, "it was told to, which is no failure");
@@ -83,10 +83,10 @@ fn what_cannot_be_is_refused_with_a_reason_and_changes_nothing() {
     let set = |given: &[(&str, &str)]| Change { settings: settings(given), ..change(Action::Set, "a") };
     let cases = [
         (Change::default(), "E0350", "the change does not say what is to be done"),
-        (change(Action::Stop, "b"), "E0351", "no agent of `local` is named `b`; did you mean `a`?"),
-        (change(Action::Start, "a"), "E0352", "`a` has not stopped"),
-        (change(Action::Resume, "a"), "E0352", "`a` runs already"),
-        (change(Action::Step, "a"), "E0352", "`a` runs; one that pauses can be stepped: pause it first"),
+        (change(Action::StopAgent, "b"), "E0351", "no agent of `local` is named `b`; did you mean `a`?"),
+        (change(Action::StartAgent, "a"), "E0352", "`a` has not stopped"),
+        (change(Action::ResumeAgent, "a"), "E0352", "`a` runs already"),
+        (change(Action::StepAgent, "a"), "E0352", "`a` runs; one that pauses can be stepped: pause it first"),
         (of(Action::AddActivity, "D"), "E0312", "unknown activity `D`; did you mean `A`?"),
         (of(Action::RemoveActivity, "C"), "E0353", "the list of `a` has no activity `C`; did you mean `A`?"),
         (
@@ -182,8 +182,8 @@ fn hash_of(with_changes: bool) -> (String, Vec<String>) {
     if with_changes {
         let add = Change { number: 1, activity: "B".into(), ..change(Action::AddActivity, "a") };
         simulation.change_at(at(250), "local", add).unwrap();
-        simulation.change_at(at(700), "local", change(Action::Stop, "a")).unwrap();
-        simulation.change_at(at(300), "local", change(Action::Stop, "nobody")).unwrap();
+        simulation.change_at(at(700), "local", change(Action::StopAgent, "a")).unwrap();
+        simulation.change_at(at(300), "local", change(Action::StopAgent, "nobody")).unwrap();
         assert!(simulation.change_at(at(1), "elsewhere", Change::default()).is_err());
     }
     simulation.run_until(at(1000)).unwrap();
@@ -203,7 +203,7 @@ fn the_same_script_gives_the_same_bytes_and_a_tape_has_changes_and_answers() {
 fn an_activity_may_ask_for_a_change_too() {
     let asks = |blackboard: &mut monas::Blackboard| {
         if blackboard.now() == at(200) {
-            blackboard.publish(CHANGE, change(Action::Stop, "b")).unwrap();
+            blackboard.publish(CHANGE, change(Action::StopAgent, "b")).unwrap();
         }
     };
     let (told, note) = recorder();

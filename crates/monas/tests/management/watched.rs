@@ -108,14 +108,14 @@ fn an_agent_that_comes_back_from_being_stuck_has_stopped_and_starts_again() {
         std::thread::yield_now();
     }
     assert_eq!(state().reason, "activity `closure` is stuck in cycle 1");
-    let pause = run.change("local", change(Action::Pause, "a")).unwrap();
+    let pause = run.change("local", change(Action::PauseAgent, "a")).unwrap();
     assert_eq!(refused(&pause), ("E0352".into(), "`a` is stuck".into()));
     leave.wait();
     while state().state != "stopped" {
         std::thread::yield_now();
     }
     assert_eq!(state().reason, "activity `closure` was stuck in cycle 1");
-    made(&run.change("local", change(Action::Start, "a")).unwrap());
+    made(&run.change("local", change(Action::StartAgent, "a")).unwrap());
     while called.recv_timeout(PATIENCE).unwrap() != 3 {}
     assert_eq!(running.stop().agents[0].stopped, None);
 }
