@@ -17,7 +17,9 @@ const MILLIS: u64 = 20_000;
 
 /// By publisher: how many messages there were, and a hash of all of them with their moments. And all answers.
 #[derive(Clone, Default)]
-struct Seen(Arc<Mutex<(BTreeMap<String, (u64, blake3::Hasher)>, Vec<Changed>)>>);
+struct Seen(Arc<Mutex<(Publishers, Vec<Changed>)>>);
+
+type Publishers = BTreeMap<String, (u64, blake3::Hasher)>;
 
 impl Observer for Seen {
     fn observe(&mut self, publication: Publication<'_>) {
@@ -144,9 +146,7 @@ fn a_thousand_changes_are_answered_and_nobody_else_notices() {
     assert!(by_action.values().sum::<u64>() > CHANGES / 4, "{by_action:?}");
     assert!(changed.1.iter().all(|answer| answer.done != answer.findings.iter().any(|one| one.is_error)));
     for agent in ["calm", "steady"] {
-        let of = |seen: &BTreeMap<String, (u64, blake3::Hasher)>| {
-            seen.get(agent).map(|(count, hasher)| (*count, hasher.finalize()))
-        };
+        let of = |seen: &Publishers| seen.get(agent).map(|(count, hasher)| (*count, hasher.finalize()));
         assert!(of(&alone.0).is_some());
         assert_eq!(of(&changed.0), of(&alone.0), "{agent} does what it does without changes");
     }

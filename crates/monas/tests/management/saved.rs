@@ -35,6 +35,7 @@ fn simulation(text: &str) -> Simulation {
 }
 
 /// The set-up as it is saved. Somebody has to let the run go on, so that it answers.
+#[expect(clippy::disallowed_methods, reason = "whoever asks is not who lets the run go on")]
 fn saved(simulation: &mut Simulation) -> String {
     let overview = simulation.overview();
     let asking = std::thread::spawn(move || overview.configuration("local").unwrap().text);
