@@ -79,7 +79,7 @@ fn mistakes_are_answered_with_what_would_be_right() {
         (
             &["add", &snippet],
             3,
-            "extra.xml:2:26: error[E0312]: unknown activity `LedHandlr`\n  help: did you mean `LedHandler`?",
+            "extra.xml:2:25: error[E0312]: unknown activity `LedHandlr`\n  help: did you mean `LedHandler`?",
         ),
         (&["swap", "Mind", "nowhere.srm"], 1, "no generated statechart `nowhere.srm` is registered"),
         (&["list", "Mnd"], 1, "no agent is named `Mnd`; did you mean `Mind`?"),

@@ -47,7 +47,7 @@ fn what_the_reader_refuses_is_refused_by_the_xml_schema() {
         (agent("", "<actvity>x</actvity>"), "unknown element actvity in agent"),
         (agent("priority=\"high\"", ""), "priority is no xs:integer: high"),
         (agent("on_failure=\"x\"", ""), "on_failure is none of the words: x"),
-        (agent("thread_frequency=\"0\"", ""), "thread_frequency is out of range: 0"),
+        (agent("thread_frequency=\"-1\"", ""), "thread_frequency is out of range: -1"),
         ("<agnet/>".to_owned(), "unknown root agnet"),
         ("<field lenght=\"6\"/>".to_owned(), "unknown attribute lenght of field"),
         (
@@ -77,7 +77,7 @@ fn the_json_schema_says_the_same_of_toml() {
     assert!(json::allows(&schema, fine), "{fine}");
     for (right, wrong) in [
         ("ThreadFrequency = 10", "ThreadFrequncy = 10"),
-        ("ThreadFrequency = 10", "ThreadFrequency = 0"),
+        ("ThreadFrequency = 10", "ThreadFrequency = -1"),
         ("ThreadFrequency = 10", "ThreadFrequency = \"fast\""),
         ("is_real_time = true", "is_real_time = 2"),
         ("beat = \"50ms\"", "beat = 50"),

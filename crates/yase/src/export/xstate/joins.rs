@@ -48,11 +48,14 @@ fn completions(chart: &Statechart, segments: &[&Transition], lost: &mut Lost<'_>
     }
 }
 
-/// The innermost node around the sources of all segments.
+/// The innermost composite around the sources of all segments: whatever else holds a node is no state of XState's.
 fn common_ancestor(chart: &Statechart, segments: &[&Transition]) -> Option<NodeId> {
     let (first, others) = segments.split_first()?;
     let holds_all = |around: &NodeId| {
-        others.iter().all(|segment| chart.ancestors(segment.source).any(|ancestor| ancestor == *around))
+        matches!(chart.node(*around).kind, NodeKind::Or | NodeKind::And)
+            && others
+                .iter()
+                .all(|segment| chart.ancestors(segment.source).any(|ancestor| ancestor == *around))
     };
     chart.ancestors(first.source).find(holds_all)
 }
