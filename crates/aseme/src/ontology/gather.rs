@@ -143,7 +143,7 @@ impl<'a> Gatherer<'a> {
         let capital = |name: &&str| name.starts_with(|letter: char| letter.is_ascii_uppercase());
         let at = match kept {
             Some(index) => index + 1,
-            None if names.len() > 1 => names.iter().position(|name| capital(name)).unwrap_or(names.len()),
+            None if names.len() > 1 => names.iter().position(capital).unwrap_or(names.len()),
             None => return,
         };
         let Some(message) = names.get(at) else { return };
