@@ -149,8 +149,10 @@ fn recorded() -> Vec<Kept> {
     let mut talws = Talws::new().registry(registry).agent(keeper).agent(thrower());
     talws.observe(Box::new(tape.clone()));
     let running = talws.start().unwrap();
+    // on a machine that is busy with other things one of the two may do much while the other one waits
+    let thrown = || tape.0.lock().unwrap().iter().filter(|kept| kept.topic == "test/ball").count();
     let mut answers = 0;
-    while answers < 30 {
+    while answers < 30 || thrown() < 60 {
         answers += usize::from(next(&calls, 1) == ["answer"]);
     }
     running.stop();
