@@ -140,7 +140,10 @@ fn a_panic_harms_only_its_own_agent() {
     let (sender, calls) = news();
     let panics = |_: &mut Blackboard| -> () { panic!("ouch") };
     let goes_on = move |_: &mut Blackboard| sender.send(());
+    // to write down where it panicked may take a busy machine longer than an agent is waited for
+    let patient = Duration::from_secs(600);
     let stops = Agent::new("a", Hz(1000)).activity(panics).on_failure(monas::Policy::StopAgent);
+    let stops = stops.stuck_after(patient);
     let running =
         Talws::new().agent(stops).agent(Agent::new("b", Hz(1000)).activity(goes_on)).start().unwrap();
     next(&calls, 20);

@@ -215,11 +215,12 @@ fn what_a_link_brings_under_the_agents_own_name_is_not_the_agents() {
 #[test]
 fn a_changed_threshold_shows_at_the_agent_that_has_it_alone() {
     let messages = recorded();
-    let outcome = replay(again(-6.0), &messages).unwrap();
+    // no ball is so near: of thirty answers the first is left
+    let outcome = replay(again(-100.0), &messages).unwrap();
     let first = outcome.differences.first().unwrap();
     assert_eq!((first.host.as_str(), first.agent.as_str()), ("local", "keeper"));
     assert!(outcome.differences.iter().all(|difference| difference.agent == "keeper"));
-    assert!(outcome.compared("thrower", "test/ball") > 10);
+    assert!(outcome.compared("thrower", "test/ball") > 0);
 }
 
 #[test]
