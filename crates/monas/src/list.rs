@@ -99,12 +99,19 @@ impl List {
             let Err(failure) = result else { continue };
             let outcome = self.failed(index, &failure);
             if outcome != Outcome::Continues {
-                self.blackboard.publish_all(now);
-                return outcome;
+                return self.publish(outcome, index, now, watch);
             }
         }
+        self.publish(Outcome::Continues, self.entries.len().saturating_sub(1), now, watch)
+    }
+
+    /// Ends the cycle with the activity at that place: publishes what was written, if nobody has given it up.
+    fn publish(&mut self, outcome: Outcome, index: usize, now: Moment, watch: Option<Watch<'_>>) -> Outcome {
+        if !self.entries.is_empty() && watch.is_some_and(|watch| !watch.pulse.ends()) {
+            return self.was_stuck(index);
+        }
         self.blackboard.publish_all(now);
-        Outcome::Continues
+        outcome
     }
 
     /// An activity has returned after everybody had given it up: nothing of what was done in the cycle matters any more.

@@ -156,6 +156,14 @@ impl Run {
         self.step(1);
     }
 
+    /// An event that is handled without a queue, a millisecond later.
+    fn handles(&mut self, name: &str) {
+        let (event, _) = self.machine.chart().event(name);
+        self.now += 1;
+        let summary = self.machine.handle(event, Moment::from_millis(self.now), &mut self.world).unwrap();
+        self.transitions += summary.transitions;
+    }
+
     /// The activity of a region returns for good.
     fn returns(&mut self, region: usize) {
         let activation = self.world.jobs[region].take().unwrap();
@@ -352,4 +360,86 @@ fn deferred_and_held_events() {
         run.returns(0);
         run.event("g");
     });
+}
+
+#[test]
+fn history() {
+    let text = "
+        START
+        a
+          START
+          h shallow
+          H deep
+          b
+            START
+            s
+            t
+            b/START -> s
+            s -> t : next
+            t -> s : next
+          d
+          a/START -> b
+          b -> d : over
+          d -> b : over
+        out
+        START -> a
+        a -> out : leave
+        out -> shallow : children
+        out -> deep : all
+    ";
+    assert_allocates_nothing(text, 7, |run| {
+        for event in ["next", "leave", "all", "leave", "children", "over", "over"] {
+            run.event(event);
+        }
+    });
+}
+
+#[test]
+fn forks_joins_and_choices() {
+    let text = "
+        START
+        < fork
+        > join
+        ! choice
+        s
+        & both
+          one
+            START
+            s1
+            t1
+            one/START -> s1
+            s1 -> t1 : e
+          two
+            START
+            s2
+            t2
+            two/START -> s2
+            s2 -> t2 : e
+        START -> s
+        s -> fork : e
+        fork -> both/one/t1
+        fork -> both/two/s2
+        both/one/t1 -> join
+        both/two/t2 -> join
+        join -> choice : / A.n = A.n + 1
+        choice -> s : [A.n > 1000000]
+        choice -> s
+    ";
+    assert_allocates_nothing(text, 3, |run| {
+        run.event("e");
+        run.event("e");
+    });
+}
+
+#[test]
+fn an_event_that_is_handled_at_once() {
+    let text = "
+        START
+        s | exit=A.n = A.n + 1
+        t
+        START -> s
+        s -> t : e [A.n >= 0]
+        t -> s : e
+    ";
+    assert_allocates_nothing(text, 1, |run| run.handles("e"));
 }

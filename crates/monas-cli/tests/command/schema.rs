@@ -64,6 +64,8 @@ fn what_the_reader_refuses_is_refused_by_the_xml_schema() {
     }
     let fine = agent("ThreadFrequency=\"10\" IsRealTime=\"1\"", "<activity any=\"thing\">Walk</activity>");
     assert_eq!(xsd::validate(&schema, &fine), Vec::<String>::new());
+    let free = agent("thread_frequency=\"0\"", "");
+    assert_eq!(xsd::validate(&schema, &free), Vec::<String>::new(), "an agent may run freely");
 }
 
 #[test]
@@ -75,6 +77,10 @@ fn the_json_schema_says_the_same_of_toml() {
                 [simulator.physics]\nball_radius = 0.03\n\
                 [match]\nhalf = \"10min\"\n[[match.team]]\nnumber = 1\nname = \"A\"\ncolour = \"blue\"\nside = \"left\"\n";
     assert!(json::allows(&schema, fine), "{fine}");
+    assert!(
+        json::allows(&schema, &fine.replacen("ThreadFrequency = 10", "ThreadFrequency = 0", 1)),
+        "it runs freely"
+    );
     for (right, wrong) in [
         ("ThreadFrequency = 10", "ThreadFrequncy = 10"),
         ("ThreadFrequency = 10", "ThreadFrequency = -1"),

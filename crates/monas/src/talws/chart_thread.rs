@@ -223,7 +223,9 @@ impl ChartThread {
                 self.part.pulse.calls(*place);
                 self.part.pulse.begins(*since, self.steps);
             }
-            None => self.part.pulse.ends(),
+            None => {
+                self.part.pulse.ends();
+            }
         }
     }
 

@@ -130,10 +130,7 @@ impl Simulation {
 
     /// What agents have done so far.
     pub fn statistics(&self) -> Statistics {
-        let agents = self
-            .hosts
-            .iter()
-            .flat_map(|host| host.instances().iter().map(|agent| agent.statistics(host.name())));
+        let agents = self.hosts.iter().flat_map(Host::statistics);
         let links = self.links.iter().map(RunningLink::statistics).collect();
         Statistics { agents: agents.collect(), links }
     }

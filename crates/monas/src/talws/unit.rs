@@ -240,12 +240,12 @@ impl Unit {
         let is_stuck =
             |part: &Arc<Part>, limit| part.pulse.under_way(now).filter(|under_way| under_way.since > limit);
         let stuck_list = list.iter().find_map(|part| Some((part, is_stuck(part, list_limit)?)));
-        if let Some((part, _)) = stuck_list {
-            part.pulse.cut_off();
-        }
+        // one that has ended in this moment is not stuck
+        let stuck_list = stuck_list.filter(|(part, under_way)| part.pulse.cut_off(*under_way));
+        let is_cut_off = stuck_list.is_some();
         let stuck =
             stuck_list.or_else(|| charts.iter().find_map(|part| Some((part, is_stuck(part, chart_limit)?))));
-        let Some((part, UnderWay { since, cycle, activity })) = stuck else {
+        let Some((part, UnderWay { since, cycle, activity, .. })) = stuck else {
             if self.is_stuck.swap(false, Ordering::SeqCst) {
                 *locked(&self.stuck) = None;
                 tracing::warn!(agent = %self.name, "is stuck no more");
@@ -258,7 +258,8 @@ impl Unit {
         let activities = &locked(&part.board).statistics.activities;
         let activity = activities.get(activity).map_or("", |activity| activity.name.as_str());
         let millis = since.as_millis();
-        tracing::error!(agent = %self.name, %activity, cycle, "stuck: a call has taken {millis} ms, and nothing more of it is published");
+        let consequence = if is_cut_off { ", and nothing of its cycle is published" } else { "" };
+        tracing::error!(agent = %self.name, %activity, cycle, "stuck: a call has taken {millis} ms{consequence}");
         *locked(&self.stuck) = Some(format!("activity `{activity}` is stuck in cycle {cycle}"));
         true
     }

@@ -426,7 +426,15 @@ impl Staff for Team {
     }
 
     fn launch(&mut self, member: Member) -> Result<(), String> {
-        self.launch_all(vec![member]).map_err(|error| error.to_string())
+        let name = member.name.clone();
+        self.launch_all(vec![member]).map_err(|error| {
+            // the threads that there are end, and nobody is left without the others
+            if let Some(place) = self.workers.iter().position(|worker| worker.unit.name == name) {
+                self.workers.remove(place).end();
+                self.set_waker();
+            }
+            error.to_string()
+        })
     }
 
     fn dismiss(&mut self, agent: &str) -> Result<(), String> {

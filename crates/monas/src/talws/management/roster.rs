@@ -5,7 +5,7 @@ use std::sync::Arc;
 use narukom::{HostId, Moment, Narukom, Publisher, Subscriber};
 use yase::Source;
 
-use super::findings::{Refusal, finding, refusal, remark};
+use super::findings::{Refusal, finding, refusal, refusal_with, remark};
 use super::plan::{Plan, Step};
 use super::save;
 use super::staff::Staff;
@@ -54,22 +54,30 @@ impl Roster {
         &self.ground.hub
     }
 
-    /// Publishes a change from outside and makes it; also those that were published before it.
+    /// Publishes a change from outside and makes it; also those that others have published.
     pub(in crate::talws) fn ask(&mut self, change: Change, staff: &mut dyn Staff, now: Moment) -> Changed {
-        self.from_outside.publish(change, now);
-        self.attend(staff, now).unwrap_or_default()
+        self.from_outside.publish(change.clone(), now);
+        let mut own = None;
+        self.make_all(staff, now, &mut |asked, changed| {
+            if *asked == change {
+                own = Some(changed.clone());
+            }
+        });
+        own.unwrap_or_else(|| lost(&change))
     }
 
-    /// Makes the changes that were published, one after the other. The answer to the last is given too.
-    pub(in crate::talws) fn attend(&mut self, staff: &mut dyn Staff, now: Moment) -> Option<Changed> {
-        let mut last = None;
+    /// Makes the changes that were published, one after the other.
+    pub(in crate::talws) fn attend(&mut self, staff: &mut dyn Staff, now: Moment) {
+        self.make_all(staff, now, &mut |_, _| {});
+    }
+
+    fn make_all(&mut self, staff: &mut dyn Staff, now: Moment, told: &mut dyn FnMut(&Change, &Changed)) {
         while let Some(sample) = self.asked.next_sample() {
             let Some(change) = sample.downcast::<Change>() else { continue };
             let changed = self.make(change.message, staff, now);
-            self.answers.publish(changed.clone(), now);
-            last = Some(changed);
+            told(change.message, &changed);
+            self.answers.publish(changed, now);
         }
-        last
     }
 
     fn make(&mut self, change: &Change, staff: &mut dyn Staff, now: Moment) -> Changed {
@@ -131,5 +139,31 @@ impl Roster {
     pub(in crate::talws) fn configuration(&self) -> Configuration {
         let file = self.configuration.as_ref().map(|source| source.name.clone()).unwrap_or_default();
         Configuration { file, text: save::text(self.configuration.as_ref(), &self.profiles) }
+    }
+}
+
+/// The answer to a change that never came here: its topic keeps so many, and others have published more.
+fn lost(change: &Change) -> Changed {
+    let reason =
+        refusal_with("E0359", "so many changes were asked for at once that this one was lost", "ask again");
+    Changed {
+        number: change.number,
+        action: change.action,
+        agent: change.agent.clone(),
+        findings: reason.iter().map(finding).collect(),
+        ..Changed::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_that_was_lost_is_refused_by_its_number() {
+        let changed = lost(&Change { number: 7, agent: "a".into(), ..Change::default() });
+        assert_eq!((changed.number, changed.agent.as_str(), changed.done), (7, "a", false));
+        assert_eq!(changed.findings.len(), 1);
+        assert_eq!(changed.findings[0].code, "E0359");
     }
 }

@@ -9,6 +9,7 @@ use crate::agent::Profile;
 use crate::error::{Error, ErrorKind};
 use crate::list::Outcome;
 use crate::records::{AgentEntry, CHANGE, Change, Changed};
+use crate::statistics::AgentStatistics;
 use crate::talws::ENDED;
 use crate::talws::body::Body;
 use crate::talws::crew::{Crew, Member};
@@ -35,6 +36,8 @@ struct Team {
     host: String,
     body: Option<(Body, u64)>,
     instances: Vec<Instance>,
+    /// What agents have done that were removed.
+    gone: Vec<AgentStatistics>,
 }
 
 impl Host {
@@ -68,7 +71,8 @@ impl Host {
             linked.iter().for_each(|wake| wake(topic, host));
         }));
         let instances = members.into_iter().map(|member| Instance::new(member, Moment::ZERO)).collect();
-        let team = Team { host: hub.host().into(), body: body.map(|body| (body, 0)), instances };
+        let team =
+            Team { host: hub.host().into(), body: body.map(|body| (body, 0)), instances, gone: Vec::new() };
         let roster = Roster::new(ground, crew.clone(), profiles, configuration)?;
         Ok(Host { moved, asked, roster, team })
     }
@@ -83,6 +87,12 @@ impl Host {
 
     pub(super) fn instances(&self) -> &[Instance] {
         &self.team.instances
+    }
+
+    /// What its agents have done, those that were removed first.
+    pub(super) fn statistics(&self) -> impl Iterator<Item = AgentStatistics> {
+        let present = self.team.instances.iter().map(|agent| agent.statistics(&self.team.host));
+        self.team.gone.iter().cloned().chain(present)
     }
 
     pub(super) fn due(&self, now: Moment) -> Moment {
@@ -215,7 +225,9 @@ impl Staff for Working<'_> {
 
     fn dismiss(&mut self, agent: &str) -> Result<(), String> {
         if let Some(place) = self.team.instances.iter().position(|known| known.name() == agent) {
-            self.team.instances.remove(place).stop(ENDED, self.now);
+            let mut instance = self.team.instances.remove(place);
+            instance.stop(ENDED, self.now);
+            self.team.gone.push(instance.statistics(&self.team.host));
         }
         Ok(())
     }
