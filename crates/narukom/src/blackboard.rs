@@ -96,8 +96,9 @@ impl Blackboard {
         self.close();
         self.delivery.arrivals.clear();
         self.window.since = self.window.since.max(self.window.delivered);
-        if self.hub.head() != self.window.delivered {
-            self.deliver();
+        let last = self.hub.head();
+        if last != self.window.delivered {
+            self.deliver(last);
         }
     }
 
@@ -148,8 +149,16 @@ impl Blackboard {
         self.open = RefCell::new(open);
     }
 
-    fn deliver(&mut self) {
+    /// Delivers what was published up to number `last` and later. If none of it is read here, the hub is not asked for it.
+    fn deliver(&mut self, last: u64) {
+        let recent = self.hub.recent(self.window.delivered, last);
+        if recent.is_some_and(|recent| !recent.channels().any(|channel| self.reads(channel))) {
+            self.window.delivered = last;
+            return;
+        }
         let exchange = self.hub.exchange();
+        // More may have come in between.
+        let recent = recent.filter(|_| exchange.order() == last);
         let mut delivering = Delivering {
             exchange: &exchange,
             number: self.number,
@@ -158,14 +167,22 @@ impl Blackboard {
             open: self.open.get_mut(),
             delivery: &mut self.delivery,
         };
-        match exchange.journal_since(self.window.delivered) {
-            Some(moved) => moved.for_each(|channel| delivering.channel(channel)),
-            None => self.attached.get_mut().iter().for_each(|channel| delivering.channel(*channel)),
+        if let Some(moved) = recent {
+            moved.channels().for_each(|channel| delivering.channel(channel));
+        } else if let Some(moved) = exchange.journal_since(self.window.delivered) {
+            moved.for_each(|channel| delivering.channel(channel));
+        } else {
+            self.attached.get_mut().iter().for_each(|channel| delivering.channel(*channel));
         }
         self.window.delivered = exchange.order();
         drop(exchange);
         self.delivery.leaving.clear();
         self.delivery.arrivals.sort_unstable();
+    }
+
+    /// Whether messages of a channel are delivered here.
+    fn reads(&self, channel: Channel) -> bool {
+        self.places.get(channel.topic.index()).is_some_and(|place| place.reading(channel.host).is_some())
     }
 
     fn reader(&self, channel: Channel) -> Reader {

@@ -35,9 +35,21 @@ impl Cursors {
         Cursors { host, places: places.collect(), seen: exchange.order(), lost: 0 }
     }
 
-    /// Whether everything that was published was looked at.
-    pub(crate) fn is_up_to_date(&self, hub: &Narukom) -> bool {
-        hub.head() == self.seen
+    /// Whether nothing was published that it reads and has not looked at.
+    pub(crate) fn is_up_to_date(&mut self, hub: &Narukom) -> bool {
+        let last = hub.head();
+        if last != self.seen {
+            let Some(recent) = hub.recent(self.seen, last) else { return false };
+            if recent.channels().any(|channel| self.reads(channel)) {
+                return false;
+            }
+            self.seen = last;
+        }
+        true
+    }
+
+    fn reads(&self, Channel { topic, host }: Channel) -> bool {
+        host == self.host && self.places.binary_search_by_key(&topic, |(slot, _)| *slot).is_ok()
     }
 
     /// The number of the last publication that was looked at.

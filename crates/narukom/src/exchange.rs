@@ -47,17 +47,18 @@ impl Outgoing {
     }
 }
 
-/// The state behind the lock.
+/// The state behind the lock. What every reader needs comes first, beside the lock itself.
+#[repr(C)]
 pub(crate) struct Exchange {
     order: u64,
     shelves: Vec<Shelf>,
+    pub(crate) waker: Option<Arc<dyn Waker>>,
     /// What moved in the last publications, oldest first.
     journal: VecDeque<Channel>,
     hosts: Vec<Arc<str>>,
     publishers: Vec<Arc<str>>,
     /// How many of the publishers' names came from other hosts.
     remote_publishers: usize,
-    pub(crate) waker: Option<Arc<dyn Waker>>,
 }
 
 /// The rings of one topic.

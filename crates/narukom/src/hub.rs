@@ -1,7 +1,7 @@
 //! The hub: where everything that is published on one host passes.
 
 use std::fmt;
-use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::blackboard::Blackboard;
@@ -9,6 +9,7 @@ use crate::catalogue::Catalogue;
 use crate::encoding::Encoding;
 use crate::error::{Error, ErrorKind};
 use crate::exchange::{Exchange, Outgoing, Sender};
+use crate::head::{Head, Recent};
 use crate::moment::Moment;
 use crate::observer::{Observer, Publication, Waker};
 use crate::publisher::{AnyPublisher, Publisher};
@@ -35,14 +36,13 @@ struct Shared {
     /// Whether there is an observer; without one its lock is not taken.
     is_observed: AtomicBool,
     observers: Mutex<Observers>,
-    exchange: Mutex<Exchange>,
+    exchange: Apart<Mutex<Exchange>>,
     head: Head,
 }
 
-/// The number of the last publication; readers compare it before they take a lock. It has a cache line of its own (two, since
-/// processors fetch them in pairs), so that those who poll it do not slow down those who take the lock.
+/// What begins a cache line: what is written under the lock is beside the lock.
 #[repr(align(128))]
-struct Head(AtomicU64);
+struct Apart<T>(T);
 
 /// Held from the numbering of a message to the end of its observation, so that observers see them in order.
 #[derive(Default)]
@@ -68,8 +68,8 @@ impl Narukom {
             blackboards: AtomicU32::new(0),
             is_observed: AtomicBool::new(false),
             observers: Mutex::default(),
-            exchange: Mutex::new(exchange),
-            head: Head(AtomicU64::new(0)),
+            exchange: Apart(Mutex::new(exchange)),
+            head: Head::new(),
         };
         Ok(Narukom { shared: Arc::new(shared) })
     }
@@ -235,11 +235,17 @@ impl Narukom {
     /// The number of the last publication.
     #[inline]
     pub(crate) fn head(&self) -> u64 {
-        self.shared.head.0.load(Ordering::Acquire)
+        self.shared.head.last()
+    }
+
+    /// On which channels the publications later than number `since` were, up to `last`; none if that is no longer known.
+    #[inline]
+    pub(crate) fn recent(&self, since: u64, last: u64) -> Option<Recent> {
+        self.shared.head.recent(since, last)
     }
 
     pub(crate) fn exchange(&self) -> MutexGuard<'_, Exchange> {
-        self.shared.exchange.lock().unwrap_or_else(PoisonError::into_inner)
+        self.shared.exchange.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn observers(&self) -> MutexGuard<'_, Observers> {
@@ -275,10 +281,17 @@ impl Narukom {
         }
         let observers = self.is_observed().then(|| self.observers());
         let mut exchange = self.exchange();
-        outgoing.iter_mut().for_each(|message| enter(&mut exchange, message, observers.is_some()));
+        let head = &self.shared.head;
+        for message in &mut *outgoing {
+            let before = exchange.order();
+            enter(&mut exchange, message, observers.is_some());
+            if exchange.order() != before {
+                head.note(exchange.order(), message.header.channel());
+            }
+        }
         let waker = exchange.waker.clone();
         // The last thing before the lock is free: who polls the head wants the lock at once.
-        self.shared.head.0.store(exchange.order(), Ordering::Release);
+        head.move_to(exchange.order());
         drop(exchange);
         if let Some(mut observers) = observers {
             outgoing.iter_mut().for_each(|message| self.show(&mut observers, host, sender, message));

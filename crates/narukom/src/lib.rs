@@ -110,6 +110,7 @@ mod exchange;
 #[doc(hidden)]
 #[allow(missing_docs)]
 pub mod generated;
+mod head;
 mod history;
 mod hub;
 mod message;

@@ -20,7 +20,8 @@ impl Origin {
     pub(crate) const OUTSIDE: Origin = Origin { blackboard: 0, nth: 0 };
 }
 
-/// A message in a ring.
+/// A message in a ring. It lies in two cache lines, and never in three.
+#[repr(align(32))]
 pub(crate) struct Entry {
     pub(crate) sample: AnySample,
     /// The hub's running number over all topics.
@@ -30,7 +31,9 @@ pub(crate) struct Entry {
     pub(crate) encoding: Option<Arc<Encoding>>,
 }
 
-/// The last messages of a topic. Each has a running index; readers keep the index of the one they want next.
+/// The last messages of a topic. Each has a running index; readers keep the index of the one they want next. What they look at comes first,
+/// in one cache line.
+#[repr(C, align(64))]
 pub(crate) struct Ring {
     /// In order of publication from `start` on, and then from 0.
     entries: Vec<Entry>,
