@@ -122,7 +122,8 @@ mod tests {
     fn who_reads_nothing_of_what_was_published_does_not_wait_for_the_lock() {
         const READ: Topic<State<Ball>> = Topic::new("test/read");
         const OTHER: Topic<State<Ball>> = Topic::new("test/other");
-        let declared = ["test/read", "test/other"].map(|path| TopicDeclaration::new::<State<Ball>>(path, "test"));
+        let declared =
+            ["test/read", "test/other"].map(|path| TopicDeclaration::new::<State<Ball>>(path, "test"));
         let hub = Narukom::new("robot", &declared).unwrap();
         let (mut reader, mut subscriber) = (hub.blackboard("reader"), hub.subscriber("test/read").unwrap());
         assert!(reader.read(READ).is_none());

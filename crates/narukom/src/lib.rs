@@ -49,6 +49,13 @@
 //!
 //! `cargo bench -p narukom` measures publishing and reading in one thread and across threads, beside what others make of it.
 //!
+//! Whoever polls and finds nothing for itself compares one number, and takes no lock: the channels of the last publications stand in the
+//! same cache line. What there is to fetch is fetched under the hub's lock, so that messages of all topics come as they were published
+//! together. Across threads that costs more than a queue of one topic does: the lock, the ring, the message and its count each cross from
+//! one processor to the other. On two processors of a busy virtual machine the
+//! polling table showed a median of 1.67 µs (rounds of 1.54 to 1.84) beside 0.64 (0.49 to 0.75) of the best contestant, `arc-swap`, which holds
+//! one value; where both processors share a cache it is a third of that for all.
+//!
 //! # Example
 //!
 //! The messages are declared in a `.proto` file,
