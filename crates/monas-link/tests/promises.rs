@@ -113,6 +113,7 @@ proptest! {
             for topic in 0..ALL {
                 let numbers = network.numbers(reader, host, topic);
                 prop_assert!(numbers.is_sorted_by(|one, next| one < next), "{numbers:?}");
+                network.check_publishers(reader, host, topic);
                 let got = network.received(reader, host, &network.settings[0].send[topic].path);
                 prop_assert_eq!(got.delivered as usize, numbers.len());
             }

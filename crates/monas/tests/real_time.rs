@@ -4,6 +4,8 @@
 mod kit;
 #[path = "real_time/replayed.rs"]
 mod replayed;
+#[path = "kit/taped.rs"]
+mod taped;
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Barrier, Mutex};

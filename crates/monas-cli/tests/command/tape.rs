@@ -168,6 +168,8 @@ fn what_was_recorded_in_real_time_is_replayed() {
     let last = replayed.last().expect("a summary");
     assert_eq!(last["differences"], 0, "{replayed:?}");
     assert!(last["compared"].as_u64().is_some_and(|compared| compared > 20), "{last}");
+    assert!(last["recorded_seconds"].as_f64().is_some_and(|seconds| seconds >= 0.3), "{last}");
+    assert_eq!(last["simulated_seconds"], Value::Null, "nothing was simulated");
 
     let (changed, _) = changed("models/goalie.srm", "motion_timeout, 100ms", "motion_timeout, 20ms");
     let config = text(&changed.path().join("config/roles/goalie.xml"));

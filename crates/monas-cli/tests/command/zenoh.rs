@@ -154,3 +154,91 @@ fn what_zenoh_cannot_use_is_said_before_it_is_opened() {
         }
     }
 }
+
+/// Agents with a link that shows a certificate: what crosses it, who may do what by its list, and its endpoint.
+fn with_certificate(folder: &Path, file: &str, name: &str, certificate: &str, link: &str) -> String {
+    let tls = root().join("crates/monas-link/tests/zenoh/tls");
+    let path = |name: &str| tls.join(name).display().to_string();
+    let [authority, certificate, key] =
+        [path("team.pem"), path(&format!("{certificate}.pem")), path(&format!("{certificate}.key"))];
+    let text = format!(
+        "<link name=\"{name}\" transport=\"zenoh\" access=\"access.txt\">{link}
+           <certificates authority=\"{authority}\" certificate=\"{certificate}\" key=\"{key}\"/></link>
+         <agent frequency=\"50\"><name>Lights</name><activity>LedHandler</activity></agent>
+         <agent frequency=\"50\"><name>Mind</name><activity>LedHandler</activity></agent>"
+    );
+    let file = folder.join(file);
+    fs::write(&file, text).expect("the folder takes files");
+    file.display().to_string()
+}
+
+/// Whether an agent of a run stands like this.
+fn stands(folder: &Path, run: &str, agent: &str, state: &str) -> bool {
+    let agents = objects(&ask(folder, &["agent", "list", agent, "--run", run, "--format", "json"]).out);
+    agents.iter().any(|one| one["state"] == state)
+}
+
+#[test]
+fn agents_are_changed_over_zenoh_by_whom_the_access_list_lets_and_whose_certificate_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let access = "robot_1 publish monas/changed\nrobot_2 publish monas/change\nrobot_2 manage\nlaptop publish soccer/**\n";
+    fs::write(folder.join("access.txt"), access).expect("the folder takes files");
+    let port = port();
+    let taking = format!(
+        "<receive topics=\"monas/change\" as=\"own\"/><send topics=\"monas/changed\"/><listen>tls/127.0.0.1:{port}</listen>"
+    );
+    let asking = format!(
+        "<send topics=\"monas/change\"/><receive topics=\"monas/changed\"/><connect>tls/127.0.0.1:{port}</connect>"
+    );
+    let start = |run: &str, name: &str, certificate: &str, link: &str| {
+        let file = with_certificate(folder, &format!("{run}.xml"), name, certificate, link);
+        let tape = folder.join(format!("{run}.mcap")).display().to_string();
+        Running::start(folder, &["run", &file, "--control", run, "--format", "json", "--record", &tape], TOLD)
+    };
+    // One whose certificate has no such right, one that takes the name of who has it, and one of another team that does too.
+    let robot = start("robot", "robot_1", "robot_1", &taking);
+    let manager = start("manager", "robot_2", "robot_2", &asking);
+    let others =
+        [("laptop", "laptop", "laptop"), ("liar", "robot_2", "laptop"), ("stranger", "robot_2", "stranger")];
+    let others = others.map(|(run, name, certificate)| (run, start(run, name, certificate, &asking)));
+    let publish = |run: &str, number: u64, action: &str, agent: &str| {
+        let change = format!("{{\"number\": {number}, \"action\": \"{action}\", \"agent\": \"{agent}\"}}");
+        let answer = ask(folder, &["topic", "pub", "monas/change", &change, "--run", run]);
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+    };
+    let has_heard = |run: &str| {
+        let list = ["topic", "list", "monas/changed", "--run", run, "--format", "json"];
+        objects(&ask(folder, &list).out).iter().any(|topic| topic["from"] == serde_json::json!(["robot_1"]))
+    };
+    let await_that = |what: &str, holds: &dyn Fn() -> bool| {
+        assert!((0..400).any(|_| holds()), "{what} never came about");
+    };
+    await_that("that all who may listen do", &|| {
+        publish("manager", 1, "PAUSE_AGENT", "Nobody");
+        ["manager", "laptop", "liar"].iter().all(|run| has_heard(run))
+    });
+    for (run, _) in &others {
+        publish(run, 66, "STOP_AGENT", "Mind");
+    }
+    // What they had to say has left them when they have ended.
+    for (run, other) in others {
+        let said = objects(&other.interrupt().out);
+        let sent = said.iter().find(|one| one["kind"] == "link_sent").expect("it sends changes");
+        assert_eq!((&sent["topic"], &sent["sent"]), (&"monas/change".into(), &1.into()), "{run}");
+        let has_heard = said.iter().any(|one| one["kind"] == "link_received");
+        assert_eq!(has_heard, run != "stranger", "{run}: {said:?}");
+    }
+    publish("manager", 7, "PAUSE_AGENT", "Lights");
+    await_that("the pause", &|| stands(folder, "robot", "Lights", "pauses"));
+    assert!(stands(folder, "robot", "Mind", "runs"), "a change was made that nobody may ask for");
+    publish("manager", 8, "STOP_AGENT", "Mind");
+    await_that("the same of one who may", &|| stands(folder, "robot", "Mind", "stopped"));
+    assert_eq!(manager.interrupt().code, Some(130));
+    assert_eq!(robot.interrupt().code, Some(130));
+    let tape = folder.join("robot.mcap").display().to_string();
+    let exported = monas(&["tape", "export", &tape, "--topic", "monas/change"]);
+    let numbers = objects(&exported.out).into_iter().map(|one| one["message"]["number"].clone());
+    let asked: Vec<serde_json::Value> = numbers.filter(|number| *number != 1).collect();
+    assert_eq!(asked, [7, 8], "{}", exported.out);
+}

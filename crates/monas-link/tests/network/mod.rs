@@ -60,6 +60,11 @@ pub fn topic(path: &str, kind: Kind, depth: usize, reliability: Reliability, pri
     }
 }
 
+/// Who publishes the message of this number, and which of its own it is.
+fn published_as(number: u64) -> (&'static str, u64) {
+    (["left", "right"][(number % 2) as usize], number.div_ceil(2))
+}
+
 /// One of each kind, reliable and not.
 pub fn topics(depth: usize) -> Vec<LinkTopic> {
     use Reliability::{BestEffort, Reliable};
@@ -122,7 +127,7 @@ impl Network {
         let number = &mut self.published[node][topic];
         *number += 1;
         let payload = number.to_le_bytes().to_vec().into();
-        let (publisher, sequence) = (["left", "right"][(*number % 2) as usize], number.div_ceil(2));
+        let (publisher, sequence) = published_as(*number);
         let published = self.now(node);
         self.nodes[node].publish(topic, Publication { publisher, sequence, published, payload });
     }
@@ -189,6 +194,14 @@ impl Network {
     pub fn numbers(&self, node: usize, host: &str, topic: usize) -> Vec<u64> {
         let given = self.given[node].iter().filter(|one| *one.host == *host && one.topic == topic);
         given.map(|one| u64::from_le_bytes(one.payload[..8].try_into().unwrap())).collect()
+    }
+
+    /// Fails if a message that a node was given is not the one that its publisher published with that number of its own.
+    pub fn check_publishers(&self, node: usize, host: &str, topic: usize) {
+        for one in self.given[node].iter().filter(|one| *one.host == *host && one.topic == topic) {
+            let number = u64::from_le_bytes(one.payload[..8].try_into().unwrap());
+            assert_eq!((one.publisher.as_str(), one.sequence), published_as(number));
+        }
     }
 
     /// What a node has counted of a topic of a host.

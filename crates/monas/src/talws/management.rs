@@ -12,5 +12,5 @@ mod save;
 mod settings;
 mod staff;
 
-pub(super) use roster::Roster;
+pub(super) use roster::{HOST_ITSELF, Roster};
 pub(super) use staff::Staff;

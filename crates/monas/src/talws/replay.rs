@@ -3,6 +3,7 @@
 //! A recording of simulated time is followed message by message, see [`simulated`]. One of real time is followed turn by turn, see
 //! [`real_time`]: when threads ran was chance, but records of cycles tell of it.
 
+mod changes;
 mod compare;
 mod feed;
 mod real_time;
@@ -111,6 +112,9 @@ pub struct Input(usize);
 /// its own recorded turns, at the moments of then, and is given what was delivered to it in each: of the other agents, replayed or not,
 /// what was recorded.
 ///
+/// Changes of agents that were made meanwhile are made again in simulated time. Agents that were added are not replayed: what they published
+/// is given to the others. In real time an agent that was made of something else cannot be replayed, nor one that was stepped.
+///
 /// What comes from outside and is no message, an event that somebody raised by hand, is not in a recording and so not in a replay. Nor is
 /// what an activity learns in other ways: from a clock, a device or another thread. That shows as a difference.
 pub struct Replay {
@@ -187,7 +191,7 @@ impl Replay {
     /// As in [`feed`](Replay::feed).
     pub fn finish(self, is_whole: bool, told: &mut dyn FnMut(Difference)) -> Result<Vec<Tally>, Error> {
         match self.course {
-            Course::Simulated(course) => Ok(course.finish(is_whole, told)),
+            Course::Simulated(course) => course.finish(is_whole, told),
             Course::RealTime(course) => course.finish(is_whole, told),
         }
     }

@@ -17,7 +17,7 @@ use crate::activity::BoxError;
 use crate::agent::Profile;
 use crate::binder::Binder;
 use crate::error::{Error, ErrorKind};
-use crate::link::LinkConfig;
+use crate::link::{LinkConfig, LinkTransport};
 use crate::listener::Listeners;
 use crate::records::{self, CHANGE, HOST};
 use crate::registry::Registry;
@@ -128,7 +128,7 @@ impl Crew {
 }
 
 /// Whoever may publish changes on a host may do anything to its agents. What comes over a link as the host's own may be such a change, so
-/// the link has to name those who may, and say that they may manage.
+/// the link has to name those who may, and say that they may manage. Over a network names count only where certificates show them.
 fn refuse_changes_from_strangers(ground: &Ground, links: &[LinkConfig]) -> Result<(), Error> {
     for link in links {
         let brought = Brought::by(std::slice::from_ref(link), &ground.hub)?;
@@ -148,11 +148,23 @@ fn refuse_changes_from_strangers(ground: &Ground, links: &[LinkConfig]) -> Resul
                 format!("a link of `{host}` lets `{stranger}` publish changes of its agents, who may not manage them"),
                 format!("add `{stranger} manage` to the access list, or name the topics that `{stranger}` may publish"),
             ),
-            (false, None) => continue,
+            (false, None) if is_believed(&link.transport) => continue,
+            (false, None) => (
+                format!("a link of `{host}` lets anybody change its agents who takes the name of one who may manage them"),
+                "give the link `certificates`, and endpoints that begin with `tls/`".into(),
+            ),
         };
         return Err(Error::new(ErrorKind::Link, message).with_hint(hint));
     }
     Ok(())
+}
+
+/// Whether a name that comes over it is that of whoever says it: a folder of sockets is open to its owner alone.
+fn is_believed(transport: &LinkTransport) -> bool {
+    match transport {
+        LinkTransport::Local { .. } => true,
+        LinkTransport::Zenoh(endpoints) => endpoints.certificates.is_some(),
+    }
 }
 
 impl Environment {

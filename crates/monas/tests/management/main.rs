@@ -3,10 +3,13 @@
 
 #[path = "../kit/mod.rs"]
 mod kit;
+#[path = "../kit/taped.rs"]
+mod taped;
 
 mod charts;
 mod many;
 mod real_time;
+mod replayed;
 mod saved;
 mod simulated;
 mod watched;

@@ -5,7 +5,10 @@ use std::sync::{Arc, Barrier};
 use std::time::Duration;
 
 use monas::records::{Action, CHANGE, Change};
-use monas::{Agent, Blackboard, HostConfig, Hz, LinkConfig, Overview, Policy, Progress, Registry, Talws};
+use monas::{
+    Agent, Blackboard, Certificates, Endpoints, HostConfig, Hz, LinkConfig, LinkTransport, Overview, Policy,
+    Progress, Registry, Talws,
+};
 use monas_link::{AccessList, LinkSettings, Place, ReceiveRule};
 use yase::Source;
 
@@ -138,16 +141,16 @@ fn a_run_ends_when_its_last_agent_has_stopped_by_itself() {
 
 #[test]
 fn a_link_that_lets_strangers_change_agents_is_refused() {
-    let start = |access: &str, topics: &str| {
+    let over = |transport: LinkTransport, access: &str, topics: &str| {
         let access = if access.is_empty() { AccessList::open() } else { AccessList::parse(access).0 };
         let rule = ReceiveRule { topics: topics.into(), place: Place::Own };
         let settings = LinkSettings { access, receive: vec![rule], ..LinkSettings::default() };
-        let link = LinkConfig { settings, ..LinkConfig::default() };
+        let link = LinkConfig { settings, transport, clock: None };
         let mut talws = Talws::new();
         talws.host(HostConfig { name: "local".into(), links: vec![link], ..HostConfig::default() });
-        talws.check()
+        talws.check().first().map(|one| one.message.clone())
     };
-    let said = |access: &str, topics: &str| start(access, topics).first().map(|one| one.message.clone());
+    let said = |access: &str, topics: &str| over(LinkTransport::default(), access, topics);
     assert_eq!(said("", "monas/*").unwrap(), "a link of `local` lets anybody change its agents");
     let stranger = said("laptop publish **", CHANGE.path()).unwrap();
     assert!(
@@ -156,4 +159,12 @@ fn a_link_that_lets_strangers_change_agents_is_refused() {
     );
     assert_eq!(said("laptop publish **\nlaptop manage", CHANGE.path()), None);
     assert_eq!(said("", "test/ball"), None);
+    // Over a network anybody may take a name that is not shown by a certificate.
+    let manager = "laptop publish **\nlaptop manage";
+    let file = || "a.pem".into();
+    let shown = Certificates { authority: file(), certificate: file(), key: file() };
+    let zenoh = |certificates| LinkTransport::Zenoh(Endpoints { certificates, ..Endpoints::default() });
+    let nameless = over(zenoh(None), manager, CHANGE.path()).unwrap();
+    assert!(nameless.contains("lets anybody change its agents who takes the name"), "{nameless}");
+    assert_eq!(over(zenoh(Some(shown)), manager, CHANGE.path()), None);
 }

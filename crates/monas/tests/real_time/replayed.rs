@@ -1,98 +1,18 @@
 //! Runs in real time are repeated: each agent on what was recorded of its turns.
 
 use std::sync::mpsc::{Sender, channel};
-use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use monas::replay::{Company, Difference, Recorded, RecordedMessage, Tally};
+use monas::replay::Company;
 use monas::{
-    Agent, Blackboard, BoxError, Error, HostConfig, Hz, LinkConfig, Moment, Policy, Progress, Registry,
-    Talws, records,
+    Agent, Blackboard, BoxError, HostConfig, Hz, LinkConfig, Policy, Progress, Registry, Talws, records,
 };
 use monas_link::{LinkSettings, Place, ReceiveRule};
 use narukom::prost::Message as _;
-use narukom::{Observer, Publication};
 
 use crate::kit::{BALL, Ball, GAME, Game, NEWS, Phase};
+use crate::taped::{Kept, Tape, replay};
 use crate::{PATIENCE, chart, next};
-
-/// A message as a recorder keeps it.
-#[derive(Clone)]
-struct Kept {
-    host: String,
-    publisher: String,
-    topic: String,
-    sequence: u32,
-    published: Moment,
-    received: Moment,
-    bytes: Vec<u8>,
-}
-
-#[derive(Clone, Default)]
-struct Tape(Arc<Mutex<Vec<Kept>>>);
-
-impl Observer for Tape {
-    fn observe(&mut self, publication: Publication<'_>) {
-        let header = publication.sample.header;
-        self.0.lock().unwrap().push(Kept {
-            host: publication.host.into(),
-            publisher: publication.publisher.into(),
-            topic: publication.topic.path().into(),
-            sequence: header.sequence as u32,
-            published: header.local,
-            received: header.received,
-            bytes: publication.bytes().to_vec(),
-        });
-    }
-}
-
-/// What a replay came to.
-struct Outcome {
-    tallies: Vec<Tally>,
-    differences: Vec<Difference>,
-}
-
-impl Outcome {
-    fn compared(&self, agent: &str, topic: &str) -> u64 {
-        let tallies = self.tallies.iter().filter(|tally| tally.agent == agent && tally.topic == topic);
-        tallies.map(|tally| tally.compared).sum()
-    }
-}
-
-fn company(messages: &[Kept]) -> Vec<Company> {
-    let mut names: Vec<(&str, &str)> =
-        messages.iter().map(|kept| (kept.host.as_str(), kept.publisher.as_str())).collect();
-    names.sort_unstable();
-    names.dedup();
-    let company = |(host, publisher): (&str, &str)| Company {
-        host: host.into(),
-        publisher: publisher.into(),
-        is_agent: publisher != "monas",
-    };
-    names.into_iter().map(company).collect()
-}
-
-fn replay(talws: Talws, messages: &[Kept]) -> Result<Outcome, Error> {
-    let mut replay = talws.replay_real_time(&company(messages))?;
-    let mut differences = Vec::new();
-    let mut told = |difference| differences.push(difference);
-    let mut inputs = std::collections::BTreeMap::new();
-    for kept in messages {
-        let Kept { host, publisher, topic, sequence, published, received, bytes } = kept;
-        let input = match inputs.get(&(host, publisher, topic)) {
-            Some(input) => *input,
-            None => {
-                let input = replay.input(Recorded { host, received_by: None, publisher, topic })?;
-                inputs.insert((host, publisher, topic), input);
-                input
-            }
-        };
-        let (sequence, published, received) = (*sequence, *published, *received);
-        replay.feed(input, RecordedMessage { sequence, published, received, bytes }, &mut told)?;
-    }
-    let tallies = replay.finish(true, &mut told)?;
-    Ok(Outcome { tallies, differences })
-}
 
 /// A list that throws balls to somewhere.
 fn thrower() -> Agent {
@@ -150,14 +70,13 @@ fn recorded() -> Vec<Kept> {
     talws.observe(Box::new(tape.clone()));
     let running = talws.start().unwrap();
     // on a machine that is busy with other things one of the two may do much while the other one waits
-    let thrown = || tape.0.lock().unwrap().iter().filter(|kept| kept.topic == "test/ball").count();
+    let thrown = || tape.kept().iter().filter(|kept| kept.topic == "test/ball").count();
     let mut answers = 0;
     while answers < 30 || thrown() < 60 {
         answers += usize::from(next(&calls, 1) == ["answer"]);
     }
     running.stop();
-    let messages = tape.0.lock().unwrap();
-    messages.clone()
+    tape.kept()
 }
 
 fn again(near: f64) -> Talws {
@@ -275,7 +194,7 @@ fn an_activity_that_waits_to_be_asked_to_return_returns_in_a_replay() {
     let running = first.start().unwrap();
     started.recv_timeout(PATIENCE).unwrap();
     running.stop();
-    let messages = tape.0.lock().unwrap().clone();
+    let messages = tape.kept();
     let outcome = replay(talws(channel().0), &messages).unwrap();
     assert_eq!(outcome.differences, []);
     assert!(outcome.compared("m", "monas/chart") > 0);

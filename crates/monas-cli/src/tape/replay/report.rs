@@ -72,8 +72,8 @@ fn tally_object(tally: &Tally) -> Json {
 fn summary_object(outcome: &Outcome) -> Json {
     let (length, took) = (outcome.length.as_secs_f64(), outcome.took.as_secs_f64());
     json!({"kind": "replay", "compared": outcome.compared(), "differences": outcome.differences(),
-        "simulated_seconds": length, "wall_seconds": took,
-        "simulated_seconds_per_wall_second": length / took.max(1e-9)})
+        "recorded_seconds": length, "wall_seconds": took,
+        "recorded_seconds_per_wall_second": length / took.max(1e-9)})
 }
 
 /// The first difference, taken apart.

@@ -12,11 +12,12 @@ use super::staff::Staff;
 use crate::agent::Profile;
 use crate::error::Error;
 use crate::records::{AgentEntry, CHANGE, CHANGED, Change, Changed, Configuration, Finding};
+use crate::registry::Registry;
 use crate::talws::crew::{Crew, Ground};
 use crate::talws::overview::OUTSIDE;
 
 /// The host publishes under this name what is not an agent's.
-const HOST_ITSELF: &str = "monas";
+pub(in crate::talws) const HOST_ITSELF: &str = "monas";
 
 /// The agents of a host as data, with what it takes to change them.
 pub(in crate::talws) struct Roster {
@@ -78,6 +79,36 @@ impl Roster {
             told(change.message, &changed);
             self.answers.publish(changed, now);
         }
+    }
+
+    /// In a replay: the changes that were published and not yet looked at.
+    pub(in crate::talws) fn next_asked(&mut self) -> Option<Change> {
+        while let Some(sample) = self.asked.next_sample() {
+            if let Some(change) = sample.downcast::<Change>() {
+                return Some(change.message.clone());
+            }
+        }
+        None
+    }
+
+    /// In a replay: makes a change again. What was answered is on the recording.
+    pub(in crate::talws) fn repeat(
+        &mut self,
+        change: &Change,
+        staff: &mut dyn Staff,
+        now: Moment,
+    ) -> Changed {
+        self.make(change, staff, now)
+    }
+
+    /// Whether an agent of that name is here.
+    pub(in crate::talws) fn knows(&self, agent: &str) -> bool {
+        self.profiles.iter().any(|profile| profile.name == agent)
+    }
+
+    /// What agents are made of.
+    pub(in crate::talws) fn registry(&self) -> &Registry {
+        &self.crew.registry
     }
 
     fn make(&mut self, change: &Change, staff: &mut dyn Staff, now: Moment) -> Changed {

@@ -12,17 +12,20 @@ use narukom::{Arrival, Moment, Narukom, TopicSlot};
 use super::super::links::Brought;
 use super::super::setup::{Stage, Station};
 use super::super::{HostConfig, REAL_TIME_SEED, Talws};
+use super::changes::{refuse_in_real_time, refuse_return};
 use super::compare::{Ledger, Window};
 use super::feed::{Ear, Feed, Foreign, Inlet};
 use super::repeated::Repeated;
 use super::{Company, Difference, Recorded, RecordedMessage, Tally, no_input};
 use crate::error::{Error, ErrorKind};
-use crate::records::{CYCLE, Cycle, HOST, Turn};
+use crate::records::{Action, CHANGE, CHANGED, CYCLE, Change, Changed, Cycle, HOST, Turn};
+use crate::registry::Registry;
 
 /// Agents that repeat their turns.
 pub(super) struct RealTime {
     /// The hosts that were recorded, and how many messages of the hub of each have come.
     hubs: Vec<(String, u64)>,
+    registry: Registry,
     parts: Vec<Part>,
     inputs: Vec<Entrance>,
     ledger: Ledger,
@@ -34,6 +37,16 @@ struct Entrance {
     hub: usize,
     /// The agents of its host, and what the messages are to them.
     routes: Vec<(usize, Route)>,
+    /// Whether they are changes of agents, or tell of them.
+    about: About,
+}
+
+/// What messages say of changes of agents.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum About {
+    Nothing,
+    Asked,
+    Made,
 }
 
 #[derive(Clone, Copy)]
@@ -62,6 +75,8 @@ struct Part {
     /// The recording tells of the agent's turns.
     is_told: bool,
     has_diverged: bool,
+    /// The agent was removed.
+    is_gone: bool,
 }
 
 /// A message that the agent published when it was recorded.
@@ -86,7 +101,8 @@ impl RealTime {
                 parts.push(Part::new(alone)?);
             }
         }
-        Ok(RealTime { hubs: Vec::new(), parts, inputs: Vec::new(), ledger: Ledger::default() })
+        let registry = registry.unwrap_or_else(Registry::linked);
+        Ok(RealTime { hubs: Vec::new(), registry, parts, inputs: Vec::new(), ledger: Ledger::default() })
     }
 
     /// The hosts.
@@ -104,7 +120,13 @@ impl RealTime {
                 routes.push((place, route));
             }
         }
-        self.inputs.push(Entrance { hub, routes });
+        let about = match recorded.topic {
+            _ if recorded.received_by.is_some() => About::Nothing,
+            topic if topic == CHANGE.path() => About::Asked,
+            topic if topic == CHANGED.path() => About::Made,
+            _ => About::Nothing,
+        };
+        self.inputs.push(Entrance { hub, routes, about });
         Ok(self.inputs.len() - 1)
     }
 
@@ -122,8 +144,11 @@ impl RealTime {
         message: RecordedMessage<'_>,
         told: &mut dyn FnMut(Difference),
     ) -> Result<(), Error> {
-        let Entrance { hub, routes } = self.inputs.get(input).ok_or_else(no_input)?;
-        let count = &mut self.hubs[*hub].1;
+        let Entrance { hub, about, .. } = self.inputs.get(input).ok_or_else(no_input)?;
+        let (hub, about) = (*hub, *about);
+        self.heed(hub, about, &message)?;
+        let Entrance { routes, .. } = &self.inputs[input];
+        let count = &mut self.hubs[hub].1;
         *count += 1;
         let position = *count;
         let mut shared: Option<Arc<[u8]>> = None;
@@ -144,6 +169,27 @@ impl RealTime {
         Ok(())
     }
 
+    /// Takes note of changes of the agents that are replayed.
+    fn heed(&mut self, hub: usize, about: About, message: &RecordedMessage<'_>) -> Result<(), Error> {
+        let host = &self.hubs[hub].0;
+        let mut parts = self.parts.iter_mut().filter(|part| part.host == *host);
+        match about {
+            About::Nothing => Ok(()),
+            About::Asked => {
+                let change = Change::decode(message.bytes).map_err(unread)?;
+                let gone: Vec<String> =
+                    parts.filter(|part| part.is_gone).map(|part| part.agent.clone()).collect();
+                refuse_return(&change, &self.registry, &gone)
+            }
+            About::Made => {
+                let changed = Changed::decode(message.bytes).map_err(unread)?;
+                let Some(part) = parts.find(|part| part.agent == changed.agent) else { return Ok(()) };
+                part.is_gone |= changed.done && changed.action() == Action::RemoveAgent;
+                refuse_in_real_time(&changed, message.received)
+            }
+        }
+    }
+
     pub(super) fn finish(
         mut self,
         is_whole: bool,
@@ -154,6 +200,10 @@ impl RealTime {
         }
         Ok(self.ledger.tallies())
     }
+}
+
+fn unread(error: prost::DecodeError) -> Error {
+    Error::new(ErrorKind::Invalid, format!("a recorded change of agents cannot be read: {error}"))
 }
 
 fn arrival(message: &RecordedMessage<'_>) -> Arrival {
@@ -195,6 +245,7 @@ impl Part {
             begun,
             is_told: false,
             has_diverged: false,
+            is_gone: false,
         })
     }
 

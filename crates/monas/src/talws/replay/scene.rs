@@ -6,11 +6,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 use narukom::{Moment, Narukom, Observer, Publication, TopicSlot};
 
 use super::super::ENDED;
+use super::super::crew::Crew;
 use super::super::instance::Instance;
+use super::super::management::Roster;
 use super::super::moved::Moved;
 use super::super::setup::Station;
+use super::changes::{Replayed, refuse_return};
 use super::compare::{Ledger, Window};
 use super::{Company, Difference};
+use crate::error::Error;
+use crate::records::{Action, Change};
 
 /// A message that was published in the replay.
 pub(super) struct Produced {
@@ -67,6 +72,11 @@ impl Observer for Spy {
 pub(super) struct Scene {
     pub(super) hub: Narukom,
     moved: Moved,
+    roster: Roster,
+    /// Agents that were removed.
+    gone: Vec<String>,
+    /// Why the replay cannot go on.
+    refused: Option<Error>,
     actors: Vec<Actor>,
     /// The names of all agents, replayed or not, in the order of their turns.
     places: Vec<String>,
@@ -80,16 +90,16 @@ pub(super) struct Scene {
 }
 
 /// An agent that runs.
-struct Actor {
+pub(super) struct Actor {
     place: usize,
-    instance: Instance,
+    pub(super) instance: Instance,
     /// What it published at this moment, then and now.
     window: Window,
 }
 
 impl Scene {
-    pub(super) fn new(station: Station, company: &[Company]) -> Scene {
-        let Station { hub, members, .. } = station;
+    pub(super) fn new(station: Station, crew: &Arc<Crew>, company: &[Company]) -> Result<Scene, Error> {
+        let Station { hub, members, ground, profiles, configuration, .. } = station;
         let moved = Moved::default();
         hub.set_waker(Arc::new(moved.noting()));
         let others = company.iter().filter(|one| one.is_agent && one.host == hub.host());
@@ -104,8 +114,19 @@ impl Scene {
             Actor { place, instance: Instance::new(member, Moment::ZERO), window }
         };
         let actors = members.into_iter().map(actor).collect();
-        let (turn, now) = (None, Moment::ZERO);
-        Scene { hub, moved, actors, places, turn, now, is_setting_up: true, has_ended: false }
+        Ok(Scene {
+            roster: Roster::new(ground, crew.clone(), profiles, configuration)?,
+            hub,
+            moved,
+            gone: Vec::new(),
+            refused: None,
+            actors,
+            places,
+            turn: None,
+            now: Moment::ZERO,
+            is_setting_up: true,
+            has_ended: false,
+        })
     }
 
     /// The number of a replayed agent.
@@ -135,9 +156,46 @@ impl Scene {
     ) {
         while self.now < moment {
             self.settle(spy, ledger, told);
-            self.now = if self.has_ended { moment } else { self.due().min(moment) };
+            // What was asked for now and was not then; it may give agents something to do at this moment.
+            self.attend(spy);
+            self.now = if self.has_ended { moment } else { self.due().clamp(self.now, moment) };
             self.turn = None;
         }
+    }
+
+    /// Makes the changes again that were published since the last time, if they are about agents that are replayed.
+    pub(super) fn attend(&mut self, spy: &Spy) {
+        while let Some(change) = self.roster.next_asked().filter(|_| !self.has_ended) {
+            if let Err(error) = refuse_return(&change, self.roster.registry(), &self.gone) {
+                self.refused.get_or_insert(error);
+            }
+            if self.roster.knows(&change.agent) {
+                self.repeat(&change, spy);
+            }
+        }
+    }
+
+    fn repeat(&mut self, change: &Change, spy: &Spy) {
+        self.is_setting_up = false;
+        let (now, host) = (self.now, self.hub.host());
+        let mut staff = Replayed { host, actors: &mut self.actors, now };
+        let mut is_done = false;
+        let produced = spy.watch(|| is_done = self.roster.repeat(change, &mut staff, now).done);
+        if is_done && change.action() == Action::RemoveAgent {
+            self.gone.push(change.agent.clone());
+        }
+        for one in produced {
+            if let Some(actor) = self.actor(&one.publisher) {
+                self.actors[actor].window.produced(one.topic, one.bytes);
+            }
+        }
+        self.wake();
+    }
+
+    /// # Errors
+    /// Something was recorded that cannot be replayed.
+    pub(super) fn check(&mut self) -> Result<(), Error> {
+        self.refused.take().map_or(Ok(()), Err)
     }
 
     fn due(&self) -> Moment {

@@ -3,12 +3,13 @@
 use narukom::{AnyPublisher, Arrival, Moment, Receiver, TopicSlot};
 
 use super::super::Talws;
+use super::super::management::HOST_ITSELF;
 use super::super::setup::Stage;
 use super::compare::Ledger;
 use super::scene::{Scene, Spy};
 use super::{Company, Difference, Recorded, RecordedMessage, Tally, no_input};
 use crate::error::Error;
-use crate::records::{CHART, HOST, MODEL};
+use crate::records::{CHANGED, CHART, HOST, MODEL};
 
 /// Agents that run again in simulated time.
 ///
@@ -27,7 +28,7 @@ enum Route {
     /// They are what an agent is compared with.
     Compared { scene: usize, actor: usize, topic: Option<TopicSlot>, path: usize },
     /// They are published again. Those of an agent are published when it is its turn.
-    Published { scene: usize, publisher: AnyPublisher, place: Option<usize>, sets_up: bool },
+    Published { scene: usize, publisher: AnyPublisher, place: Option<usize>, sets_up: bool, answers: bool },
     /// They came from another host, and come from it again.
     Received { scene: usize, receiver: Receiver },
     /// Nothing: their host is not replayed, or nobody here declares the topic.
@@ -39,9 +40,9 @@ impl Simulated {
         let spy = Spy::default();
         talws.observe(Box::new(spy.clone()));
         talws.company = company.to_vec();
-        let Stage { stations, .. } = Stage::new(talws, seed)?;
-        let mut scenes: Vec<Scene> =
-            stations.into_iter().map(|station| Scene::new(station, company)).collect();
+        let Stage { stations, crew, .. } = Stage::new(talws, seed)?;
+        let scenes = stations.into_iter().map(|station| Scene::new(station, &crew, company));
+        let mut scenes = scenes.collect::<Result<Vec<Scene>, Error>>()?;
         for produced in spy.take() {
             let scene = scenes.iter_mut().find(|scene| scene.hub.host() == produced.host);
             scene.into_iter().for_each(|scene| scene.was_set_up(&produced));
@@ -82,10 +83,12 @@ impl Simulated {
         if slot.is_none() || (topic == HOST.path() && publisher == "monas") {
             return Ok(Route::Ignored);
         }
+        // Where the answer to a change stands the change was made.
+        let answers = topic == CHANGED.path() && publisher == HOST_ITSELF;
         let place = self.scenes[scene].place(publisher);
         let publisher = hub.publisher_by_name(topic, publisher).map_err(Error::hub)?;
         let sets_up = [HOST.path(), MODEL.path(), CHART.path()].contains(&topic);
-        Ok(Route::Published { scene, publisher, place, sets_up })
+        Ok(Route::Published { scene, publisher, place, sets_up, answers })
     }
 
     pub(super) fn feed(
@@ -105,10 +108,13 @@ impl Simulated {
                 scene.reach(message.received, spy, ledger, told);
                 scene.expect(*actor, *topic, *path, message.bytes, spy);
             }
-            Route::Published { scene, publisher, place, sets_up } => {
+            Route::Published { scene, publisher, place, sets_up, answers } => {
                 let scene = &mut scenes[*scene];
                 scene.reach(message.received, spy, ledger, told);
                 scene.turn_of_another(*place, *sets_up, spy);
+                if *answers {
+                    scene.attend(spy);
+                }
                 publisher.publish_bytes(message.bytes, scene.now).map_err(Error::hub)?;
             }
             Route::Received { scene, receiver } => {
@@ -123,7 +129,7 @@ impl Simulated {
                 receiver.receive_bytes(message.bytes, arrival).map_err(Error::hub)?;
             }
         }
-        Ok(())
+        self.scenes.iter_mut().try_for_each(Scene::check)
     }
 
     pub(super) fn end(&mut self, moment: Moment, told: &mut dyn FnMut(Difference)) {
@@ -133,10 +139,15 @@ impl Simulated {
         }
     }
 
-    pub(super) fn finish(mut self, is_whole: bool, told: &mut dyn FnMut(Difference)) -> Vec<Tally> {
+    pub(super) fn finish(
+        mut self,
+        is_whole: bool,
+        told: &mut dyn FnMut(Difference),
+    ) -> Result<Vec<Tally>, Error> {
         for scene in &mut self.scenes {
             scene.close(is_whole, &self.spy, &mut self.ledger, told);
+            scene.check()?;
         }
-        self.ledger.tallies()
+        Ok(self.ledger.tallies())
     }
 }

@@ -1,0 +1,125 @@
+//! Changes of agents that were made while they were recorded.
+//!
+//! In simulated time a change is a message like any other: it is made again when it comes, and what it leads to is compared. In real time
+//! each agent repeats its own recorded turns, so that it was paused or stopped is in its turns already; after which of them it was made
+//! of something else is not on the recording, and such a change is refused.
+
+use std::path::Path;
+
+use yase::Source;
+
+use super::super::ENDED;
+use super::super::crew::Member;
+use super::super::entry;
+use super::super::instance::Instance;
+use super::super::management::Staff;
+use super::super::orders::{Orders, Standing};
+use super::scene::Actor;
+use crate::agent::Profile;
+use crate::config;
+use crate::error::{Error, ErrorKind};
+use crate::records::{Action, AgentEntry, Change, Changed};
+use crate::registry::Registry;
+use narukom::Moment;
+
+/// The agents of a host that are replayed, as those who are told of changes.
+pub(super) struct Replayed<'a> {
+    pub(super) host: &'a str,
+    pub(super) actors: &'a mut [Actor],
+    pub(super) now: Moment,
+}
+
+impl Replayed<'_> {
+    fn instance(&self, agent: &str) -> Option<&Instance> {
+        self.actors.iter().map(|actor| &actor.instance).find(|instance| instance.name() == agent)
+    }
+
+    fn instance_mut(&mut self, agent: &str) -> Option<&mut Instance> {
+        self.actors.iter_mut().map(|actor| &mut actor.instance).find(|instance| instance.name() == agent)
+    }
+}
+
+impl Staff for Replayed<'_> {
+    fn standing(&self, agent: &str) -> Standing {
+        self.instance(agent).map_or(Standing::Stopped, Instance::standing)
+    }
+
+    fn cycles(&self, agent: &str) -> u64 {
+        self.instance(agent).map_or(0, Instance::cycles)
+    }
+
+    fn obey(&mut self, agent: &str, orders: Orders) -> Result<Vec<String>, Vec<String>> {
+        let now = self.now;
+        let instance = self.instance_mut(agent).ok_or_else(|| vec![format!("`{agent}` is not there")])?;
+        // A body that is to rest from now on is not here.
+        instance.obey(orders, now).map(|(_, said)| said)
+    }
+
+    fn launch(&mut self, member: Member) -> Result<(), String> {
+        Err(format!("`{}` is not replayed: it was added while the others ran", member.name))
+    }
+
+    fn dismiss(&mut self, agent: &str) -> Result<(), String> {
+        let now = self.now;
+        if let Some(instance) = self.instance_mut(agent) {
+            instance.stop(ENDED, now);
+        }
+        Ok(())
+    }
+
+    fn entry(&self, profile: &Profile) -> AgentEntry {
+        let Some(instance) = self.instance(&profile.name) else { return AgentEntry::default() };
+        entry::of(profile, instance.standing(), &instance.statistics(self.host), instance.active())
+    }
+}
+
+/// An agent that left and comes back is another one, whose set-up is not that of the replay.
+///
+/// # Errors
+/// The change adds such an agent.
+pub(super) fn refuse_return(change: &Change, registry: &Registry, gone: &[String]) -> Result<(), Error> {
+    if change.action() != Action::AddAgents || gone.is_empty() {
+        return Ok(());
+    }
+    let source = Source::new(&change.file, change.text.clone());
+    let (setup, _) = config::read(&source, Path::new(&change.file), registry);
+    match setup.agents.iter().find(|agent| gone.contains(&agent.name)) {
+        Some(agent) => {
+            let message = format!(
+                "agent `{}` was removed and added anew while it was recorded, which cannot be replayed",
+                agent.name
+            );
+            Err(Error::new(ErrorKind::Invalid, message).with_hint("replay other agents, or the time before"))
+        }
+        None => Ok(()),
+    }
+}
+
+/// What became of an agent in real time.
+///
+/// # Errors
+/// It was made of something else: nothing tells after which of its turns.
+pub(super) fn refuse_in_real_time(changed: &Changed, at: Moment) -> Result<(), Error> {
+    let what = match changed.action() {
+        // When it ran, and that it did not, is in the records of its cycles; how a change was refused too.
+        _ if !changed.done => return Ok(()),
+        Action::NoAction | Action::StopAgent | Action::RemoveAgent => return Ok(()),
+        Action::PauseAgent | Action::ResumeAgent => return Ok(()),
+        // Those that are added are not replayed.
+        Action::AddAgents => return Ok(()),
+        Action::StepAgent => "stepped",
+        Action::StartAgent => "started again",
+        Action::AddActivity => "given another activity",
+        Action::RemoveActivity => "deprived of an activity",
+        Action::MoveActivity => "given another order of its activities",
+        Action::ReplaceActivity => "given an activity in the place of another",
+        Action::Set => "set otherwise",
+        Action::SwapModel => "given another model",
+    };
+    let message = format!(
+        "agent `{}` was {what} {:.3} s after the run began: in real time a recording does not tell after which turn",
+        changed.agent,
+        at.as_secs_f64()
+    );
+    Err(Error::new(ErrorKind::Invalid, message).with_hint("replay other agents, or the time before"))
+}

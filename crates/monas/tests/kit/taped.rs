@@ -1,0 +1,101 @@
+//! A recording in memory, and its replay.
+#![allow(dead_code)] // not every test needs all of it
+
+use std::sync::{Arc, Mutex};
+
+use monas::replay::{Company, Difference, Recorded, RecordedMessage, Replay, Tally};
+use monas::{Error, Moment, Talws};
+use narukom::{Observer, Publication};
+
+/// A message as a recorder keeps it.
+#[derive(Clone)]
+pub(crate) struct Kept {
+    pub(crate) host: String,
+    pub(crate) publisher: String,
+    pub(crate) topic: String,
+    pub(crate) sequence: u32,
+    pub(crate) published: Moment,
+    pub(crate) received: Moment,
+    pub(crate) bytes: Vec<u8>,
+}
+
+#[derive(Clone, Default)]
+pub(crate) struct Tape(Arc<Mutex<Vec<Kept>>>);
+
+impl Tape {
+    pub(crate) fn kept(&self) -> Vec<Kept> {
+        self.0.lock().unwrap().clone()
+    }
+}
+
+impl Observer for Tape {
+    fn observe(&mut self, publication: Publication<'_>) {
+        let header = publication.sample.header;
+        self.0.lock().unwrap().push(Kept {
+            host: publication.host.into(),
+            publisher: publication.publisher.into(),
+            topic: publication.topic.path().into(),
+            sequence: header.sequence as u32,
+            published: header.local,
+            received: header.received,
+            bytes: publication.bytes().to_vec(),
+        });
+    }
+}
+
+/// What a replay came to.
+pub(crate) struct Outcome {
+    pub(crate) tallies: Vec<Tally>,
+    pub(crate) differences: Vec<Difference>,
+}
+
+impl Outcome {
+    pub(crate) fn compared(&self, agent: &str, topic: &str) -> u64 {
+        let tallies = self.tallies.iter().filter(|tally| tally.agent == agent && tally.topic == topic);
+        tallies.map(|tally| tally.compared).sum()
+    }
+}
+
+fn company(messages: &[Kept]) -> Vec<Company> {
+    let mut names: Vec<(&str, &str)> =
+        messages.iter().map(|kept| (kept.host.as_str(), kept.publisher.as_str())).collect();
+    names.sort_unstable();
+    names.dedup();
+    let company = |(host, publisher): (&str, &str)| Company {
+        host: host.into(),
+        publisher: publisher.into(),
+        is_agent: !["monas", "outside"].contains(&publisher),
+    };
+    names.into_iter().map(company).collect()
+}
+
+/// Agents on a recording of real time.
+pub(crate) fn replay(talws: Talws, messages: &[Kept]) -> Result<Outcome, Error> {
+    play(talws.replay_real_time(&company(messages))?, messages)
+}
+
+/// Agents on a recording of simulated time.
+pub(crate) fn replay_simulated(talws: Talws, seed: u64, messages: &[Kept]) -> Result<Outcome, Error> {
+    play(talws.replay(seed, &company(messages))?, messages)
+}
+
+fn play(mut replay: Replay, messages: &[Kept]) -> Result<Outcome, Error> {
+    let mut differences = Vec::new();
+    let mut told = |difference| differences.push(difference);
+    let mut inputs = std::collections::BTreeMap::new();
+    for kept in messages {
+        let Kept { host, publisher, topic, sequence, published, received, bytes } = kept;
+        let input = match inputs.get(&(host, publisher, topic)) {
+            Some(input) => *input,
+            None => {
+                let input = replay.input(Recorded { host, received_by: None, publisher, topic })?;
+                inputs.insert((host, publisher, topic), input);
+                input
+            }
+        };
+        let (sequence, published, received) = (*sequence, *published, *received);
+        replay.feed(input, RecordedMessage { sequence, published, received, bytes }, &mut told)?;
+    }
+    let tallies = replay.finish(true, &mut told)?;
+    Ok(Outcome { tallies, differences })
+}
