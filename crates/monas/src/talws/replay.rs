@@ -113,7 +113,8 @@ pub struct Input(usize);
 /// what was recorded.
 ///
 /// Changes of agents that were made meanwhile are made again in simulated time. Agents that were added are not replayed: what they published
-/// is given to the others. In real time an agent that was made of something else cannot be replayed, nor one that was stepped.
+/// is given to the others. In real time an agent that was made of something else cannot be replayed, nor one that was stepped, nor a chart that
+/// was paused.
 ///
 /// What comes from outside and is no message, an event that somebody raised by hand, is not in a recording and so not in a replay. Nor is
 /// what an activity learns in other ways: from a clock, a device or another thread. That shows as a difference.

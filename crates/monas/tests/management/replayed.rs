@@ -239,6 +239,19 @@ fn in_real_time_pauses_and_ends_are_those_of_the_recorded_turns() {
 }
 
 #[test]
+fn in_real_time_a_chart_that_was_paused_is_refused_with_the_reason() {
+    let chart = aseme::statechart_of(&Source::new("m.srm", "m = Look")).0;
+    let mind = || Talws::new().registry(registry()).agent(Agent::statechart("mind", chart.clone()));
+    let (tape, mut talws) = (Tape::default(), mind());
+    talws.observe(Box::new(tape.clone()));
+    let running = talws.start().unwrap();
+    made(&running.overview().change("local", change(Action::PauseAgent, "mind")).unwrap());
+    running.stop();
+    let error = replay(mind(), &tape.kept()).err().unwrap();
+    assert!(error.to_string().starts_with("agent `mind` was paused "), "{error}");
+}
+
+#[test]
 fn in_real_time_an_agent_that_was_made_of_something_else_is_refused_with_the_reason() {
     let other = Change { settings: settings(&[("frequency", "500")]), ..change(Action::Set, "thrower") };
     let messages = live(&[other]);

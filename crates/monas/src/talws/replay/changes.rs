@@ -1,8 +1,8 @@
 //! Changes of agents that were made while they were recorded.
 //!
 //! In simulated time a change is a message like any other: it is made again when it comes, and what it leads to is compared. In real time
-//! each agent repeats its own recorded turns, so that it was paused or stopped is in its turns already; after which of them it was made
-//! of something else is not on the recording, and such a change is refused.
+//! each agent repeats its own recorded turns, so that it was stopped, or its list paused, is in its turns already; after which of them it was
+//! made of something else, or its chart paused, is not on the recording, and such a change is refused.
 
 use std::path::Path;
 
@@ -99,12 +99,15 @@ pub(super) fn refuse_return(change: &Change, registry: &Registry, gone: &[String
 ///
 /// # Errors
 /// It was made of something else: nothing tells after which of its turns.
-pub(super) fn refuse_in_real_time(changed: &Changed, at: Moment) -> Result<(), Error> {
+pub(super) fn refuse_in_real_time(changed: &Changed, is_list: bool, at: Moment) -> Result<(), Error> {
     let what = match changed.action() {
         // When it ran, and that it did not, is in the records of its cycles; how a change was refused too.
         _ if !changed.done => return Ok(()),
         Action::NoAction | Action::StopAgent | Action::RemoveAgent => return Ok(()),
-        Action::PauseAgent | Action::ResumeAgent => return Ok(()),
+        Action::PauseAgent | Action::ResumeAgent if is_list => return Ok(()),
+        // What is due in a chart that pauses waits.
+        Action::PauseAgent => "paused",
+        Action::ResumeAgent => "resumed",
         // Those that are added are not replayed.
         Action::AddAgents => return Ok(()),
         Action::StepAgent => "stepped",

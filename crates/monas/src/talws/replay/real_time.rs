@@ -185,7 +185,8 @@ impl RealTime {
                 let changed = Changed::decode(message.bytes).map_err(unread)?;
                 let Some(part) = parts.find(|part| part.agent == changed.agent) else { return Ok(()) };
                 part.is_gone |= changed.done && changed.action() == Action::RemoveAgent;
-                refuse_in_real_time(&changed, message.received)
+                let is_list = matches!(part.repeated, Repeated::List(_));
+                refuse_in_real_time(&changed, is_list, message.received)
             }
         }
     }
