@@ -32,7 +32,8 @@ fn ask(inquiry: Inquiry, run: &RunChoice) -> Result<Reply, Failure> {
     Reply::decode(reply.as_slice()).map_err(|_| odd(run))
 }
 
-fn odd(run: &RunChoice) -> Failure {
+/// It answers something else.
+pub(crate) fn odd(run: &RunChoice) -> Failure {
     let message = "the run answers what was not asked; it may be of another version";
     Failure::Unreachable(run.format.value, message.into())
 }

@@ -10,6 +10,7 @@ use clap_complete::Shell;
 use crate::agent::AgentCommand;
 use crate::duration;
 use crate::tape::arguments::TapeCommand;
+use crate::top::TopArguments;
 #[cfg(unix)]
 use crate::topic::TopicCommand;
 
@@ -53,6 +54,13 @@ pub(crate) enum Command {
     #[cfg(unix)]
     #[command(subcommand)]
     Agent(AgentCommand),
+    /// Watch what the agents of a run are doing, and which of their activities takes the time.
+    ///
+    /// On a terminal it looks again and again, until `q` is pressed; otherwise it tells one interval and ends. Shares are of one core. An
+    /// activity that takes nearly a whole one, that blocks, that fails or that does not return is marked.
+    #[cfg(unix)]
+    #[command(after_help = "Example: monas top --host blue-2")]
+    Top(TopArguments),
     /// Look at recordings, mend, cut and merge them, write them as text, replay them.
     #[command(subcommand)]
     Tape(TapeCommand),
@@ -90,6 +98,9 @@ pub(crate) struct RunArguments {
     /// Record every message into this MCAP file.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) record: Option<PathBuf>,
+    /// Write a log as this file says, which is as Listing 4.5 of the thesis, in XML or TOML: `config/logger.xml` is an example.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) log: Option<PathBuf>,
     /// Let simulated time pass no faster than real time. Agents without a match run in real time anyway.
     #[arg(long)]
     pub(crate) realtime: bool,

@@ -4,6 +4,8 @@ use std::io::Write;
 
 use indicatif::MultiProgress;
 
+use crate::process::Log;
+
 /// Standard output and standard error as a command sees them.
 pub(crate) struct Console<'a> {
     /// Results.
@@ -18,11 +20,21 @@ pub(crate) struct Console<'a> {
     pub(crate) bars: Option<MultiProgress>,
     /// Whether Ctrl-C is for this command.
     pub(crate) catches_signals: bool,
+    /// The log of this process, if it is this command's.
+    pub(crate) log: Option<Log>,
 }
 
 impl<'a> Console<'a> {
     /// Two writers with nobody watching.
     pub(crate) fn plain(out: &'a mut dyn Write, err: &'a mut dyn Write) -> Console<'a> {
-        Console { out, err, colour_out: false, colour_err: false, bars: None, catches_signals: false }
+        Console {
+            out,
+            err,
+            colour_out: false,
+            colour_err: false,
+            bars: None,
+            catches_signals: false,
+            log: None,
+        }
     }
 }

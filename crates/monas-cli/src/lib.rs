@@ -43,6 +43,8 @@ mod report;
 mod run;
 mod tape;
 #[cfg(unix)]
+mod top;
+#[cfg(unix)]
 mod topic;
 
 use std::ffi::OsString;
@@ -94,6 +96,8 @@ fn execute(command: Command, console: &mut Console<'_>) -> Result<Exit, Failure>
         Command::Topic(command) => topic::execute(&command, console),
         #[cfg(unix)]
         Command::Agent(command) => agent::execute(&command, console),
+        #[cfg(unix)]
+        Command::Top(arguments) => top::execute(&arguments, console),
         Command::Tape(command) => tape::execute(&command, console),
         Command::New(arguments) => new::execute(&arguments, console),
         Command::Doctor(arguments) => doctor::execute(&arguments, console),

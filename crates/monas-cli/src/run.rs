@@ -13,8 +13,10 @@ pub(crate) mod table;
 use std::path::Path;
 
 use monas::config;
+use monas::logger::Settings;
+use yase::Diagnostic;
 
-use crate::arguments::RunArguments;
+use crate::arguments::{Format, RunArguments};
 use crate::config::layers;
 use crate::console::Console;
 use crate::exit::Exit;
@@ -41,14 +43,32 @@ pub(crate) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Re
         return Err(Failure::Usage(message.into()));
     }
     let layers = layers::of(&arguments.config, &arguments.layers).map_err(invalid)?;
+    if let Some(file) = &arguments.log {
+        write_log(file, arguments.format.value, console)?;
+    }
     match kind {
         Kind::Match => play::execute(arguments, &layers, console),
         Kind::Agents => live::execute(arguments, &layers, console),
     }
 }
 
+/// Has a log written as a file says.
+fn write_log(file: &Path, format: Format, console: &Console<'_>) -> Result<(), Failure> {
+    let (settings, diagnostics) = Settings::load(file);
+    if diagnostics.iter().any(Diagnostic::is_error) {
+        return Err(Failure::Invalid(format, diagnostics));
+    }
+    let Some(log) = &console.log else {
+        return Err(Failure::Usage(
+            "--log is for the command: the program that calls it has a log of its own".into(),
+        ));
+    };
+    log.write(settings)
+        .map_err(|error| Failure::failed(format, format_args!("the log of {}: {error}", file.display())))
+}
+
 /// What a configuration describes, by the name of its first element.
-pub(crate) fn kind_of(config: &Path) -> Result<Kind, Box<yase::Diagnostic>> {
+pub(crate) fn kind_of(config: &Path) -> Result<Kind, Box<Diagnostic>> {
     let (elements, _) = monas_match::grammar().parse(&config::read_file(config)?);
     Ok(if elements.first().is_some_and(|root| root.is("match")) { Kind::Match } else { Kind::Agents })
 }

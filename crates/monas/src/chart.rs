@@ -86,7 +86,7 @@ impl Runner {
     pub(crate) fn new(bound: BoundChart, home: Home<'_>) -> Result<Runner, Error> {
         let BoundChart { chart, functions, activities } = bound;
         let desk = Desk::new(&chart, home, functions)?;
-        let posts = Posts::new(&chart, activities, home.hub);
+        let posts = Posts::new(&chart, activities, home.hub, home.agent);
         let mut machine = Machine::new(chart);
         machine.set_chooser(Chooser::seeded(home.chance()));
         let number = RUNNERS.fetch_add(1, Ordering::Relaxed);

@@ -77,6 +77,7 @@ pub mod generated;
 mod link;
 mod list;
 mod listener;
+pub mod logger;
 mod origin;
 mod parameters;
 mod provenance;

@@ -2,6 +2,7 @@
 
 mod edit;
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use narukom::{Blackboard, Moment};
@@ -9,6 +10,7 @@ use narukom::{Blackboard, Moment};
 use crate::activity::Activity;
 use crate::agent::{Listed, Policy};
 use crate::call::{self, Failure};
+use crate::logger::{self, Caller};
 use crate::statistics::{ActivityStatistics, Timing};
 use crate::talws::{Clock, Pulse, cpu_time};
 
@@ -42,6 +44,8 @@ pub(crate) struct Watch<'a> {
 
 struct Entry {
     name: String,
+    /// Its name in log lines.
+    caller: Arc<Caller>,
     activity: Box<dyn Activity>,
     /// What happens when it fails, if it has a policy of its own.
     policy: Option<Policy>,
@@ -72,7 +76,8 @@ pub(crate) enum Outcome {
 
 impl List {
     pub(crate) fn new(agent: &str, policy: Policy, activities: Vec<Listed>, blackboard: Blackboard) -> List {
-        let entries = activities.into_iter().map(Entry::new).collect();
+        let host = blackboard.hub().host().to_owned();
+        let entries = activities.into_iter().map(|listed| Entry::new(listed, &host, agent)).collect();
         List { agent: agent.into(), policy, entries, blackboard, cycles: 0, last_cycle: None, stopped: None }
     }
 
@@ -131,7 +136,8 @@ impl List {
     fn failed(&mut self, index: usize, failure: &Failure) -> Outcome {
         let entry = &mut self.entries[index];
         entry.failures += 1;
-        tracing::error!(agent = %self.agent, activity = %entry.name, cycle = self.cycles, "activity failed: {failure}");
+        let robot = self.blackboard.hub().host();
+        tracing::error!(%robot, agent = %self.agent, activity = %entry.name, cycle = self.cycles, "activity failed: {failure}");
         let policy = entry.policy.unwrap_or(self.policy);
         match policy {
             Policy::Restart => entry.back_off(self.cycles),
@@ -192,8 +198,9 @@ impl Health {
 }
 
 impl Entry {
-    fn new(Listed { name, activity, policy, .. }: Listed) -> Entry {
+    fn new(Listed { name, activity, policy, .. }: Listed, host: &str, agent: &str) -> Entry {
         Entry {
+            caller: Caller::new(host, agent, &name),
             name,
             activity,
             policy,
@@ -205,15 +212,19 @@ impl Entry {
     }
 
     fn run(&mut self, cycle: u64, blackboard: &mut Blackboard) -> Result<(), Failure> {
-        if let Health::Down { retry, .. } = self.health {
-            if cycle < retry {
-                return Ok(());
-            }
-            call::start(self.activity.as_mut(), blackboard)?;
+        if matches!(self.health, Health::Down { retry, .. } if cycle < retry) {
+            return Ok(());
         }
-        self.calls += 1;
-        // Whatever it says, its next call is in the next cycle.
-        let _ = call::execute(self.activity.as_mut(), blackboard)?;
+        let (activity, is_up) = (self.activity.as_mut(), matches!(self.health, Health::Up));
+        let calls = &mut self.calls;
+        logger::calling(&self.caller, cycle, || {
+            if !is_up {
+                call::start(activity, blackboard)?;
+            }
+            *calls += 1;
+            // Whatever it says, its next call is in the next cycle.
+            call::execute(activity, blackboard).map(drop)
+        })?;
         self.health = Health::Up;
         Ok(())
     }

@@ -11,6 +11,7 @@ mod doctor;
 mod elsewhere;
 mod generate;
 mod kit;
+mod log;
 mod model;
 mod new;
 mod protocol;
@@ -20,6 +21,8 @@ mod run;
 mod running;
 mod schema;
 mod tape;
+#[cfg(unix)]
+mod top;
 #[cfg(unix)]
 mod topic;
 mod usage;

@@ -23,6 +23,7 @@ fn help_lists_the_commands_and_exit_codes() {
         "new",
         "doctor",
         "tape",
+        "top",
         "topic",
         "completions",
         "4 nothing to connect to",

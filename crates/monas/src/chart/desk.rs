@@ -168,7 +168,7 @@ impl Host for Desk {
         if let Some(blackboard) = self.lending.free_mut(region, self.now)
             && let Err(error) = blackboard.edit(slot(topic), |_| {})
         {
-            tracing::error!(agent = %self.agent, "nothing is published: {error}");
+            tracing::error!(robot = %self.host, agent = %self.agent, "nothing is published: {error}");
         }
     }
 
@@ -207,16 +207,16 @@ impl Host for Desk {
 
     fn report(&mut self, chart: &Chart, report: Report<'_>) {
         let name = |transition| transition_name(chart, transition);
-        let agent = &self.agent;
+        let (robot, agent) = (&self.host, &self.agent);
         match report {
             Report::GuardFailed { transition, error } => {
-                tracing::warn!(%agent, transition = %name(transition), "guard without a value: {error}");
+                tracing::warn!(%robot, %agent, transition = %name(transition), "guard without a value: {error}");
             }
             Report::ActionFailed { place, index, error } => {
-                tracing::error!(%agent, ?place, action = index + 1, "action failed: {error}");
+                tracing::error!(%robot, %agent, ?place, action = index + 1, "action failed: {error}");
             }
             Report::StartWaits { start } => {
-                tracing::debug!(%agent, start = %chart.short_path(start), "no way out of this START is open");
+                tracing::debug!(%robot, %agent, start = %chart.short_path(start), "no way out of this START is open");
             }
             _ => {}
         }

@@ -1,5 +1,6 @@
 //! The activities of a chart's states: who they are, which are being called, and which wait to be called again.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use narukom::{Blackboard, Moment, Narukom, TopicSlot};
@@ -7,6 +8,7 @@ use yase::{Activation, Chart, NodeId};
 
 use crate::activity::{Activity, Progress, Topics};
 use crate::call::{self, Failure};
+use crate::logger::{self, Caller};
 use crate::statistics::{ActivityStatistics, Timing};
 
 /// One for each BASIC state with an activity, in the order of the document.
@@ -19,6 +21,8 @@ pub(crate) struct Posts {
 struct Post {
     node: NodeId,
     name: String,
+    /// Its name in log lines.
+    caller: Arc<Caller>,
     duration: Duration,
     /// The topics it says it reads, in order, if it says so.
     declared: Option<Box<[TopicSlot]>>,
@@ -55,6 +59,9 @@ pub(crate) struct Assignment {
     pub(crate) duration: Duration,
     post: usize,
     activity: Box<dyn Activity>,
+    caller: Arc<Caller>,
+    /// The number of the cycle from which it is called.
+    cycle: u64,
     started: bool,
     blackboard: Box<Blackboard>,
     called: bool,
@@ -81,26 +88,41 @@ impl Assignment {
         self.post
     }
 
+    /// The number of the cycle from which it is called, for its log lines.
+    pub(crate) fn in_cycle(mut self, cycle: u64) -> Assignment {
+        self.cycle = cycle;
+        self
+    }
+
     /// Calls the activity, where it is.
     pub(crate) fn call(&mut self) -> Returned {
-        if !self.started {
-            call::start(self.activity.as_mut(), &mut self.blackboard)?;
-            self.started = true;
-        }
-        self.called = true;
-        call::execute(self.activity.as_mut(), &mut self.blackboard)
+        let Assignment { activity, caller, cycle, started, blackboard, called, .. } = self;
+        logger::calling(caller, *cycle, || {
+            if !*started {
+                call::start(activity.as_mut(), blackboard)?;
+                *started = true;
+            }
+            *called = true;
+            call::execute(activity.as_mut(), blackboard)
+        })
     }
 }
 
 impl Posts {
     /// `activities` are in the order of [`Chart::activities`].
-    pub(crate) fn new(chart: &Chart, activities: Vec<Box<dyn Activity>>, hub: &Narukom) -> Posts {
+    pub(crate) fn new(
+        chart: &Chart,
+        activities: Vec<Box<dyn Activity>>,
+        hub: &Narukom,
+        agent: &str,
+    ) -> Posts {
         let mut of_node = vec![None; chart.statechart().nodes().len()];
         let posts = chart.activities().zip(activities).enumerate().map(|(place, (entry, activity))| {
             of_node[entry.node.0 as usize] = Some(place);
             Post {
                 node: entry.node,
                 name: entry.name.into(),
+                caller: Caller::new(hub.host(), agent, entry.name),
                 duration: entry.duration.unwrap_or_default(),
                 declared: declared(&activity.topics(), hub),
                 activity: Some(activity),
@@ -164,6 +186,8 @@ impl Posts {
             duration: post.duration,
             post: place,
             activity,
+            caller: post.caller.clone(),
+            cycle: 0,
             started: post.started,
             blackboard,
             called: false,

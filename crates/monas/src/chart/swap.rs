@@ -45,7 +45,7 @@ impl Runner {
         };
         let old = std::mem::replace(&mut self.desk, desk);
         self.desk.take_over(old, &report.regions, known, |node| plan.node(node));
-        let posts = Posts::new(&chart, activities, &self.hub);
+        let posts = Posts::new(&chart, activities, &self.hub, &agent);
         let old = std::mem::replace(&mut self.posts, posts);
         self.posts.take_over(old, |node| plan.node(node), known);
         self.machine = machine;

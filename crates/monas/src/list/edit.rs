@@ -3,6 +3,7 @@
 use super::{Entry, Health, List};
 use crate::agent::{Listed, Policy};
 use crate::call;
+use crate::logger;
 use crate::parameters::Parameters;
 
 /// A change of a list; places are counted from 0.
@@ -25,7 +26,10 @@ impl List {
     pub(crate) fn edit(&mut self, edit: ListEdit) {
         let count = self.entries.len();
         match edit {
-            ListEdit::Insert(place, listed) => self.entries.insert(place.min(count), Entry::new(listed)),
+            ListEdit::Insert(place, listed) => {
+                let entry = self.entry(listed);
+                self.entries.insert(place.min(count), entry);
+            }
             ListEdit::Remove(place) if place < count => {
                 self.end(place);
                 self.entries.remove(place);
@@ -36,7 +40,7 @@ impl List {
             }
             ListEdit::Replace(place, listed) if place < count => {
                 self.end(place);
-                self.entries[place] = Entry::new(listed);
+                self.entries[place] = self.entry(listed);
             }
             ListEdit::Configure(place, parameters) if place < count => {
                 self.entries[place].activity.configure(&parameters);
@@ -45,6 +49,10 @@ impl List {
             // There is no such place.
             _ => {}
         }
+    }
+
+    fn entry(&self, listed: Listed) -> Entry {
+        Entry::new(listed, self.blackboard.hub().host(), &self.agent)
     }
 
     pub(crate) fn set_policy(&mut self, policy: Policy) {
@@ -61,9 +69,12 @@ impl List {
     pub(super) fn end(&mut self, place: usize) {
         let entry = &mut self.entries[place];
         if let Health::Up = entry.health
-            && let Err(failure) = call::stop(entry.activity.as_mut(), &mut self.blackboard)
+            && let Err(failure) = logger::calling(&entry.caller, self.cycles, || {
+                call::stop(entry.activity.as_mut(), &mut self.blackboard)
+            })
         {
-            tracing::error!(agent = %self.agent, activity = %entry.name, "activity failed to stop: {failure}");
+            let robot = self.blackboard.hub().host();
+            tracing::error!(%robot, agent = %self.agent, activity = %entry.name, "activity failed to stop: {failure}");
         }
     }
 }

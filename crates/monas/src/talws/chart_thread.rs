@@ -202,6 +202,7 @@ impl ChartThread {
 
     fn submit(&mut self, assignment: Assignment) -> Result<(), String> {
         self.calls.push((assignment.activation.number, assignment.place(), self.clock.now()));
+        let assignment = assignment.in_cycle(self.teller.number());
         self.pool.submit(assignment, &self.part.mailbox).map_err(|error| error.to_string())?;
         self.out += 1;
         self.beat();
@@ -244,7 +245,8 @@ impl ChartThread {
         let Err(failure) = result else { return Ok(()) };
         let activity = self.runner.activity_name(activation);
         let cycle = self.teller.number();
-        tracing::error!(agent = %self.unit.name, %activity, cycle, "activity failed: {failure}");
+        let robot = self.runner.host();
+        tracing::error!(%robot, agent = %self.unit.name, %activity, cycle, "activity failed: {failure}");
         match self.policy {
             Policy::Restart | Policy::Skip => Ok(()),
             Policy::StopAgent | Policy::SafeState => {

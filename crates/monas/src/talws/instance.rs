@@ -110,7 +110,9 @@ impl Instance {
             return;
         }
         self.stopped = Some(reason.into());
-        tracing::info!(agent = %self.name, "stopped: {reason}");
+        let listed = self.list.iter().map(|scheduled| scheduled.list.blackboard().hub().host());
+        let robot = listed.chain(self.charts.iter().map(SimulatedChart::host)).next().unwrap_or_default();
+        tracing::info!(%robot, agent = %self.name, "stopped: {reason}");
         if let Some(scheduled) = &mut self.list {
             scheduled.list.stop(reason);
         }

@@ -54,6 +54,11 @@ impl SimulatedChart {
         self.runner.swap(swap, now)
     }
 
+    /// The host it is on.
+    pub(super) fn host(&self) -> &str {
+        self.runner.host()
+    }
+
     pub(super) fn active(&self) -> Vec<String> {
         self.runner.active()
     }
@@ -73,13 +78,13 @@ impl SimulatedChart {
             self.returned(over, now, agent, policy, teller.number())?;
         }
         while let Some(assignment) = self.runner.next_waiting(now) {
-            self.call(assignment, now)?;
+            self.call(assignment.in_cycle(teller.number()), now)?;
         }
         if !self.runner.is_over() && (self.runner.needs_step(now) || self.tick() <= now) {
             self.step(now, teller)?;
         }
         while let Some(assignment) = self.runner.next_started() {
-            self.call(assignment, now)?;
+            self.call(assignment.in_cycle(teller.number()), now)?;
         }
         Ok(())
     }
@@ -125,13 +130,13 @@ impl SimulatedChart {
     ) -> Result<(), String> {
         while !self.runner.is_over() {
             if let Some(assignment) = self.runner.next_started() {
-                self.call(assignment, now)?;
+                self.call(assignment.in_cycle(teller.number()), now)?;
             } else if self.runner.needs_step(now) || self.tick() <= now {
                 self.step(now, teller)?;
             } else if let Some(over) = self.next_return(now) {
                 self.returned(over, now, agent, policy, teller.number())?;
             } else if let Some(assignment) = self.runner.next_waiting(now) {
-                self.call(assignment, now)?;
+                self.call(assignment.in_cycle(teller.number()), now)?;
             } else {
                 break;
             }
@@ -195,7 +200,8 @@ impl SimulatedChart {
         let result = self.runner.returned(assignment, returned, None, policy == Policy::Restart, now);
         let Err(failure) = result else { return Ok(()) };
         let activity = self.runner.activity_name(activation);
-        tracing::error!(%agent, %activity, cycle, "activity failed: {failure}");
+        let robot = self.runner.host();
+        tracing::error!(%robot, %agent, %activity, cycle, "activity failed: {failure}");
         match policy {
             Policy::Restart | Policy::Skip => Ok(()),
             Policy::StopAgent | Policy::SafeState => {

@@ -16,6 +16,7 @@ use super::setup::{Environment, Stage};
 use super::stopper::Stopper;
 use crate::coverage::ChartCoverage;
 use crate::error::{Error, ErrorKind};
+use crate::logger::Simulating;
 use crate::records::{Change, Changed};
 use crate::statistics::Statistics;
 
@@ -60,6 +61,7 @@ impl Simulation {
     /// # Errors
     /// The world or a body failed. Agents do not fail: see [`Policy`](crate::Policy).
     pub fn run_until(&mut self, end: Moment) -> Result<(), Error> {
+        let _time = Simulating::begin(self.now);
         loop {
             self.let_in();
             let next = self.due();
@@ -79,6 +81,7 @@ impl Simulation {
     /// # Errors
     /// As in [`run_until`](Simulation::run_until).
     pub fn run_paced(&mut self, end: Moment, stopper: &Stopper) -> Result<(), Error> {
+        let _time = Simulating::begin(self.now);
         let (clock, begun) = (Clock::start(), self.now);
         while self.due() < end {
             self.let_in();
@@ -152,6 +155,7 @@ impl Simulation {
 
     /// Stops all agents; their activities are told so.
     pub fn stop(&mut self) {
+        let _time = Simulating::begin(self.now);
         self.hosts.iter_mut().for_each(|host| host.stop(self.now));
     }
 
@@ -176,6 +180,7 @@ impl Simulation {
 
     /// Time comes to a moment.
     fn pass(&mut self, now: Moment) {
+        Simulating::pass(now);
         self.now = now;
         self.shown.set(now);
     }

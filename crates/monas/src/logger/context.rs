@@ -1,0 +1,85 @@
+//! Who is at work on this thread, and at which simulated time, for the lines that are written meanwhile.
+
+use std::cell::{Cell, RefCell};
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+use narukom::Moment;
+
+/// An activity, as log lines name it.
+#[derive(Debug)]
+pub(crate) struct Caller {
+    pub(super) robot: String,
+    pub(super) agent: String,
+    pub(super) activity: String,
+}
+
+impl Caller {
+    pub(crate) fn new(robot: &str, agent: &str, activity: &str) -> Arc<Caller> {
+        Arc::new(Caller { robot: robot.into(), agent: agent.into(), activity: activity.into() })
+    }
+}
+
+thread_local! {
+    static CALLED: RefCell<Option<Called>> = const { RefCell::new(None) };
+    static SIMULATED: Cell<Option<Moment>> = const { Cell::new(None) };
+}
+
+/// An activity that is being called.
+struct Called {
+    caller: Arc<Caller>,
+    cycle: u64,
+}
+
+/// Calls an activity; what is written meanwhile is its own.
+pub(crate) fn calling<T>(caller: &Arc<Caller>, cycle: u64, call: impl FnOnce() -> T) -> T {
+    let _before = Restored(CALLED.replace(Some(Called { caller: caller.clone(), cycle })));
+    call()
+}
+
+/// Puts back what was before, also when a panic goes by.
+struct Restored(Option<Called>);
+
+impl Drop for Restored {
+    fn drop(&mut self) {
+        CALLED.replace(self.0.take());
+    }
+}
+
+/// Shows the activity that is being called, with its cycle.
+pub(super) fn called(look: impl FnOnce(&Caller, u64)) {
+    // A thread that ends has lost the names already.
+    let _ = CALLED.try_with(|called| {
+        if let Ok(called) = called.try_borrow()
+            && let Some(Called { caller, cycle }) = &*called
+        {
+            look(caller, *cycle);
+        }
+    });
+}
+
+/// Simulated time goes on on this thread, until it is dropped.
+pub(crate) struct Simulating(PhantomData<*const ()>);
+
+impl Simulating {
+    pub(crate) fn begin(now: Moment) -> Simulating {
+        SIMULATED.set(Some(now));
+        Simulating(PhantomData)
+    }
+
+    /// It is later now.
+    pub(crate) fn pass(now: Moment) {
+        SIMULATED.set(Some(now));
+    }
+}
+
+impl Drop for Simulating {
+    fn drop(&mut self) {
+        SIMULATED.set(None);
+    }
+}
+
+/// The simulated time on this thread, if it is one.
+pub(super) fn simulated() -> Option<Moment> {
+    SIMULATED.try_with(Cell::get).ok().flatten()
+}

@@ -1,0 +1,303 @@
+//! The log: the thesis's settings, who a line says it is from, and what is on the disk when the process is gone.
+#![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
+#![allow(unsafe_code, reason = "counting allocations takes an allocator")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+
+use monas::logger::{self, Format, Logger, Settings, Severity};
+use monas::{Agent, Blackboard, BoxError, Hz, Talws};
+use narukom::Moment;
+use tracing::Dispatch;
+use tracing_subscriber::prelude::*;
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+// SAFETY: every call is passed on to the system's allocator as it is.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
+        // SAFETY: as above.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(place, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// A log that begins, for those who speak through the dispatch.
+fn begun(settings: Settings) -> (Dispatch, Logger) {
+    let (layer, logger) = logger::layer();
+    let dispatch = Dispatch::new(tracing_subscriber::registry().with(layer));
+    tracing::dispatcher::with_default(&dispatch, || logger.begin(settings).unwrap());
+    (dispatch, logger)
+}
+
+fn to(file: &Path) -> Settings {
+    Settings { file: Some(file.into()), verbosity: Severity::ExtraExtraInfo, ..Settings::default() }
+}
+
+/// What is written into the file while `speak` runs.
+fn written(settings: impl FnOnce(Settings) -> Settings, speak: impl FnOnce()) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("log.txt");
+    let (dispatch, logger) = begun(settings(to(&file)));
+    tracing::dispatcher::with_default(&dispatch, speak);
+    logger.end();
+    std::fs::read_to_string(file).unwrap()
+}
+
+/// The words that follow the time.
+fn without_times(log: &str) -> Vec<&str> {
+    log.lines().map(|line| line.split_once("Z ").unwrap().1).collect()
+}
+
+fn settings_in(name: &str, text: &str) -> (Settings, Vec<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join(name);
+    std::fs::write(&file, text).unwrap();
+    let (settings, diagnostics) = Settings::load(file);
+    let told = diagnostics.iter().map(|found| format!("{}: {}", found.code, found.message));
+    (settings, told.collect())
+}
+
+#[test]
+fn the_listing_of_the_thesis_is_a_log_s_settings_as_it_is_printed() {
+    let (settings, wrong) = settings_in("logger.xml", include_str!("listings/4.5.xml"));
+    assert_eq!(wrong, Vec::<String>::new());
+    let expected = Settings {
+        file: Some("MonasLog.txt".into()),
+        console: true,
+        colour: true,
+        filter: None,
+        verbosity: Severity::ExtraExtraInfo,
+        format: Format::Text,
+    };
+    assert_eq!(settings, expected);
+}
+
+#[test]
+fn toml_says_the_same_and_what_is_not_understood_is_told() {
+    let text = "message_log_file = \"a.log\"\nmessage_log_filter = \"Vision Motion\"\nlog_file_verbosity_level = -3\n\
+                message_log_format = \"json\"\n";
+    let (settings, wrong) = settings_in("logger.toml", text);
+    assert_eq!(wrong, Vec::<String>::new());
+    let expected = Settings {
+        file: Some("a.log".into()),
+        filter: Some(vec!["Vision".into(), "Motion".into()]),
+        verbosity: Severity::FatalError,
+        format: Format::Json,
+        ..Settings::default()
+    };
+    assert_eq!(settings, expected);
+    let (_, wrong) =
+        settings_in("logger.xml", "<MessageLogFiel>a</MessageLogFiel><MessageLogCerr>2</MessageLogCerr>");
+    assert_eq!(wrong.len(), 2, "{wrong:?}");
+    assert!(wrong[0].contains("MessageLogFiel") && wrong[1].contains("`2`"), "{wrong:?}");
+}
+
+#[test]
+fn the_five_kinds_of_the_thesis_have_their_words() {
+    let speak = || {
+        monas::fatal!("no camera");
+        tracing::error!("no ball");
+        tracing::warn!("dark");
+        tracing::info!(x = 1.5, name = "ball", "seen");
+        tracing::debug!("again");
+        tracing::trace!("and again");
+        logger::write("Behavior", &"Error in getting memory proxy", Severity::Error);
+    };
+    let log = written(|settings| settings, speak);
+    let mut lines = without_times(&log);
+    lines.sort_unstable(); // errors are written at once, the others in their turn
+    let expected = [
+        "DEBUG again",
+        "ERROR [Behavior] Error in getting memory proxy",
+        "ERROR no ball",
+        "FATAL no camera",
+        "INFO  seen x=1.5 name=\"ball\"",
+        "TRACE and again",
+        "WARN  dark",
+    ];
+    assert_eq!(lines, expected);
+    for (verbosity, count) in [
+        (Severity::FatalError, 3),
+        (Severity::Error, 3),
+        (Severity::Info, 5),
+        (Severity::ExtraInfo, 6),
+        (Severity::ExtraExtraInfo, 7),
+    ] {
+        let log = written(|settings| Settings { verbosity, ..settings }, speak);
+        assert_eq!(log.lines().count(), count, "{verbosity:?}");
+    }
+}
+
+/// Two agents on a robot, of which one activity fails in its third cycle.
+fn team() -> Talws {
+    let says = |name: &'static str| {
+        move |_: &mut Blackboard| -> Result<(), BoxError> {
+            tracing::info!("{name} is at work");
+            Ok(())
+        }
+    };
+    let mut count = 0;
+    let fails = move |_: &mut Blackboard| -> Result<(), BoxError> {
+        count += 1;
+        if count == 3 { Err("no ball".into()) } else { Ok(()) }
+    };
+    let vision = Agent::new("vision", Hz(100))
+        .activity(says("the first"))
+        .named_activity("Second", Box::new(says("the second")));
+    Talws::new().agent(vision).agent(Agent::new("mind", Hz(100)).named_activity("Behavior", Box::new(fails)))
+}
+
+#[test]
+fn a_line_says_which_activity_of_which_robot_wrote_it_and_when_and_the_same_run_writes_the_same() {
+    let run = || team().simulate(1).unwrap().run_until(Moment::from_nanos(30_000_000)).unwrap();
+    let log = written(|settings| settings, run);
+    assert_eq!(log, written(|settings| settings, run));
+    let mut lines: Vec<&str> =
+        log.lines().filter(|line| line.contains("Second") || line.contains("Behavior")).collect();
+    lines.sort_unstable();
+    let expected = [
+        "    0.000000 s INFO  [local vision/Second #1] the second is at work",
+        "    0.010000 s INFO  [local vision/Second #2] the second is at work",
+        "    0.020000 s ERROR [local mind/Behavior #3] activity failed: no ball",
+        "    0.020000 s INFO  [local vision/Second #3] the second is at work",
+    ];
+    assert_eq!(lines, expected);
+    let of = |names: &[&str]| {
+        let filter = Some(names.iter().map(|name| (*name).to_owned()).collect());
+        written(|settings| Settings { filter, ..settings }, run)
+    };
+    assert_eq!(of(&["Second"]).lines().count(), 3 + 1, "an error is always written");
+    assert_eq!(of(&["vision"]).lines().count(), 6 + 1, "an agent stands for its activities");
+    assert_eq!(of(&["Behaviour"]).lines().count(), 1);
+}
+
+#[test]
+fn json_has_an_object_a_line() {
+    let run = || {
+        team().simulate(1).unwrap().run_until(Moment::from_nanos(30_000_000)).unwrap();
+        tracing::info!("of \"nobody\"\n\u{1b}[31m");
+    };
+    let log = written(|settings| Settings { format: Format::Json, ..settings }, run);
+    let objects: Vec<serde_json::Value> =
+        log.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let failed = objects.iter().find(|object| object["level"] == "ERROR").unwrap();
+    let expected = serde_json::json!({
+        "simulated_time": 0.02, "level": "ERROR", "robot": "local", "agent": "mind", "activity": "Behavior", "cycle": 3,
+        "message": "activity failed: no ball"
+    });
+    assert_eq!(*failed, expected);
+    let nobody = objects.last().unwrap();
+    assert_eq!(nobody["message"], "of \"nobody\"\n\u{1b}[31m");
+    assert!(
+        nobody["time"].is_string() && nobody.get("agent").is_none() && nobody.get("simulated_time").is_none()
+    );
+}
+
+#[test]
+fn a_line_is_a_line_and_steers_no_terminal() {
+    let log = written(|settings| settings, || tracing::info!("a\nb\u{1b}[31m\tc"));
+    assert_eq!(without_times(&log), ["INFO  a\\nb\\u{1b}[31m\tc"]);
+}
+
+#[test]
+fn who_writes_allocates_nothing_and_what_comes_too_fast_is_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("log.txt");
+    let (dispatch, logger) = begun(to(&file));
+    let speak = |count: u32| (0..count).for_each(|number| tracing::info!(number, "a message of {} words", 5));
+    let allocations = tracing::dispatcher::with_default(&dispatch, || {
+        speak(10);
+        let before = ALLOCATIONS.get();
+        speak(100_000);
+        ALLOCATIONS.get() - before
+    });
+    logger.end();
+    assert_eq!(allocations, 0);
+    let log = std::fs::read_to_string(&file).unwrap();
+    let dropped =
+        log.lines().filter_map(|line| line.split_once("WARN  ")?.1.split_once(" messages were dropped"));
+    let dropped: usize = dropped.map(|(count, _)| count.parse::<usize>().unwrap()).sum();
+    let written = log.lines().filter(|line| line.contains("a message of 5 words number=")).count();
+    assert_eq!(written + dropped, 100_010);
+    assert!(written >= 1024);
+}
+
+#[test]
+fn a_log_begins_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, logger) = begun(to(&folder.path().join("a")));
+    assert!(logger.begin(Settings::default()).unwrap_err().to_string().contains("has begun"));
+    logger.end();
+    let (_, other) = logger::layer::<tracing_subscriber::Registry>();
+    assert!(other.begin(to(&folder.path().join("no/folder"))).is_err());
+}
+
+const CHILD: &str = "MONAS_LOG_TEST_CHILD";
+
+/// Not a test of its own: what the process does that the next two kill.
+#[test]
+fn child() {
+    let Ok(how) = std::env::var(CHILD) else { return };
+    let (file, ends) = how.split_once('|').unwrap();
+    let (dispatch, logger) = begun(Settings { verbosity: Severity::FatalError, ..to(Path::new(file)) });
+    let dispatch = Arc::new(dispatch);
+    tracing::dispatcher::with_default(&dispatch, || {
+        tracing::error!("one leg is gone");
+        monas::fatal!("so is the other");
+    });
+    if ends == "abort" {
+        std::process::abort();
+    }
+    println!("written");
+    std::io::stdout().flush().unwrap();
+    // until it is killed
+    std::io::stdin().read_line(&mut String::new()).unwrap();
+    drop(logger);
+}
+
+fn of_a_child(ends: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("log.txt");
+    let mut child = Command::new(std::env::current_exe().unwrap())
+        .args(["child", "--exact", "--nocapture"])
+        .env(CHILD, format!("{}|{ends}", file.display()))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    if ends == "kill" {
+        let lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        lines.map(Result::unwrap).find(|line| line.ends_with("written")).unwrap();
+        child.kill().unwrap();
+    }
+    assert!(!child.wait().unwrap().success());
+    std::fs::read_to_string(file).unwrap()
+}
+
+#[test]
+fn errors_are_on_the_disk_when_a_process_aborts() {
+    assert_eq!(without_times(&of_a_child("abort")), ["ERROR one leg is gone", "FATAL so is the other"]);
+}
+
+#[test]
+fn errors_are_on_the_disk_when_a_process_is_killed() {
+    assert_eq!(without_times(&of_a_child("kill")), ["ERROR one leg is gone", "FATAL so is the other"]);
+}
