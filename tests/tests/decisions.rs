@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
+#[path = "decisions/attack.rs"]
+mod attack;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;

@@ -68,6 +68,8 @@ pub struct Anatomy {
     pub camera: Option<Camera>,
     /// What the body does by name.
     pub skills: Vec<Skill>,
+    /// The most bytes that it says to its team at once; zero for a body without a radio.
+    pub radio: usize,
 }
 
 impl Anatomy {
@@ -83,6 +85,7 @@ impl Anatomy {
             walk_turn: Limits::symmetric(0.0),
             camera: None,
             skills: Vec::new(),
+            radio: 0,
         }
     }
 }

@@ -18,6 +18,7 @@ pub fn check(robot: &mut dyn Robot) {
         for _ in 0..200 {
             now += cycle;
             sense(robot, now, &mut percepts);
+            speak(robot, now);
             if let Err(error) = robot.act(now, &command) {
                 panic!("{command:?} was refused: {error}");
             }
@@ -37,9 +38,25 @@ fn commands() -> [Actuators; 5] {
     ]
 }
 
+/// A body says what its anatomy promises, and nothing longer.
+#[allow(clippy::panic)] // see `check`
+fn speak(robot: &mut dyn Robot, now: Moment) {
+    let words = vec![0; robot.anatomy().radio + 1];
+    if robot.say(now, &words).is_ok() {
+        panic!("{} bytes were said, more than the radio sends", words.len());
+    }
+    let promised = words.len() - 1;
+    if promised > 0
+        && let Err(error) = robot.say(now, &words[..promised])
+    {
+        panic!("{promised} bytes were not said: {error}");
+    }
+}
+
 #[allow(clippy::panic)] // see `check`
 fn sense(robot: &mut dyn Robot, now: Moment, percepts: &mut Percepts) {
     (percepts.sightings, percepts.announcement) = (None, None);
+    percepts.heard.clear();
     if let Err(error) = robot.sense(now, percepts) {
         panic!("sensing failed: {error}");
     }

@@ -1,7 +1,7 @@
 //! Bodies: what is sensed, what is commanded, and one trait between.
 //!
-//! A robot's algorithms speak to its body through four messages and nothing else: [`Sensors`], [`Sightings`] and
-//! [`Announcement`] come up, [`Actuators`] go down. The runtime owns the body, a value of a type that implements [`Robot`]; it
+//! A robot's algorithms speak to its body through six messages and nothing else: [`Sensors`], [`Sightings`],
+//! [`Announcement`] and what was [`Heard`] from the team come up, [`Actuators`] and what is [`Said`] to it go down. The runtime owns the body, a value of a type that implements [`Robot`]; it
 //! publishes what the body senses on the topics of [`topics`] and hands the newest actuators back. An activity therefore
 //! never learns which robot it runs on: a disk on the embedded field, a humanoid on a physics server, or a Nao.
 //!

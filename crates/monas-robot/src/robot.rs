@@ -2,7 +2,7 @@
 
 use narukom::Moment;
 
-use crate::{Actuators, Anatomy, Announcement, Sensors, Sightings};
+use crate::{Actuators, Anatomy, Announcement, Heard, Sensors, Sightings};
 
 /// What a body has sensed since it was last asked. Reused from cycle to cycle.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -13,6 +13,8 @@ pub struct Percepts {
     pub sightings: Option<Sightings>,
     /// What the referee says, if something has changed.
     pub announcement: Option<Announcement>,
+    /// What others of the team have said since, in the order in which it came.
+    pub heard: Vec<Heard>,
 }
 
 /// A body. The runtime owns it, asks it what it senses and tells it what to do, in this order, once a cycle of the body.
@@ -22,12 +24,21 @@ pub trait Robot: Send {
     /// What the body is made of and can do.
     fn anatomy(&self) -> &Anatomy;
 
-    /// Writes what is sensed now. `percepts` holds what the previous call left there, with sightings and announcement
-    /// taken out.
+    /// Writes what is sensed now. `percepts` holds what the previous call left there, with sightings, announcement and all
+    /// that was heard taken out.
     fn sense(&mut self, now: Moment, percepts: &mut Percepts) -> Result<(), Error>;
 
     /// Takes what is to be done from now on. Values beyond the limits of the anatomy are brought within them.
     fn act(&mut self, now: Moment, actuators: &Actuators) -> Result<(), Error>;
+
+    /// Says something to the others of the team, over the air: at most [`Anatomy::radio`] bytes, and none of it may arrive.
+    ///
+    /// # Errors
+    /// The body has no radio, which is what this does if a body does not say otherwise, or these are more bytes than it sends.
+    fn say(&mut self, _now: Moment, _words: &[u8]) -> Result<(), Error> {
+        let model = &self.anatomy().model;
+        Err(Error::new(ErrorKind::Hardware, format!("the {model} has no radio to speak to its team")))
+    }
 }
 
 /// A body that cannot be reached or does not do what it was asked.

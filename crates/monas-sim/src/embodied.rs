@@ -3,6 +3,7 @@
 //! A [`Pitch`] is a world that several bodies share; [`Pitch::body`] gives the body of one robot, a
 //! [`monas_robot::Robot`] like any other. Whoever advances the pitch decides how simulated time passes.
 
+mod air;
 mod announce;
 mod body;
 mod skill;
@@ -10,6 +11,8 @@ mod skill;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::{EventKind, GameState, Pose, World};
+
+use air::Air;
 
 pub use body::FieldBody;
 
@@ -23,6 +26,8 @@ pub struct Pitch {
 pub(crate) struct Ground {
     pub(crate) world: World,
     pub(crate) placements: Vec<Placement>,
+    /// What each robot has not listened to yet.
+    pub(crate) air: Air,
     seen_events: usize,
 }
 
@@ -38,7 +43,8 @@ impl Pitch {
     pub fn new(world: World) -> Pitch {
         let placements =
             world.robots().iter().map(|robot| Placement { count: 1, pose: robot.pose }).collect();
-        Pitch { ground: Arc::new(Mutex::new(Ground { world, placements, seen_events: 0 })) }
+        let air = Air::new(world.robots());
+        Pitch { ground: Arc::new(Mutex::new(Ground { world, placements, air, seen_events: 0 })) }
     }
 
     /// Moves the world on by one [`STEP`](crate::STEP).

@@ -4,8 +4,11 @@
 //! on until the body stands again.
 
 mod align_with_ball;
+mod attack_watch;
+mod bring_ball;
 mod led_handler;
 mod motion_controller;
+mod pass_ball;
 mod robot_controller;
 mod search_ball;
 mod send_calibration;
@@ -15,22 +18,29 @@ mod skills;
 #[cfg(test)]
 mod stage;
 mod stand;
+mod team_radio;
 mod track_ball;
 mod vision;
 mod wait_for_ball_message;
 mod walk_towards_ball;
+mod walk_towards_goal;
 mod wishes;
 
 pub use align_with_ball::AlignWithBall;
+pub use attack_watch::AttackWatch;
+pub use bring_ball::{BringBallToPass, BringBallToShoot};
 pub use led_handler::LedHandler;
 pub use motion_controller::MotionController;
+pub use pass_ball::PassBall;
 pub use robot_controller::RobotController;
 pub use search_ball::SearchBall;
 pub use send_calibration::SendCalibration;
 pub use sensors::Sensors;
 pub use skills::{LeftDive, LeftFall, LeftKick, RightDive, RightFall, RightKick};
 pub use stand::Stand;
+pub use team_radio::TeamRadio;
 pub use track_ball::TrackBall;
 pub use vision::Vision;
 pub use wait_for_ball_message::WaitForBallMessage;
 pub use walk_towards_ball::WalkTowardsBall;
+pub use walk_towards_goal::WalkTowardsGoal;

@@ -3,6 +3,7 @@
 pub mod aim;
 pub mod align;
 pub mod approach;
+pub mod attack;
 pub mod avoidance;
 pub mod ball_filter;
 pub mod field;
@@ -11,6 +12,7 @@ pub mod geometry;
 pub mod guard;
 pub mod head;
 pub mod interception;
+pub mod kicks;
 pub mod lights;
 pub mod localisation;
 pub mod motion;

@@ -15,6 +15,8 @@
 //! body/referee, chest button --RobotController--> game_state            decides what is allowed
 //! body/sensors --Sensors--> sensors --+
 //! body/sightings ---------------------+--Vision--> ball, pose, robots   what is known
+//! body/heard, ball, pose, motion --TeamRadio--> team, body/said         what the team knows
+//! team, ball, pose, robots --AttackWatch--> attack                      how an attack of two stands
 //! SearchBall, TrackBall, WalkTowardsBall, ... --> motion, head          what is wanted
 //! motion, head, leds --MotionController--> body/actuators               what is done
 //! ```
@@ -23,6 +25,10 @@
 //! is to say about it: AlignWithBall never kicks, and LeftKick always does. One body has one commander, MotionController; behaviours ask it
 //! for motions. A walk has to be asked for again and again, so that a robot whose behaviour has stopped stands still. A kick or a dive
 //! is asked for once, under a number; the activity goes on until that number is done, so that the decision waits for it.
+//!
+//! **An attack of two** is decided by a protocol: `models/attack.aip` says who may engage in it, what each part does and what ends it. Each
+//! player judges for itself, by what it sees and by what its team mates have told it over the radio of their bodies ([`TeamReport`]); its
+//! chart reads that judgement ([`Attack`]) in its guards. Nobody knows more than a robot could.
 //!
 //! **The goalkeeper's way home** belongs to nobody's dive: MotionController gets every fallen robot up, and whatever runs next while no
 //! shot comes, TrackBall or SearchBall, walks the one player that the rules call goalkeeper ([`GameState::goalkeeper`]) back between its

@@ -3,8 +3,8 @@
 use narukom::{Data, State};
 
 use crate::{
-    Ball, Calibration, GameState, HeadRequest, LedRequest, MotionRequest, MotionState, Pose, Robots,
-    SensorEntry,
+    Attack, Ball, Calibration, GameState, HeadRequest, LedRequest, MotionRequest, MotionState, Pose, Robots,
+    SensorEntry, Team,
 };
 
 narukom::topic! {
@@ -26,6 +26,10 @@ narukom::topic! {
     pub HEAD: State<HeadRequest> = "soccer/head";
     /// The colours of the lights; LedHandler says it.
     pub LEDS: State<LedRequest> = "soccer/leds";
+    /// What team mates have told; TeamRadio says it.
+    pub TEAM: State<Team> = "soccer/team";
+    /// How an attack stands; AttackWatch says it.
+    pub ATTACK: State<Attack> = "soccer/attack";
     /// Asks Vision to begin afresh; SendCalibration says it.
     pub CALIBRATION: State<Calibration> = "soccer/calibration";
 }

@@ -9,7 +9,7 @@ use monas_robot::{
 use narukom::Moment;
 
 use super::skill::SkillTrack;
-use super::{Pitch, announce};
+use super::{Pitch, air, announce};
 use crate::{Command, Motion, Phase, Physics, Senses, Side, Sighting, Velocity};
 
 /// How often a body senses and acts: every second step of the world, 50 Hz.
@@ -108,6 +108,7 @@ impl Robot for FieldBody {
         let on_field = {
             let mut ground = self.pitch.lock();
             ground.world.sense(self.robot, &mut self.senses).map_err(refused)?;
+            ground.air.listen(self.robot, now.as_nanos(), &mut percepts.heard);
             ground.world.robots()[self.robot].on_field
         };
         let was_busy = self.skill.motion().is_some();
@@ -125,6 +126,15 @@ impl Robot for FieldBody {
         self.command = *actuators;
         self.skill.command(actuators);
         self.drive()
+    }
+
+    fn say(&mut self, _now: Moment, words: &[u8]) -> Result<(), Error> {
+        if words.len() > self.anatomy.radio {
+            let message = format!("{} bytes are more than the {} of a message", words.len(), self.anatomy.radio);
+            return Err(Error::new(ErrorKind::Protocol, message));
+        }
+        self.pitch.lock().air.say(self.robot, words);
+        Ok(())
     }
 }
 
@@ -153,6 +163,7 @@ fn anatomy(physics: &Physics) -> Anatomy {
             Skill::DiveRight,
             Skill::StandUp,
         ],
+        radio: air::LONGEST,
         ..Anatomy::new("field robot", CYCLE)
     }
 }
@@ -215,6 +226,26 @@ mod tests {
         let mut body = pitch.body(0).unwrap();
         monas_robot::conformance::check(&mut body);
         assert!(pitch.body(1).is_none());
+    }
+
+    #[test]
+    fn what_is_said_is_heard_once_by_the_others_of_the_team() {
+        let pitch = Pitch::new(World::new(Setup::three_against_three(7)).unwrap());
+        let mut bodies: Vec<FieldBody> = (0..6).filter_map(|robot| pitch.body(robot)).collect();
+        bodies[1].say(Moment::ZERO, b"mine").unwrap();
+        for heard_then in [[1, 0, 1, 0, 0, 0], [0; 6]] {
+            let now = Moment::from_nanos(20_000_000);
+            let heard = bodies.iter_mut().map(|body| {
+                let mut percepts = Percepts::default();
+                body.sense(now, &mut percepts).unwrap();
+                assert!(percepts.heard.iter().all(|it| {
+                    (it.number, it.heard_at, &it.words[..]) == (2, now.as_nanos(), b"mine")
+                }));
+                percepts.heard.len()
+            });
+            assert_eq!(heard.collect::<Vec<_>>(), heard_then);
+        }
+        assert!(bodies[1].say(Moment::ZERO, &[0; 129]).is_err());
     }
 
     #[test]

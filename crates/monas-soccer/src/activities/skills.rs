@@ -14,9 +14,10 @@ const LOOK: Duration = Duration::from_millis(100);
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A motion under way: its number and since when.
-type UnderWay = Option<(u64, Moment)>;
+pub(super) type UnderWay = Option<(u64, Moment)>;
 
-fn perform(
+/// Asks for a motion once; done when it is over.
+pub(super) fn perform(
     under_way: &mut UnderWay,
     kind: MotionKind,
     blackboard: &mut Blackboard,

@@ -72,7 +72,7 @@ fn before_area(ground: &Ground, place: Point2<f64>) -> Option<Point2<f64>> {
 }
 
 /// Walks to a place, round robots and ball, and stays there, facing the ball.
-fn wait_at(place: Point2<f64>, ball: &Ball, obstacles: &[Point2<f64>]) -> Walk {
+pub(super) fn wait_at(place: Point2<f64>, ball: &Ball, obstacles: &[Point2<f64>]) -> Walk {
     let way = place.coords.norm();
     if way < 0.2 {
         return Walk::turning(turn_to(ball.bearing));

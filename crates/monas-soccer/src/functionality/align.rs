@@ -39,6 +39,8 @@ impl Default for Alignment {
     }
 }
 
+/// How far from a foot's place the ball may lie for a kick, metres.
+const AT_FOOT: f64 = 0.025;
 /// Gain from metres off to metres a second.
 const GAIN: f64 = 1.5;
 /// Gain from radians off to radians a second.
@@ -54,6 +56,12 @@ impl Alignment {
     /// The foot's place nearest to the ball.
     pub fn kick_point(&self, ball: Point2<f64>) -> Point2<f64> {
         Point2::new(self.kick_x, if ball.y >= 0.0 { self.kick_y } else { -self.kick_y })
+    }
+
+    /// Whether the ball lies where a foot meets it well.
+    pub fn is_at_foot(&self, ball: Point2<f64>) -> bool {
+        let off = ball - self.kick_point(ball);
+        off.x.abs() <= AT_FOOT && off.y.abs() <= AT_FOOT
     }
 
     fn may_close_in(&self, ball: Point2<f64>, off: f64) -> bool {

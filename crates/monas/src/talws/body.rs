@@ -2,11 +2,14 @@
 
 use std::time::Duration;
 
-use monas_robot::topics::{ACTUATORS, ANNOUNCEMENT, SENSORS, SIGHTINGS};
-use monas_robot::{Actuators, Announcement, Percepts, Robot, Sensors, Sightings};
-use narukom::{Blackboard, Moment, Narukom, Publisher};
+use monas_robot::topics::{ACTUATORS, ANNOUNCEMENT, HEARD, SAID, SENSORS, SIGHTINGS};
+use monas_robot::{Actuators, Announcement, Heard, Percepts, Robot, Sensors, Sightings};
+use narukom::{Blackboard, Keep, Moment, Narukom, Publisher, PublisherId, Topic};
 
 use crate::error::{Error, ErrorKind};
+
+/// A message, by its publisher and sequence number.
+type Which = (PublisherId, u64);
 
 /// A body and its connections to the hub of its host.
 pub(crate) struct Body {
@@ -15,9 +18,11 @@ pub(crate) struct Body {
     sensors: Publisher<Sensors>,
     sightings: Publisher<Sightings>,
     announcement: Publisher<Announcement>,
+    heard: Publisher<Heard>,
     commands: Blackboard,
-    /// The sequence number and publisher of the actuators that were handed over last.
-    handed: Option<(narukom::PublisherId, u64)>,
+    /// The actuators and the words that were handed over last.
+    handed: Option<Which>,
+    said: Option<Which>,
     /// Whether it is to stand still whatever the agents want.
     safe: bool,
 }
@@ -33,8 +38,10 @@ impl Body {
             sensors: hub.publisher(SENSORS, Body::PUBLISHER).map_err(Error::hub)?,
             sightings: hub.publisher(SIGHTINGS, Body::PUBLISHER).map_err(Error::hub)?,
             announcement: hub.publisher(ANNOUNCEMENT, Body::PUBLISHER).map_err(Error::hub)?,
+            heard: hub.publisher(HEARD, Body::PUBLISHER).map_err(Error::hub)?,
             commands: hub.blackboard(Body::PUBLISHER),
             handed: None,
+            said: None,
             safe: false,
         })
     }
@@ -48,6 +55,7 @@ impl Body {
     pub(crate) fn sense(&mut self, now: Moment) -> Result<(), Error> {
         self.percepts.sightings = None;
         self.percepts.announcement = None;
+        self.percepts.heard.clear();
         self.robot.sense(now, &mut self.percepts).map_err(failed)?;
         self.sensors.publish(self.percepts.sensors, now);
         if let Some(sightings) = self.percepts.sightings.take() {
@@ -56,22 +64,25 @@ impl Body {
         if let Some(announcement) = self.percepts.announcement.take() {
             self.announcement.publish(announcement, now);
         }
+        for heard in self.percepts.heard.drain(..) {
+            self.heard.publish(heard, now);
+        }
         Ok(())
     }
 
-    /// Hands over the newest actuators, if there are any that it does not have yet.
+    /// Hands over the newest words and actuators, if there are any that it does not have yet.
     pub(crate) fn act(&mut self, now: Moment) -> Result<(), Error> {
         if self.safe {
             return Ok(());
         }
         self.commands.process_messages(now);
-        let Some(sample) = self.commands.sample(ACTUATORS) else { return Ok(()) };
-        let newest = (sample.header.publisher, sample.header.sequence);
-        if self.handed == Some(newest) {
-            return Ok(());
+        if let Some(said) = newest(&self.commands, SAID, &mut self.said) {
+            self.robot.say(now, &said.words).map_err(failed)?;
         }
-        self.handed = Some(newest);
-        self.robot.act(now, sample.message).map_err(failed)
+        match newest(&self.commands, ACTUATORS, &mut self.handed) {
+            Some(actuators) => self.robot.act(now, actuators).map_err(failed),
+            None => Ok(()),
+        }
     }
 
     /// Lets it stand still from now on, whatever the agents want.
@@ -79,6 +90,17 @@ impl Body {
         self.safe = true;
         self.robot.act(now, &Actuators::default()).map_err(failed)
     }
+}
+
+/// The newest message of a topic, if it is not the one that was taken before.
+fn newest<'a, K: Keep>(
+    commands: &'a Blackboard,
+    topic: Topic<K>,
+    taken: &mut Option<Which>,
+) -> Option<&'a K::Message> {
+    let sample = commands.sample(topic)?;
+    let which = (sample.header.publisher, sample.header.sequence);
+    (taken.replace(which) != Some(which)).then_some(sample.message)
 }
 
 fn failed(error: monas_robot::Error) -> Error {

@@ -1,0 +1,68 @@
+//! The attack protocol in matches: two field players of a team engage in it by its rules, and leave it by each of its outcomes.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use monas::{MicroStep, Moment};
+use monas_match::{Match, Options};
+use monas_tests::root;
+use yase::{Chart, NodeKind, TransitionId};
+
+/// The parts of the protocol, as the chart names them.
+const PARTS: [&str; 2] = ["center", "center_for"];
+
+/// A robot takes a part, or leaves it.
+#[derive(Clone, PartialEq, Eq, Debug)]
+struct Turn {
+    at: Moment,
+    host: String,
+    part: &'static str,
+    /// The guard by which the part is left, empty when all of it is done; none when it is taken.
+    left_by: Option<String>,
+}
+
+/// What a segment means for the protocol: a way from a CONDITION into a part, or from a part to an END.
+fn turn(chart: &Chart, segment: TransitionId) -> Option<(&'static str, Option<String>)> {
+    let statechart = chart.statechart();
+    let transition = statechart.transition(segment);
+    let (source, target) = (statechart.node(transition.source), statechart.node(transition.target));
+    let part = |name: &str| PARTS.into_iter().find(|part| *part == name);
+    match (source.kind, target.kind) {
+        (NodeKind::Condition, NodeKind::Or) => Some((part(&target.name)?, None)),
+        (NodeKind::Or, NodeKind::End) => Some((part(&source.name)?, Some(transition.expression.to_string()))),
+        _ => None,
+    }
+}
+
+/// All that blue's field players do about the protocol in a match.
+fn played(file: &str, seed: u64, seconds: u64) -> Vec<Turn> {
+    let turns = Arc::new(Mutex::new(Vec::new()));
+    let noted = turns.clone();
+    let plan = Match::load(root().join(file), &monas::Registry::linked()).unwrap();
+    let plan = plan.listen(Box::new(move |step: MicroStep<'_>| {
+        let selected = step.record.selected.iter().flat_map(|&compound| step.chart.segments(compound));
+        for (part, left_by) in selected.filter_map(|segment| turn(step.chart, segment)) {
+            noted.lock().unwrap().push(Turn { at: step.record.time, host: step.host.to_owned(), part, left_by });
+        }
+    }));
+    let mut running = plan.start(Options { seed, record: None }).unwrap();
+    running.advance(Duration::from_secs(seconds)).unwrap();
+    drop(running);
+    std::mem::take(&mut *turns.lock().unwrap())
+}
+
+#[test]
+fn explore() {
+    let seeds: u64 = std::env::var("SEEDS").unwrap().parse().unwrap();
+    let seconds: u64 = std::env::var("SECONDS_").unwrap().parse().unwrap();
+    let mut sum: BTreeMap<(String, Option<String>), usize> = BTreeMap::new();
+    for seed in 1..=seeds {
+        let turns = played("config/match_attack.xml", seed, seconds);
+        for turn in &turns {
+            println!("{seed} {:.2} {} {} {:?}", turn.at.as_secs_f64(), turn.host, turn.part, turn.left_by);
+            *sum.entry((turn.part.into(), turn.left_by.clone())).or_default() += 1;
+        }
+    }
+    println!("{sum:#?}");
+}
