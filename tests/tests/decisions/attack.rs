@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use monas::{MicroStep, Moment};
+use monas::MicroStep;
 use monas_match::{Match, Options};
 use monas_tests::root;
-use yase::{Chart, NodeKind, TransitionId};
+use yase::{Chart, Moment, NodeKind, TransitionId};
 
 /// The parts of the protocol, as the chart names them.
 const PARTS: [&str; 2] = ["center", "center_for"];
@@ -42,8 +42,13 @@ fn played(file: &str, seed: u64, seconds: u64) -> Vec<Turn> {
     let plan = Match::load(root().join(file), &monas::Registry::linked()).unwrap();
     let plan = plan.listen(Box::new(move |step: MicroStep<'_>| {
         let selected = step.record.selected.iter().flat_map(|&compound| step.chart.segments(compound));
-        for (part, left_by) in selected.filter_map(|segment| turn(step.chart, segment)) {
-            noted.lock().unwrap().push(Turn { at: step.record.time, host: step.host.to_owned(), part, left_by });
+        for (part, left_by) in selected.filter_map(|segment| turn(step.chart, *segment)) {
+            noted.lock().unwrap().push(Turn {
+                at: step.record.time,
+                host: step.host.to_owned(),
+                part,
+                left_by,
+            });
         }
     }));
     let mut running = plan.start(Options { seed, record: None }).unwrap();
@@ -53,16 +58,29 @@ fn played(file: &str, seed: u64, seconds: u64) -> Vec<Turn> {
 }
 
 #[test]
-fn explore() {
-    let seeds: u64 = std::env::var("SEEDS").unwrap().parse().unwrap();
-    let seconds: u64 = std::env::var("SECONDS_").unwrap().parse().unwrap();
-    let mut sum: BTreeMap<(String, Option<String>), usize> = BTreeMap::new();
-    for seed in 1..=seeds {
-        let turns = played("config/match_attack.xml", seed, seconds);
-        for turn in &turns {
-            println!("{seed} {:.2} {} {} {:?}", turn.at.as_secs_f64(), turn.host, turn.part, turn.left_by);
-            *sum.entry((turn.part.into(), turn.left_by.clone())).or_default() += 1;
+fn two_players_engage_in_the_protocol_and_leave_it_by_each_outcome() {
+    let mut left: BTreeMap<String, usize> = BTreeMap::new();
+    for seed in 1..=2 {
+        let turns = played("config/match_attack.xml", seed, 120);
+        for part in PARTS {
+            assert!(
+                turns.iter().any(|turn| turn.part == part && turn.left_by.is_none()),
+                "{seed}: nobody is {part}"
+            );
+        }
+        for by in turns.iter().filter_map(|turn| turn.left_by.clone()) {
+            *left.entry(by).or_default() += 1;
         }
     }
-    println!("{sum:#?}");
+    for outcome in ["[Attack.shot_at_goal]", "[Attack.opponent_has_ball]", "[Attack.ball_is_out]"] {
+        assert!(left.contains_key(outcome), "nobody leaves by {outcome}: {left:?}");
+    }
+    println!("{left:?}");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_attacks() {
+    let turns = played("config/match_attack.xml", 1, 30);
+    assert!(!turns.is_empty());
+    assert_eq!(played("config/match_attack.xml", 1, 30), turns);
 }

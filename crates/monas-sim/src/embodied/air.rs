@@ -32,7 +32,8 @@ impl Air {
     pub(super) fn say(&mut self, robot: usize, words: &[u8]) {
         let Some(&Listener { team, number, .. }) = self.listeners.get(robot) else { return };
         let heard = || Heard { number: number.into(), heard_at: 0, words: words.to_vec() };
-        let others = self.listeners.iter_mut().enumerate().filter(|(index, it)| *index != robot && it.team == team);
+        let others =
+            self.listeners.iter_mut().enumerate().filter(|(index, it)| *index != robot && it.team == team);
         others.for_each(|(_, other)| other.waiting.push(heard()));
     }
 

@@ -130,7 +130,8 @@ impl Robot for FieldBody {
 
     fn say(&mut self, _now: Moment, words: &[u8]) -> Result<(), Error> {
         if words.len() > self.anatomy.radio {
-            let message = format!("{} bytes are more than the {} of a message", words.len(), self.anatomy.radio);
+            let message =
+                format!("{} bytes are more than the {} of a message", words.len(), self.anatomy.radio);
             return Err(Error::new(ErrorKind::Protocol, message));
         }
         self.pitch.lock().air.say(self.robot, words);
@@ -235,14 +236,15 @@ mod tests {
         bodies[1].say(Moment::ZERO, b"mine").unwrap();
         for heard_then in [[1, 0, 1, 0, 0, 0], [0; 6]] {
             let now = Moment::from_nanos(20_000_000);
-            let heard = bodies.iter_mut().map(|body| {
-                let mut percepts = Percepts::default();
-                body.sense(now, &mut percepts).unwrap();
-                assert!(percepts.heard.iter().all(|it| {
-                    (it.number, it.heard_at, &it.words[..]) == (2, now.as_nanos(), b"mine")
-                }));
-                percepts.heard.len()
-            });
+            let heard =
+                bodies.iter_mut().map(|body| {
+                    let mut percepts = Percepts::default();
+                    body.sense(now, &mut percepts).unwrap();
+                    assert!(percepts.heard.iter().all(|it| {
+                        (it.number, it.heard_at, &it.words[..]) == (2, now.as_nanos(), b"mine")
+                    }));
+                    percepts.heard.len()
+                });
             assert_eq!(heard.collect::<Vec<_>>(), heard_then);
         }
         assert!(bodies[1].say(Moment::ZERO, &[0; 129]).is_err());

@@ -40,7 +40,8 @@ impl AttackWatch {
         let opponents: Vec<Point2<f64>> =
             opponents.map(|robot| ground.field_from_robot * robot.position()).collect();
         let own = player(&own, ball);
-        let scene = Scene { field: ground.field, ball, rolling, at_foot, own, mates: &mates, opponents: &opponents };
+        let scene =
+            Scene { field: ground.field, ball, rolling, at_foot, own, mates: &mates, opponents: &opponents };
         Some(message(&judge(&scene), own.place))
     }
 
@@ -115,7 +116,13 @@ mod tests {
     /// A player in the middle of the field that looks at the opponents' goal, and what it judges.
     fn judged(ball: Ball, mates: &[TeamReport], opponents: &[(f64, f64)]) -> Attack {
         let mut stage = Stage::new();
-        let game = GameState { number: 2, field_length: 6.0, field_width: 4.0, goal_width: 1.4, ..GameState::default() };
+        let game = GameState {
+            number: 2,
+            field_length: 6.0,
+            field_width: 4.0,
+            goal_width: 1.4,
+            ..GameState::default()
+        };
         let robot = |&(x, y)| OtherRobot { x, y, team_mate: false, age: 0.0 };
         let own = TeamReport { number: 2, ball_found: ball.found, ball_distance: ball.distance, ..far() };
         stage.tell(topics::GAME_STATE, game).tell(topics::POSE, Pose::default()).tell(topics::BALL, ball);
@@ -154,15 +161,20 @@ mod tests {
 
     #[test]
     fn a_ball_that_only_the_mate_sees_is_believed_to_be_there() {
-        let mate = TeamReport { number: 3, ball_found: true, ball_x: 2.0, x: 1.5, ball_distance: 0.5, ..far() };
+        let mate =
+            TeamReport { number: 3, ball_found: true, ball_x: 2.0, x: 1.5, ball_distance: 0.5, ..far() };
         let attack = judged(Ball::default(), &[mate], &[]);
         assert_eq!((attack.part(), attack.center_is_closest), (AttackPart::CenterFor, true));
-        assert_eq!(judged(Ball::default(), &[TeamReport { ball_found: false, ..mate }], &[]), Attack::default());
+        assert_eq!(
+            judged(Ball::default(), &[TeamReport { ball_found: false, ..mate }], &[]),
+            Attack::default()
+        );
     }
 
     #[test]
     fn what_was_told_grows_old() {
-        let told = |age| judged(ball(1.0, 0.0), &[TeamReport { number: 3, since_shot: 0.5, age, ..far() }], &[]);
+        let told =
+            |age| judged(ball(1.0, 0.0), &[TeamReport { number: 3, since_shot: 0.5, age, ..far() }], &[]);
         assert!(told(0.1).shot_at_goal && !told(0.6).shot_at_goal);
     }
 }

@@ -64,7 +64,13 @@ impl BringBall {
         self.alignment.is_at_foot(ball.position()) && off.abs() < FACING
     }
 
-    fn walk(&self, blackboard: &Blackboard, ball: &Ball, target: Point2<f64>, ground: Option<&Ground>) -> Walk {
+    fn walk(
+        &self,
+        blackboard: &Blackboard,
+        ball: &Ball,
+        target: Point2<f64>,
+        ground: Option<&Ground>,
+    ) -> Walk {
         if ball.distance <= NEAR {
             return self.alignment.walk(ball.position(), target);
         }
@@ -94,13 +100,16 @@ macro_rules! bring_ball {
         }
 
         impl Activity for $name {
-            fn start(&mut self, _: &mut Blackboard) -> Result<(), BoxError> {
-                self.bring.since = None;
-                Ok(())
+            fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
+                let progress = self.bring.go_on(blackboard, $target)?;
+                if progress == Progress::Done {
+                    self.bring.since = None;
+                }
+                Ok(progress)
             }
 
-            fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
-                self.bring.go_on(blackboard, $target)
+            fn stop(&mut self, _: &mut Blackboard) {
+                self.bring.since = None;
             }
 
             fn topics(&self) -> Topics {
@@ -172,7 +181,6 @@ mod tests {
         let mut stage = stage((2.0, 0.0));
         assert!(!stage.run(&mut activity));
         assert!(stage.wait(PATIENCE + LOOK).run(&mut activity));
-        activity.bring.since = None;
-        assert!(!stage.run(&mut activity), "a new start has new patience");
+        assert!(!stage.run(&mut activity), "whoever begins anew has new patience");
     }
 }

@@ -25,15 +25,13 @@ pub struct PassBall {
 const WATCH: Duration = Duration::from_secs(6);
 
 impl Activity for PassBall {
-    fn start(&mut self, _: &mut Blackboard) -> Result<(), BoxError> {
-        *self = PassBall { head: self.head, ..PassBall::default() };
-        Ok(())
-    }
-
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let now = blackboard.now();
         match self.kicked_at {
-            Some(kicked_at) if now.since(kicked_at) >= WATCH => Ok(Progress::Done),
+            Some(kicked_at) if now.since(kicked_at) >= WATCH => {
+                self.forget();
+                Ok(Progress::Done)
+            }
             Some(_) => self.watch(blackboard),
             None => {
                 let progress = self.kick(blackboard)?;
@@ -46,6 +44,10 @@ impl Activity for PassBall {
         }
     }
 
+    fn stop(&mut self, _: &mut Blackboard) {
+        self.forget();
+    }
+
     fn topics(&self) -> Topics {
         let topics = Topics::declared().reads(topics::BALL).reads(topics::MOTION).reads(topics::MOTION_STATE);
         topics.publishes(topics::MOTION).publishes(topics::HEAD)
@@ -53,6 +55,10 @@ impl Activity for PassBall {
 }
 
 impl PassBall {
+    fn forget(&mut self) {
+        *self = PassBall { head: self.head, ..PassBall::default() };
+    }
+
     fn kick(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let is_left = blackboard.read(topics::BALL).is_some_and(|ball| ball.y >= 0.0);
         let foot = if is_left { MotionKind::KickLeft } else { MotionKind::KickRight };

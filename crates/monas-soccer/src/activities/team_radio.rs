@@ -166,7 +166,8 @@ mod tests {
             let (mut stage, mut radio) = player();
             let attack = Attack { part: AttackPart::Center.into(), pass_is_open, ..Attack::default() };
             stage.tell(topics::ATTACK, attack);
-            let kick = MotionRequest { kind: MotionKind::KickLeft.into(), number: 1, ..MotionRequest::default() };
+            let kick =
+                MotionRequest { kind: MotionKind::KickLeft.into(), number: 1, ..MotionRequest::default() };
             stage.tell(topics::MOTION, kick);
             stage.run(&mut radio);
             assert_eq!((told(&mut stage).since_pass, told(&mut stage).since_shot), (NEVER, NEVER));

@@ -26,17 +26,13 @@ pub struct WalkTowardsGoal {
 const PATIENCE: Duration = Duration::from_secs(30);
 
 impl Activity for WalkTowardsGoal {
-    fn start(&mut self, _: &mut Blackboard) -> Result<(), BoxError> {
-        self.since = None;
-        Ok(())
-    }
-
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let now = blackboard.now();
         let late = now.since(*self.since.get_or_insert(now)) > PATIENCE;
         let passed = blackboard.read(topics::ATTACK).is_some_and(|attack| attack.ball_is_passed);
         let ball = blackboard.read(topics::BALL).copied().filter(|ball| ball.age < LOST);
         let (Some(ball), Some(ground), false) = (ball, ground(blackboard), late || passed) else {
+            self.since = None;
             return Ok(Progress::Done);
         };
         let here = Point2::from(ground.field_from_robot.translation.vector);
@@ -46,6 +42,10 @@ impl Activity for WalkTowardsGoal {
         request_gaze(blackboard, self.head.look_at(ball.position()))?;
         request_walk(blackboard, walk)?;
         Ok(Progress::after(LOOK))
+    }
+
+    fn stop(&mut self, _: &mut Blackboard) {
+        self.since = None;
     }
 
     fn topics(&self) -> Topics {
@@ -95,5 +95,6 @@ mod tests {
         let (mut waiting, mut activity) = (stage(pose, ball(1.0, 0.0)), WalkTowardsGoal::default());
         assert!(!waiting.run(&mut activity));
         assert!(waiting.wait(PATIENCE + LOOK).run(&mut activity));
+        assert!(!waiting.run(&mut activity), "whoever begins anew has new patience");
     }
 }

@@ -140,7 +140,8 @@ fn parts<'a>(scene: &'a Scene<'_>) -> Option<(&'a Player, &'a Player)> {
     }
     let nearest = nearest_but(None)?;
     let others = players(scene).filter(|it| it.number != nearest.number);
-    let farthest = others.max_by(|a, b| a.ball_distance.total_cmp(&b.ball_distance).then(a.number.cmp(&b.number)));
+    let farthest =
+        others.max_by(|a, b| a.ball_distance.total_cmp(&b.ball_distance).then(a.number.cmp(&b.number)));
     Some((nearest, farthest?))
 }
 
@@ -186,7 +187,14 @@ mod tests {
     fn player(number: u32, x: f64, y: f64) -> Player {
         let place = Point2::new(x, y);
         let far = f64::INFINITY;
-        Player { number, place, heading: 0.0, ball_distance: place.coords.norm(), since_pass: far, since_shot: far }
+        Player {
+            number,
+            place,
+            heading: 0.0,
+            ball_distance: place.coords.norm(),
+            since_pass: far,
+            since_shot: far,
+        }
     }
 
     /// The ball lies in the middle of the field; player 2 judges.

@@ -51,7 +51,11 @@ mod tests {
     fn a_kick_is_over_once_the_foot_has_met_the_ball() {
         let (mut kicks, at) = (Kicks::default(), |millis: u64| Moment::from_nanos(millis * 1_000_000));
         kicks.wish(at(0), 0, false);
-        assert_eq!((kicks.since_pass(at(900)), kicks.since_shot(at(900))), (None, None), "nothing was wished");
+        assert_eq!(
+            (kicks.since_pass(at(900)), kicks.since_shot(at(900))),
+            (None, None),
+            "nothing was wished"
+        );
         kicks.wish(at(1000), 1, true);
         kicks.wish(at(1700), 1, false);
         assert_eq!(kicks.since_pass(at(1700)), None, "not yet");
