@@ -10,8 +10,8 @@ use kit::{BALL, Ball, NEWS, at, recorder};
 use monas::{
     Agent, Blackboard, BoxError, ErrorKind, HostConfig, Hz, Moment, Policy, Progress, RunHash, Talws, World,
 };
-use monas_robot::topics::{ACTUATORS, SENSORS};
-use monas_robot::{Actuators, Anatomy, Percepts, Robot};
+use monas_robot::topics::{ACTUATORS, SAID, SENSORS};
+use monas_robot::{Actuators, Anatomy, Percepts, Robot, Said};
 
 fn hello(_: &mut Blackboard) {}
 
@@ -290,4 +290,15 @@ fn in_the_safe_state_the_body_stands_still_whatever_is_published() {
     assert_eq!(acts, ["0 act 0.3", "10 act 0.3", "20 act 0"]);
     let stopped = simulation.statistics().agents[1].stopped.clone();
     assert_eq!(stopped.as_deref(), Some("activity `closure` failed in cycle 3: broken leg"));
+}
+
+#[test]
+fn a_body_that_cannot_speak_still_walks() {
+    let speaks = |b: &mut Blackboard| -> Result<(), BoxError> {
+        b.publish(SAID, Said { words: vec![1] })?;
+        Ok(b.publish(ACTUATORS, Actuators { walk_x: 0.3, ..Actuators::default() })?)
+    };
+    let (talws, log) = embodied(vec![Agent::new("a", Hz(100)).activity(speaks)]);
+    talws.simulate(1).unwrap().run_until(at(15)).unwrap();
+    assert_eq!(*log.lock().unwrap(), ["0 sense", "0 act 0.3", "10 sense", "10 act 0.3"]);
 }

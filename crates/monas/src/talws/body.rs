@@ -76,8 +76,11 @@ impl Body {
             return Ok(());
         }
         self.commands.process_messages(now);
-        if let Some(said) = newest(&self.commands, SAID, &mut self.said) {
-            self.robot.say(now, &said.words).map_err(failed)?;
+        if let Some(said) = newest(&self.commands, SAID, &mut self.said)
+            && let Err(error) = self.robot.say(now, &said.words)
+        {
+            // a body that cannot speak can still walk
+            tracing::error!(robot = %self.commands.hub().host(), "nothing is said: {error}");
         }
         match newest(&self.commands, ACTUATORS, &mut self.handed) {
             Some(actuators) => self.robot.act(now, actuators).map_err(failed),
