@@ -38,6 +38,14 @@ fn a_run_is_logged_as_the_file_says() {
 }
 
 #[test]
+fn the_settings_that_are_shipped_are_understood() {
+    let (settings, wrong) = monas::logger::Settings::load(root().join("config/logger.xml"));
+    assert!(wrong.is_empty(), "{wrong:?}");
+    assert_eq!(settings.file.as_deref(), Some(Path::new("MonasLog.txt")));
+    assert!(settings.console && settings.colour && settings.filter.is_none());
+}
+
+#[test]
 fn what_the_file_says_wrongly_is_told_before_anything_runs() {
     let folder = tempfile::tempdir().expect("a folder");
     let answer =
