@@ -2,7 +2,7 @@
 
 mod arguments;
 mod change;
-mod list;
+pub(crate) mod list;
 mod save;
 
 use monas::records::{Inquiry, Reply};

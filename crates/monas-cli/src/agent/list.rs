@@ -109,12 +109,17 @@ fn activity((activity, place): (&ActivityEntry, usize)) -> [String; 8] {
         place,
         activity.name.clone(),
         parameters.join(" "),
-        activity.state.clone(),
+        short(&activity.state).to_owned(),
         activity.calls.to_string(),
         activity.failures.to_string(),
         millis(times.map(|times| times.mean)),
         millis(times.map(|times| times.longest)),
     ]
+}
+
+/// The end of a state's path, the state and what it lies in: paths of charts that were formulas are long.
+pub(crate) fn short(path: &str) -> &str {
+    path.rmatch_indices('/').nth(1).map_or(path, |(place, _)| &path[place + 1..])
 }
 
 fn object(agent: &AgentEntry) -> Value {
@@ -142,4 +147,14 @@ fn object(agent: &AgentEntry) -> Value {
         "frequency": agent.frequency, "priority": agent.priority, "on_failure": agent.on_failure,
         "cycles": agent.cycles, "overruns": agent.overruns, "missed": agent.missed, "micro_steps": agent.micro_steps,
         "cycle_time": times(agent.cycle_time.as_ref()), "activities": activities, "charts": charts})
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn of_a_path_the_last_two_states_are_shown() {
+        assert_eq!(["", "A", "a/A", "b/a/A", "a||(b/c)/d/A"].map(short), ["", "A", "a/A", "a/A", "d/A"]);
+    }
 }

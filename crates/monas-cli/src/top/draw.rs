@@ -75,13 +75,9 @@ impl Screen {
 
     fn head(&self) -> Line<'_> {
         let Figures { run, now, agents, .. } = &self.figures;
-        let load: f64 = agents.iter().filter_map(|agent| agent.load).sum();
-        let figures = format!(
-            "  {:.1} s  {} agents  {} of a core",
-            now.as_secs_f64(),
-            agents.len(),
-            told::share(Some(load))
-        );
+        let load = agents.iter().filter_map(|agent| agent.load).reduce(|sum, load| sum + load);
+        let figures =
+            format!("  {:.1} s  {} agents  {} of a core", now.as_secs_f64(), agents.len(), told::share(load));
         Line::from(vec![Span::styled(run.as_str(), HEADER), Span::raw(figures)])
     }
 

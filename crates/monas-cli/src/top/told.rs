@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use serde_json::{Value, json};
 
 use super::figures::{ActivityFigures, AgentFigures, Figures};
+use crate::agent::list::short;
 use crate::run::table;
 
 /// How many topics are told.
@@ -69,7 +70,7 @@ pub(super) fn activity(activity: &ActivityFigures) -> [String; 8] {
     let times = entry.call_time.as_ref();
     [
         entry.name.clone(),
-        entry.state.clone(),
+        short(&entry.state).to_owned(),
         remark.map_or_else(String::new, |remark| remark.name().into()),
         number(*hz),
         share(*load),
