@@ -54,7 +54,7 @@ pub(crate) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Re
 
 /// Has a log written as a file says.
 fn write_log(file: &Path, format: Format, console: &Console<'_>) -> Result<(), Failure> {
-    let (settings, diagnostics) = Settings::load(file);
+    let (mut settings, diagnostics) = Settings::load(file);
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(Failure::Invalid(format, diagnostics));
     }
@@ -63,6 +63,7 @@ fn write_log(file: &Path, format: Format, console: &Console<'_>) -> Result<(), F
             "--log is for the command: the program that calls it has a log of its own".into(),
         ));
     };
+    settings.colour &= console.colour_err;
     log.write(settings)
         .map_err(|error| Failure::failed(format, format_args!("the log of {}: {error}", file.display())))
 }

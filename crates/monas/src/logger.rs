@@ -68,7 +68,7 @@ mod record;
 mod settings;
 
 pub(crate) use context::{Caller, Simulating, calling};
-pub use layer::{LogLayer, Logger, layer};
+pub use layer::{Logger, layer};
 pub use record::Severity;
 pub use settings::{Format, Settings};
 

@@ -7,9 +7,9 @@ use std::cell::Cell;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::sync::Arc;
 
 use monas::logger::{self, Format, Logger, Settings, Severity};
+use monas::records::{Action, Change};
 use monas::{Agent, Blackboard, BoxError, Hz, Talws};
 use narukom::Moment;
 use tracing::Dispatch;
@@ -189,6 +189,21 @@ fn a_line_says_which_activity_of_which_robot_wrote_it_and_when_and_the_same_run_
 }
 
 #[test]
+fn a_change_is_logged_at_the_time_of_the_simulation() {
+    let log = written(
+        |settings| settings,
+        || {
+            let mut simulation = team().simulate(1).unwrap();
+            simulation.run_until(Moment::from_nanos(10_000_000)).unwrap();
+            let pause =
+                Change { action: Action::PauseAgent.into(), agent: "mind".into(), ..Change::default() };
+            assert!(simulation.change("local", pause).unwrap().done);
+        },
+    );
+    assert!(log.contains("    0.010000 s INFO  [local mind] changed action=PauseAgent\n"), "{log}");
+}
+
+#[test]
 fn json_has_an_object_a_line() {
     let run = || {
         team().simulate(1).unwrap().run_until(Moment::from_nanos(30_000_000)).unwrap();
@@ -249,55 +264,51 @@ fn a_log_begins_once() {
     assert!(other.begin(to(&folder.path().join("no/folder"))).is_err());
 }
 
-const CHILD: &str = "MONAS_LOG_TEST_CHILD";
+/// Names the file of a process that is to be killed.
+const DOOMED: &str = "MONAS_LOG_OF_THE_DOOMED";
 
-/// Not a test of its own: what the process does that the next two kill.
-#[test]
-fn child() {
-    let Ok(how) = std::env::var(CHILD) else { return };
-    let (file, ends) = how.split_once('|').unwrap();
-    let (dispatch, logger) = begun(Settings { verbosity: Severity::FatalError, ..to(Path::new(file)) });
-    let dispatch = Arc::new(dispatch);
-    tracing::dispatcher::with_default(&dispatch, || {
-        tracing::error!("one leg is gone");
-        monas::fatal!("so is the other");
-    });
-    if ends == "abort" {
-        std::process::abort();
+/// In a process of its own that runs this very test: writes two lines and says so, and comes to its end. Here: what the file holds when that
+/// process is gone. `is_killed` says whether it is killed from here.
+fn of_the_doomed(test: &str, is_killed: bool, end: fn()) -> String {
+    if let Some(file) = std::env::var_os(DOOMED) {
+        let (dispatch, _logger) = begun(Settings { verbosity: Severity::FatalError, ..to(Path::new(&file)) });
+        tracing::dispatcher::with_default(&dispatch, || {
+            tracing::error!("one leg is gone");
+            monas::fatal!("so is the other");
+        });
+        println!("written");
+        std::io::stdout().flush().unwrap();
+        end();
+        unreachable!("the process has ended");
     }
-    println!("written");
-    std::io::stdout().flush().unwrap();
-    // until it is killed
-    std::io::stdin().read_line(&mut String::new()).unwrap();
-    drop(logger);
-}
-
-fn of_a_child(ends: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("log.txt");
-    let mut child = Command::new(std::env::current_exe().unwrap())
-        .args(["child", "--exact", "--nocapture"])
-        .env(CHILD, format!("{}|{ends}", file.display()))
+    let mut process = Command::new(std::env::current_exe().unwrap())
+        .args([test, "--exact", "--nocapture"])
+        .env(DOOMED, &file)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    if ends == "kill" {
-        let lines = BufReader::new(child.stdout.take().unwrap()).lines();
-        lines.map(Result::unwrap).find(|line| line.ends_with("written")).unwrap();
-        child.kill().unwrap();
+    let lines = BufReader::new(process.stdout.take().unwrap()).lines();
+    lines.map(Result::unwrap).find(|line| line.ends_with("written")).unwrap();
+    if is_killed {
+        process.kill().unwrap();
     }
-    assert!(!child.wait().unwrap().success());
+    assert!(!process.wait().unwrap().success());
     std::fs::read_to_string(file).unwrap()
 }
 
 #[test]
 fn errors_are_on_the_disk_when_a_process_aborts() {
-    assert_eq!(without_times(&of_a_child("abort")), ["ERROR one leg is gone", "FATAL so is the other"]);
+    let log = of_the_doomed("errors_are_on_the_disk_when_a_process_aborts", false, || std::process::abort());
+    assert_eq!(without_times(&log), ["ERROR one leg is gone", "FATAL so is the other"]);
 }
 
 #[test]
 fn errors_are_on_the_disk_when_a_process_is_killed() {
-    assert_eq!(without_times(&of_a_child("kill")), ["ERROR one leg is gone", "FATAL so is the other"]);
+    let wait = || drop(std::io::stdin().read_line(&mut String::new()));
+    let log = of_the_doomed("errors_are_on_the_disk_when_a_process_is_killed", true, wait);
+    assert_eq!(without_times(&log), ["ERROR one leg is gone", "FATAL so is the other"]);
 }

@@ -54,7 +54,7 @@
 //! together. Across threads that costs more than a queue of one topic does: the lock, the ring, the message and its count each cross from
 //! one processor to the other. On two processors of a busy virtual machine the
 //! polling table showed a median of 1.67 µs (rounds of 1.54 to 1.84) beside 0.64 (0.49 to 0.75) of the best contestant, `arc-swap`, which holds
-//! one value; where both processors share a cache it is a third of that for all.
+//! one value. Some runs of the same program showed a third of that.
 //!
 //! # Example
 //!

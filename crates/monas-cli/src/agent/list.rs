@@ -74,7 +74,8 @@ fn hertz(agent: &AgentEntry) -> String {
     }
 }
 
-fn millis(seconds: Option<f64>) -> String {
+/// A time in seconds as people read it.
+pub(crate) fn millis(seconds: Option<f64>) -> String {
     seconds.map_or_else(|| "-".into(), |seconds| format!("{:.3} ms", seconds * 1e3))
 }
 

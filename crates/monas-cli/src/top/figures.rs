@@ -118,13 +118,15 @@ fn agent(entry: &AgentEntry, before: Option<&AgentEntry>, rate: &impl Fn(u64) ->
         .collect();
     // Activities of states run beside the steps of their chart, those of a list within its cycles.
     let beside = activities.iter().filter(|one| !one.entry.state.is_empty()).filter_map(|one| one.load);
-    let steps = entry
-        .cycle_time
-        .as_ref()
-        .map(|times| hz * if times.cpu_mean > 0.0 { times.cpu_mean } else { times.mean });
+    // What steps of charts take is the processor's time. Where nobody reads that, of the cycles of a list it is not known.
+    let has_list = activities.iter().any(|one| one.entry.state.is_empty());
+    let each = entry.cycle_time.as_ref().and_then(|times| match processor_time(times) {
+        None if !has_list => Some(times.mean),
+        measured => measured,
+    });
     AgentFigures {
         hz,
-        load: steps.map(|steps| steps + beside.sum::<f64>()),
+        load: each.map(|each| hz * each + beside.sum::<f64>()),
         overruns: since(entry.overruns, before.map(|before| before.overruns)),
         activities,
         entry: entry.clone(),
@@ -232,6 +234,20 @@ mod tests {
             "those of states beside it"
         );
         assert_eq!((figures.topics[0].hz, c.activities[0].hz), (10.0, 50.0));
+    }
+
+    #[test]
+    fn of_a_list_whose_processor_time_nobody_reads_the_load_is_not_known() {
+        let agent = |state: &str| AgentEntry {
+            cycle_time: times(0.004, 0.0),
+            activities: vec![activity("A", state, 1, 0, None)],
+            ..AgentEntry::default()
+        };
+        let load = |state| {
+            let (before, after) = (sample(0, vec![agent(state)], 0), sample(1, vec![agent(state)], 0));
+            Figures::between(&before, &after).agents[0].load
+        };
+        assert_eq!((load(""), load("s")), (None, Some(0.0)));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use serde_json::{Value, json};
 
 use super::figures::{ActivityFigures, AgentFigures, Figures};
-use crate::agent::list::short;
+use crate::agent::list::{millis, short};
 use crate::run::table;
 
 /// How many topics are told.
@@ -86,10 +86,6 @@ pub(super) fn number(value: f64) -> String {
 
 pub(super) fn share(load: Option<f64>) -> String {
     load.map_or_else(|| "-".into(), |load| format!("{:.1} %", load * 100.0))
-}
-
-fn millis(seconds: Option<f64>) -> String {
-    seconds.map_or_else(|| "-".into(), |seconds| format!("{:.3} ms", seconds * 1e3))
 }
 
 /// One for each agent, one for each topic.

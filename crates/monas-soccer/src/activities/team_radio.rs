@@ -29,7 +29,7 @@ const NEVER: f64 = 1e6;
 impl Activity for TeamRadio {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         self.note_kicks(blackboard);
-        let (own, mates) = (self.report(blackboard), listen(blackboard)?);
+        let (own, mates) = (self.report(blackboard), listen(blackboard));
         if let Some(report) = own {
             let mut words = Vec::new();
             report.encode_to(&mut words);
@@ -79,18 +79,26 @@ impl TeamRadio {
     }
 }
 
-/// The newest report of each, if it is not too old.
-fn listen(blackboard: &Blackboard) -> Result<Vec<TeamReport>, BoxError> {
+/// The newest report of each, if it is not too old. What is no report was said by somebody else, or by a program of another version.
+fn listen(blackboard: &Blackboard) -> Vec<TeamReport> {
     let now = blackboard.now();
     let mut newest = BTreeMap::new();
     for heard in blackboard.recent(body::HEARD, MEMORY) {
-        let mut report = TeamReport::default();
-        report.decode_from(&heard.words)?;
+        let Some(report) = understood(&heard.words) else { continue };
         let age = now.since(narukom::Moment::from_nanos(heard.heard_at)).as_secs_f64();
         // Who has said it is known by who was heard, not by what was said.
         newest.insert(heard.number, TeamReport { number: heard.number, age, ..report });
     }
-    Ok(newest.into_values().collect())
+    newest.into_values().collect()
+}
+
+/// The report that words are, if they are one: places and times that are no numbers tell nothing.
+fn understood(words: &[u8]) -> Option<TeamReport> {
+    let mut report = TeamReport::default();
+    report.decode_from(words).ok()?;
+    let TeamReport { x, y, heading, ball_distance, ball_x, ball_y, since_pass, since_shot, .. } = report;
+    let numbers = [x, y, heading, ball_distance, ball_x, ball_y, since_pass, since_shot];
+    numbers.into_iter().all(f64::is_finite).then_some(report)
 }
 
 monas::activity!(TeamRadio);
@@ -178,10 +186,14 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_is_an_error() {
+    fn what_is_no_report_is_left_out_and_the_others_are_believed() {
         let (mut stage, mut radio) = player();
+        heard(&mut stage, 3, TeamReport { x: 1.0, ..TeamReport::default() });
+        heard(&mut stage, 4, TeamReport { x: f64::NAN, ..TeamReport::default() });
         let heard_at = stage.now.as_nanos();
-        stage.tell(body::HEARD, Heard { number: 3, heard_at, words: vec![0xff] });
-        assert!(stage.fails(&mut radio).is_some());
+        stage.tell(body::HEARD, Heard { number: 5, heard_at, words: vec![0xff] });
+        assert!(stage.run(&mut radio));
+        let mates = stage.said(topics::TEAM).unwrap().mates;
+        assert_eq!(mates.iter().map(|it| (it.number, it.x)).collect::<Vec<_>>(), [(3, 1.0)]);
     }
 }

@@ -39,8 +39,8 @@ pub struct Logger {
     shared: Arc<Shared>,
 }
 
-/// Takes the events that are logged. See [`layer`].
-pub struct LogLayer {
+/// Takes the events that are logged.
+struct LogLayer {
     shared: Arc<Shared>,
 }
 

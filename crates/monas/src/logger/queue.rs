@@ -11,6 +11,19 @@ use super::record::Record;
 /// How many messages may be on their way.
 const RECORDS: usize = 1024;
 
+/// A record in somebody's hands. It comes back even if those who fill it panic, as values that are to be shown may.
+struct Taken<'a> {
+    record: Option<Box<Record>>,
+    goes_to: &'a ArrayQueue<Box<Record>>,
+}
+
+impl Drop for Taken<'_> {
+    fn drop(&mut self) {
+        // There is room for every record that there is.
+        self.record.take().into_iter().for_each(|record| drop(self.goes_to.push(record)));
+    }
+}
+
 /// A fixed number of records: who writes takes a free one and leaves it full.
 pub(super) struct Queue {
     free: ArrayQueue<Box<Record>>,
@@ -44,16 +57,18 @@ impl Queue {
 
     /// Leaves a message, if there is a record for it and `fill` says that it is wanted. It neither allocates nor waits.
     pub(super) fn put(&self, fill: impl FnOnce(&mut Record) -> bool) {
-        let Some(mut record) = self.free.pop() else {
+        let Some(record) = self.free.pop() else {
             self.dropped.fetch_add(1, Ordering::Relaxed);
             return;
         };
-        // There is room for every record that there is.
-        if fill(&mut record) {
-            drop(self.full.push(record));
+        let mut taken = Taken { record: Some(record), goes_to: &self.free };
+        let is_wanted = taken.record.as_mut().is_some_and(|record| fill(record));
+        if is_wanted {
+            taken.goes_to = &self.full;
+        }
+        drop(taken);
+        if is_wanted {
             self.wake();
-        } else {
-            drop(self.free.push(record));
         }
     }
 
@@ -127,6 +142,10 @@ mod tests {
             (false, 0),
             "what is not wanted takes no record"
         );
+        let fill = || queue.put(|_| panic!("it cannot be shown"));
+        assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(fill)).is_err());
+        (0..RECORDS).for_each(|_| queue.put(|_| true));
+        assert_eq!(queue.take_dropped(), 0, "nor does what panics");
     }
 
     #[test]

@@ -15,6 +15,7 @@ use narukom::Moment;
 
 use super::Talws;
 use crate::error::{Error, ErrorKind};
+use crate::logger::Simulating;
 
 use real_time::RealTime;
 use simulated::Simulated;
@@ -120,6 +121,8 @@ pub struct Input(usize);
 /// what an activity learns in other ways: from a clock, a device or another thread. That shows as a difference.
 pub struct Replay {
     course: Course,
+    /// The moment of the message that came last.
+    now: Moment,
 }
 
 /// What is followed.
@@ -135,7 +138,7 @@ impl Talws {
     /// # Errors
     /// As in [`simulate`](Talws::simulate).
     pub fn replay(self, seed: u64, company: &[Company]) -> Result<Replay, Error> {
-        Ok(Replay { course: Course::Simulated(Simulated::new(self, seed, company)?) })
+        Ok(Replay { course: Course::Simulated(Simulated::new(self, seed, company)?), now: Moment::ZERO })
     }
 
     /// As [`replay`](Talws::replay), on a recording of real time.
@@ -143,7 +146,7 @@ impl Talws {
     /// # Errors
     /// As there, and if the messages of several threads cannot be told apart: if an agent has charts and a list, or several charts.
     pub fn replay_real_time(self, company: &[Company]) -> Result<Replay, Error> {
-        Ok(Replay { course: Course::RealTime(RealTime::new(self, company)?) })
+        Ok(Replay { course: Course::RealTime(RealTime::new(self, company)?), now: Moment::ZERO })
     }
 }
 
@@ -170,6 +173,8 @@ impl Replay {
         message: RecordedMessage<'_>,
         told: &mut dyn FnMut(Difference),
     ) -> Result<(), Error> {
+        self.now = message.received;
+        let _time = Simulating::begin(self.now);
         match &mut self.course {
             Course::Simulated(course) => course.feed(input.0, message, told),
             Course::RealTime(course) => course.feed(input.0, message, told),
@@ -178,6 +183,8 @@ impl Replay {
 
     /// The recorded run ended at this moment: what is recorded from now on was published while its agents were being stopped.
     pub fn end(&mut self, moment: Moment, told: &mut dyn FnMut(Difference)) {
+        self.now = moment;
+        let _time = Simulating::begin(moment);
         match &mut self.course {
             Course::Simulated(course) => course.end(moment, told),
             // How each agent stopped is recorded.
@@ -191,6 +198,7 @@ impl Replay {
     /// # Errors
     /// As in [`feed`](Replay::feed).
     pub fn finish(self, is_whole: bool, told: &mut dyn FnMut(Difference)) -> Result<Vec<Tally>, Error> {
+        let _time = Simulating::begin(self.now);
         match self.course {
             Course::Simulated(course) => course.finish(is_whole, told),
             Course::RealTime(course) => course.finish(is_whole, told),

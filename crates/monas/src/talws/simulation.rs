@@ -103,6 +103,7 @@ impl Simulation {
     /// There is no such host. That a change is refused is said by the answer.
     pub fn change(&mut self, host: &str, change: Change) -> Result<Changed, Error> {
         let (place, now) = (self.place(host)?, self.now);
+        let _time = Simulating::begin(now);
         Ok(self.hosts[place].change(change, now))
     }
 

@@ -2,20 +2,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use zenoh::Config;
 
 use crate::error::{Error, ErrorKind};
 use crate::protocol::AccessList;
-
-/// For so long a message waits for room on a line that is full, and each piece of a long one so much longer: zenoh's own 1 ms is over before
-/// the thread that empties the line has had its turn on a busy computer, and a long message that is lost is all to be sent again. Only
-/// the link's thread waits; and once, since what is for a line that stays full is lost at once.
-const PATIENCE: Duration = Duration::from_millis(10);
-
-/// A long message waits no longer than this in all.
-const ALL_PATIENCE: Duration = Duration::from_millis(300);
 
 /// How zenoh is reached.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -91,9 +82,6 @@ impl ZenohSettings {
         words.set("transport/shared_memory/enabled", self.shared_memory.to_string())?;
         words.set("transport/unicast/max_sessions", self.sessions.to_string())?;
         words.set("transport/link/rx/max_message_size", self.largest.to_string())?;
-        let drop = "transport/link/tx/queue/congestion_control/drop";
-        words.set(&format!("{drop}/wait_before_drop"), micros(PATIENCE))?;
-        words.set(&format!("{drop}/max_wait_before_drop_fragments"), micros(ALL_PATIENCE))?;
         if let Some(tls) = &self.tls {
             words.set_tls(tls)?;
             if !access.is_open() {
@@ -149,10 +137,6 @@ fn text(value: &str) -> String {
         _ => format!("\\u{unit:04x}"),
     });
     format!("\"{}\"", escaped.collect::<String>())
-}
-
-fn micros(length: Duration) -> String {
-    length.as_micros().to_string()
 }
 
 fn list(values: &[String]) -> String {

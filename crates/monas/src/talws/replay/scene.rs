@@ -15,6 +15,7 @@ use super::changes::{Replayed, refuse_return};
 use super::compare::{Ledger, Window};
 use super::{Company, Difference};
 use crate::error::Error;
+use crate::logger::Simulating;
 use crate::records::{Action, Change};
 
 /// A message that was published in the replay.
@@ -155,12 +156,14 @@ impl Scene {
         told: &mut dyn FnMut(Difference),
     ) {
         while self.now < moment {
+            Simulating::pass(self.now);
             self.settle(spy, ledger, told);
             // What was asked for now and was not then; it may give agents something to do at this moment.
             self.attend(spy);
             self.now = if self.has_ended { moment } else { self.due().clamp(self.now, moment) };
             self.turn = None;
         }
+        Simulating::pass(self.now);
     }
 
     /// Makes the changes again that were published since the last time, if they are about agents that are replayed.
