@@ -227,6 +227,26 @@ fn bytes_that_are_no_message_are_refused_and_counted() {
 }
 
 #[test]
+fn nothing_is_taken_that_comes_under_a_links_own_name() {
+    let hub = &hubs()[0];
+    let settings = LinkSettings { guests: true, name: "vision".into(), ..LinkSettings::default() };
+    let mut end = Bridge::new(hub, settings.receiving("soccer/ball"), 1).unwrap();
+    let packet = |from: &str| Packet {
+        from: from.into(),
+        to: None,
+        path: Some("soccer/ball".into()),
+        stamp: [].into(),
+        payload: Vec::new().into(),
+        priority: 4,
+        is_reliable: true,
+    };
+    end.handle(&packet("vision"), Moment::ZERO);
+    assert_eq!(end.node().counters().received[0].2.arrived, 0);
+    end.handle(&packet("laptop"), Moment::ZERO);
+    assert_eq!(end.node().counters().received[0].2.delivered, 1);
+}
+
+#[test]
 fn settings_that_do_not_fit_are_refused() {
     let hub = &hubs()[0];
     let error = Bridge::new(hub, LinkSettings::default().sending("soccer/bal"), 1).unwrap_err();

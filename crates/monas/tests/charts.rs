@@ -521,7 +521,7 @@ fn the_records_name_what_happens() {
         |topic| format!("Delivery {{ topic: {topic}, sequence: 1, region: 0, host: \"\", publisher: \"\" }}");
     let expected = format!(
         "monas/cycle Cycle {{ number: 3, time: 10000000, delivered: [{}, {}], seen: [], turn: None, chart: 0, news: [], \
-         returned: [], first_tick: 0, due: 0 }}",
+         returned: [], first_tick: 0, due: 0, asked: None }}",
         delivery(ball),
         delivery(news)
     );

@@ -99,6 +99,11 @@ impl Narukom {
         self.shared.catalogue.get(slot)
     }
 
+    /// How many publications, of whatever topic, there have been.
+    pub fn position(&self) -> u64 {
+        self.head()
+    }
+
     /// The newest message that was published on a topic. Nobody becomes a reader by it.
     pub fn latest(&self, slot: TopicSlot) -> Option<AnySample> {
         self.exchange().newest(Channel::local(slot)).map(|entry| entry.sample.clone())

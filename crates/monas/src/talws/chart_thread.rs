@@ -45,6 +45,8 @@ pub(super) struct ChartThread {
     pub(super) run_ends: bool,
     /// Whether the chart has been ended.
     pub(super) has_ended: bool,
+    /// Whether it has been told to pause: between two turns, so that a record tells between which.
+    pub(super) pauses: bool,
 }
 
 impl ChartThread {
@@ -144,7 +146,7 @@ impl ChartThread {
 
     /// Whether it makes no steps, whatever happens.
     fn rests(&self) -> bool {
-        self.has_ended || self.unit.pauses() || self.runner.is_over()
+        self.has_ended || self.pauses || self.runner.is_over()
     }
 
     fn tell_turn(&mut self, turn: Turn, now: Moment) {
@@ -267,6 +269,7 @@ impl ChartThread {
     fn obey(&mut self, orders: Orders, mail: &mut Mail<Called>) -> Result<Vec<String>, Vec<String>> {
         let mut said = Vec::new();
         let now = self.clock.now();
+        self.teller.tell_ordered(now, &orders, self.runner.place());
         if let Some((_, swap)) = orders.swap {
             said = self.runner.swap(*swap, now)?;
             self.follow_guards();
@@ -274,8 +277,8 @@ impl ChartThread {
         for runner in orders.charts {
             self.end(mail);
             self.runner = runner;
-            self.begin();
             self.skip_ticks(now);
+            self.begin();
         }
         for directive in orders.directives {
             match directive {
@@ -292,7 +295,8 @@ impl ChartThread {
                     let was = std::mem::replace(&mut self.scheduling, wanted);
                     said.extend(self.unit.schedule(&self.scheduling, &was));
                 }
-                Directive::Start | Directive::Pause | Directive::Resume => {}
+                Directive::Pause => self.pauses = true,
+                Directive::Start | Directive::Resume => self.pauses = false,
             }
         }
         Ok(said)
@@ -301,7 +305,13 @@ impl ChartThread {
     /// Does one step if there is one to be made, and has the activities called that it starts.
     fn step_once(&mut self, mail: &mut Mail<Called>) -> Result<(), String> {
         let now = self.clock.now();
-        self.go_on(mail)?;
+        self.notes.begin(&mut self.runner, mail);
+        let result = self.live(now, mail).and_then(|()| self.one_step(now));
+        self.tell_turn(Turn::Step, now);
+        result
+    }
+
+    fn one_step(&mut self, now: Moment) -> Result<(), String> {
         while let Some(assignment) = self.runner.next_waiting(now) {
             self.submit(assignment)?;
         }

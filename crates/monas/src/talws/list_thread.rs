@@ -103,8 +103,9 @@ impl ListThread {
 
     fn obey(&mut self, orders: Orders) -> Vec<String> {
         let mut said = Vec::new();
-        orders.edits.into_iter().for_each(|edit| self.list.edit(edit));
         let now = self.clock.now();
+        self.teller.tell_ordered(now, &orders, 0);
+        orders.edits.into_iter().for_each(|edit| self.list.edit(edit));
         for directive in orders.directives {
             match directive {
                 Directive::Start => {

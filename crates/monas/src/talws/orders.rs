@@ -1,5 +1,7 @@
 //! What agents are told between two cycles.
 
+use std::sync::Arc;
+
 use crate::agent::Policy;
 use crate::chart::{Runner, Swap};
 use crate::frequency::Frequency;
@@ -16,6 +18,17 @@ pub(super) struct Orders {
     pub(super) charts: Vec<Runner>,
     /// Another model for the chart at a place.
     pub(super) swap: Option<(usize, Box<Swap>)>,
+    /// What they follow from, for the records of real time.
+    pub(super) asked: Option<Asked>,
+}
+
+/// The change that orders follow from.
+#[derive(Clone, Debug)]
+pub(super) struct Asked {
+    pub(super) publisher: Arc<str>,
+    pub(super) sequence: u64,
+    /// How many publications the hub had taken when the orders were ready.
+    pub(super) ready_at: u64,
 }
 
 /// What concerns an agent as a whole.

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use monas_link::LinkSettings;
 use narukom::{Blackboard, Moment, Narukom, Observer, Publication};
 
 use yase::Source;
@@ -135,8 +136,10 @@ fn refuse_changes_from_strangers(ground: &Ground, links: &[LinkConfig]) -> Resul
         if !brought.own.iter().any(|slot| Some(*slot) == ground.hub.topic(CHANGE.path())) {
             continue;
         }
-        let access = &link.settings.access;
-        let mut hosts = access.publishers().map(|(host, _)| host);
+        let LinkSettings { access, name, .. } = &link.settings;
+        // The robots of a team share one list. A link takes nothing that comes under its own name.
+        let own = if name.is_empty() { ground.hub.host() } else { name };
+        let mut hosts = access.publishers().map(|(host, _)| host).filter(|host| *host != own);
         let stranger = hosts.find(|host| access.may_publish(host, CHANGE.path()) && !access.may_manage(host));
         let host = ground.hub.host();
         let (message, hint) = match (access.is_open(), stranger) {

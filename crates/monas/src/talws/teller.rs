@@ -6,8 +6,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use narukom::{Moment, Narukom, Publisher};
 
 use super::entry;
+use super::orders::Orders;
 use crate::error::Error;
-use crate::records::{self, CYCLE, Delivery, STATISTICS};
+use crate::records::{self, CYCLE, Delivery, STATISTICS, Turn};
 use crate::statistics::AgentStatistics;
 
 /// Tells of the cycles of an agent; several count together when the list and the charts run on threads of their own.
@@ -46,9 +47,22 @@ impl Teller {
         self.cycles.publish_with(make, now);
     }
 
-    /// A turn of a chart is over. `make` says what it was.
+    /// A turn is over. `make` says what it was.
     pub(super) fn tell_turn(&mut self, now: Moment, make: impl FnOnce(&mut records::Cycle)) {
         self.cycles.publish_with(make, now);
+    }
+
+    /// The agent's thread follows a change from now on. That is for recordings; if nobody makes one, nothing is said.
+    pub(super) fn tell_ordered(&mut self, now: Moment, orders: &Orders, chart: u32) {
+        let Some(asked) = orders.asked.as_ref().filter(|_| self.hub.is_observed()) else { return };
+        // The blackboards of a chart that begins are there already, others are yet to be made.
+        let seen = if orders.charts.is_empty() { self.hub.position() } else { asked.ready_at };
+        self.tell_turn(now, |cycle| {
+            (cycle.time, cycle.turn, cycle.chart) = (now.as_nanos(), Turn::Ordered.into(), chart);
+            cycle.seen.push(seen);
+            let (publisher, sequence) = (asked.publisher.to_string(), asked.sequence);
+            cycle.asked = Some(records::Asked { publisher, sequence });
+        });
     }
 
     /// What was counted and measured of the agent's thread so far.

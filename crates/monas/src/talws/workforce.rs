@@ -312,6 +312,7 @@ impl Team {
             notes: TurnNotes::default(),
             run_ends: false,
             has_ended: false,
+            pauses: false,
         };
         spawn(&name, move || thread.run())
     }

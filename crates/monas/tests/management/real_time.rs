@@ -141,15 +141,17 @@ fn a_run_ends_when_its_last_agent_has_stopped_by_itself() {
 
 #[test]
 fn a_link_that_lets_strangers_change_agents_is_refused() {
-    let over = |transport: LinkTransport, access: &str, topics: &str| {
+    let named = |name: &str, transport: LinkTransport, access: &str, topics: &str| {
         let access = if access.is_empty() { AccessList::open() } else { AccessList::parse(access).0 };
         let rule = ReceiveRule { topics: topics.into(), place: Place::Own };
-        let settings = LinkSettings { access, receive: vec![rule], ..LinkSettings::default() };
+        let settings =
+            LinkSettings { access, receive: vec![rule], name: name.into(), ..LinkSettings::default() };
         let link = LinkConfig { settings, transport, clock: None };
         let mut talws = Talws::new();
         talws.host(HostConfig { name: "local".into(), links: vec![link], ..HostConfig::default() });
         talws.check().first().map(|one| one.message.clone())
     };
+    let over = |transport: LinkTransport, access: &str, topics: &str| named("", transport, access, topics);
     let said = |access: &str, topics: &str| over(LinkTransport::default(), access, topics);
     assert_eq!(said("", "monas/*").unwrap(), "a link of `local` lets anybody change its agents");
     let stranger = said("laptop publish **", CHANGE.path()).unwrap();
@@ -159,6 +161,16 @@ fn a_link_that_lets_strangers_change_agents_is_refused() {
     );
     assert_eq!(said("laptop publish **\nlaptop manage", CHANGE.path()), None);
     assert_eq!(said("", "test/ball"), None);
+    // What the list says of the host itself lets nobody in: it takes nothing under its own name.
+    assert_eq!(said("local publish **\nlaptop publish **\nlaptop manage", CHANGE.path()), None);
+    let other = said("local publish **\nlaptop publish **", CHANGE.path()).unwrap();
+    assert!(other.contains("lets `laptop` publish changes"), "{other}");
+    let everybody = said("local publish **\n* publish monas/*", CHANGE.path()).unwrap();
+    assert!(everybody.contains("lets `*` publish changes"), "{everybody}");
+    // A link with another name than its host takes what comes under the host's.
+    let vision =
+        named("vision", LinkTransport::default(), "local publish **\nvision publish **", CHANGE.path());
+    assert!(vision.is_some_and(|said| said.contains("lets `local` publish changes")));
     // Over a network anybody may take a name that is not shown by a certificate.
     let manager = "laptop publish **\nlaptop manage";
     let file = || "a.pem".into();

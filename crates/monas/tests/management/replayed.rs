@@ -3,7 +3,7 @@
 use std::sync::mpsc::{Sender, channel};
 use std::time::Duration;
 
-use monas::records::{Action, CHANGE, CHANGED, Change};
+use monas::records::{Action, CHANGE, CHANGED, CYCLE, Change, Cycle, Turn};
 use monas::{Activity, Agent, Blackboard, BoxError, Hz, Parameters, Progress, Registry, Talws};
 use narukom::prost::Message as _;
 use yase::Source;
@@ -238,25 +238,183 @@ fn in_real_time_pauses_and_ends_are_those_of_the_recorded_turns() {
     assert!(recorded >= 10 && outcome.compared("thrower", "test/ball") == recorded as u64, "{recorded}");
 }
 
-#[test]
-fn in_real_time_a_chart_that_was_paused_is_refused_with_the_reason() {
-    let chart = aseme::statechart_of(&Source::new("m.srm", "m = Look")).0;
-    let mind = || Talws::new().registry(registry()).agent(Agent::statechart("mind", chart.clone()));
-    let (tape, mut talws) = (Tape::default(), mind());
+/// A run in real time of agents whose activities tell of each call, in which something is changed. Between two changes activities of the
+/// agent that is changed are called, unless it rests.
+fn live_run(talws: impl Fn(Sender<()>) -> Talws, asked: &[Change]) -> Vec<Kept> {
+    let (sender, calls) = channel();
+    let tape = Tape::default();
+    let mut talws = talws(sender);
     talws.observe(Box::new(tape.clone()));
     let running = talws.start().unwrap();
-    made(&running.overview().change("local", change(Action::PauseAgent, "mind")).unwrap());
+    let more = || (0..5).for_each(|_| calls.recv_timeout(Duration::from_secs(20)).unwrap());
+    more();
+    let mut rests = false;
+    for change in asked {
+        made(&running.overview().change("local", change.clone()).unwrap());
+        rests = match change.action() {
+            Action::PauseAgent | Action::StopAgent => true,
+            Action::StartAgent | Action::ResumeAgent => false,
+            _ => rests,
+        };
+        if !rests {
+            calls.try_iter().for_each(drop);
+            more();
+        }
+    }
     running.stop();
-    let error = replay(mind(), &tape.kept()).err().unwrap();
-    assert!(error.to_string().starts_with("agent `mind` was paused "), "{error}");
+    tape.kept()
+}
+
+/// A list of an activity that throws balls, of which others may be made.
+fn list(calls: Sender<()>) -> Talws {
+    let registry = registry().with("Tell", move || {
+        let calls = calls.clone();
+        move |_: &mut Blackboard| {
+            // Nobody listens in a replay.
+            let _ = calls.send(());
+        }
+    });
+    let text = "<agent frequency='1000'><name>thrower</name><activity>Throw</activity><activity>Tell</activity></agent>";
+    let (setup, diagnostics) = monas::config::read(&Source::new("a.xml", text), "a.xml".as_ref(), &registry);
+    assert_eq!(diagnostics, []);
+    Talws::new().registry(registry).setup(setup)
+}
+
+/// A chart one of whose activities looks again and again.
+fn mind(calls: Sender<()>) -> Talws {
+    let registry = registry().with("Watch", move || {
+        let (calls, mut times) = (calls.clone(), 0.0);
+        move |blackboard: &mut Blackboard| -> Result<Progress, BoxError> {
+            times += 1.0;
+            let chance = blackboard.random().uniform();
+            blackboard
+                .publish(NEWS, Ball { x: times, y: chance + blackboard.now().as_secs_f64(), found: true })?;
+            let _ = calls.send(());
+            Ok(Progress::after(Duration::from_millis(1)))
+        }
+    });
+    let chart = aseme::statechart_of(&Source::new("m.srm", "m = Play . Watch")).0;
+    Talws::new().registry(registry).agent(Agent::statechart("mind", chart).every(Hz(200)))
+}
+
+fn of_list() -> Vec<Change> {
+    let throw = |action| Change { activity: "Throw".into(), ..change(action, "thrower") };
+    let set = |given: &[(&str, &str)]| Change { settings: settings(given), ..change(Action::Set, "thrower") };
+    vec![
+        Change { activity: "Say".into(), place: 1, ..change(Action::AddActivity, "thrower") },
+        set(&[("frequency", "500"), ("Throw.speed", "3"), ("on_failure", "skip")]),
+        Change { place: 3, ..throw(Action::MoveActivity) },
+        change(Action::PauseAgent, "thrower"),
+        change(Action::StepAgent, "thrower"),
+        change(Action::ResumeAgent, "thrower"),
+        change(Action::StopAgent, "thrower"),
+        change(Action::StartAgent, "thrower"),
+        Change { replacement: "Play".into(), ..throw(Action::ReplaceActivity) },
+        Change { activity: "Say".into(), ..change(Action::RemoveActivity, "thrower") },
+    ]
+}
+
+fn of_chart() -> Vec<Change> {
+    let swap =
+        |text: &str| Change { file: "n.srm".into(), text: text.into(), ..change(Action::SwapModel, "mind") };
+    vec![
+        change(Action::PauseAgent, "mind"),
+        change(Action::StepAgent, "mind"),
+        change(Action::StepAgent, "mind"),
+        change(Action::ResumeAgent, "mind"),
+        swap("m = Play . (Watch | Play)"),
+        Change {
+            settings: settings(&[("frequency", "50"), ("on_failure", "restart")]),
+            ..change(Action::Set, "mind")
+        },
+        change(Action::StopAgent, "mind"),
+        change(Action::StartAgent, "mind"),
+        swap("m = Play . (Watch | Play)"),
+    ]
+}
+
+/// Without the turns that a chart's records tell of beside its cycles, and where it was changed.
+fn is_compared(kept: &Kept) -> bool {
+    kept.topic != CYCLE.path() || Cycle::decode(&kept.bytes[..]).unwrap().number > 0
 }
 
 #[test]
-fn in_real_time_an_agent_that_was_made_of_something_else_is_refused_with_the_reason() {
-    let other = Change { settings: settings(&[("frequency", "500")]), ..change(Action::Set, "thrower") };
-    let messages = live(&[other]);
-    let error = replay(thrower(channel().0), &messages).err().unwrap();
-    assert!(error.to_string().starts_with("agent `thrower` was set otherwise "), "{error}");
-    assert!(error.to_string().ends_with("a recording does not tell after which turn"), "{error}");
-    assert_eq!(error.hint(), Some("replay other agents, or the time before"));
+fn in_real_time_changes_are_made_again_between_the_turns_between_which_they_were() {
+    for (agent, asked, talws) in
+        [("thrower", of_list(), list as fn(Sender<()>) -> Talws), ("mind", of_chart(), mind)]
+    {
+        let messages = live_run(talws, &asked);
+        let outcome = replay(talws(channel().0), &messages).unwrap();
+        assert_eq!(outcome.differences, []);
+        let topics: &[(&str, usize)] = match agent {
+            "mind" => &[("test/news", 20), ("monas/model", 4), ("monas/chart", 5), ("monas/cycle", 8)],
+            _ => &[("test/ball", 20), ("test/news", 20), ("test/game", 5), ("monas/cycle", 40)],
+        };
+        for (topic, least) in topics {
+            let of_agent = messages.iter().filter(|kept| kept.publisher == agent && kept.topic == *topic);
+            let recorded = of_agent.filter(|kept| is_compared(kept)).count();
+            assert_eq!(outcome.compared(agent, topic), recorded as u64, "{topic}");
+            assert!(recorded >= *least, "{topic}: {recorded}");
+        }
+    }
+}
+
+#[test]
+fn in_real_time_another_change_in_the_place_of_the_recorded_one_is_another_run() {
+    let asked = Change { settings: settings(&[("Throw.speed", "3")]), ..change(Action::Set, "thrower") };
+    let mut messages = live_run(list, &[asked]);
+    let kept = messages.iter_mut().find(|kept| kept.topic == CHANGE.path()).unwrap();
+    let mut other = Change::decode(&kept.bytes[..]).unwrap();
+    other.settings = settings(&[("Throw.speed", "4")]);
+    kept.bytes = other.encode_to_vec();
+    let outcome = replay(list(channel().0), &messages).unwrap();
+    assert!(!outcome.differences.is_empty());
+    assert!(outcome.differences.iter().all(|difference| difference.topic == BALL.path()));
+    other.activity = "Nothing".into();
+    other.action = Action::RemoveActivity.into();
+    let kept = messages.iter_mut().find(|kept| kept.topic == CHANGE.path()).unwrap();
+    kept.bytes = other.encode_to_vec();
+    let error = replay(list(channel().0), &messages).err().unwrap().to_string();
+    assert!(error.starts_with("what was asked of agent `thrower` "), "{error}");
+    assert!(
+        error.ends_with("cannot be made again: the list of `thrower` has no activity `Nothing`"),
+        "{error}"
+    );
+}
+
+#[test]
+fn in_real_time_what_the_recording_does_not_tell_is_refused_with_the_reason() {
+    let is_ordered = |kept: &Kept| {
+        kept.topic == CYCLE.path() && Cycle::decode(&kept.bytes[..]).unwrap().turn() == Turn::Ordered
+    };
+    for (asked, talws, was) in [
+        (&of_list()[1], list as fn(Sender<()>) -> Talws, "agent `thrower` was set otherwise "),
+        (&of_chart()[4], mind, "agent `mind` was given another model "),
+    ] {
+        let messages = live_run(talws, std::slice::from_ref(asked));
+        // As if somebody else had said it: what is left is what an earlier version recorded.
+        let by_another = |is_such: &dyn Fn(&Kept) -> bool| {
+            let mut messages = messages.clone();
+            let such: Vec<&mut Kept> = messages.iter_mut().filter(|kept| is_such(kept)).collect();
+            assert_eq!(such.len(), 1);
+            such.into_iter().for_each(|kept| kept.publisher = "somebody".into());
+            replay(talws(channel().0), &messages).err().unwrap()
+        };
+        let error = by_another(&is_ordered);
+        assert!(error.to_string().starts_with(was), "{error}");
+        let reason = "the recording, of an earlier version, does not tell after which turn";
+        assert!(error.to_string().ends_with(reason), "{error}");
+        assert_eq!(error.hint(), Some("replay other agents, or the time before"));
+        let error = by_another(&|kept| kept.topic == CHANGE.path());
+        let reason = "the recording lacks change 1 of `outside`, which an agent followed";
+        assert_eq!(error.to_string(), reason);
+    }
+}
+
+#[test]
+fn in_real_time_a_chart_that_was_given_a_list_is_refused() {
+    let list = Change { activity: "Say".into(), ..change(Action::AddActivity, "mind") };
+    let messages = live_run(mind, &[list]);
+    let error = replay(mind(channel().0), &messages).err().unwrap().to_string();
+    assert!(error.starts_with("agent `mind` was given a list of its own "), "{error}");
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use narukom::{HostId, Moment, Narukom, Publisher, Subscriber};
+use narukom::{Header, HostId, Moment, Narukom, Publisher, Subscriber};
 use yase::Source;
 
 use super::findings::{Refusal, finding, refusal, refusal_with, remark};
@@ -14,6 +14,7 @@ use crate::error::Error;
 use crate::records::{AgentEntry, CHANGE, CHANGED, Change, Changed, Configuration, Finding};
 use crate::registry::Registry;
 use crate::talws::crew::{Crew, Ground};
+use crate::talws::orders::{Asked, Orders};
 use crate::talws::overview::OUTSIDE;
 
 /// The host publishes under this name what is not an agent's.
@@ -75,7 +76,7 @@ impl Roster {
     fn make_all(&mut self, staff: &mut dyn Staff, now: Moment, told: &mut dyn FnMut(&Change, &Changed)) {
         while let Some(sample) = self.asked.next_sample() {
             let Some(change) = sample.downcast::<Change>() else { continue };
-            let changed = self.make(change.message, staff, now);
+            let changed = self.make(change.message, Some(&sample.header), staff, now);
             told(change.message, &changed);
             self.answers.publish(changed, now);
         }
@@ -98,7 +99,7 @@ impl Roster {
         staff: &mut dyn Staff,
         now: Moment,
     ) -> Changed {
-        self.make(change, staff, now)
+        self.make(change, None, staff, now)
     }
 
     /// Whether an agent of that name is here.
@@ -106,13 +107,26 @@ impl Roster {
         self.profiles.iter().any(|profile| profile.name == agent)
     }
 
+    /// Whether an agent has no activities of its own: the first one begins a list.
+    pub(in crate::talws) fn has_no_list(&self, agent: &str) -> bool {
+        self.profiles.iter().any(|profile| profile.name == agent && profile.activities.is_empty())
+    }
+
     /// What agents are made of.
     pub(in crate::talws) fn registry(&self) -> &Registry {
         &self.crew.registry
     }
 
-    fn make(&mut self, change: &Change, staff: &mut dyn Staff, now: Moment) -> Changed {
-        let made = Plan::of(change, self, staff, now).and_then(|plan| self.carry_out(plan, staff));
+    fn make(
+        &mut self,
+        change: &Change,
+        header: Option<&Header>,
+        staff: &mut dyn Staff,
+        now: Moment,
+    ) -> Changed {
+        let plan = Plan::of(change, self, staff, now);
+        let asked = header.and_then(|header| self.asked(header));
+        let made = plan.and_then(|plan| self.carry_out(plan, asked, staff));
         let (done, findings) = match made {
             Ok(said) => (true, said),
             Err(reasons) => (false, reasons.iter().map(finding).collect()),
@@ -132,7 +146,19 @@ impl Roster {
         }
     }
 
-    fn carry_out(&mut self, plan: Plan, staff: &mut dyn Staff) -> Result<Vec<Finding>, Refusal> {
+    /// The message by which somebody asked, when everything that it needs is ready.
+    fn asked(&self, header: &Header) -> Option<Asked> {
+        let hub = &self.ground.hub;
+        let publisher = hub.publisher_name(header.publisher)?;
+        Some(Asked { publisher, sequence: header.sequence, ready_at: hub.position() })
+    }
+
+    fn carry_out(
+        &mut self,
+        plan: Plan,
+        asked: Option<Asked>,
+        staff: &mut dyn Staff,
+    ) -> Result<Vec<Finding>, Refusal> {
         let Plan { warnings, step } = plan;
         let mut said: Vec<Finding> = warnings.iter().map(finding).collect();
         match step {
@@ -140,7 +166,7 @@ impl Roster {
                 let objected = |reasons: Vec<String>| {
                     reasons.into_iter().flat_map(|reason| refusal("E0356", reason)).collect::<Refusal>()
                 };
-                let remarks = staff.obey(&profile.name, *orders).map_err(objected)?;
+                let remarks = staff.obey(&profile.name, Orders { asked, ..*orders }).map_err(objected)?;
                 said.extend(remarks.into_iter().map(remark));
                 if let Some(known) = self.profiles.iter_mut().find(|known| known.name == profile.name) {
                     *known = *profile;

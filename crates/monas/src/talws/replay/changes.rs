@@ -1,8 +1,9 @@
 //! Changes of agents that were made while they were recorded.
 //!
 //! In simulated time a change is a message like any other: it is made again when it comes, and what it leads to is compared. In real time
-//! each agent repeats its own recorded turns, so that it was stopped, or its list paused, is in its turns already; after which of them it was
-//! made of something else, or its chart paused, is not on the recording, and such a change is refused.
+//! each agent repeats its own recorded turns; a record tells between which of them it was told to follow a change, see
+//! [`ordered`](super::ordered). Recordings of earlier versions lack it: that an agent was stopped, or its list paused, is in its turns all the
+//! same, and any other change is refused.
 
 use std::path::Path;
 
@@ -95,7 +96,7 @@ pub(super) fn refuse_return(change: &Change, registry: &Registry, gone: &[String
     }
 }
 
-/// What became of an agent in real time.
+/// What became of an agent in real time, by a recording without records of it.
 ///
 /// # Errors
 /// It was made of something else: nothing tells after which of its turns.
@@ -120,7 +121,7 @@ pub(super) fn refuse_in_real_time(changed: &Changed, is_list: bool, at: Moment) 
         Action::SwapModel => "given another model",
     };
     let message = format!(
-        "agent `{}` was {what} {:.3} s after the run began: in real time a recording does not tell after which turn",
+        "agent `{}` was {what} {:.3} s after the run began: the recording, of an earlier version, does not tell after which turn",
         changed.agent,
         at.as_secs_f64()
     );

@@ -12,11 +12,13 @@ use narukom::{Arrival, Moment, Narukom, TopicSlot};
 use super::super::links::Brought;
 use super::super::setup::{Stage, Station};
 use super::super::{HostConfig, REAL_TIME_SEED, Talws};
-use super::changes::{refuse_in_real_time, refuse_return};
+use super::changes::refuse_return;
 use super::compare::{Ledger, Window};
 use super::feed::{Ear, Feed, Foreign, Inlet};
+use super::ordered::Ordered;
 use super::repeated::Repeated;
 use super::{Company, Difference, Recorded, RecordedMessage, Tally, no_input};
+use crate::chart::Lead as _;
 use crate::error::{Error, ErrorKind};
 use crate::records::{Action, CHANGE, CHANGED, CYCLE, Change, Changed, Cycle, HOST, Turn};
 use crate::registry::Registry;
@@ -39,6 +41,7 @@ struct Entrance {
     routes: Vec<(usize, Route)>,
     /// Whether they are changes of agents, or tell of them.
     about: About,
+    publisher: String,
 }
 
 /// What messages say of changes of agents.
@@ -65,6 +68,7 @@ struct Part {
     /// The topics that links bring to the host as its own: what is published there under the agent's name comes from another process.
     brought: Vec<TopicSlot>,
     repeated: Repeated,
+    ordered: Ordered,
     ear: Ear,
     feed: Feed,
     window: Window,
@@ -126,7 +130,7 @@ impl RealTime {
             topic if topic == CHANGED.path() => About::Made,
             _ => About::Nothing,
         };
-        self.inputs.push(Entrance { hub, routes, about });
+        self.inputs.push(Entrance { hub, routes, about, publisher: recorded.publisher.to_owned() });
         Ok(self.inputs.len() - 1)
     }
 
@@ -146,7 +150,7 @@ impl RealTime {
     ) -> Result<(), Error> {
         let Entrance { hub, about, .. } = self.inputs.get(input).ok_or_else(no_input)?;
         let (hub, about) = (*hub, *about);
-        self.heed(hub, about, &message)?;
+        self.heed(input, about, &message)?;
         let Entrance { routes, .. } = &self.inputs[input];
         let count = &mut self.hubs[hub].1;
         *count += 1;
@@ -170,15 +174,20 @@ impl RealTime {
     }
 
     /// Takes note of changes of the agents that are replayed.
-    fn heed(&mut self, hub: usize, about: About, message: &RecordedMessage<'_>) -> Result<(), Error> {
-        let host = &self.hubs[hub].0;
+    fn heed(&mut self, input: usize, about: About, message: &RecordedMessage<'_>) -> Result<(), Error> {
+        let Entrance { hub, publisher, .. } = &self.inputs[input];
+        let host = &self.hubs[*hub].0;
         let mut parts = self.parts.iter_mut().filter(|part| part.host == *host);
         match about {
             About::Nothing => Ok(()),
             About::Asked => {
                 let change = Change::decode(message.bytes).map_err(unread)?;
-                let gone: Vec<String> =
-                    parts.filter(|part| part.is_gone).map(|part| part.agent.clone()).collect();
+                if let Some(part) = parts.find(|part| part.agent == change.agent) {
+                    part.ordered.ask(publisher, message.sequence, change);
+                    return Ok(());
+                }
+                let gone = self.parts.iter().filter(|part| part.is_gone && part.host == *host);
+                let gone: Vec<String> = gone.map(|part| part.agent.clone()).collect();
                 refuse_return(&change, &self.registry, &gone)
             }
             About::Made => {
@@ -186,7 +195,7 @@ impl RealTime {
                 let Some(part) = parts.find(|part| part.agent == changed.agent) else { return Ok(()) };
                 part.is_gone |= changed.done && changed.action() == Action::RemoveAgent;
                 let is_list = matches!(part.repeated, Repeated::List(_));
-                refuse_in_real_time(&changed, is_list, message.received)
+                part.ordered.answered(&changed, is_list, message.received)
             }
         }
     }
@@ -223,14 +232,15 @@ impl Part {
         let (host, agent) = names.map(|(host, agent)| (host, agent.name().to_owned())).unwrap_or_default();
         let ear = Ear::new(&agent);
         talws.observe(Box::new(ear.clone()));
-        let Stage { mut stations, .. } = Stage::new(talws, REAL_TIME_SEED)?;
-        let Some(Station { hub, mut members, links, .. }) = stations.pop() else {
+        let Stage { mut stations, crew, .. } = Stage::new(talws, REAL_TIME_SEED)?;
+        let Some(Station { hub, mut members, links, ground, profiles, .. }) = stations.pop() else {
             return Err(not_alone(&agent));
         };
         let brought = Brought::by(&links, &hub)?.own;
         let feed = Feed::new(ear.clone());
         let repeated = members.pop().and_then(|member| Repeated::new(member, &feed));
         let repeated = repeated.ok_or_else(|| not_alone(&agent))?;
+        let ordered = Ordered::new(ground, crew, profiles)?;
         let window = Window::new(&host, &agent);
         let (own, begun) = (Vec::new(), None);
         Ok(Part {
@@ -239,6 +249,7 @@ impl Part {
             hub,
             brought,
             repeated,
+            ordered,
             ear,
             feed,
             window,
@@ -296,21 +307,44 @@ impl Part {
             return Err(Error::new(ErrorKind::Invalid, message).with_hint(hint));
         }
         match (&self.repeated, record.turn()) {
+            (_, Turn::Ordered) => self.follow(&record, ledger, told)?,
             (Repeated::Chart(_), Turn::None) if self.is_told => self.own.push(own),
             (Repeated::Chart(_), Turn::None) => return Err(self.untold()),
             (Repeated::List(_), Turn::None) if record.seen.is_empty() => return Err(self.untold()),
             (Repeated::List(_), Turn::None) => {
                 self.run_begun(true, ledger, told)?;
+                self.ordered.begin_turn()?;
                 self.own.push(Own { bytes: plain(&record), ..own });
                 self.begun = Some(record);
             }
             (Repeated::List(_), _) => {}
+            (Repeated::Chart(chart), Turn::Start) if self.is_told && !chart.begins_anew() => {
+                return Err(self.untold());
+            }
             (Repeated::Chart(_), turn) => {
                 self.is_told |= turn == Turn::Start;
+                if turn == Turn::Round {
+                    self.ordered.begin_turn()?;
+                }
                 self.run(turn, &record, true, ledger, told)?;
             }
         }
         Ok(())
+    }
+
+    /// The agent was told to follow a change here. What it publishes by that is compared with its next turn.
+    fn follow(
+        &mut self,
+        record: &Cycle,
+        ledger: &mut Ledger,
+        told: &mut dyn FnMut(Difference),
+    ) -> Result<(), Error> {
+        self.run_begun(true, ledger, told)?;
+        self.run_unrecorded(Moment::from_nanos(record.time), ledger, told)?;
+        self.feed.begin(&record.seen, std::iter::empty());
+        self.feed.fetching();
+        self.ordered.follow(record, &mut self.repeated)?;
+        self.feed.failure()
     }
 
     fn untold(&self) -> Error {

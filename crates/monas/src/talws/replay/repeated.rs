@@ -9,6 +9,7 @@ use crate::frequency::Frequency;
 use crate::list::List;
 use crate::records::{Call, Cycle, Delivery, News, Turn};
 use crate::talws::crew::Member;
+use crate::talws::orders::{Directive, Orders, TOLD};
 use crate::talws::teller::Teller;
 use crate::talws::turn::due_record;
 
@@ -36,6 +37,22 @@ impl Repeated {
     }
 }
 
+impl Repeated {
+    /// Follows a change between two turns.
+    ///
+    /// # Errors
+    /// What stands against it: nothing has changed.
+    pub(super) fn obey(&mut self, orders: Orders, now: Moment) -> Result<Vec<String>, Vec<String>> {
+        match self {
+            Repeated::List(list) => {
+                list.obey(orders);
+                Ok(Vec::new())
+            }
+            Repeated::Chart(chart) => chart.obey(orders, now),
+        }
+    }
+}
+
 /// A list.
 pub(super) struct RepeatedList {
     list: List,
@@ -56,6 +73,20 @@ impl RepeatedList {
         self.teller.tell(now, Delivery::all(self.list.blackboard(), 0).collect());
         self.feed.publishing();
         self.list.cycle(now, None);
+        self.is_over = self.list.stopped().is_some();
+    }
+
+    /// When its cycles were, and so how often, and that it paused, is in their records.
+    fn obey(&mut self, orders: Orders) {
+        orders.edits.into_iter().for_each(|edit| self.list.edit(edit));
+        for directive in orders.directives {
+            match directive {
+                Directive::Start => self.list.restart(),
+                Directive::Stop => self.list.stop(TOLD),
+                Directive::Policy(policy) => self.list.set_policy(policy),
+                _ => {}
+            }
+        }
         self.is_over = self.list.stopped().is_some();
     }
 }
@@ -79,6 +110,9 @@ pub(super) struct RepeatedChart {
     was_due: u64,
     has_failed: bool,
     is_stopping: bool,
+    pauses: bool,
+    /// What it begins anew with.
+    next: Option<Runner>,
 }
 
 impl RepeatedChart {
@@ -104,6 +138,48 @@ impl RepeatedChart {
             was_due: 0,
             has_failed: false,
             is_stopping: false,
+            pauses: false,
+            next: None,
+        }
+    }
+
+    /// Whether it was told to begin anew, and has not yet.
+    pub(super) fn begins_anew(&self) -> bool {
+        self.next.is_some()
+    }
+
+    fn obey(&mut self, mut orders: Orders, now: Moment) -> Result<Vec<String>, Vec<String>> {
+        let mut said = Vec::new();
+        if let Some((_, swap)) = orders.swap {
+            said = self.runner.swap(*swap, now)?;
+            self.follow_guards();
+        }
+        if let Some(mut runner) = orders.charts.pop() {
+            runner.be_led(Box::new(self.feed.clone()));
+            self.next = Some(runner);
+        }
+        for directive in orders.directives {
+            match directive {
+                Directive::Pause => self.pauses = true,
+                Directive::Start | Directive::Resume => self.pauses = false,
+                Directive::Frequency(frequency) => {
+                    self.frequency = Some(frequency);
+                    self.ticks = frequency.first_due(now);
+                }
+                Directive::Policy(policy) => self.policy = policy,
+                // That it stopped, or made a step, is a turn of its own; the others change nothing of what it does.
+                Directive::Stop
+                | Directive::Step
+                | Directive::StatisticsEvery(_)
+                | Directive::Scheduling(..) => {}
+            }
+        }
+        Ok(said)
+    }
+
+    fn follow_guards(&mut self) {
+        for topic in self.runner.topics_of_guards() {
+            self.follow(topic);
         }
     }
 
@@ -114,7 +190,8 @@ impl RepeatedChart {
         (self.now, self.was_due) = (now, record.due);
         let back = self.back(&record.returned, has_diverged);
         match turn {
-            Turn::None => {}
+            Turn::None | Turn::Ordered => {}
+            Turn::Step => self.step_once(record, back, now),
             Turn::Start => self.start(record.first_tick, now),
             Turn::Round => self.round(record, back, now),
             Turn::Stop => self.stop(back, now),
@@ -125,7 +202,7 @@ impl RepeatedChart {
     /// what it waited for then: threads wake late.
     pub(super) fn due_before(&self, next: Moment) -> Option<Moment> {
         let due = self.runner.due(self.now).min(self.tick());
-        let is_over = self.has_failed || self.is_stopping || self.runner.is_over();
+        let is_over = self.has_failed || self.is_stopping || self.pauses || self.runner.is_over();
         let is_new = due > self.now && due < next && due_record(due) != self.was_due;
         (is_new && !is_over).then_some(due)
     }
@@ -139,9 +216,12 @@ impl RepeatedChart {
 
     fn start(&mut self, first_tick: u64, now: Moment) {
         self.ticks = first_tick;
-        for topic in self.runner.topics_of_guards() {
-            self.follow(topic);
+        if let Some(runner) = self.next.take() {
+            self.runner = runner;
+            self.out.clear();
+            (self.has_failed, self.is_stopping) = (false, false);
         }
+        self.follow_guards();
         self.runner.start(now);
     }
 
@@ -161,6 +241,31 @@ impl RepeatedChart {
         self.out.extend(back);
         if !self.has_failed {
             self.rest(now);
+        }
+    }
+
+    /// One step of a chart that pauses. If it fails, whoever asked for it is told, and the agent goes on.
+    fn step_once(&mut self, record: &Cycle, back: Vec<Assignment>, now: Moment) {
+        if self.has_failed {
+            return;
+        }
+        self.round(record, back, now);
+        if !self.has_failed {
+            self.one_step(now);
+        }
+        self.has_failed = false;
+    }
+
+    fn one_step(&mut self, now: Moment) {
+        while let Some(assignment) = self.runner.next_waiting(now) {
+            self.out.push(assignment);
+        }
+        let is_due = self.runner.needs_step(now) || self.tick() <= now;
+        if !self.runner.is_over() && is_due && !self.step(now) {
+            return;
+        }
+        while let Some(assignment) = self.runner.next_started() {
+            self.out.push(assignment);
         }
     }
 
@@ -193,7 +298,7 @@ impl RepeatedChart {
 
     /// True if the chart goes on.
     fn rest(&mut self, now: Moment) -> bool {
-        while !self.has_failed {
+        while !self.has_failed && !self.pauses {
             if let Some(assignment) = self.runner.next_started() {
                 self.out.push(assignment);
             } else if self.runner.needs_step(now) || self.tick() <= now {
@@ -204,7 +309,7 @@ impl RepeatedChart {
                 return true;
             }
         }
-        false
+        !self.has_failed
     }
 
     fn tick(&self) -> Moment {
@@ -223,7 +328,7 @@ impl RepeatedChart {
 
     /// An activity has come back: it is called. False if the agent is to stop.
     fn returned(&mut self, assignment: Assignment, now: Moment) -> bool {
-        let activation = assignment.activation;
+        let activation = self.runner.known_as(&assignment);
         let has_failed = self.take_back(assignment, self.policy == Policy::Restart, now);
         // What came on a topic before it was followed has to be assumed.
         for topic in self.runner.waits_for(activation).to_vec() {

@@ -1,0 +1,170 @@
+//! Changes of an agent in real time, made again where its thread was told to follow them.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use narukom::Moment;
+
+use super::super::crew::{Crew, Ground, Member};
+use super::super::management::{Roster, Staff};
+use super::super::orders::{Orders, Standing};
+use super::changes::refuse_in_real_time;
+use super::repeated::Repeated;
+use crate::agent::Profile;
+use crate::error::{Error, ErrorKind};
+use crate::records::{Action, AgentEntry, Asked, Change, Changed, Cycle};
+
+/// What an agent was asked, and what it is made of by now.
+pub(super) struct Ordered {
+    roster: Roster,
+    /// What it was asked and has not followed, in the order in which it was.
+    asked: VecDeque<Request>,
+    /// The recording tells where changes were made.
+    is_told: bool,
+    /// A change was made, nobody knows where: why that cannot be replayed, and how many turns may begin before that is certain.
+    untold: Option<(Error, u32)>,
+}
+
+/// A change and the message that asked for it.
+struct Request {
+    publisher: String,
+    sequence: u32,
+    change: Change,
+}
+
+impl Ordered {
+    pub(super) fn new(ground: Ground, crew: Arc<Crew>, profiles: Vec<Profile>) -> Result<Ordered, Error> {
+        let roster = Roster::new(ground, crew, profiles, None)?;
+        Ok(Ordered { roster, asked: VecDeque::new(), is_told: false, untold: None })
+    }
+
+    /// Somebody asked for a change.
+    pub(super) fn ask(&mut self, publisher: &str, sequence: u32, change: Change) {
+        self.asked.push_back(Request { publisher: publisher.to_owned(), sequence, change });
+    }
+
+    /// A change was made, or refused, at a moment.
+    ///
+    /// # Errors
+    /// It made two threads of one.
+    pub(super) fn answered(&mut self, changed: &Changed, is_list: bool, at: Moment) -> Result<(), Error> {
+        let is_new = changed.action() == Action::AddActivity && self.roster.has_no_list(&changed.agent);
+        if changed.done && is_new {
+            return Err(split(&changed.agent, at));
+        }
+        // Whoever answers waits a second for a thread that is busy: a chart may end the turn that it is in.
+        let patience = if is_list { 0 } else { 1 };
+        if !self.is_told && self.untold.is_none() {
+            self.untold = refuse_in_real_time(changed, is_list, at).err().map(|error| (error, patience));
+        }
+        Ok(())
+    }
+
+    /// A turn begins.
+    ///
+    /// # Errors
+    /// A change was made before it, and the recording does not tell where.
+    pub(super) fn begin_turn(&mut self) -> Result<(), Error> {
+        match self.untold.take() {
+            Some((error, 0)) => Err(error),
+            untold => {
+                self.untold = untold.map(|(error, patience)| (error, patience - 1));
+                Ok(())
+            }
+        }
+    }
+
+    /// Here the agent was told to follow a change: it does so again.
+    ///
+    /// # Errors
+    /// The recording lacks the change, or what is replayed now cannot be changed like that.
+    pub(super) fn follow(&mut self, record: &Cycle, repeated: &mut Repeated) -> Result<(), Error> {
+        (self.is_told, self.untold) = (true, None);
+        let asked = record.asked.clone().unwrap_or_default();
+        let change = self.taken(&asked).ok_or_else(|| lacking(&asked))?;
+        let now = Moment::from_nanos(record.time);
+        let mut staff = Again { action: change.action(), repeated, now, was_told: false };
+        let changed = self.roster.repeat(&change, &mut staff, now);
+        if staff.was_told { Ok(()) } else { Err(refused(&changed, now)) }
+    }
+
+    /// The change that this message asked for. Those before it were refused: they are made in their order.
+    fn taken(&mut self, asked: &Asked) -> Option<Change> {
+        // Of the numbers of messages a recording has the lower 32 bits.
+        let sequence = asked.sequence as u32;
+        let is_it = |request: &Request| request.publisher == asked.publisher && request.sequence == sequence;
+        let place = self.asked.iter().position(is_it)?;
+        self.asked.drain(..=place).next_back().map(|request| request.change)
+    }
+}
+
+/// The agent, while it is changed.
+struct Again<'a> {
+    action: Action,
+    repeated: &'a mut Repeated,
+    now: Moment,
+    was_told: bool,
+}
+
+impl Staff for Again<'_> {
+    /// It was told, so it stood as it must.
+    fn standing(&self, _: &str) -> Standing {
+        match self.action {
+            Action::StartAgent => Standing::Stopped,
+            Action::ResumeAgent | Action::StepAgent => Standing::Pauses,
+            _ => Standing::Runs,
+        }
+    }
+
+    fn cycles(&self, _: &str) -> u64 {
+        0
+    }
+
+    fn obey(&mut self, _: &str, orders: Orders) -> Result<Vec<String>, Vec<String>> {
+        self.was_told = true;
+        self.repeated.obey(orders, self.now)
+    }
+
+    fn launch(&mut self, member: Member) -> Result<(), String> {
+        Err(format!("`{}` is another agent", member.name))
+    }
+
+    fn dismiss(&mut self, agent: &str) -> Result<(), String> {
+        Err(format!("`{agent}` has no turn in which it leaves"))
+    }
+
+    fn entry(&self, _: &Profile) -> AgentEntry {
+        AgentEntry::default()
+    }
+}
+
+fn lacking(asked: &Asked) -> Error {
+    let Asked { publisher, sequence } = asked;
+    let message = format!("the recording lacks change {sequence} of `{publisher}`, which an agent followed");
+    let hint = "agents are changed as they were then: only a recording of all topics can be replayed";
+    Error::new(ErrorKind::Invalid, message).with_hint(hint)
+}
+
+fn split(agent: &str, at: Moment) -> Error {
+    let message = format!(
+        "agent `{agent}` was given a list of its own {:.3} s after the run began: its threads are recorded under one name, and cannot be \
+         replayed one by one",
+        at.as_secs_f64()
+    );
+    Error::new(ErrorKind::Invalid, message).with_hint("replay other agents, or the time before")
+}
+
+fn refused(changed: &Changed, at: Moment) -> Error {
+    let finding = changed.findings.first();
+    let reason = finding.map_or("it is none that an agent follows", |finding| finding.message.as_str());
+    let message = format!(
+        "what was asked of agent `{}` {:.3} s after the run began cannot be made again: {reason}",
+        changed.agent,
+        at.as_secs_f64()
+    );
+    let error = Error::new(ErrorKind::Invalid, message);
+    match finding.filter(|finding| !finding.hint.is_empty()) {
+        Some(finding) => error.with_hint(&finding.hint),
+        None => error,
+    }
+}
