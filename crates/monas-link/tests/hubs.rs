@@ -241,7 +241,7 @@ fn nothing_is_taken_that_comes_under_a_links_own_name() {
         is_reliable: true,
     };
     end.handle(&packet("vision"), Moment::ZERO);
-    assert_eq!(end.node().counters().received[0].2.arrived, 0);
+    assert!(end.node().counters().received.is_empty());
     end.handle(&packet("laptop"), Moment::ZERO);
     assert_eq!(end.node().counters().received[0].2.delivered, 1);
 }
