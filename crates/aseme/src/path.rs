@@ -253,7 +253,7 @@ pub(crate) fn transitions<'a>(
     chart.transitions().filter(move |(_, transition)| fits(transition)).map(|(id, _)| id)
 }
 
-/// The shortest `path -> path` that names one transition and no other.
+/// The shortest `path -> path` that names one transition and no other, but those between the same two ends.
 pub fn shortest_transition(chart: &Statechart, transition: TransitionId) -> String {
     let Transition { source, target, .. } = *chart.transition(transition);
     let longest = 1 + chart.ancestors(source).count().max(chart.ancestors(target).count());
@@ -262,7 +262,11 @@ pub fn shortest_transition(chart: &Statechart, transition: TransitionId) -> Stri
         let pairs = [(length, 1), (1, length), (length, length)];
         pairs.map(|(of_source, of_target)| (path(source, of_source), path(target, of_target)))
     });
-    let is_unique = |(source, target): &(Path, Path)| transitions(chart, source, target).nth(1).is_none();
+    let is_other = |id: TransitionId| {
+        let other = chart.transition(id);
+        (other.source, other.target) != (source, target)
+    };
+    let is_unique = |(from, to): &(Path, Path)| !transitions(chart, from, to).any(is_other);
     first_or_last(paths, is_unique).map_or(String::new(), |(source, target)| format!("{source} -> {target}"))
 }
 

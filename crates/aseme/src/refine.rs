@@ -2,12 +2,13 @@
 //!
 //! An entry names its transition or state by [`Path`]s, never by label, so it stays in force when the formula is edited, for
 //! as long as its paths name exactly one. One that no longer does is handed back with its text and what it might have meant; nothing is
-//! dropped silently. An entry with a wildcard is for all that it names and that no entry without wildcard names.
+//! dropped silently. An entry with a wildcard is for all that it names and that no entry without wildcard names. An entry with `also` is no word about
+//! the transition that it names: it adds another one beside it, after all others, in the order of the entries.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use yase::diagnostic::nearest;
-use yase::{Diagnostic, NodeId, NodeKind, Span, Statechart, TransitionId};
+use yase::{Diagnostic, NodeId, NodeKind, Span, Statechart, Transition, TransitionId};
 
 use crate::path::{self, Path};
 use crate::srm::{StateEntry, TransitionEntry};
@@ -36,12 +37,38 @@ pub(crate) fn refine_placed(
     chart: &mut Statechart,
     entries: &[TransitionEntry],
 ) -> (BTreeMap<TransitionId, usize>, Vec<Unmatched>) {
-    let wishes: Vec<Wish<TransitionId>> = entries.iter().map(|entry| transitions_of(chart, entry)).collect();
-    let (chosen, unmatched) = settle(&wishes, |id| path::shortest_transition(chart, *id));
+    let (besides, own): (Vec<usize>, Vec<usize>) = (0..entries.len()).partition(|&index| entries[index].also);
+    let wishes: Vec<Wish<TransitionId>> =
+        own.iter().map(|&index| transitions_of(chart, &entries[index])).collect();
+    let (chosen, mut unmatched) = settle(&wishes, |id| path::shortest_transition(chart, *id));
+    let mut chosen: BTreeMap<TransitionId, usize> =
+        chosen.into_iter().map(|(id, wish)| (id, own[wish])).collect();
     for (&id, &index) in &chosen {
         entries[index].apply(chart, id);
     }
+    for index in besides {
+        match beside(chart, &entries[index]) {
+            Ok(added) => chosen.extend(added.into_iter().map(|id| (id, index))),
+            Err(misfit) => unmatched.push(*misfit),
+        }
+    }
+    unmatched.sort_by_key(|unmatched| unmatched.diagnostic.span);
     (chosen, unmatched)
+}
+
+/// Adds what an entry says beside each transition that it names.
+fn beside(chart: &mut Statechart, entry: &TransitionEntry) -> Result<Vec<TransitionId>, Box<Unmatched>> {
+    let wish = transitions_of(chart, entry);
+    if wish.fits_not() {
+        return Err(Box::new(misfit(&wish, |id| path::shortest_transition(chart, *id))));
+    }
+    let add = |id: TransitionId| {
+        let Transition { source, target, .. } = *chart.transition(id);
+        let added = chart.connect(Transition::new(source, target));
+        entry.apply(chart, added);
+        added
+    };
+    Ok(wish.named.into_iter().map(add).collect())
 }
 
 /// Gives the states of a chart what the entries say of them; entries that do not fit are returned, in order.
@@ -74,10 +101,24 @@ struct Wish<'a, Id> {
     near: Vec<String>,
 }
 
+impl<Id> Wish<'_, Id> {
+    /// Whether it names nothing, or several things without a wildcard.
+    fn fits_not(&self) -> bool {
+        self.named.is_empty() || self.named.len() > 1 && !self.has_wildcard
+    }
+}
+
 fn transitions_of<'a>(chart: &Statechart, entry: &'a TransitionEntry) -> Wish<'a, TransitionId> {
-    let named: Vec<TransitionId> = path::transitions(chart, &entry.source, &entry.target).collect();
+    // of several between the same two ends the first is the formula's, the others stand beside it
+    let mut ends = BTreeSet::new();
+    let is_first = |id: &TransitionId| {
+        let Transition { source, target, .. } = *chart.transition(*id);
+        ends.insert((source, target))
+    };
+    let named: Vec<TransitionId> =
+        path::transitions(chart, &entry.source, &entry.target).filter(is_first).collect();
     let near = if named.is_empty() { near_transitions(chart, entry) } else { Vec::new() };
-    let has_wildcard = entry.source.has_wildcard() || entry.target.has_wildcard();
+    let has_wildcard = entry.has_wildcard();
     Wish { text: &entry.text, span: entry.span, thing: "transition", has_wildcard, named, near }
 }
 
@@ -128,7 +169,7 @@ fn settle<Id: Copy + Ord>(
         (0..wishes.len()).partition(|&index| wishes[index].has_wildcard);
     for index in plain.into_iter().chain(wild) {
         let wish = &wishes[index];
-        if wish.named.is_empty() || wish.named.len() > 1 && !wish.has_wildcard {
+        if wish.fits_not() {
             unmatched.insert(index, misfit(wish, &text_of));
             continue;
         }

@@ -8,7 +8,7 @@
 mod charts;
 mod entries;
 
-use yase::{Diagnostic, NodeId, NodeKind, Statechart, TransitionId};
+use yase::{Diagnostic, NodeId, NodeKind, Statechart, Transition, TransitionId};
 
 use crate::path;
 use crate::refine::{self, Unmatched};
@@ -143,18 +143,16 @@ impl Carrying {
         if let Some(unmatched) = refine::refine(&mut scratch, std::slice::from_ref(entry)).pop() {
             return Err(Box::new(unmatched));
         }
+        if entry.also {
+            return Ok(self.beside(entry, &scratch));
+        }
         let named: Vec<TransitionId> = path::transitions(&self.plain, &entry.source, &entry.target).collect();
         let (mut is_new, mut taken) = (false, None);
         for id in named {
             let (own, wished) = (self.chart.transition(id), scratch.transition(id));
-            let says = |it: &yase::Transition| {
-                (it.expression.to_string(), it.priority, it.weight.map(f64::to_bits), it.interrupts)
-            };
             if says(own) == says(self.plain.transition(id)) {
                 is_new = is_new || says(wished) != says(own);
-            } else if says(own) != says(wished)
-                && !(entry.source.has_wildcard() || entry.target.has_wildcard())
-            {
+            } else if says(own) != says(wished) && !entry.has_wildcard() {
                 taken = Some(path::shortest_transition(&self.plain, id));
             }
         }
@@ -165,6 +163,20 @@ impl Carrying {
             refine::refine(&mut self.chart, std::slice::from_ref(entry));
         }
         Ok(is_new)
+    }
+
+    /// Whether another transition beside one of the formulas' is to be added: `scratch` has it already.
+    fn beside(&mut self, entry: &TransitionEntry, scratch: &Statechart) -> bool {
+        let is_there = |wished: &Transition| {
+            let same = |own: &Transition| (own.source, own.target) == (wished.source, wished.target);
+            self.chart.transitions().any(|(_, own)| same(own) && says(own) == says(wished))
+        };
+        let added = scratch.transitions().skip(self.plain.transitions().len());
+        let is_new = !added.map(|(_, wished)| wished).all(is_there);
+        if is_new {
+            refine::refine(&mut self.chart, std::slice::from_ref(entry));
+        }
+        is_new
     }
 
     fn state(&mut self, entry: &StateEntry) -> Result<bool, Box<Unmatched>> {
@@ -207,6 +219,11 @@ impl Carrying {
             }
         }
     }
+}
+
+/// All that is written on a transition.
+fn says(it: &Transition) -> (String, i32, Option<u64>, bool) {
+    (it.expression.to_string(), it.priority, it.weight.map(f64::to_bits), it.interrupts)
 }
 
 /// How a composite remembers what was active in it.

@@ -18,8 +18,9 @@
 //! SearchBall : priority = 5, duration = 2s
 //! ```
 //!
-//! - **Transitions**: `[scope:] source -> target [!priority] [%weight] [interrupts] [: expression]`. Paths are described in
+//! - **Transitions**: `[scope:] source -> target [also] [!priority] [%weight] [interrupts] [: expression]`. Paths are described in
 //!   [`path`](crate::path); `scope: a -> b` is short for `scope/a -> scope/b`. A line without `->` goes on with the entry above it.
+//!   `also` adds a transition beside the one that is named: another way between the same two, such as an exit that the formulas do not have.
 //! - **States**: `path : key = value, ...` with the keys `activity`, `priority`, `entry`, `exit`, `defer`, `duration` and, for
 //!   composites, `history`: with `shallow` or `deep` one that is entered again goes on where it was left. A line without `:` goes on with the entry
 //!   above it.
@@ -78,6 +79,8 @@ pub struct TransitionEntry {
     pub source: Path,
     /// The node it leads to.
     pub target: Path,
+    /// Whether it is another transition beside the one that is named.
+    pub also: bool,
     /// Higher is tried first; 0 unless said.
     pub priority: i32,
     /// The weight of a probabilistic branch.
@@ -93,6 +96,11 @@ pub struct TransitionEntry {
 }
 
 impl TransitionEntry {
+    /// Whether it is for whatever its paths name.
+    pub(crate) fn has_wildcard(&self) -> bool {
+        self.source.has_wildcard() || self.target.has_wildcard()
+    }
+
     pub(crate) fn apply(&self, chart: &mut Statechart, id: TransitionId) {
         let transition = chart.transition_mut(id);
         transition.expression = self.expression.clone();

@@ -52,7 +52,12 @@ fn transition(chart: &Statechart, id: TransitionId, transition: &Transition) -> 
     } else {
         format!(" : {}", transition.expression)
     };
-    one_line(&format!("{path}{}{colon}", modifiers(transition)))
+    let is_beside = chart
+        .transitions()
+        .take(id.0 as usize)
+        .any(|(_, other)| (other.source, other.target) == (transition.source, transition.target));
+    let also = if is_beside { " also" } else { "" };
+    one_line(&format!("{path}{also}{}{colon}", modifiers(transition)))
 }
 
 fn history_of(chart: &Statechart, id: NodeId) -> Option<NodeId> {

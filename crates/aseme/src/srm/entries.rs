@@ -32,11 +32,12 @@ impl Reader {
             parse_transition_at(&blanked[expression_start..span.end], expression_start);
         self.diagnostics.extend(findings);
         let Some((source, target, modifiers)) = ends else { return };
-        let Modifiers { priority, weight, interrupts } = modifiers;
+        let Modifiers { also, priority, weight, interrupts } = modifiers;
         let text = one_line(text);
         self.srm.transitions.push(TransitionEntry {
             source,
             target,
+            also,
             priority,
             weight,
             interrupts,
@@ -82,7 +83,7 @@ impl Reader {
         for word in spaced.split_whitespace() {
             if modifiers.accept(word).is_none() {
                 let message = format!("`{word}` is not understood after a target");
-                let hint = "a target may be followed by `!priority`, `%weight` and `interrupts`";
+                let hint = "a target may be followed by `also`, `!priority`, `%weight` and `interrupts`";
                 self.report(
                     Diagnostic::error("E0242", text::trimmed(blanked, span), message).with_hint(hint),
                 );
@@ -94,6 +95,7 @@ impl Reader {
 
 #[derive(Default)]
 struct Modifiers {
+    also: bool,
     priority: i32,
     weight: Option<f64>,
     interrupts: bool,
@@ -103,6 +105,8 @@ impl Modifiers {
     fn accept(&mut self, word: &str) -> Option<()> {
         if word == "interrupts" {
             self.interrupts = true;
+        } else if word == "also" {
+            self.also = true;
         } else if let Some(priority) = word.strip_prefix('!') {
             self.priority = priority.parse().ok()?;
         } else {
@@ -117,9 +121,11 @@ impl Modifiers {
 /// Where the path of a target ends and its modifiers begin.
 fn modifiers_start(head: &str) -> usize {
     let sign = head.find(['!', '%']);
-    let words = head.match_indices("interrupts").map(|(at, _)| at);
-    let word = words.into_iter().find(|&at| is_word(head, at, "interrupts".len()));
-    [sign, word].into_iter().flatten().min().unwrap_or(head.len())
+    let words = ["also", "interrupts"].into_iter().filter_map(|word| {
+        let mut places = head.match_indices(word).map(|(at, _)| at);
+        places.find(|&at| is_word(head, at, word.len()))
+    });
+    sign.into_iter().chain(words).min().unwrap_or(head.len())
 }
 
 /// Whether blanks, or nothing, stand around a part of a text, and something in front of it.

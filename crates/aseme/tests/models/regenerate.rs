@@ -65,6 +65,32 @@ fn what_no_longer_fits_becomes_a_comment_with_its_reason() {
 }
 
 #[test]
+fn another_way_beside_the_formulas_is_named_added_and_carried() {
+    let role = "Role: r\nLiveness:\nr = a . b . c\nb = d . e\nTransitions:\nb -> c : [B.x]\nb -> c also !1 : stop\nb -> c also : [B.y]\n";
+    let own = chart(role);
+    let from = |name: &str| {
+        let node = own.find(name).unwrap();
+        own.transitions()
+            .filter(move |(_, it)| it.source == node)
+            .map(|(_, it)| (it.priority, it.expression.to_string()))
+    };
+    let said: Vec<_> = from("b").collect();
+    assert_eq!(said, [(0, "[B.x]".into()), (1, "stop".into()), (0, "[B.y]".into())]);
+    let entries: Vec<String> = entries_of_chart(&own).into_iter().map(|(_, line)| line).collect();
+    assert_eq!(entries, ["b -> c : [B.x]", "b -> c also !1 : stop", "b -> c also : [B.y]"]);
+
+    let bare = file("Role: r\nLiveness:\nr = a . b . c\nb = d . e\n");
+    let made = carry(&bare, &entries_of_chart(&own)).unwrap();
+    assert_eq!((made.kept, made.lost.len()), (3, 0));
+    assert_eq!(to_text(&chart(&made.text)), to_text(&own));
+    assert_eq!(carry(&file(&made.text), &entries_of_chart(&own)).unwrap().text, made.text, "once is enough");
+
+    let edited = put_aside(&file(&role.replace("a . b . c", "a . c . b"))).unwrap();
+    assert_eq!(edited.lost.len(), 3);
+    assert!(edited.text.contains("\n# b -> c also !1 : stop\n"), "{}", edited.text);
+}
+
+#[test]
 fn a_composite_with_history_is_entered_where_it_was_left() {
     let (chart, act) = (chart(ROLE), |chart: &Statechart| chart.find("act").unwrap());
     let history = chart.children(act(&chart)).last().copied().unwrap();

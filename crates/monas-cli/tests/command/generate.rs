@@ -34,18 +34,18 @@ fn generate(folder: &Path, model: &str) -> (Option<i32>, String, String) {
 #[test]
 fn a_match_with_generated_charts_has_the_hash_of_one_with_interpreted_ones() {
     let hash = |file| {
-        let answer = monas(&["run", file, "--seed", "7", "--for", "5s"]);
+        let answer = monas(&["run", file, "--seed", "7", "--for", "15s"]);
         assert_eq!(answer.code, Some(0), "{}", answer.err);
         let line = answer.out.lines().find(|line| line.starts_with("hash: ")).map(str::to_owned);
         line.expect("there is a hash")
     };
-    assert_eq!(hash("config/match_generated.xml"), hash("config/match.xml"));
+    assert_eq!(hash("config/match_generated.xml"), hash("config/match_attack.xml"));
 }
 
 #[test]
 fn what_is_committed_is_what_the_models_give() {
     let project = project();
-    for model in ["models/goalie.srm", "models/attacker.srm"] {
+    for model in ["models/goalie.srm", "models/attacker.srm", "models/extended_attacker.srm"] {
         assert_eq!(generate(project.path(), model), (Some(0), "nothing has changed\n".into(), String::new()));
     }
 }

@@ -1,0 +1,44 @@
+//! The activities of the states. One that is not there is an error here.
+
+use monas::generated::Instance;
+use monas_soccer::activities::{
+    AlignWithBall, BringBallToPass, BringBallToShoot, LedHandler, LeftKick, MotionController, PassBall,
+    RightKick, RobotController, SearchBall, SendCalibration, Sensors, Stand, TrackBall, Vision,
+    WaitForBallMessage, WalkTowardsBall, WalkTowardsGoal,
+};
+
+use super::states::State;
+
+/// A new instance for each state that has an activity.
+pub(super) fn instances() -> Vec<Instance> {
+    vec![
+        Instance::of::<RobotController>(State::RobotController),
+        Instance::of::<LedHandler>(State::LedHandler),
+        Instance::of::<MotionController>(State::MotionController),
+        Instance::of::<Stand>(State::Stand),
+        Instance::of::<SendCalibration>(State::SendCalibration),
+        Instance::of::<Sensors>(State::Sensors),
+        Instance::of::<Vision>(State::Vision),
+        Instance::of::<WaitForBallMessage>(State::WaitForBallMessage),
+        Instance::of::<SearchBall>(State::SearchBall),
+        Instance::of::<TrackBall>(State::TrackBall),
+        Instance::of::<WalkTowardsBall>(
+            State::WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        ),
+        Instance::of::<AlignWithBall>(State::AlignWithBall),
+        Instance::of::<LeftKick>(
+            State::LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        ),
+        Instance::of::<RightKick>(
+            State::RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        ),
+        Instance::of::<BringBallToPass>(State::WalkTowardsBall__of__center),
+        Instance::of::<PassBall>(State::passBall),
+        Instance::of::<WalkTowardsGoal>(State::WalkTowardsGoal),
+        Instance::of::<BringBallToShoot>(
+            State::WalkTowardsBall__of__WalkTowardsBall__then____opt__kickBall__end__,
+        ),
+        Instance::of::<LeftKick>(State::LeftKick__of__kickBall__of____opt__kickBall__end__),
+        Instance::of::<RightKick>(State::RightKick__of__kickBall__of____opt__kickBall__end__),
+    ]
+}

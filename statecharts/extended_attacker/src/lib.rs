@@ -1,0 +1,17 @@
+//! The statechart `player`.
+//!
+//! Generated from `models/extended_attacker.srm`: what is changed here is lost when that is done again.
+//!
+//! [`State`] lists its states; the module `chart` says how they hang together, `guards` what the guards ask and what is assigned,
+//! `words` what these speak of.
+
+mod activities;
+mod chart;
+mod guards;
+mod states;
+mod words;
+
+pub use chart::chart;
+pub use states::State;
+
+monas::statechart!("extended_attacker" = chart, activities::instances);

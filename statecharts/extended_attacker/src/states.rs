@@ -1,0 +1,235 @@
+//! The states.
+
+use monas::generated::NodeId;
+
+/// The nodes of the chart, in its order. Each is called after the end of its path, from itself outwards, that no other has.
+#[allow(non_camel_case_types, clippy::upper_case_acronyms)] // the names are the model's
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum State {
+    /// OR: `player`
+    player,
+    /// START: `player/START`
+    START__of__player,
+    /// AND: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)`
+    RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+    /// END: `player/END`
+    END__of__player,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/1`
+    region1__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/1/START`
+    START__of__region1__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/1/RobotController~`
+    RobotController__ever__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/1/END`
+    END__of__region1__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/2`
+    region2__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/2/START`
+    START__of__region2__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/2/LedHandler~`
+    LedHandler__ever__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/2/END`
+    END__of__region2__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/3`
+    region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/3/START`
+    START__of__region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/3/MotionController~`
+    MotionController__ever__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/3/END`
+    END__of__region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4`
+    region4,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/START`
+    START__of__region4,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)`
+    __open__initialize__then__active__close__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/END`
+    END__of__region4,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/1/RobotController~/START`
+    START__of__RobotController__ever__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/1/RobotController~/RobotController`
+    RobotController,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/2/LedHandler~/START`
+    START__of__LedHandler__ever__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/2/LedHandler~/LedHandler`
+    LedHandler,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/3/MotionController~/START`
+    START__of__MotionController__ever__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/3/MotionController~/MotionController`
+    MotionController,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/START`
+    START__of____open__initialize__then__active__close__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/initialize`
+    initialize,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active`
+    active,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/END`
+    END__of____open__initialize__then__active__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/initialize/START`
+    START__of__initialize,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/initialize/Stand`
+    Stand,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/initialize/SendCalibration`
+    SendCalibration,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/initialize/END`
+    END__of__initialize,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/START`
+    START__of__active,
+    /// AND: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~`
+    Sensors__ever____par__Vision__ever____par__decision__ever__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/END`
+    END__of__active,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/1`
+    region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/1/START`
+    START__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/1/Sensors~`
+    Sensors__ever__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/1/END`
+    END__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/2`
+    region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/2/START`
+    START__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/2/Vision~`
+    Vision__ever__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/2/END`
+    END__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3`
+    region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/START`
+    START__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~`
+    decision__ever__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/END`
+    END__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/1/Sensors~/START`
+    START__of__Sensors__ever__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/1/Sensors~/Sensors`
+    Sensors,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/2/Vision~/START`
+    START__of__Vision__ever__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/2/Vision~/Vision`
+    Vision,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/START`
+    START__of__decision__ever__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision`
+    decision,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/START`
+    START__of__decision,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/WaitForBallMessage`
+    WaitForBallMessage,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)`
+    __open__SearchBall__or__takeAction__close__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/END`
+    END__of__decision,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/START`
+    START__of____open__SearchBall__or__takeAction__close__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/CONDITION`
+    CONDITION__of____open__SearchBall__or__takeAction__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/SearchBall`
+    SearchBall,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction`
+    takeAction,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/END`
+    END__of____open__SearchBall__or__takeAction__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/START`
+    START__of__takeAction,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/TrackBall`
+    TrackBall,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)`
+    __open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/END`
+    END__of__takeAction,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/START`
+    START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/CONDITION`
+    CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/WalkTowardsBall`
+    WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/AlignWithBall`
+    AlignWithBall,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/kickBall`
+    kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center`
+    center,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for`
+    center_for,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/END`
+    END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/kickBall/START`
+    START__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/kickBall/CONDITION`
+    CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/kickBall/LeftKick`
+    LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/kickBall/RightKick`
+    RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/kickBall/END`
+    END__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/START`
+    START__of__center,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/WalkTowardsBall`
+    WalkTowardsBall__of__center,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/[passBall]`
+    __opt__passBall__end__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/END`
+    END__of__center,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/[passBall]/START`
+    START__of____opt__passBall__end__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/[passBall]/CONDITION`
+    CONDITION__of____opt__passBall__end__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/[passBall]/passBall`
+    passBall,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/[passBall]/END`
+    END__of____opt__passBall__end__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/START`
+    START__of__center_for,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/WalkTowardsGoal`
+    WalkTowardsGoal,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]`
+    __opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/END`
+    END__of__center_for,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/START`
+    START__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/CONDITION`
+    CONDITION__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]`
+    WalkTowardsBall__then____opt__kickBall__end__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/START`
+    START__of__WalkTowardsBall__then____opt__kickBall__end__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/WalkTowardsBall`
+    WalkTowardsBall__of__WalkTowardsBall__then____opt__kickBall__end__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]`
+    __opt__kickBall__end__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/END`
+    END__of__WalkTowardsBall__then____opt__kickBall__end__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/START`
+    START__of____opt__kickBall__end__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/CONDITION`
+    CONDITION__of____opt__kickBall__end__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/kickBall`
+    kickBall__of____opt__kickBall__end__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/kickBall/START`
+    START__of__kickBall__of____opt__kickBall__end__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/kickBall/CONDITION`
+    CONDITION__of__kickBall__of____opt__kickBall__end__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/kickBall/LeftKick`
+    LeftKick__of__kickBall__of____opt__kickBall__end__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/kickBall/RightKick`
+    RightKick__of__kickBall__of____opt__kickBall__end__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/kickBall/END`
+    END__of__kickBall__of____opt__kickBall__end__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/END`
+    END__of____opt__kickBall__end__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/END`
+    END__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+}
+
+impl From<State> for NodeId {
+    fn from(state: State) -> NodeId {
+        NodeId(state as u32)
+    }
+}

@@ -1,0 +1,66 @@
+//! What guards and actions speak of: each a constant with the model's own name.
+
+/// The constants of the model.
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+pub(super) mod constants {
+    /// `near`
+    pub(crate) const near: f64 = 0.25;
+    /// `kick_x`
+    pub(crate) const kick_x: f64 = 0.15;
+    /// `kick_y`
+    pub(crate) const kick_y: f64 = 0.05;
+    /// `tolerance`
+    pub(crate) const tolerance: f64 = 0.025;
+}
+
+/// The functions that expressions call.
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+pub(super) mod functions {
+    use monas::generated::Function;
+
+    /// `abs`
+    pub(crate) const abs: Function = Function(0);
+}
+
+/// The messages that are read and written.
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+pub(super) mod messages {
+    use monas::generated::Source;
+
+    /// `soccer/game_state`
+    pub(crate) const GAME_STATE: Source<monas_soccer::GameState> = Source::new(0);
+    /// `soccer/ball`
+    pub(crate) const BALL: Source<monas_soccer::Ball> = Source::new(1);
+    /// `soccer/attack`
+    pub(crate) const ATTACK: Source<monas_soccer::Attack> = Source::new(2);
+}
+
+/// The timers.
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+pub(super) mod timers {
+    use monas::generated::Timer;
+
+    /// `robot_timeout`
+    pub(crate) const robot_timeout: Timer = Timer(0);
+    /// `led_timeout`
+    pub(crate) const led_timeout: Timer = Timer(1);
+    /// `motion_timeout`
+    pub(crate) const motion_timeout: Timer = Timer(2);
+    /// `sensors_timeout`
+    pub(crate) const sensors_timeout: Timer = Timer(3);
+    /// `vision_timeout`
+    pub(crate) const vision_timeout: Timer = Timer(4);
+    /// `decision_timeout`
+    pub(crate) const decision_timeout: Timer = Timer(5);
+}
+
+/// The values of enumerations.
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+pub(super) mod values {
+    /// `AttackPart.CENTER`
+    pub(crate) const CENTER: i32 = 1;
+    /// `AttackPart.CENTER_FOR`
+    pub(crate) const CENTER_FOR: i32 = 2;
+    /// `PlayerState.PLAYING`
+    pub(crate) const PLAYING: i32 = 3;
+}
