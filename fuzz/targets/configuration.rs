@@ -5,7 +5,7 @@ use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
 use monas::Registry;
-use monas::config::{self, xml};
+use monas::config::{self, Element, xml};
 use monas_fuzz::assert_findings_fit;
 use yase::Source;
 
@@ -18,7 +18,7 @@ fuzz_target!(|text: &str| {
     assert_findings_fit(text, &findings);
 });
 
-fn assert_spans_fit(text: &str, element: &xml::Element) {
+fn assert_spans_fit(text: &str, element: &Element) {
     let spans = [element.span(), element.name_span(), element.text_span()];
     let values =
         element.attributes().iter().flat_map(|attribute| [attribute.name_span, attribute.value_span]);

@@ -151,6 +151,13 @@ impl Blackboard {
 
     /// Delivers what was published up to number `last` and later. If none of it is read here, the hub is not asked for it.
     fn deliver(&mut self, last: u64) {
+        if last == self.window.delivered + 1
+            && let Some(channel) = self.hub.channel_of_last(last)
+            && (!self.reads(channel) || self.deliver_last(last, channel))
+        {
+            self.window.delivered = last;
+            return;
+        }
         let recent = self.hub.recent(self.window.delivered, last);
         if recent.is_some_and(|recent| !recent.channels().any(|channel| self.reads(channel))) {
             self.window.delivered = last;
@@ -178,6 +185,29 @@ impl Blackboard {
         drop(exchange);
         self.delivery.leaving.clear();
         self.delivery.arrivals.sort_unstable();
+    }
+
+    /// Delivers the only publication since the last delivery, if it is still at the front.
+    #[inline]
+    fn deliver_last(&mut self, last: u64, channel: Channel) -> bool {
+        // What was published before the blackboard was made may be read already, and be no signal for it.
+        if self.window.delivered < self.window.since {
+            return false;
+        }
+        let place = &mut self.places[channel.topic.index()];
+        let reader = place.reader(self.number, channel.host);
+        let Some(reading) = place.reading_mut(channel.host) else { return false };
+        let was_open = reading.is_open();
+        let front = self.hub.front();
+        let Some(newest) = front.publication(last) else { return false };
+        reading.deliver_next(last, newest, reader, &mut self.delivery);
+        drop(front);
+        reading.expire(self.now, &mut self.delivery.leaving);
+        if reading.is_open() && !was_open {
+            self.open.get_mut().push(channel);
+        }
+        self.delivery.leaving.clear();
+        true
     }
 
     /// Whether messages of a channel are delivered here.

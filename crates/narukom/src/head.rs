@@ -6,7 +6,7 @@ use crate::exchange::HOST_LIMIT;
 use crate::sample::{Channel, HostId, TopicSlot};
 
 /// Of so many publications it is known here on which channel they were.
-const KNOWN: usize = 15;
+const KNOWN: usize = 14;
 
 /// So many bits of a publication's number stand beside its channel.
 const NUMBER_BITS: u32 = 24;
@@ -19,8 +19,11 @@ const _: () = assert!(HOST_LIMIT <= 1 << 8);
 /// Whoever polls compares one number, and takes the lock only if something was published that it reads. All of it is one cache line (two,
 /// since processors fetch them in pairs), of its own: those who poll do not slow down those who take the lock.
 #[repr(align(128))]
+#[repr(C)]
 pub(crate) struct Head {
     last: AtomicU64,
+    /// The number and the channel of the last publication, beside its number: who reads in step looks no further.
+    newest: AtomicU64,
     known: [AtomicU64; KNOWN],
 }
 
@@ -33,7 +36,11 @@ pub(crate) struct Recent {
 
 impl Head {
     pub(crate) fn new() -> Head {
-        Head { last: AtomicU64::new(0), known: [const { AtomicU64::new(0) }; KNOWN] }
+        Head {
+            last: AtomicU64::new(0),
+            newest: AtomicU64::new(0),
+            known: [const { AtomicU64::new(0) }; KNOWN],
+        }
     }
 
     /// The number of the last publication that readers can fetch.
@@ -46,7 +53,17 @@ impl Head {
     #[inline]
     pub(crate) fn note(&self, number: u64, channel: Channel) {
         let place = (number % KNOWN as u64) as usize;
-        self.known[place].store(packed(number, channel), Ordering::Release);
+        let packed = packed(number, channel);
+        self.known[place].store(packed, Ordering::Release);
+        self.newest.store(packed, Ordering::Release);
+    }
+
+    /// On which channel publication number `last` was, if no later one is noted.
+    #[inline]
+    pub(crate) fn channel_of_last(&self, last: u64) -> Option<Channel> {
+        let packed = self.newest.load(Ordering::Acquire);
+        // The bits come again after so many publications: they are another one's only if that is noted and not yet there to be fetched.
+        (is_of(packed, last) && self.last() == last).then(|| unpacked(packed))
     }
 
     /// Readers can fetch all publications up to this one. For whoever has the hub's lock.
@@ -63,7 +80,7 @@ impl Head {
         for (number, channel) in (since + 1..=last).zip(&mut recent.channels) {
             *channel = self.known[(number % KNOWN as u64) as usize].load(Ordering::Acquire);
             // A later one stands in its place.
-            if *channel >> (64 - NUMBER_BITS) != (number & ((1 << NUMBER_BITS) - 1)) {
+            if !is_of(*channel, number) {
                 return None;
             }
         }
@@ -76,11 +93,19 @@ impl Recent {
     /// In order of publication.
     #[inline]
     pub(crate) fn channels(&self) -> impl Iterator<Item = Channel> {
-        self.channels[..self.count].iter().map(|packed| Channel {
-            topic: TopicSlot::new(*packed as u32),
-            host: HostId((*packed >> 32) as u32 & 0xff),
-        })
+        self.channels[..self.count].iter().map(|packed| unpacked(*packed))
     }
+}
+
+#[inline]
+fn unpacked(packed: u64) -> Channel {
+    Channel { topic: TopicSlot::new(packed as u32), host: HostId((packed >> 32) as u32 & 0xff) }
+}
+
+/// Whether the number's bits stand there.
+#[inline]
+fn is_of(packed: u64, number: u64) -> bool {
+    packed >> (64 - NUMBER_BITS) == number & ((1 << NUMBER_BITS) - 1)
 }
 
 #[inline]
@@ -111,10 +136,10 @@ mod tests {
         }
         let known: Vec<Channel> = head.recent(37, 40).unwrap().channels().collect();
         assert_eq!(known, [channel(38_000, 38), channel(39_000, 39), channel(40_000, 40)]);
-        assert_eq!(head.recent(25, 40).unwrap().channels().count(), 15);
-        assert!(head.recent(24, 40).is_none());
+        assert_eq!(head.recent(26, 40).unwrap().channels().count(), 14);
+        assert!(head.recent(25, 40).is_none());
         // The reader was told of 30, and looks now.
-        assert!(head.recent(29, 30).is_some() && head.recent(24, 25).is_none());
+        assert!(head.recent(29, 30).is_some() && head.recent(25, 26).is_none());
     }
 
     #[test]

@@ -9,6 +9,7 @@ use crate::catalogue::Catalogue;
 use crate::encoding::Encoding;
 use crate::error::{Error, ErrorKind};
 use crate::exchange::{Exchange, Outgoing, Sender};
+use crate::front::Front;
 use crate::head::{Head, Recent};
 use crate::moment::Moment;
 use crate::observer::{Observer, Publication, Waker};
@@ -37,6 +38,7 @@ struct Shared {
     is_observed: AtomicBool,
     observers: Mutex<Observers>,
     exchange: Apart<Mutex<Exchange>>,
+    front: Apart<Mutex<Front>>,
     head: Head,
 }
 
@@ -69,6 +71,7 @@ impl Narukom {
             is_observed: AtomicBool::new(false),
             observers: Mutex::default(),
             exchange: Apart(Mutex::new(exchange)),
+            front: Apart(Mutex::default()),
             head: Head::new(),
         };
         Ok(Narukom { shared: Arc::new(shared) })
@@ -243,6 +246,12 @@ impl Narukom {
         self.shared.head.last()
     }
 
+    /// On which channel the last publication was, if that is number `last`.
+    #[inline]
+    pub(crate) fn channel_of_last(&self, last: u64) -> Option<Channel> {
+        self.shared.head.channel_of_last(last)
+    }
+
     /// On which channels the publications later than number `since` were, up to `last`; none if that is no longer known.
     #[inline]
     pub(crate) fn recent(&self, since: u64, last: u64) -> Option<Recent> {
@@ -251,6 +260,12 @@ impl Narukom {
 
     pub(crate) fn exchange(&self) -> MutexGuard<'_, Exchange> {
         self.shared.exchange.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The last publication. Whoever has this lock takes no other.
+    #[inline]
+    pub(crate) fn front(&self) -> MutexGuard<'_, Front> {
+        self.shared.front.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn observers(&self) -> MutexGuard<'_, Observers> {
@@ -294,10 +309,14 @@ impl Narukom {
                 head.note(exchange.order(), message.header.channel());
             }
         }
+        let newest = outgoing.last().and_then(|last| exchange.newest(last.header.channel()));
+        let before = newest.and_then(|newest| self.front().put(newest));
         let waker = exchange.waker.clone();
         // The last thing before the lock is free: who polls the head wants the lock at once.
         head.move_to(exchange.order());
         drop(exchange);
+        // Its counter is with the core that read it: nobody waits for that.
+        drop(before);
         if let Some(mut observers) = observers {
             outgoing.iter_mut().for_each(|message| self.show(&mut observers, host, sender, message));
         }

@@ -5,10 +5,11 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::front::Newest;
 use crate::message::AnyMessage;
 use crate::moment::Moment;
-use crate::ring::{Entry, Ring};
-use crate::sample::{AnySample, HostId, TopicSlot};
+use crate::ring::{Entry, Origin, Ring};
+use crate::sample::{AnySample, Header, HostId, TopicSlot};
 use crate::topic::{Kind, TopicDeclaration};
 
 /// The delivered messages of a topic, and the place in the hub's ring where the next delivery begins.
@@ -51,8 +52,8 @@ pub(crate) struct Delivery {
 }
 
 impl Reader {
-    fn has_seen(self, entry: &Entry) -> bool {
-        entry.origin.blackboard == self.blackboard && entry.origin.nth <= self.seen
+    fn has_seen(self, origin: Origin) -> bool {
+        origin.blackboard == self.blackboard && origin.nth <= self.seen
     }
 }
 
@@ -78,9 +79,11 @@ impl Reading {
         let Some(ring) = ring else { return reading };
         let mut leaving = Vec::new();
         let entries = ring.from(0).filter(|entry| entry.order > first && entry.order <= window.delivered);
-        entries.for_each(|entry| reading.accept(entry, reader, &mut leaving));
+        entries.for_each(|entry| reading.accept(entry.sample.clone(), entry.origin, reader, &mut leaving));
         if reading.kind == Kind::State && reading.samples.is_empty() && ring.had_any_by(window.delivered) {
-            ring.from(0).take(1).for_each(|entry| reading.accept(entry, reader, &mut leaving));
+            ring.from(0)
+                .take(1)
+                .for_each(|entry| reading.accept(entry.sample.clone(), entry.origin, reader, &mut leaving));
         }
         reading
     }
@@ -99,34 +102,49 @@ impl Reading {
         self.cursor = ring.next();
     }
 
+    /// Takes the message after those that were delivered.
+    #[inline]
+    pub(crate) fn deliver_next(
+        &mut self,
+        order: u64,
+        newest: &Newest,
+        reader: Reader,
+        delivery: &mut Delivery,
+    ) {
+        let Header { topic, host, .. } = newest.header;
+        delivery.arrivals.push((order, topic, host));
+        self.accept(newest.sample(), newest.origin, reader, &mut delivery.leaving);
+        self.cursor += 1;
+    }
+
     #[inline]
     fn take(&mut self, entry: &Entry, reader: Reader, delivery: &mut Delivery) {
         let header = &entry.sample.header;
         delivery.arrivals.push((entry.order, header.topic, header.host));
-        self.accept(entry, reader, &mut delivery.leaving);
+        self.accept(entry.sample.clone(), entry.origin, reader, &mut delivery.leaving);
     }
 
     #[inline]
-    fn accept(&mut self, entry: &Entry, reader: Reader, leaving: &mut Vec<Arc<dyn AnyMessage>>) {
+    fn accept(
+        &mut self,
+        sample: AnySample,
+        origin: Origin,
+        reader: Reader,
+        leaving: &mut Vec<Arc<dyn AnyMessage>>,
+    ) {
         match self.kind {
-            Kind::State => {
-                let AnySample { message, header } = &entry.sample;
-                match self.samples.back_mut() {
-                    Some(sample) => {
-                        leaving.push(std::mem::replace(&mut sample.message, message.clone()));
-                        sample.header = *header;
-                    }
-                    None => self.samples.push_back(entry.sample.clone()),
-                }
-            }
-            Kind::Signal if reader.has_seen(entry) => {}
-            Kind::Signal => self.samples.push_back(entry.sample.clone()),
-            Kind::Data => self.insert(&entry.sample, leaving),
+            Kind::State => match self.samples.back_mut() {
+                Some(known) => leaving.push(std::mem::replace(known, sample).message),
+                None => self.samples.push_back(sample),
+            },
+            Kind::Signal if reader.has_seen(origin) => {}
+            Kind::Signal => self.samples.push_back(sample),
+            Kind::Data => self.insert(sample, leaving),
         }
     }
 
     /// Keeps the newest by time: what comes too late for a full history is left out.
-    fn insert(&mut self, sample: &AnySample, leaving: &mut Vec<Arc<dyn AnyMessage>>) {
+    fn insert(&mut self, sample: AnySample, leaving: &mut Vec<Arc<dyn AnyMessage>>) {
         let local = sample.header.local;
         if self.samples.len() == self.depth {
             if self.samples.front().is_some_and(|oldest| oldest.header.local > local) {
@@ -135,7 +153,7 @@ impl Reading {
             leaving.extend(self.samples.pop_front().map(|sample| sample.message));
         }
         let later = self.samples.iter().rev().take_while(|other| other.header.local > local).count();
-        self.samples.insert(self.samples.len() - later, sample.clone());
+        self.samples.insert(self.samples.len() - later, sample);
     }
 
     /// Lets go of what is too old by now to be read again.
