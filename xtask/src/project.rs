@@ -1,7 +1,8 @@
 //! `cargo xtask project`: what `monas new` makes builds, runs and passes its tests, and what is put into it is found.
 //!
 //! Nothing of the project is edited after it was made; files are only added: an activity by `monas new activity`, a message, a
-//! functionality, a model and a configuration by hand.
+//! functionality, a model and a configuration by hand. Then the model becomes a generated crate, and what that names is taken away: an activity,
+//! a field of a message, a state. Each time the compiler has to say so.
 
 use std::error::Error;
 use std::fs;
@@ -9,10 +10,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 /// What a person drops into the folders.
-const DROPPED: [(&str, &str); 5] = [
+const DROPPED: [(&str, &str); 6] = [
     (
         "messages/pins.proto",
-        "syntax = \"proto3\";\n\npackage circus;\n\nmessage Pins {\n  uint32 count = 1;\n}\n",
+        "syntax = \"proto3\";\n\npackage circus;\n\nmessage Pins {\n  uint32 count = 1;\n  uint32 held = 2;\n}\n",
     ),
     (
         "functionalities/doubling.rs",
@@ -20,18 +21,48 @@ const DROPPED: [(&str, &str); 5] = [
     ),
     (
         "activities/throw.rs",
-        "//! Throw: prints how many pins are in the air.\n\nuse functionalities::doubling::double;\nuse messages::Pins;\nuse monas::Blackboard;\n\n\
-         fn throw(_: &mut Blackboard) {\n    println!(\"pins: {}\", double(Pins { count: 3 }.count));\n}\n\nmonas::activity!(fn throw as \"Throw\");\n",
+        "//! Throw: prints how many pins are in the air.\n\nuse functionalities::doubling::double;\nuse messages::Pins;\nuse monas::Blackboard;\nuse narukom::State;\n\n\
+         narukom::topic! {\n    /// What is in the air.\n    pub PINS: State<Pins> = \"circus/pins\"\n}\n\n\
+         /// Says how many.\npub fn throw(_: &mut Blackboard) {\n    println!(\"pins: {}\", double(Pins { count: 3, ..Pins::default() }.count));\n}\n\nmonas::activity!(fn throw as \"Throw\");\n",
     ),
     (
         "models/juggler.srm",
-        "Role: juggler\nLiveness:\njuggler = (Juggle . Throw)~\nTransitions:\nJuggle -> Throw : [pause] / StartTimeout(pause, 100ms)\n",
+        "Role: juggler\nLiveness:\njuggler = (Juggle . Throw)~\nTransitions:\nJuggle -> Throw : [pause && (Pins == NULL || Pins.held > 0)] / StartTimeout(pause, 100ms)\n",
     ),
     (
         "config/juggler.xml",
         "<agent><name>Juggler</name><statechart>models/juggler.srm</statechart></agent>\n",
     ),
+    ("config/generated.xml", "<agent><name>Juggler</name><statechart>juggler</statechart></agent>\n"),
 ];
+
+/// What names a state of the generated crate.
+const NAMING: (&str, &str) = (
+    "tests/states.rs",
+    "//! States by name.\n\n#[test]\nfn it_throws() {\n    assert_ne!(juggler::State::Throw, juggler::State::Juggle);\n}\n",
+);
+
+/// What is taken away from what a generated crate names: the file, what is in it, what is there instead, and what the compiler says.
+const TAKEN: [(&str, &str, &str, &[&str]); 2] = [
+    (
+        "activities/throw.rs",
+        "fn throw",
+        "fn fling",
+        &[
+            "error[E0432]: unresolved import `activities::throw::throw`",
+            "statecharts/juggler/src/activities.rs",
+        ],
+    ),
+    (
+        "messages/pins.proto",
+        "held",
+        "kept",
+        &["error[E0609]: no field `held` on type", "statecharts/juggler/src/guards.rs"],
+    ),
+];
+
+/// The model with another name for a state.
+const RENAMED: &str = "Role: juggler\nLiveness:\njuggler = (Juggle . Fling)~\nTransitions:\nJuggle -> Fling : [pause] / StartTimeout(pause, 100ms)\nStates:\nFling : activity = Throw\n";
 
 /// Makes a project and goes through it.
 pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
@@ -69,8 +100,51 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     done(&mut cargo(&team, &["test", "--offline", "--workspace"]))?;
     let juggler = ["run", "--offline", "--quiet", "--", "run", "config/juggler.xml", "--for", "1s"];
     expect(&done(&mut cargo(&team, &juggler))?, "pins: 6")?;
-    println!("project: made, built, tested, run; what was added is found");
+    let generate = ["run", "--offline", "--quiet", "--", "generate", "models/juggler.srm"];
+    expect(&done(&mut cargo(&team, &generate))?, "statecharts/juggler/src/chart.rs")?;
+    fs::write(team.join(NAMING.0), NAMING.1)?;
+    done(&mut cargo(&team, &["test", "--offline", "--workspace"]))?;
+    let generated = ["run", "--offline", "--quiet", "--", "run", "config/generated.xml", "--for", "1s"];
+    expect(&done(&mut cargo(&team, &generated))?, "pins: 6")?;
+    let build = ["test", "--offline", "--workspace", "--no-run"];
+    for taken in TAKEN {
+        take_away(&team, taken, &mut cargo(&team, &build))?;
+    }
+    fs::write(team.join("models/juggler.srm"), RENAMED)?;
+    done(&mut cargo(&team, &generate))?;
+    let error = refused(&mut cargo(&team, &build))?;
+    ["error[E0599]: no variant", "`Throw`", NAMING.0].iter().try_for_each(|part| expect(&error, part))?;
+    println!(
+        "project: made, built, tested, run; what was added is found, what a generated chart lacks is no program"
+    );
     Ok(ExitCode::SUCCESS)
+}
+
+/// Changes a file for one build, which has to fail and say why.
+fn take_away(
+    team: &Path,
+    (file, there, instead, said): (&str, &str, &str, &[&str]),
+    build: &mut Command,
+) -> Result<(), Box<dyn Error>> {
+    let file = team.join(file);
+    let text = fs::read_to_string(&file)?;
+    if !text.contains(there) {
+        return Err(format!("{} has no `{there}`", file.display()).into());
+    }
+    fs::write(&file, text.replace(there, instead))?;
+    let error = refused(build);
+    fs::write(&file, text)?;
+    let error = error?;
+    said.iter().try_for_each(|part| expect(&error, part))
+}
+
+/// What the compiler says; it has to say something.
+fn refused(build: &mut Command) -> Result<String, Box<dyn Error>> {
+    let output = build.output()?;
+    match output.status.success() {
+        true => Err(format!("{build:?} went well").into()),
+        false => Ok(String::from_utf8_lossy(&output.stderr).into_owned()),
+    }
 }
 
 /// What a command prints; it has to end well.

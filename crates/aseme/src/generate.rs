@@ -25,6 +25,7 @@
 //! | E0920 | an expression has no counterpart in Rust |
 //! | E0921 | a message has no Rust type |
 //! | E0922 | two activities would have one name |
+//! | E0923 | a build script would have to write a skeleton |
 
 mod body;
 mod chart;
@@ -48,9 +49,11 @@ pub struct Words {
     pub vocabulary: Vocabulary,
     /// The Rust type of each message, by its name in the vocabulary: `monas_soccer::Ball`.
     pub messages: BTreeMap<String, String>,
+    /// The constant that stands for each topic in Rust, by its path: `monas_soccer::topics::BALL` for `soccer/ball`.
+    pub topics: BTreeMap<String, String>,
     /// Where each activity is in Rust, by its name in charts. One that is not here gets a skeleton.
     pub activities: BTreeMap<String, RustActivity>,
-    /// What activities are about, by their names: variables of the model with their types. Skeletons say it.
+    /// What activities are about, by their names: variables of the model with their types. Skeletons say it, and declare the topics among them.
     pub subjects: BTreeMap<String, Vec<(String, String)>>,
     /// The module that has [`yase::typed`]'s names.
     pub runtime: String,
@@ -68,6 +71,7 @@ impl Default for Words {
         Words {
             vocabulary: Vocabulary::default(),
             messages: BTreeMap::new(),
+            topics: BTreeMap::new(),
             activities: BTreeMap::new(),
             subjects: BTreeMap::new(),
             runtime: "yase::typed".to_owned(),

@@ -20,7 +20,7 @@
 //! [`check`] looks for what no grammar sees: in structure, in what guards say, and in all that a chart can do.
 //!
 //! Reading never fails. Every function that reads returns what it understood, and what was wrong as [`Diagnostic`]s with a code, a place
-//! and a hint. Nothing here opens a file, and nothing here knows how a chart is run.
+//! and a hint. Nothing here opens a file but [`build`], which is for build scripts, and nothing here knows how a chart is run.
 //!
 //! ```
 //! use yase::Source;
@@ -67,6 +67,7 @@
 //! ```
 
 pub mod aip;
+pub mod build;
 pub mod check;
 pub mod convert;
 pub mod diff;

@@ -174,6 +174,13 @@ pub(crate) enum ModelCommand {
         #[command(flatten)]
         format: FormatArgument,
     },
+    /// Say what of their charts the runs on tapes have been through: states, transitions, guards.
+    ///
+    /// A guard is seen to hold when its transition fires, and not to hold when a way out of the same state fires that is tried after it.
+    #[command(
+        after_help = "Example: monas run config/match.xml --record match.mcap ; monas model coverage match.mcap --draw coverage"
+    )]
+    Coverage(CoverageArguments),
     /// Say what differs between the statecharts of two models: states, transitions, what is written on them.
     ///
     /// Ends with 0 if nothing differs, and with 5 if something does.
@@ -254,6 +261,19 @@ pub(crate) struct CheckArguments {
     /// For people, or for programs: one JSON object a line, or one document of SARIF 2.1.0 on standard output.
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     pub(crate) format: CheckFormat,
+}
+
+/// What `model coverage` may be told.
+#[derive(Args, Debug)]
+pub(crate) struct CoverageArguments {
+    /// The recordings; what they cover of equal charts is added up.
+    #[arg(required = true, value_name = "TAPE", value_hint = ValueHint::FilePath)]
+    pub(crate) tapes: Vec<PathBuf>,
+    /// Draw each chart into this folder: green what was covered, red what was not, orange a guard that has held each time.
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) draw: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
 }
 
 /// What `model diff` may be told.

@@ -3,6 +3,7 @@
 //! The crate goes to `statecharts/NAME`. What the program needs to link it, a block of its Cargo.toml and a file of `use` lines, is kept in
 //! step with that folder, so that nobody edits another file. `aseme::generate` writes the code; this command knows where it goes.
 
+mod linked;
 mod project;
 
 use std::collections::BTreeSet;
@@ -22,6 +23,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::model;
 
+pub(crate) use linked::differences;
 use project::Project;
 
 pub(crate) fn execute(arguments: &GenerateArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
@@ -100,8 +102,8 @@ fn forget_own(words: &mut Words, name: &str) {
 /// The crates that the code names: those of the messages and activities that stand in it.
 fn crates(files: &Files, words: &Words) -> BTreeSet<String> {
     let activities = words.activities.values().map(|activity| &activity.path);
-    let known: BTreeSet<&str> =
-        words.messages.values().chain(activities).filter_map(|path| path.split("::").next()).collect();
+    let paths = words.messages.values().chain(words.topics.values()).chain(activities);
+    let known: BTreeSet<&str> = paths.filter_map(|path| path.split("::").next()).collect();
     let is_named = |name: &str| {
         let path = format!("{name}::");
         let begins = |text: &str, at: usize| {

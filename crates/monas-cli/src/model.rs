@@ -3,6 +3,7 @@
 mod check;
 mod conform;
 mod convert;
+mod coverage;
 mod diff;
 mod ontology;
 mod regenerate;
@@ -33,6 +34,7 @@ pub(crate) fn execute(command: &ModelCommand, console: &mut Console<'_>) -> Resu
         }
         ModelCommand::Check(arguments) => check::execute(arguments, console),
         ModelCommand::Conform { files, format } => conform::execute(files, format.value, console),
+        ModelCommand::Coverage(arguments) => coverage::execute(arguments, console),
         ModelCommand::Diff(arguments) => diff::execute(arguments, console),
         ModelCommand::Regenerate(arguments) => regenerate::execute(arguments, console),
         ModelCommand::Run { file, trace, format } => run::execute(file, trace, format.value, console),

@@ -21,6 +21,7 @@ use crate::config::layers;
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::generate::differences;
 
 pub(crate) use interrupt::Interrupt;
 pub(crate) use pace::WallClock;
@@ -41,6 +42,10 @@ pub(crate) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Re
         let message =
             "--robot is for the agents of one robot; a match says what holds for each in its `<robot>`";
         return Err(Failure::Usage(message.into()));
+    }
+    let unlinked = differences(&arguments.config);
+    if !unlinked.is_empty() {
+        return Err(invalid(unlinked));
     }
     let layers = layers::of(&arguments.config, &arguments.layers).map_err(invalid)?;
     if let Some(file) = &arguments.log {

@@ -14,6 +14,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 
 use arguments::TapeCommand;
+pub(crate) use replay::recorded_hosts;
 
 pub(crate) fn execute(command: &TapeCommand, console: &mut Console<'_>) -> Result<Exit, Failure> {
     match command {
@@ -29,7 +30,7 @@ pub(crate) fn execute(command: &TapeCommand, console: &mut Console<'_>) -> Resul
 }
 
 /// An error of the tape below, told as the command tells its errors.
-fn failed(format: Format) -> impl Fn(monas_tape::Error) -> Failure {
+pub(crate) fn failed(format: Format) -> impl Fn(monas_tape::Error) -> Failure {
     move |error| Failure::failed(format, error)
 }
 

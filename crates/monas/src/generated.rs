@@ -79,6 +79,11 @@ pub struct ChartDeclaration {
 #[linkme::distributed_slice]
 pub static CHARTS: [ChartDeclaration];
 
+/// Whether a chart is registered at the root of a crate of its name, as those that `monas generate` writes are.
+pub fn is_generated_crate(chart: &str) -> bool {
+    CHARTS.iter().any(|declaration| declaration.name == chart && declaration.module == chart)
+}
+
 /// What [`statechart!`](crate::statechart!) expands to.
 ///
 /// # Errors

@@ -145,6 +145,7 @@ pub struct TopicDeclaration {
     age: Option<Duration>,
     descriptor: &'static MessageDescriptor,
     module: &'static str,
+    constant: Option<&'static str>,
     message_type: fn() -> TypeId,
     rust_type: fn() -> &'static str,
     make: fn() -> Arc<dyn AnyMessage>,
@@ -161,10 +162,17 @@ impl TopicDeclaration {
             age: K::AGE,
             descriptor: K::Message::DESCRIPTOR,
             module,
+            constant: None,
             message_type: TypeId::of::<K::Message>,
             rust_type: std::any::type_name::<K::Message>,
             make: || Arc::new(K::Message::default()),
         }
+    }
+
+    /// The same, with the name of the constant that stands for the topic in its module.
+    pub const fn called(mut self, constant: &'static str) -> TopicDeclaration {
+        self.constant = Some(constant);
+        self
     }
 
     /// The path: `soccer/ball`.
@@ -195,6 +203,11 @@ impl TopicDeclaration {
     /// The module that declares it.
     pub fn module(&self) -> &'static str {
         self.module
+    }
+
+    /// The name of the constant that stands for it in that module, if it has one.
+    pub fn constant(&self) -> Option<&'static str> {
+        self.constant
     }
 
     /// The path of the message type in Rust, for those who write Rust.
@@ -273,7 +286,7 @@ macro_rules! topic {
                 #[$crate::linkme::distributed_slice($crate::TOPICS)]
                 #[linkme(crate = $crate::linkme)]
                 static DECLARATION: $crate::TopicDeclaration =
-                    $crate::TopicDeclaration::new::<$keep>($path, module_path!());
+                    $crate::TopicDeclaration::new::<$keep>($path, module_path!()).called(stringify!($name));
                 $crate::Topic::new($path)
             };
         )*

@@ -46,7 +46,7 @@ pub(super) fn activities(
     for name in names {
         match words.activities.get(name) {
             Some(known) => made.known(name, known),
-            None => made.skeleton(name, words.subjects.get(name).map_or(&[], Vec::as_slice)),
+            None => made.skeleton(name, words),
         }
     }
     if !made.found.is_empty() {
@@ -101,7 +101,7 @@ impl Activities {
         self.called.insert(name.to_owned(), RustActivity { path, is_function: activity.is_function });
     }
 
-    fn skeleton(&mut self, name: &str, subjects: &[(String, String)]) {
+    fn skeleton(&mut self, name: &str, words: &Words) {
         let (rust, module) = (camel(name), snake(name));
         if self.own.contains(&module) {
             let message = format!("the activity `{name}` and another would have one name in Rust: `{rust}`");
@@ -113,7 +113,7 @@ impl Activities {
         if !is_taken {
             self.imported.entry(module.clone()).or_default().push(rust.clone());
         }
-        self.files.insert(format!("{SKELETONS}{module}.rs"), skeleton_text(name, &rust, subjects));
+        self.files.insert(format!("{SKELETONS}{module}.rs"), skeleton_text(name, &rust, words));
         self.own.insert(module);
         self.called.insert(name.to_owned(), RustActivity { path, is_function: false });
     }
@@ -133,7 +133,8 @@ impl Activities {
     }
 }
 
-fn skeleton_text(name: &str, rust: &str, subjects: &[(String, String)]) -> String {
+fn skeleton_text(name: &str, rust: &str, words: &Words) -> String {
+    let subjects = words.subjects.get(name).map_or(&[][..], Vec::as_slice);
     let subject = |(name, kind): &(String, String)| format!("//! - {}: {}\n", quoted(name), quoted(kind));
     let about = match subjects {
         [] => String::new(),
@@ -143,13 +144,45 @@ fn skeleton_text(name: &str, rust: &str, subjects: &[(String, String)]) -> Strin
         ),
     };
     let registered = if name == rust { rust.to_owned() } else { format!("{rust} as {}", literal(name)) };
+    let topics: BTreeSet<&str> = subjects.iter().filter_map(|(_, kind)| topic_of(kind, words)).collect();
+    let (word, uses, declared) = match topics.is_empty() {
+        true => ("", String::new(), String::new()),
+        false => (", Topics", uses(&topics), declared(&topics)),
+    };
     format!(
-        "//! The activity {}.\n{about}\nuse monas::{{Activity, Blackboard, BoxError, Progress}};\n\n\
+        "//! The activity {}.\n{about}\nuse monas::{{Activity, Blackboard, BoxError, Progress{word}}};\n{uses}\n\
          /// Has nothing to do so far.\n#[derive(Clone, Copy, Debug, Default)]\npub struct {rust};\n\n\
          impl Activity for {rust} {{\n\
          \x20   fn execute(&mut self, _: &mut Blackboard) -> Result<Progress, BoxError> {{\n\
-         \x20       Ok(Progress::Done)\n    }}\n}}\n\nmonas::activity!({registered});\n",
+         \x20       Ok(Progress::Done)\n    }}\n{declared}}}\n\nmonas::activity!({registered});\n",
         quoted(name)
+    )
+}
+
+/// The constant of the topic that a variable's type `topic.Kind.Message` is about.
+fn topic_of<'a>(kind: &str, words: &'a Words) -> Option<&'a str> {
+    let (topic, message) = (kind.split('.').next()?, kind.rsplit('.').next()?);
+    let fits = |path: &str| path.rsplit('/').next() == Some(topic);
+    let mut known =
+        words.vocabulary.topics.iter().filter(|known| known.message == message && fits(&known.path));
+    words.topics.get(&known.next()?.path).map(String::as_str)
+}
+
+fn uses(topics: &BTreeSet<&str>) -> String {
+    let mut modules: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for (module, constant) in topics.iter().filter_map(|topic| topic.rsplit_once("::")) {
+        modules.entry(module).or_default().push(constant);
+    }
+    modules.iter().map(|(module, constants)| import(module, constants)).collect()
+}
+
+/// What the activity reads: whoever fills it in says what it publishes too.
+fn declared(topics: &BTreeSet<&str>) -> String {
+    let last = |topic: &&str| topic.rsplit("::").next().unwrap_or_default().to_owned();
+    let calls = topics.iter().map(|topic| format!(".reads({})", last(topic)));
+    format!(
+        "\n    fn topics(&self) -> Topics {{\n        Topics::declared(){}\n    }}\n",
+        calls.collect::<String>()
     )
 }
 

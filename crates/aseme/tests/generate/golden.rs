@@ -57,8 +57,14 @@ fn a_crate_of_monas_has_its_activities_and_skeletons_for_those_that_are_not_ther
     let activity = |path: &str, is_function| aseme::generate::RustActivity { path: path.into(), is_function };
     let activities = [("look", activity("team::look", true)), ("kick", activity("team::Kick", false))];
     let activities = activities.map(|(name, activity)| (name.to_owned(), activity));
-    let subjects = [("passBall".to_owned(), vec![("mate".to_owned(), "team.State.Mate".to_owned())])].into();
-    let words = Words { activities: activities.into(), subjects, name: "player".into(), ..words };
+    let about =
+        [("mate", "team.State.Mate"), ("ball", "ball.State.Ball"), ("game", "game_state.State.GameState")];
+    let about = about.map(|(name, kind)| (name.to_owned(), kind.to_owned())).to_vec();
+    let subjects = [("passBall".to_owned(), about)].into();
+    let topics =
+        [("soccer/ball", "soccer::topics::BALL"), ("soccer/game_state", "soccer::topics::GAME_STATE")];
+    let topics = topics.map(|(path, constant)| (path.to_owned(), constant.to_owned())).into();
+    let words = Words { activities: activities.into(), subjects, topics, name: "player".into(), ..words };
     let chart = chart("player.srm", "player = look . kick . passBall");
     check("player", &generate(&chart, &words).expect("it can be written"));
 }

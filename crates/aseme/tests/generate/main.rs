@@ -2,6 +2,7 @@
 
 #![allow(clippy::expect_used, clippy::panic)] // the functions around the tests are tests too
 
+mod build;
 mod golden;
 mod names;
 mod refusals;

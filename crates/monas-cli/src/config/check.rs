@@ -12,6 +12,7 @@ use crate::arguments::{ConfigArguments, Format};
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::generate::differences;
 use crate::report;
 use crate::run::{Kind, kind_of};
 
@@ -32,6 +33,7 @@ pub(super) fn execute(arguments: &ConfigArguments, console: &mut Console<'_>) ->
         },
         Kind::Agents => agents(config, registry, &layers),
     };
+    let diagnostics = [differences(config), diagnostics].concat();
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(invalid(diagnostics));
     }

@@ -139,7 +139,7 @@ impl Project {
     }
 
     /// The names of the crates in the folder of statecharts.
-    fn generated(&self) -> Result<Vec<String>, String> {
+    pub(super) fn generated(&self) -> Result<Vec<String>, String> {
         let folder = self.statecharts();
         let entries =
             fs::read_dir(&folder).map_err(|error| format!("cannot read {}: {error}", folder.display()))?;

@@ -10,12 +10,20 @@ use serde_json::{Value, json};
 pub(super) fn by_role(charts: &[ChartCoverage]) -> Vec<ChartCoverage> {
     let mut roles: Vec<ChartCoverage> = Vec::new();
     for chart in charts {
-        match roles.iter_mut().find(|role| role.model == chart.model) {
+        match roles.iter_mut().find(|role| is_same(role, chart)) {
             Some(role) => role.add(chart),
             None => roles.push(chart.clone()),
         }
     }
     roles
+}
+
+/// Whether two play the same: charts of one name may be different ones.
+fn is_same(a: &ChartCoverage, b: &ChartCoverage) -> bool {
+    let states = |it: &ChartCoverage| it.states.iter().map(|state| state.path.clone()).collect::<Vec<_>>();
+    let transitions =
+        |it: &ChartCoverage| it.transitions.iter().map(|one| one.name.clone()).collect::<Vec<_>>();
+    a.model == b.model && states(a) == states(b) && transitions(a) == transitions(b)
 }
 
 /// One line for a role, and one for each thing that it missed.

@@ -19,6 +19,7 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::run::pace::WallClock;
+pub(crate) use cast::recorded_hosts;
 
 /// What a replay came to.
 struct Outcome {
@@ -47,7 +48,7 @@ pub(super) fn execute(arguments: &ReplayArguments, console: &mut Console<'_>) ->
     let overview = recording.overview().map_err(failed(format))?;
     let run = cast::run_of(&overview).map_err(|message| Failure::Failed(format, message))?;
     run.warn(console.err)?;
-    let hosts = cast::hosts(arguments, &recording, &run, console)?;
+    let hosts = cast::hosts(arguments, &recording, &run)?;
     let replay = cast::replay(hosts, &run, &overview).map_err(|error| Failure::failed(format, error))?;
     let outcome = play(&recording, &overview, replay, format)?;
     report::write(console.out, format, &recording, &overview, &outcome)?;

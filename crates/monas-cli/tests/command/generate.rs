@@ -95,3 +95,26 @@ fn what_cannot_be_generated_is_refused_and_nothing_is_written() {
     let (code, _, err) = generate(folder, "models/goalie.srm");
     assert!(code == Some(3) && err.contains("does not say which package links statecharts"), "{err}");
 }
+
+#[test]
+fn a_program_that_lacks_a_crate_of_its_project_runs_nothing() {
+    let project = project();
+    let folder = project.path();
+    copy(&root().join("config"), &folder.join("config"));
+    let config = folder.join("config/match_generated.xml").display().to_string();
+    let run = ["run", config.as_str(), "--for", "1s", "--no-control"];
+    assert_eq!(monas(&run).code, Some(0), "the folder is what the program was built with");
+    fs::write(folder.join("models/scout.srm"), "scout = (Vision . Stand)~").expect("it takes files");
+    assert_eq!(generate(folder, "models/scout.srm").0, Some(0));
+    for command in [run.as_slice(), &["config", "check", config.as_str()]] {
+        let answer = monas(command);
+        assert_eq!(answer.code, Some(3), "{}", answer.err);
+        assert!(answer.err.contains("`statecharts/scout` is not in this program"), "{}", answer.err);
+        assert!(answer.err.contains("build the program again"), "{}", answer.err);
+    }
+    for gone in ["scout", "goalie"] {
+        fs::remove_dir_all(folder.join("statecharts").join(gone)).expect("it was there");
+    }
+    let answer = monas(&run);
+    assert!(answer.code == Some(3) && answer.err.contains("`statecharts/goalie` is gone"), "{}", answer.err);
+}

@@ -253,3 +253,52 @@ fn variables_that_are_no_messages_and_messages_kept_in_two_ways_are_told() {
     assert_eq!(answer.code, Some(1), "{}", answer.err);
     assert!(answer.err.contains("is about no messages"), "{}", answer.err);
 }
+
+#[test]
+fn the_coverage_of_tapes_is_told_added_up_and_drawn() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tape = |seed: &str| folder.path().join(format!("{seed}.mcap")).display().to_string();
+    let (one, two) = (tape("1"), tape("2"));
+    for (seed, file) in [("1", &one), ("2", &two)] {
+        let run =
+            ["run", "config/match_attack.xml", "--seed", seed, "--for", "12s", "--record", file.as_str()];
+        assert_eq!(monas(&run).code, Some(0));
+    }
+    let drawings = folder.path().join("drawings").display().to_string();
+    let answer = monas(&["model", "coverage", &one, &two, "--draw", &drawings]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let charts: Vec<&str> = answer.out.lines().filter(|line| !line.starts_with(' ')).collect();
+    assert_eq!(charts.len(), 3, "{charts:?}");
+    assert!(charts[0].starts_with("goalie (blue-1 Goalie, red-1 Goalie): "), "{}", charts[0]);
+    assert!(charts[1].starts_with("player (blue-2 Attacker, blue-3 Attacker): "), "{}", charts[1]);
+    assert!(
+        answer.out.lines().any(|line| line.starts_with("  never fired: center -> END : [Attack.")),
+        "{}",
+        answer.out
+    );
+    for name in ["goalie.svg", "player.svg", "player-2.svg"] {
+        let drawing = fs::read_to_string(folder.path().join("drawings").join(name)).expect("it is drawn");
+        assert!(drawing.contains("added") && drawing.contains("removed"), "{name}");
+    }
+
+    let counts = |tapes: &[&str]| -> Vec<(usize, usize)> {
+        let answer = monas(&[&["model", "coverage", "--format", "json"], tapes].concat());
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        let objects = answer.out.lines().map(|line| serde_json::from_str(line).expect("an object"));
+        let missed = |it: Value, key: &str| it[key].as_array().expect("names").len();
+        objects
+            .map(|it: Value| (missed(it.clone(), "transitions_missed"), missed(it, "guards_never_refused")))
+            .collect()
+    };
+    let (first, second, both) = (counts(&[&one]), counts(&[&two]), counts(&[&one, &two]));
+    for ((first, second), both) in first.iter().zip(&second).zip(&both) {
+        assert!(
+            both.0 <= first.0.min(second.0) && both.1 <= first.1.min(second.1),
+            "{first:?} {second:?} {both:?}"
+        );
+    }
+    assert_eq!(first.len(), 3);
+
+    let answer = monas(&["model", "coverage", "config/match.xml"]);
+    assert!(answer.code != Some(0) && !answer.err.is_empty(), "{}", answer.err);
+}

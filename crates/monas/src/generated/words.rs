@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use aseme::generate::{RustActivity, Words};
-use narukom::TOPICS;
+use narukom::{TOPICS, TopicDeclaration};
 
 use crate::error::Error;
 use crate::registry::{ACTIVITIES, ActivityDeclaration, Registry};
@@ -30,8 +30,14 @@ pub fn words(registry: &Registry) -> Result<Words, Error> {
         // the module that `narukom_build` puts structs in is private, and shown by the one around it
         messages.insert(name, topic.rust_type().replace("::generated::", "::"));
     }
+    let constant = |topic: &TopicDeclaration| {
+        let is_shown = topic.module().ends_with("::topics"); // other modules may be private
+        let path = format!("{}::{}", topic.module(), topic.constant()?);
+        is_shown.then(|| (topic.path().to_owned(), path))
+    };
     Ok(Words {
         vocabulary: vocabulary(TOPICS, &functions),
+        topics: TOPICS.iter().filter_map(constant).collect(),
         messages,
         activities,
         runtime: "monas::generated".to_owned(),

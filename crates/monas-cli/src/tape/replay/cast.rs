@@ -14,7 +14,6 @@ use super::super::failed;
 use super::super::select::unknown;
 use crate::arguments::{Format, LayerArguments};
 use crate::config::layers;
-use crate::console::Console;
 use crate::failure::Failure;
 use crate::run::{Kind, kind_of};
 
@@ -92,19 +91,27 @@ pub(super) fn hosts(
     arguments: &ReplayArguments,
     recording: &Recording,
     run: &Run,
-    console: &mut Console<'_>,
 ) -> Result<Vec<HostConfig>, Failure> {
     let format = arguments.format.value;
     let hosts = match &arguments.config {
-        Some(path) => load(path, "", format, console)?,
-        None => {
-            let folder = tempfile::tempdir().map_err(|error| Failure::failed(format, error))?;
-            let files = files(recording, run).map_err(failed(format))?;
-            let path = files.unpack(folder.path()).map_err(|error| Failure::failed(format, error))?;
-            load(&path, &run.settings, format, console)?
-        }
+        Some(path) => load(path, "", format)?,
+        None => configured(recording, run, format)?,
     };
     choose(hosts, &arguments.agents)
+}
+
+/// The hosts of a recording with all their agents, as its configuration and models describe them.
+pub(crate) fn recorded_hosts(recording: &Recording, format: Format) -> Result<Vec<HostConfig>, Failure> {
+    let overview = recording.overview().map_err(failed(format))?;
+    let run = run_of(&overview).map_err(|message| Failure::Failed(format, message))?;
+    configured(recording, &run, format)
+}
+
+fn configured(recording: &Recording, run: &Run, format: Format) -> Result<Vec<HostConfig>, Failure> {
+    let folder = tempfile::tempdir().map_err(|error| Failure::failed(format, error))?;
+    let files = files(recording, run).map_err(failed(format))?;
+    let path = files.unpack(folder.path()).map_err(|error| Failure::failed(format, error))?;
+    load(&path, &run.settings, format)
 }
 
 /// The configuration in a tape.
@@ -119,12 +126,7 @@ fn files(recording: &Recording, run: &Run) -> Result<Provenance, monas_tape::Err
 }
 
 /// The agents of a configuration; warnings have been given when it was recorded, or are given when it is run.
-fn load(
-    path: &Path,
-    settings: &str,
-    format: Format,
-    _: &mut Console<'_>,
-) -> Result<Vec<HostConfig>, Failure> {
+fn load(path: &Path, settings: &str, format: Format) -> Result<Vec<HostConfig>, Failure> {
     let registry = Registry::linked();
     let invalid = |diagnostics| Failure::Invalid(format, diagnostics);
     let settings = settings.lines().map(str::to_owned).collect();

@@ -3,8 +3,11 @@
 //! What it is about, by the model:
 //!
 //! - `mate`: `team.State.Mate`
+//! - `ball`: `ball.State.Ball`
+//! - `game`: `game_state.State.GameState`
 
-use monas::{Activity, Blackboard, BoxError, Progress};
+use monas::{Activity, Blackboard, BoxError, Progress, Topics};
+use soccer::topics::{BALL, GAME_STATE};
 
 /// Has nothing to do so far.
 #[derive(Clone, Copy, Debug, Default)]
@@ -13,6 +16,10 @@ pub struct PassBall;
 impl Activity for PassBall {
     fn execute(&mut self, _: &mut Blackboard) -> Result<Progress, BoxError> {
         Ok(Progress::Done)
+    }
+
+    fn topics(&self) -> Topics {
+        Topics::declared().reads(BALL).reads(GAME_STATE)
     }
 }
 
