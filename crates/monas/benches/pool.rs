@@ -1,14 +1,20 @@
 //! The pool of statechart agents, in real time: `cargo bench -p monas`.
 //!
-//! First figures of one interleaved run: a call through the pool and back beside a round trip through two channels, activities a second,
-//! regions in parallel, and what an idle chart costs. Then each by itself.
+//! First figures of one interleaved run: a call through the pool and back beside a round trip through two channels, activities a second
+//! beside a pool written by hand that has no chart to step, on all cores and on one, regions in parallel, and what an idle chart costs.
+//! Then each by itself.
+//!
+//! One run on two cores, medians: one region 594,000 activities a second, 26 times the pool by hand, whose threads sleep between two calls;
+//! three regions 544,000, 3.6 times. On one core 188,000 and 221,000, 1.0 and 1.1 times: there a call costs the two changes of threads, and
+//! the chart comes free. Beside other programs and from run to run such figures vary twofold, so only ratios of one run say something.
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on ends")]
 #![allow(clippy::disallowed_methods, reason = "a bench reads the clock and has threads")]
 
+use std::collections::VecDeque;
 use std::hint::black_box;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -24,7 +30,8 @@ fn main() {
         println!("one interleaved run; median (least to most)");
         tell_round_trips("at once", None);
         tell_round_trips("after a rest of 500 us", Some(Duration::from_micros(500)));
-        tell_activities();
+        tell_activities("on all cores");
+        on_one_core(|| tell_activities("on one core"));
         tell_regions();
         tell_idle();
     }
@@ -46,7 +53,7 @@ fn channel_and_back(bencher: Bencher<'_, '_>) {
 #[divan::bench(args = [1, 3], sample_count = 20, sample_size = 1)]
 fn activities(bencher: Bencher<'_, '_>, regions: usize) {
     let looping = Looping::new(regions);
-    bencher.counter(ItemsCount::new(Looping::BATCH)).bench_local(|| looping.batch());
+    bencher.counter(ItemsCount::new(BATCH)).bench_local(|| looping.batch());
 }
 
 /// A thread behind two channels.
@@ -84,20 +91,24 @@ struct Looping {
     running: Running,
 }
 
-impl Looping {
-    const BATCH: u64 = 10_000;
+/// How many calls make a batch.
+const BATCH: u64 = 10_000;
 
+/// One more call. Says when a batch is full.
+fn count(calls: &AtomicU64, batches: &Sender<Instant>) {
+    if (calls.fetch_add(1, Ordering::Relaxed) + 1).is_multiple_of(BATCH) {
+        // Nobody listens any more when the run ends.
+        let _ = batches.send(Instant::now());
+    }
+}
+
+impl Looping {
     fn new(regions: usize) -> Looping {
         let (sender, batches) = channel();
         let calls = Arc::new(AtomicU64::new(0));
         let registry = Registry::empty().with("A", move || {
             let (sender, calls) = (sender.clone(), calls.clone());
-            move |_: &mut Blackboard| {
-                if (calls.fetch_add(1, Ordering::Relaxed) + 1).is_multiple_of(Looping::BATCH) {
-                    // Nobody listens any more when the run ends.
-                    let _ = sender.send(Instant::now());
-                }
-            }
+            move |_: &mut Blackboard| count(&calls, &sender)
         });
         let looping = Looping {
             batches,
@@ -166,26 +177,125 @@ fn tell_round_trips(when: &str, rest: Option<Duration>) {
     println!("    pool to crossbeam {}", ratios.told(1.0));
 }
 
-fn tell_activities() {
-    let mut figures = [Figures(vec![]), Figures(vec![])];
-    for _ in 0..5 {
-        for (figures, regions) in figures.iter_mut().zip([1, 3]) {
-            let looping = Looping::new(regions);
-            let mut last = looping.batch();
-            for _ in 0..5 {
-                let now = looping.batch();
-                figures.0.push(Looping::BATCH as f64 / (now - last).as_secs_f64());
-                last = now;
+/// A pool as it is written by hand, without a chart: jobs behind a mutex and a condition variable, what has returned likewise, a thread
+/// that has each region's activity called again when it has returned, and a worker for each region.
+struct ByHand {
+    batches: Receiver<Instant>,
+    jobs: Arc<Queue>,
+    returned: Arc<Queue>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+/// The numbers of regions; none any more when it is closed.
+#[derive(Default)]
+struct Queue {
+    regions: Mutex<(VecDeque<usize>, bool)>,
+    changed: Condvar,
+}
+
+impl Queue {
+    fn put(&self, region: usize) {
+        self.regions.lock().unwrap().0.push_back(region);
+        self.changed.notify_one();
+    }
+
+    fn take(&self) -> Option<usize> {
+        let mut regions = self.regions.lock().unwrap();
+        loop {
+            match (regions.0.pop_front(), regions.1) {
+                (_, true) => return None,
+                (Some(region), false) => return Some(region),
+                (None, false) => regions = self.changed.wait(regions).unwrap(),
             }
-            looping.running.stop();
         }
     }
-    let [one, three] = &mut figures;
-    println!(
-        "thousands of activities a second: one region {}, three regions {}",
-        one.told(1e-3),
-        three.told(1e-3)
-    );
+
+    fn close(&self) {
+        self.regions.lock().unwrap().1 = true;
+        self.changed.notify_all();
+    }
+}
+
+impl ByHand {
+    fn new(regions: usize) -> ByHand {
+        let (sender, batches) = channel();
+        let (jobs, returned) = (Arc::new(Queue::default()), Arc::new(Queue::default()));
+        let calls = Arc::new(AtomicU64::new(0));
+        let mut threads = Vec::new();
+        for region in 0..regions {
+            jobs.put(region);
+            let (jobs, returned, calls, sender) =
+                (jobs.clone(), returned.clone(), calls.clone(), sender.clone());
+            threads.push(thread::spawn(move || {
+                while let Some(region) = jobs.take() {
+                    count(&calls, &sender);
+                    returned.put(region);
+                }
+            }));
+        }
+        let (to, from) = (jobs.clone(), returned.clone());
+        threads.push(thread::spawn(move || {
+            while let Some(region) = from.take() {
+                to.put(region);
+            }
+        }));
+        let pool = ByHand { batches, jobs, returned, threads };
+        pool.batches.recv().unwrap();
+        pool
+    }
+
+    fn stop(self) {
+        self.jobs.close();
+        self.returned.close();
+        self.threads.into_iter().for_each(|thread| thread.join().unwrap());
+    }
+}
+
+/// Five batches, in activities a second.
+fn rates(batches: &Receiver<Instant>) -> Vec<f64> {
+    let mut last = batches.recv().unwrap();
+    let rate = |_| {
+        let now = batches.recv().unwrap();
+        BATCH as f64 / (now - std::mem::replace(&mut last, now)).as_secs_f64()
+    };
+    (0..5).map(rate).collect()
+}
+
+fn tell_activities(where_: &str) {
+    for regions in [1, 3] {
+        let (mut ours, mut theirs, mut ratios) = (Figures(vec![]), Figures(vec![]), Figures(vec![]));
+        for _ in 0..9 {
+            let by_hand = ByHand::new(regions);
+            let mut their = Figures(rates(&by_hand.batches));
+            by_hand.stop();
+            let looping = Looping::new(regions);
+            let mut our = Figures(rates(&looping.batches));
+            looping.running.stop();
+            ratios.0.push(our.median() / their.median());
+            ours.0.append(&mut our.0);
+            theirs.0.append(&mut their.0);
+        }
+        println!("thousands of activities a second in {regions} regions, {where_}: {}", ours.told(1e-3));
+        println!("    by hand without a chart {}, pool to it {}", theirs.told(1e-3), ratios.told(1.0));
+    }
+}
+
+/// Has this thread, and those that it starts, run on one core only, if the system lets it.
+#[cfg(target_os = "linux")]
+fn on_one_core(then: impl FnOnce()) {
+    use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
+    let all = sched_getaffinity(None).unwrap();
+    let first = (0..CpuSet::MAX_CPU).find(|core| all.is_set(*core)).unwrap();
+    let mut one = CpuSet::new();
+    one.set(first);
+    sched_setaffinity(None, &one).unwrap();
+    then();
+    sched_setaffinity(None, &all).unwrap();
+}
+
+#[cfg(not(target_os = "linux"))]
+fn on_one_core(_: impl FnOnce()) {
+    println!("threads are bound to a core on Linux only");
 }
 
 /// Work for a processor.

@@ -201,7 +201,8 @@ impl Host for Desk {
         self.coverage.count(chart, record);
         self.urgency.note(chart, record);
         self.lending.fetching.publishing();
-        self.records.publish(self.record(chart, record), self.now);
+        let number = self.number;
+        self.records.publish_with(|message| write_record(message, number, chart, record), self.now);
         self.listeners.tell(&self.host, &self.agent, chart, record);
     }
 
@@ -223,28 +224,25 @@ impl Host for Desk {
     }
 }
 
-impl Desk {
-    fn record(&self, chart: &Chart, record: &TraceRecord<'_>) -> records::Chart {
-        let segments = |list: &[yase::CompoundId]| -> Vec<u32> {
-            list.iter().flat_map(|&compound| chart.segments(compound)).map(|segment| segment.0).collect()
-        };
-        let nodes = |list: &[NodeId]| list.iter().map(|node| node.0).collect();
-        records::Chart {
-            chart: self.number,
-            time: record.time.as_nanos(),
-            event: match record.occasion {
-                Occasion::Event(event) => event.0 + 1,
-                _ => 0,
-            },
-            selected: segments(record.selected),
-            preempted: segments(record.preempted),
-            held: segments(record.held),
-            deferred: record.deferred.map_or(0, |node| node.0 + 1),
-            exits: nodes(record.exits),
-            entries: nodes(record.entries),
-            taken: record.taken.iter().map(|segment| segment.0).collect(),
-        }
+/// Fills in the record of a micro-step, with the memory that the message has.
+fn write_record(message: &mut records::Chart, number: u32, chart: &Chart, record: &TraceRecord<'_>) {
+    (message.chart, message.time) = (number, record.time.as_nanos());
+    message.event = match record.occasion {
+        Occasion::Event(event) => event.0 + 1,
+        _ => 0,
+    };
+    message.deferred = record.deferred.map_or(0, |node| node.0 + 1);
+    for (segments, compounds) in [
+        (&mut message.selected, record.selected),
+        (&mut message.preempted, record.preempted),
+        (&mut message.held, record.held),
+    ] {
+        let of = |&compound: &yase::CompoundId| chart.segments(compound);
+        segments.extend(compounds.iter().flat_map(of).map(|segment| segment.0));
     }
+    message.exits.extend(record.exits.iter().map(|node| node.0));
+    message.entries.extend(record.entries.iter().map(|node| node.0));
+    message.taken.extend(record.taken.iter().map(|segment| segment.0));
 }
 
 fn slot(topic: TopicId) -> TopicSlot {

@@ -1,6 +1,7 @@
 //! A chart in real time: a thread that steps it, while its activities run on the pool of its agent.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use narukom::{HostId, Moment, TopicSlot};
 
@@ -32,6 +33,8 @@ pub(super) struct ChartThread {
     pub(super) pool: Arc<Pool>,
     pub(super) teller: Teller,
     pub(super) clock: Clock,
+    /// When it looked at the clock last. Looking takes longer than much of what is done between two looks.
+    pub(super) looked: Moment,
     /// When it is woken beside what happens, counted from 0.
     pub(super) ticks: u64,
     pub(super) steps: u64,
@@ -62,9 +65,15 @@ impl ChartThread {
         self.statistics()
     }
 
+    /// Looks at the clock.
+    fn look(&mut self) -> Moment {
+        self.looked = self.clock.now();
+        self.looked
+    }
+
     fn begin(&mut self) {
         self.follow_guards();
-        let now = self.clock.now();
+        let now = self.look();
         self.runner.note_fetches();
         self.runner.start(now);
         self.tell_turn(Turn::Start, now);
@@ -86,7 +95,7 @@ impl ChartThread {
         self.has_ended = true;
         self.runner.cancel_all();
         loop {
-            let now = self.clock.now();
+            let now = self.look();
             mail.messages.clear();
             self.notes.begin_stop(&mut self.runner, &mail.returned);
             while let Some(called) = mail.returned.pop_front() {
@@ -111,6 +120,9 @@ impl ChartThread {
     fn wait(&mut self, until: Moment, mail: &mut Mail<Called>) {
         let clock = self.clock;
         let patience = || {
+            if until == Moment::MAX {
+                return Some(Duration::MAX);
+            }
             let now = clock.now();
             (now < until).then(|| until.since(now))
         };
@@ -122,9 +134,10 @@ impl ChartThread {
     fn turn(&mut self, mail: &mut Mail<Called>) {
         let until = match self.rests() {
             true => Moment::MAX,
-            false => self.runner.due(self.clock.now()).min(self.tick()),
+            false => self.runner.due(self.looked).min(self.tick()),
         };
         self.wait(until, mail);
+        self.look();
         if self.run_ends {
             return;
         }
@@ -150,13 +163,17 @@ impl ChartThread {
     }
 
     fn tell_turn(&mut self, turn: Turn, now: Moment) {
+        // That is for recordings.
+        if !self.runner.hub().is_observed() {
+            return;
+        }
         let due = self.runner.due(now).min(self.tick());
         let first_tick = if turn == Turn::Start { self.ticks } else { 0 };
         self.notes.tell(Told { turn, now, due, first_tick }, &self.runner, &mut self.teller);
     }
 
     fn go_on(&mut self, mail: &mut Mail<Called>) -> Result<(), String> {
-        let now = self.clock.now();
+        let now = self.looked;
         self.notes.begin(&mut self.runner, mail);
         let result = self.live(now, mail);
         self.tell_turn(Turn::Round, now);
@@ -194,16 +211,18 @@ impl ChartThread {
             self.ticks += 1;
         }
         self.steps += 1;
-        let began = self.clock.now();
+        // What was done since the last look belongs to the step: taking back what an activity returned.
+        let began = self.looked;
         let stepped = self.runner.step(now);
-        self.teller.tell(now, self.runner.delivered().to_vec());
-        self.timing.add(self.clock.now().since(began), None);
+        self.teller.tell(now, self.runner.delivered().iter().cloned());
+        let took = self.look().since(began);
+        self.timing.add(took, None);
         self.tell_times(now);
         stepped.map_err(|error| format!("chart `{}`: {error}", self.runner.name()))
     }
 
     fn submit(&mut self, assignment: Assignment) -> Result<(), String> {
-        self.calls.push((assignment.activation.number, assignment.place(), self.clock.now()));
+        self.calls.push((assignment.activation.number, assignment.place(), self.looked));
         let assignment = assignment.in_cycle(self.teller.number());
         self.pool.submit(assignment, &self.part.mailbox).map_err(|error| error.to_string())?;
         self.out += 1;
@@ -268,7 +287,7 @@ impl ChartThread {
 
     fn obey(&mut self, orders: Orders, mail: &mut Mail<Called>) -> Result<Vec<String>, Vec<String>> {
         let mut said = Vec::new();
-        let now = self.clock.now();
+        let now = self.look();
         self.teller.tell_ordered(now, &orders, self.runner.place());
         if let Some((_, swap)) = orders.swap {
             said = self.runner.swap(*swap, now)?;
@@ -304,7 +323,7 @@ impl ChartThread {
 
     /// Does one step if there is one to be made, and has the activities called that it starts.
     fn step_once(&mut self, mail: &mut Mail<Called>) -> Result<(), String> {
-        let now = self.clock.now();
+        let now = self.look();
         self.notes.begin(&mut self.runner, mail);
         let result = self.live(now, mail).and_then(|()| self.one_step(now));
         self.tell_turn(Turn::Step, now);
@@ -342,7 +361,7 @@ impl ChartThread {
     }
 
     fn show(&self, always: bool) {
-        self.part.show(self.clock.now(), always, || (self.statistics(), self.runner.active()));
+        self.part.show(self.looked, always, || (self.statistics(), self.runner.active()));
     }
 
     fn statistics(&self) -> AgentStatistics {

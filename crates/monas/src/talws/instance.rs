@@ -262,7 +262,7 @@ impl Scheduled {
     fn cycle(&mut self, now: Moment, teller: &mut Teller) -> Outcome {
         self.next += 1;
         self.list.begin(now);
-        teller.tell(now, Delivery::all(self.list.blackboard(), 0).collect());
+        teller.tell(now, Delivery::all(self.list.blackboard(), 0));
         self.list.cycle(now, None)
     }
 }

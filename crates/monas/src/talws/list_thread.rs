@@ -134,7 +134,7 @@ impl ListThread {
         let began = self.clock.now();
         self.list.begin(began);
         let blackboard = self.list.blackboard();
-        self.teller.tell_noted(began, Delivery::all(blackboard, 0).collect(), &[blackboard.position()]);
+        self.teller.tell_noted(began, Delivery::all(blackboard, 0), &[blackboard.position()]);
         let cpu = if self.was_late || self.cycles.is_multiple_of(CPU_EVERY) { cpu_time() } else { None };
         self.part.pulse.begins(began, self.list.number());
         let watch = Watch { clock: &self.clock, since: began, cpu, pulse: &self.part.pulse };

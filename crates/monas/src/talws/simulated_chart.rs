@@ -171,7 +171,7 @@ impl SimulatedChart {
             self.ticks += 1;
         }
         let stepped = self.runner.step(now);
-        teller.tell(now, self.runner.delivered().to_vec());
+        teller.tell(now, self.runner.delivered().iter().cloned());
         while let Some(cancelled) = self.runner.next_cancelled() {
             let under_way =
                 self.under_way.iter_mut().filter(|one| one.assignment.activation.number == cancelled.number);

@@ -33,15 +33,21 @@ impl Teller {
     }
 
     /// A cycle has begun, and brought this.
-    pub(super) fn tell(&mut self, now: Moment, delivered: Vec<Delivery>) {
+    pub(super) fn tell(&mut self, now: Moment, delivered: impl IntoIterator<Item = Delivery>) {
         self.tell_noted(now, delivered, &[]);
     }
 
     /// As [`tell`](Teller::tell), with the points of the hub's history at which it was brought.
-    pub(super) fn tell_noted(&mut self, now: Moment, delivered: Vec<Delivery>, seen: &[u64]) {
+    pub(super) fn tell_noted(
+        &mut self,
+        now: Moment,
+        delivered: impl IntoIterator<Item = Delivery>,
+        seen: &[u64],
+    ) {
         let number = self.number.fetch_add(1, Ordering::Relaxed) + 1;
         let make = |cycle: &mut records::Cycle| {
-            (cycle.number, cycle.time, cycle.delivered) = (number, now.as_nanos(), delivered);
+            (cycle.number, cycle.time) = (number, now.as_nanos());
+            cycle.delivered.extend(delivered);
             cycle.seen.extend_from_slice(seen);
         };
         self.cycles.publish_with(make, now);

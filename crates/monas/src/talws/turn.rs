@@ -52,11 +52,8 @@ impl TurnNotes {
         self.returned.extend(returned.iter().map(|called| call_record(called.assignment.activation)));
     }
 
-    /// The turn is over. That is for recordings; if nobody makes one, nothing is said.
+    /// The turn is over.
     pub(super) fn tell(&self, told: Told, runner: &Runner, teller: &mut Teller) {
-        if !runner.hub().is_observed() {
-            return;
-        }
         let Told { turn, now, due, first_tick } = told;
         let make = |cycle: &mut Cycle| {
             (cycle.time, cycle.turn, cycle.chart) = (now.as_nanos(), turn.into(), runner.place());

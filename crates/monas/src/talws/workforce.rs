@@ -304,6 +304,7 @@ impl Team {
             pool,
             teller,
             clock: self.clock,
+            looked: now,
             ticks: frequency.map_or(0, |frequency| frequency.first_due(now)),
             steps: 0,
             timing: Timing::default(),

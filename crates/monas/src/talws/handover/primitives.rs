@@ -47,6 +47,14 @@ pub(in crate::talws) trait Flag: Send + Sync {
 /// After so many nanoseconds whoever looks out lets others have the processor: what he waits for may be done on the very same.
 const ALONE: u64 = 2_000;
 
+thread_local! {
+    /// The same for this thread: no time at all if there is one core for it, since then it surely is.
+    static ALONE_HERE: u64 = match thread::available_parallelism() {
+        Ok(cores) if cores.get() == 1 => 0,
+        _ => ALONE,
+    };
+}
+
 /// The primitives of the standard library.
 pub(in crate::talws) struct Threads;
 
@@ -61,11 +69,11 @@ impl Primitives for Threads {
     }
 
     fn look_out(at_most: u64, worth: impl Fn() -> bool) {
-        let begin = Threads::nanos();
+        let (begin, alone) = (Threads::nanos(), ALONE_HERE.with(|alone| *alone));
         while !worth() {
             match Threads::nanos().saturating_sub(begin) {
                 waited if waited >= at_most => return,
-                waited if waited >= ALONE => thread::yield_now(),
+                waited if waited >= alone => thread::yield_now(),
                 _ => (0..8).for_each(|_| hint::spin_loop()),
             }
         }

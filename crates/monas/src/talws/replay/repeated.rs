@@ -70,7 +70,7 @@ impl RepeatedList {
         self.feed.fetching();
         self.list.begin(now);
         self.feed.publishing();
-        self.teller.tell(now, Delivery::all(self.list.blackboard(), 0).collect());
+        self.teller.tell(now, Delivery::all(self.list.blackboard(), 0));
         self.feed.publishing();
         self.list.cycle(now, None);
         self.is_over = self.list.stopped().is_some();
@@ -322,7 +322,7 @@ impl RepeatedChart {
         }
         let stepped = self.runner.step(now);
         self.feed.publishing();
-        self.teller.tell(now, self.runner.delivered().to_vec());
+        self.teller.tell(now, self.runner.delivered().iter().cloned());
         stepped.is_ok()
     }
 
