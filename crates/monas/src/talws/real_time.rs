@@ -71,6 +71,11 @@ impl Running {
         Overview::real(self.hubs.clone(), self.clock, SupervisorLine(self.line.clone()))
     }
 
+    /// The hub of a host or of the world, for those who look on or take part with a blackboard of their own.
+    pub fn hub(&self, host: &str) -> Option<&Narukom> {
+        self.hubs.iter().find(|hub| hub.host() == host)
+    }
+
     /// Whether the run has been stopped, or every agent has ended.
     pub fn has_ended(&self) -> bool {
         self.stopper.is_stopped()
