@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::kit::{copy, monas, root};
 
 /// The parts of the project that a generated crate is linked into, elsewhere.
-fn project() -> tempfile::TempDir {
+pub(crate) fn project() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     for part in ["models", "statecharts"] {
         copy(&root().join(part), &folder.path().join(part));

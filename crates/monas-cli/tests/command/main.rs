@@ -4,6 +4,7 @@
 
 #[cfg(unix)]
 mod agent;
+mod chapter;
 mod config;
 mod convert;
 mod doctor;
