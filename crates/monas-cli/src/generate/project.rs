@@ -183,19 +183,22 @@ fn links(crates: &[String]) -> String {
     )
 }
 
-/// A manifest whose table has these lines in its block.
+/// A manifest whose table has these lines in its block. Another table of the same manifest may have a block of its own.
 fn with_block(manifest: &str, header: &str, lines: &[String]) -> String {
     let block =
         format!("{BEGIN}\n{}{END}\n", lines.iter().map(|line| format!("{line}\n")).collect::<String>());
-    if let Some((before, rest)) = manifest.split_once(&format!("{BEGIN}\n"))
-        && let Some((_, after)) = rest.split_once(&format!("{END}\n"))
-    {
-        return format!("{before}{block}{after}");
-    }
-    let Some(at) = manifest.find(&format!("{header}\n")) else {
-        return format!("{manifest}\n{header}\n{block}");
+    let header = format!("{header}\n");
+    let is_header = |at: &usize| *at == 0 || manifest[..*at].ends_with('\n');
+    let Some(at) = manifest.match_indices(&header).map(|(at, _)| at).find(is_header) else {
+        return format!("{manifest}\n{header}{block}");
     };
-    let (before, rest) = manifest.split_at(at + header.len() + 1);
+    let (before, rest) = manifest.split_at(at + header.len());
+    let (table, after) = rest.split_at(rest.find("\n[").map_or(rest.len(), |end| end + 1));
+    if let Some((head, rest)) = table.split_once(&format!("{BEGIN}\n"))
+        && let Some((_, tail)) = rest.split_once(&format!("{END}\n"))
+    {
+        return format!("{before}{head}{block}{tail}{after}");
+    }
     format!("{before}{block}{rest}")
 }
 
@@ -254,6 +257,20 @@ mod tests {
         let two = with_block(&one, "[dependencies]", &["x = 1".into(), "y = 2".into()]);
         assert_eq!(two, one.replace("x = 1\n", "x = 1\ny = 2\n"));
         assert_eq!(with_block(&two, "[dependencies]", &["x = 1".into()]), one);
+    }
+
+    #[test]
+    fn two_tables_of_one_manifest_have_a_block_each() {
+        let manifest = "[workspace.dependencies]\na = \"1\"\n\n[package]\nname = \"team\"\n\n[dependencies]\na.workspace = true\n";
+        let one = with_block(manifest, "[workspace.dependencies]", &["x = { path = \"x\" }".into()]);
+        let both = with_block(&one, "[dependencies]", &["x.workspace = true".into()]);
+        let expected = format!(
+            "[workspace.dependencies]\n{BEGIN}\nx = {{ path = \"x\" }}\n{END}\na = \"1\"\n\n[package]\nname = \"team\"\n\n\
+             [dependencies]\n{BEGIN}\nx.workspace = true\n{END}\na.workspace = true\n"
+        );
+        assert_eq!(both, expected);
+        assert_eq!(with_block(&both, "[dependencies]", &["x.workspace = true".into()]), expected);
+        assert_eq!(with_block(&both, "[workspace.dependencies]", &["x = { path = \"x\" }".into()]), expected);
     }
 
     #[test]
