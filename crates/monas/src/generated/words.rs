@@ -27,8 +27,7 @@ pub fn words(registry: &Registry) -> Result<Words, Error> {
     }
     let mut messages = BTreeMap::new();
     for (topic, name) in message_names(TOPICS) {
-        // the module that `narukom_build` puts structs in is private, and shown by the one around it
-        messages.insert(name, topic.rust_type().replace("::generated::", "::"));
+        messages.insert(name, public(topic.rust_type()));
     }
     let constant = |topic: &TopicDeclaration| {
         let is_shown = topic.module().ends_with("::topics"); // other modules may be private
@@ -46,6 +45,16 @@ pub fn words(registry: &Registry) -> Result<Words, Error> {
     })
 }
 
+/// The path by which others name a struct: the modules that `narukom_build` puts structs in, `generated` and one for each package of a folder, are
+/// private, and shown by the one around them.
+fn public(path: &str) -> String {
+    let is_private = |segment: &&str| {
+        let number = segment.strip_prefix("package_").unwrap_or_default();
+        *segment == "generated" || !number.is_empty() && number.bytes().all(|digit| digit.is_ascii_digit())
+    };
+    path.split("::").filter(|segment| !is_private(segment)).collect::<Vec<_>>().join("::")
+}
+
 fn shown(module: &str) -> String {
     let inner = module.find("::activities::").map(|at| at + "::activities".len());
     module[..inner.unwrap_or(module.len())].to_owned()
@@ -53,4 +62,16 @@ fn shown(module: &str) -> String {
 
 fn code(declaration: &ActivityDeclaration) -> String {
     declaration.code.replace(' ', "")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::public;
+
+    #[test]
+    fn modules_that_only_hold_structs_are_not_named() {
+        assert_eq!(public("monas_soccer::generated::Ball"), "monas_soccer::Ball");
+        assert_eq!(public("messages::package_12::Pins"), "messages::Pins");
+        assert_eq!(public("team::package_of_pins::package_::Pins"), "team::package_of_pins::package_::Pins");
+    }
 }
