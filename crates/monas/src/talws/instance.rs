@@ -43,6 +43,10 @@ impl Instance {
         Instance { name, policy, frequency, list, charts, teller, pauses: false, stopped: None }
     }
 
+    pub(super) fn has_list(&self) -> bool {
+        self.list.is_some()
+    }
+
     /// When it has something to do, if nothing happens before.
     pub(super) fn due(&self, now: Moment) -> Moment {
         if self.stopped.is_some() || self.pauses {

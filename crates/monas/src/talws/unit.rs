@@ -273,6 +273,10 @@ impl Unit {
         }
     }
 
+    pub(super) fn has_list(&self) -> bool {
+        locked(&self.parts).list.is_some()
+    }
+
     pub(super) fn set_list(&self, part: Arc<Part>) {
         locked(&self.parts).list = Some(part);
     }

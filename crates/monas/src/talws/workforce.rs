@@ -399,6 +399,10 @@ impl Staff for Team {
         self.worker(agent).map_or(Standing::Stopped, |worker| worker.unit.standing())
     }
 
+    fn has_list(&self, agent: &str) -> bool {
+        self.worker(agent).is_some_and(|worker| worker.unit.has_list())
+    }
+
     fn cycles(&self, agent: &str) -> u64 {
         self.worker(agent).map_or(0, |worker| worker.teller.number())
     }

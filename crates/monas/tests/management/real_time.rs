@@ -55,6 +55,14 @@ fn lists_are_changed_while_they_run() {
     until(&told, "A stop");
     made(&ask(&run, change(Action::StartAgent, "a")));
     until(&told, "A start");
+    made(&ask(&run, Change { activity: "A".into(), ..change(Action::RemoveActivity, "a") }));
+    until(&told, "A stop");
+    made(&ask(&run, Change { activity: "B".into(), ..change(Action::AddActivity, "a") }));
+    until(&told, "B");
+    made(&ask(&run, Change { activity: "A".into(), ..change(Action::AddActivity, "a") }));
+    until(&told, "A");
+    made(&ask(&run, Change { activity: "B".into(), ..change(Action::RemoveActivity, "a") }));
+    until(&told, "B stop");
     let text = "<agent frequency='1000'><name>b</name><activity>B</activity></agent>";
     made(&ask(&run, Change { text: text.into(), ..change(Action::AddAgents, "") }));
     until(&told, "B");

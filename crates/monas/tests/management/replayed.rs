@@ -311,6 +311,8 @@ fn of_list() -> Vec<Change> {
         change(Action::StartAgent, "thrower"),
         Change { replacement: "Play".into(), ..throw(Action::ReplaceActivity) },
         Change { activity: "Say".into(), ..change(Action::RemoveActivity, "thrower") },
+        Change { activity: "Play".into(), place: 1, ..change(Action::RemoveActivity, "thrower") },
+        Change { activity: "Say".into(), ..change(Action::AddActivity, "thrower") },
     ]
 }
 

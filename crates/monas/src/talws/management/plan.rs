@@ -179,7 +179,7 @@ impl Desk<'_> {
         let count = profile.activities.len();
         let place = self.position(count + 1, count)?;
         profile.activities.insert(place, ActivityProfile::of(&listed));
-        if count > 0 {
+        if self.staff.has_list(&profile.name) {
             return Ok(self.edited(profile, ListEdit::Insert(place, listed)));
         }
         if profile.frequency.is_none() {

@@ -10,6 +10,9 @@ pub(in crate::talws) trait Staff {
     /// Whether an agent does anything.
     fn standing(&self, agent: &str) -> Standing;
 
+    /// Whether it has a list, be it an empty one.
+    fn has_list(&self, agent: &str) -> bool;
+
     /// How many cycles it has had.
     fn cycles(&self, agent: &str) -> u64;
 

@@ -45,6 +45,10 @@ impl Staff for Replayed<'_> {
         self.instance(agent).map_or(Standing::Stopped, Instance::standing)
     }
 
+    fn has_list(&self, agent: &str) -> bool {
+        self.instance(agent).is_some_and(Instance::has_list)
+    }
+
     fn cycles(&self, agent: &str) -> u64 {
         self.instance(agent).map_or(0, Instance::cycles)
     }

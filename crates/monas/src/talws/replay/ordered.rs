@@ -49,7 +49,7 @@ impl Ordered {
     /// It made two threads of one.
     pub(super) fn answered(&mut self, changed: &Changed, is_list: bool, at: Moment) -> Result<(), Error> {
         let is_new = changed.action() == Action::AddActivity && self.roster.has_no_list(&changed.agent);
-        if changed.done && is_new {
+        if changed.done && is_new && !is_list {
             return Err(split(&changed.agent, at));
         }
         // Whoever answers waits a second for a thread that is busy: a chart may end the turn that it is in.
@@ -114,6 +114,10 @@ impl Staff for Again<'_> {
             Action::ResumeAgent | Action::StepAgent => Standing::Pauses,
             _ => Standing::Runs,
         }
+    }
+
+    fn has_list(&self, _: &str) -> bool {
+        matches!(self.repeated, Repeated::List(_))
     }
 
     fn cycles(&self, _: &str) -> u64 {

@@ -203,6 +203,10 @@ impl Staff for Working<'_> {
         self.team.instance(agent).map_or(Standing::Stopped, Instance::standing)
     }
 
+    fn has_list(&self, agent: &str) -> bool {
+        self.team.instance(agent).is_some_and(Instance::has_list)
+    }
+
     fn cycles(&self, agent: &str) -> u64 {
         self.team.instance(agent).map_or(0, Instance::cycles)
     }
