@@ -139,9 +139,8 @@ fn written(folder: &Path, name: &str, files: &generate::Files) -> Result<PathBuf
     }
     let file = folder.join(format!("{name}.rs"));
     let library = own.join("src/lib.rs");
-    let text = format!(
-        "/// The statechart that is generated from a model.\n#[path = {library:?}]\npub mod {name};\n"
-    );
+    // The module has words of its own; links in them would be looked up here if there were any before it.
+    let text = format!("#[path = {library:?}]\npub mod {name};\n");
     fs::write(&file, text).map_err(|error| Error::file("write", &file, &error))?;
     Ok(file)
 }
