@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 /// What a person drops into the folders.
-const DROPPED: [(&str, &str); 6] = [
+const DROPPED: [(&str, &str); 5] = [
     (
         "messages/pins.proto",
         "syntax = \"proto3\";\n\npackage circus;\n\nmessage Pins {\n  uint32 count = 1;\n  uint32 held = 2;\n}\n",
@@ -33,10 +33,13 @@ const DROPPED: [(&str, &str); 6] = [
         "config/juggler.xml",
         "<agent><name>Juggler</name><statechart>models/juggler.srm</statechart></agent>\n",
     ),
-    ("config/generated.xml", "<agent><name>Juggler</name><statechart>juggler</statechart></agent>\n"),
 ];
 
-/// What names a state of the generated crate.
+/// What names the generated crate. It comes after that: the project's own test looks whether everything is there that configurations name.
+const GENERATED: (&str, &str) =
+    ("config/generated.xml", "<agent><name>Juggler</name><statechart>juggler</statechart></agent>\n");
+
+/// What names a state of it.
 const NAMING: (&str, &str) = (
     "tests/states.rs",
     "//! States by name.\n\n#[test]\nfn it_throws() {\n    assert_ne!(juggler::State::Throw, juggler::State::Juggle);\n}\n",
@@ -102,7 +105,9 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     expect(&done(&mut cargo(&team, &juggler))?, "pins: 6")?;
     let generate = ["run", "--offline", "--quiet", "--", "generate", "models/juggler.srm"];
     expect(&done(&mut cargo(&team, &generate))?, "statecharts/juggler/src/chart.rs")?;
-    fs::write(team.join(NAMING.0), NAMING.1)?;
+    for (file, text) in [GENERATED, NAMING] {
+        fs::write(team.join(file), text)?;
+    }
     done(&mut cargo(&team, &["test", "--offline", "--workspace"]))?;
     let generated = ["run", "--offline", "--quiet", "--", "run", "config/generated.xml", "--for", "1s"];
     expect(&done(&mut cargo(&team, &generated))?, "pins: 6")?;
