@@ -4,9 +4,10 @@
 //! beside a pool written by hand that has no chart to step, on all cores and on one, regions in parallel, and what an idle chart costs.
 //! Then each by itself.
 //!
-//! One run on two cores, medians: one region 594,000 activities a second, 26 times the pool by hand, whose threads sleep between two calls;
-//! three regions 544,000, 3.6 times. On one core 188,000 and 221,000, 1.0 and 1.1 times: there a call costs the two changes of threads, and
-//! the chart comes free. Beside other programs and from run to run such figures vary twofold, so only ratios of one run say something.
+//! Two runs on two cores, medians: one region 439,000 and 594,000 activities a second, 24 and 26 times the pool by hand, whose threads sleep
+//! between two calls; three regions 752,000 and 544,000, 1.0 and 3.6 times, for by hand it is anything from 54,000 to 1,630,000 there, as its
+//! threads happen to sleep or not. On one core 180,000 and 214,000, 1.0 and 1.1 times: there a call costs the two changes of threads, and the
+//! chart comes free. Such figures vary twofold from run to run, so only ratios of one run say something.
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on ends")]
 #![allow(clippy::disallowed_methods, reason = "a bench reads the clock and has threads")]
 
