@@ -15,8 +15,8 @@
 //! let (chart, found) = aseme::statechart_of(&Source::new("visitor.srm", "visitor = (look . greet)~"));
 //! assert!(found.is_empty());
 //! let files = generate(&chart, &Words::default()).expect("it can be written as Rust");
-//! let chart = &files["src/chart.rs"];
-//! assert!(chart.contains("chart.connect(State::look, State::greet, \"\");"));
+//! let transitions = &files["src/transitions.rs"];
+//! assert!(transitions.contains("chart.connect(State::look, State::greet, \"\");"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -113,6 +113,8 @@ pub fn generate(chart: &Statechart, words: &Words) -> Result<Files, Vec<Diagnost
     files.insert("src/words.rs".into(), glossary.file());
     files.insert("src/guards.rs".into(), functions.file(&glossary));
     files.insert("src/chart.rs".into(), chart::file(chart, &states, &glossary, &functions));
+    let transitions = chart::transitions(chart, &states, &glossary, &functions);
+    files.extend(transitions.map(|text| ("src/transitions.rs".into(), text)));
     if words.registers {
         files.extend(files::activities(chart, &states, words)?);
     }

@@ -2,13 +2,14 @@
 //!
 //! Generated from `models/extended_attacker.srm`: what is changed here is lost when that is done again.
 //!
-//! [`State`] lists its states; the module `chart` says how they hang together, `guards` what the guards ask and what is assigned,
-//! `words` what these speak of.
+//! [`State`] lists its states; the modules `chart` and `transitions` say how they hang together, `guards` what the guards ask and
+//! what is assigned, `words` what these speak of.
 
 mod activities;
 mod chart;
 mod guards;
 mod states;
+mod transitions;
 mod words;
 
 pub use chart::chart;

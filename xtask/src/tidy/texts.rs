@@ -68,8 +68,7 @@ fn code_faults(file: &TextFile) -> Vec<Finding> {
         );
     }
     let length = code.lines().filter(|line| !line.trim().is_empty()).count();
-    let is_generated = file.path.starts_with("statecharts"); // as long as its chart is
-    if length > LONGEST && !is_generated {
+    if length > LONGEST {
         let message = format!("{length} lines of code: at {LONGEST} a file holds more than one idea");
         findings.push(Finding::new(&file.path, 1, message));
     }

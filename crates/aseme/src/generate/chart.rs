@@ -1,4 +1,4 @@
-//! The structure of a chart as statements.
+//! The structure of a chart as statements: one file for what there is, another for how one comes from one to the other.
 
 use std::time::Duration;
 
@@ -19,21 +19,18 @@ pub(super) fn file(
     let declarations: String = glossary.declarations().iter().map(Code::statement).collect();
     let nodes: String =
         chart.nodes().flat_map(|(id, _)| writer.node(id)).map(|code| code.statement()).collect();
-    let transitions: Vec<String> = chart
-        .transitions()
-        .map(|(id, transition)| writer.transition(id, transition).iter().map(Code::statement).collect())
-        .collect();
-    let transitions = transitions.concat();
     let parts = [
         ("words", "The words of the guards and actions.", declarations),
         ("states", "The states and connectors, in the order of the document.", nodes),
-        ("transitions", "The transitions, in the order of the document, each with its guard.", transitions),
     ];
     let mut calls = String::new();
     let mut text = String::new();
     for (name, about, statements) in parts.iter().filter(|(.., statements)| !statements.is_empty()) {
         calls += &format!("    {name}(&mut chart);\n");
         text += &format!("\n/// {about}\nfn {name}(chart: &mut Draft) {{\n{statements}}}\n");
+    }
+    if chart.transitions().len() > 0 {
+        calls += "    transitions(&mut chart);\n";
     }
     let is_mutated =
         if calls.is_empty() && chart.node(Statechart::ROOT).name == chart.name { "" } else { "mut " };
@@ -47,20 +44,41 @@ pub(super) fn file(
          /// Only if it was changed by hand and no longer fits together.\n\
          pub fn chart() -> Result<TypedChart, Vec<Diagnostic>> {{\n\
          \x20   let {is_mutated}chart = Draft::new({});\n{root}{calls}    chart.finish()\n}}\n{text}",
-        imports(glossary, &text),
+        imports(glossary, &text, &["Diagnostic", "TypedChart"], chart.transitions().len() > 0),
         literal(&chart.name),
     )
 }
 
-fn imports(glossary: &Glossary<'_>, text: &str) -> String {
+/// The transitions; nothing if there are none.
+pub(super) fn transitions(
+    chart: &Statechart,
+    states: &States,
+    glossary: &Glossary<'_>,
+    functions: &Functions,
+) -> Option<String> {
+    let writer = Writer { chart, states, functions };
+    let of = |(id, transition)| writer.transition(id, transition);
+    let statements: String = chart.transitions().flat_map(of).map(|code| code.statement()).collect();
+    (!statements.is_empty()).then(|| {
+        format!(
+            "//! How one comes from one state of the chart to another.\n\n{}\n\
+             /// The transitions, in the order of the document, each with its guard.\n\
+             pub(super) fn transitions(chart: &mut Draft) {{\n{statements}}}\n",
+            imports(glossary, &statements, &[], false)
+        )
+    })
+}
+
+/// What the text names, and of the runtime these names beside.
+fn imports(glossary: &Glossary<'_>, text: &str, beside: &[&'static str], has_transitions: bool) -> String {
     let mut imports = String::new();
     if text.contains("Duration::") {
         imports += "use std::time::Duration;\n\n";
     }
-    let mut runtime = vec!["Diagnostic", "Draft"];
     let known = [("NodeKind", "NodeKind::"), ("Reads", "Reads::")];
-    runtime.extend(known.iter().filter(|(_, used)| text.contains(used)).map(|(name, _)| *name));
-    runtime.push("TypedChart");
+    let used = known.iter().filter(|(_, used)| text.contains(used)).map(|(name, _)| *name);
+    let mut runtime: Vec<&str> = used.chain(beside.iter().copied()).chain(["Draft"]).collect();
+    runtime.sort_unstable();
     imports += &import(&glossary.words.runtime, &runtime);
     let mut own = String::new();
     if text.contains("guards::") {
@@ -68,6 +86,9 @@ fn imports(glossary: &Glossary<'_>, text: &str) -> String {
     }
     if text.contains("State::") {
         own += "use super::states::State;\n";
+    }
+    if has_transitions {
+        own += "use super::transitions::transitions;\n";
     }
     let modules: Vec<&str> =
         glossary.modules().into_iter().filter(|name| text.contains(&format!("{name}::"))).collect();

@@ -20,6 +20,7 @@ pub(super) fn library(chart: &Statechart, words: &Words) -> String {
         ),
     };
     let name = if words.name.is_empty() { &chart.name } else { &words.name };
+    let transitions = if chart.transitions().len() > 0 { "mod transitions;\n" } else { "" };
     let activities = if words.registers { "mod activities;\n" } else { "" };
     let registration = match words.registers {
         true => format!("\nmonas::statechart!({} = chart, activities::instances);\n", literal(name)),
@@ -27,9 +28,9 @@ pub(super) fn library(chart: &Statechart, words: &Words) -> String {
     };
     format!(
         "//! The statechart {}.{origin}\n//!\n\
-         //! [`State`] lists its states; the module `chart` says how they hang together, `guards` what the guards ask and what is assigned,\n\
-         //! `words` what these speak of.\n\n\
-         {activities}mod chart;\nmod guards;\nmod states;\nmod words;\n\n\
+         //! [`State`] lists its states; the modules `chart` and `transitions` say how they hang together, `guards` what the guards ask and\n\
+         //! what is assigned, `words` what these speak of.\n\n\
+         {activities}mod chart;\nmod guards;\nmod states;\n{transitions}mod words;\n\n\
          pub use chart::chart;\npub use states::State;\n{registration}",
         quoted(&chart.name)
     )

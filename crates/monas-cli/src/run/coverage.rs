@@ -20,10 +20,9 @@ pub(super) fn by_role(charts: &[ChartCoverage]) -> Vec<ChartCoverage> {
 
 /// Whether two play the same: charts of one name may be different ones.
 fn is_same(a: &ChartCoverage, b: &ChartCoverage) -> bool {
-    let states = |it: &ChartCoverage| it.states.iter().map(|state| state.path.clone()).collect::<Vec<_>>();
-    let transitions =
-        |it: &ChartCoverage| it.transitions.iter().map(|one| one.name.clone()).collect::<Vec<_>>();
-    a.model == b.model && states(a) == states(b) && transitions(a) == transitions(b)
+    a.model == b.model
+        && a.states.iter().map(|state| &state.path).eq(b.states.iter().map(|state| &state.path))
+        && a.transitions.iter().map(|one| &one.name).eq(b.transitions.iter().map(|one| &one.name))
 }
 
 /// One line for a role, and one for each thing that it missed.

@@ -2,12 +2,13 @@
 //!
 //! Generated from `models/patrol.srm`: what is changed here is lost when that is done again.
 //!
-//! [`State`] lists its states; the module `chart` says how they hang together, `guards` what the guards ask and what is assigned,
-//! `words` what these speak of.
+//! [`State`] lists its states; the modules `chart` and `transitions` say how they hang together, `guards` what the guards ask and
+//! what is assigned, `words` what these speak of.
 
 mod chart;
 mod guards;
 mod states;
+mod transitions;
 mod words;
 
 pub use chart::chart;

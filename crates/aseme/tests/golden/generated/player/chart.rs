@@ -3,6 +3,7 @@
 use monas::generated::{Diagnostic, Draft, NodeKind, TypedChart};
 
 use super::states::State;
+use super::transitions::transitions;
 
 /// The chart, with a function for each of its guards and values.
 ///
@@ -25,12 +26,4 @@ fn states(chart: &mut Draft) {
     chart.add(State::passBall, State::player, NodeKind::Basic, "passBall");
     chart.activity(State::passBall, "passBall");
     chart.add(State::END, State::player, NodeKind::End, "");
-}
-
-/// The transitions, in the order of the document, each with its guard.
-fn transitions(chart: &mut Draft) {
-    chart.connect(State::START, State::look, "");
-    chart.connect(State::look, State::kick, "");
-    chart.connect(State::kick, State::passBall, "");
-    chart.connect(State::passBall, State::END, "");
 }

@@ -1,0 +1,388 @@
+//! How one comes from one state of the chart to another.
+
+use monas::generated::Draft;
+
+use super::guards;
+use super::states::State;
+
+/// The transitions, in the order of the document, each with its guard.
+pub(super) fn transitions(chart: &mut Draft) {
+    chart.connect(
+        State::START__of__player,
+        State::RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+        "",
+    );
+    chart.connect(
+        State::RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+        State::END__of__player,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region1__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+        State::RobotController__ever__,
+        "",
+    );
+    chart.connect(
+        State::RobotController__ever__,
+        State::END__of__region1__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region2__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+        State::LedHandler__ever__,
+        "",
+    );
+    chart.connect(
+        State::LedHandler__ever__,
+        State::END__of__region2__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+        State::MotionController__ever__,
+        "",
+    );
+    chart.connect(
+        State::MotionController__ever__,
+        State::END__of__region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+        "[false]",
+    );
+    chart.connect(State::START__of__region4, State::__open__initialize__then__active__close__, "");
+    chart.connect(State::__open__initialize__then__active__close__, State::END__of__region4, "[false]");
+    chart.connect(State::START__of__RobotController__ever__, State::RobotController, "");
+    chart.connect(
+        State::RobotController,
+        State::RobotController,
+        "[robot_timeout] / StartTimeout(robot_timeout, 100ms)",
+    );
+    chart.guard(guards::from_RobotController_to_RobotController);
+    chart.connect(State::START__of__LedHandler__ever__, State::LedHandler, "");
+    chart.connect(State::LedHandler, State::LedHandler, "[led_timeout] / StartTimeout(led_timeout, 100ms)");
+    chart.guard(guards::from_LedHandler_to_LedHandler);
+    chart.connect(State::START__of__MotionController__ever__, State::MotionController, "");
+    chart.connect(
+        State::MotionController,
+        State::MotionController,
+        "[motion_timeout] / StartTimeout(motion_timeout, 100ms)",
+    );
+    chart.guard(guards::from_MotionController_to_MotionController);
+    chart.connect(State::START__of____open__initialize__then__active__close__, State::initialize, "");
+    chart.connect(State::initialize, State::active, "");
+    chart.connect(State::active, State::END__of____open__initialize__then__active__close__, "[false]");
+    chart.connect(State::START__of__initialize, State::Stand, "");
+    chart.connect(State::Stand, State::SendCalibration, "");
+    chart.connect(State::SendCalibration, State::END__of__initialize, "");
+    chart.connect(
+        State::START__of__active,
+        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        "",
+    );
+    chart.connect(
+        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::END__of__active,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::Sensors__ever__,
+        "",
+    );
+    chart.connect(
+        State::Sensors__ever__,
+        State::END__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::Vision__ever__,
+        "",
+    );
+    chart.connect(
+        State::Vision__ever__,
+        State::END__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::decision__ever__,
+        "",
+    );
+    chart.connect(
+        State::decision__ever__,
+        State::END__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        "[false]",
+    );
+    chart.connect(State::START__of__Sensors__ever__, State::Sensors, "[GameState.player_state == PLAYING]");
+    chart.guard(guards::from_START_to_Sensors);
+    chart.connect(
+        State::Sensors,
+        State::Sensors,
+        "[sensors_timeout && GameState.player_state == PLAYING] / StartTimeout(sensors_timeout, 100ms)",
+    );
+    chart.guard(guards::from_Sensors_to_Sensors);
+    chart.connect(State::START__of__Vision__ever__, State::Vision, "[GameState.player_state == PLAYING]");
+    chart.guard(guards::from_START_to_Vision);
+    chart.connect(
+        State::Vision,
+        State::Vision,
+        "[vision_timeout && GameState.player_state == PLAYING] / StartTimeout(vision_timeout, 100ms)",
+    );
+    chart.guard(guards::from_Vision_to_Vision);
+    chart.connect(State::START__of__decision, State::WaitForBallMessage, "");
+    chart.connect(State::WaitForBallMessage, State::__open__SearchBall__or__takeAction__close__, "");
+    chart.connect(State::__open__SearchBall__or__takeAction__close__, State::END__of__decision, "");
+    chart.connect(
+        State::START__of____open__SearchBall__or__takeAction__close__,
+        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
+        "",
+    );
+    chart.connect(
+        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
+        State::SearchBall,
+        "[!Ball.found]",
+    );
+    chart.guard(guards::from_CONDITION_to_SearchBall);
+    chart.connect(
+        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
+        State::takeAction,
+        "[Ball.found]",
+    );
+    chart.guard(guards::from_CONDITION_to_takeAction);
+    chart.connect(State::takeAction, State::END__of____open__SearchBall__or__takeAction__close__, "");
+    chart.connect(State::SearchBall, State::END__of____open__SearchBall__or__takeAction__close__, "");
+    chart.connect(State::START__of__takeAction, State::TrackBall, "");
+    chart.connect(
+        State::TrackBall,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "",
+    );
+    chart.connect(
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of__takeAction,
+        "",
+    );
+    chart.connect(
+        State::START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "",
+    );
+    chart.connect(
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "[Ball.distance > near]",
+    );
+    chart.guard(guards::from_CONDITION_to_WalkTowardsBall);
+    chart.connect(
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::AlignWithBall,
+        "[Ball.distance <= near && (abs(Ball.x - kick_x) > tolerance || abs(abs(Ball.y) - kick_y) > tolerance)]",
+    );
+    chart.guard(guards::from_CONDITION_to_AlignWithBall);
+    chart.connect(
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "[Ball.distance <= near && abs(Ball.x - kick_x) <= tolerance && abs(abs(Ball.y) - kick_y) <= tolerance]",
+    );
+    chart.guard(guards::from_CONDITION_to_kickBall);
+    chart.connect(
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::center,
+        "[Attack.ball_is_free && Attack.center_is_closest && Attack.center_for_is_farthest && Attack.part == CENTER]",
+    );
+    chart.guard(guards::from_CONDITION_to_center);
+    chart.prefer(1);
+    chart.connect(
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::center_for,
+        "[Attack.ball_is_free && Attack.center_is_closest && Attack.center_for_is_farthest && Attack.part == CENTER_FOR]",
+    );
+    chart.guard(guards::from_CONDITION_to_center_for);
+    chart.prefer(1);
+    chart.connect(
+        State::center_for,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "",
+    );
+    chart.connect(
+        State::center,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "",
+    );
+    chart.connect(
+        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "",
+    );
+    chart.connect(
+        State::AlignWithBall,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "",
+    );
+    chart.connect(
+        State::WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "",
+    );
+    chart.connect(
+        State::START__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "",
+    );
+    chart.connect(
+        State::CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "[Ball.y >= 0]",
+    );
+    chart.guard(guards::from_CONDITION_to_LeftKick);
+    chart.connect(
+        State::CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "[Ball.y < 0]",
+    );
+    chart.guard(guards::from_CONDITION_to_RightKick);
+    chart.connect(
+        State::RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "",
+    );
+    chart.connect(
+        State::LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "",
+    );
+    chart.connect(State::START__of__center, State::WalkTowardsBall__of__center, "");
+    chart.connect(State::WalkTowardsBall__of__center, State::__opt__passBall__end__, "");
+    chart.connect(State::__opt__passBall__end__, State::END__of__center, "");
+    chart.connect(State::START__of____opt__passBall__end__, State::CONDITION__of____opt__passBall__end__, "");
+    chart.connect(State::CONDITION__of____opt__passBall__end__, State::passBall, "[Attack.pass_is_open]");
+    chart.guard(guards::from_CONDITION_to_passBall);
+    chart.connect(State::CONDITION__of____opt__passBall__end__, State::END__of____opt__passBall__end__, "");
+    chart.connect(State::passBall, State::END__of____opt__passBall__end__, "");
+    chart.connect(State::START__of__center_for, State::WalkTowardsGoal, "");
+    chart.connect(
+        State::WalkTowardsGoal,
+        State::__opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        "",
+    );
+    chart.connect(
+        State::__opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::END__of__center_for,
+        "",
+    );
+    chart.connect(
+        State::START__of__WalkTowardsBall__then____opt__kickBall__end__,
+        State::WalkTowardsBall__of__WalkTowardsBall__then____opt__kickBall__end__,
+        "",
+    );
+    chart.connect(
+        State::WalkTowardsBall__of__WalkTowardsBall__then____opt__kickBall__end__,
+        State::__opt__kickBall__end__,
+        "",
+    );
+    chart.connect(
+        State::__opt__kickBall__end__,
+        State::END__of__WalkTowardsBall__then____opt__kickBall__end__,
+        "",
+    );
+    chart.connect(
+        State::START__of__kickBall__of____opt__kickBall__end__,
+        State::CONDITION__of__kickBall__of____opt__kickBall__end__,
+        "",
+    );
+    chart.connect(
+        State::CONDITION__of__kickBall__of____opt__kickBall__end__,
+        State::LeftKick__of__kickBall__of____opt__kickBall__end__,
+        "[Ball.y >= 0]",
+    );
+    chart.guard(guards::from_CONDITION_to_LeftKick_2);
+    chart.connect(
+        State::CONDITION__of__kickBall__of____opt__kickBall__end__,
+        State::RightKick__of__kickBall__of____opt__kickBall__end__,
+        "[Ball.y < 0]",
+    );
+    chart.guard(guards::from_CONDITION_to_RightKick_2);
+    chart.connect(
+        State::RightKick__of__kickBall__of____opt__kickBall__end__,
+        State::END__of__kickBall__of____opt__kickBall__end__,
+        "",
+    );
+    chart.connect(
+        State::LeftKick__of__kickBall__of____opt__kickBall__end__,
+        State::END__of__kickBall__of____opt__kickBall__end__,
+        "",
+    );
+    chart.connect(State::START__of____opt__kickBall__end__, State::CONDITION__of____opt__kickBall__end__, "");
+    chart.connect(
+        State::CONDITION__of____opt__kickBall__end__,
+        State::kickBall__of____opt__kickBall__end__,
+        "[Attack.path_is_clear]",
+    );
+    chart.guard(guards::from_CONDITION_to_kickBall_2);
+    chart.connect(State::CONDITION__of____opt__kickBall__end__, State::END__of____opt__kickBall__end__, "");
+    chart.connect(State::kickBall__of____opt__kickBall__end__, State::END__of____opt__kickBall__end__, "");
+    chart.connect(
+        State::START__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::CONDITION__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        "",
+    );
+    chart.connect(
+        State::CONDITION__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::WalkTowardsBall__then____opt__kickBall__end__,
+        "[Attack.ball_is_passed]",
+    );
+    chart.guard(guards::transition_84);
+    chart.connect(
+        State::CONDITION__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::END__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        "",
+    );
+    chart.connect(
+        State::WalkTowardsBall__then____opt__kickBall__end__,
+        State::END__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        "",
+    );
+    chart.connect(State::START__of__decision__ever__, State::decision, "[GameState.player_state == PLAYING]");
+    chart.guard(guards::from_START_to_decision);
+    chart.connect(
+        State::decision,
+        State::decision,
+        "[decision_timeout && GameState.player_state == PLAYING] / StartTimeout(decision_timeout, 100ms)",
+    );
+    chart.guard(guards::from_decision_to_decision);
+    chart.connect(
+        State::center,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "[Attack.shot_at_goal]",
+    );
+    chart.guard(guards::from_center_to_END);
+    chart.connect(
+        State::center,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "[Attack.opponent_has_ball]",
+    );
+    chart.guard(guards::from_center_to_END_2);
+    chart.connect(
+        State::center,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "[Attack.ball_is_out]",
+    );
+    chart.guard(guards::from_center_to_END_3);
+    chart.connect(
+        State::center_for,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "[Attack.shot_at_goal]",
+    );
+    chart.guard(guards::from_center_for_to_END);
+    chart.connect(
+        State::center_for,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "[Attack.opponent_has_ball]",
+    );
+    chart.guard(guards::from_center_for_to_END_2);
+    chart.connect(
+        State::center_for,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        "[Attack.ball_is_out]",
+    );
+    chart.guard(guards::from_center_for_to_END_3);
+}
