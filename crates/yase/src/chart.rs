@@ -30,7 +30,7 @@ use crate::vocabulary::{TopicId, Vocabulary};
 pub(crate) use direct::{Direct, DirectActions, DirectPlace};
 pub(crate) use events::Trigger;
 pub(crate) use layout::{Layout, Place};
-pub(crate) use leaps::{Cell, Does, Leap, More};
+pub(crate) use leaps::{Cell, Does, Leap, More, Reactions};
 pub use scripts::{ScriptEntry, ScriptPlace};
 
 /// A blackboard of a running chart: number 0 is the root's, and each region of an AND has one of its own. Composites within a

@@ -3,6 +3,7 @@
 //! A [`Statechart`] is what model files, formulas and editors produce, and what checks, drawings and the compiler read.
 //! It holds expressions as they were understood, not as they will run; nothing here steps.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use crate::expression::{Action, TransitionExpression};
@@ -174,12 +175,19 @@ impl From<&str> for ConstantValue {
 }
 
 /// A statechart: nodes in a tree, transitions between them, constants for their expressions.
+///
+/// A copy costs next to nothing, however large the chart is: it shares what it is made of until one of the two is changed.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Statechart {
     /// The model's name.
     pub name: String,
     /// Constants that its expressions may name.
     pub constants: Vec<Constant>,
+    parts: Arc<Parts>,
+}
+
+#[derive(Clone, PartialEq, Debug)]
+struct Parts {
     nodes: Vec<Node>,
     children: Vec<Vec<NodeId>>,
     transitions: Vec<Transition>,
@@ -190,7 +198,8 @@ impl Statechart {
     pub fn new(name: impl Into<String>) -> Statechart {
         let name = name.into();
         let root = Node::new(NodeKind::Or, name.clone());
-        Statechart { name, constants: vec![], nodes: vec![root], children: vec![vec![]], transitions: vec![] }
+        let parts = Parts { nodes: vec![root], children: vec![vec![]], transitions: vec![] };
+        Statechart { name, constants: vec![], parts: Arc::new(parts) }
     }
 
     /// The root.
@@ -201,28 +210,31 @@ impl Statechart {
     /// # Panics
     /// If `parent` is not one of this chart.
     pub fn add(&mut self, parent: NodeId, mut node: Node) -> NodeId {
-        let id = NodeId(self.nodes.len() as u32);
+        let parts = Arc::make_mut(&mut self.parts);
+        let id = NodeId(parts.nodes.len() as u32);
         node.parent = Some(parent);
-        self.nodes.push(node);
-        self.children.push(Vec::new());
-        self.children[parent.0 as usize].push(id);
+        parts.nodes.push(node);
+        parts.children.push(Vec::new());
+        parts.children[parent.0 as usize].push(id);
         id
     }
 
     /// Adds a transition after all others.
     pub fn connect(&mut self, transition: Transition) -> TransitionId {
-        self.transitions.push(transition);
-        TransitionId(self.transitions.len() as u32 - 1)
+        let transitions = &mut Arc::make_mut(&mut self.parts).transitions;
+        transitions.push(transition);
+        TransitionId(transitions.len() as u32 - 1)
     }
 
     /// Every node, in the order they were added: a parent before its children.
     pub fn nodes(&self) -> impl ExactSizeIterator<Item = (NodeId, &Node)> {
-        self.nodes.iter().enumerate().map(|(index, node)| (NodeId(index as u32), node))
+        self.parts.nodes.iter().enumerate().map(|(index, node)| (NodeId(index as u32), node))
     }
 
     /// Every transition, in the order they were added.
     pub fn transitions(&self) -> impl ExactSizeIterator<Item = (TransitionId, &Transition)> {
-        self.transitions
+        self.parts
+            .transitions
             .iter()
             .enumerate()
             .map(|(index, transition)| (TransitionId(index as u32), transition))
@@ -233,7 +245,7 @@ impl Statechart {
     /// # Panics
     /// If the node is not one of this chart.
     pub fn node(&self, id: NodeId) -> &Node {
-        &self.nodes[id.0 as usize]
+        &self.parts.nodes[id.0 as usize]
     }
 
     /// A node, to be refined.
@@ -241,7 +253,7 @@ impl Statechart {
     /// # Panics
     /// If the node is not one of this chart.
     pub fn node_mut(&mut self, id: NodeId) -> &mut Node {
-        &mut self.nodes[id.0 as usize]
+        &mut Arc::make_mut(&mut self.parts).nodes[id.0 as usize]
     }
 
     /// A transition.
@@ -249,7 +261,7 @@ impl Statechart {
     /// # Panics
     /// If the transition is not one of this chart.
     pub fn transition(&self, id: TransitionId) -> &Transition {
-        &self.transitions[id.0 as usize]
+        &self.parts.transitions[id.0 as usize]
     }
 
     /// A transition, to be refined.
@@ -257,7 +269,7 @@ impl Statechart {
     /// # Panics
     /// If the transition is not one of this chart.
     pub fn transition_mut(&mut self, id: TransitionId) -> &mut Transition {
-        &mut self.transitions[id.0 as usize]
+        &mut Arc::make_mut(&mut self.parts).transitions[id.0 as usize]
     }
 
     /// The children of a node, in order.
@@ -265,7 +277,7 @@ impl Statechart {
     /// # Panics
     /// If the node is not one of this chart.
     pub fn children(&self, id: NodeId) -> &[NodeId] {
-        &self.children[id.0 as usize]
+        &self.parts.children[id.0 as usize]
     }
 
     /// From a node's parent up to the root.
@@ -275,7 +287,7 @@ impl Statechart {
 
     /// The hierarchical label of each node, by [`NodeId`]: the root is `0`, the k-th child of `L` is `L.k`.
     pub fn labels(&self) -> Vec<String> {
-        let mut labels = vec![String::from("0"); self.nodes.len()];
+        let mut labels = vec![String::from("0"); self.parts.nodes.len()];
         for (id, _) in self.nodes() {
             for (index, child) in self.children(id).iter().enumerate() {
                 labels[child.0 as usize] = format!("{}.{}", labels[id.0 as usize], index + 1);
@@ -316,8 +328,8 @@ impl Statechart {
 
     /// The last part of each node's path, by [`NodeId`].
     pub(crate) fn segments(&self) -> Vec<String> {
-        let mut segments = vec![segment_of(self.node(Statechart::ROOT), || 1); self.nodes.len()];
-        for children in &self.children {
+        let mut segments = vec![segment_of(self.node(Statechart::ROOT), || 1); self.parts.nodes.len()];
+        for children in &self.parts.children {
             for (&child, number) in children.iter().zip(1..) {
                 segments[child.0 as usize] = segment_of(self.node(child), || number);
             }

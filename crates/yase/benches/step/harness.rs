@@ -11,6 +11,9 @@ use crate::counts::{Event, Toggle};
 pub(crate) trait Contestant {
     fn name(&self) -> &str;
 
+    /// Clears away what is left of its last turn, which is not timed.
+    fn prepare(&mut self) {}
+
     /// Does its work so many times.
     fn run(&mut self, times: u64);
 
@@ -86,6 +89,7 @@ impl Race {
         let mut allocations = vec![0; contestants.len()];
         for _ in 0..self.rounds {
             for (index, contestant) in contestants.iter_mut().enumerate() {
+                contestant.prepare();
                 let before = now();
                 allocations[index] += allocations::count(|| contestant.run(times[index]));
                 rounds[index].push((now() - before) as f64 / times[index] as f64);

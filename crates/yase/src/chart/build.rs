@@ -41,6 +41,8 @@ pub(super) fn build(
     let (region_of, regions) = regions(chart, &layout);
     let ways = ways::find(chart, &layout, &roles, &region_of, &semantics)?;
     let timer_names = timer_names(chart, &ways, &region_of, regions.len());
+    let (count, segments) =
+        (ways.all().count(), || chart.transitions().map(|(_, segment)| &segment.expression));
     let builder = Builder {
         chart,
         vocabulary,
@@ -54,13 +56,13 @@ pub(super) fn build(
         events: EventTable::new(),
         scripts: ScriptTable::new(),
         segments: BTreeMap::new(),
-        branches: Vec::new(),
-        triggers: Vec::new(),
-        guards: Vec::new(),
+        branches: Vec::with_capacity(count),
+        triggers: Vec::with_capacity(segments().filter(|segment| segment.trigger.is_some()).count()),
+        guards: Vec::with_capacity(segments().filter(|segment| segment.guard.is_some()).count()),
         weights: Vec::new(),
         deep: Vec::new(),
         rows: Vec::new(),
-        compounds: Vec::new(),
+        compounds: Vec::with_capacity(count),
         found: Vec::new(),
     };
     builder.finish(&ways, regions)

@@ -1,11 +1,16 @@
 //! What is entered on a simple way, worked out in advance.
 
+use smallvec::SmallVec;
+
 use crate::chart::roles::is_state;
 use crate::chart::{Layout, Place};
 use crate::statechart::{NodeId, NodeKind, Statechart};
 
 /// Longer lists are not worth their memory.
 const LONGEST: usize = 64;
+
+/// Most targets lie near: their lists need no memory of their own.
+pub(super) type Few<T> = SmallVec<[T; 8]>;
 
 /// The STARTs of the ORs of a chart, by [`NodeId`].
 pub(super) fn starts(chart: &Statechart) -> Vec<Option<NodeId>> {
@@ -26,12 +31,12 @@ pub(super) fn between(
     starts: &[Option<NodeId>],
     scope: NodeId,
     target: NodeId,
-) -> Option<Vec<Place>> {
-    let mut way: Vec<NodeId> =
+) -> Option<Few<Place>> {
+    let mut way: Few<NodeId> =
         std::iter::once(target).chain(chart.ancestors(target)).take_while(|&node| node != scope).collect();
-    let mut entered = Vec::new();
+    let mut entered = Few::new();
     // what is still to be entered, the next one last, and whether it lies on the way
-    let mut open: Vec<(NodeId, bool)> = Vec::new();
+    let mut open: Few<(NodeId, bool)> = Few::new();
     push_children(chart, starts, scope, way.pop(), &mut open);
     while let Some((node, on_way)) = open.pop() {
         if entered.len() + open.len() >= LONGEST {
@@ -50,7 +55,7 @@ fn push_children(
     starts: &[Option<NodeId>],
     node: NodeId,
     next: Option<NodeId>,
-    open: &mut Vec<(NodeId, bool)>,
+    open: &mut Few<(NodeId, bool)>,
 ) {
     match chart.node(node).kind {
         NodeKind::And => {

@@ -22,18 +22,56 @@ const MOST_EVENTS: u32 = 256;
 /// For each innermost state and each event, what it leads to.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Leaps {
-    /// By event, then by place.
-    pub(crate) cells: Box<[[Cell; PLACES]]>,
+    /// By event.
+    pub(crate) by_event: Box<[Reactions]>,
     pub(crate) leaps: Box<[Leap]>,
     pub(crate) moves: Box<[Move]>,
 }
 
 impl Leaps {
-    /// What an event does where one innermost state is active, if others have nothing to do with it.
+    /// What an event leads to where these innermost states are active, if that can be looked up: not where others have to do with what one of
+    /// them leads to, nor where several are active and it leads to nothing.
     #[inline(always)]
-    pub(crate) fn of_one(&self, event: EventId, leaves: u64) -> Option<Cell> {
-        let cells = self.cells.get(event.0 as usize).filter(|_| leaves.is_power_of_two())?;
-        Some(cells[leaves.trailing_zeros() as usize % PLACES]).filter(|&cell| cell != Cell::ENTANGLED)
+    pub(crate) fn of(&self, event: EventId, leaves: u64) -> Option<&Reactions> {
+        let reactions = self.by_event.get(event.0 as usize)?;
+        let is_known = leaves & reactions.entangled == 0;
+        (is_known && (leaves.is_power_of_two() || leaves & reactions.reacting != 0)).then_some(reactions)
+    }
+}
+
+/// What one event leads to.
+#[derive(Clone, Debug)]
+pub(crate) struct Reactions {
+    /// By place.
+    cells: [Cell; PLACES],
+    /// Where it leads to something.
+    reacting: u64,
+    /// Where others have to do with what it leads to.
+    entangled: u64,
+}
+
+impl Reactions {
+    const EMPTY: Reactions = Reactions { cells: [Cell::NONE; PLACES], reacting: 0, entangled: 0 };
+
+    fn set(&mut self, place: usize, cell: Cell) {
+        self.cells[place] = cell;
+        match cell {
+            Cell::NONE => {}
+            Cell::ENTANGLED => self.entangled |= 1 << place,
+            _ => self.reacting |= 1 << place,
+        }
+    }
+
+    /// Those of these places where it leads to something.
+    #[inline(always)]
+    pub(crate) fn reacting(&self, places: u64) -> u64 {
+        places & self.reacting
+    }
+
+    /// For the first of these places.
+    #[inline(always)]
+    pub(crate) fn cell(&self, places: u64) -> Cell {
+        self.cells[places.trailing_zeros() as usize % PLACES]
     }
 }
 
@@ -101,16 +139,16 @@ impl Leaps {
             return Leaps::default();
         }
         let mut finder = Finder { direct, states, leaps: Vec::new(), moves: Vec::new() };
-        let mut cells = vec![[Cell::NONE; PLACES]; count as usize];
+        let mut by_event = vec![Reactions::EMPTY; count as usize];
         for event in events {
             for leaf in (0..states.len()).filter(|&place| direct.leaves >> place & 1 == 1) {
-                cells[event.0 as usize][leaf] = finder.cell(leaf, event);
+                by_event[event.0 as usize].set(leaf, finder.cell(leaf, event));
             }
         }
         if finder.leaps.len() >= usize::from(Cell::ENTANGLED.0) {
             return Leaps::default();
         }
-        Leaps { cells: cells.into(), leaps: finder.leaps.into(), moves: finder.moves.into() }
+        Leaps { by_event: by_event.into(), leaps: finder.leaps.into(), moves: finder.moves.into() }
     }
 }
 

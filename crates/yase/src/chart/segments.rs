@@ -176,7 +176,7 @@ impl Builder<'_> {
             effects: effects.into(),
             interrupts: transitions().any(|transition| transition.interrupts),
             key: u64::from(!is_internal) << 32 | u64::from(self.layout.rank(source)),
-            segments: way.segments.clone().into(),
+            segments: way.segments.iter().copied().collect(),
         };
         CompoundId(number(&mut self.compounds, compound) as u32)
     }
@@ -184,7 +184,7 @@ impl Builder<'_> {
     /// What is to be entered; nothing where the target is not entered.
     fn leaves(&self, way: &Way) -> Box<[Leaf]> {
         let stays = match way.change {
-            Change::None => way.leaves == [End::Node(way.source)],
+            Change::None => way.leaves[..] == [End::Node(way.source)],
             Change::Vacates(_) => true,
             Change::Scope => false,
         };
@@ -209,11 +209,13 @@ impl Builder<'_> {
             return Entries::Found;
         }
         let listed = entries::between(self.chart, &self.layout, &self.starts, way.scope, target);
-        let goes_on = |list: &Vec<Place>| {
+        let goes_on = |list: &entries::Few<Place>| {
             self.semantics.start == StartRest::SameStep
                 && list.iter().any(|&place| self.chart.node(self.layout.node(place)).kind == NodeKind::Start)
         };
-        listed.filter(|list| !goes_on(list)).map_or(Entries::Found, |list| Entries::Listed(list.into()))
+        listed
+            .filter(|list| !goes_on(list))
+            .map_or(Entries::Found, |list| Entries::Listed(list.into_iter().collect()))
     }
 
     fn owner(&self, way: &Way) -> Owner {

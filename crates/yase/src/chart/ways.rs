@@ -3,6 +3,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use smallvec::{SmallVec, smallvec};
+
 use crate::chart::roles::{Role, Roles};
 use crate::chart::scope::{self, Hull};
 use crate::chart::{Condition, Layout, RegionId};
@@ -13,16 +15,19 @@ use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 /// A chart with more compound transitions is refused: connectors that fan out and in again multiply.
 const MAX_WAYS: usize = 1_000_000;
 
+/// Most ways are one segment long: such lists need no memory of their own.
+pub(super) type Few<T> = SmallVec<[T; 2]>;
+
 /// One compound transition, or the part of one that is decided on late.
 #[derive(Clone, Debug)]
 pub(super) struct Way {
-    pub(super) segments: Vec<TransitionId>,
+    pub(super) segments: Few<TransitionId>,
     pub(super) source: NodeId,
     /// The further sources of a JOIN.
     pub(super) others: Vec<NodeId>,
     /// What is left and entered happens inside this node.
     pub(super) scope: NodeId,
-    pub(super) leaves: Vec<Leaf>,
+    pub(super) leaves: Few<Leaf>,
     /// The blackboard of its scope.
     pub(super) region: RegionId,
     /// Without a trigger: when it may be taken. Triggers are numbered later.
@@ -165,10 +170,10 @@ enum Open {
 /// A way as far as it has been followed.
 #[derive(Default)]
 struct Trail {
-    segments: Vec<TransitionId>,
-    ends: Vec<NodeId>,
+    segments: Few<TransitionId>,
+    ends: Few<NodeId>,
     /// What is still to be followed, the next one last.
-    open: Vec<Open>,
+    open: Few<Open>,
 }
 
 /// Where a way begins.
@@ -203,7 +208,7 @@ impl Search<'_> {
                 Some(&join) if self.semantics.join == Joining::Each => self.arrive(state, id, join, ways),
                 Some(&join) => self.join_together(state, target, join, ways),
                 None => {
-                    let mut trail = Trail { open: vec![Open::Segment(id)], ..Trail::default() };
+                    let mut trail = Trail { open: smallvec![Open::Segment(id)], ..Trail::default() };
                     self.follow(Begin::States(state, &[], None), &mut trail, ways);
                 }
             }
@@ -219,8 +224,8 @@ impl Search<'_> {
         if first != state && self.semantics.eventless != Eventless::Once {
             return;
         }
-        let segments = self.roles.incoming[node.0 as usize].clone();
-        let mut trail = Trail { segments, open: vec![Open::Node(node)], ..Trail::default() };
+        let segments = Few::from_slice(&self.roles.incoming[node.0 as usize]);
+        let mut trail = Trail { segments, open: smallvec![Open::Node(node)], ..Trail::default() };
         let begin = Begin::States(first, others, Some(Condition::AllCompleted(join)));
         self.follow(begin, &mut trail, ways);
     }
@@ -235,11 +240,11 @@ impl Search<'_> {
         let slot = self.joins[..join].iter().map(|join| join.sources.len()).sum::<usize>() + slot;
         self.count += 1;
         ways.push(Way {
-            segments: vec![segment],
+            segments: smallvec![segment],
             source: state,
             others: Vec::new(),
             scope: region,
-            leaves: Vec::new(),
+            leaves: Few::new(),
             region: self.regions[region.0 as usize],
             condition: Some(Condition::Arrives(slot)),
             change: Change::Vacates(Some(slot)),
@@ -256,7 +261,7 @@ impl Search<'_> {
             _ => return,
         };
         for (node, join) in joins {
-            let mut trail = Trail { open: vec![Open::Node(node)], ..Trail::default() };
+            let mut trail = Trail { open: smallvec![Open::Node(node)], ..Trail::default() };
             self.follow(Begin::States(and, &[], Some(Condition::AllArrived(join))), &mut trail, ways);
         }
     }
@@ -284,7 +289,7 @@ impl Search<'_> {
 
     fn out_of_late(&mut self, node: NodeId, region: RegionId) -> Vec<Way> {
         let mut ways = Vec::new();
-        let mut trail = Trail { open: vec![Open::Node(node)], ..Trail::default() };
+        let mut trail = Trail { open: smallvec![Open::Node(node)], ..Trail::default() };
         self.follow(Begin::Late(node, region), &mut trail, &mut ways);
         ways
     }
@@ -389,7 +394,7 @@ impl Search<'_> {
         })
     }
 
-    fn leaves(&mut self, ends: &[NodeId], region: RegionId) -> Vec<Leaf> {
+    fn leaves(&mut self, ends: &[NodeId], region: RegionId) -> Few<Leaf> {
         let leaf = |&end: &NodeId| match self.roles.of(end) {
             Role::Choice => {
                 let (numbers, choices) = (&mut self.numbers, &mut self.choices);
@@ -423,7 +428,7 @@ impl Search<'_> {
         }
         if is_internal {
             let inside = scope::lowest_node(self.chart, self.layout, hull) == source;
-            let still = stops || trail.ends == [source];
+            let still = stops || trail.ends[..] == [source];
             return inside.then_some((source, if still { Change::None } else { Change::Scope }));
         }
         if let Some(vacated) = self.completes_ancestor(source, others, trail) {
@@ -534,8 +539,9 @@ impl Search<'_> {
         }
         let kind = self.chart.node(source).kind;
         let interrupts = trail.segments.iter().any(|&id| self.chart.transition(id).interrupts);
-        let waits =
-            matches!(kind, NodeKind::Or | NodeKind::And) && first.guard.is_some() && trail.ends != [source];
+        let waits = matches!(kind, NodeKind::Or | NodeKind::And)
+            && first.guard.is_some()
+            && trail.ends[..] != [source];
         Some(match self.semantics.eventless {
             _ if kind == NodeKind::Start => Condition::Always,
             Eventless::Always => Condition::Always,

@@ -1,6 +1,6 @@
 //! What a compiled expression reads.
 
-use std::collections::BTreeSet;
+use smallvec::SmallVec;
 
 use super::facts::{MessageSource, TimerId};
 use super::program::{Term, Test};
@@ -9,22 +9,24 @@ use crate::vocabulary::TopicId;
 /// The topics and timers found so far.
 #[derive(Default)]
 pub(super) struct Reads {
-    sources: BTreeSet<MessageSource>,
-    timers: BTreeSet<TimerId>,
+    sources: Few<MessageSource>,
+    timers: Few<TimerId>,
 }
+
+/// What most expressions read is so little that it needs no memory of its own.
+type Few<T> = SmallVec<[T; 2]>;
 
 impl Reads {
     pub(super) fn topics(&self) -> Box<[TopicId]> {
-        let topics: BTreeSet<TopicId> = self.sources.iter().map(|source| source.topic).collect();
-        topics.into_iter().collect()
+        in_order(self.sources.iter().map(|source| source.topic).collect())
     }
 
     pub(super) fn sources(&self) -> Box<[MessageSource]> {
-        self.sources.iter().cloned().collect()
+        in_order(self.sources.clone())
     }
 
     pub(super) fn timers(&self) -> Box<[TimerId]> {
-        self.timers.iter().copied().collect()
+        in_order(self.timers.clone())
     }
 
     pub(super) fn of_test(&mut self, test: &Test) {
@@ -37,8 +39,8 @@ impl Reads {
                 self.of_term(left);
                 self.of_term(right);
             }
-            Test::FieldIs { source, .. } | Test::Absent(source) => drop(self.sources.insert(source.clone())),
-            Test::Over { timer, .. } => drop(self.timers.insert(*timer)),
+            Test::FieldIs { source, .. } | Test::Absent(source) => self.sources.push(source.clone()),
+            Test::Over { timer, .. } => self.timers.push(*timer),
             Test::Holds(term) => self.of_term(term),
         }
     }
@@ -46,7 +48,7 @@ impl Reads {
     pub(super) fn of_term(&mut self, term: &Term) {
         match term {
             Term::Literal(_) | Term::Typed(_) => {}
-            Term::Field(source, _) | Term::Message(source) => drop(self.sources.insert(source.clone())),
+            Term::Field(source, _) | Term::Message(source) => self.sources.push(source.clone()),
             Term::Call(_, arguments) => arguments.iter().for_each(|term| self.of_term(term)),
             Term::Negative(term) => self.of_term(term),
             Term::Sum(first, rest) => {
@@ -60,4 +62,11 @@ impl Reads {
             Term::Truth(test) => self.of_test(test),
         }
     }
+}
+
+/// Each once, in order.
+fn in_order<T: Ord>(mut items: Few<T>) -> Box<[T]> {
+    items.sort_unstable();
+    items.dedup();
+    items.into_iter().collect()
 }

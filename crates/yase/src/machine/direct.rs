@@ -7,7 +7,9 @@
 //! All it works with stands in the values of one struct, which are never lent as a whole: so the compiler keeps them in registers. What is
 //! seldom done is a call of the long way's own.
 
-use crate::chart::{Cell, Chart, CompoundId, Direct, DirectActions, DirectPlace, Owner, Place, RegionId};
+use crate::chart::{
+    Chart, CompoundId, Direct, DirectActions, DirectPlace, Owner, Place, Reactions, RegionId,
+};
 use crate::expression::{EventId, ScriptId};
 use crate::host::{ActionError, ActionPlace, Host};
 use crate::machine::act::Scene;
@@ -62,11 +64,12 @@ pub(super) fn handle<H: Host>(
         && run.timers.next_deadline().is_none_or(|next| next > run.now)
         && run.queues.arrived.has_none()
         && !host.wants_trace()
-        && let Some(cell) = direct.leaps.of_one(event, run.active.first_word() & direct.leaves)
+        && let leaves = run.active.first_word() & direct.leaves
+        && let Some(reactions) = direct.leaps.of(event, leaves)
     {
         run.log.wanted = false;
         let short = ShortStep { chart, direct, run, host, micro_steps: 0, transitions: 0 };
-        return short.handle(occurrence, cell);
+        return short.handle(occurrence, reactions, leaves);
     }
     run.queues.arrived.push(occurrence);
     self::run(chart, run, host)
@@ -127,14 +130,19 @@ impl<H: Host> ShortStep<'_, H> {
     }
 
     #[inline(always)]
-    fn handle(mut self, occurrence: Occurrence, cell: Cell) -> Result<StepSummary, MachineError> {
+    fn handle(
+        mut self,
+        occurrence: Occurrence,
+        reactions: &Reactions,
+        leaves: u64,
+    ) -> Result<StepSummary, MachineError> {
         self.begin();
         if !self.admit() {
             self.run.queues.arrived.push(occurrence);
             return self.go_on();
         }
         self.host.offered(occurrence.event, occurrence.is_known, occurrence.token);
-        if !self.leap_from(cell) {
+        if !self.leap_from(reactions, leaves) {
             self.run.queues.arrived.push(occurrence);
             self.keep();
         }

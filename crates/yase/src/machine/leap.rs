@@ -1,6 +1,6 @@
 //! The shortest way of a micro-step: what an event does to an innermost state is looked up (see `chart::Leaps`).
 
-use crate::chart::{Cell, Does, Leap, More};
+use crate::chart::{Cell, Does, Leap, More, Reactions};
 use crate::expression::EventId;
 use crate::host::Host;
 use crate::machine::Status;
@@ -10,17 +10,14 @@ impl<'a, H: Host> ShortStep<'a, H> {
     /// Offers the first event that has arrived, if what it does can be looked up; false if not. Nothing has happened then.
     #[inline(always)]
     pub(super) fn leap(&mut self, event: EventId) -> bool {
-        let direct = self.direct;
-        let Some(cells) = direct.leaps.cells.get(event.0 as usize) else { return false };
-        let leaves = self.run.active.first_word() & direct.leaves;
+        let leaves = self.run.active.first_word() & self.direct.leaves;
+        let Some(reactions) = self.direct.leaps.of(event, leaves) else { return false };
         if !leaves.is_power_of_two() {
-            return self.leap_together(event, leaves);
+            self.run.queues.drop_arrived();
+            self.leap_together(reactions, leaves);
+            return true;
         }
-        let cell = cells[leaves.trailing_zeros() as usize % cells.len()];
-        if cell == Cell::ENTANGLED {
-            return false;
-        }
-        match self.find(cell) {
+        match self.find(reactions.cell(leaves)) {
             Some(leap) => {
                 self.run.queues.drop_arrived();
                 self.take(leap);
@@ -31,43 +28,32 @@ impl<'a, H: Host> ShortStep<'a, H> {
         true
     }
 
-    /// The same for states that are active beside each other. Only if nothing has to do with another, all that is found happens.
+    /// What an event that does not queue does to these innermost states; false if nothing.
+    #[inline(always)]
+    pub(super) fn leap_from(&mut self, reactions: &Reactions, leaves: u64) -> bool {
+        if !leaves.is_power_of_two() {
+            self.leap_together(reactions, leaves);
+            return true;
+        }
+        let Some(leap) = self.find(reactions.cell(leaves)) else { return false };
+        self.take(leap);
+        self.note_tips();
+        true
+    }
+
+    /// The same for states that are active beside each other: as none has to do with another, all that is found happens.
     #[inline(never)]
-    fn leap_together(&mut self, event: EventId, leaves: u64) -> bool {
+    fn leap_together(&mut self, reactions: &Reactions, leaves: u64) {
         let direct = self.direct;
-        let Some(cells) = direct.leaps.cells.get(event.0 as usize) else { return false };
-        let (mut rest, mut is_any) = (leaves, false);
-        while rest != 0 {
-            let cell = cells[rest.trailing_zeros() as usize % cells.len()];
-            if cell == Cell::ENTANGLED {
-                return false;
-            }
-            is_any |= cell != Cell::NONE;
-            rest &= rest - 1;
-        }
-        if !is_any {
-            return false;
-        }
-        self.run.queues.drop_arrived();
-        let mut rest = leaves;
+        let mut rest = reactions.reacting(leaves);
         while rest != 0 && self.run.status == Status::Running {
-            let cell = cells[rest.trailing_zeros() as usize % cells.len()];
+            let cell = reactions.cell(rest);
             rest &= rest - 1;
             if let Some(leap) = direct.leaps.leaps.get(usize::from(cell.0)) {
                 self.take(leap);
             }
         }
         self.note_tips();
-        true
-    }
-
-    /// What an event does to the one innermost state that is active; false if nothing.
-    #[inline(always)]
-    pub(super) fn leap_from(&mut self, cell: Cell) -> bool {
-        let Some(leap) = self.find(cell) else { return false };
-        self.take(leap);
-        self.note_tips();
-        true
     }
 
     /// The first transition whose guard holds.

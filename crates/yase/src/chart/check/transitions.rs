@@ -54,9 +54,8 @@ impl Check<'_> {
             return;
         }
         let source = transition.source;
-        let message = format!("a transition out of `{}` cannot wait for an event", self.path(source));
-        match self.kind(source) {
-            NodeKind::Fork | NodeKind::Join => self.error("M04", message),
+        let code = match self.kind(source) {
+            NodeKind::Fork | NodeKind::Join => "M04",
             kind if is_state(kind) => {
                 if self.kind(transition.target) == NodeKind::Join {
                     let message = format!(
@@ -68,9 +67,10 @@ impl Check<'_> {
                 }
                 return;
             }
-            _ => self.error("M02", message),
-        }
-        .hint = Some("write the trigger where the way begins".into());
+            _ => "M02",
+        };
+        let message = format!("a transition out of `{}` cannot wait for an event", self.path(source));
+        self.error(code, message).hint = Some("write the trigger where the way begins".into());
     }
 
     fn internal(&mut self, transition: &Transition) {

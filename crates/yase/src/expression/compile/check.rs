@@ -64,7 +64,8 @@ impl Scope<'_> {
     }
 
     fn comparison(&self, left: &Expression, comparison: Comparison, right: &Expression) -> Checked<Test> {
-        let (left_hint, right_hint) = (self.type_hint(left), self.type_hint(right));
+        let left_hint = is_bare(right).then(|| self.type_hint(left)).flatten();
+        let right_hint = is_bare(left).then(|| self.type_hint(right)).flatten();
         let (a, b) = both(self.term(left, right_hint.as_ref()), self.term(right, left_hint.as_ref()))?;
         let span = left.span().to(right.span());
         if a.kind != b.kind {
@@ -130,6 +131,11 @@ impl Scope<'_> {
         let terms = collect(pairs.map(|(argument, parameter)| self.term_of(argument, parameter)))?;
         Ok(Typed { term: Term::Call(function.id, terms.into()), kind: function.result.clone() })
     }
+}
+
+/// Whether it is a bare name, which may be a value of the enumeration beside it: nothing else depends on its neighbour.
+fn is_bare(expression: &Expression) -> bool {
+    matches!(&expression.kind, ExpressionKind::Variable(path) if path.bare().is_some())
 }
 
 fn check_count(function: &FunctionEntry, given: usize, span: Span) -> Checked<()> {

@@ -25,7 +25,10 @@ impl Scope<'_> {
             Some((topic, Some(host))) => {
                 events.intern_message_of(&host, topic.id, &format!("{} of {host}", topic.path))
             }
-            None => events.intern(&path.text()),
+            None => match path.bare() {
+                Some(name) => events.intern(name),
+                None => events.intern(&path.text()),
+            },
         })
     }
 

@@ -56,12 +56,17 @@ impl<'a> Scope<'a> {
     /// The field that names lead to inside a message, and its type; without names the whole message.
     pub(super) fn fields(&self, topic: &TopicEntry, names: &[Name]) -> Checked<(Box<[FieldId]>, ValueType)> {
         let mut fields = Vec::with_capacity(names.len());
-        let mut kind = ValueType::Message(topic.message.clone());
+        let mut kind: Option<&ValueType> = None;
         for name in names {
-            let ValueType::Message(message) = &kind else {
-                let text = format!("`{}` is asked of {}, which has no fields", name.text, describe(&kind));
-                let diagnostic = Diagnostic::error("E0134", name.place.0, text);
-                return Err(vec![diagnostic.with_hint(format!("leave `.{}` out", name.text))]);
+            let message = match kind {
+                None => &topic.message,
+                Some(ValueType::Message(message)) => message,
+                Some(other) => {
+                    let text =
+                        format!("`{}` is asked of {}, which has no fields", name.text, describe(other));
+                    let diagnostic = Diagnostic::error("E0134", name.place.0, text);
+                    return Err(vec![diagnostic.with_hint(format!("leave `.{}` out", name.text))]);
+                }
             };
             let entries = self.entry_of(message).map_or(&[][..], |entry| &entry.fields);
             let Some(entry) = entries.iter().find(|entry| entry.name == name.text) else {
@@ -76,8 +81,9 @@ impl<'a> Scope<'a> {
                 )]);
             };
             fields.push(entry.id);
-            kind = entry.kind.clone();
+            kind = Some(&entry.kind);
         }
+        let kind = kind.map_or_else(|| ValueType::Message(topic.message.clone()), ValueType::clone);
         Ok((fields.into(), kind))
     }
 
@@ -100,9 +106,7 @@ impl<'a> Scope<'a> {
     /// The topics of which a name is the last segment or the whole path.
     pub(super) fn topics_named(&self, name: &str) -> Vec<&'a TopicEntry> {
         let topics = self.vocabulary.topics.iter();
-        topics
-            .filter(|topic| last_segment(topic) == name || dotted(topic) == name.replace('/', "."))
-            .collect()
+        topics.filter(|topic| last_segment(topic) == name || is_same_path(&topic.path, name)).collect()
     }
 
     /// The one topic that has messages of a type.
@@ -215,6 +219,12 @@ pub(super) fn describe(kind: &ValueType) -> String {
 
 fn last_segment(topic: &TopicEntry) -> &str {
     topic.path.rsplit('/').next().unwrap_or_default()
+}
+
+/// Whether two paths are the same, be they separated by slashes or dots.
+fn is_same_path(a: &str, b: &str) -> bool {
+    let dotted = |byte: u8| if byte == b'/' { b'.' } else { byte };
+    a.len() == b.len() && a.bytes().map(dotted).eq(b.bytes().map(dotted))
 }
 
 fn dotted(topic: &TopicEntry) -> String {

@@ -61,6 +61,9 @@ impl<'a> Scope<'a> {
 
     /// The timer of a name, if some action starts it on this blackboard.
     pub(super) fn timer(&self, path: &Path) -> Option<TimerId> {
+        if self.timers.is_empty() {
+            return None;
+        }
         let text = path.text();
         let index = self.timers.iter().position(|timer| *timer == text)?;
         Some(TimerId(index as u32))
