@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::program::GuardError;
+use super::program::{GuardError, Literal};
 use super::syntax::{Additive, Comparison, Multiplicative};
 use crate::vocabulary::Value;
 
@@ -119,14 +119,37 @@ pub(crate) fn compare(
         (Value::Text(left), Value::Text(right)) => left.cmp(right),
         (left, right) => compare_numbers(Number::of(left)?, Number::of(right)?)?,
     };
-    Ok(Some(match comparison {
-        Comparison::Equal => order.is_eq(),
-        Comparison::NotEqual => order.is_ne(),
-        Comparison::Less => order.is_lt(),
-        Comparison::LessOrEqual => order.is_le(),
-        Comparison::Greater => order.is_gt(),
-        Comparison::GreaterOrEqual => order.is_ge(),
-    }))
+    Ok(Some(holds(comparison, order)))
+}
+
+/// Whether a comparison with a constant holds, for values whose order is plain; else nothing, and [`compare`] knows.
+#[inline(always)]
+pub(super) fn compare_plainly(left: Value<'_>, comparison: Comparison, right: &Literal) -> Option<bool> {
+    let order = match (right, left) {
+        (&Literal::Uint(right), Value::Int(left)) => compare_signs(left, right),
+        (&Literal::Uint(right), Value::Uint(left)) => left.cmp(&right),
+        (&Literal::Int(right), Value::Int(left)) => left.cmp(&right),
+        (&Literal::Float(right), Value::Float(left)) => left.partial_cmp(&right)?,
+        (&Literal::Enum(right), Value::Enum(left)) => left.cmp(&right),
+        (&Literal::Bool(right), Value::Bool(left)) => left.cmp(&right),
+        _ => return None,
+    };
+    Some(holds(comparison, order))
+}
+
+/// Looked up rather than branched on: guards are many, and each compares in its own way.
+#[inline]
+fn holds(comparison: Comparison, order: Ordering) -> bool {
+    let (less, equal, greater) = (0b001, 0b010, 0b100);
+    let holding = match comparison {
+        Comparison::Equal => equal,
+        Comparison::NotEqual => less | greater,
+        Comparison::Less => less,
+        Comparison::LessOrEqual => less | equal,
+        Comparison::Greater => greater,
+        Comparison::GreaterOrEqual => greater | equal,
+    };
+    holding >> (order as i8 + 1) & 1 == 1
 }
 
 #[inline]

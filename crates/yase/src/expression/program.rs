@@ -3,7 +3,7 @@
 //! Conditions are three-valued (Kleene): what reads a message that has not arrived is unknown, and only true
 //! fires.
 
-use super::arithmetic::{Operator, arithmetic, compare, negative};
+use super::arithmetic::{Operator, arithmetic, compare, compare_plainly, negative};
 use super::facts::{CallError, Facts, MessageSource, TimerId, TimerState};
 use super::names::ScriptId;
 use super::reads::Reads;
@@ -37,12 +37,26 @@ impl Guard {
     /// When an operation has no result; see [`GuardError`].
     #[inline]
     pub fn evaluate(&self, facts: &impl Facts) -> Result<bool, GuardError> {
-        // most guards are no more than this
-        if let Test::FieldIs { source, path, comparison, literal } = &self.test {
-            let answer = compare(facts.field(source, path), *comparison, literal.value())?;
-            return Ok(answer == Some(true));
+        match self.evaluate_plainly(facts) {
+            Some(holds) => Ok(holds),
+            None => Ok(self.test.evaluate(facts)? == Truth::True),
         }
-        Ok(self.test.evaluate(facts)? == Truth::True)
+    }
+
+    /// The same where fields are compared with constants of their own kinds, which is all that most guards do; else nothing.
+    #[inline(always)]
+    pub(crate) fn evaluate_plainly(&self, facts: &impl Facts) -> Option<bool> {
+        match &self.test {
+            Test::All(tests) => {
+                for test in tests {
+                    if !test.evaluate_plainly(facts)? {
+                        return Some(false);
+                    }
+                }
+                Some(true)
+            }
+            test => test.evaluate_plainly(facts),
+        }
     }
 
     /// The topics it reads, each once, in order.
@@ -233,6 +247,16 @@ pub enum Test {
 }
 
 impl Test {
+    #[inline(always)]
+    fn evaluate_plainly(&self, facts: &impl Facts) -> Option<bool> {
+        match self {
+            Test::FieldIs { source, path, comparison, literal } => {
+                compare_plainly(facts.field(source, path), *comparison, literal)
+            }
+            _ => None,
+        }
+    }
+
     pub(super) fn compare(left: Term, comparison: Comparison, right: Term) -> Test {
         match (left, right) {
             (Term::Field(source, path), Term::Literal(literal)) => {

@@ -281,6 +281,9 @@ impl<H: Host> ShortStep<'_, H> {
         if !TRACED && self.run.erred.is_empty() {
             let scoped = &self.chart.guards[guard as usize];
             let view = View { chart: self.chart, run: self.run, host: self.host, region: scoped.region };
+            if let Some(value) = scoped.guard.evaluate_plainly(&view) {
+                return value;
+            }
             if let Ok(value) = scoped.guard.evaluate(&view) {
                 return value;
             }
