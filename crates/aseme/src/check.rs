@@ -29,7 +29,7 @@
 //!     (let one of them be without a guard: it is taken when no other is)"]);
 //! ```
 
-mod abstraction;
+pub(crate) mod abstraction;
 mod conformance;
 mod events;
 mod exploration;
@@ -334,6 +334,11 @@ fn is_ours(subject: &Subject) -> bool {
 /// # Errors
 /// What keeps the model from being read or made ready to run.
 pub fn explorable(source: &Arc<Source>) -> Result<Arc<yase::Chart>, Vec<Diagnostic>> {
+    abstracted(source).map(|abstraction| abstraction.chart)
+}
+
+/// A model made ready to be explored.
+pub(crate) fn abstracted(source: &Arc<Source>) -> Result<abstraction::Abstraction, Vec<Diagnostic>> {
     let placed = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {
         found.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect()
     };
@@ -351,5 +356,5 @@ pub fn explorable(source: &Arc<Source>) -> Result<Arc<yase::Chart>, Vec<Diagnost
     if read.iter().any(Diagnostic::is_error) {
         return Err(placed(read));
     }
-    abstraction::Abstraction::new(&subject).map(|abstraction| abstraction.chart).map_err(placed)
+    abstraction::Abstraction::new(&subject).map_err(placed)
 }

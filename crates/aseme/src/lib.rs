@@ -82,6 +82,7 @@ pub mod names;
 pub mod ontology;
 mod outline;
 pub mod path;
+pub mod properties;
 pub mod refine;
 pub mod regenerate;
 pub mod roles;

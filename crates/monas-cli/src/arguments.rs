@@ -252,6 +252,9 @@ pub(crate) struct CheckArguments {
     /// Check names too: against the messages, functions and activities that this program has.
     #[arg(long)]
     pub(crate) linked: bool,
+    /// Check the properties in this file, and nothing else: whether each holds of all that the charts can do.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) properties: Vec<PathBuf>,
     /// Write each way to a finding as a file into this folder, for `model run`.
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) traces: Option<PathBuf>,

@@ -40,6 +40,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 mod trace;
+mod watch;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -51,6 +52,7 @@ use crate::statechart::{NodeId, TransitionId};
 
 pub use search::explore;
 pub use trace::{Move, ParseError, Step, Trace, replay};
+pub use watch::{Pace, Pending, Seen, Watch, Watched, WatchedState, WatchedStep, watch};
 
 /// Whether a condition may have a value, given those that others have in the same step.
 pub type Allows<'a> = dyn FnMut(ScriptId, bool, &[(ScriptId, bool)]) -> bool + 'a;

@@ -18,11 +18,11 @@ use super::subject::Subject;
 use super::timers;
 
 /// A chart to be explored, and what its conditions mean.
-pub(super) struct Abstraction {
-    pub(super) chart: Arc<Chart>,
+pub(crate) struct Abstraction {
+    pub(crate) chart: Arc<Chart>,
     /// The condition that each script stands for.
-    conditions: Vec<Option<Expression>>,
-    constants: Vec<Constant>,
+    pub(crate) conditions: Vec<Option<Expression>>,
+    pub(crate) constants: Vec<Constant>,
     /// The events that come from outside.
     events: Vec<String>,
 }
@@ -51,8 +51,16 @@ impl Abstraction {
         Ok(Abstraction { chart: Arc::new(compiled), conditions, constants: chart.constants.clone(), events })
     }
 
+    /// The same with more events that come from outside: those that the chart knows.
+    pub(crate) fn with_events(mut self, events: &BTreeSet<String>) -> Abstraction {
+        let known = events.iter().filter(|event| self.chart.events().find(event).is_some());
+        let new: Vec<String> = known.filter(|event| !self.events.contains(event)).cloned().collect();
+        self.events.extend(new);
+        self
+    }
+
     /// What may happen around the chart.
-    pub(super) fn surroundings(&self) -> Surroundings<'_> {
+    pub(crate) fn surroundings(&self) -> Surroundings<'_> {
         let mut surroundings = Surroundings::default();
         surroundings.events.clone_from(&self.events);
         surroundings.messages = self.conditions.iter().any(Option::is_some);

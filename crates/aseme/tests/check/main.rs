@@ -9,6 +9,8 @@
 
 mod cases;
 mod logic;
+mod properties;
+mod property_language;
 mod shared;
 mod speed;
 mod traces;

@@ -1,5 +1,6 @@
 //! `monas model check`: what is wrong with models.
 
+mod properties;
 mod sarif;
 mod traces;
 
@@ -14,23 +15,33 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::report;
+use properties::Judged;
 
 pub(crate) fn execute(arguments: &CheckArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
     let mut settings = Settings::default();
     settings.events.extend(arguments.events.iter().cloned());
     (settings.states, settings.pool) = (arguments.states, arguments.pool);
     settings.world = arguments.linked.then(linked).transpose()?;
-    let reports: Vec<(&Path, Report)> = arguments
-        .files
-        .iter()
-        .map(|path| (path.as_path(), checked(path, &settings, arguments.all)))
-        .collect();
+    let (mut reports, mut judged): (Vec<(&Path, Report)>, Vec<Judged>) = (Vec::new(), Vec::new());
+    for path in &arguments.files {
+        let report = match arguments.properties.as_slice() {
+            [] => checked(path, &settings, arguments.all),
+            files => properties::checked(path, files, &settings, &mut judged),
+        };
+        reports.push((path, report));
+    }
     if let Some(folder) = &arguments.traces {
         traces::write(folder, &reports)?;
     }
     match arguments.format {
-        CheckFormat::Text => text(&reports, console)?,
-        CheckFormat::Json => json(&reports, console)?,
+        CheckFormat::Text => {
+            text(&reports, arguments.properties.is_empty(), console)?;
+            properties::text(&judged, console)?;
+        }
+        CheckFormat::Json => {
+            json(&reports, console)?;
+            properties::json(&judged, console)?;
+        }
         CheckFormat::Sarif => {
             let findings = reports.iter().flat_map(|(_, report)| &report.findings);
             writeln!(console.out, "{:#}", sarif::document(findings))?;
@@ -72,8 +83,8 @@ fn checked(path: &Path, settings: &Settings, all: bool) -> Report {
     report
 }
 
-/// All that is wrong with all files, and one line for each that has no error.
-fn text(reports: &[(&Path, Report)], console: &mut Console<'_>) -> Result<(), Failure> {
+/// All that is wrong with all files, and, where models themselves are looked at, one line for each that has no error.
+fn text(reports: &[(&Path, Report)], is_told: bool, console: &mut Console<'_>) -> Result<(), Failure> {
     for (path, report) in reports {
         for finding in &report.findings {
             report::write(console, Format::Text, std::slice::from_ref(&finding.diagnostic))?;
@@ -81,7 +92,7 @@ fn text(reports: &[(&Path, Report)], console: &mut Console<'_>) -> Result<(), Fa
                 writeln!(console.err, "  a way there:\n{}", indented(trace))?;
             }
         }
-        if let Some(what) = report.what.as_ref().filter(|_| !report.has_errors()) {
+        if let Some(what) = report.what.as_ref().filter(|_| is_told && !report.has_errors()) {
             writeln!(console.out, "{}: {what}{}, no errors", path.display(), extent(report))?;
         }
     }

@@ -3,13 +3,16 @@
 use std::cell::RefCell;
 
 use crate::chart::{Chart, RegionId};
-use crate::expression::{CallError, ScriptId};
+use crate::expression::{CallError, EventId, ScriptId};
 use crate::host::{Activation, Host};
 use crate::machine::{Performance, States};
 use crate::statechart::{NodeId, TransitionId};
-use crate::trace::TraceRecord;
+use crate::trace::{Occasion, TraceRecord};
 
 use super::Allows;
+
+/// Stands for the blackboard of whoever asks beside the chart.
+const BESIDE: RegionId = RegionId(u32::MAX);
 
 /// A world in which conditions have the values that are chosen for them.
 pub(super) struct Chosen<'h, 'a> {
@@ -25,6 +28,10 @@ struct Decisions<'h, 'a> {
     log: Vec<Decision>,
     /// What is known on each blackboard in this step.
     known: Vec<(RegionId, ScriptId, bool)>,
+    /// The blackboards on which nothing that is asked holds, by their numbers.
+    idle: &'h [bool],
+    /// The blackboards that show the newest messages.
+    delivered: Vec<RegionId>,
 }
 
 /// A condition that was decided on.
@@ -42,6 +49,7 @@ pub(super) struct Notes {
     pub(super) left: Vec<NodeId>,
     pub(super) taken: Vec<TransitionId>,
     pub(super) held: Vec<TransitionId>,
+    pub(super) events: Vec<EventId>,
     /// Whether an action wrote something.
     pub(super) wrote: bool,
     /// The trace, if it is wanted: a line for each micro-step.
@@ -50,8 +58,25 @@ pub(super) struct Notes {
 
 impl<'h, 'a> Chosen<'h, 'a> {
     pub(super) fn new(allows: &'h mut Allows<'a>, planned: &'h [bool]) -> Chosen<'h, 'a> {
-        let decisions = Decisions { allows, planned, log: Vec::new(), known: Vec::new() };
+        let (log, known, delivered) = (Vec::new(), Vec::new(), Vec::new());
+        let decisions = Decisions { allows, planned, log, known, idle: &[], delivered };
         Chosen { decisions: RefCell::new(decisions), notes: Notes::default() }
+    }
+
+    /// A world in which nothing that is asked on some blackboards holds, by their numbers.
+    pub(super) fn with_idle(mut self, idle: &'h [bool]) -> Chosen<'h, 'a> {
+        self.decisions.get_mut().idle = idle;
+        self
+    }
+
+    /// How many decisions were made.
+    pub(super) fn decided(&self) -> usize {
+        self.decisions.borrow().log.len()
+    }
+
+    /// Decides on what is asked of the newest messages after a step.
+    pub(super) fn decide_beside(&mut self, script: ScriptId) -> bool {
+        self.decisions.get_mut().decide_beside(script)
     }
 
     pub(super) fn finish(self) -> (Vec<Decision>, Notes) {
@@ -67,15 +92,45 @@ impl Decisions<'_, '_> {
         }
         let known: Vec<(ScriptId, bool)> =
             self.known.iter().filter(on_board).map(|&(_, script, value)| (script, value)).collect();
+        let value = match self.is_idle(region) {
+            true => self.log_idle(script),
+            false => self.choose(script, &known),
+        };
+        self.known.push((region, script, value));
+        value
+    }
+
+    fn is_idle(&self, region: RegionId) -> bool {
+        self.idle.get(region.index()) == Some(&true)
+    }
+
+    /// What holds nowhere is decided too: whoever plays the way again has to be told so.
+    fn log_idle(&mut self, script: ScriptId) -> bool {
+        self.log.push(Decision { script, value: false, is_free: false });
+        false
+    }
+
+    fn decide_beside(&mut self, script: ScriptId) -> bool {
+        let is_new = |region: RegionId| self.delivered.contains(&region) && !self.is_idle(region);
+        let mut known: Vec<(ScriptId, bool)> = Vec::new();
+        let of_boards = self.known.iter().filter(|(region, ..)| is_new(*region) || *region == BESIDE);
+        known.extend(of_boards.map(|&(_, script, value)| (script, value)));
+        known.sort_unstable();
+        known.dedup();
+        let value = self.choose(script, &known);
+        self.known.push((BESIDE, script, value));
+        value
+    }
+
+    fn choose(&mut self, script: ScriptId, known: &[(ScriptId, bool)]) -> bool {
         let (may_be_false, may_be_true) =
-            ((self.allows)(script, false, &known), (self.allows)(script, true, &known));
+            ((self.allows)(script, false, known), (self.allows)(script, true, known));
         let is_free = may_be_false == may_be_true;
         let value = match self.planned.get(self.log.len()) {
             Some(&value) if is_free => value,
             _ => !may_be_false && may_be_true,
         };
         self.log.push(Decision { script, value, is_free });
-        self.known.push((region, script, value));
         value
     }
 }
@@ -83,6 +138,18 @@ impl Decisions<'_, '_> {
 impl Host for Chosen<'_, '_> {
     fn condition(&self, script: ScriptId, region: RegionId, _: &States<'_>) -> Result<bool, CallError> {
         Ok(self.decisions.borrow_mut().decide(region, script))
+    }
+
+    fn deliver(&mut self, region: RegionId) {
+        self.decisions.get_mut().delivered.push(region);
+    }
+
+    /// What is taken over from newest messages are newest messages.
+    fn inherit(&mut self, region: RegionId, from: RegionId) {
+        let decisions = self.decisions.get_mut();
+        if decisions.delivered.contains(&from) {
+            decisions.delivered.push(region);
+        }
     }
 
     /// What is written on a blackboard may change what is read there.
@@ -105,6 +172,9 @@ impl Host for Chosen<'_, '_> {
     fn trace(&mut self, chart: &Chart, record: &TraceRecord<'_>) {
         if let Some(lines) = &mut self.notes.lines {
             lines.push(record.display(chart).to_string());
+        }
+        if let Occasion::Event(event) = record.occasion {
+            self.notes.events.push(event);
         }
         self.notes.entered.extend(record.entries);
         self.notes.left.extend(record.exits);

@@ -211,8 +211,20 @@ impl Search<'_, '_> {
     }
 }
 
-/// Takes a step for a cause.
+/// Takes a step for a cause. Timers wait after it until they are chosen to expire.
 pub(super) fn take(
+    machine: &mut Machine,
+    cause: &Move,
+    choices: Vec<u32>,
+    host: &mut Chosen<'_, '_>,
+) -> Result<(), MachineError> {
+    go(machine, cause, choices, host)?;
+    machine.put_timers_off();
+    Ok(())
+}
+
+/// Takes a step for a cause. Timers that it set know when they are due.
+pub(super) fn go(
     machine: &mut Machine,
     cause: &Move,
     choices: Vec<u32>,
@@ -237,6 +249,5 @@ pub(super) fn take(
         Move::Messages => {}
     }
     machine.run_to_completion(now, host)?;
-    machine.put_timers_off();
     Ok(())
 }

@@ -1,5 +1,7 @@
 //! What exploration needs of a machine: when two of them will do the same from now on, and timers without a clock.
 
+use std::time::Duration;
+
 use crate::chart::{Chart, CompoundId};
 use crate::host::Activation;
 use crate::machine::activities::Phase;
@@ -92,6 +94,16 @@ impl Machine {
     pub(crate) fn timers_set(&self) -> Vec<usize> {
         let slots = self.run.timers.slots.iter().enumerate();
         slots.filter(|(_, slot)| slot.is_some_and(|it| !it.expired)).map(|(timer, _)| timer).collect()
+    }
+
+    /// The timers that were set since they all were last put off, and how long each runs.
+    pub(crate) fn timers_started(&self) -> Vec<(usize, Duration)> {
+        let slots = self.run.timers.slots.iter().enumerate();
+        let started = slots.filter_map(|(timer, slot)| {
+            let deadline = slot.filter(|it| !it.expired && it.moment != LATER)?;
+            Some((timer, deadline.moment.since(self.run.now)))
+        });
+        started.collect()
     }
 
     /// Has a timer expire at the next step. Says whether it was set.

@@ -1,0 +1,98 @@
+//! Which parts of a chart cannot matter to a property.
+//!
+//! A region of an AND that is never left goes on beside the others for ever. If it raises nothing that others wait for, if nobody looks into it and the property does
+//! not speak of it, then what the others do is the same whatever it does: that it steps is for them a step in which nothing happens. Such a region is left to
+//! do nothing, and what is found of the rest is true of the whole.
+//!
+//! The chart is one that is made ready to be explored: its scripts stand for conditions on messages and for actions that write some.
+
+use yase::expression::{Action, ActionKind, Expression, ExpressionKind, Trigger};
+use yase::{NodeId, NodeKind, Statechart};
+
+use super::plan::{Atom, Plan};
+
+/// The regions that cannot matter to a property.
+pub(super) fn idle(chart: &Statechart, plan: &Plan) -> Vec<NodeId> {
+    if looks_at_states(chart) {
+        return Vec::new();
+    }
+    let regions = chart.nodes().filter(|(_, node)| node.kind == NodeKind::And).flat_map(|(and, _)| {
+        let is_left = is_left(chart, and);
+        chart.children(and).iter().copied().filter(move |_| !is_left)
+    });
+    regions.filter(|&region| !is_spoken_of(chart, plan, region) && keeps_to_itself(chart, region)).collect()
+}
+
+fn is_within(chart: &Statechart, node: NodeId, outer: NodeId) -> bool {
+    node == outer || chart.ancestors(node).any(|ancestor| ancestor == outer)
+}
+
+/// Whether any guard asks which states are active.
+fn looks_at_states(chart: &Statechart) -> bool {
+    chart.transitions().any(|(_, it)| it.expression.guard.as_ref().is_some_and(asks_for_states))
+}
+
+fn asks_for_states(guard: &Expression) -> bool {
+    match &guard.kind {
+        ExpressionKind::In(_) => true,
+        ExpressionKind::And(parts) | ExpressionKind::Or(parts) => parts.iter().any(asks_for_states),
+        ExpressionKind::Not(inner) => asks_for_states(inner),
+        ExpressionKind::Compare(one, _, other) => asks_for_states(one) || asks_for_states(other),
+        _ => false,
+    }
+}
+
+/// Whether anything leads out of an AND, or out of what it lies in.
+fn is_left(chart: &Statechart, and: NodeId) -> bool {
+    chart.transitions().any(|(_, it)| {
+        let leaves_outer = is_within(chart, and, it.source) && !it.expression.is_never();
+        let leaves_inner = is_within(chart, it.source, and) && !is_within(chart, it.target, and);
+        leaves_outer || (leaves_inner && it.source != and)
+    })
+}
+
+fn is_spoken_of(chart: &Statechart, plan: &Plan, region: NodeId) -> bool {
+    plan.atoms().iter().any(|atom| match atom {
+        Atom::In(node) | Atom::Entering(node) | Atom::Leaving(node) => is_within(chart, *node, region),
+        Atom::Event(_) | Atom::Condition(_) => false,
+    })
+}
+
+/// Whether what happens in a region reaches nobody outside but by messages, which may say anything anyway.
+fn keeps_to_itself(chart: &Statechart, region: NodeId) -> bool {
+    let is_inside = |node| is_within(chart, node, region);
+    let transitions_stay = chart.transitions().all(|(_, it)| {
+        let (from, to) = (is_inside(it.source), is_inside(it.target));
+        from == to
+            && (!from || (it.expression.trigger.is_none() && it.expression.actions.iter().all(is_quiet)))
+    });
+    let nodes_stay = chart.nodes().filter(|(id, _)| is_inside(*id)).all(|(_, node)| {
+        let is_plain = !matches!(node.kind, NodeKind::Terminate | NodeKind::Fork | NodeKind::Join);
+        is_plain && node.defer.is_empty() && node.entry.iter().chain(&node.exit).all(is_quiet)
+    });
+    transitions_stay && nodes_stay && !is_waited_for(chart, region)
+}
+
+fn is_quiet(action: &Action) -> bool {
+    !matches!(action.kind, ActionKind::Raise(_))
+}
+
+/// Whether a trigger outside waits for a timer of a region, or for whatever comes.
+fn is_waited_for(chart: &Statechart, region: NodeId) -> bool {
+    let inside = chart.transitions().filter(|(_, it)| is_within(chart, it.source, region));
+    let nodes = chart.nodes().filter(|(id, _)| is_within(chart, *id, region));
+    let actions = inside
+        .flat_map(|(_, it)| &it.expression.actions)
+        .chain(nodes.flat_map(|(_, node)| node.entry.iter().chain(&node.exit)));
+    let timers: Vec<String> = actions
+        .filter_map(|action| match &action.kind {
+            ActionKind::StartTimeout { timer, .. } => Some(timer.text()),
+            _ => None,
+        })
+        .collect();
+    chart.transitions().any(|(_, it)| match &it.expression.trigger {
+        None => false,
+        Some(Trigger::OneOf(events)) => events.iter().any(|event| timers.contains(&event.text())),
+        Some(Trigger::Any | Trigger::Not(_)) => true,
+    })
+}

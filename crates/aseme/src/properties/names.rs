@@ -1,0 +1,139 @@
+//! The names in a property, looked up in a chart.
+
+use std::sync::Arc;
+
+use yase::diagnostic::nearest;
+use yase::expression::{EventTable, Guard, Name, Names, ScriptTable, TransitionExpression};
+use yase::{Chart, Diagnostic, NodeId, NodeKind, Vocabulary};
+
+use super::plan::{Atom, Lowering, Plan};
+use super::syntax::{Formula, FormulaKind, Property};
+use crate::path::{Path, shortest_path};
+
+/// A property whose names a chart knows.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Bound {
+    /// What is to be followed.
+    pub plan: Arc<Plan>,
+    /// The contrary: what a run that violates the property does.
+    pub(super) contrary: Plan,
+}
+
+/// Looks up the states and events of a property in a chart. What conditions name is [another's](guards) to know.
+///
+/// # Errors
+/// Names that the chart does not have (E0845, E0846), and a property that is too large (E0844).
+pub fn bind(property: &Property, chart: &Chart) -> Result<Bound, Vec<Diagnostic>> {
+    let mut found = Vec::new();
+    let is_lasting = matches!(property.formula.kind, FormulaKind::Always(_));
+    let plan = |holds: bool, found: &mut Vec<Diagnostic>| {
+        let lookup = |formula: &Formula| atom(formula, chart, found);
+        Lowering::new(&property.name, is_lasting, lookup).finish(&property.formula, holds)
+    };
+    let made = plan(true, &mut found);
+    let contrary = plan(false, &mut Vec::new());
+    match (made, contrary) {
+        (Ok(plan), Ok(contrary)) if found.is_empty() => Ok(Bound { plan: Arc::new(plan), contrary }),
+        (Ok(_), Ok(_)) => Err(found),
+        (Err(too_large), _) | (_, Err(too_large)) => {
+            let message = format!("`{}` says more than {} {}", property.name, too_large.1, too_large.0);
+            let wrong = Diagnostic::error("E0844", property.place.0, message);
+            found.push(wrong.with_hint("make several properties of it"));
+            Err(found)
+        }
+    }
+}
+
+fn atom(formula: &Formula, chart: &Chart, found: &mut Vec<Diagnostic>) -> Option<Atom> {
+    let looked_up = match &formula.kind {
+        FormulaKind::In(name) => state(name, chart).map(Atom::In),
+        FormulaKind::Entering(name) => state(name, chart).map(Atom::Entering),
+        FormulaKind::Leaving(name) => state(name, chart).map(Atom::Leaving),
+        FormulaKind::Event(name) => event(name, chart),
+        FormulaKind::Condition(condition) => Ok(Atom::Condition(condition.clone())),
+        _ => return None,
+    };
+    looked_up.map_err(|wrong| found.push(wrong)).ok()
+}
+
+/// The state that a path names.
+fn state(name: &Name, chart: &Chart) -> Result<NodeId, Diagnostic> {
+    let place = name.place.0;
+    let path = Path::parse(&name.text).map_err(|wrong| Diagnostic { span: place, ..wrong })?;
+    let statechart = chart.statechart();
+    let is_state = |id: NodeId| {
+        use NodeKind::{And, Basic, End, Or};
+        matches!(statechart.node(id).kind, And | Basic | End | Or)
+    };
+    let states: Vec<NodeId> = statechart.nodes().map(|(id, _)| id).filter(|&id| is_state(id)).collect();
+    let fitting: Vec<NodeId> = states.iter().copied().filter(|&id| path.matches(statechart, id)).collect();
+    match fitting.as_slice() {
+        [one] => Ok(*one),
+        [] => {
+            let message = format!("the chart `{}` has no state `{}`", statechart.name, name.text);
+            let names =
+                states.iter().map(|&id| statechart.node(id).name.as_str()).filter(|it| !it.is_empty());
+            let last = name.text.rsplit('/').next().unwrap_or_default();
+            let wrong = Diagnostic::error("E0845", place, message);
+            Err(match nearest(last, names) {
+                Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
+                None => wrong.with_hint("a state is named by a path of names as its formula has them"),
+            })
+        }
+        several => {
+            let message = format!("{} states are called `{}`", several.len(), name.text);
+            let paths: Vec<String> =
+                several.iter().take(3).map(|&id| format!("`{}`", shortest_path(statechart, id))).collect();
+            let wrong = Diagnostic::error("E0845", place, message);
+            Err(wrong.with_hint(format!("say which: {}", paths.join(", "))))
+        }
+    }
+}
+
+fn event(name: &Name, chart: &Chart) -> Result<Atom, Diagnostic> {
+    let events = chart.events();
+    if let Some(event) = events.find(&name.text) {
+        return Ok(Atom::Event(event));
+    }
+    let message =
+        format!("nothing in the chart `{}` names an event `{}`", chart.statechart().name, name.text);
+    let wrong = Diagnostic::error("E0846", name.place.0, message);
+    let known: Vec<&str> = events.ids().map(|event| events.name(event)).collect();
+    Err(match nearest(&name.text, known.iter().copied()) {
+        Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
+        None => wrong.with_hint("a chart is offered the events that its triggers and actions name"),
+    })
+}
+
+/// The conditions of a plan, in the order of its atoms, ready to be read: none for an atom that is no condition.
+///
+/// # Errors
+/// Whatever a guard with such a condition would be refused for.
+pub fn guards(
+    plan: &Plan,
+    chart: &Chart,
+    vocabulary: &Vocabulary,
+) -> Result<Vec<Option<Guard>>, Vec<Diagnostic>> {
+    let (mut guards, mut found) = (Vec::new(), Vec::new());
+    for atom in plan.atoms() {
+        let Atom::Condition(condition) = atom else {
+            guards.push(None);
+            continue;
+        };
+        let expression = TransitionExpression { guard: Some(condition.clone()), ..Default::default() };
+        let compiled = expression.compile(&mut Names {
+            vocabulary,
+            constants: &chart.statechart().constants,
+            timers: &[],
+            events: &mut EventTable::new(),
+            scripts: &mut ScriptTable::new(),
+            states: &|_| None,
+        });
+        match compiled {
+            Ok(compiled) => guards.push(compiled.guard),
+            Err(wrong) => found.extend(wrong),
+        }
+    }
+    if found.is_empty() { Ok(guards) } else { Err(found) }
+}

@@ -1,0 +1,225 @@
+//! A property whose names are known, as a table of terms in which `not` stands before atoms only.
+
+use std::time::Duration;
+
+use yase::NodeId;
+use yase::expression::{EventId, Expression};
+
+use super::syntax::{Formula, FormulaKind};
+
+/// Letters have a bit for each atom.
+pub(super) const ATOMS: usize = 64;
+/// A clause has a bit for each temporal term.
+pub(super) const TEMPORAL: usize = 32;
+/// A clause has a deadline for each of these.
+pub(super) const BOUNDED: usize = 8;
+
+/// What is true or false of one step.
+#[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
+pub enum Atom {
+    /// The state is active after the step.
+    In(NodeId),
+    /// The state was entered.
+    Entering(NodeId),
+    /// The state was left.
+    Leaving(NodeId),
+    /// The event was offered.
+    Event(EventId),
+    /// The condition held.
+    Condition(Expression),
+}
+
+/// A property of one chart, ready to be followed. Its [atoms](Plan::atoms) are numbered; a step of the chart is told by the set of those that are true of
+/// it, a bit for each.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    pub(super) name: String,
+    pub(super) terms: Vec<Term>,
+    pub(super) root: usize,
+    pub(super) atoms: Vec<Atom>,
+    /// The terms that are obligations, by their numbers, and which deadline of a clause is theirs.
+    pub(super) obligations: Vec<(usize, Option<usize>)>,
+    /// Whether what it says remains so when it is said again later: it begins with `always`.
+    pub(super) is_lasting: bool,
+}
+
+/// A part of a plan; parts are known by their places.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) enum Term {
+    Constant(bool),
+    Literal {
+        atom: usize,
+        holds: bool,
+    },
+    And(usize, usize),
+    Or(usize, usize),
+    /// The right one comes, and the left one holds until then.
+    Until {
+        obligation: usize,
+        left: usize,
+        right: usize,
+        bound: Option<u64>,
+    },
+    /// The right one holds until the left one has come, and then too.
+    Release {
+        obligation: usize,
+        left: usize,
+        right: usize,
+        bound: Option<u64>,
+    },
+}
+
+/// A property is larger than what can be followed: which limit it exceeds.
+pub(super) struct TooLarge(pub(super) &'static str, pub(super) usize);
+
+impl Plan {
+    /// The name of the property.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What is asked of each step, in the order of the bits of a letter.
+    pub fn atoms(&self) -> &[Atom] {
+        &self.atoms
+    }
+
+    /// Whether it says something of time.
+    pub fn is_bounded(&self) -> bool {
+        self.bounds().next().is_some()
+    }
+
+    /// The bounds in it, in nanoseconds.
+    pub(super) fn bounds(&self) -> impl Iterator<Item = u64> {
+        self.terms.iter().filter_map(|term| match term {
+            Term::Until { bound, .. } | Term::Release { bound, .. } => *bound,
+            _ => None,
+        })
+    }
+
+    /// The same with bounds in another unit of time.
+    pub(super) fn in_units(mut self, nanoseconds: u64) -> Plan {
+        for term in &mut self.terms {
+            if let Term::Until { bound: Some(bound), .. } | Term::Release { bound: Some(bound), .. } = term {
+                *bound /= nanoseconds;
+            }
+        }
+        self
+    }
+}
+
+/// Makes plans of formulas.
+pub(super) struct Lowering<F> {
+    /// The atom that a formula without parts is.
+    pub(super) atom: F,
+    pub(super) plan: Plan,
+    bounded: usize,
+}
+
+impl<F: FnMut(&Formula) -> Option<Atom>> Lowering<F> {
+    pub(super) fn new(name: &str, is_lasting: bool, atom: F) -> Lowering<F> {
+        let (terms, atoms, obligations) = (Vec::new(), Vec::new(), Vec::new());
+        let plan = Plan { name: name.into(), terms, root: 0, atoms, obligations, is_lasting };
+        Lowering { atom, plan, bounded: 0 }
+    }
+
+    /// The plan of a formula, or of its contrary.
+    pub(super) fn finish(mut self, formula: &Formula, holds: bool) -> Result<Plan, TooLarge> {
+        self.plan.root = self.lower(formula, holds)?;
+        Ok(self.plan)
+    }
+
+    fn lower(&mut self, formula: &Formula, holds: bool) -> Result<usize, TooLarge> {
+        match &formula.kind {
+            FormulaKind::Constant(value) => Ok(self.add(Term::Constant(*value == holds))),
+            FormulaKind::Not(inner) => self.lower(inner, !holds),
+            FormulaKind::And(parts) => self.several(parts, holds, holds),
+            FormulaKind::Or(parts) => self.several(parts, holds, !holds),
+            FormulaKind::Implies(one, other) => {
+                let (one, other) = (self.lower(one, !holds)?, self.lower(other, holds)?);
+                Ok(self.join(one, other, !holds))
+            }
+            FormulaKind::Always(inner) => {
+                let (left, right) = (self.add(Term::Constant(!holds)), self.lower(inner, holds)?);
+                self.temporal(left, right, None, !holds)
+            }
+            FormulaKind::Eventually(inner, bound) => {
+                let (left, right) = (self.add(Term::Constant(holds)), self.lower(inner, holds)?);
+                self.temporal(left, right, *bound, holds)
+            }
+            FormulaKind::Until(one, other, bound) => {
+                let (left, right) = (self.lower(one, holds)?, self.lower(other, holds)?);
+                self.temporal(left, right, *bound, holds)
+            }
+            FormulaKind::In(_)
+            | FormulaKind::Entering(_)
+            | FormulaKind::Leaving(_)
+            | FormulaKind::Event(_)
+            | FormulaKind::Condition(_) => self.literal(formula, holds),
+        }
+    }
+
+    fn literal(&mut self, formula: &Formula, holds: bool) -> Result<usize, TooLarge> {
+        // what is not known has been said; the plan is not used then
+        let Some(atom) = (self.atom)(formula) else { return Ok(self.add(Term::Constant(false))) };
+        let known = self.plan.atoms.iter().position(|other| *other == atom);
+        let atom = match known {
+            Some(place) => place,
+            None if self.plan.atoms.len() == ATOMS => {
+                return Err(TooLarge("different things about states, events and messages", ATOMS));
+            }
+            None => {
+                self.plan.atoms.push(atom);
+                self.plan.atoms.len() - 1
+            }
+        };
+        Ok(self.add(Term::Literal { atom, holds }))
+    }
+
+    fn several(&mut self, parts: &[Formula], holds: bool, all: bool) -> Result<usize, TooLarge> {
+        let mut joined = None;
+        for part in parts {
+            let part = self.lower(part, holds)?;
+            joined = Some(match joined {
+                Some(before) => self.join(before, part, all),
+                None => part,
+            });
+        }
+        Ok(joined.unwrap_or_else(|| self.add(Term::Constant(all))))
+    }
+
+    fn join(&mut self, one: usize, other: usize, all: bool) -> usize {
+        self.add(if all { Term::And(one, other) } else { Term::Or(one, other) })
+    }
+
+    fn temporal(
+        &mut self,
+        left: usize,
+        right: usize,
+        bound: Option<Duration>,
+        is_until: bool,
+    ) -> Result<usize, TooLarge> {
+        let obligation = self.plan.obligations.len();
+        if obligation == TEMPORAL {
+            return Err(TooLarge("`always`, `eventually` and `until`", TEMPORAL));
+        }
+        let bound = bound.map(|bound| u64::try_from(bound.as_nanos()).unwrap_or(u64::MAX));
+        let deadline = bound.map(|_| self.bounded);
+        self.bounded += usize::from(bound.is_some());
+        if self.bounded > BOUNDED {
+            return Err(TooLarge("`within`", BOUNDED));
+        }
+        let term = match is_until {
+            true => Term::Until { obligation, left, right, bound },
+            false => Term::Release { obligation, left, right, bound },
+        };
+        let place = self.add(term);
+        self.plan.obligations.push((place, deadline));
+        Ok(place)
+    }
+
+    fn add(&mut self, term: Term) -> usize {
+        self.plan.terms.push(term);
+        self.plan.terms.len() - 1
+    }
+}

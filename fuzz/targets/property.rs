@@ -1,0 +1,36 @@
+//! Properties: findings fit, the canonical text reads back as itself, and names are looked up.
+#![no_main]
+
+use std::sync::LazyLock;
+
+use aseme::properties::{Monitor, bind, parse};
+use libfuzzer_sys::fuzz_target;
+use monas_fuzz::assert_findings_fit;
+use yase::{Chart, Source, Vocabulary};
+
+fuzz_target!(|text: &str| {
+    let (properties, findings) = parse(text);
+    assert_findings_fit(text, &findings);
+    for property in &properties {
+        let printed = property.to_string();
+        let (again, findings) = parse(&printed);
+        assert_eq!(findings, [], "{printed}");
+        assert_eq!(again, [property.clone()]);
+        let Some(chart) = CHART.as_ref() else { continue };
+        match bind(property, chart) {
+            Ok(bound) => {
+                let mut monitor = Monitor::new(bound.plan);
+                for (letter, now) in [(0, 0), (1, 10), (!0, 2_000_000_000), (2, u64::MAX)] {
+                    monitor.step(letter, now);
+                }
+            }
+            Err(findings) => assert_findings_fit(text, &findings),
+        }
+    }
+});
+
+/// A chart that has some of the names.
+static CHART: LazyLock<Option<Chart>> = LazyLock::new(|| {
+    let text = "Role: r\nLiveness:\nr = a . (b | c)\nTransitions:\na -> (b|c) : go\n";
+    aseme::statechart_of(&Source::new("r.srm", text)).0.compile(&Vocabulary::default()).ok()
+});
