@@ -1,6 +1,5 @@
 //! The language of properties, and what it means along a run.
 
-use std::sync::Arc;
 use std::time::Duration;
 
 use aseme::properties::{Formula, FormulaKind, Monitor, Property, Verdict, bind, parse};

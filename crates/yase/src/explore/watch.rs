@@ -69,9 +69,9 @@ pub struct Seen<'s> {
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Pending {
     /// The activity of a state runs.
-    Activity(NodeId),
+    Return(NodeId),
     /// A timer is set, by its place among [`Chart::timers`].
-    Timer(usize),
+    Expiry(usize),
 }
 
 /// A state that was found.
@@ -299,7 +299,7 @@ impl Search<'_, '_, '_> {
         };
         let is_idle = |region: crate::chart::RegionId| self.idle.get(region.index()) == Some(&true);
         let running = machine.running().into_iter().filter(|it| !is_idle(it.region)).map(|it| {
-            let of = Pending::Activity(it.node);
+            let of = Pending::Return(it.node);
             let duration = chart.activity(it.node).and_then(|entry| entry.duration).unwrap_or_default();
             let left = goes_on(of, it.number)
                 .map_or_else(|| ticks(duration), |clock| clock.left.saturating_sub(elapsed));
@@ -307,7 +307,7 @@ impl Search<'_, '_, '_> {
         });
         let regions: Vec<_> = chart.timers().map(|(region, _)| region).collect();
         let set = machine.timers_set().into_iter().filter(|&timer| !is_idle(regions[timer])).map(|timer| {
-            let of = Pending::Timer(timer);
+            let of = Pending::Expiry(timer);
             let anew = started.iter().find(|(other, _)| *other == timer).map(|&(_, delay)| ticks(delay));
             let left = anew.or_else(|| goes_on(of, 0).map(|clock| clock.left.saturating_sub(elapsed)));
             Clock { of, activation: 0, left: left.unwrap_or(0) }
@@ -360,15 +360,15 @@ impl Pending {
     /// What ends it.
     fn ending(self) -> Move {
         match self {
-            Pending::Activity(node) => Move::Return(node),
-            Pending::Timer(timer) => Move::Timer(timer),
+            Pending::Return(node) => Move::Return(node),
+            Pending::Expiry(timer) => Move::Timer(timer),
         }
     }
 
     fn ended_by(cause: &Move) -> Option<Pending> {
         match *cause {
-            Move::Return(node) => Some(Pending::Activity(node)),
-            Move::Timer(timer) => Some(Pending::Timer(timer)),
+            Move::Return(node) => Some(Pending::Return(node)),
+            Move::Timer(timer) => Some(Pending::Expiry(timer)),
             _ => None,
         }
     }
