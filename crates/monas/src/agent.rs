@@ -7,11 +7,13 @@ use std::fmt;
 use std::num::NonZeroUsize;
 use std::time::Duration;
 
+use aseme::properties::Property;
 use yase::{Semantics, Statechart};
 
 use crate::activity::Activity;
 use crate::frequency::Frequency;
 use crate::generated::GeneratedChart;
+use crate::monitors::{OnViolation, Rules};
 use crate::parameters::Parameters;
 
 pub(crate) use profile::{ActivityProfile, ChartProfile, Profile};
@@ -73,6 +75,7 @@ pub struct Agent {
     pub(crate) models: Vec<String>,
     pub(crate) cores: Vec<usize>,
     pub(crate) stuck_after: Option<Duration>,
+    pub(crate) rules: Vec<Rules>,
 }
 
 /// An activity of a list.
@@ -114,6 +117,7 @@ impl Agent {
             models: Vec::new(),
             cores: Vec::new(),
             stuck_after: None,
+            rules: Vec::new(),
         }
     }
 
@@ -224,6 +228,16 @@ impl Agent {
     /// link.
     pub fn elsewhere(mut self, activity: impl Into<String>) -> Agent {
         self.elsewhere.push(activity.into());
+        self
+    }
+
+    /// Has [properties](aseme::properties) of its statechart followed while it runs: of the one that it has.
+    pub fn monitor(self, properties: Vec<Property>, on_violation: OnViolation) -> Agent {
+        self.ruled(Rules { file: String::new(), properties, on_violation, source: None })
+    }
+
+    pub(crate) fn ruled(mut self, rules: Rules) -> Agent {
+        self.rules.push(rules);
         self
     }
 

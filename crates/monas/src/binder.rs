@@ -10,6 +10,7 @@ use crate::activity::Activity;
 use crate::error::{Error, ErrorKind};
 use crate::function::FunctionDeclaration;
 use crate::generated::GeneratedChart;
+use crate::monitors::{Monitors, Rules, needs_one_chart};
 use crate::registry::Registry;
 use crate::vocabulary::vocabulary;
 
@@ -98,6 +99,38 @@ impl<'a> Binder<'a> {
             chart.activities().map(|entry| activities.remove(&entry.node).ok_or_else(|| lacking(&entry)));
         let taken = taken.collect::<Result<_, _>>().map_err(|diagnostic| vec![diagnostic])?;
         Ok(BoundChart { chart, functions: self.functions.clone(), activities: taken })
+    }
+
+    /// The properties of an agent with so many charts, to be followed along this one; none if it has none.
+    ///
+    /// # Errors
+    /// Names that the chart or the program does not have.
+    pub(crate) fn monitors(
+        &self,
+        rules: &[Rules],
+        agent: &str,
+        charts: usize,
+        chart: &Chart,
+    ) -> Result<Option<Monitors>, Vec<Diagnostic>> {
+        if rules.is_empty() {
+            return Ok(None);
+        }
+        match needs_one_chart(agent, charts) {
+            Some(wrong) => Err(vec![wrong]),
+            None => Monitors::new(rules, chart, &self.vocabulary).map(Some),
+        }
+    }
+
+    /// A chart as it will run, without its activities; places are in no text.
+    pub(crate) fn compiled(
+        &self,
+        chart: &Statechart,
+        generated: Option<&GeneratedChart>,
+    ) -> Result<Chart, Vec<Diagnostic>> {
+        match generated {
+            Some(generated) => generated.chart.compile(&self.vocabulary, Semantics::yase()),
+            None => chart.compile_with(&self.vocabulary, Semantics::yase()),
+        }
     }
 
     /// An instance for each state with an activity. A name that is wrong in several states is said once.

@@ -24,13 +24,14 @@ use crate::call::{self, Failure};
 use crate::coverage::ChartCoverage;
 use crate::error::Error;
 use crate::listener::Listeners;
+use crate::monitors::{Broken, Monitors, Seen};
 use crate::origin::{self, Origin};
 use crate::records;
 use crate::statistics::ActivityStatistics;
 use crate::talws::component_seed;
 
-use desk::Desk;
 pub(crate) use desk::transition_name;
+use desk::{Desk, Root};
 use fetching::Fetching;
 pub(crate) use fetching::Lead;
 pub(crate) use post::{Assignment, Posts, Returned, Took};
@@ -53,6 +54,7 @@ pub(crate) struct Runner {
     machine: Machine,
     desk: Desk,
     posts: Posts,
+    monitors: Option<Monitors>,
     micro_steps: u64,
 }
 
@@ -90,7 +92,33 @@ impl Runner {
         let mut machine = Machine::new(chart);
         machine.set_chooser(Chooser::seeded(home.chance()));
         let number = RUNNERS.fetch_add(1, Ordering::Relaxed);
-        Ok(Runner { number, hub: home.hub.clone(), machine, desk, posts, micro_steps: 0 })
+        Ok(Runner { number, hub: home.hub.clone(), machine, desk, posts, monitors: None, micro_steps: 0 })
+    }
+
+    /// Follows properties of the chart from its start on.
+    pub(crate) fn follow(&mut self, monitors: Monitors) {
+        self.desk.lending.read_too(monitors.topics());
+        self.desk.seen = Some(Seen::default());
+        self.monitors = Some(monitors);
+    }
+
+    /// The properties that were found violated since it was last asked.
+    pub(crate) fn broken(&mut self) -> Vec<Broken> {
+        self.monitors.as_mut().map(Monitors::broken).unwrap_or_default()
+    }
+
+    /// Whether something that had to come in time has not.
+    pub(crate) fn lapse(&mut self, now: Moment) -> bool {
+        self.monitors.as_mut().is_some_and(|monitors| monitors.lapse(now))
+    }
+
+    fn watch(&mut self, now: Moment) {
+        if let (Some(monitors), Some(seen)) = (&mut self.monitors, &self.desk.seen) {
+            monitors.step(&self.machine, seen, &Root(&self.desk), now);
+        }
+        if let Some(seen) = &mut self.desk.seen {
+            seen.clear();
+        }
     }
 
     /// Enters the root. The first transitions are those of the first step.
@@ -135,7 +163,8 @@ impl Runner {
         }
         let deadline =
             self.machine.next_deadline().map_or(Moment::MAX, |at| Moment::from_nanos(at.as_nanos()));
-        deadline.min(self.posts.next_call())
+        let missed = self.monitors.as_ref().map_or(Moment::MAX, Monitors::due);
+        deadline.min(self.posts.next_call()).min(missed)
     }
 
     pub(crate) fn needs_step(&self, now: Moment) -> bool {
@@ -152,6 +181,7 @@ impl Runner {
         let summary = self.machine.run_to_completion(yase_moment(now), &mut self.desk);
         let summary = summary?;
         self.micro_steps += u64::from(summary.micro_steps);
+        self.watch(now);
         self.desk.started.iter().skip(known).for_each(|activation| self.posts.begin(*activation));
         self.leave(now);
         Ok(())
@@ -353,6 +383,11 @@ impl Runner {
     /// The topics whose messages wake the chart.
     pub(crate) fn topics_of_guards(&self) -> Vec<TopicSlot> {
         self.machine.chart().reads().iter().map(|topic| TopicSlot::new(topic.0)).collect()
+    }
+
+    /// The agent it is a chart of.
+    pub(crate) fn agent(&self) -> &str {
+        &self.desk.agent
     }
 
     pub(crate) fn host(&self) -> &str {

@@ -15,6 +15,9 @@ use narukom::{Moment, TopicSlot};
 use yase::expression::{EventId, Facts, Guard};
 use yase::{Chart, Diagnostic, Machine, NodeId, Occasion, Source, Span, TraceRecord, Vocabulary};
 
+use crate::agent::Policy;
+use crate::records::Violation;
+
 /// What happens when a property of an agent's chart is violated, beside that it is said in the log and in the record of the cycle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[non_exhaustive]
@@ -45,7 +48,6 @@ pub(crate) struct Rules {
 
 /// The properties of one chart.
 pub(crate) struct Monitors {
-    rules: Vec<Rules>,
     followed: Vec<Followed>,
     /// What conditions read, in order.
     topics: Vec<TopicSlot>,
@@ -114,12 +116,7 @@ impl Monitors {
         topics.sort_unstable();
         topics.dedup();
         let violated = Vec::with_capacity(followed.len());
-        Ok(Monitors { rules: rules.to_vec(), followed, topics, violated })
-    }
-
-    /// What they were made of.
-    pub(crate) fn rules(&self) -> &[Rules] {
-        &self.rules
+        Ok(Monitors { followed, topics, violated })
     }
 
     /// The topics that conditions read.
@@ -156,12 +153,65 @@ impl Monitors {
         deadlines.min().map_or(Moment::MAX, |deadline| Moment::from_nanos(deadline.saturating_add(1)))
     }
 
-    /// The next property that was violated, and whether the agent is to do something about it.
-    pub(crate) fn next_violated(&mut self) -> Option<(&str, Verdict, bool)> {
-        let one = self.followed.get_mut(self.violated.pop()?)?;
-        let verdict = one.monitor.verdict();
-        one.monitor.begin_anew();
-        Some((one.monitor.plan().name(), verdict, one.acts && verdict == Verdict::Violated))
+    /// The properties that were found violated since it was last asked. Takes no memory if there are none.
+    pub(crate) fn broken(&mut self) -> Vec<Broken> {
+        let mut broken = Vec::new();
+        for place in self.violated.drain(..) {
+            let Some(one) = self.followed.get_mut(place) else { continue };
+            let is_lost = one.monitor.verdict() == Verdict::Lost;
+            let property = one.monitor.plan().name().to_owned();
+            broken.push(Broken { property, is_lost, acts: one.acts && !is_lost });
+            if !is_lost {
+                one.monitor.begin_anew();
+            }
+        }
+        broken
+    }
+}
+
+/// A property that was found violated.
+pub(crate) struct Broken {
+    pub(crate) property: String,
+    /// Nothing is known of it any more.
+    is_lost: bool,
+    acts: bool,
+}
+
+impl Broken {
+    /// As records have it.
+    pub(crate) fn record(&self) -> Violation {
+        Violation { property: self.property.clone(), lost: self.is_lost }
+    }
+
+    /// Says it in the log.
+    fn say(&self, robot: &str, agent: &str, cycle: u64, now: Moment) {
+        let property = &self.property;
+        match self.is_lost {
+            true => {
+                tracing::warn!(%robot, %agent, cycle, %property, "property is followed no more at {now}: too much of it is open")
+            }
+            false => tracing::error!(%robot, %agent, cycle, %property, "property violated at {now}"),
+        }
+    }
+}
+
+/// Says in the log what was violated in a cycle.
+///
+/// # Errors
+/// Why the agent is to stop.
+pub(crate) fn answer(
+    broken: &[Broken],
+    (robot, agent): (&str, &str),
+    policy: Policy,
+    cycle: u64,
+    now: Moment,
+) -> Result<(), String> {
+    broken.iter().for_each(|one| one.say(robot, agent, cycle, now));
+    match (broken.iter().find(|one| one.acts), policy) {
+        (Some(one), Policy::StopAgent | Policy::SafeState) => {
+            Err(format!("the property `{}` was violated in cycle {cycle}", one.property))
+        }
+        _ => Ok(()),
     }
 }
 
@@ -173,11 +223,15 @@ fn one(
 ) -> Result<Followed, Vec<Diagnostic>> {
     let plan = bind(property, chart)?.plan;
     let guards = guards(&plan, chart, vocabulary)?;
-    let is_foreign = |guard: &Guard| guard.sources().iter().any(|it| it.origin != yase::expression::Origin::Own);
+    let is_foreign =
+        |guard: &Guard| guard.sources().iter().any(|it| it.origin != yase::expression::Origin::Own);
     if guards.iter().flatten().any(is_foreign) {
-        let message = format!("the property `{}` reads what a certain host or activity publishes", property.name);
+        let message =
+            format!("the property `{}` reads what a certain host or activity publishes", property.name);
         let wrong = Diagnostic::error("E0325", property.formula.span(), message);
-        return Err(vec![wrong.with_hint("a property reads messages of its own host, whoever publishes them")]);
+        return Err(vec![
+            wrong.with_hint("a property reads messages of its own host, whoever publishes them"),
+        ]);
     }
     Ok(Followed { monitor: Monitor::new(plan), guards, acts: on_violation == OnViolation::Policy })
 }
@@ -200,7 +254,8 @@ fn letter(one: &Followed, machine: &Machine, seen: &Seen, facts: &impl Facts) ->
 
 /// What keeps an agent from having monitors: they are of its one chart.
 pub(crate) fn needs_one_chart(agent: &str, charts: usize) -> Option<Diagnostic> {
-    let message = format!("agent `{agent}` has {charts} statecharts: nobody knows whose properties these are");
+    let message =
+        format!("agent `{agent}` has {charts} statecharts: nobody knows whose properties these are");
     (charts != 1).then(|| {
         Diagnostic::error("E0324", Span::default(), message)
             .with_hint("give the properties to an agent with one statechart")

@@ -2,8 +2,12 @@
 #![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
 
 mod kit;
+#[path = "charts/monitors.rs"]
+mod monitors;
 #[path = "charts/sources.rs"]
 mod sources;
+#[path = "kit/taped.rs"]
+mod taped;
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -521,7 +525,7 @@ fn the_records_name_what_happens() {
         |topic| format!("Delivery {{ topic: {topic}, sequence: 1, region: 0, host: \"\", publisher: \"\" }}");
     let expected = format!(
         "monas/cycle Cycle {{ number: 3, time: 10000000, delivered: [{}, {}], seen: [], turn: None, chart: 0, news: [], \
-         returned: [], first_tick: 0, due: 0, asked: None }}",
+         returned: [], first_tick: 0, due: 0, asked: None, violations: [] }}",
         delivery(ball),
         delivery(news)
     );

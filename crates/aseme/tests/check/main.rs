@@ -7,6 +7,7 @@
     reason = "the functions around tests are tests too"
 )]
 
+mod allocation;
 mod cases;
 mod logic;
 mod properties;

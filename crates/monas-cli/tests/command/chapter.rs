@@ -1,4 +1,4 @@
-//! The chapter in `docs/attack.md`: each of its commands does what the chapter says.
+//! The chapters in `docs`: each of their commands does what the chapter says.
 
 use std::fs;
 use std::path::Path;
@@ -43,6 +43,24 @@ fn run(step: &Step, folder: &Path) -> Answer {
     let answer: Answer = command(&words).current_dir(folder).output().expect("the command starts").into();
     assert_eq!(answer.code, Some(step.code), "{words:?}: {}{}", answer.out, answer.err);
     answer
+}
+
+#[test]
+fn each_command_of_the_chapter_on_properties_does_what_it_says() {
+    let project = project();
+    let folder = project.path();
+    copy(&root().join("docs"), &folder.join("docs"));
+    copy(&root().join("models"), &folder.join("models"));
+    let chapter = fs::read_to_string(root().join("docs/properties.md")).expect("the chapter");
+    let blocks = blocks(&chapter);
+    assert_eq!(blocks.len(), 2, "the chapter has its commands");
+    for (steps, shown) in &blocks {
+        let answers = steps.iter().map(|step| run(step, folder));
+        let said: String = answers.map(|answer| answer.out + &answer.err).collect();
+        for line in shown {
+            assert!(said.contains(line.as_str()), "`{line}` is not in\n{said}");
+        }
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ use yase::{Semantics, Statechart};
 
 use super::{Agent, Listed, Policy};
 use crate::frequency::Frequency;
+use crate::monitors::Rules;
 use crate::parameters::Parameters;
 
 /// What an agent is made of.
@@ -24,6 +25,8 @@ pub(crate) struct Profile {
     /// In the order of the list.
     pub(crate) activities: Vec<ActivityProfile>,
     pub(crate) charts: Vec<ChartProfile>,
+    /// What its chart is to keep to.
+    pub(crate) rules: Vec<Rules>,
 }
 
 /// An activity of a list.
@@ -66,6 +69,7 @@ impl Profile {
             policy: agent.policy,
             semantics: agent.semantics,
             elsewhere: agent.elsewhere.clone(),
+            rules: agent.rules.clone(),
             activities: agent.activities.iter().map(ActivityProfile::of).collect(),
             charts: charts
                 .map(|(place, (model, statechart))| ChartProfile {

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use narukom::{Moment, Publisher, TopicSlot};
-use yase::expression::{CallError, MessageSource};
+use yase::expression::{CallError, Facts, MessageSource, TimerId, TimerState};
 use yase::{
     Activation, Chart, FieldId, FunctionId, Host, NodeId, Occasion, RegionId, Report, TopicId, TraceRecord,
     TransitionId, Value,
@@ -19,6 +19,7 @@ use crate::coverage::Counts;
 use crate::error::Error;
 use crate::function::FunctionDeclaration;
 use crate::listener::Listeners;
+use crate::monitors::Seen;
 use crate::records::{self, CHART, Delivery, MODEL};
 
 /// The host of one machine.
@@ -39,6 +40,8 @@ pub(super) struct Desk {
     /// What was delivered since the step began.
     pub(super) delivered: Vec<Delivery>,
     pub(super) coverage: Counts,
+    /// What has happened since the step began, if somebody asks.
+    pub(super) seen: Option<Seen>,
     records: Publisher<records::Chart>,
     listeners: Listeners,
 }
@@ -66,6 +69,7 @@ impl Desk {
             left: Vec::new(),
             delivered: Vec::new(),
             coverage: Counts::new(chart),
+            seen: None,
             records: home.hub.publisher(CHART, home.agent).map_err(Error::hub)?,
             listeners: home.listeners.clone(),
         })
@@ -200,6 +204,9 @@ impl Host for Desk {
     fn trace(&mut self, chart: &Chart, record: &TraceRecord<'_>) {
         self.coverage.count(chart, record);
         self.urgency.note(chart, record);
+        if let Some(seen) = &mut self.seen {
+            seen.note(record);
+        }
         self.lending.fetching.publishing();
         let number = self.number;
         self.records.publish_with(|message| write_record(message, number, chart, record), self.now);
@@ -221,6 +228,33 @@ impl Host for Desk {
             }
             _ => {}
         }
+    }
+}
+
+/// What the blackboard of a chart's root shows.
+pub(super) struct Root<'a>(pub(super) &'a Desk);
+
+const ROOT: RegionId = RegionId(0);
+
+impl Facts for Root<'_> {
+    fn field(&self, source: &MessageSource, path: &[FieldId]) -> Value<'_> {
+        self.0.field(ROOT, source, path)
+    }
+
+    fn message(&self, source: &MessageSource) -> Value<'_> {
+        self.0.message(ROOT, source)
+    }
+
+    fn call(&self, function: FunctionId, arguments: &[Value<'_>]) -> Result<Value<'_>, CallError> {
+        self.0.call(function, arguments)
+    }
+
+    fn timer(&self, _: TimerId) -> TimerState {
+        TimerState::Unset
+    }
+
+    fn is_active(&self, _: NodeId) -> bool {
+        false
     }
 }
 

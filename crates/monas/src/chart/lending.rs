@@ -112,6 +112,21 @@ impl Lending {
         }
     }
 
+    /// Has all blackboards show these topics too.
+    pub(super) fn read_too(&mut self, topics: &[TopicSlot]) {
+        let mut read: Vec<TopicSlot> = self.read.iter().chain(topics).copied().collect();
+        read.sort_unstable();
+        read.dedup();
+        for region in &mut self.regions {
+            let shown = |topic| region.shown[self.read.binary_search(topic).ok()?].clone();
+            region.shown = read.iter().map(shown).collect();
+            if let Some(here) = &region.here {
+                topics.iter().for_each(|topic| here.interest(*topic));
+            }
+        }
+        self.read = read.into();
+    }
+
     /// Gives a region a new blackboard.
     fn furnish(&mut self, place: usize) {
         let region = &mut self.regions[place];

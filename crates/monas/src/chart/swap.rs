@@ -9,6 +9,7 @@ use super::post::Posts;
 use super::{Home, Runner};
 use crate::binder::BoundChart;
 use crate::listener::Listeners;
+use crate::monitors::Monitors;
 
 /// Another model for a chart that runs.
 pub(crate) struct Swap {
@@ -16,6 +17,8 @@ pub(crate) struct Swap {
     /// By path: the states of the new chart in which states that are gone go on.
     pub(crate) states: Vec<(String, String)>,
     pub(crate) accepts_losses: bool,
+    /// The properties of the agent, along the new chart: they begin anew.
+    pub(crate) monitors: Option<Monitors>,
 }
 
 impl Runner {
@@ -38,6 +41,7 @@ impl Runner {
         let report = machine
             .swap(&plan)
             .map_err(|refusal| refusal.reasons().iter().map(ToString::to_string).collect::<Vec<String>>())?;
+        let monitors = swap.monitors;
         let home = self.home(&agent, &listeners, now);
         let desk = Desk::new(&chart, home, functions).map_err(|error| vec![error.to_string()])?;
         let known = |old: Activation| {
@@ -49,6 +53,9 @@ impl Runner {
         let old = std::mem::replace(&mut self.posts, posts);
         self.posts.take_over(old, |node| plan.node(node), known);
         self.machine = machine;
+        if let Some(monitors) = monitors {
+            self.follow(monitors);
+        }
         Ok(report.findings.iter().map(ToString::to_string).collect())
     }
 

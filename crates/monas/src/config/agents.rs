@@ -22,6 +22,7 @@ use crate::binder::Binder;
 use crate::error::{Error, ErrorKind};
 use crate::frequency::Hz;
 use crate::link::LinkConfig;
+use crate::monitors::{OnViolation, Rules, needs_one_chart};
 use crate::parameters::Parameters;
 use crate::registry::Registry;
 
@@ -131,7 +132,68 @@ impl Reader<'_> {
             agent =
                 if part.is("activity") { self.activity(part, agent) } else { self.statechart(part, agent) };
         }
+        for part in element.children_named("monitor") {
+            agent = self.monitor(part, agent);
+        }
         self.add(element, agent, enabled);
+    }
+
+    /// The properties that an agent's chart is to keep to.
+    fn monitor(&mut self, element: &Element, agent: Agent) -> Agent {
+        let values = Values::of(element, self.grammar);
+        if element.text().is_empty() || !is_enabled(&values) {
+            return agent; // what is empty has been said
+        }
+        let found = match paths::locate(self.path, element.text()) {
+            Ok(found) => found,
+            Err(hint) => {
+                let message = format!("no file of properties `{}`", element.text());
+                let wrong = element.error("E0316", element.text_span(), message);
+                self.diagnostics.push(match hint {
+                    Some(hint) => wrong.with_hint(format!("did you mean `{hint}`?")),
+                    None => wrong,
+                });
+                return agent;
+            }
+        };
+        let source = match paths::read(&found) {
+            Ok(source) => source,
+            Err(unread) => {
+                self.diagnostics.push(*unread);
+                return agent;
+            }
+        };
+        let (properties, wrong) = aseme::properties::parse(&source.text);
+        self.diagnostics.extend(wrong.into_iter().map(|wrong| wrong.in_source(&source)));
+        let on_violation = values.word("on_violation", &OnViolation::NAMES).unwrap_or_default();
+        let file = element.text().to_owned();
+        let rules = Rules { file, properties, on_violation, source: Some(source) };
+        self.judge(element, &rules, &agent);
+        agent.ruled(rules)
+    }
+
+    /// Says which names of properties an agent's chart does not have.
+    fn judge(&mut self, element: &Element, rules: &Rules, agent: &Agent) {
+        let Some(chart) = agent.charts().first() else {
+            let wrong = needs_one_chart(agent.name(), 0);
+            let is_said = element.is("monitor") && self.diagnostics.iter().any(Diagnostic::is_error);
+            let placed = wrong.filter(|_| !is_said).map(|wrong| {
+                let error = element.error(wrong.code, element.text_span(), wrong.message);
+                error.with_hint(wrong.hint.unwrap_or_default())
+            });
+            self.diagnostics.extend(placed);
+            return;
+        };
+        if let Some(wrong) = needs_one_chart(agent.name(), agent.charts().len()) {
+            let error = element.error(wrong.code, element.text_span(), wrong.message);
+            return self.diagnostics.push(error.with_hint(wrong.hint.unwrap_or_default()));
+        }
+        // What is wrong with the program's words or with the chart has been said.
+        let Ok(binder) = Binder::new(self.registry) else { return };
+        let Ok(compiled) = binder.compiled(chart, agent.generated.get(&0)) else { return };
+        if let Err(wrong) = binder.monitors(std::slice::from_ref(rules), agent.name(), 1, &compiled) {
+            self.diagnostics.extend(wrong);
+        }
     }
 
     /// A provider is an agent with the one activity that it is named after.

@@ -11,6 +11,7 @@ use super::element::{Element, camel_case};
 use super::grammar::Grammar;
 use super::values::Values;
 use crate::agent::{ActivityProfile, Policy, Profile};
+use crate::monitors::OnViolation;
 
 type Splice = (Range<usize>, String);
 
@@ -281,6 +282,13 @@ fn agent(profile: &Profile, indentation: &str) -> String {
             false => format!(" elsewhere=\"{}\"", attribute_text(&profile.elsewhere.join(" "))),
         };
         text += &format!("{indentation}  <statechart{elsewhere}>{}</statechart>", element_text(&chart.model));
+    }
+    for rules in profile.rules.iter().filter(|rules| !rules.file.is_empty()) {
+        let acts = match rules.on_violation {
+            OnViolation::Log => "",
+            OnViolation::Policy => " on_violation=\"policy\"",
+        };
+        text += &format!("{indentation}  <monitor{acts}>{}</monitor>", element_text(&rules.file));
     }
     text + &format!("{indentation}</agent>")
 }

@@ -18,6 +18,7 @@ use crate::agent::Policy;
 use crate::call::Failure;
 use crate::chart::{Assignment, Runner};
 use crate::frequency::Frequency;
+use crate::monitors::{self, Broken};
 use crate::records::Turn;
 use crate::statistics::{AgentStatistics, Timing};
 
@@ -200,7 +201,7 @@ impl ChartThread {
             } else if let Some(assignment) = self.runner.next_waiting(now) {
                 self.submit(assignment)?;
             } else {
-                return Ok(());
+                return self.lapse(now);
             }
         }
         Ok(())
@@ -214,11 +215,28 @@ impl ChartThread {
         // What was done since the last look belongs to the step: taking back what an activity returned.
         let began = self.looked;
         let stepped = self.runner.step(now);
-        self.teller.tell(now, self.runner.delivered().iter().cloned());
+        let broken = self.runner.broken();
+        self.teller.tell_step(now, self.runner.delivered().iter().cloned(), &broken);
+        let answered = self.answer(&broken, now);
         let took = self.look().since(began);
         self.timing.add(took, None);
         self.tell_times(now);
-        stepped.map_err(|error| format!("chart `{}`: {error}", self.runner.name()))
+        stepped.map_err(|error| format!("chart `{}`: {error}", self.runner.name())).and(answered)
+    }
+
+    /// Looks whether something that had to come in time has not.
+    fn lapse(&mut self, now: Moment) -> Result<(), String> {
+        if !self.runner.lapse(now) {
+            return Ok(());
+        }
+        let broken = self.runner.broken();
+        self.teller.tell_step(now, [], &broken);
+        self.answer(&broken, now)
+    }
+
+    fn answer(&self, broken: &[Broken], now: Moment) -> Result<(), String> {
+        let who = (self.runner.host(), self.unit.name.as_str());
+        monitors::answer(broken, who, self.policy, self.teller.number(), now)
     }
 
     fn submit(&mut self, assignment: Assignment) -> Result<(), String> {

@@ -20,6 +20,7 @@ use crate::frequency::Frequency;
 use crate::link::Elsewhere;
 use crate::list::List;
 use crate::listener::Listeners;
+use crate::monitors::{Monitors, needs_one_chart};
 use crate::reach::{Reach, out_of_reach};
 use crate::registry::Registry;
 
@@ -81,14 +82,21 @@ impl Crew {
             return Err(Error::new(ErrorKind::NoFrequency, message).with_hint("say so with `every`"));
         }
         let place = Place { ground, names, agent: &name, elsewhere: &agent.elsewhere, now };
+        let count = charts.len();
         let charts = charts.iter().zip(0..).map(|(chart, number)| {
             let bound = match generated.remove(&(number as usize)) {
                 Some(generated) => binder.bind_generated(generated, semantics),
                 None => binder.bind(chart, semantics, None),
             };
-            self.runner(bound.map_err(Error::invalid)?, number, &place)
+            let bound = bound.map_err(Error::invalid)?;
+            let monitors =
+                binder.monitors(&agent.rules, &name, count, &bound.chart).map_err(Error::invalid)?;
+            self.runner(bound, number, monitors, &place)
         });
         let charts = collect_all(charts)?;
+        if let Some(wrong) = needs_one_chart(&name, count).filter(|_| !agent.rules.is_empty()) {
+            return Err(Error::invalid(vec![wrong]));
+        }
         let list = (!activities.is_empty()).then(|| self.list(&name, policy, activities, &ground.hub));
         let teller = Teller::new(&ground.hub, &name)?;
         Ok(Member {
@@ -124,7 +132,10 @@ impl Crew {
                 true => self.generated(&binder, &chart.model, profile.semantics)?,
                 false => binder.bind(&chart.statechart, profile.semantics, None).map_err(Error::invalid)?,
             };
-            self.runner(bound, number, place)
+            let (rules, count) = (&profile.rules, profile.charts.len());
+            let monitors =
+                binder.monitors(rules, &profile.name, count, &bound.chart).map_err(Error::invalid)?;
+            self.runner(bound, number, monitors, place)
         });
         collect_all(charts)
     }
@@ -143,11 +154,22 @@ impl Crew {
         binder.bind_generated(chart?, semantics).map_err(Error::invalid)
     }
 
-    fn runner(&self, bound: BoundChart, number: u32, place: &Place<'_>) -> Result<Runner, Error> {
+    fn runner(
+        &self,
+        bound: BoundChart,
+        number: u32,
+        monitors: Option<Monitors>,
+        place: &Place<'_>,
+    ) -> Result<Runner, Error> {
         let bound = self.fitting(bound, place)?;
         let Place { ground, agent, now, .. } = *place;
         let listeners = &self.listeners;
-        Runner::new(bound, Home { hub: &ground.hub, agent, number, seed: self.seed, listeners, now })
+        let home = Home { hub: &ground.hub, agent, number, seed: self.seed, listeners, now };
+        let mut runner = Runner::new(bound, home)?;
+        if let Some(monitors) = monitors {
+            runner.follow(monitors);
+        }
+        Ok(runner)
     }
 
     /// A chart with activities that run elsewhere taken out, if all that it reads can arrive.

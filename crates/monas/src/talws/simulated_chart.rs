@@ -7,6 +7,7 @@ use crate::agent::Policy;
 use crate::chart::{Assignment, Returned, Runner, Swap};
 use crate::coverage::ChartCoverage;
 use crate::frequency::Frequency;
+use crate::monitors;
 use crate::origin::Origin;
 use crate::statistics::ActivityStatistics;
 
@@ -81,7 +82,9 @@ impl SimulatedChart {
             self.call(assignment.in_cycle(teller.number()), now)?;
         }
         if !self.runner.is_over() && (self.runner.needs_step(now) || self.tick() <= now) {
-            self.step(now, teller)?;
+            self.step(now, agent, policy, teller)?;
+        } else {
+            self.lapse(now, agent, policy, teller)?;
         }
         while let Some(assignment) = self.runner.next_started() {
             self.call(assignment.in_cycle(teller.number()), now)?;
@@ -132,16 +135,28 @@ impl SimulatedChart {
             if let Some(assignment) = self.runner.next_started() {
                 self.call(assignment.in_cycle(teller.number()), now)?;
             } else if self.runner.needs_step(now) || self.tick() <= now {
-                self.step(now, teller)?;
+                self.step(now, agent, policy, teller)?;
             } else if let Some(over) = self.next_return(now) {
                 self.returned(over, now, agent, policy, teller.number())?;
             } else if let Some(assignment) = self.runner.next_waiting(now) {
                 self.call(assignment.in_cycle(teller.number()), now)?;
             } else {
-                break;
+                return self.lapse(now, agent, policy, teller);
             }
         }
         Ok(())
+    }
+
+    /// Looks whether something that had to come in time has not.
+    fn lapse(&mut self, now: Moment, agent: &str, policy: Policy, teller: &mut Teller) -> Result<(), String> {
+        match self.runner.lapse(now) {
+            true => {
+                let broken = self.runner.broken();
+                teller.tell_step(now, [], &broken);
+                monitors::answer(&broken, (self.runner.host(), agent), policy, teller.number(), now)
+            }
+            false => Ok(()),
+        }
     }
 
     /// Calls an activity.
@@ -166,18 +181,20 @@ impl SimulatedChart {
         Ok(())
     }
 
-    fn step(&mut self, now: Moment, teller: &mut Teller) -> Result<(), String> {
+    fn step(&mut self, now: Moment, agent: &str, policy: Policy, teller: &mut Teller) -> Result<(), String> {
         while self.tick() <= now {
             self.ticks += 1;
         }
         let stepped = self.runner.step(now);
-        teller.tell(now, self.runner.delivered().iter().cloned());
+        let broken = self.runner.broken();
+        teller.tell_step(now, self.runner.delivered().iter().cloned(), &broken);
+        let answered = monitors::answer(&broken, (self.runner.host(), agent), policy, teller.number(), now);
         while let Some(cancelled) = self.runner.next_cancelled() {
             let under_way =
                 self.under_way.iter_mut().filter(|one| one.assignment.activation.number == cancelled.number);
             under_way.for_each(|one| one.until = now);
         }
-        stepped.map_err(|error| format!("chart `{}`: {error}", self.runner.name()))
+        stepped.map_err(|error| format!("chart `{}`: {error}", self.runner.name())).and(answered)
     }
 
     /// The first call whose time is over; of several that end at one moment the one that was made first.

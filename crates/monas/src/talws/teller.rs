@@ -8,6 +8,7 @@ use narukom::{Moment, Narukom, Publisher};
 use super::entry;
 use super::orders::Orders;
 use crate::error::Error;
+use crate::monitors::Broken;
 use crate::records::{self, CYCLE, Delivery, STATISTICS, Turn};
 use crate::statistics::AgentStatistics;
 
@@ -49,6 +50,22 @@ impl Teller {
             (cycle.number, cycle.time) = (number, now.as_nanos());
             cycle.delivered.extend(delivered);
             cycle.seen.extend_from_slice(seen);
+        };
+        self.cycles.publish_with(make, now);
+    }
+
+    /// A chart has made a step, or has found time gone by, which brought this and broke these.
+    pub(super) fn tell_step(
+        &mut self,
+        now: Moment,
+        delivered: impl IntoIterator<Item = Delivery>,
+        broken: &[Broken],
+    ) {
+        let number = self.number.fetch_add(1, Ordering::Relaxed) + 1;
+        let make = |cycle: &mut records::Cycle| {
+            (cycle.number, cycle.time) = (number, now.as_nanos());
+            cycle.delivered.extend(delivered);
+            cycle.violations.extend(broken.iter().map(Broken::record));
         };
         self.cycles.publish_with(make, now);
     }

@@ -612,3 +612,37 @@ fn what_runs_elsewhere_must_be_the_charts_and_come_over_a_link() {
         ["agents.xml:2:24: error[E0338]: the chart `m` has no activity `Vison` (did you mean `Vision`?)"]
     );
 }
+
+#[test]
+fn properties_are_held_against_the_chart_before_the_run() {
+    let agent = |monitor: &str| {
+        format!("<agent><name>a</name><statechart>models/walker.srm</statechart>{monitor}</agent>")
+    };
+    let files = [
+        ("walker.srm", "walker = Vision . Walk"),
+        (
+            "good.properties",
+            "property \"p\": always (entering Walk implies eventually leaving Walk within 2 s)",
+        ),
+        ("bad.properties", "property \"p\":\n always not in Walc\nproperty \"q\": always not [Nobody.knows]"),
+    ];
+    let (agents, said) =
+        read(&agent("<monitor on_violation='policy'>models/good.properties</monitor>"), &files);
+    assert_eq!((agents.len(), said.len()), (1, 0), "{said:?}");
+    let (_, said) = read(&agent("<monitor>models/bad.properties</monitor>"), &files);
+    assert_eq!(said.len(), 2, "{said:?}");
+    assert!(
+        said.iter().any(|it| it.ends_with(
+            "bad.properties:2:16: error[E0845]: the chart `walker` has no state `Walc` (did you mean `Walk`?)"
+        )),
+        "{said:?}"
+    );
+    assert!(said.iter().any(|it| it.contains("E0132")), "{said:?}");
+    let (_, said) = read(&agent("<monitor>models/god.properties</monitor>"), &files);
+    assert!(said[0].ends_with(
+        "error[E0316]: no file of properties `models/god.properties` (did you mean `models/good.properties`?)"
+    ), "{said:?}");
+    let list = "<agent thread_frequency='1'><name>a</name><activity>Vision</activity><monitor>models/good.properties</monitor></agent>";
+    let (_, said) = read(list, &files);
+    assert!(said[0].contains("error[E0324]: agent `a` has 0 statecharts"), "{said:?}");
+}

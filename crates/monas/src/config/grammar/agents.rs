@@ -5,6 +5,7 @@ use std::time::Duration;
 use super::{AttributeRule, ElementRule, Grammar, Identity, Kind};
 use crate::agent::Policy;
 use crate::frequency::Frequency;
+use crate::monitors::OnViolation;
 
 impl Grammar {
     /// Agents, providers and links, in an `<agents>` or not: what runs on one host.
@@ -23,6 +24,7 @@ impl Grammar {
             .with(ElementRule::new("name", "the name of the agent").text("name", Kind::Text))
             .with(activity())
             .with(statechart())
+            .with(monitor())
             .with(send())
             .with(receive())
             .with(budget())
@@ -88,6 +90,7 @@ fn agent() -> ElementRule {
     .required_child("name")
     .children("activity")
     .children("statechart")
+    .children("monitor")
     .identified_by(Identity::Child("name"))
 }
 
@@ -116,6 +119,22 @@ fn statechart() -> ElementRule {
         .attribute(enable())
         .attribute(attribute("elsewhere", Kind::List, "activities that another process runs"))
         .text("model", Kind::Text)
+        .identified_by(Identity::Text)
+}
+
+fn monitor() -> ElementRule {
+    ElementRule::new("monitor", "a file of properties that the agent's statechart is to keep to")
+        .attribute(enable())
+        .attribute(
+            attribute(
+                "on_violation",
+                Kind::Word(OnViolation::NAMES.map(|(name, _)| name).to_vec()),
+                "what happens when one is violated, beside that the log and the tape have it: nothing, or what `on_failure` of \
+                 the agent says",
+            )
+            .or("log"),
+        )
+        .text("properties", Kind::Text)
         .identified_by(Identity::Text)
 }
 

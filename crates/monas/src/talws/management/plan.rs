@@ -276,7 +276,9 @@ impl Desk<'_> {
         profile.charts[place] =
             ChartProfile { model: file.clone(), statechart, is_generated: text.is_empty() };
         let states = states.iter().map(|state| (state.key.clone(), state.value.clone())).collect();
-        let swap = Box::new(Swap { bound, states, accepts_losses: *accept_losses });
+        let (rules, count) = (&profile.rules, profile.charts.len());
+        let monitors = binder.monitors(rules, &profile.name, count, &bound.chart)?;
+        let swap = Box::new(Swap { bound, states, accepts_losses: *accept_losses, monitors });
         Ok(Plan { warnings, ..tell(profile, Orders { swap: Some((place, swap)), ..Orders::default() }) })
     }
 }

@@ -7,6 +7,7 @@ use crate::agent::Policy;
 use crate::chart::{Assignment, Lead, Runner, call_record};
 use crate::frequency::Frequency;
 use crate::list::List;
+use crate::monitors::{self, Broken};
 use crate::records::{Call, Cycle, Delivery, News, Turn};
 use crate::talws::crew::Member;
 use crate::talws::orders::{Directive, Orders, TOLD};
@@ -306,10 +307,27 @@ impl RepeatedChart {
             } else if let Some(assignment) = self.runner.next_waiting(now) {
                 self.out.push(assignment);
             } else {
-                return true;
+                self.has_failed = !self.lapse(now);
+                break;
             }
         }
         !self.has_failed
+    }
+
+    /// Looks whether something that had to come in time has not. False if the agent is to stop.
+    fn lapse(&mut self, now: Moment) -> bool {
+        if !self.runner.lapse(now) {
+            return true;
+        }
+        let broken = self.runner.broken();
+        self.feed.publishing();
+        self.teller.tell_step(now, [], &broken);
+        self.answer(&broken, now)
+    }
+
+    fn answer(&self, broken: &[Broken], now: Moment) -> bool {
+        let who = (self.runner.host(), self.runner.agent());
+        monitors::answer(broken, who, self.policy, self.teller.number(), now).is_ok()
     }
 
     fn tick(&self) -> Moment {
@@ -322,8 +340,9 @@ impl RepeatedChart {
         }
         let stepped = self.runner.step(now);
         self.feed.publishing();
-        self.teller.tell(now, self.runner.delivered().iter().cloned());
-        stepped.is_ok()
+        let broken = self.runner.broken();
+        self.teller.tell_step(now, self.runner.delivered().iter().cloned(), &broken);
+        self.answer(&broken, now) && stepped.is_ok()
     }
 
     /// An activity has come back: it is called. False if the agent is to stop.
