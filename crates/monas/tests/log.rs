@@ -204,6 +204,30 @@ fn a_change_is_logged_at_the_time_of_the_simulation() {
 }
 
 #[test]
+fn a_violated_property_is_an_error_with_its_name_the_cycle_and_the_time() {
+    fn wait(_: &mut Blackboard) {}
+    let log = written(
+        |settings| settings,
+        || {
+            let role =
+                yase::Source::new("m.srm", "Liveness:\nm = Wait . Wake\nTransitions:\nWait -> Wake : go\n");
+            let (chart, _) = aseme::statechart_of(&role);
+            let (properties, _) =
+                aseme::properties::parse("property \"it sleeps\": always not entering Wake");
+            let agent = Agent::statechart("m", chart).monitor(properties, monas::OnViolation::Log);
+            let registry = monas::Registry::linked().with("Wait", || wait).with("Wake", || wait);
+            let mut simulation = Talws::new().registry(registry).agent(agent).simulate(1).unwrap();
+            simulation.run_until(Moment::from_nanos(20_000_000)).unwrap();
+            assert!(simulation.raise("local", "m", "go"));
+            simulation.run_until(Moment::from_nanos(40_000_000)).unwrap();
+        },
+    );
+    let line = log.lines().find(|line| line.contains("ERROR")).unwrap();
+    assert!(line.contains("[local m") && line.contains("property violated at 0.020 s"), "{line}");
+    assert!(line.contains("property=it sleeps") && line.contains("cycle"), "{line}");
+}
+
+#[test]
 fn json_has_an_object_a_line() {
     let run = || {
         team().simulate(1).unwrap().run_until(Moment::from_nanos(30_000_000)).unwrap();
