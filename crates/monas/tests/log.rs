@@ -222,9 +222,9 @@ fn a_violated_property_is_an_error_with_its_name_the_cycle_and_the_time() {
             simulation.run_until(Moment::from_nanos(40_000_000)).unwrap();
         },
     );
-    let line = log.lines().find(|line| line.contains("ERROR")).unwrap();
-    assert!(line.contains("[local m") && line.contains("property violated at 0.020 s"), "{line}");
-    assert!(line.contains("property=it sleeps") && line.contains("cycle"), "{line}");
+    let line = log.lines().find(|line| line.contains("ERROR")).unwrap().trim_start();
+    let said = "property violated at 0.020000000 s property=it sleeps";
+    assert_eq!(line, format!("0.020000 s ERROR [local m #3] {said}"));
 }
 
 #[test]
