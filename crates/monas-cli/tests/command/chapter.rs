@@ -50,7 +50,6 @@ fn each_command_of_the_chapter_on_properties_does_what_it_says() {
     let project = project();
     let folder = project.path();
     copy(&root().join("docs"), &folder.join("docs"));
-    copy(&root().join("models"), &folder.join("models"));
     let chapter = fs::read_to_string(root().join("docs/properties.md")).expect("the chapter");
     let blocks = blocks(&chapter);
     assert_eq!(blocks.len(), 2, "the chapter has its commands");
