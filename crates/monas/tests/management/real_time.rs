@@ -188,3 +188,29 @@ fn a_link_that_lets_strangers_change_agents_is_refused() {
     assert!(nameless.contains("lets anybody change its agents who takes the name"), "{nameless}");
     assert_eq!(over(zenoh(Some(shown)), manager, CHANGE.path()), None);
 }
+
+#[test]
+fn a_chart_takes_other_models_at_any_moment_of_a_call_and_goes_on_calling() {
+    let (sender, told) = channel();
+    let registry = Registry::empty().with("A", move || {
+        let sender = sender.clone();
+        move |_: &mut Blackboard| _ = sender.send("A".to_owned())
+    });
+    let chart = aseme::statechart_of(&Source::new("m.srm", "m = A . A~")).0;
+    let running = Talws::new().registry(registry).agent(Agent::statechart("m", chart)).start().unwrap();
+    let run = running.overview();
+    until(&told, "A");
+    until(&told, "A");
+    for text in ["m = A . A . A~", "m = A . A~"].into_iter().cycle().take(200) {
+        let swap = Change {
+            file: "new.srm".into(),
+            text: text.into(),
+            accept_losses: true,
+            ..change(Action::SwapModel, "m")
+        };
+        made(&ask(&run, swap));
+        while told.try_recv().is_ok() {}
+        until(&told, "A");
+    }
+    assert_eq!(running.stop().agents[0].stopped, None);
+}
