@@ -127,3 +127,18 @@ pub mod linked {
     pub use crate::registry::{ACTIVITIES, ActivityDeclaration};
     pub use linkme;
 }
+
+/// The Rust of the chapters in `docs`, which is tested with the documentation.
+#[cfg(doctest)]
+mod chapters {
+    #[doc = include_str!("../../../docs/first-agent.md")]
+    mod first_agent {}
+    #[doc = include_str!("../../../docs/first-chart.md")]
+    mod first_chart {}
+    #[doc = include_str!("../../../docs/messages.md")]
+    mod messages {}
+    #[doc = include_str!("../../../docs/porting.md")]
+    mod porting {}
+    #[doc = include_str!("../../../docs/time.md")]
+    mod time {}
+}

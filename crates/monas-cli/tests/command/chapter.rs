@@ -1,94 +1,151 @@
 //! The chapters in `docs`: each of their commands does what the chapter says.
+//!
+//! A block of the language `sh` is run, a line after the other, in a folder with the models and configurations of the project. A line that ends with ` &`
+//! goes on in the background till the end of the chapter, and `# ends with 3` says how a command ends that does not end well. What a block `text` below shows
+//! is to be found in what the commands said. A block with a file's name (`xml robot.xml`) is written to that file first. The Rust of the
+//! chapters is tested with the documentation of the crate `monas`.
 
 use std::fs;
-use std::path::Path;
+use std::process::Command;
 
 use crate::generate::project;
-use crate::kit::{Answer, command, copy, root};
+use crate::kit::{Answer, copy, root};
+use crate::running::{Running, in_folder};
 
-/// A command of the chapter: its words, how it ends, and what is to be read after it or one of the same block.
-struct Step {
-    words: Vec<String>,
-    code: i32,
+/// What a chapter has between its sentences.
+enum Block {
+    File { name: String, text: String },
+    Commands(Vec<String>),
+    Shown(Vec<String>),
 }
 
-/// The blocks of commands, each with the lines that are shown below it.
-fn blocks(chapter: &str) -> Vec<(Vec<Step>, Vec<String>)> {
-    let mut blocks: Vec<(Vec<Step>, Vec<String>)> = Vec::new();
-    let mut fence = "";
-    for line in chapter.lines() {
-        match (line, fence) {
-            ("```sh", "") => {
-                blocks.push((Vec::new(), Vec::new()));
-                fence = "sh";
-            }
-            ("```text", "") => fence = "text",
-            ("```", _) => fence = "",
-            (line, "sh") => {
-                let (typed, comment) = line.split_once(" # ends with ").unwrap_or((line, "0"));
-                let words = typed.strip_prefix("monas ").expect("a command of this program");
-                let words = words.split(' ').map(str::to_owned).collect();
-                let step = Step { words, code: comment.parse().expect("a number") };
-                blocks.last_mut().expect("a block").0.push(step);
-            }
-            (line, "text") => blocks.last_mut().expect("a block").1.push(line.to_owned()),
-            _ => {}
+fn blocks(chapter: &str) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    let mut lines = chapter.lines();
+    while let Some(line) = lines.next() {
+        let Some(fence) = line.strip_prefix("```") else { continue };
+        let inside: Vec<String> =
+            lines.by_ref().take_while(|line| *line != "```").map(str::to_owned).collect();
+        match fence.split_once(' ') {
+            Some((_, name)) => blocks.push(Block::File { name: name.into(), text: inside.join("\n") + "\n" }),
+            None if fence == "sh" => blocks.push(Block::Commands(inside)),
+            None if fence == "text" => blocks.push(Block::Shown(inside)),
+            None => {}
         }
     }
     blocks
 }
 
-fn run(step: &Step, folder: &Path) -> Answer {
-    let words: Vec<&str> = step.words.iter().map(String::as_str).collect();
-    let answer: Answer = command(&words).current_dir(folder).output().expect("the command starts").into();
-    assert_eq!(answer.code, Some(step.code), "{words:?}: {}{}", answer.out, answer.err);
-    answer
+/// A chapter as it is gone through.
+struct Reading {
+    folder: tempfile::TempDir,
+    background: Vec<Running>,
+    /// What the commands of the last block said.
+    said: String,
+    /// Of all runs so far.
+    hashes: Vec<String>,
+    commands: usize,
 }
 
-#[test]
-fn each_command_of_the_chapter_on_properties_does_what_it_says() {
-    let project = project();
-    let folder = project.path();
-    copy(&root().join("docs"), &folder.join("docs"));
-    let chapter = fs::read_to_string(root().join("docs/properties.md")).expect("the chapter");
-    let blocks = blocks(&chapter);
-    assert_eq!(blocks.len(), 2, "the chapter has its commands");
-    for (steps, shown) in &blocks {
-        let answers = steps.iter().map(|step| run(step, folder));
-        let said: String = answers.map(|answer| answer.out + &answer.err).collect();
-        for line in shown {
-            assert!(said.contains(line.as_str()), "`{line}` is not in\n{said}");
+impl Reading {
+    fn run(&mut self, line: &str) {
+        self.commands += 1;
+        let typed = line.strip_prefix("monas ").expect("a command of this program");
+        if let Some(typed) = typed.strip_suffix(" &") {
+            let words: Vec<&str> = typed.split(' ').collect();
+            return self.background.push(Running::of(&mut self.command(&words), "running, "));
+        }
+        let (typed, code) = typed.split_once(" # ends with ").unwrap_or((typed, "0"));
+        let words: Vec<&str> = typed.split(' ').map(|word| word.trim_matches('\'')).collect();
+        let answer = self.command(&words).output().expect("the command starts");
+        let Answer { code: ended, out, err } = answer.into();
+        assert_eq!(ended, code.parse().ok(), "{words:?}: {out}{err}");
+        self.hashes.extend(out.lines().filter(|line| line.starts_with("hash: ")).map(str::to_owned));
+        self.said += &(out + &err);
+    }
+
+    fn command(&self, words: &[&str]) -> Command {
+        let mut command = in_folder(self.folder.path(), words);
+        command.current_dir(self.folder.path());
+        command
+    }
+
+    fn read(&mut self, block: Block) {
+        match block {
+            Block::File { name, text } => {
+                fs::write(self.folder.path().join(name), text).expect("the folder takes files");
+            }
+            Block::Commands(lines) => {
+                self.said.clear();
+                lines.iter().for_each(|line| self.run(line));
+            }
+            Block::Shown(_) if self.commands == 0 => {}
+            Block::Shown(lines) => {
+                for line in lines {
+                    assert!(self.said.contains(line.trim()), "`{line}` is not in\n{}", self.said);
+                }
+            }
         }
     }
 }
 
+/// Goes through a chapter, which has at least so many commands.
+fn read(name: &str, least: usize) -> Reading {
+    let folder = project();
+    for part in ["config", "docs"] {
+        copy(&root().join(part), &folder.path().join(part));
+    }
+    let chapter = fs::read_to_string(root().join("docs").join(name)).expect("the chapter");
+    let mut reading =
+        Reading { folder, background: Vec::new(), said: String::new(), hashes: Vec::new(), commands: 0 };
+    blocks(&chapter).into_iter().for_each(|block| reading.read(block));
+    assert!(reading.commands >= least, "{name} has its commands");
+    for running in reading.background.drain(..) {
+        assert_eq!(running.interrupt().code, Some(130));
+    }
+    reading
+}
+
 #[test]
-fn each_command_of_the_chapter_does_what_it_says() {
-    let project = project();
-    let folder = project.path();
-    copy(&root().join("config"), &folder.join("config"));
-    let chapter = fs::read_to_string(root().join("docs/attack.md")).expect("the chapter");
-    let blocks = blocks(&chapter);
-    assert!(blocks.len() >= 9, "the chapter has its commands");
-    let mut hashes = Vec::new();
-    for (steps, shown) in &blocks {
-        let mut said = String::new();
-        for step in steps {
-            let answer = run(step, folder);
-            hashes.extend(answer.out.lines().find(|line| line.starts_with("hash: ")).map(str::to_owned));
-            said += &(answer.out + &answer.err);
-        }
-        for line in shown {
-            assert!(said.contains(line.as_str()), "`{line}` is not in\n{said}");
-        }
+fn the_first_agent() {
+    read("first-agent.md", 3);
+}
+
+#[test]
+fn the_first_chart() {
+    read("first-chart.md", 3);
+}
+
+#[test]
+fn how_time_works() {
+    let Reading { hashes, .. } = read("time.md", 4);
+    assert_eq!(hashes.len(), 3);
+    assert!(hashes.iter().all(|hash| *hash == hashes[0]), "one seed, one run: {hashes:?}");
+}
+
+#[test]
+fn changing_what_runs() {
+    read("live.md", 12);
+}
+
+#[test]
+fn coming_from_elsewhere() {
+    read("porting.md", 2);
+}
+
+#[test]
+fn what_must_always_be_so() {
+    read("properties.md", 4);
+}
+
+#[test]
+fn from_a_protocol_to_a_match() {
+    let Reading { folder, hashes, .. } = read("attack.md", 16);
+    for drawing in ["attack.svg", "extended_attacker.svg"] {
+        let drawn = fs::read(folder.path().join(drawing)).expect("it is drawn");
+        let shown = fs::read(root().join("docs").join(drawing)).expect("it is shown");
+        assert!(drawn == shown, "docs/{drawing} is not up to date");
     }
     assert_eq!(hashes.len(), 2);
     assert_eq!(hashes[0], hashes[1], "interpreted and generated");
-    for drawing in ["attack.svg", "extended_attacker.svg"] {
-        let (drawn, shown) = (fs::read(folder.join(drawing)), fs::read(root().join("docs").join(drawing)));
-        assert!(
-            drawn.expect("it is drawn") == shown.expect("it is shown"),
-            "docs/{drawing} is not up to date"
-        );
-    }
 }

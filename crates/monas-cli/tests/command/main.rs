@@ -16,6 +16,7 @@ mod log;
 mod model;
 mod new;
 mod protocol;
+mod reference;
 mod refinement;
 mod run;
 #[cfg(unix)]

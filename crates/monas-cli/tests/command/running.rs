@@ -18,11 +18,13 @@ pub(crate) struct Running {
 impl Running {
     /// Starts a run whose sockets are in a folder, and waits until it says something that begins so on standard error.
     pub(crate) fn start(folder: &Path, arguments: &[&str], begin: &str) -> Running {
-        let mut child = in_folder(folder, arguments)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the command starts");
+        Running::of(&mut in_folder(folder, arguments), begin)
+    }
+
+    /// The same for a command that is ready to be started.
+    pub(crate) fn of(command: &mut Command, begin: &str) -> Running {
+        let mut child =
+            command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
         let out = child.stdout.take();
         let mut err = BufReader::new(child.stderr.take().expect("it is piped"));
         let (mut line, mut said) = (String::new(), String::new());
