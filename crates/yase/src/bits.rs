@@ -103,6 +103,11 @@ impl BitSet {
         (number >= first).then_some(number)
     }
 
+    /// The members as the bits of words, as many as any set of the same capacity has.
+    pub(crate) fn words(&self) -> impl Iterator<Item = u64> {
+        std::iter::once(self.first).chain(self.rest.iter().copied())
+    }
+
     /// Becomes equal to a set of the same capacity.
     pub(crate) fn copy_from(&mut self, other: &BitSet) {
         self.first = other.first;

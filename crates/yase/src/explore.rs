@@ -5,6 +5,9 @@
 //! way. States of the machine that will do the same are one. What it finds is an [`Exploration`]: its states, the steps between them, which
 //! transitions were taken, and the shortest way to each, as a [`Trace`] that [`replay`] plays again.
 //!
+//! "The same" is what the chart can tell: a timer that was never set is one that is over to a chart that only asks whether it must still wait. Which of them a
+//! state was found with first is left open by it, but no step from there hangs on that.
+//!
 //! Time is left out: any timer that is set may expire next, whatever its length. So a chart does no more than what is found here, and may do less.
 //!
 //! An exploration is bounded. One that was not finished says so ([`Exploration::is_finished`]): what it has not found may be there all the same.
@@ -36,6 +39,8 @@
 //! ```
 
 mod host;
+mod numbers;
+mod permits;
 mod search;
 #[cfg(test)]
 mod tests;
@@ -45,6 +50,7 @@ mod watch;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use crate::bits::BitSet;
 use crate::chart::Chart;
 use crate::expression::ScriptId;
 use crate::machine::{MachineErrorKind, Status};
@@ -63,7 +69,7 @@ pub struct Surroundings<'a> {
     pub events: Vec<String>,
     /// Whether messages arrive: then a step may happen without any other cause.
     pub messages: bool,
-    /// Which values conditions may have; any, if there is nothing that says it.
+    /// Which values conditions may have, given others: asked once for each combination. Any, if there is nothing that says it.
     pub allows: Box<Allows<'a>>,
 }
 
@@ -131,10 +137,16 @@ pub struct Exploration {
     /// Each different step once.
     steps: Vec<Step>,
     failures: Vec<Failure>,
-    entered: BTreeSet<NodeId>,
-    left: BTreeSet<NodeId>,
-    taken: BTreeSet<TransitionId>,
-    held: BTreeSet<TransitionId>,
+    seen: Happened,
+}
+
+/// What was seen to happen at any time.
+#[derive(Clone, Debug)]
+struct Happened {
+    entered: BitSet,
+    left: BitSet,
+    taken: BitSet,
+    held: BitSet,
 }
 
 impl Exploration {
@@ -165,22 +177,22 @@ impl Exploration {
 
     /// Whether a node was active at any time.
     pub fn was_entered(&self, node: NodeId) -> bool {
-        self.entered.contains(&node)
+        self.seen.entered.contains(node.0 as usize)
     }
 
     /// Whether a node was left at any time.
     pub fn was_left(&self, node: NodeId) -> bool {
-        self.left.contains(&node)
+        self.seen.left.contains(node.0 as usize)
     }
 
     /// Whether a segment was taken at any time.
     pub fn was_taken(&self, transition: TransitionId) -> bool {
-        self.taken.contains(&transition)
+        self.seen.taken.contains(transition.0 as usize)
     }
 
     /// Whether an event had to wait for running activities at a segment at any time.
     pub fn was_held(&self, transition: TransitionId) -> bool {
-        self.held.contains(&transition)
+        self.seen.held.contains(transition.0 as usize)
     }
 
     /// The first state of which something is true.

@@ -302,8 +302,18 @@ impl Checks<'_> {
     /// M24. Where something else is wrong, what follows from it is not said again.
     fn differences(&self) -> Vec<Finding> {
         let Some(liveness) = &self.subject.liveness else { return Vec::new() };
-        let differences = conformance::differences(&self.subject.chart, self.found, liveness);
-        differences.into_iter().map(|difference| self.difference(difference)).collect()
+        let (differences, is_whole) = conformance::differences(&self.subject.chart, self.found, liveness);
+        let undecided = !is_whole && self.found.is_finished() && differences.is_empty();
+        let found = differences.into_iter().map(|difference| self.difference(difference));
+        found.chain(undecided.then(|| self.undecided().into())).collect()
+    }
+
+    /// What is too large to be compared is not said to hold.
+    fn undecided(&self) -> Diagnostic {
+        let message =
+            "not decided: whether the chart does what its formulas say, which is too large to be compared";
+        let found = self.subject.warn("M24", Statechart::ROOT, message.into());
+        found.with_hint("check the parts of it that matter as roles of their own")
     }
 
     fn difference(&self, difference: Difference) -> Finding {

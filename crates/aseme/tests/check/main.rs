@@ -9,6 +9,7 @@
 
 mod allocation;
 mod cases;
+mod large;
 mod logic;
 mod properties;
 mod property_language;

@@ -1,28 +1,11 @@
-//! How much the checks do for a large role.
+//! How much the checks do for a large role, and for the project's own roles.
 
-use std::fmt::Write;
+use std::path::Path;
 
 use aseme::check::{Settings, check};
-use yase::Source;
+use yase::{Severity, Source};
 
-/// A role of 100 formulas, each a choice of three out of which two guards lead: about 2,000 states.
-fn large() -> String {
-    let mut text = String::from("Role: large\nLiveness:\nlarge = ");
-    let names: Vec<String> = (0..99).map(|number| format!("f{number}")).collect();
-    text += &names.join(" . ");
-    text += "\n";
-    for name in &names {
-        writeln!(text, "{name} = (a{name} . b{name} . [c{name}]) | (d{name}+ . e{name}) | g{name}~").unwrap();
-    }
-    text += "Transitions:\n";
-    for name in &names {
-        let first = format!("(a{name}.b{name}.[c{name}])");
-        writeln!(text, "{name}/CONDITION -> {first} : [Ball.x > 2 && Ball.y - Ball.x < 1]").unwrap();
-        writeln!(text, "{name}/CONDITION -> (d{name}+.e{name}) : [Ball.x <= 2 || Ball.y - Ball.x >= 1]")
-            .unwrap();
-    }
-    text
-}
+use crate::large::large;
 
 #[test]
 fn a_large_role_is_checked() {
@@ -35,4 +18,31 @@ fn a_large_role_is_checked() {
     let shadowed = report.findings.iter().filter(|finding| finding.diagnostic.code == "M07").count();
     assert!(shadowed >= 99, "each `g` comes too late: {shadowed}");
     assert!(!report.has_errors());
+}
+
+/// All their states are found, and all their traces compared with their formulas: so nothing may be left undecided.
+fn is_explored_to_the_end(name: &str, configurations: usize) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name);
+    let source = Source::new(name, std::fs::read_to_string(path).unwrap());
+    let report = check(&source, &Settings::default());
+    let findings = report.findings.iter().filter(|it| it.diagnostic.severity > Severity::Information);
+    assert_eq!(findings.map(ToString::to_string).collect::<Vec<_>>(), [""; 0]);
+    let explored = report.explored.unwrap();
+    assert!(explored.is_finished, "{explored:?}");
+    assert_eq!(explored.configurations, configurations, "{explored:?}");
+}
+
+#[test]
+fn the_goalie_is_explored_to_the_end() {
+    is_explored_to_the_end("goalie.srm", 42);
+}
+
+#[test]
+fn the_attacker_is_explored_to_the_end() {
+    is_explored_to_the_end("attacker.srm", 46);
+}
+
+#[test]
+fn the_extended_attacker_is_explored_to_the_end() {
+    is_explored_to_the_end("extended_attacker.srm", 78);
 }

@@ -10,26 +10,29 @@ use crate::statechart::{NodeId, TransitionId};
 use crate::trace::{Occasion, TraceRecord};
 
 use super::Allows;
+use super::permits::Permits;
 
 /// Stands for the blackboard of whoever asks beside the chart.
 const BESIDE: RegionId = RegionId(u32::MAX);
 
 /// A world in which conditions have the values that are chosen for them.
-pub(super) struct Chosen<'h, 'a> {
-    decisions: RefCell<Decisions<'h, 'a>>,
+pub(super) struct Chosen<'s, 'a> {
+    decisions: RefCell<Decisions<'s, 'a>>,
     pub(super) notes: Notes,
 }
 
-struct Decisions<'h, 'a> {
-    allows: &'h mut Allows<'a>,
+struct Decisions<'s, 'a> {
+    permits: Permits<'s, 'a>,
     /// The values of the first conditions that are asked for.
-    planned: &'h [bool],
+    planned: Vec<bool>,
     /// Each that was decided on: its value, and whether it could have had the other.
     log: Vec<Decision>,
     /// What is known on each blackboard in this step.
     known: Vec<(RegionId, ScriptId, bool)>,
+    /// What is known on one of them.
+    on_board: Vec<(ScriptId, bool)>,
     /// The blackboards on which nothing that is asked holds, by their numbers.
-    idle: &'h [bool],
+    idle: &'s [bool],
     /// The blackboards that show the newest messages.
     delivered: Vec<RegionId>,
 }
@@ -56,31 +59,59 @@ pub(super) struct Notes {
     pub(super) lines: Option<Vec<String>>,
 }
 
-impl<'h, 'a> Chosen<'h, 'a> {
-    pub(super) fn new(allows: &'h mut Allows<'a>, planned: &'h [bool]) -> Chosen<'h, 'a> {
-        let (log, known, delivered) = (Vec::new(), Vec::new(), Vec::new());
-        let decisions = Decisions { allows, planned, log, known, idle: &[], delivered };
+impl<'s, 'a> Chosen<'s, 'a> {
+    pub(super) fn new(allows: &'s mut Allows<'a>) -> Chosen<'s, 'a> {
+        let decisions = Decisions {
+            permits: Permits::new(allows),
+            planned: Vec::new(),
+            log: Vec::new(),
+            known: Vec::new(),
+            on_board: Vec::new(),
+            idle: &[],
+            delivered: Vec::new(),
+        };
         Chosen { decisions: RefCell::new(decisions), notes: Notes::default() }
     }
 
     /// A world in which nothing that is asked on some blackboards holds, by their numbers.
-    pub(super) fn with_idle(mut self, idle: &'h [bool]) -> Chosen<'h, 'a> {
+    pub(super) fn with_idle(mut self, idle: &'s [bool]) -> Chosen<'s, 'a> {
         self.decisions.get_mut().idle = idle;
         self
     }
 
-    /// How many decisions were made.
-    pub(super) fn decided(&self) -> usize {
-        self.decisions.borrow().log.len()
+    /// Begins a step in which the first conditions have such values.
+    pub(super) fn begin(&mut self, planned: &[bool]) {
+        let decisions = self.decisions.get_mut();
+        decisions.planned.clear();
+        decisions.planned.extend_from_slice(planned);
+        decisions.log.clear();
+        decisions.known.clear();
+        decisions.delivered.clear();
+        self.notes.clear();
+    }
+
+    /// What was decided on in the step.
+    pub(super) fn decided(&mut self) -> &[Decision] {
+        &self.decisions.get_mut().log
     }
 
     /// Decides on what is asked of the newest messages after a step.
     pub(super) fn decide_beside(&mut self, script: ScriptId) -> bool {
         self.decisions.get_mut().decide_beside(script)
     }
+}
 
-    pub(super) fn finish(self) -> (Vec<Decision>, Notes) {
-        (self.decisions.into_inner().log, self.notes)
+impl Notes {
+    fn clear(&mut self) {
+        for nodes in [&mut self.entered, &mut self.left] {
+            nodes.clear();
+        }
+        for segments in [&mut self.taken, &mut self.held] {
+            segments.clear();
+        }
+        self.events.clear();
+        self.wrote = false;
+        self.lines.iter_mut().for_each(Vec::clear);
     }
 }
 
@@ -90,11 +121,16 @@ impl Decisions<'_, '_> {
         if let Some((_, _, value)) = self.known.iter().filter(on_board).find(|(_, it, _)| *it == script) {
             return *value;
         }
-        let known: Vec<(ScriptId, bool)> =
-            self.known.iter().filter(on_board).map(|&(_, script, value)| (script, value)).collect();
         let value = match self.is_idle(region) {
             true => self.log_idle(script),
-            false => self.choose(script, &known),
+            false => {
+                let mut known = std::mem::take(&mut self.on_board);
+                known.clear();
+                known.extend(self.known.iter().filter(on_board).map(|&(_, script, value)| (script, value)));
+                let value = self.choose(script, &known);
+                self.on_board = known;
+                value
+            }
         };
         self.known.push((region, script, value));
         value
@@ -123,8 +159,7 @@ impl Decisions<'_, '_> {
     }
 
     fn choose(&mut self, script: ScriptId, known: &[(ScriptId, bool)]) -> bool {
-        let (may_be_false, may_be_true) =
-            ((self.allows)(script, false, known), (self.allows)(script, true, known));
+        let (may_be_false, may_be_true) = self.permits.of(script, known);
         let is_free = may_be_false == may_be_true;
         let value = match self.planned.get(self.log.len()) {
             Some(&value) if is_free => value,

@@ -1,14 +1,15 @@
 //! The search, breadth first.
 
-use std::collections::BTreeMap;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::host::{Chosen, Notes};
-use super::{Edge, Exploration, Failure, Move, State, Step, Surroundings};
+use super::host::Chosen;
+use super::numbers::Numbers;
+use super::{Edge, Exploration, Failure, Happened, Move, State, Step, Surroundings};
+use crate::bits::BitSet;
 use crate::chart::Chart;
 use crate::host::Outcome;
-use crate::machine::explored::Key;
+use crate::machine::explored::Sight;
 use crate::machine::{Chooser, Machine, MachineError, Status};
 
 /// So many ways are tried in which one step may go.
@@ -16,7 +17,45 @@ const WAYS: usize = 2_048;
 
 /// Finds out what a chart can do in surroundings, looking at no more than `limit` states.
 pub fn explore(chart: &Arc<Chart>, surroundings: &mut Surroundings<'_>, limit: usize) -> Exploration {
-    let found = Exploration {
+    explore_as_seen(chart, surroundings, limit, Sight::new(chart))
+}
+
+/// The same, with what is to be told apart.
+pub(super) fn explore_as_seen(
+    chart: &Arc<Chart>,
+    surroundings: &mut Surroundings<'_>,
+    limit: usize,
+    sight: Sight,
+) -> Exploration {
+    let Surroundings { events, messages, allows } = surroundings;
+    let machine = Machine::new(chart.clone());
+    let mut search = Search {
+        events,
+        messages: *messages,
+        limit,
+        sight,
+        found: nothing_yet(chart),
+        host: Chosen::new(&mut **allows),
+        next: machine.clone(),
+        numbers: Numbers::default(),
+        steps: Numbers::default(),
+        row: Vec::new(),
+        choices: Vec::new(),
+        open: VecDeque::new(),
+    };
+    search.step(None, &machine, (0, &Move::Start));
+    while let Some((number, machine)) = search.open.pop_front() {
+        for (cause, one) in search.moves(&machine) {
+            search.step(Some(number), &machine, (cause, &one));
+        }
+    }
+    search.found
+}
+
+fn nothing_yet(chart: &Arc<Chart>) -> Exploration {
+    let nodes = BitSet::new(chart.statechart().nodes().len());
+    let transitions = BitSet::new(chart.statechart().transitions().len());
+    Exploration {
         chart: chart.clone(),
         is_finished: true,
         states: Vec::new(),
@@ -24,30 +63,27 @@ pub fn explore(chart: &Arc<Chart>, surroundings: &mut Surroundings<'_>, limit: u
         edges: Vec::new(),
         steps: Vec::new(),
         failures: Vec::new(),
-        entered: Default::default(),
-        left: Default::default(),
-        taken: Default::default(),
-        held: Default::default(),
-    };
-    let (numbers, steps, open) = (BTreeMap::new(), BTreeMap::new(), VecDeque::new());
-    let mut search = Search { surroundings, limit, found, numbers, steps, open };
-    search.step(None, &Machine::new(chart.clone()), &Move::Start);
-    while let Some((number, machine)) = search.open.pop_front() {
-        for cause in search.moves(&machine) {
-            search.step(Some(number), &machine, &cause);
-        }
+        seen: Happened { entered: nodes.clone(), left: nodes, taken: transitions.clone(), held: transitions },
     }
-    search.found
 }
 
 struct Search<'s, 'a> {
-    surroundings: &'s mut Surroundings<'a>,
+    events: &'s [String],
+    messages: bool,
     limit: usize,
+    sight: Sight,
     found: Exploration,
-    /// The number of each state.
-    numbers: BTreeMap<Key, usize>,
-    /// The number of each step.
-    steps: BTreeMap<Step, usize>,
+    host: Chosen<'s, 'a>,
+    /// The machine that takes the steps.
+    next: Machine,
+    /// The states, by their keys.
+    numbers: Numbers,
+    /// The steps that lead anywhere, as words.
+    steps: Numbers,
+    /// A key or a step that is being written.
+    row: Vec<u32>,
+    /// Which options the last step took, and of how many.
+    choices: Vec<(u32, u32)>,
     /// The states that were found and not yet looked at.
     open: VecDeque<(usize, Machine)>,
 }
@@ -59,24 +95,29 @@ struct Plan {
     choices: Vec<u32>,
 }
 
+/// A cause, with the words that it is known by.
+type Cause<'c> = (u32, &'c Move);
+
 impl Search<'_, '_> {
-    /// What may happen next.
-    fn moves(&self, machine: &Machine) -> Vec<Move> {
+    /// What may happen next, each with a word of its own.
+    fn moves(&self, machine: &Machine) -> Vec<(u32, Move)> {
         if machine.status() != Status::Running {
             return Vec::new();
         }
-        let mut moves: Vec<Move> =
-            machine.running().into_iter().map(|activation| Move::Return(activation.node)).collect();
-        moves.extend(machine.timers_set().into_iter().map(Move::Timer));
+        let returns = machine.running().into_iter().map(|activation| activation.node);
+        let mut moves: Vec<(u32, Move)> = returns.map(|node| (node.0 << 2 | 1, Move::Return(node))).collect();
+        moves.extend(
+            machine.timers_set().into_iter().map(|timer| ((timer as u32) << 2 | 2, Move::Timer(timer))),
+        );
         // an event that waits already would only make the queue longer
-        let events = self.surroundings.events.iter().filter(|event| !machine.is_waiting(event));
-        moves.extend(events.map(|event| Move::Event(event.clone())));
-        moves.extend(self.surroundings.messages.then_some(Move::Messages));
+        let events = self.events.iter().enumerate().filter(|(_, event)| !machine.is_waiting(event));
+        moves.extend(events.map(|(index, event)| ((index as u32) << 2 | 3, Move::Event(event.clone()))));
+        moves.extend(self.messages.then_some((4, Move::Messages)));
         moves
     }
 
     /// Takes a step in every way in which it may go.
-    fn step(&mut self, from: Option<usize>, machine: &Machine, cause: &Move) {
+    fn step(&mut self, from: Option<usize>, machine: &Machine, cause: Cause<'_>) {
         let mut plans = vec![Plan::default()];
         let mut tried = 0;
         while let Some(plan) = plans.pop() {
@@ -85,82 +126,72 @@ impl Search<'_, '_> {
                 return;
             }
             tried += 1;
-            self.step_as_planned(from, machine, cause, &plan, &mut plans);
+            self.next.copy_from(machine);
+            self.host.begin(&plan.decisions);
+            let result = take(&mut self.next, cause.1, plan.choices.clone(), &mut self.host);
+            self.choices.clear();
+            self.choices.extend_from_slice(self.next.chooser().choices());
+            self.plan_others(&plan, &mut plans);
+            self.arrive(from, cause, result);
         }
     }
 
-    fn step_as_planned(
-        &mut self,
-        from: Option<usize>,
-        machine: &Machine,
-        cause: &Move,
-        plan: &Plan,
-        plans: &mut Vec<Plan>,
-    ) {
-        let mut next = machine.clone();
-        let mut host = Chosen::new(&mut *self.surroundings.allows, &plan.decisions);
-        let result = take(&mut next, cause, plan.choices.clone(), &mut host);
-        let (decisions, notes) = host.finish();
-        let choices = next.chooser().choices().to_vec();
-        let values: Vec<bool> = decisions.iter().map(|decision| decision.value).collect();
+    /// What else could have been chosen behind what was planned.
+    fn plan_others(&mut self, plan: &Plan, plans: &mut Vec<Plan>) {
+        let decisions = self.host.decided();
         for index in plan.decisions.len()..decisions.len() {
             if decisions[index].is_free {
-                let mut other = values[..index].to_vec();
-                other.push(!values[index]);
+                let before = decisions[..index].iter().map(|decision| decision.value);
+                let other = before.chain([!decisions[index].value]).collect();
                 plans.push(Plan { decisions: other, choices: plan.choices.clone() });
             }
         }
-        for index in plan.choices.len()..choices.len() {
-            let before: Vec<u32> = choices[..index].iter().map(|&(chosen, _)| chosen).collect();
-            plans.extend((1..choices[index].1).map(|other| {
-                let choices = before.iter().copied().chain([other]).collect();
+        for index in plan.choices.len()..self.choices.len() {
+            let before = self.choices[..index].iter().map(|&(chosen, _)| chosen);
+            plans.extend((1..self.choices[index].1).map(|other| {
+                let choices = before.clone().chain([other]).collect();
                 Plan { decisions: plan.decisions.clone(), choices }
             }));
         }
-        let step = Step {
-            cause: cause.clone(),
-            decisions: decisions.iter().map(|decision| (decision.script, decision.value)).collect(),
-            choices: choices.iter().map(|&(chosen, _)| chosen).collect(),
-        };
-        self.arrive(from, next, step, &notes, result);
     }
 
-    fn arrive(
-        &mut self,
-        from: Option<usize>,
-        machine: Machine,
-        step: Step,
-        notes: &Notes,
-        result: Result<(), MachineError>,
-    ) {
-        self.found.entered.extend(&notes.entered);
-        self.found.left.extend(&notes.left);
-        self.found.taken.extend(&notes.taken);
-        self.found.held.extend(&notes.held);
+    fn arrive(&mut self, from: Option<usize>, cause: Cause<'_>, result: Result<(), MachineError>) {
+        self.take_note();
         if let Err(error) = result {
-            return self.fail(from, step, notes, &error);
+            return self.fail(from, cause.1, &error);
         }
-        let key = machine.key();
-        let known = self.numbers.get(&key).copied();
+        self.next.write_key(&self.sight, &mut self.row);
+        let known = self.numbers.find(&self.row);
         if known.is_none() && self.found.states.len() >= self.limit {
             self.found.is_finished = false;
             return;
         }
-        let returned = match step.cause {
-            Move::Return(node) => Some(node),
+        let to = self.numbers.number(&self.row);
+        let step = self.number_of_step(cause);
+        if known.is_none() {
+            self.add((from, step));
+        }
+        let returned = match cause.1 {
+            Move::Return(node) => Some(*node),
             _ => None,
         };
-        let step = self.number_of(step);
-        let to = known.unwrap_or_else(|| self.add((from, step), machine, key));
         match from {
             Some(from) => {
-                let does_something = !notes.taken.is_empty();
+                let does_something = !self.host.notes.taken.is_empty();
                 self.connect(Edge { from, to, does_something, returned, step });
             }
             None => {
                 self.found.initial.insert(to);
             }
         }
+    }
+
+    fn take_note(&mut self) {
+        let (seen, notes) = (&mut self.found.seen, &self.host.notes);
+        notes.entered.iter().for_each(|node| seen.entered.insert(node.0 as usize));
+        notes.left.iter().for_each(|node| seen.left.insert(node.0 as usize));
+        notes.taken.iter().for_each(|segment| seen.taken.insert(segment.0 as usize));
+        notes.held.iter().for_each(|segment| seen.held.insert(segment.0 as usize));
     }
 
     /// Of steps that differ only in what was asked, one is kept, and none that does nothing.
@@ -176,32 +207,46 @@ impl Search<'_, '_> {
         }
     }
 
-    fn number_of(&mut self, step: Step) -> usize {
-        let steps = &mut self.found.steps;
-        *self.steps.entry(step).or_insert_with_key(|step| {
-            steps.push(step.clone());
-            steps.len() - 1
-        })
+    fn number_of_step(&mut self, cause: Cause<'_>) -> usize {
+        self.row.clear();
+        self.row.push(cause.0);
+        self.row.extend(self.choices.iter().map(|&(chosen, _)| chosen));
+        self.row.push(u32::MAX);
+        let decisions = self.host.decided();
+        self.row.extend(decisions.iter().map(|it| it.script.0 << 1 | u32::from(it.value)));
+        let number = self.steps.number(&self.row);
+        if number == self.found.steps.len() {
+            let step = self.last_step(cause.1);
+            self.found.steps.push(step);
+        }
+        number
     }
 
-    fn add(&mut self, came: (Option<usize>, usize), machine: Machine, key: Key) -> usize {
-        let number = self.found.states.len();
-        self.numbers.insert(key, number);
+    fn last_step(&mut self, cause: &Move) -> Step {
+        Step {
+            cause: cause.clone(),
+            decisions: self.host.decided().iter().map(|it| (it.script, it.value)).collect(),
+            choices: self.choices.iter().map(|&(chosen, _)| chosen).collect(),
+        }
+    }
+
+    fn add(&mut self, came: (Option<usize>, usize)) {
+        let machine = self.next.clone();
         self.found.states.push(State {
             configuration: machine.configuration(),
             status: machine.status(),
             running: machine.running().into_iter().map(|activation| activation.node).collect(),
             came,
         });
-        self.open.push_back((number, machine));
-        number
+        self.open.push_back((self.found.states.len() - 1, machine));
     }
 
     /// A chart that writes may leave its circle: nothing is known of what it writes.
-    fn fail(&mut self, from: Option<usize>, step: Step, notes: &Notes, error: &MachineError) {
-        if notes.wrote {
+    fn fail(&mut self, from: Option<usize>, cause: &Move, error: &MachineError) {
+        if self.host.notes.wrote {
             return;
         }
+        let step = self.last_step(cause);
         let mut cycle = error.cycle().to_vec();
         cycle.sort_unstable();
         let is_known = |it: &Failure| it.kind == error.kind() && it.cycle == cycle;
@@ -238,8 +283,7 @@ pub(super) fn go(
             machine.dispatch_name(name);
         }
         Move::Return(node) => {
-            let running = machine.running().into_iter().find(|activation| activation.node == *node);
-            if let Some(activation) = running {
+            if let Some(activation) = machine.running_at(*node) {
                 machine.activity_returned(activation, Outcome::Done);
             }
         }

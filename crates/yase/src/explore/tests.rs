@@ -1,5 +1,7 @@
 //! Small charts, explored to the end.
 
+mod plain;
+
 use std::sync::Arc;
 
 use super::{Exploration, Surroundings, Trace, explore, replay};

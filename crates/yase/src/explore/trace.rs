@@ -191,14 +191,14 @@ pub fn replay(
     mut told: impl FnMut(&Machine, &Step, &[String]),
 ) -> Result<Machine, MachineError> {
     let mut machine = Machine::new(trace.chart.clone());
+    let mut allows = |_: ScriptId, _: bool, _: &[(ScriptId, bool)]| true;
+    let mut host = Chosen::new(&mut allows);
+    host.notes.lines = Some(Vec::new());
     for step in &trace.steps {
         let values: Vec<bool> = step.decisions.iter().map(|&(_, value)| value).collect();
-        let mut allows = |_: ScriptId, _: bool, _: &[(ScriptId, bool)]| true;
-        let mut host = Chosen::new(&mut allows, &values);
-        host.notes.lines = Some(Vec::new());
+        host.begin(&values);
         let result = take(&mut machine, &step.cause, step.choices.clone(), &mut host);
-        let (_, notes) = host.finish();
-        told(&machine, step, &notes.lines.unwrap_or_default());
+        told(&machine, step, host.notes.lines.as_deref().unwrap_or_default());
         result?;
     }
     Ok(machine)

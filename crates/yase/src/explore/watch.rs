@@ -22,7 +22,7 @@ use super::search::go;
 use super::{Move, Step, Surroundings, Trace};
 use crate::chart::Chart;
 use crate::expression::{EventId, ScriptId};
-use crate::machine::explored::Key;
+use crate::machine::explored::{Key, Sight};
 use crate::machine::{Machine, Status};
 use crate::statechart::NodeId;
 
@@ -151,6 +151,7 @@ pub fn watch(
         surroundings,
         watch,
         limit,
+        sight: Sight::new(chart),
         idle,
         found,
         numbers: BTreeMap::new(),
@@ -181,6 +182,7 @@ struct Search<'s, 'a, 'w> {
     surroundings: &'s mut Surroundings<'a>,
     watch: &'s mut Watch<'w>,
     limit: usize,
+    sight: Sight,
     /// Whether nothing happens on a blackboard, by its number.
     idle: Vec<bool>,
     found: Watched,
@@ -251,13 +253,15 @@ impl Search<'_, '_, '_> {
 
     fn step(&mut self, from: &Place, cause: &Move, elapsed: u64, plan: &Plan, plans: &mut Vec<Plan>) {
         let mut machine = from.machine.clone();
-        let mut host = Chosen::new(&mut *self.surroundings.allows, &plan.decisions).with_idle(&self.idle);
+        let mut host = Chosen::new(&mut *self.surroundings.allows).with_idle(&self.idle);
+        host.begin(&plan.decisions);
         let result = go(&mut machine, cause, plan.choices.clone(), &mut host);
-        let own = host.decided();
+        let own = host.decided().len();
         let first = machine.chart().scripts().len() as u32;
         let asked = (first..first + self.watch.conditions).map(|number| host.decide_beside(ScriptId(number)));
         let conditions: Vec<bool> = asked.collect();
-        let (decisions, notes) = host.finish();
+        let decisions = host.decided().to_vec();
+        let notes = host.notes;
         let choices = machine.chooser().choices().to_vec();
         branch(plan, &decisions.iter().map(|it| (it.value, it.is_free)).collect::<Vec<_>>(), &choices, plans);
         if result.is_err() {
@@ -329,7 +333,7 @@ impl Search<'_, '_, '_> {
             None => Box::default(),
         };
         let count = self.found.states.len();
-        let to = match self.numbers.entry((machine.key(), left)) {
+        let to = match self.numbers.entry((machine.key(&self.sight), left)) {
             Entry::Occupied(known) => *known.get(),
             Entry::Vacant(_) if count >= self.limit => {
                 self.found.is_finished = false;

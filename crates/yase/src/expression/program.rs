@@ -74,6 +74,13 @@ impl Guard {
         &self.timers
     }
 
+    /// The timers of which it matters to the guard whether they are over or were never set.
+    pub(crate) fn timers_told_apart(&self) -> Vec<TimerId> {
+        let mut reads = Reads::default();
+        reads.of_test(&self.test);
+        reads.timers_told_apart(&self.timers)
+    }
+
     /// Whether it is the word `false`: never taken, and meant so.
     pub fn is_literally_false(&self) -> bool {
         self.test == Test::Literal(false)

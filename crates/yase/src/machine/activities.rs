@@ -45,6 +45,12 @@ impl Activities {
         Activities { slots: vec![slot; count].into(), count: 0, queued: false }
     }
 
+    /// Becomes equal to those of another machine of the same chart.
+    pub(super) fn copy_from(&mut self, other: &Activities) {
+        self.slots.copy_from_slice(&other.slots);
+        (self.count, self.queued) = (other.count, other.queued);
+    }
+
     pub(super) fn reset(&mut self) {
         for slot in &mut self.slots {
             slot.phase = Phase::Idle;
@@ -54,6 +60,10 @@ impl Activities {
     /// Whether activities wait to be started, as far as is known since this was asked last.
     pub(super) fn take_queued(&mut self) -> bool {
         std::mem::take(&mut self.queued)
+    }
+
+    pub(super) fn slots(&self) -> &[Slot] {
+        &self.slots
     }
 
     pub(super) fn slot(&self, activity: usize) -> Slot {

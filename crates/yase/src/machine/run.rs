@@ -216,6 +216,92 @@ impl Run {
         }
     }
 
+    /// Becomes equal to another at rest; what a micro-step works with is not looked at, since the next one begins with clearing it.
+    pub(super) fn copy_from(&mut self, other: &Run) {
+        // all by name, so that a field that is added is thought of here
+        let Run {
+            status,
+            now,
+            due,
+            is_settled,
+            under_way,
+            active,
+            running,
+            running_regions,
+            activities,
+            timers,
+            queues,
+            pending,
+            erred,
+            told: _,
+            drawn: _,
+            written,
+            waiting_starts,
+            newcomers,
+            bound,
+            chooser,
+            tips,
+            vacated,
+            arrived,
+            completions,
+            records,
+            ending,
+            terminates,
+            failure,
+            before,
+            marked,
+            entering,
+            leaving,
+            in_document,
+            unbound,
+            selection: _,
+            log: _,
+            text: _,
+        } = other;
+        (self.status, self.now, self.due, self.is_settled) = (*status, *now, *due, *is_settled);
+        (self.under_way, self.ending, self.terminates) = (*under_way, *ending, *terminates);
+        let sets = [
+            active,
+            running,
+            running_regions,
+            written,
+            waiting_starts,
+            tips,
+            vacated,
+            arrived,
+            before,
+            marked,
+        ];
+        let own = [
+            &mut self.active,
+            &mut self.running,
+            &mut self.running_regions,
+            &mut self.written,
+            &mut self.waiting_starts,
+            &mut self.tips,
+            &mut self.vacated,
+            &mut self.arrived,
+            &mut self.before,
+            &mut self.marked,
+        ];
+        own.into_iter().zip(sets).for_each(|(own, other)| own.copy_from(other));
+        self.activities.copy_from(activities);
+        self.timers.copy_from(timers);
+        self.queues.clone_from(queues);
+        self.pending.clone_from(pending);
+        self.erred.clone_from(erred);
+        self.newcomers.clone_from(newcomers);
+        self.bound.clone_from(bound);
+        self.chooser.clone_from(chooser);
+        self.completions.clone_from(completions);
+        self.records.clone_from(records);
+        self.failure.clone_from(failure);
+        self.entering.clone_from(entering);
+        self.leaving.clone_from(leaving);
+        self.in_document.clone_from(in_document);
+        self.unbound.clone_from(unbound);
+    }
+
     /// Forgets everything but how many activities were ever started.
     pub(super) fn reset(&mut self, now: Moment) {
         self.status = Status::Running;

@@ -27,6 +27,12 @@ impl Timers {
         Timers { slots: vec![None; count].into(), next: None }
     }
 
+    /// Becomes equal to those of another machine of the same chart.
+    pub(super) fn copy_from(&mut self, other: &Timers) {
+        self.slots.copy_from_slice(&other.slots);
+        self.next = other.next;
+    }
+
     pub(super) fn reset(&mut self) {
         self.slots.fill(None);
         self.next = None;
