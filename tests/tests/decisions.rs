@@ -4,6 +4,8 @@
 
 #[path = "decisions/attack.rs"]
 mod attack;
+#[path = "decisions/monitors.rs"]
+mod monitors;
 
 use std::collections::BTreeMap;
 use std::fs;
