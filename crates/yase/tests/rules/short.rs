@@ -299,3 +299,24 @@ fn r04_an_event_that_is_handed_over_waits_for_those_that_came_before() {
     let before = |machine: &mut Machine| assert!(machine.dispatch_name("f"));
     assert_eq!(handled(before, 5), (2, "B".to_owned()));
 }
+
+#[test]
+fn r04_a_host_that_wants_traces_is_told_of_an_event_that_is_handed_over() {
+    let chart = chart(
+        "
+        START
+        A
+        B
+        c/START -> A
+        A -> B : e
+    ",
+    );
+    let mut machine = Machine::new(script::compile(&chart));
+    let mut world = World::new(&chart);
+    machine.start(Moment::ZERO, &mut world);
+    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    let told = world.log.len();
+    let (event, _) = machine.chart().event("e");
+    machine.handle(event, Moment::from_millis(1), &mut world).unwrap();
+    assert_eq!(world.log[told..], ["0.001 s e: A -> B; exit A; enter B"]);
+}
