@@ -49,7 +49,7 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
-use yase::{Diagnostic, Severity, Source};
+use yase::{Diagnostic, Severity, Source, Span, Statechart};
 
 pub use protocol::{Conformance, chart_conforms, player_conforms};
 pub use world::World;
@@ -339,22 +339,38 @@ pub fn explorable(source: &Arc<Source>) -> Result<Arc<yase::Chart>, Vec<Diagnost
 
 /// A model made ready to be explored.
 pub(crate) fn abstracted(source: &Arc<Source>) -> Result<abstraction::Abstraction, Vec<Diagnostic>> {
-    let placed = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {
-        found.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect()
-    };
+    let subject = subject_of(source)?;
+    abstraction::Abstraction::new(&subject).map_err(|found| placed(source, found))
+}
+
+/// The chart of a model, and where each of its transitions stands in the text.
+///
+/// # Errors
+/// What keeps the model from being read.
+pub(crate) fn chart_and_places(source: &Arc<Source>) -> Result<(Statechart, Vec<Span>), Vec<Diagnostic>> {
+    let Subject { chart, places, .. } = subject_of(source)?;
+    Ok((chart, places.transitions))
+}
+
+/// What there is to be looked at in a model with a chart.
+fn subject_of(source: &Arc<Source>) -> Result<Subject, Vec<Diagnostic>> {
     let (found, mut read) = convert::read(source);
     let (subject, made) = match found {
         Some((Model::Role(file), _)) => subject::of_role(file.srm()),
         Some((Model::Chart(chart), _)) => subject::of_chart(&chart),
         Some((model, _)) => {
             let message = format!("a model of the kind {} has no statechart", model.kind());
-            return Err(placed(vec![Diagnostic::error("E0230", yase::Span::default(), message)]));
+            return Err(placed(source, vec![Diagnostic::error("E0230", Span::default(), message)]));
         }
         None => return Err(read),
     };
     read.extend(made);
     if read.iter().any(Diagnostic::is_error) {
-        return Err(placed(read));
+        return Err(placed(source, read));
     }
-    abstraction::Abstraction::new(&subject).map_err(placed)
+    Ok(subject)
+}
+
+fn placed(source: &Arc<Source>, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    found.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect()
 }

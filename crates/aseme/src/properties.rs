@@ -60,7 +60,7 @@ mod clause;
 mod cone;
 mod explore;
 mod monitor;
-mod names;
+pub(crate) mod names;
 mod parser;
 mod plan;
 mod print;

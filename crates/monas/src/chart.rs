@@ -10,13 +10,13 @@ mod lending;
 mod post;
 mod swap;
 mod urgency;
-mod values;
+pub(crate) mod values;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use narukom::{HostId, Moment, Narukom, TopicSlot};
-use yase::{Activation, Chooser, Machine, MachineError, Outcome, Status, TopicId};
+use yase::{Activation, Chooser, Machine, MachineError, NodeId, Outcome, Status, TopicId};
 
 use crate::activity::Progress;
 use crate::binder::BoundChart;
@@ -223,6 +223,17 @@ impl Runner {
         }
     }
 
+    /// An activity that waits for another call, called now, with its blackboard, to which what arrived is delivered.
+    pub(crate) fn call_now(&mut self, node: NodeId, now: Moment) -> Option<Assignment> {
+        let activation = self.posts.hurry(node)?;
+        if !self.machine.activity_resumed(activation) {
+            return None;
+        }
+        self.desk.now = now;
+        self.desk.lending.refresh(activation.region, now)?;
+        self.assign(activation)
+    }
+
     fn assign(&mut self, activation: Activation) -> Option<Assignment> {
         let priority = self.desk.urgency.of(activation.node);
         let blackboard = self.desk.lending.lend(activation, self.desk.now)?;
@@ -329,7 +340,7 @@ impl Runner {
 
     /// What says that an activity of this chart publishes; none if the state has no activity.
     pub(crate) fn origin(&self, node: u32, number: u64) -> Option<Origin> {
-        let entry = self.machine.chart().activity(yase::NodeId(node))?;
+        let entry = self.machine.chart().activity(NodeId(node))?;
         let activation = Activation { node: entry.node, region: entry.region, number };
         Some(Origin { runner: self.number, activation })
     }
@@ -385,6 +396,11 @@ impl Runner {
         self.machine.chart().reads().iter().map(|topic| TopicSlot::new(topic.0)).collect()
     }
 
+    /// What steps.
+    pub(crate) fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
     /// The agent it is a chart of.
     pub(crate) fn agent(&self) -> &str {
         &self.desk.agent
@@ -406,7 +422,7 @@ impl Runner {
     /// The paths of the BASIC states that are active.
     pub(crate) fn active(&self) -> Vec<String> {
         let chart = self.machine.chart();
-        let is_basic = |node: &yase::NodeId| chart.statechart().node(*node).kind == yase::NodeKind::Basic;
+        let is_basic = |node: &NodeId| chart.statechart().node(*node).kind == yase::NodeKind::Basic;
         let active = self.machine.configuration();
         active.into_iter().filter(is_basic).map(|node| chart.short_path(node)).collect()
     }

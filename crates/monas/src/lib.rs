@@ -86,6 +86,7 @@ mod reach;
 pub mod records;
 mod registry;
 mod run_hash;
+pub mod scenario;
 mod statistics;
 mod stopwatch;
 mod talws;

@@ -361,6 +361,12 @@ impl Machine {
         if self.run.status == Status::Running { self.run.timers.next_deadline() } else { None }
     }
 
+    /// When a timer of a blackboard is over, or since when it is; none if it is not set.
+    pub fn deadline(&self, region: RegionId, timer: &str) -> Option<Moment> {
+        let place = self.chart.timers().position(|(board, name)| board == region && name == timer)?;
+        self.run.timers.slots.get(place).copied().flatten().map(|deadline| deadline.moment)
+    }
+
     /// Whether a message on that topic can change what the chart does: then it must be told of each
     /// ([`message_arrived`](Machine::message_arrived)).
     pub fn reads_topic(&self, topic: TopicId) -> bool {

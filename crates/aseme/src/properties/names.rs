@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use yase::diagnostic::nearest;
-use yase::expression::{EventTable, Guard, Name, Names, ScriptTable, TransitionExpression};
+use yase::expression::{EventId, EventTable, Guard, Name, Names, ScriptTable, TransitionExpression};
 use yase::{Chart, Diagnostic, NodeId, NodeKind, Vocabulary};
 
 use super::plan::{Atom, Lowering, Plan};
@@ -50,7 +50,7 @@ fn atom(formula: &Formula, chart: &Chart, found: &mut Vec<Diagnostic>) -> Option
         FormulaKind::In(name) => state(name, chart).map(Atom::In),
         FormulaKind::Entering(name) => state(name, chart).map(Atom::Entering),
         FormulaKind::Leaving(name) => state(name, chart).map(Atom::Leaving),
-        FormulaKind::Event(name) => event(name, chart),
+        FormulaKind::Event(name) => event(name, chart).map(Atom::Event),
         FormulaKind::Condition(condition) => Ok(Atom::Condition(condition.clone())),
         _ => return None,
     };
@@ -58,7 +58,7 @@ fn atom(formula: &Formula, chart: &Chart, found: &mut Vec<Diagnostic>) -> Option
 }
 
 /// The state that a path names.
-fn state(name: &Name, chart: &Chart) -> Result<NodeId, Diagnostic> {
+pub(crate) fn state(name: &Name, chart: &Chart) -> Result<NodeId, Diagnostic> {
     let place = name.place.0;
     let path = Path::parse(&name.text).map_err(|wrong| Diagnostic { span: place, ..wrong })?;
     let statechart = chart.statechart();
@@ -91,10 +91,11 @@ fn state(name: &Name, chart: &Chart) -> Result<NodeId, Diagnostic> {
     }
 }
 
-fn event(name: &Name, chart: &Chart) -> Result<Atom, Diagnostic> {
+/// The event of a name.
+pub(crate) fn event(name: &Name, chart: &Chart) -> Result<EventId, Diagnostic> {
     let events = chart.events();
     if let Some(event) = events.find(&name.text) {
-        return Ok(Atom::Event(event));
+        return Ok(event);
     }
     let message =
         format!("nothing in the chart `{}` names an event `{}`", chart.statechart().name, name.text);

@@ -349,6 +349,13 @@ impl Posts {
         due.map(|waiting| waiting.activation)
     }
 
+    /// The activation of a state that waits to be called again. It waits no more.
+    pub(crate) fn hurry(&mut self, node: NodeId) -> Option<Activation> {
+        let waiting = self.posts.iter_mut().map(|post| &mut post.waits);
+        let its = waiting.filter_map(|waits| waits.take_if(|waiting| waiting.activation.node == node)).next();
+        its.map(|waiting| waiting.activation)
+    }
+
     pub(crate) fn name(&self, activation: Activation) -> &str {
         self.place(activation).map_or("", |place| &self.posts[place].name)
     }

@@ -5,7 +5,7 @@ use yase::expression::CallError;
 use yase::{FieldId, Value};
 
 /// A field of a message; the path leads through messages inside it. Missing if one of these is not set.
-pub(super) fn field<'a>(message: &'a dyn AnyMessage, path: &[FieldId]) -> Value<'a> {
+pub(crate) fn field<'a>(message: &'a dyn AnyMessage, path: &[FieldId]) -> Value<'a> {
     let Some((last, outer)) = path.split_last() else { return Value::Message(message.as_any()) };
     let mut message = message;
     for step in outer {
@@ -32,7 +32,7 @@ fn value(field: FieldValue<'_>) -> Value<'_> {
 }
 
 /// Sets a field of a message; messages on the way to it are made if they are missing.
-pub(super) fn set_field(
+pub(crate) fn set_field(
     message: &mut dyn AnyMessage,
     path: &[FieldId],
     value: Value<'_>,

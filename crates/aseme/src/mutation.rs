@@ -1,0 +1,206 @@
+//! Small faults put into a chart on purpose, one at a time: what scenarios are worth shows in how many of them they notice.
+//!
+//! [`mutants`] makes them all, always in the same order. Each is a whole chart with one thing changed: a [guard](Kind::GuardNegated), a number that guards
+//! compare with, a timer's delay, an action, where a transition leads, whether it is there, in which order two are tried. Each has a name that stays the same for as long as
+//! the model does there, says in the model's words what was changed, and what a scenario would have to tell apart.
+//!
+//! What is changed such that nothing can come of it is no mutant: a transition that is never taken (`[false]`) has no other target, an order between ways of which only one can ever
+//! be open is not turned round, and what would be the same change twice is made once. Mutants of which it is not known whether they differ are made:
+//! whoever looks at those that no scenario notices decides.
+//!
+//! ```
+//! use yase::Source;
+//!
+//! let role = Source::new("lamp.srm", "
+//! Role: lamp
+//! Liveness:
+//! lamp = Look . (On | Off)
+//! Transitions:
+//! CONDITION -> On : [Light.level < 3]
+//! CONDITION -> Off : [Light.level >= 3]
+//! ");
+//! let mutants = aseme::mutation::mutants(&role).expect("the role is in order");
+//! let first = mutants.iter().find(|mutant| mutant.name.starts_with("CONDITION -> On")).expect("there are some");
+//! assert_eq!(first.name, "CONDITION -> On #guard-negated");
+//! assert_eq!(first.description, "CONDITION -> On: the guard `[Light.level < 3]` becomes `[Light.level >= 3]`");
+//! assert_eq!(role.position(first.span.start).0, 6);
+//! ```
+
+mod actions;
+mod constants;
+mod guards;
+mod ways;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use yase::expression::Expression;
+use yase::{Diagnostic, Source, Span, Statechart, TransitionId};
+
+use crate::path::shortest_transition;
+
+/// What was changed.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum Kind {
+    /// A guard says the contrary.
+    GuardNegated,
+    /// A guard is gone.
+    GuardRemoved,
+    /// A comparison is its neighbour: `<` is `<=`, `==` is `!=`.
+    Comparison,
+    /// One part of `a && b` or `a || b` is gone.
+    PartDropped,
+    /// `&&` is `||`, or the other way round.
+    AndOr,
+    /// A number in a guard, or a constant that guards name, is a little larger or smaller.
+    Number,
+    /// A timer runs half as long, or twice.
+    Timeout,
+    /// An action is gone. A timer that nothing else starts is never started then.
+    ActionRemoved,
+    /// A transition leads to a sibling of where it should.
+    Target,
+    /// A transition is never taken.
+    TransitionRemoved,
+    /// Of two ways the one that is tried later is tried first.
+    Priority,
+}
+
+impl Kind {
+    /// All kinds, in the order of reports.
+    pub const ALL: [Kind; 11] = [
+        Kind::GuardNegated,
+        Kind::GuardRemoved,
+        Kind::Comparison,
+        Kind::PartDropped,
+        Kind::AndOr,
+        Kind::Number,
+        Kind::Timeout,
+        Kind::ActionRemoved,
+        Kind::Target,
+        Kind::TransitionRemoved,
+        Kind::Priority,
+    ];
+
+    /// The word for it in names of mutants and in reports.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Kind::GuardNegated => "guard-negated",
+            Kind::GuardRemoved => "guard-removed",
+            Kind::Comparison => "comparison",
+            Kind::PartDropped => "part-dropped",
+            Kind::AndOr => "and-or",
+            Kind::Number => "number",
+            Kind::Timeout => "timeout",
+            Kind::ActionRemoved => "action-removed",
+            Kind::Target => "target",
+            Kind::TransitionRemoved => "transition-removed",
+            Kind::Priority => "priority",
+        }
+    }
+}
+
+/// A chart with one thing changed.
+#[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
+pub struct Mutant {
+    /// What was changed.
+    pub kind: Kind,
+    /// What it is called: where the change is, `#`, the kind, and a number from the second of that kind there on.
+    pub name: String,
+    /// What was changed, in the words of the model.
+    pub description: String,
+    /// What a scenario has to tell apart so as to notice it.
+    pub wanted: String,
+    /// Where what was changed stands in the model's text; its beginning for what stands nowhere.
+    pub span: Span,
+    /// The chart.
+    pub chart: Statechart,
+}
+
+/// All mutants of a model's chart, in the order of its transitions, then of its states, then of its constants.
+///
+/// # Errors
+/// What keeps the model from being read, and of models of a kind that has no chart that.
+pub fn mutants(source: &Arc<Source>) -> Result<Vec<Mutant>, Vec<Diagnostic>> {
+    let (chart, places) = crate::check::chart_and_places(source)?;
+    let mut making =
+        Making { source, chart: &chart, places: &places, known: BTreeSet::new(), made: Vec::new() };
+    for (id, _) in chart.transitions() {
+        guards::of_transition(&mut making, id);
+        actions::of_transition(&mut making, id);
+        ways::of_transition(&mut making, id);
+    }
+    actions::of_states(&mut making);
+    constants::all(&mut making);
+    Ok(making.named())
+}
+
+/// The mutants so far.
+struct Making<'a> {
+    source: &'a Arc<Source>,
+    chart: &'a Statechart,
+    places: &'a [Span],
+    /// What each has changed, so that none is made twice.
+    known: BTreeSet<String>,
+    made: Vec<(String, Mutant)>,
+}
+
+/// What is said of a mutant.
+struct Told {
+    kind: Kind,
+    /// What is changed into what, without where that is.
+    change: String,
+    wanted: String,
+}
+
+impl Making<'_> {
+    /// The name of a transition.
+    fn arrow(&self, id: TransitionId) -> String {
+        shortest_transition(self.chart, id)
+    }
+
+    /// A mutant in which one transition is another.
+    fn transition(&mut self, id: TransitionId, told: Told, change: impl FnOnce(&mut yase::Transition)) {
+        let mut chart = self.chart.clone();
+        change(chart.transition_mut(id));
+        if chart.transition(id) == self.chart.transition(id) {
+            return;
+        }
+        let it = chart.transition(id);
+        let what = format!("{} {} {} {}", id.0, it.target.0, it.priority, it.expression);
+        let span = self.places.get(id.0 as usize).copied().unwrap_or_default();
+        self.add(&what, self.arrow(id), span, told, chart);
+    }
+
+    /// A mutant, unless it is one that is there.
+    fn add(&mut self, what: &str, place: String, span: Span, told: Told, chart: Statechart) {
+        if !self.known.insert(what.to_owned()) {
+            return;
+        }
+        let Told { kind, change, wanted } = told;
+        let description = format!("{place}: {change}");
+        self.made.push((place, Mutant { kind, name: String::new(), description, wanted, span, chart }));
+    }
+
+    /// The mutants with their names.
+    fn named(self) -> Vec<Mutant> {
+        let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
+        let name = |(place, mutant): (String, Mutant)| {
+            let name = format!("{place} #{}", mutant.kind.word());
+            let number = numbers.entry(name.clone()).or_default();
+            *number += 1;
+            let name = if *number == 1 { name } else { format!("{name}-{number}") };
+            Mutant { name, ..mutant }
+        };
+        self.made.into_iter().map(name).collect()
+    }
+}
+
+/// A guard as it stands on a transition.
+fn bracketed(guard: Option<&Expression>) -> String {
+    guard.map_or_else(|| String::from("no guard"), |guard| format!("`[{guard}]`"))
+}
+
+#[cfg(test)]
+mod tests;
