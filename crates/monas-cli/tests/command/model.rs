@@ -168,12 +168,13 @@ fn a_way_to_a_finding_is_written_and_played() {
     let text =
         "Role: r\nLiveness:\nr = look . walk\nTransitions:\nlook -> walk : kick\nwalk -> END : [In(look)]\n";
     let model = file(folder.path(), "stuck.srm", text);
-    let traces = folder.path().display().to_string();
-    let answer = monas(&["model", "check", &model, "--event", "kick", "--traces", &traces]);
+    let traces = folder.path().join("found/ways");
+    let answer =
+        monas(&["model", "check", &model, "--event", "kick", "--traces", &traces.display().to_string()]);
     assert_eq!(answer.code, Some(0), "{}", answer.err);
     assert!(answer.err.contains("M14") && answer.err.contains("    event kick\n"), "{}", answer.err);
     assert!(answer.out.contains("states explored"), "{}", answer.out);
-    let trace = folder.path().join("stuck-M14-1.trace").display().to_string();
+    let trace = traces.join("stuck-M14-1.trace").display().to_string();
     let played = monas(&["model", "run", &model, &trace]);
     assert_eq!((played.code, played.err.as_str()), (Some(0), ""));
     assert!(played.out.contains("kick: look -> walk"), "{}", played.out);

@@ -9,8 +9,12 @@ use aseme::check::Report;
 use crate::arguments::Format;
 use crate::failure::Failure;
 
-/// Writes `MODEL-CODE-NUMBER.trace` for each finding with a way there.
+/// Writes `MODEL-CODE-NUMBER.trace` for each finding with a way there; the folder is made if it is not there.
 pub(super) fn write(folder: &Path, reports: &[(&Path, Report)]) -> Result<(), Failure> {
+    let failed = |verb: &str, path: &Path, error: std::io::Error| {
+        Failure::Failed(Format::Text, format!("cannot {verb} {}: {error}", path.display()))
+    };
+    fs::create_dir_all(folder).map_err(|error| failed("make", folder, error))?;
     let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
     for (model, report) in reports {
         let model = model.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
@@ -21,9 +25,7 @@ pub(super) fn write(folder: &Path, reports: &[(&Path, Report)]) -> Result<(), Fa
             *number += 1;
             let path = folder.join(format!("{name}-{number}.trace"));
             let text = format!("# {}\n{trace}", finding.diagnostic.message);
-            fs::write(&path, text).map_err(|error| {
-                Failure::Failed(Format::Text, format!("cannot write {}: {error}", path.display()))
-            })?;
+            fs::write(&path, text).map_err(|error| failed("write", &path, error))?;
         }
     }
     Ok(())
