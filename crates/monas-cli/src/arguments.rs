@@ -192,18 +192,28 @@ pub(crate) enum ModelCommand {
     #[command(after_help = "Example: monas model regenerate role.srm -o role.srm
 What another role, or a chart from an editor, says is taken in by --from: monas model regenerate role.srm --from edited.stct")]
     Regenerate(RegenerateArguments),
-    /// Play a trace that `model check` has found, and print each step.
+    /// Change a chart in one place at a time, and say which of the changes no scenario notices.
     ///
-    /// Conditions on messages have the values that the trace says, timers expire when it says. Ends with 5 if the chart stops by itself.
+    /// Guards, numbers, timers, actions, targets and priorities are changed. A change that cannot run at all is refused, and counts neither way. What no scenario notices is
+    /// listed, with what a scenario would have to tell apart. Ends with 3 if a scenario fails on the model itself, and with 5 if less than --least is noticed.
     #[command(
-        after_help = "Example: monas model check role.srm --traces . ; monas model run role.srm role-M14-1.trace"
+        after_help = "Example: monas model mutate models/goalie.srm --scenarios tests/scenarios --least 80"
+    )]
+    Mutate(MutateArguments),
+    /// Play a scenario, or a trace that `model check` has found, and print each step.
+    ///
+    /// In a scenario messages come and time goes by as it says, and what it expects is looked at. In a trace conditions on messages have the values that it says, and
+    /// timers expire when it says. Ends with 5 if something else happens than is expected, or the chart stops by itself.
+    #[command(
+        after_help = "Example: monas model run models/goalie.srm tests/scenarios/goalie/dive_right.scenario
+A trace: monas model check role.srm --traces . ; monas model run role.srm role-M14-1.trace"
     )]
     Run {
         /// The model file.
         #[arg(value_name = "CHART", value_hint = ValueHint::FilePath)]
         file: PathBuf,
-        /// The trace.
-        #[arg(value_hint = ValueHint::FilePath)]
+        /// The scenario or the trace.
+        #[arg(value_name = "SCENARIO", value_hint = ValueHint::FilePath)]
         trace: PathBuf,
         #[command(flatten)]
         format: FormatArgument,
@@ -275,6 +285,22 @@ pub(crate) struct CoverageArguments {
     /// Draw each chart into this folder: green what was covered, red what was not, orange a guard that has held each time.
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) draw: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
+}
+
+/// What `model mutate` may be told.
+#[derive(Args, Debug)]
+pub(crate) struct MutateArguments {
+    /// The model file.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) model: PathBuf,
+    /// The folder of scenarios, with the folders in it; those of other models are left out.
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) scenarios: PathBuf,
+    /// How many of a hundred changes are to be noticed at least.
+    #[arg(long, value_name = "PERCENT", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=100))]
+    pub(crate) least: u8,
     #[command(flatten)]
     pub(crate) format: FormatArgument,
 }

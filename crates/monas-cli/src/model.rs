@@ -5,9 +5,11 @@ mod conform;
 mod convert;
 mod coverage;
 mod diff;
+mod mutate;
 mod ontology;
 mod regenerate;
 mod run;
+mod scenario;
 mod transform;
 
 use std::fs;
@@ -37,6 +39,7 @@ pub(crate) fn execute(command: &ModelCommand, console: &mut Console<'_>) -> Resu
         ModelCommand::Coverage(arguments) => coverage::execute(arguments, console),
         ModelCommand::Diff(arguments) => diff::execute(arguments, console),
         ModelCommand::Regenerate(arguments) => regenerate::execute(arguments, console),
+        ModelCommand::Mutate(arguments) => mutate::execute(arguments, console),
         ModelCommand::Run { file, trace, format } => run::execute(file, trace, format.value, console),
     }
 }

@@ -1,4 +1,4 @@
-//! `monas model run`: a trace played on a chart.
+//! `monas model run`: a scenario or a trace played on a chart.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use yase::explore::{Step, Trace, replay};
 use yase::{Diagnostic, Machine, Span};
 
+use super::scenario;
 use crate::arguments::Format;
 use crate::console::Console;
 use crate::exit::Exit;
@@ -21,11 +22,17 @@ pub(crate) fn execute(
 ) -> Result<Exit, Failure> {
     let read =
         |path: &Path| config::read_file(path).map_err(|unread| Failure::Invalid(format, vec![*unread]));
-    let (model, text) = (read(file)?, read(trace)?);
+    let text = read(trace)?;
+    if scenario::is_one(&text) {
+        return scenario::run(file, trace, format, console);
+    }
+    let model = read(file)?;
     let chart = aseme::check::explorable(&model).map_err(|wrong| Failure::Invalid(format, wrong))?;
     let trace = Trace::parse(&chart, &text.text).map_err(|error| {
         let place = line(&text.text, error.line);
-        let wrong = Diagnostic::error("E0290", place, error.message).in_source(&text);
+        let wrong = Diagnostic::error("E0290", place, error.message)
+            .with_hint("this is read as a trace: a scenario begins with `model FILE`")
+            .in_source(&text);
         Failure::Invalid(format, vec![wrong])
     })?;
     play(&chart, &trace, format, console)

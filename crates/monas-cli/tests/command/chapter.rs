@@ -139,6 +139,11 @@ fn what_must_always_be_so() {
 }
 
 #[test]
+fn what_a_role_does() {
+    read("scenarios.md", 4);
+}
+
+#[test]
 fn from_a_protocol_to_a_match() {
     let Reading { folder, hashes, .. } = read("attack.md", 16);
     for drawing in ["attack.svg", "extended_attacker.svg"] {

@@ -14,6 +14,7 @@ mod generate;
 mod kit;
 mod log;
 mod model;
+mod mutate;
 mod new;
 mod protocol;
 mod reference;
@@ -21,6 +22,7 @@ mod refinement;
 mod run;
 #[cfg(unix)]
 mod running;
+mod scenario;
 mod schema;
 mod tape;
 #[cfg(unix)]
