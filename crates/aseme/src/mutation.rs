@@ -35,7 +35,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use yase::expression::Expression;
-use yase::{Diagnostic, Source, Span, Statechart, TransitionId};
+use yase::{Diagnostic, Source, Span, Statechart, Transition, TransitionId};
 
 use crate::path::shortest_transition;
 
@@ -54,9 +54,9 @@ pub enum Kind {
     AndOr,
     /// A number in a guard, or a constant that guards name, is a little larger or smaller.
     Number,
-    /// A timer runs half as long, or twice.
+    /// A timer runs half as long, or twice, or is never started.
     Timeout,
-    /// An action is gone. A timer that nothing else starts is never started then.
+    /// An action is gone.
     ActionRemoved,
     /// A transition leads to a sibling of where it should.
     Target,
@@ -161,9 +161,14 @@ impl Making<'_> {
     }
 
     /// A mutant in which one transition is another.
-    fn transition(&mut self, id: TransitionId, told: Told, change: impl FnOnce(&mut yase::Transition)) {
+    fn transition(&mut self, id: TransitionId, told: Told, change: impl FnOnce(&mut Transition)) {
+        self.changed(id, told, |chart| change(chart.transition_mut(id)));
+    }
+
+    /// A mutant in which one transition is another, and what goes with it.
+    fn changed(&mut self, id: TransitionId, told: Told, change: impl FnOnce(&mut Statechart)) {
         let mut chart = self.chart.clone();
-        change(chart.transition_mut(id));
+        change(&mut chart);
         if chart.transition(id) == self.chart.transition(id) {
             return;
         }

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use yase::expression::{Action, ActionKind};
-use yase::{Node, NodeId, TransitionId};
+use yase::expression::{Action, ActionKind, Expression, ExpressionKind, TransitionExpression};
+use yase::{Node, NodeId, Statechart, Transition, TransitionId};
 
 use super::{Kind, Making, Told};
 use crate::path::shortest_path;
@@ -12,6 +12,8 @@ use crate::path::shortest_path;
 struct Variant {
     told: Told,
     actions: Vec<Action>,
+    /// The start of a timer that is gone from them.
+    unstarted: Option<Action>,
 }
 
 /// All that can be done to what a transition does.
@@ -20,9 +22,20 @@ pub(super) fn of_transition(making: &mut Making<'_>, id: TransitionId) {
     if transition.expression.is_never() {
         return;
     }
-    for Variant { told, actions } in variants(&transition.expression.actions) {
-        making.transition(id, told, |it| it.expression.actions = actions);
+    for Variant { told, actions, unstarted } in variants(&transition.expression.actions) {
+        making.changed(id, told, |chart| {
+            chart.transition_mut(id).expression.actions = actions;
+            unstarted.into_iter().for_each(|action| keep_known(chart, id, action));
+        });
     }
+}
+
+/// A name that nothing starts is none of a timer, and nothing could read it: so the start stays, where it never happens.
+fn keep_known(chart: &mut Statechart, id: TransitionId, action: Action) {
+    let Transition { source, target, .. } = *chart.transition(id);
+    let never = Expression { kind: ExpressionKind::Bool(false), place: action.place };
+    let expression = TransitionExpression { trigger: None, guard: Some(never), actions: vec![action] };
+    chart.connect(Transition { expression, ..Transition::new(source, target) });
 }
 
 /// All that can be done to what states do when they are entered and left. A model's text has no place for a state of its own.
@@ -36,7 +49,7 @@ pub(super) fn of_states(making: &mut Making<'_>) {
 
 fn of_node(making: &mut Making<'_>, id: NodeId, when: &str, actions: fn(&mut Node) -> &mut Vec<Action>) {
     let mut node = making.chart.node(id).clone();
-    for Variant { told, actions: changed } in variants(actions(&mut node)) {
+    for Variant { told, actions: changed, .. } in variants(actions(&mut node)) {
         let mut chart = making.chart.clone();
         let what = format!("{when} {} {changed:?}", id.0);
         *actions(chart.node_mut(id)) = changed;
@@ -53,27 +66,36 @@ fn variants(actions: &[Action]) -> Vec<Variant> {
                 let mut changed = actions.to_vec();
                 changed[place].kind =
                     ActionKind::StartTimeout { timer: timer.clone(), delay: other, form: *form };
-                found.push(Variant { told: timed(&action.kind, *delay, other), actions: changed });
+                let told = timed(&timer.text(), *delay, other);
+                found.push(Variant { told, actions: changed, unstarted: None });
             }
         }
         let mut rest = actions.to_vec();
         rest.remove(place);
-        let told = Told {
-            kind: Kind::ActionRemoved,
-            change: format!("the action `{action}` is removed"),
-            wanted: format!("something that comes of `{action}`"),
-        };
-        found.push(Variant { told, actions: rest });
+        found.push(gone(action, rest));
     }
     found
 }
 
+/// One of the actions is not there.
+fn gone(action: &Action, rest: Vec<Action>) -> Variant {
+    let wanted = format!("something that comes of `{action}`");
+    match &action.kind {
+        ActionKind::StartTimeout { timer, .. } => {
+            let change = format!("`{timer}` is never started");
+            let told = Told { kind: Kind::Timeout, change, wanted };
+            Variant { told, actions: rest, unstarted: Some(action.clone()) }
+        }
+        _ => {
+            let change = format!("the action `{action}` is removed");
+            let told = Told { kind: Kind::ActionRemoved, change, wanted };
+            Variant { told, actions: rest, unstarted: None }
+        }
+    }
+}
+
 /// What is said of a timer that runs another time.
-fn timed(kind: &ActionKind, delay: Duration, other: Duration) -> Told {
-    let timer = match kind {
-        ActionKind::StartTimeout { timer, .. } => timer.text(),
-        _ => String::new(),
-    };
+fn timed(timer: &str, delay: Duration, other: Duration) -> Told {
     Told {
         kind: Kind::Timeout,
         change: format!("`{timer}` runs {other:?} in place of {delay:?}"),

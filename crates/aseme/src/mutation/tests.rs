@@ -72,7 +72,7 @@ fn a_timer_runs_another_time_or_is_not_started() {
         [
             "timeout: `late` runs 50ms in place of 100ms",
             "timeout-2: `late` runs 200ms in place of 100ms",
-            "action-removed: the action `StartTimeout(late, 100ms)` is removed",
+            "timeout-3: `late` is never started",
             "target: it leads to `r/END`",
             "transition-removed: it is never taken",
         ]

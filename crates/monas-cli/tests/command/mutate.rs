@@ -100,10 +100,24 @@ fn people_are_told_what_a_scenario_would_have_to_show() {
     let Answer { code, out, err } = lamp(DARK, &[]);
     assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
     let first = out.lines().next().unwrap_or_default();
-    assert!(first.contains("lamp.srm: 1 scenario notice") && first.ends_with("0 more cannot run"), "{out}");
+    assert!(first.contains("lamp.srm: 1 scenario notices ") && first.ends_with(" %)"), "{out}");
     let survivor = "lamp.srm:5: CONDITION -> On: the guard `[Ball.distance < 3]` becomes `[Ball.distance <= 3]`\n    a scenario would have to show a moment at which `Ball.distance` is exactly `3`\n";
     assert!(out.contains(survivor), "{out}");
     assert!(!out.contains("CONDITION -> On: it is never taken"), "that is noticed\n{out}");
+}
+
+#[test]
+fn what_cannot_run_is_told_apart() {
+    let folder = beside_the_models(DARK);
+    let model = folder.path().join("lamp.srm").to_string_lossy().into_owned();
+    let states = "On -> END : [over]\nStates:\nOn : entry = StartTimeout(over, 1s)\n";
+    write(folder.path(), "lamp.srm", &(LAMP.to_owned() + states));
+    let here = folder.path().to_string_lossy();
+    let Answer { code, out, err } = monas(&["model", "mutate", &model, "--scenarios", &here]);
+    assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
+    assert!(out.lines().next().is_some_and(|line| line.ends_with("; 1 more cannot run")), "{out}");
+    let refused = "On entry: `over` is never started\n    there is nothing called `over` here";
+    assert!(out.contains("cannot run:\n") && out.contains(refused), "{out}");
 }
 
 #[test]

@@ -78,17 +78,18 @@ impl Report<'_> {
     fn text(&self, console: &mut Console<'_>) -> Result<(), Failure> {
         let all = self.count(|_| true);
         let scenarios = match self.scenarios.len() {
-            1 => String::from("1 scenario"),
-            several => format!("{several} scenarios"),
+            1 => String::from("1 scenario notices"),
+            several => format!("{several} scenarios notice"),
         };
+        let refused = match all.refused {
+            0 => String::new(),
+            refused => format!("; {refused} more cannot run"),
+        };
+        let (noticed, able, percent) = (all.noticed, all.able(), all.percent());
         writeln!(
             console.out,
-            "{}: {scenarios} notice {} of {} mutants ({:.1} %); {} more cannot run",
-            self.source.name,
-            all.noticed,
-            all.able(),
-            all.percent(),
-            all.refused
+            "{}: {scenarios} {noticed} of {able} mutants ({percent:.1} %){refused}",
+            self.source.name
         )?;
         writeln!(console.out, "  {:<20}{:>8}{:>9}{:>9}", "", "noticed", "survive", "refused")?;
         for (kind, count) in self.kinds() {
