@@ -1,7 +1,7 @@
 //! `monas agent`: the agents of a run, while it runs.
 
 mod arguments;
-mod change;
+pub(crate) mod change;
 pub(crate) mod list;
 mod save;
 
@@ -25,7 +25,7 @@ pub(crate) fn execute(command: &AgentCommand, console: &mut Console<'_>) -> Resu
 }
 
 /// What the run that is meant answers.
-fn ask(inquiry: Inquiry, run: &RunChoice) -> Result<Reply, Failure> {
+pub(crate) fn ask(inquiry: Inquiry, run: &RunChoice) -> Result<Reply, Failure> {
     let host = run.host.clone().unwrap_or_default();
     let inquiry = Inquiry { host, ..inquiry }.encode_to_vec();
     let reply = connect::client(run)?.manage(inquiry).map_err(failure(run.format.value))?;

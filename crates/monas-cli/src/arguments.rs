@@ -9,6 +9,8 @@ use clap_complete::Shell;
 #[cfg(unix)]
 use crate::agent::AgentCommand;
 use crate::duration;
+#[cfg(unix)]
+use crate::module::ModuleCommand;
 use crate::tape::arguments::TapeCommand;
 use crate::top::TopArguments;
 #[cfg(unix)]
@@ -54,6 +56,10 @@ pub(crate) enum Command {
     #[cfg(unix)]
     #[command(subcommand)]
     Agent(AgentCommand),
+    /// Load activities into a run and exchange them, from shared objects.
+    #[cfg(unix)]
+    #[command(subcommand)]
+    Module(ModuleCommand),
     /// Watch what the agents of a run are doing, and which of their activities takes the time.
     ///
     /// On a terminal it looks again and again, until `q` is pressed; otherwise it tells one interval and ends. Shares are of one core. An

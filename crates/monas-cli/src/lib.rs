@@ -37,6 +37,8 @@ mod failure;
 mod generate;
 mod handover;
 mod model;
+#[cfg(unix)]
+mod module;
 mod new;
 mod process;
 mod report;
@@ -96,6 +98,8 @@ fn execute(command: Command, console: &mut Console<'_>) -> Result<Exit, Failure>
         Command::Topic(command) => topic::execute(&command, console),
         #[cfg(unix)]
         Command::Agent(command) => agent::execute(&command, console),
+        #[cfg(unix)]
+        Command::Module(command) => module::execute(&command, console),
         #[cfg(unix)]
         Command::Top(arguments) => top::execute(&arguments, console),
         Command::Tape(command) => tape::execute(&command, console),

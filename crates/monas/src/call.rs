@@ -39,11 +39,12 @@ pub(crate) fn stop(activity: &mut dyn Activity, blackboard: &mut Blackboard) -> 
 /// Whatever the activity left half done is its own affair: it is started again before it is called again, or never
 /// called. The blackboard is whole at any time, since its own operations do not panic.
 fn guarded<T>(call: impl FnOnce() -> Result<T, BoxError>) -> Result<T, Failure> {
-    match catch_unwind(AssertUnwindSafe(call)) {
-        Ok(Ok(value)) => Ok(value),
-        Ok(Err(error)) => Err(Failure::Error(error)),
-        Err(payload) => Err(Failure::Panic(last_words(payload))),
-    }
+    caught(call)?.map_err(Failure::Error)
+}
+
+/// Does something of an activity's; that it panics ends here.
+pub(crate) fn caught<T>(act: impl FnOnce() -> T) -> Result<T, Failure> {
+    catch_unwind(AssertUnwindSafe(act)).map_err(|payload| Failure::Panic(last_words(payload)))
 }
 
 /// What a panic said. What it carried ends here, and if that panics too, what that carried is left alone.

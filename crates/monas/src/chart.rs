@@ -18,7 +18,7 @@ use std::time::Duration;
 use narukom::{HostId, Moment, Narukom, TopicSlot};
 use yase::{Activation, Chooser, Machine, MachineError, NodeId, Outcome, Status, TopicId};
 
-use crate::activity::Progress;
+use crate::activity::{Activity, Progress};
 use crate::binder::BoundChart;
 use crate::call::{self, Failure};
 use crate::coverage::ChartCoverage;
@@ -238,6 +238,19 @@ impl Runner {
         let priority = self.desk.urgency.of(activation.node);
         let blackboard = self.desk.lending.lend(activation, self.desk.now)?;
         self.posts.assign(activation, priority, blackboard)
+    }
+
+    /// Goes on with other instances of the activities of states. One that waits for its next call, or comes back from one, is told to stop;
+    /// the other is started before it is called.
+    pub(crate) fn renew(&mut self, instances: Vec<(NodeId, Box<dyn Activity>)>, now: Moment) {
+        for (node, activity) in instances {
+            let Some((mut old, activation)) = self.posts.renew(node, activity, &self.hub) else { continue };
+            let Some(blackboard) = self.desk.lending.free_mut(activation.region, now) else { continue };
+            if let Err(failure) = call::stop(old.as_mut(), blackboard) {
+                tracing::error!(agent = %self.desk.agent, "activity failed to stop: {failure}");
+            }
+            self.desk.lending.publish_all(activation.region, now);
+        }
     }
 
     /// Takes back an activity that was not called.

@@ -78,6 +78,7 @@ mod link;
 mod list;
 mod listener;
 pub mod logger;
+mod module;
 mod monitors;
 mod origin;
 mod parameters;
@@ -99,6 +100,7 @@ pub use error::{Error, ErrorKind};
 pub use frequency::{Frequency, Hz};
 pub use link::{Certificates, Endpoints, LinkConfig, LinkStatistics, LinkTransport};
 pub use listener::{ChartListener, MicroStep};
+pub use module::{BuildNote, Module, ModuleFile};
 pub use monitors::OnViolation;
 pub use narukom::{Blackboard, Moment};
 pub use parameters::{ParameterFault, Parameters};
@@ -125,6 +127,7 @@ pub mod measured {
 pub mod linked {
     pub use crate::function::{Answer, Argument, FUNCTIONS, FunctionDeclaration};
     pub use crate::generated::{CHARTS, ChartDeclaration, assembled};
+    pub use crate::module::{Gate, NoteSection, open, padded_length};
     pub use crate::registry::{ACTIVITIES, ActivityDeclaration};
     pub use linkme;
 }

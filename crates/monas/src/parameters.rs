@@ -104,6 +104,12 @@ impl Parameters {
         self.faults.borrow_mut().push(fault);
     }
 
+    /// Says that who took them has come to nothing.
+    pub(crate) fn fail(&self, message: String) {
+        let fault = ParameterFault { key: String::new(), unknown: false, message, nearest: None };
+        self.faults.borrow_mut().push(fault);
+    }
+
     /// What was found wrong since they were made: refused values, then keys that nobody asked for.
     pub fn faults(&self) -> Vec<ParameterFault> {
         let asked = self.asked.borrow();

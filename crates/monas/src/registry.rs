@@ -9,6 +9,7 @@ use crate::activity::Activity;
 use crate::error::{Error, ErrorKind};
 use crate::function::{FUNCTIONS, FunctionDeclaration};
 use crate::generated::{CHARTS, ChartDeclaration, GeneratedChart};
+use crate::module::Module;
 
 /// An activity as [`activity!`](crate::activity!) registers it.
 #[derive(Clone, Copy, Debug)]
@@ -84,7 +85,8 @@ macro_rules! activity {
     };
 }
 
-type Make = Arc<dyn Fn() -> Box<dyn Activity> + Send + Sync>;
+/// Makes an instance, or says why it cannot be made.
+type Make = Arc<dyn Fn() -> Result<Box<dyn Activity>, String> + Send + Sync>;
 
 /// What is known under one name: one maker, or several, none of which can be meant.
 #[derive(Clone)]
@@ -100,6 +102,8 @@ pub struct Registry {
     activities: BTreeMap<String, Entry>,
     functions: BTreeMap<String, Vec<FunctionDeclaration>>,
     charts: BTreeMap<String, Vec<ChartDeclaration>>,
+    /// By name.
+    modules: BTreeMap<String, Module>,
 }
 
 impl Registry {
@@ -112,10 +116,8 @@ impl Registry {
     pub fn linked() -> Registry {
         let mut registry = Registry::empty();
         for declaration in ACTIVITIES {
-            let make: Make = Arc::new(declaration.make);
-            let package = package(declaration.module);
-            registry.insert(format!("{package}::{}", declaration.name), declaration.module, make);
-            registry.insert(declaration.name.into(), declaration.module, Arc::new(declaration.make));
+            let make: Make = Arc::new(|| Ok((declaration.make)()));
+            registry.insert_both(declaration.name, declaration.module, &make);
         }
         for declaration in FUNCTIONS {
             registry.functions.entry(declaration.name.into()).or_default().push(*declaration);
@@ -139,8 +141,60 @@ impl Registry {
         A: Activity + 'static,
         F: Fn() -> A + Send + Sync + 'static,
     {
-        self.insert(name.into(), "this program", Arc::new(move || Box::new(make())));
+        self.insert(name.into(), "this program", Arc::new(move || Ok(Box::new(make()))));
         self
+    }
+
+    /// The same with the activities of a module, in the place of one of that name.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Module`]: an activity of it has a name that is taken. It would not be clear any more whom that means.
+    pub fn with_module(&self, module: Module) -> Result<Registry, Error> {
+        let mut registry = self.without_module(module.name());
+        for activity in module.activities() {
+            let makers = registry.activities.get(activity.name).map(|entry| entry.makers.as_slice());
+            if let Some((taken, _)) = makers.and_then(<[_]>::first) {
+                let message =
+                    format!("activity `{}` of module `{}` is also in {taken}", activity.name, module.name());
+                let hint = format!("call it otherwise: `monas::activity!(.. as \"Other{}\")`", activity.name);
+                return Err(Error::new(ErrorKind::Module, message).with_hint(hint));
+            }
+            let made = *activity;
+            registry.insert_both(activity.name, activity.module, &(Arc::new(move || made.make()) as Make));
+        }
+        registry.modules.insert(module.name().to_owned(), module);
+        Ok(registry)
+    }
+
+    /// The same without the activities of a module, if it has one of that name.
+    #[must_use]
+    pub fn without_module(&self, name: &str) -> Registry {
+        let mut registry = self.clone();
+        if let Some(module) = registry.modules.remove(name) {
+            for activity in module.activities() {
+                for name in both_names(activity.name, activity.module) {
+                    registry.activities.remove(&name);
+                }
+            }
+        }
+        registry
+    }
+
+    /// The modules whose activities it has, by name.
+    pub fn modules(&self) -> impl Iterator<Item = &Module> {
+        self.modules.values()
+    }
+
+    /// The module of that name.
+    pub fn module(&self, name: &str) -> Option<&Module> {
+        self.modules.get(name)
+    }
+
+    /// Under its name, and under that with its crate's.
+    fn insert_both(&mut self, name: &str, module: &str, make: &Make) {
+        for name in both_names(name, module) {
+            self.insert(name, module, make.clone());
+        }
     }
 
     fn insert(&mut self, name: String, module: &str, make: Make) {
@@ -151,10 +205,14 @@ impl Registry {
     /// A new instance of an activity.
     ///
     /// # Errors
-    /// [`ErrorKind::UnknownActivity`] names the nearest one there is, [`ErrorKind::AmbiguousActivity`] those to choose from.
+    /// [`ErrorKind::UnknownActivity`] names the nearest one there is, [`ErrorKind::AmbiguousActivity`] those to choose from. What panics in
+    /// a module while it is made is [`ErrorKind::Module`].
     pub fn activity(&self, name: &str) -> Result<Box<dyn Activity>, Error> {
         match self.activities.get(name).map(|entry| entry.makers.as_slice()) {
-            Some([(_, make)]) => Ok(make()),
+            Some([(module, make)]) => make().map_err(|reason| {
+                let message = format!("activity `{name}` of {module} cannot be made: {reason}");
+                Error::new(ErrorKind::Module, message)
+            }),
             Some(several) => Err(ambiguous(name, several)),
             None => Err(self.unknown(name)),
         }
@@ -233,12 +291,18 @@ impl std::fmt::Debug for Registry {
             .field("activities", &self.activity_names().collect::<Vec<_>>())
             .field("functions", &self.function_names().collect::<Vec<_>>())
             .field("charts", &self.chart_names().collect::<Vec<_>>())
+            .field("modules", &self.modules.keys())
             .finish()
     }
 }
 
+/// The names of an activity: its own, and that with its crate's.
+pub(crate) fn both_names(name: &str, module: &str) -> [String; 2] {
+    [format!("{}::{name}", package(module)), name.to_owned()]
+}
+
 /// The crate that a module is in.
-fn package(module: &str) -> &str {
+pub(crate) fn package(module: &str) -> &str {
     module.split("::").next().unwrap_or(module)
 }
 
@@ -279,8 +343,8 @@ mod tests {
         let mut registry = Registry::empty();
         for (module, name) in [("red::legs", "Walk"), ("blue", "Walk"), ("blue", "Kick")] {
             let qualified = format!("{}::{name}", package(module));
-            registry.insert(qualified, module, Arc::new(|| Box::new(stand)));
-            registry.insert(name.into(), module, Arc::new(|| Box::new(stand)));
+            registry.insert(qualified, module, Arc::new(|| Ok(Box::new(stand))));
+            registry.insert(name.into(), module, Arc::new(|| Ok(Box::new(stand))));
         }
         registry
     }
@@ -311,6 +375,22 @@ mod tests {
         assert_eq!(error.hint(), Some("write `red::Walk`"));
         assert!(registry.activity("red::Walk").is_ok() && registry.activity("blue::Walk").is_ok());
         assert_eq!(registry.activity_names().collect::<Vec<_>>(), ["Kick", "blue::Walk", "red::Walk"]);
+    }
+
+    #[test]
+    fn a_module_brings_its_names_and_takes_them_with_it() {
+        let eyes = || Module::pretended("eyes", &["monas"]);
+        let with = Registry::empty().with_module(eyes()).unwrap();
+        assert!(
+            with.activity("RegistryTestStand").is_ok() && with.activity("monas::RegistryTestStand").is_ok()
+        );
+        assert_eq!(with.modules().map(Module::name).collect::<Vec<_>>(), ["eyes"]);
+        assert!(with.with_module(eyes()).is_ok(), "it may come again");
+        let without = with.without_module("eyes");
+        assert_eq!((without.activity_names().count(), without.modules().count()), (0, 0));
+        let error = with.with_module(Module::pretended("other", &["monas"])).err().unwrap();
+        assert_eq!(error.kind(), ErrorKind::Module);
+        assert!(error.to_string().contains("of module `other` is also in monas::"), "{error}");
     }
 
     #[test]

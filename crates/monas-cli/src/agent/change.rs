@@ -17,10 +17,15 @@ use crate::topic::arguments::RunChoice;
 
 pub(super) fn execute(command: &AgentCommand, console: &mut Console<'_>) -> Result<Exit, Failure> {
     let Some((change, run)) = asked(command)? else { return Ok(Exit::Success) };
+    let changed = ask_for(change, run)?;
+    tell(&changed, &sentence(&changed), run.format.value, console)
+}
+
+/// What became of a change.
+pub(crate) fn ask_for(change: Change, run: &RunChoice) -> Result<Changed, Failure> {
     let number = std::process::id().into();
     let inquiry = Inquiry { change: Some(Change { number, ..change }), ..Inquiry::default() };
-    let changed = ask(inquiry, run)?.changed.ok_or_else(|| odd(run))?;
-    tell(&changed, run.format.value, console)
+    ask(inquiry, run)?.changed.ok_or_else(|| odd(run))
 }
 
 /// The change that a command is about, and of which run.
@@ -98,7 +103,13 @@ fn text_of(file: &Path, run: &RunChoice) -> Result<(String, String), Failure> {
     Ok((read.map_err(failed)?, file.display().to_string()))
 }
 
-fn tell(changed: &Changed, format: Format, console: &mut Console<'_>) -> Result<Exit, Failure> {
+/// Tells what became of a change; the sentence is for one that was made.
+pub(crate) fn tell(
+    changed: &Changed,
+    sentence: &str,
+    format: Format,
+    console: &mut Console<'_>,
+) -> Result<Exit, Failure> {
     match format {
         Format::Json => {
             let findings: Vec<_> = changed.findings.iter().map(object).collect();
@@ -112,7 +123,7 @@ fn tell(changed: &Changed, format: Format, console: &mut Console<'_>) -> Result<
                 writeln!(console.err, "{}", line(finding))?;
             }
             if changed.done {
-                writeln!(console.out, "{}", sentence(changed))?;
+                writeln!(console.out, "{sentence}")?;
             }
         }
     }

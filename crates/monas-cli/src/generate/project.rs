@@ -14,7 +14,7 @@ const END: &str = "# end of the statecharts";
 const LINKS: &str = "src/statecharts.rs";
 
 /// A workspace.
-pub(super) struct Project {
+pub(crate) struct Project {
     root: PathBuf,
     manifest: String,
     /// The folder of the package whose program links the statecharts.
@@ -27,7 +27,7 @@ impl Project {
     ///
     /// # Errors
     /// There is none, or it does not say which package is the team's.
-    pub(super) fn around(file: &Path) -> Result<Project, Box<Diagnostic>> {
+    pub(crate) fn around(file: &Path) -> Result<Project, Box<Diagnostic>> {
         let file = std::path::absolute(file).unwrap_or_else(|_| file.to_path_buf());
         let found = file.ancestors().skip(1).find_map(|folder| {
             let manifest = fs::read_to_string(folder.join("Cargo.toml")).ok()?;
@@ -51,6 +51,12 @@ impl Project {
                 Err(refusal(message, "write `team = \"FOLDER\"` under `[workspace.metadata.monas]`"))
             }
         }
+    }
+
+    /// The folder of the package whose program links the statecharts.
+    #[cfg(unix)]
+    pub(crate) fn team(&self) -> &Path {
+        &self.team
     }
 
     /// The folder of the workspace.

@@ -28,6 +28,8 @@ struct Post {
     declared: Option<Box<[TopicSlot]>>,
     /// None while it is being called.
     activity: Option<Box<dyn Activity>>,
+    /// Takes its place when it comes back from being called.
+    successor: Option<Box<dyn Activity>>,
     /// The number of the activation for which it is being called.
     called_for: Option<u64>,
     /// Whether `start` has been called since it was made or failed.
@@ -126,6 +128,7 @@ impl Posts {
                 duration: entry.duration.unwrap_or_default(),
                 declared: declared(&activity.topics(), hub),
                 activity: Some(activity),
+                successor: None,
                 called_for: None,
                 started: false,
                 missed: Vec::new(),
@@ -201,15 +204,20 @@ impl Posts {
         assignment: Assignment,
         took: Option<Took>,
     ) -> (Activation, Box<Blackboard>) {
-        let Assignment { activation, post, activity, started, blackboard, called, .. } = assignment;
+        let Assignment { activation, post, activity, started, mut blackboard, called, .. } = assignment;
         let Some(post) = self.caller(post, activation.number) else {
             return (activation, blackboard);
         };
         let newest = post.newest.filter(|newest| newest.number == activation.number);
         let activation = newest.unwrap_or(Activation { node: post.node, ..activation });
         post.called_for = None;
-        post.activity = Some(activity);
-        post.started = started;
+        (post.activity, post.started) = match post.successor.take() {
+            Some(successor) => {
+                post.end(activity, started, &mut blackboard);
+                (Some(successor), false)
+            }
+            None => (Some(activity), started),
+        };
         match (called, took) {
             (true, Some(took)) => post.timing.add(took.wall, took.cpu),
             (true, None) => {}
@@ -233,6 +241,27 @@ impl Posts {
             false => self.posts.iter().position(is_it)?,
         };
         self.posts.get_mut(place)
+    }
+
+    /// Puts another instance in the place of an activity: at once, or when it comes back if it is being called. Gives the one before if it waits for
+    /// its next call, and for which activation.
+    pub(super) fn renew(
+        &mut self,
+        node: NodeId,
+        activity: Box<dyn Activity>,
+        hub: &Narukom,
+    ) -> Option<(Box<dyn Activity>, Activation)> {
+        let place = self.of_node.get(node.0 as usize).copied().flatten()?;
+        let post = self.posts.get_mut(place)?;
+        post.declared = declared(&activity.topics(), hub);
+        if post.activity.is_none() {
+            post.successor = Some(activity);
+            return None;
+        }
+        let old = post.activity.replace(activity)?;
+        let was_started = std::mem::take(&mut post.started);
+        let waiting = post.waits.as_ref().filter(|_| was_started)?;
+        Some((old, waiting.activation))
     }
 
     /// Takes over from the posts of a chart that this one replaces; `counterpart` says which node an old one is.
@@ -373,6 +402,19 @@ impl Posts {
             call_cpu: post.timing.cpu(),
             call_percentiles: post.timing.percentiles(),
         })
+    }
+}
+
+impl Post {
+    /// Ends an instance that comes back and is wanted no more.
+    fn end(&self, mut activity: Box<dyn Activity>, started: bool, blackboard: &mut Blackboard) {
+        let stopped = logger::calling(&self.caller, 0, || match started {
+            true => call::stop(activity.as_mut(), blackboard),
+            false => Ok(()),
+        });
+        if let Err(failure) = stopped {
+            tracing::error!(activity = %self.name, "activity failed to stop: {failure}");
+        }
     }
 }
 

@@ -311,6 +311,7 @@ impl ChartThread {
             said = self.runner.swap(*swap, now)?;
             self.follow_guards();
         }
+        orders.instances.into_iter().for_each(|(_, instances)| self.runner.renew(instances, now));
         for runner in orders.charts {
             self.end(mail);
             self.runner = runner;

@@ -124,9 +124,14 @@ impl Crew {
         List::new(agent, policy, activities, blackboard)
     }
 
-    /// The charts of an agent once more, from their beginning.
-    pub(super) fn charts_anew(&self, profile: &Profile, place: &Place<'_>) -> Result<Vec<Runner>, Error> {
-        let binder = Binder::new(&self.registry)?;
+    /// The charts of an agent once more, from their beginning, with activities of this registry.
+    pub(super) fn charts_anew(
+        &self,
+        profile: &Profile,
+        place: &Place<'_>,
+        registry: &Registry,
+    ) -> Result<Vec<Runner>, Error> {
+        let binder = Binder::new(registry)?;
         let charts = profile.charts.iter().zip(0..).map(|(chart, number)| {
             let bound = match chart.is_generated {
                 true => self.generated(&binder, &chart.model, profile.semantics)?,

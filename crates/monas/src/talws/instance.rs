@@ -138,6 +138,11 @@ impl Instance {
         {
             said = chart.swap(*swap, now)?;
         }
+        for (place, instances) in orders.instances {
+            if let Some(chart) = self.charts.get_mut(place) {
+                chart.renew(instances, now);
+            }
+        }
         if let Some((list, frequency)) = orders.list.zip(self.frequency) {
             self.list = Some(Scheduled::new(*list, frequency, now));
         }

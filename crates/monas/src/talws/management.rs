@@ -6,6 +6,7 @@
 //! so a tape has both.
 
 mod findings;
+mod modules;
 mod plan;
 mod roster;
 mod save;

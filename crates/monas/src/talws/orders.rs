@@ -2,6 +2,9 @@
 
 use std::sync::Arc;
 
+use yase::NodeId;
+
+use crate::activity::Activity;
 use crate::agent::Policy;
 use crate::chart::{Runner, Swap};
 use crate::frequency::Frequency;
@@ -18,9 +21,14 @@ pub(super) struct Orders {
     pub(super) charts: Vec<Runner>,
     /// Another model for the chart at a place.
     pub(super) swap: Option<(usize, Box<Swap>)>,
+    /// Other instances of activities for the charts at these places.
+    pub(super) instances: Vec<(usize, Instances)>,
     /// What they follow from, for the records of real time.
     pub(super) asked: Option<Asked>,
 }
+
+/// Activities for the states of a chart.
+pub(super) type Instances = Vec<(NodeId, Box<dyn Activity>)>;
 
 /// The change that orders follow from.
 #[derive(Clone, Debug)]

@@ -11,7 +11,9 @@ use prost::Message;
 
 use super::clock::Clock;
 use super::supervisor::SupervisorLine;
-use crate::records::{AgentEntry, Agents, Change, Changed, Configuration, Inquiry, Reply};
+use crate::records::{
+    AgentEntry, Agents, Change, Changed, Configuration, Inquiry, ModuleEntry, Modules, Reply,
+};
 
 /// Whoever publishes from outside does so under this name.
 pub(super) const OUTSIDE: &str = "outside";
@@ -61,6 +63,7 @@ pub(super) struct View {
     pub(super) host: String,
     pub(super) agents: Vec<AgentEntry>,
     pub(super) configuration: Configuration,
+    pub(super) modules: Vec<ModuleEntry>,
 }
 
 /// Where a simulated run finds what was handed in.
@@ -157,6 +160,14 @@ impl Overview {
         Ok(self.views(host)?.into_iter().flat_map(|view| view.agents).collect())
     }
 
+    /// The modules that are loaded on a host, or those of all hosts.
+    ///
+    /// # Errors
+    /// There is no such host, or the run stands still.
+    pub fn modules(&self, host: Option<&str>) -> Result<Vec<ModuleEntry>, String> {
+        Ok(self.views(host)?.into_iter().flat_map(|view| view.modules).collect())
+    }
+
     /// What the agents of a host are made of now, as a text that can be read again: the one they were read from, brought up to date.
     ///
     /// # Errors
@@ -191,6 +202,8 @@ impl Overview {
         let mut reply = Reply::default();
         if inquiry.agents {
             reply.agents = Some(Agents { agents: self.agents(host)? });
+        } else if inquiry.modules {
+            reply.modules = Some(Modules { modules: self.modules(host)? });
         } else if inquiry.configuration {
             reply.configuration = Some(self.configuration(&self.only(host)?)?);
         } else if let Some(change) = inquiry.change {

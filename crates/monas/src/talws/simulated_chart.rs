@@ -2,6 +2,7 @@
 
 use narukom::{HostId, Moment, TopicSlot};
 
+use super::orders::Instances;
 use super::teller::Teller;
 use crate::agent::Policy;
 use crate::chart::{Assignment, Returned, Runner, Swap};
@@ -53,6 +54,11 @@ impl SimulatedChart {
     /// What stands against it.
     pub(super) fn swap(&mut self, swap: Swap, now: Moment) -> Result<Vec<String>, Vec<String>> {
         self.runner.swap(swap, now)
+    }
+
+    /// Goes on with other instances of activities.
+    pub(super) fn renew(&mut self, instances: Instances, now: Moment) {
+        self.runner.renew(instances, now);
     }
 
     /// The host it is on.

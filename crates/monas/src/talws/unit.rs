@@ -305,7 +305,7 @@ impl Unit {
     /// What stands against them. Nothing has changed then.
     pub(super) fn obey(&self, orders: Orders, patience: Duration) -> Answer {
         let Parts { list, charts } = locked(&self.parts).clone();
-        let Orders { directives, edits, charts: runners, swap, asked, .. } = orders;
+        let Orders { directives, edits, charts: runners, swap, mut instances, asked, .. } = orders;
         let told = || Orders { asked: asked.clone(), ..Orders::of(directives.clone()) };
         let mut given: Vec<(Arc<Part>, Orders, bool)> = Vec::new();
         if let Some(part) = list {
@@ -315,9 +315,10 @@ impl Unit {
         let (mut runners, mut swap) = (runners.into_iter(), swap);
         for (place, part) in charts.into_iter().enumerate() {
             let own = swap.take_if(|(chart, _)| *chart == place).map(|(_, swap)| (0, swap));
-            let is_own = own.is_some();
+            let fresh: Vec<_> = instances.extract_if(.., |(chart, _)| *chart == place).collect();
+            let is_own = own.is_some() || !fresh.is_empty();
             let charts = runners.next().into_iter().collect();
-            given.push((part, Orders { charts, swap: own, ..told() }, is_own));
+            given.push((part, Orders { charts, swap: own, instances: fresh, ..told() }, is_own));
         }
         given.retain(|(_, orders, is_own)| *is_own || !orders.directives.is_empty());
         let given: Vec<_> = given

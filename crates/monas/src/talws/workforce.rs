@@ -147,6 +147,7 @@ impl Workforce {
             host: self.name().into(),
             agents: self.roster.entries(&self.team),
             configuration: self.roster.configuration(),
+            modules: self.roster.modules(),
         }
     }
 

@@ -6,6 +6,7 @@ use narukom::Moment;
 use yase::{Diagnostic, Source};
 
 use super::findings::{Refusal, refusal, refusal_with, unknown, unusable};
+use super::modules::Equipment;
 use super::roster::Roster;
 use super::settings;
 use super::staff::Staff;
@@ -33,14 +34,16 @@ pub(super) enum Step {
     Tell(Box<Profile>, Box<Orders>),
     /// Agents begin.
     Launch(Vec<(Profile, Member)>),
+    /// A module comes or goes.
+    Equip(Box<Equipment>),
     /// An agent leaves.
     Dismiss(String),
 }
 
 /// What a change is held against.
-struct Desk<'a> {
-    change: &'a Change,
-    roster: &'a Roster,
+pub(super) struct Desk<'a> {
+    pub(super) change: &'a Change,
+    pub(super) roster: &'a Roster,
     staff: &'a dyn Staff,
     now: Moment,
 }
@@ -69,6 +72,9 @@ impl Plan {
             Action::ReplaceActivity => desk.replace_activity(),
             Action::Set => desk.set(),
             Action::SwapModel => desk.swap(),
+            Action::LoadModule => desk.load_module(),
+            Action::UnloadModule => desk.unload_module(),
+            Action::ReloadModule => desk.reload_module(),
         }
     }
 }
@@ -85,7 +91,7 @@ fn tell(profile: Profile, orders: Orders) -> Plan {
 
 impl Desk<'_> {
     /// What the agent that is meant is made of.
-    fn agent(&self) -> Result<Profile, Refusal> {
+    pub(super) fn agent(&self) -> Result<Profile, Refusal> {
         let name = &self.change.agent;
         let known = self.roster.profiles.iter().find(|profile| profile.name == *name);
         known.cloned().ok_or_else(|| {
@@ -128,7 +134,8 @@ impl Desk<'_> {
             return Err(refusal("E0352", format!("`{}` has not stopped", profile.name)));
         }
         let names = self.names();
-        let charts = self.roster.crew.charts_anew(&profile, &self.place(&profile, &names));
+        let charts =
+            self.roster.crew.charts_anew(&profile, &self.place(&profile, &names), &self.roster.registry);
         let charts = charts.map_err(|error| unusable("E0354", &error))?;
         Ok(tell(profile, Orders { charts, ..Orders::of([Directive::Start]) }))
     }
@@ -145,7 +152,7 @@ impl Desk<'_> {
     fn add_agents(&self) -> Result<Plan, Refusal> {
         let file = if self.change.file.is_empty() { "agents.xml" } else { &self.change.file };
         let source = Source::new(file, self.change.text.clone());
-        let (setup, diagnostics) = config::read(&source, Path::new(file), &self.roster.crew.registry);
+        let (setup, diagnostics) = config::read(&source, Path::new(file), &self.roster.registry);
         if diagnostics.iter().any(Diagnostic::is_error) {
             return Err(diagnostics);
         }
@@ -162,9 +169,9 @@ impl Desk<'_> {
             return Err(refusal_with("E0311", message, "each agent of a host has a name of its own"));
         }
         names.extend(setup.agents.iter().map(|agent| agent.name.clone()));
-        let Roster { crew, ground, .. } = self.roster;
+        let Roster { crew, ground, registry, .. } = self.roster;
         let failed = |error: Error| unusable("E0354", &error);
-        let binder = Binder::new(&crew.registry).map_err(failed)?;
+        let binder = Binder::new(registry).map_err(failed)?;
         let members = setup.agents.into_iter().map(|agent| {
             let profile = Profile::of(&agent);
             Ok((profile, crew.member(&binder, agent, ground, &names, self.now).map_err(failed)?))
@@ -174,21 +181,35 @@ impl Desk<'_> {
     }
 
     fn add_activity(&self) -> Result<Plan, Refusal> {
-        let mut profile = self.agent()?;
+        let profile = self.agent()?;
         let listed = self.listed(&self.change.activity)?;
         let count = profile.activities.len();
         let place = self.position(count + 1, count)?;
-        profile.activities.insert(place, ActivityProfile::of(&listed));
+        let (profile, orders) = self.enlisted(profile, place, vec![listed])?;
+        Ok(tell(profile, orders))
+    }
+
+    /// An agent with more activities in its list from a place on, and what it is told for that.
+    pub(super) fn enlisted(
+        &self,
+        mut profile: Profile,
+        place: usize,
+        more: Vec<Listed>,
+    ) -> Result<(Profile, Orders), Refusal> {
+        let added = more.iter().map(ActivityProfile::of);
+        profile.activities.splice(place..place, added.collect::<Vec<_>>());
         if self.staff.has_list(&profile.name) {
-            return Ok(self.edited(profile, ListEdit::Insert(place, listed)));
+            let edits = (place..).zip(more).map(|(place, listed)| ListEdit::Insert(place, listed));
+            let edits = edits.collect();
+            return Ok((profile, Orders { edits, ..Orders::default() }));
         }
         if profile.frequency.is_none() {
             let message = format!("nothing says how often the list of `{}` is to run", profile.name);
             return Err(refusal_with("E0305", message, "set its `frequency` first"));
         }
         let Roster { crew, ground, .. } = self.roster;
-        let list = Box::new(crew.list(&profile.name, profile.policy, vec![listed], &ground.hub));
-        Ok(tell(profile, Orders { list: Some(list), ..Orders::default() }))
+        let list = Box::new(crew.list(&profile.name, profile.policy, more, &ground.hub));
+        Ok((profile, Orders { list: Some(list), ..Orders::default() }))
     }
 
     fn remove_activity(&self) -> Result<Plan, Refusal> {
@@ -238,13 +259,13 @@ impl Desk<'_> {
     fn listed(&self, name: &str) -> Result<Listed, Refusal> {
         let given = &self.change.settings;
         let parameters = given.iter().fold(Parameters::new(), |all, one| all.with(&one.key, &one.value));
-        let activity = settings::instance(&self.roster.crew.registry, name, &parameters)?;
+        let activity = settings::instance(&self.roster.registry, name, &parameters)?;
         Ok(Listed { name: name.to_owned(), parameters, policy: None, activity })
     }
 
     fn set(&self) -> Result<Plan, Refusal> {
         let mut profile = self.agent()?;
-        let orders = settings::set(&mut profile, &self.change.settings, &self.roster.crew.registry)?;
+        let orders = settings::set(&mut profile, &self.change.settings, &self.roster.registry)?;
         Ok(tell(profile, orders))
     }
 
@@ -258,7 +279,7 @@ impl Desk<'_> {
         let Change { file, text, states, accept_losses, .. } = self.change;
         let crew = &self.roster.crew;
         let failed = |error: Error| unusable("E0355", &error);
-        let binder = Binder::new(&crew.registry).map_err(failed)?;
+        let binder = Binder::new(&self.roster.registry).map_err(failed)?;
         let (bound, warnings) = match text.is_empty() {
             true => (crew.generated(&binder, file, profile.semantics).map_err(failed)?, Vec::new()),
             false => {

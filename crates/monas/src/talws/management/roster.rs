@@ -6,12 +6,13 @@ use narukom::{Header, HostId, Moment, Narukom, Publisher, Subscriber};
 use yase::Source;
 
 use super::findings::{Refusal, finding, refusal, refusal_with, remark};
+use super::modules::{self, Equipment};
 use super::plan::{Plan, Step};
 use super::save;
 use super::staff::Staff;
 use crate::agent::Profile;
 use crate::error::Error;
-use crate::records::{AgentEntry, CHANGE, CHANGED, Change, Changed, Configuration, Finding};
+use crate::records::{AgentEntry, CHANGE, CHANGED, Change, Changed, Configuration, Finding, ModuleEntry};
 use crate::registry::Registry;
 use crate::talws::crew::{Crew, Ground};
 use crate::talws::orders::{Asked, Orders};
@@ -26,6 +27,8 @@ pub(in crate::talws) struct Roster {
     pub(super) crew: Arc<Crew>,
     /// By name.
     pub(super) profiles: Vec<Profile>,
+    /// What agents are made of here: what the run began with, and the modules that have been loaded since.
+    pub(super) registry: Registry,
     /// The text they were read from.
     configuration: Option<Arc<Source>>,
     asked: Subscriber,
@@ -45,6 +48,7 @@ impl Roster {
             asked: hub.subscriber_of(HostId::LOCAL, CHANGE.path()).map_err(Error::hub)?,
             from_outside: hub.publisher(CHANGE, OUTSIDE).map_err(Error::hub)?,
             answers: hub.publisher(CHANGED, HOST_ITSELF).map_err(Error::hub)?,
+            registry: crew.registry.clone(),
             ground,
             crew,
             profiles,
@@ -82,6 +86,11 @@ impl Roster {
         }
     }
 
+    /// The modules that are loaded here, with the agents that have activities of them.
+    pub(in crate::talws) fn modules(&self) -> Vec<ModuleEntry> {
+        self.registry.modules().map(|module| modules::entry(module, self)).collect()
+    }
+
     /// In a replay: the changes that were published and not yet looked at.
     pub(in crate::talws) fn next_asked(&mut self) -> Option<Change> {
         while let Some(sample) = self.asked.next_sample() {
@@ -114,7 +123,7 @@ impl Roster {
 
     /// What agents are made of.
     pub(in crate::talws) fn registry(&self) -> &Registry {
-        &self.crew.registry
+        &self.registry
     }
 
     fn make(
@@ -163,14 +172,9 @@ impl Roster {
         let mut said: Vec<Finding> = warnings.iter().map(finding).collect();
         match step {
             Step::Tell(profile, orders) => {
-                let objected = |reasons: Vec<String>| {
-                    reasons.into_iter().flat_map(|reason| refusal("E0356", reason)).collect::<Refusal>()
-                };
                 let remarks = staff.obey(&profile.name, Orders { asked, ..*orders }).map_err(objected)?;
                 said.extend(remarks.into_iter().map(remark));
-                if let Some(known) = self.profiles.iter_mut().find(|known| known.name == profile.name) {
-                    *known = *profile;
-                }
+                self.note(*profile);
             }
             Step::Launch(agents) => {
                 for (profile, member) in agents {
@@ -179,12 +183,52 @@ impl Roster {
                     self.profiles.insert(place, profile);
                 }
             }
+            Step::Equip(equipment) => {
+                said.extend(self.equip(*equipment, asked.as_ref(), staff)?);
+            }
             Step::Dismiss(name) => {
                 staff.dismiss(&name).map_err(|reason| refusal("E0357", reason))?;
                 self.profiles.retain(|profile| profile.name != name);
             }
         }
         Ok(said)
+    }
+
+    /// Agents get what modules bring, or lose it. Everything has been made ready, so an agent can only be too busy to take it: if that is the
+    /// first, nothing has changed; if it is another, it goes on as it was.
+    fn equip(
+        &mut self,
+        equipment: Equipment,
+        asked: Option<&Asked>,
+        staff: &mut dyn Staff,
+    ) -> Result<Vec<Finding>, Refusal> {
+        let Equipment { registry, told } = equipment;
+        let mut said = Vec::new();
+        let mut is_begun = false;
+        for (profile, orders) in told {
+            let name = profile.name.clone();
+            match staff.obey(&name, Orders { asked: asked.cloned(), ..orders }) {
+                Ok(remarks) => {
+                    is_begun = true;
+                    said.extend(remarks.into_iter().map(remark));
+                    self.note(profile);
+                }
+                Err(reasons) if !is_begun => return Err(objected(reasons)),
+                Err(reasons) => {
+                    let reason = format!("`{name}` goes on as it was: {}", reasons.join("; "));
+                    said.extend(refusal("E0356", reason).iter().map(finding));
+                }
+            }
+        }
+        self.registry = registry;
+        Ok(said)
+    }
+
+    /// An agent is made of this now.
+    fn note(&mut self, profile: Profile) {
+        if let Some(known) = self.profiles.iter_mut().find(|known| known.name == profile.name) {
+            *known = profile;
+        }
     }
 
     /// All agents as they are now.
@@ -197,6 +241,11 @@ impl Roster {
         let file = self.configuration.as_ref().map(|source| source.name.clone()).unwrap_or_default();
         Configuration { file, text: save::text(self.configuration.as_ref(), &self.profiles) }
     }
+}
+
+/// What stands against orders.
+fn objected(reasons: Vec<String>) -> Refusal {
+    reasons.into_iter().flat_map(|reason| refusal("E0356", reason)).collect()
 }
 
 /// The answer to a change that never came here: its topic keeps so many, and others have published more.

@@ -153,7 +153,12 @@ pub(super) fn instance(
     parameters: &Parameters,
 ) -> Result<Box<dyn Activity>, Refusal> {
     let mut activity = registry.activity(name).map_err(|error| {
-        unusable(if error.kind() == ErrorKind::AmbiguousActivity { "E0313" } else { "E0312" }, &error)
+        let code = match error.kind() {
+            ErrorKind::AmbiguousActivity => "E0313",
+            ErrorKind::Module => "E0364",
+            _ => "E0312",
+        };
+        unusable(code, &error)
     })?;
     // What has been asked for before was asked by others.
     let parameters = parameters.iter().fold(Parameters::new(), |all, (key, value)| all.with(key, value));

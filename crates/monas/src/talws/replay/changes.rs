@@ -123,6 +123,8 @@ pub(super) fn refuse_in_real_time(changed: &Changed, is_list: bool, at: Moment) 
         Action::ReplaceActivity => "given an activity in the place of another",
         Action::Set => "set otherwise",
         Action::SwapModel => "given another model",
+        Action::LoadModule => "given activities of a module",
+        Action::UnloadModule | Action::ReloadModule => "given other activities of a module",
     };
     let message = format!(
         "agent `{}` was {what} {:.3} s after the run began: the recording, of an earlier version, does not tell after which turn",

@@ -155,6 +155,7 @@ impl RepeatedChart {
             said = self.runner.swap(*swap, now)?;
             self.follow_guards();
         }
+        orders.instances.into_iter().for_each(|(_, instances)| self.runner.renew(instances, now));
         if let Some(mut runner) = orders.charts.pop() {
             runner.be_led(Box::new(self.feed.clone()));
             self.next = Some(runner);

@@ -169,6 +169,7 @@ impl Host {
             host: working.team.host.clone(),
             agents: self.roster.entries(&working),
             configuration: self.roster.configuration(),
+            modules: self.roster.modules(),
         }
     }
 }

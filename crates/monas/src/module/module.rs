@@ -1,0 +1,80 @@
+//! A module that is loaded.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::file::ModuleFile;
+use super::gate::ModuleActivity;
+use super::note::BuildNote;
+
+/// A module that is loaded: its activities, for a [`Registry`](crate::Registry) that [has it](crate::Registry::with_module).
+#[derive(Clone)]
+pub struct Module {
+    file: PathBuf,
+    digest: String,
+    note: BuildNote,
+    activities: Arc<[ModuleActivity]>,
+}
+
+impl Module {
+    pub(super) fn new(file: &ModuleFile, activities: Vec<ModuleActivity>) -> Module {
+        Module {
+            file: file.path.clone(),
+            digest: file.digest(),
+            note: file.note().clone(),
+            activities: activities.into(),
+        }
+    }
+
+    /// Its name: that of its crate, unless it has said another.
+    pub fn name(&self) -> &str {
+        self.note.module()
+    }
+
+    /// The file that was loaded.
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// The hash of that file when it was loaded, as hexadecimal digits.
+    pub fn digest(&self) -> &str {
+        &self.digest
+    }
+
+    /// How it was built.
+    pub fn note(&self) -> &BuildNote {
+        &self.note
+    }
+
+    /// The names of its activities, in alphabetical order.
+    pub fn activity_names(&self) -> impl Iterator<Item = &str> {
+        self.activities.iter().map(|activity| activity.name)
+    }
+
+    pub(crate) fn activities(&self) -> impl Iterator<Item = &ModuleActivity> {
+        self.activities.iter()
+    }
+
+    /// A module as if it had been loaded, for tests of those who hold modules.
+    #[cfg(test)]
+    pub(crate) fn pretended(name: &str, crates: &[&str]) -> Module {
+        let note = BuildNote::parse(&format!("{}module {name}\n", super::note::BUILD)).expect("it is one");
+        let activities = super::gate::contents(crates).activities;
+        Module {
+            file: format!("{name}.so").into(),
+            digest: String::new(),
+            note,
+            activities: activities.into(),
+        }
+    }
+}
+
+impl std::fmt::Debug for Module {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Module")
+            .field("name", &self.name())
+            .field("file", &self.file)
+            .field("activities", &self.activity_names().collect::<Vec<_>>())
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,25 @@
+//! The robot's program, started as a person would.
+
+use std::process::{Command, Output};
+
+/// The program with arguments, ready to be started.
+pub(crate) fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_robot"));
+    command.args(arguments).env_remove("MONAS_LOG").env_remove("NO_COLOR");
+    command
+}
+
+/// What it printed and how it ended.
+#[derive(Debug)]
+pub(crate) struct Answer {
+    pub(crate) code: Option<i32>,
+    pub(crate) out: String,
+    pub(crate) err: String,
+}
+
+impl From<Output> for Answer {
+    fn from(output: Output) -> Answer {
+        let text = |bytes| String::from_utf8(bytes).expect("the program prints UTF-8");
+        Answer { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+    }
+}

@@ -1,0 +1,113 @@
+//! Modules of a run in real time, by the commands.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::built::{blind_eyes, eyes, sharp_eyes};
+use crate::kit::Answer;
+use crate::running::{Running, ask, objects};
+
+/// A robot that runs, with sockets and the file of its module in a folder.
+struct Robot {
+    folder: tempfile::TempDir,
+    run: Running,
+}
+
+impl Robot {
+    fn start() -> Robot {
+        let folder = tempfile::tempdir().expect("a folder");
+        let settings = "<MessageLogCerr>1</MessageLogCerr>\n<MessageLogFile>log.txt</MessageLogFile>\n";
+        let log = folder.path().join("log.xml");
+        let file = folder.path().join("log.txt").display().to_string();
+        fs::write(&log, settings.replace("log.txt", &file)).expect("the folder takes files");
+        let robot = folder.path().join("robot.xml");
+        fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/robot.xml"), &robot).expect("the folder takes files");
+        let (robot, log) = (robot.display().to_string(), log.display().to_string());
+        let run =
+            Running::start(folder.path(), &["run", &robot, "--log", &log, "--control", "lab"], "running, ");
+        Robot { folder, run }
+    }
+
+    /// Puts a module where the robot's is.
+    fn put(&self, module: &Path) -> String {
+        let file = self.folder.path().join("eyes.so");
+        // as cargo does: a new file, in the place of the one before
+        let new = self.folder.path().join("eyes.new");
+        fs::copy(module, &new).and_then(|_| fs::rename(&new, &file)).expect("the folder takes files");
+        file.display().to_string()
+    }
+
+    fn ask(&self, arguments: &[&str]) -> Answer {
+        ask(self.folder.path(), arguments)
+    }
+
+    fn done(&self, arguments: &[&str]) -> String {
+        let answer = self.ask(arguments);
+        assert_eq!(answer.code, Some(0), "{arguments:?}: {}{}", answer.out, answer.err);
+        answer.out
+    }
+
+    fn refused(&self, arguments: &[&str], part: &str) {
+        let answer = self.ask(arguments);
+        assert_ne!(answer.code, Some(0), "{arguments:?}: {}{}", answer.out, answer.err);
+        assert!(answer.err.contains(part), "{arguments:?}: `{part}` is not in {}", answer.err);
+    }
+
+    /// How far the ball is by messages to come; the first may be from before.
+    fn distance(&self) -> f64 {
+        let said = self.done(&["topic", "echo", "soccer/ball", "--count", "3", "--format", "json"]);
+        let number = objects(&said).iter().rev().find_map(distance_in);
+        number.unwrap_or_else(|| panic!("no distance in {said}"))
+    }
+
+    fn modules(&self) -> Vec<Value> {
+        objects(&self.done(&["module", "list", "--format", "json"]))
+    }
+}
+
+/// The distance in a message, wherever its fields are.
+fn distance_in(said: &Value) -> Option<f64> {
+    match said {
+        Value::Object(fields) => {
+            fields.get("distance").and_then(Value::as_f64).or_else(|| fields.values().find_map(distance_in))
+        }
+        _ => None,
+    }
+}
+
+#[test]
+fn a_module_comes_changes_and_goes_while_the_robot_runs() {
+    let robot = Robot::start();
+    let file = robot.put(&eyes());
+    let loaded = robot.done(&["module", "load", &file, "--agent", "Head"]);
+    assert!(
+        loaded.starts_with("module `eyes` is loaded, `Head` has its activities after its cycle "),
+        "{loaded}"
+    );
+    assert_eq!(robot.distance(), 2.0);
+    let module = &robot.modules()[0];
+    assert_eq!((&module["module"], &module["file"]), (&"eyes".into(), &file.as_str().into()));
+    assert_eq!((&module["activities"], &module["agents"]), (&["Eyes"].into(), &["Head"].into()));
+
+    robot.put(&sharp_eyes());
+    assert_eq!(robot.done(&["module", "reload", "eyes"]), "module `eyes` is exchanged\n");
+    assert_eq!(robot.distance(), 1.0);
+
+    robot.put(&blind_eyes());
+    robot.refused(&["module", "reload", "eyes"], "cannot be made: panicked: no lens");
+    assert_eq!(robot.distance(), 1.0, "the old one goes on");
+
+    robot.done(&["module", "unload", "eyes"]);
+    assert_eq!(robot.modules(), [Value::Null; 0]);
+    let head = objects(&robot.done(&["agent", "list", "Head", "--format", "json"]));
+    assert_eq!(head[0]["activities"].as_array().map(Vec::len), Some(1), "{head:?}");
+    robot.refused(&["agent", "add-activity", "Head", "Eyes"], "unknown activity `Eyes`");
+
+    let log = robot.folder.path().join("log.txt");
+    assert_eq!(robot.run.interrupt().code, Some(130));
+    let log = fs::read_to_string(log).expect("a log");
+    assert!(log.contains("[local Head/Eyes #") && log.contains("eyes open range=4.0"), "{log}");
+    assert!(log.contains("WARN") && log.contains("sharp"), "{log}");
+}

@@ -1,0 +1,11 @@
+//! The module as it is used: loaded into agents in simulated time, and into the program while it runs.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot be prepared fails")]
+
+mod built;
+mod kit;
+mod live;
+#[path = "../../../../crates/monas-cli/tests/command/running.rs"]
+#[allow(dead_code, reason = "the tests of the command use more of it")]
+mod running;
+mod simulated;

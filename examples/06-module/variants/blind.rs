@@ -1,0 +1,21 @@
+//! The module `eyes` after a change that was none for the better: they cannot be made.
+
+use monas::{Activity, Blackboard, BoxError, Progress};
+
+monas::module!(name = eyes);
+
+struct Eyes;
+
+impl Default for Eyes {
+    fn default() -> Eyes {
+        panic!("no lens")
+    }
+}
+
+impl Activity for Eyes {
+    fn execute(&mut self, _: &mut Blackboard) -> Result<Progress, BoxError> {
+        Ok(Progress::Done)
+    }
+}
+
+monas::activity!(Eyes);
