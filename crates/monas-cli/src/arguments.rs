@@ -232,6 +232,9 @@ pub(crate) struct NewArguments {
     /// The folder of a new project, or `activity` and a name.
     #[arg(required = true, num_args = 1..=2, value_name = "NAME")]
     pub(crate) names: Vec<String>,
+    /// Make the activity a module: a crate of its own in `modules`, which can be loaded while the program runs.
+    #[arg(long)]
+    pub(crate) module: bool,
     /// Where a project finds Monas: a checkout, the address of a git repository, or a version; the checkout that this command was built from,
     /// if not given.
     #[arg(long, value_name = "PATH|GIT|VERSION")]

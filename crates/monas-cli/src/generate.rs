@@ -24,7 +24,7 @@ use crate::failure::Failure;
 use crate::model;
 
 pub(crate) use linked::differences;
-pub(crate) use project::Project;
+pub(crate) use project::{Project, with_members};
 
 pub(crate) fn execute(arguments: &GenerateArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
     let format = arguments.format.value;

@@ -1,6 +1,7 @@
 //! `monas new`: a project, or an activity in one.
 
 mod activity;
+mod module;
 mod project;
 
 use std::path::{Path, PathBuf};
@@ -14,7 +15,11 @@ use crate::failure::Failure;
 
 pub(crate) fn execute(arguments: &NewArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
     match arguments.names.as_slice() {
+        [_] if arguments.module => {
+            Err(Failure::Usage("--module is for an activity: `monas new activity NAME --module`".into()))
+        }
         [project] => project::create(project, arguments, console),
+        [kind, name] if kind == "activity" && arguments.module => module::create(name, arguments, console),
         [kind, name] if kind == "activity" => activity::create(name, arguments, console),
         [kind, name, ..] => {
             let message = format!(

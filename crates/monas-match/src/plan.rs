@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use monas::config::{self, Element, Grammar, Layers};
-use monas::{Agent, ChartListener, HostConfig, LinkConfig, Provenance, Registry, RunHash, Talws};
+use monas::{Agent, ChartListener, HostConfig, LinkConfig, Module, Provenance, Registry, RunHash, Talws};
 use monas_sim::{FieldGeometry, Physics, Pitch, Rules, Setup, TeamSetup, World};
 use yase::{Diagnostic, Source};
 
@@ -74,14 +74,18 @@ fn robots(
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Vec<RobotPlan> {
     let mut robots = Vec::new();
-    let mut settings = Settings::new(layers);
+    let (mut settings, mut registry) = (Settings::new(layers), registry.clone());
     for team in &file.teams {
         for robot in &team.robots {
             let resolved = config::resolve(&robot.role, &Grammar::agents(), &settings.over(&robot.own));
             diagnostics.extend(resolved.diagnostics);
             diagnostics.extend(settings.unmatched(&robot.own, resolved.unmatched));
-            let setup = config::assemble(&resolved.elements, &robot.role, registry, diagnostics);
-            let config::Setup { agents, links, source } = setup;
+            let setup = config::assemble(&resolved.elements, &robot.role, &registry, diagnostics);
+            let config::Setup { agents, links, modules, source } = setup;
+            // What one has loaded the next need not load again.
+            registry = modules
+                .iter()
+                .fold(registry, |registry, module| registry.with_module(module.clone()).unwrap_or(registry));
             let host = format!("{}-{}", file::host_name(&team.setup.name), robot.number);
             robots.push(RobotPlan {
                 team: team.setup.number,
@@ -89,6 +93,7 @@ fn robots(
                 host,
                 agents,
                 links,
+                modules,
                 source,
             });
         }
@@ -139,6 +144,7 @@ struct RobotPlan {
     host: String,
     agents: Vec<Agent>,
     links: Vec<LinkConfig>,
+    modules: Vec<Module>,
     /// The text of its role.
     source: Option<Arc<Source>>,
 }
@@ -212,6 +218,7 @@ impl MatchPlan {
             agents: robot.agents,
             // Who is heard of is known by them; a replay opens none.
             links: robot.links,
+            modules: robot.modules,
             configuration: robot.source,
         };
         self.robots.into_iter().map(host).collect()
@@ -271,13 +278,12 @@ impl MatchPlan {
         };
         let pitch = Pitch::new(World::new(setup).map_err(Error::field)?);
         let mut talws = Talws::new().registry(self.registry);
-        for (index, RobotPlan { team, number, host, agents, links, source }) in
-            self.robots.into_iter().enumerate()
-        {
+        for (index, robot) in self.robots.into_iter().enumerate() {
+            let RobotPlan { team, number, host, agents, links, modules, source } = robot;
             let body = pitch.body(index).map(|body| Box::new(body) as _);
             let (team, number) = (team.into(), number.into());
             let configuration = source;
-            talws.host(HostConfig { name: host, team, number, body, agents, links, configuration });
+            talws.host(HostConfig { name: host, team, number, body, agents, links, modules, configuration });
         }
         talws.world(Box::new(Stage::new(pitch.clone())));
         for listener in self.listeners {

@@ -101,6 +101,7 @@ mod grammar;
 mod layers;
 mod links;
 mod model;
+mod modules;
 mod paths;
 mod repair;
 mod resolve;

@@ -44,6 +44,7 @@ use crate::config;
 use crate::error::{Error, ErrorKind};
 use crate::link::LinkConfig;
 use crate::listener::ChartListener;
+use crate::module::Module;
 use crate::registry::Registry;
 use crate::statistics::Statistics;
 
@@ -77,6 +78,8 @@ pub struct HostConfig {
     pub agents: Vec<Agent>,
     /// Its links to other processes and hosts.
     pub links: Vec<LinkConfig>,
+    /// The modules that its agents have activities of. All agents of the run may have them.
+    pub modules: Vec<Module>,
     /// The text that its agents were read from, which they are saved into.
     pub configuration: Option<Arc<Source>>,
 }
@@ -90,6 +93,7 @@ impl std::fmt::Debug for HostConfig {
             .field("body", &self.body.as_ref().map(|body| &body.anatomy().model))
             .field("agents", &self.agents)
             .field("links", &self.links)
+            .field("modules", &self.modules)
             .finish()
     }
 }
@@ -164,11 +168,12 @@ impl Talws {
         Ok(Talws::new().registry(registry).setup(setup))
     }
 
-    /// Adds the agents and links of a configuration to the host [`LOCAL`](Talws::LOCAL). What is changed while they run can be saved into
+    /// Adds the agents, links and modules of a configuration to the host [`LOCAL`](Talws::LOCAL). What is changed while they run can be saved into
     /// its text.
     pub fn setup(mut self, setup: config::Setup) -> Talws {
-        let config::Setup { agents, links, source } = setup;
+        let config::Setup { agents, links, modules, source } = setup;
         let local = self.local();
+        local.modules.extend(modules);
         local.agents.extend(agents);
         local.links.extend(links);
         local.configuration = source.or(local.configuration.take());

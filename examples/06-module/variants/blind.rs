@@ -7,6 +7,7 @@ monas::module!(name = eyes);
 struct Eyes;
 
 impl Default for Eyes {
+    #[expect(clippy::panic, reason = "that is what is wrong with them")]
     fn default() -> Eyes {
         panic!("no lens")
     }

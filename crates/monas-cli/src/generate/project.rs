@@ -10,6 +10,9 @@ use yase::Diagnostic;
 const BEGIN: &str = "# statecharts, kept in step by `monas generate`";
 const END: &str = "# end of the statecharts";
 
+/// The crates among the members of a workspace.
+const MEMBERS: &str = "\"statecharts/*\"";
+
 /// The file of the package that links the statecharts, beside its main.rs.
 const LINKS: &str = "src/statecharts.rs";
 
@@ -130,7 +133,7 @@ impl Project {
         let mut changed = Vec::new();
         let lines: Vec<String> = crates.iter().map(|name| path(name, 0)).collect();
         let text = |manifest: &str| {
-            let manifest = with_members(manifest);
+            let manifest = with_members(manifest, MEMBERS);
             if is_shared { with_block(&manifest, "[workspace.dependencies]", &lines) } else { manifest }
         };
         changed.extend(edited(&self.root.join("Cargo.toml"), text)?);
@@ -208,9 +211,8 @@ fn with_block(manifest: &str, header: &str, lines: &[String]) -> String {
     format!("{before}{block}{rest}")
 }
 
-/// A workspace whose members the crates are.
-fn with_members(manifest: &str) -> String {
-    let members = "\"statecharts/*\"";
+/// A workspace with the crates of a folder among its members, as these are written: `"statecharts/*"`.
+pub(crate) fn with_members(manifest: &str, members: &str) -> String {
     match manifest.split_once("members = [") {
         Some((before, after)) if !manifest.contains(members) => {
             format!("{before}members = [{members}, {after}")
@@ -289,10 +291,10 @@ mod tests {
 
     #[test]
     fn crates_become_members_once() {
-        let one = with_members("[workspace]\nresolver = \"3\"\nmembers = [\"a\"]\n");
+        let one = with_members("[workspace]\nresolver = \"3\"\nmembers = [\"a\"]\n", MEMBERS);
         assert_eq!(one, "[workspace]\nresolver = \"3\"\nmembers = [\"statecharts/*\", \"a\"]\n");
-        assert_eq!(with_members(&one), one);
-        assert_eq!(with_members("[workspace]\n"), "[workspace]\nmembers = [\"statecharts/*\"]\n");
+        assert_eq!(with_members(&one, MEMBERS), one);
+        assert_eq!(with_members("[workspace]\n", MEMBERS), "[workspace]\nmembers = [\"statecharts/*\"]\n");
     }
 
     #[test]

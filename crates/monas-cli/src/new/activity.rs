@@ -12,7 +12,7 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::failure::Failure;
 
-const TEMPLATE: &str = include_str!("template/activity.rs.txt");
+pub(super) const TEMPLATE: &str = include_str!("template/activity.rs.txt");
 
 pub(super) fn create(
     name: &str,
@@ -20,18 +20,7 @@ pub(super) fn create(
     console: &mut Console<'_>,
 ) -> Result<Exit, Failure> {
     let format = arguments.format.value;
-    if !is_type(name) {
-        let message = format!(
-            "`{name}` cannot be the name of an activity: a large letter, then letters and digits, for example `TrackBall`"
-        );
-        return Err(Failure::Usage(message));
-    }
-    let here = env::current_dir().map_err(|error| Failure::failed(format, error))?;
-    let Some(project) = super::project_around(&here) else {
-        let diagnostic = Diagnostic::error("E0927", 0..0, "this folder is in no project of Monas")
-            .with_hint("`monas new my-team` makes one");
-        return Err(Failure::Invalid(format, vec![diagnostic]));
-    };
+    let (here, project) = place_of(name, format)?;
     let path = project.join("activities").join(format!("{}.rs", snake_case(name)));
     if path.exists() {
         return Err(Failure::Failed(format, format!("{} is there already", path.display())));
@@ -44,6 +33,23 @@ pub(super) fn create(
         writeln!(console.err, "configurations and models name it `{}`", spelled(name))?;
     }
     Ok(Exit::Success)
+}
+
+/// Where the activity of that name is to be made: the folder in which this command is, and the project around it.
+pub(super) fn place_of(name: &str, format: Format) -> Result<(PathBuf, PathBuf), Failure> {
+    if !is_type(name) {
+        let message = format!(
+            "`{name}` cannot be the name of an activity: a large letter, then letters and digits, for example `TrackBall`"
+        );
+        return Err(Failure::Usage(message));
+    }
+    let here = env::current_dir().map_err(|error| Failure::failed(format, error))?;
+    let Some(project) = super::project_around(&here) else {
+        let diagnostic = Diagnostic::error("E0927", 0..0, "this folder is in no project of Monas")
+            .with_hint("`monas new my-team` makes one");
+        return Err(Failure::Invalid(format, vec![diagnostic]));
+    };
+    Ok((here, project))
 }
 
 /// How it is named: with its crate, where a crate of the program has an activity of that name already.
@@ -60,7 +66,7 @@ fn is_type(name: &str) -> bool {
         && name != "Self"
 }
 
-fn snake_case(name: &str) -> String {
+pub(super) fn snake_case(name: &str) -> String {
     let mut text = String::new();
     let letters: Vec<char> = name.chars().collect();
     for (index, letter) in letters.iter().enumerate() {

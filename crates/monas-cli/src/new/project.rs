@@ -10,7 +10,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 
 /// Every file of a project, with its text; what stands in double braces is filled in.
-const FILES: [(&str, &str); 24] = [
+const FILES: [(&str, &str); 25] = [
     ("Cargo.toml", include_str!("template/Cargo.toml.txt")),
     (".gitignore", include_str!("template/gitignore.txt")),
     ("README.md", include_str!("template/README.md.txt")),
@@ -32,6 +32,7 @@ const FILES: [(&str, &str); 24] = [
     ("messages/greeting.proto", include_str!("template/messages/greeting.proto.txt")),
     ("models/greeter.srm", include_str!("template/models/greeter.srm.txt")),
     ("statecharts/.gitkeep", ""),
+    ("modules/.gitkeep", ""),
     ("config/agents.xml", include_str!("template/config/agents.xml.txt")),
     ("rustfmt.toml", "edition = \"2024\"\n"),
     (".gitattributes", "Cargo.lock linguist-generated\n"),
@@ -41,7 +42,7 @@ const FILES: [(&str, &str); 24] = [
 const CRATES: [&str; 5] = ["monas", "monas-cli", "narukom", "narukom-build", "yase"];
 
 /// Names that packages of the project have, or that mean something else to Cargo or Rust.
-const TAKEN: [&str; 11] = [
+pub(super) const TAKEN: [&str; 11] = [
     "activities",
     "alloc",
     "core",

@@ -69,6 +69,45 @@ fn an_activity_is_one_new_file_and_nothing_else_changes() {
     assert_eq!(other.out, "{\"written\":\"activities/juggle.rs\"}\n");
 }
 
+#[test]
+fn an_activity_that_is_a_module_is_a_crate_which_the_workspace_finds() {
+    let folder = project();
+    let team = folder.path().join("my-team");
+    let before = texts(&team);
+    let answer = monas_in(&team, &["new", "activity", "TrackBall", "--module"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert_eq!(answer.out, "modules/track_ball/Cargo.toml\nmodules/track_ball/lib.rs\n");
+    assert!(answer.err.contains("`monas module build track_ball`"), "{}", answer.err);
+    let mut after = texts(&team);
+    let library = after.remove("modules/track_ball/lib.rs").expect("the activity is there");
+    assert!(library.contains("monas::activity!(TrackBall);\nmonas::module!();\n"), "{library}");
+    assert!(after.remove("modules/track_ball/Cargo.toml").expect("the crate").contains("\"cdylib\""));
+    assert_eq!(after, before);
+    let arguments = ["metadata", "--offline", "--no-deps", "--format-version", "1"];
+    let metadata = cargo_in(Command::new(env!("CARGO")).args(arguments), &team);
+    assert!(metadata.contains("modules/track_ball/Cargo.toml"), "{metadata}");
+    assert!(monas_in(&team, &["new", "activity", "TrackBall", "--module"]).err.contains("is there already"));
+    for (arguments, expected) in [
+        (&["new", "activity", "Messages", "--module"][..], "take another name"),
+        (&["new", "other-team", "--module"], "--module is for an activity"),
+    ] {
+        let answer = monas_in(&team, arguments);
+        assert_eq!(answer.code, Some(2), "{arguments:?}\n{}", answer.err);
+        assert!(answer.err.contains(expected), "{arguments:?}\n{}", answer.err);
+    }
+}
+
+#[test]
+fn a_project_that_has_no_folder_of_modules_gets_one() {
+    let folder = project();
+    let team = folder.path().join("my-team");
+    let manifest = read(&team.join("Cargo.toml"));
+    fs::write(team.join("Cargo.toml"), manifest.replace(", \"modules/*\"", "")).expect("a file");
+    let answer = monas_in(&team, &["new", "activity", "Look", "--module"]);
+    assert!(answer.out.lines().any(|line| line == "Cargo.toml"), "{}", answer.out);
+    assert!(read(&team.join("Cargo.toml")).contains("\"modules/*\""));
+}
+
 /// Every file of a folder by its path.
 fn texts(folder: &Path) -> std::collections::BTreeMap<String, String> {
     fn below(folder: &Path, root: &Path, found: &mut std::collections::BTreeMap<String, String>) {

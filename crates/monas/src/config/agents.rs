@@ -13,6 +13,7 @@ use super::grammar::Grammar;
 use super::layers::Layers;
 use super::links::LinkReader;
 use super::model;
+use super::modules;
 use super::paths;
 use super::resolve::{resolve, sort};
 use super::values::Values;
@@ -22,6 +23,7 @@ use crate::binder::Binder;
 use crate::error::{Error, ErrorKind};
 use crate::frequency::Hz;
 use crate::link::LinkConfig;
+use crate::module::Module;
 use crate::monitors::{OnViolation, Rules, needs_one_chart};
 use crate::parameters::Parameters;
 use crate::registry::Registry;
@@ -33,6 +35,8 @@ pub struct Setup {
     pub agents: Vec<Agent>,
     /// Its links to other processes and hosts.
     pub links: Vec<LinkConfig>,
+    /// The modules that it names, which are loaded: the registry of a run with these agents has them.
+    pub modules: Vec<Module>,
     /// The text they were read from.
     pub source: Option<Arc<Source>>,
 }
@@ -77,20 +81,24 @@ pub fn assemble(
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Setup {
     let grammar = Grammar::agents();
-    let mut reader = Reader { path, registry, grammar: &grammar, diagnostics, setup: Setup::default() };
+    let (registry, setup) = (registry.clone(), Setup::default());
+    let mut reader = Reader { path, registry, grammar: &grammar, diagnostics, setup };
     reader.setup.source = elements.first().map(|element| element.source().clone());
+    // What they bring is known to whatever stands in the file, wherever they do.
+    modules::read(&mut reader, elements);
     // What runs elsewhere is held against the links, wherever these stand.
     reader.links(elements);
     reader.agents(elements);
     reader.setup
 }
 
-struct Reader<'a> {
-    path: &'a Path,
-    registry: &'a Registry,
-    grammar: &'a Grammar,
-    diagnostics: &'a mut Vec<Diagnostic>,
-    setup: Setup,
+pub(super) struct Reader<'a> {
+    pub(super) path: &'a Path,
+    /// With the modules of the file.
+    pub(super) registry: Registry,
+    pub(super) grammar: &'a Grammar,
+    pub(super) diagnostics: &'a mut Vec<Diagnostic>,
+    pub(super) setup: Setup,
 }
 
 impl Reader<'_> {
@@ -189,7 +197,7 @@ impl Reader<'_> {
             return self.diagnostics.push(error.with_hint(wrong.hint.unwrap_or_default()));
         }
         // What is wrong with the program's words or with the chart has been said.
-        let Ok(binder) = Binder::new(self.registry) else { return };
+        let Ok(binder) = Binder::new(&self.registry) else { return };
         let Ok(compiled) = binder.compiled(chart, agent.generated.get(&0)) else { return };
         if let Err(wrong) = binder.monitors(std::slice::from_ref(rules), agent.name(), 1, &compiled) {
             self.diagnostics.extend(wrong);
@@ -386,7 +394,7 @@ impl Reader<'_> {
         let is_known = !diagnostics.iter().any(model::is_about_formulas);
         self.diagnostics.extend(diagnostics);
         let (chart, source) = chart.filter(|_| is_known)?;
-        let bound = match Binder::new(self.registry) {
+        let bound = match Binder::new(&self.registry) {
             Ok(binder) => binder.check(&chart, Some(&source)),
             Err(error) => vec![element.error("E0318", element.text_span(), error.to_string())],
         };
@@ -420,6 +428,6 @@ impl Reader<'_> {
 }
 
 /// Whether an element is not left out.
-fn is_enabled(values: &Values<'_>) -> bool {
+pub(super) fn is_enabled(values: &Values<'_>) -> bool {
     values.flag("enable").unwrap_or(true)
 }

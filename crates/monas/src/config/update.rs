@@ -2,6 +2,7 @@
 //! keeps its bytes; what is new is written as its neighbours are.
 
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use yase::Source;
@@ -9,24 +10,33 @@ use yase::Source;
 use super::edit::{Document, attribute_text, element_text};
 use super::element::{Element, camel_case};
 use super::grammar::Grammar;
+use super::modules;
 use super::values::Values;
 use crate::agent::{ActivityProfile, Policy, Profile};
+use crate::module::Module;
 use crate::monitors::OnViolation;
 
 type Splice = (Range<usize>, String);
 
 /// The text of a configuration with its agents as they are now. Those that it leaves out with `enable` stay left out.
-pub(crate) fn updated(source: &Arc<Source>, profiles: &[Profile]) -> String {
+pub(crate) fn updated<'a>(
+    source: &Arc<Source>,
+    profiles: &[Profile],
+    loaded: impl Iterator<Item = &'a Module>,
+) -> String {
     let mut document = Document::new(source.clone());
-    let splices = Update { document: &document, grammar: Grammar::agents() }.splices(profiles);
+    let update = Update { document: &document, grammar: Grammar::agents() };
+    let mut splices = update.splices(profiles);
+    splices.extend(update.modules(loaded));
     document.splice(splices);
     document.source().text.clone()
 }
 
 /// The agents in a text of their own.
-pub(crate) fn written_anew(profiles: &[Profile]) -> String {
+pub(crate) fn written_anew<'a>(profiles: &[Profile], loaded: impl Iterator<Item = &'a Module>) -> String {
+    let modules: String = loaded.map(|module| format!("\n  {}", module_element(module))).collect();
     let agents: String = profiles.iter().map(|profile| agent(profile, "\n  ")).collect();
-    format!("<?xml version=\"1.0\" ?>\n<agents>{agents}\n</agents>\n")
+    format!("<?xml version=\"1.0\" ?>\n<agents>{modules}{agents}\n</agents>\n")
 }
 
 struct Update<'a> {
@@ -50,6 +60,29 @@ impl Update<'_> {
         let new: Vec<&Profile> = profiles.iter().filter(is_new).collect();
         if !new.is_empty() {
             splices.push(self.added(&new));
+        }
+        splices
+    }
+
+    /// Modules that are loaded no more go; those that have been loaded since stand in front of everything else.
+    fn modules<'b>(&self, loaded: impl Iterator<Item = &'b Module>) -> Vec<Splice> {
+        let path = Path::new(&self.document.source().name);
+        let written = modules::files(self.document.roots(), path, &self.grammar);
+        let loaded: Vec<&Module> = loaded.collect();
+        let is = |file: &Option<PathBuf>, module: &Module| {
+            file.as_deref().is_some_and(|file| modules::is_of(file, module))
+        };
+        let gone = written.iter().filter(|(_, file)| !loaded.iter().any(|module| is(file, module)));
+        let mut splices: Vec<Splice> =
+            gone.map(|(element, _)| (self.line_of(element), String::new())).collect();
+        let new = loaded.iter().filter(|module| !written.iter().any(|(_, file)| is(file, module)));
+        let (first, indentation) = match self.document.roots() {
+            [root] if root.is("agents") => (root.children().first(), "\n  "),
+            roots => (roots.first(), "\n"),
+        };
+        if let Some(first) = first {
+            let text: String = new.map(|module| module_element(module) + indentation).collect();
+            splices.push((first.span().start..first.span().start, text));
         }
         splices
     }
@@ -242,6 +275,10 @@ fn name_of(element: &Element) -> &str {
         true => element.text(),
         false => element.children_named("name").next().map_or("", Element::text),
     }
+}
+
+fn module_element(module: &Module) -> String {
+    format!("<module>{}</module>", element_text(&module.file().display().to_string()))
 }
 
 /// The attributes of an agent; empty where nothing is said.

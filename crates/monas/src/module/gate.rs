@@ -109,15 +109,25 @@ extern "C" fn write_fingerprints(room: *mut u64, length: usize) -> usize {
 /// # Safety
 /// The pointers are to a [`HostLog`] and to a [`Handed`] of the same types as here.
 #[doc(hidden)]
-#[expect(unsafe_code, reason = "what is handed over is named by pointers")]
+#[expect(unsafe_code, reason = "the way to the log is named by a pointer")]
 pub unsafe fn open(log: *const c_void, handed: *mut c_void, crates: &[&str]) {
     // SAFETY: see above.
-    let (log, handed) = unsafe { (&*log.cast::<HostLog>(), &mut *handed.cast::<Handed>()) };
-    let contents = call::caught(|| {
-        forward::install(*log);
-        contents(crates)
-    });
-    *handed = Some(contents.map_err(|failure| failure.to_string()));
+    let log = unsafe { &*log.cast::<HostLog>() };
+    if call::caught(|| forward::install(*log)).is_ok() {
+        // SAFETY: see above.
+        unsafe { hand_over(handed, crates) };
+    }
+}
+
+/// Hands over what is in the module.
+///
+/// # Safety
+/// The pointer is to a [`Handed`] of the same type as here.
+#[expect(unsafe_code, reason = "what is handed over is named by a pointer")]
+pub(super) unsafe fn hand_over(handed: *mut c_void, crates: &[&str]) {
+    let contents = call::caught(|| contents(crates)).map_err(|failure| failure.to_string());
+    // SAFETY: see above.
+    unsafe { *handed.cast::<Handed>() = Some(contents) };
 }
 
 /// What is registered in these crates of the module.

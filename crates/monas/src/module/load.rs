@@ -161,11 +161,11 @@ mod tests {
     extern "C" fn few_types(_: *mut u64, _: usize) -> usize {
         2
     }
-    extern "C" fn opens(log: *const c_void, handed: *mut c_void) {
+    extern "C" fn opens(_: *const c_void, handed: *mut c_void) {
         #[allow(unsafe_code, reason = "both sides are here")]
         // SAFETY: the types are the same.
         unsafe {
-            gate::open(log, handed, &["monas"]);
+            gate::hand_over(handed, &["monas"]);
         }
     }
     extern "C" fn silent(_: *const c_void, _: *mut c_void) {}

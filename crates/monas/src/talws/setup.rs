@@ -78,7 +78,7 @@ impl Stage {
         let names = configs.iter().map(|host| host.name.as_str());
         distinct("hosts", names.chain(world.iter().map(|world| world.name())))?;
         let crew = Crew {
-            registry: registry.unwrap_or_else(Registry::linked),
+            registry: equipped(registry.unwrap_or_else(Registry::linked), &configs)?,
             listeners: Listeners::new(listeners),
             observers: Observers(Arc::new(Mutex::new(observers))),
             seed,
@@ -89,6 +89,20 @@ impl Stage {
         let stations = collect_all(configs.into_iter().map(|config| crew.station(&binder, config)))?;
         Ok(Stage { world, stations, crew: Arc::new(crew) })
     }
+}
+
+/// The registry with the modules of all hosts.
+fn equipped(registry: Registry, hosts: &[HostConfig]) -> Result<Registry, Error> {
+    let mut modules = hosts.iter().flat_map(|host| &host.modules);
+    modules.try_fold(registry, |registry, module| match registry.module(module.name()) {
+        Some(known) if known.digest() == module.digest() => Ok(registry),
+        Some(known) => {
+            let (one, other) = (known.file().display(), module.file().display());
+            let message = format!("two modules are called `{}`: {one} and {other}", module.name());
+            Err(Error::new(ErrorKind::Module, message))
+        }
+        None => registry.with_module(module.clone()),
+    })
 }
 
 impl Crew {
@@ -108,7 +122,7 @@ impl Crew {
     }
 
     fn station(&self, binder: &Binder<'_>, config: HostConfig) -> Result<Station, Error> {
-        let HostConfig { name, team, number, body, mut agents, links, configuration } = config;
+        let HostConfig { name, team, number, body, mut agents, links, configuration, .. } = config;
         agents.sort_by(|a, b| a.name.cmp(&b.name));
         distinct("agents", agents.iter().map(|agent| agent.name.as_str()))
             .map_err(|error| error.with_hint(format!("both are on host `{name}`")))?;

@@ -138,8 +138,9 @@ fn load(path: &Path, settings: &str, format: Format) -> Result<Vec<HostConfig>, 
             if diagnostics.iter().any(Diagnostic::is_error) {
                 return Err(invalid(diagnostics));
             }
-            let monas::config::Setup { agents, links, .. } = setup;
-            Ok(vec![HostConfig { name: Talws::LOCAL.into(), agents, links, ..HostConfig::default() }])
+            let monas::config::Setup { agents, links, modules, .. } = setup;
+            let name = Talws::LOCAL.into();
+            Ok(vec![HostConfig { name, agents, links, modules, ..HostConfig::default() }])
         }
     }
 }

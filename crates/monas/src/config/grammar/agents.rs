@@ -8,18 +8,20 @@ use crate::frequency::Frequency;
 use crate::monitors::OnViolation;
 
 impl Grammar {
-    /// Agents, providers and links, in an `<agents>` or not: what runs on one host.
+    /// Agents, providers, links and modules, in an `<agents>` or not: what runs on one host.
     pub fn agents() -> Grammar {
         let agents = ElementRule::new("agents", "what runs on a host")
             .group()
             .children("agent")
             .children("provider")
             .children("link")
+            .children("module")
             .children("agents");
         Grammar::default()
             .root(agent())
             .root(provider())
             .root(link())
+            .root(module())
             .root(agents)
             .with(ElementRule::new("name", "the name of the agent").text("name", Kind::Text))
             .with(activity())
@@ -136,6 +138,16 @@ fn monitor() -> ElementRule {
         )
         .text("properties", Kind::Text)
         .identified_by(Identity::Text)
+}
+
+fn module() -> ElementRule {
+    ElementRule::new(
+        "module",
+        "the file of a module, which is loaded when the run begins: agents can have its activities",
+    )
+    .attribute(enable())
+    .text("file", Kind::Text)
+    .identified_by(Identity::Text)
 }
 
 fn link() -> ElementRule {

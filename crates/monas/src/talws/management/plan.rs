@@ -160,6 +160,11 @@ impl Desk<'_> {
             let message = "links are opened when a run begins, and cannot be added to it";
             return Err(vec![Diagnostic::error("E0358", 0..0, message).in_source(&source)]);
         }
+        if setup.modules.iter().any(|module| self.roster.registry.module(module.name()).is_none()) {
+            let message = "the text names a module that the run has not loaded";
+            let hint = "load it first: `monas module load FILE`";
+            return Err(vec![Diagnostic::error("E0358", 0..0, message).with_hint(hint).in_source(&source)]);
+        }
         if setup.agents.is_empty() {
             return Err(vec![Diagnostic::error("E0358", 0..0, "the text holds no agent").in_source(&source)]);
         }

@@ -239,7 +239,7 @@ impl Roster {
     /// The present set-up, as it is saved.
     pub(in crate::talws) fn configuration(&self) -> Configuration {
         let file = self.configuration.as_ref().map(|source| source.name.clone()).unwrap_or_default();
-        Configuration { file, text: save::text(self.configuration.as_ref(), &self.profiles) }
+        Configuration { file, text: save::text(self.configuration.as_ref(), &self.profiles, &self.registry) }
     }
 }
 

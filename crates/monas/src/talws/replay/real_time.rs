@@ -95,13 +95,15 @@ impl RealTime {
     pub(super) fn new(talws: Talws, company: &[Company]) -> Result<RealTime, Error> {
         let Talws { registry, hosts, .. } = talws;
         let mut parts = Vec::new();
-        for HostConfig { name, team, number, agents, links, .. } in hosts {
+        for HostConfig { name, team, number, agents, links, modules, .. } in hosts {
             for agent in agents {
-                let (name, links) = (name.clone(), links.clone());
+                let (name, links, modules) = (name.clone(), links.clone(), modules.clone());
                 let agents = vec![agent];
                 let mut alone = Talws { registry: registry.clone(), ..Talws::new() };
                 alone.company = company.to_vec();
-                alone.host(HostConfig { name, team, number, agents, links, ..HostConfig::default() });
+                let links_and_agents =
+                    HostConfig { name, team, number, agents, links, modules, ..HostConfig::default() };
+                alone.host(links_and_agents);
                 parts.push(Part::new(alone)?);
             }
         }
