@@ -141,6 +141,8 @@ mod chapters {
     mod first_chart {}
     #[doc = include_str!("../../../docs/messages.md")]
     mod messages {}
+    #[doc = include_str!("../../../docs/modules.md")]
+    mod modules {}
     #[doc = include_str!("../../../docs/porting.md")]
     mod porting {}
     #[doc = include_str!("../../../docs/time.md")]

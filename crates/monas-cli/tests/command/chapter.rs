@@ -1,93 +1,11 @@
-//! The chapters in `docs`: each of their commands does what the chapter says.
-//!
-//! A block of the language `sh` is run, a line after the other, in a folder with the models and configurations of the project. A line that ends with ` &`
-//! goes on in the background till the end of the chapter, and `# ends with 3` says how a command ends that does not end well. What a block `text` below shows
-//! is to be found in what the commands said. A block with a file's name (`xml robot.xml`) is written to that file first. The Rust of the
-//! chapters is tested with the documentation of the crate `monas`.
+//! The chapters in `docs`: each of their commands does what the chapter says, in a folder with the models and configurations of the project. The Rust of
+//! the chapters is tested with the documentation of the crate `monas`; the chapter on modules in `examples/06-module`.
 
 use std::fs;
-use std::process::Command;
 
 use crate::generate::project;
-use crate::kit::{Answer, copy, root};
-use crate::running::{Running, in_folder};
-
-/// What a chapter has between its sentences.
-enum Block {
-    File { name: String, text: String },
-    Commands(Vec<String>),
-    Shown(Vec<String>),
-}
-
-fn blocks(chapter: &str) -> Vec<Block> {
-    let mut blocks = Vec::new();
-    let mut lines = chapter.lines();
-    while let Some(line) = lines.next() {
-        let Some(fence) = line.strip_prefix("```") else { continue };
-        let inside: Vec<String> =
-            lines.by_ref().take_while(|line| *line != "```").map(str::to_owned).collect();
-        match fence.split_once(' ') {
-            Some((_, name)) => blocks.push(Block::File { name: name.into(), text: inside.join("\n") + "\n" }),
-            None if fence == "sh" => blocks.push(Block::Commands(inside)),
-            None if fence == "text" => blocks.push(Block::Shown(inside)),
-            None => {}
-        }
-    }
-    blocks
-}
-
-/// A chapter as it is gone through.
-struct Reading {
-    folder: tempfile::TempDir,
-    background: Vec<Running>,
-    /// What the commands of the last block said.
-    said: String,
-    /// Of all runs so far.
-    hashes: Vec<String>,
-    commands: usize,
-}
-
-impl Reading {
-    fn run(&mut self, line: &str) {
-        self.commands += 1;
-        let typed = line.strip_prefix("monas ").expect("a command of this program");
-        if let Some(typed) = typed.strip_suffix(" &") {
-            let words: Vec<&str> = typed.split(' ').collect();
-            return self.background.push(Running::of(&mut self.command(&words), "running, "));
-        }
-        let (typed, code) = typed.split_once(" # ends with ").unwrap_or((typed, "0"));
-        let words: Vec<&str> = typed.split(' ').map(|word| word.trim_matches('\'')).collect();
-        let answer = self.command(&words).output().expect("the command starts");
-        let Answer { code: ended, out, err } = answer.into();
-        assert_eq!(ended, code.parse().ok(), "{words:?}: {out}{err}");
-        self.hashes.extend(out.lines().filter(|line| line.starts_with("hash: ")).map(str::to_owned));
-        self.said += &(out + &err);
-    }
-
-    fn command(&self, words: &[&str]) -> Command {
-        let mut command = in_folder(self.folder.path(), words);
-        command.current_dir(self.folder.path());
-        command
-    }
-
-    fn read(&mut self, block: Block) {
-        match block {
-            Block::File { name, text } => {
-                fs::write(self.folder.path().join(name), text).expect("the folder takes files");
-            }
-            Block::Commands(lines) => {
-                self.said.clear();
-                lines.iter().for_each(|line| self.run(line));
-            }
-            Block::Shown(_) if self.commands == 0 => {}
-            Block::Shown(lines) => {
-                for line in lines {
-                    assert!(self.said.contains(line.trim()), "`{line}` is not in\n{}", self.said);
-                }
-            }
-        }
-    }
-}
+use crate::kit::{copy, root};
+use crate::reading::{Reading, read_in};
 
 /// Goes through a chapter, which has at least so many commands.
 fn read(name: &str, least: usize) -> Reading {
@@ -95,15 +13,7 @@ fn read(name: &str, least: usize) -> Reading {
     for part in ["config", "docs"] {
         copy(&root().join(part), &folder.path().join(part));
     }
-    let chapter = fs::read_to_string(root().join("docs").join(name)).expect("the chapter");
-    let mut reading =
-        Reading { folder, background: Vec::new(), said: String::new(), hashes: Vec::new(), commands: 0 };
-    blocks(&chapter).into_iter().for_each(|block| reading.read(block));
-    assert!(reading.commands >= least, "{name} has its commands");
-    for running in reading.background.drain(..) {
-        assert_eq!(running.interrupt().code, Some(130));
-    }
-    reading
+    read_in(folder, name, least)
 }
 
 #[test]

@@ -17,6 +17,7 @@ mod model;
 mod mutate;
 mod new;
 mod protocol;
+mod reading;
 mod reference;
 mod refinement;
 mod run;

@@ -1,6 +1,12 @@
 //! The robot's program, started as a person would.
 
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+
+/// The workspace.
+pub(crate) fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the workspace is there")
+}
 
 /// The program with arguments, ready to be started.
 pub(crate) fn command(arguments: &[&str]) -> Command {

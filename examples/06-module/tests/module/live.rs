@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use crate::built::{blind_eyes, eyes, sharp_eyes};
 use crate::kit::Answer;
+use crate::reading::read_in;
 use crate::running::{Running, ask, objects};
 
 /// A robot that runs, with sockets and the file of its module in a folder.
@@ -75,6 +76,43 @@ fn distance_in(said: &Value) -> Option<f64> {
         }
         _ => None,
     }
+}
+
+#[test]
+fn the_chapter_on_modules() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::copy(eyes(), folder.path().join("eyes.so")).expect("it was built");
+    read_in(folder, "modules.md", 11);
+}
+
+/// What runs is saved with its modules, and can be run again.
+#[test]
+fn the_set_up_is_saved_with_its_modules() {
+    let robot = Robot::start();
+    let file = robot.put(&eyes());
+    robot.done(&["module", "load", &file, "--agent", "Head"]);
+    let saved = robot.done(&["agent", "save"]);
+    let begin = format!("<module>{file}</module>\n<agent frequency=\"20\">");
+    assert!(saved.starts_with(&begin) && saved.contains("<activity>Eyes</activity>"), "{saved}");
+    let path = robot.folder.path().join("saved.xml").display().to_string();
+    robot.done(&["agent", "save", &path]);
+    robot.done(&["config", "check", &path]);
+    robot.done(&["module", "unload", "eyes"]);
+    assert!(!robot.done(&["agent", "save"]).contains("module"));
+}
+
+#[test]
+fn what_a_file_says_of_itself_is_for_programs_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = eyes().display().to_string();
+    let said = ask(folder.path(), &["module", "show", &file, "--format", "json"]);
+    let said = &objects(&said.out)[0];
+    assert_eq!((&said["module"], &said["fits"]), (&"eyes".into(), &true.into()));
+    assert_eq!(said["package"], format!("example-module {}", env!("CARGO_PKG_VERSION")));
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/robot.xml");
+    let wrong = ask(folder.path(), &["module", "show", file]);
+    assert_eq!(wrong.code, Some(3));
+    assert!(wrong.err.contains("E0360") && wrong.err.contains("this is no module of Monas"), "{}", wrong.err);
 }
 
 #[test]

@@ -5,6 +5,9 @@
 mod built;
 mod kit;
 mod live;
+#[path = "../../../../crates/monas-cli/tests/command/reading.rs"]
+#[allow(dead_code, reason = "the chapters of the command use more of it")]
+mod reading;
 #[path = "../../../../crates/monas-cli/tests/command/running.rs"]
 #[allow(dead_code, reason = "the tests of the command use more of it")]
 mod running;
