@@ -14,7 +14,7 @@ use crate::built::{blind_eyes, eyes, sharp_eyes};
 fn ball(simulation: &Simulation) -> Ball {
     let mut board = simulation.hub(Talws::LOCAL).expect("the host").blackboard("test");
     board.process_messages(simulation.now());
-    board.read(BALL).expect("it was published").clone()
+    *board.read(BALL).expect("it was published")
 }
 
 fn run_for(simulation: &mut Simulation, seconds: f64) {
@@ -95,10 +95,10 @@ fn a_file_that_was_built_otherwise_is_refused_before_it_runs() {
 fn note_at(bytes: &[u8], text: &str) -> usize {
     let begin = b"format 1\ncompiler rustc";
     let notes = (0..bytes.len() - begin.len()).filter(|at| bytes[*at..].starts_with(begin));
-    let found = notes
+    let mut found = notes
         .map(|at| (at, &bytes[at..bytes.len().min(at + 600)]))
         .filter(|(_, note)| note.windows(12).any(|part| part == b"\nmodule eyes"));
-    let (at, note) = found.last().expect("it has a note");
+    let (at, note) = found.next_back().expect("it has a note");
     at + note.windows(text.len()).position(|part| part == text.as_bytes()).expect("the note says so")
 }
 
