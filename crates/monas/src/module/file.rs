@@ -101,3 +101,108 @@ fn unread(path: &Path, reason: &str) -> Vec<Diagnostic> {
     let message = format!("{}: {reason}", path.display());
     vec![Diagnostic::error("E0360", 0..0, message).with_hint("a module is what `monas module build` writes")]
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const OWN: &str = "module eyes\npackage example 0.1.0\n";
+
+    /// An ELF file of a 64-bit computer with this one section, besides that of the names.
+    fn elf(name: &str, section: &[u8]) -> Vec<u8> {
+        let names = format!("\0{name}\0.shstrtab\0");
+        let (names_at, section_at) = (64, 64 + names.len());
+        let headers_at = section_at + section.len();
+        let mut file = vec![0x7f, b'E', b'L', b'F', 2, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+        file.extend([3_u16, 62].iter().flat_map(|half| half.to_le_bytes()));
+        file.extend(1_u32.to_le_bytes());
+        file.extend([0, 0, headers_at as u64].iter().flat_map(|word| word.to_le_bytes()));
+        file.extend(0_u32.to_le_bytes());
+        file.extend([64_u16, 0, 0, 64, 3, 2].iter().flat_map(|half| half.to_le_bytes()));
+        file.extend(names.as_bytes());
+        file.extend(section);
+        let header = |name: usize, kind: u32, at: usize, length: usize| {
+            let mut header = [(name as u32).to_le_bytes(), kind.to_le_bytes()].concat();
+            let words = [0, 0, at as u64, length as u64, 0, 4, 0];
+            header.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+            header
+        };
+        file.extend(header(0, 0, 0, 0));
+        file.extend(header(1, 7, section_at, section.len()));
+        file.extend(header(name.len() + 2, 3, names_at, names.len()));
+        file
+    }
+
+    fn note() -> Vec<u8> {
+        let text = format!("{}{OWN}", note::BUILD);
+        let numbers = [6, text.len() as u32, 1];
+        let mut bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+        bytes.extend(b"Monas\0\0\0");
+        bytes.extend(text.as_bytes());
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+        bytes
+    }
+
+    #[test]
+    fn the_note_is_found_among_the_sections() {
+        let note = BuildNote::of_file(&elf(note::SECTION, &note())).unwrap();
+        assert_eq!(note.module(), "eyes");
+    }
+
+    #[test]
+    fn what_has_no_note_of_monas_is_refused_with_its_reason() {
+        for (bytes, reason) in [
+            (elf(".note.other", &note()), "it has no note"),
+            (elf(note::SECTION, b"short"), "its note is cut off"),
+            (elf(note::SECTION, b""), "its note is another's"),
+        ] {
+            assert_eq!(BuildNote::of_file(&bytes), Err(reason.to_owned()));
+        }
+        assert!(BuildNote::of_file(b"#!/bin/sh\n").is_err());
+        assert!(BuildNote::of_file(b"").is_err());
+    }
+
+    #[test]
+    fn a_file_that_is_no_module_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let wrong = ModuleFile::read(folder.path()).unwrap_err();
+        assert!(wrong[0].to_string().starts_with("error[E0360]: "), "{}", wrong[0]);
+        let path = folder.path().join("eyes.so");
+        std::fs::write(&path, elf(note::SECTION, &note())).unwrap();
+        let file = ModuleFile::read(&path).unwrap();
+        assert!(file.check().is_ok());
+        // It says that it fits, and is nothing that the system can load.
+        assert!(file.load().unwrap_err()[0].to_string().starts_with("error[E0362]: module `eyes` cannot be"));
+    }
+
+    proptest! {
+        #[test]
+        fn whatever_the_bytes_are_reading_them_ends_well(bytes in prop::collection::vec(any::<u8>(), 0..4096)) {
+            let _ = BuildNote::of_file(&bytes);
+            for is_little in [true, false] {
+                let _ = note::text_in(&bytes, is_little);
+            }
+        }
+
+        #[test]
+        fn a_module_whose_bytes_were_changed_is_read_or_refused(
+            changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
+            length in any::<prop::sample::Index>(),
+            is_cut in any::<bool>(),
+        ) {
+            let mut file = elf(note::SECTION, &note());
+            for (at, byte) in changes {
+                let at = at.index(file.len());
+                file[at] = byte;
+            }
+            if is_cut {
+                file.truncate(length.index(file.len()));
+            }
+            if let Ok(note) = BuildNote::of_file(&file) {
+                prop_assert!(!note.module().is_empty());
+            }
+        }
+    }
+}

@@ -149,3 +149,39 @@ fn a_module_comes_changes_and_goes_while_the_robot_runs() {
     assert!(log.contains("[local Head/Eyes #") && log.contains("eyes open range=4.0"), "{log}");
     assert!(log.contains("WARN") && log.contains("sharp"), "{log}");
 }
+
+/// What modules did is on the tape, and a replay does it again.
+#[test]
+fn a_run_with_modules_is_replayed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [robot, tape] = ["robot.xml", "run.mcap"].map(|name| folder.path().join(name).display().to_string());
+    fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/robot.xml"), &robot).expect("the folder takes files");
+    let modules = [("eyes.so", eyes()), ("sharp.so", sharp_eyes())];
+    let [eyes, sharp] = modules.map(|(name, built)| {
+        let file = folder.path().join(name);
+        fs::copy(built, &file).expect("it was built");
+        file.display().to_string()
+    });
+    let arguments = ["run", robot.as_str(), "--record", &tape, "--control", "lab"];
+    let run = Running::start(folder.path(), &arguments, "running, ");
+    let done = |arguments: &[&str]| {
+        let answer = ask(folder.path(), arguments);
+        assert_eq!(answer.code, Some(0), "{arguments:?}: {}{}", answer.out, answer.err);
+        answer.out
+    };
+    done(&["module", "load", &eyes]);
+    done(&["agent", "add-activity", "Head", "Eyes", "range=1.5"]);
+    done(&["topic", "echo", "soccer/ball", "--count", "3"]);
+    done(&["module", "reload", "eyes", &sharp]);
+    done(&["topic", "echo", "soccer/ball", "--count", "3"]);
+    done(&["module", "unload", "eyes"]);
+    assert_eq!(run.interrupt().code, Some(130));
+    let replayed = ask(folder.path(), &["tape", "replay", &tape]);
+    assert_eq!(replayed.code, Some(0), "{}{}", replayed.out, replayed.err);
+    assert!(replayed.out.contains(" messages compared, 0 differences"), "{}", replayed.out);
+    // The module that was loaded then is another file by now.
+    fs::copy(&sharp, &eyes).expect("the folder takes files");
+    let other = ask(folder.path(), &["tape", "replay", &tape]);
+    assert_ne!(other.code, Some(0), "{}", other.out);
+    assert!(other.err.contains("is another file than was meant"), "{}{}", other.out, other.err);
+}

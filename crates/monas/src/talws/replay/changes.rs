@@ -78,6 +78,20 @@ impl Staff for Replayed<'_> {
     }
 }
 
+/// Whether a change is about a module: then it is about all agents of its host.
+pub(super) fn is_of_module(action: Action) -> bool {
+    matches!(action, Action::LoadModule | Action::UnloadModule | Action::ReloadModule)
+}
+
+/// A change as it concerns agents that are replayed: it is about one of them, or about a module, which gives others names to be called by.
+pub(super) fn concerning(change: &Change, knows: impl Fn(&str) -> bool) -> Option<Change> {
+    match (knows(&change.agent), is_of_module(change.action())) {
+        (true, _) => Some(change.clone()),
+        (false, true) => Some(Change { agent: String::new(), ..change.clone() }),
+        (false, false) => None,
+    }
+}
+
 /// An agent that left and comes back is another one, whose set-up is not that of the replay.
 ///
 /// # Errors

@@ -48,7 +48,8 @@ impl Ordered {
     /// # Errors
     /// It made two threads of one.
     pub(super) fn answered(&mut self, changed: &Changed, is_list: bool, at: Moment) -> Result<(), Error> {
-        let is_new = changed.action() == Action::AddActivity && self.roster.has_no_list(&changed.agent);
+        let adds = matches!(changed.action(), Action::AddActivity | Action::LoadModule);
+        let is_new = adds && self.roster.has_no_list(&changed.agent);
         if changed.done && is_new && !is_list {
             return Err(split(&changed.agent, at));
         }
@@ -86,6 +87,26 @@ impl Ordered {
         let mut staff = Again { action: change.action(), repeated, now, was_told: false };
         let changed = self.roster.repeat(&change, &mut staff, now);
         if staff.was_told { Ok(()) } else { Err(refused(&changed, now)) }
+    }
+
+    /// What was asked of a module was answered. An agent that was told has followed by now; for any other the module changes what names mean.
+    ///
+    /// # Errors
+    /// The module is not what it was.
+    pub(super) fn equip(
+        &mut self,
+        changed: &Changed,
+        repeated: &mut Repeated,
+        now: Moment,
+    ) -> Result<(), Error> {
+        let is_it = |request: &Request| {
+            (request.change.number, request.change.action) == (changed.number, changed.action)
+        };
+        let request = self.asked.iter().position(is_it).and_then(|place| self.asked.remove(place));
+        let Some(Request { change, .. }) = request.filter(|_| changed.done) else { return Ok(()) };
+        let mut staff = Again { action: change.action(), repeated, now, was_told: false };
+        let again = self.roster.repeat(&change, &mut staff, now);
+        if again.done { Ok(()) } else { Err(refused(&again, now)) }
     }
 
     /// The change that this message asked for. Those before it were refused: they are made in their order.

@@ -12,7 +12,7 @@ use narukom::{Arrival, Moment, Narukom, TopicSlot};
 use super::super::links::Brought;
 use super::super::setup::{Stage, Station};
 use super::super::{HostConfig, REAL_TIME_SEED, Talws};
-use super::changes::refuse_return;
+use super::changes::{concerning, is_of_module, refuse_return};
 use super::compare::{Ledger, Window};
 use super::feed::{Ear, Feed, Foreign, Inlet};
 use super::ordered::Ordered;
@@ -184,6 +184,13 @@ impl RealTime {
             About::Nothing => Ok(()),
             About::Asked => {
                 let change = Change::decode(message.bytes).map_err(unread)?;
+                if is_of_module(change.action()) {
+                    for part in parts {
+                        let own = concerning(&change, |agent| agent == part.agent);
+                        own.into_iter().for_each(|own| part.ordered.ask(publisher, message.sequence, own));
+                    }
+                    return Ok(());
+                }
                 if let Some(part) = parts.find(|part| part.agent == change.agent) {
                     part.ordered.ask(publisher, message.sequence, change);
                     return Ok(());
@@ -194,6 +201,9 @@ impl RealTime {
             }
             About::Made => {
                 let changed = Changed::decode(message.bytes).map_err(unread)?;
+                if is_of_module(changed.action()) {
+                    return parts.try_for_each(|part| part.equip(&changed, message.received));
+                }
                 let Some(part) = parts.find(|part| part.agent == changed.agent) else { return Ok(()) };
                 part.is_gone |= changed.done && changed.action() == Action::RemoveAgent;
                 let is_list = matches!(part.repeated, Repeated::List(_));
@@ -347,6 +357,15 @@ impl Part {
         self.feed.fetching();
         self.ordered.follow(record, &mut self.repeated)?;
         self.feed.failure()
+    }
+
+    /// A module came, went or was exchanged. If the agent was told so it has followed; if not it knows the names now.
+    fn equip(&mut self, changed: &Changed, at: Moment) -> Result<(), Error> {
+        let is_list = matches!(self.repeated, Repeated::List(_));
+        if changed.agent == self.agent {
+            self.ordered.answered(changed, is_list, at)?;
+        }
+        self.ordered.equip(changed, &mut self.repeated, at)
     }
 
     fn untold(&self) -> Error {

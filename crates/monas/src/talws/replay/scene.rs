@@ -11,7 +11,7 @@ use super::super::instance::Instance;
 use super::super::management::Roster;
 use super::super::moved::Moved;
 use super::super::setup::Station;
-use super::changes::{Replayed, refuse_return};
+use super::changes::{Replayed, concerning, refuse_return};
 use super::compare::{Ledger, Window};
 use super::{Company, Difference};
 use crate::error::Error;
@@ -172,7 +172,7 @@ impl Scene {
             if let Err(error) = refuse_return(&change, self.roster.registry(), &self.gone) {
                 self.refused.get_or_insert(error);
             }
-            if self.roster.knows(&change.agent) {
+            if let Some(change) = concerning(&change, |agent| self.roster.knows(agent)) {
                 self.repeat(&change, spy);
             }
         }
