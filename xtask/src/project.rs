@@ -2,7 +2,8 @@
 //!
 //! Nothing of the project is edited after it was made; files are only added: an activity by `monas new activity`, a message, a
 //! functionality, a model and a configuration by hand. Then the model becomes a generated crate, and what that names is taken away: an activity,
-//! a field of a message, a state. Each time the compiler has to say so.
+//! a field of a message, a state. Each time the compiler has to say so. Last an activity becomes a module: it is built, loaded by the program that is there, changed, and
+//! built again.
 
 use std::error::Error;
 use std::fs;
@@ -64,6 +65,13 @@ const TAKEN: [(&str, &str, &str, &[&str]); 2] = [
     ),
 ];
 
+/// A configuration with a module, whose file is filled in. It lies beside the project's own, whose test needs no module.
+const WITH_MODULE: &str =
+    "<module>{file}</module>\n<agent frequency=\"10\"><name>Winker</name><activity>Wink</activity></agent>\n";
+
+/// What stands in the module in the place of nothing.
+const IDLE: &str = "        Ok(Progress::Done)\n";
+
 /// The model with another name for a state.
 const RENAMED: &str = "Role: juggler\nLiveness:\njuggler = (Juggle . Fling)~\nTransitions:\nJuggle -> Fling : [pause] / StartTimeout(pause, 100ms)\nStates:\nFling : activity = Throw\n";
 
@@ -119,10 +127,33 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     done(&mut cargo(&team, &generate))?;
     let error = refused(&mut cargo(&team, &build))?;
     ["error[E0599]: no variant", "`Throw`", NAMING.0].iter().try_for_each(|part| expect(&error, part))?;
+    fs::remove_file(team.join(NAMING.0))?;
+    module(&team, &monas, &cargo)?;
     println!(
-        "project: made, built, tested, run; what was added is found, what a generated chart lacks is no program"
+        "project: made, built, tested, run; what was added is found, what a generated chart lacks is no program, a module is exchanged"
     );
     Ok(ExitCode::SUCCESS)
+}
+
+/// Has an activity made as a module, and changes it: the program that is there loads what was built last.
+fn module(
+    team: &Path,
+    monas: &dyn Fn(&Path, &[&str]) -> Command,
+    cargo: &dyn Fn(&Path, &[&str]) -> Command,
+) -> Result<(), Box<dyn Error>> {
+    done(&mut monas(team, &["new", "activity", "Wink", "--module"]))?;
+    let library = team.join("modules/wink/lib.rs");
+    let idle = fs::read_to_string(&library)?;
+    for times in ["once", "twice"] {
+        let wink = format!("        println!(\"wink {times}\");\n{IDLE}");
+        fs::write(&library, idle.replacen(IDLE, &wink, 1))?;
+        let own = ["run", "--offline", "--quiet", "--", "module", "build", "wink"];
+        let file = done(&mut cargo(team, &own))?;
+        fs::write(team.join("winker.xml"), WITH_MODULE.replace("{file}", file.trim()))?;
+        let run = ["run", "--offline", "--quiet", "--", "run", "winker.xml", "--for", "1s"];
+        expect(&done(&mut cargo(team, &run))?, &format!("wink {times}"))?;
+    }
+    Ok(())
 }
 
 /// Changes a file for one build, which has to fail and say why.
