@@ -1,7 +1,6 @@
 //! Compiles the records of the runtime, and the messages of its tests; says what this crate is built with.
 
 use std::env;
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -49,8 +48,8 @@ fn features() -> String {
     names.join(" ")
 }
 
-/// The hash (FNV-1a, 64 bits) of the lock file of the build: that of the workspace whose target folder this is, else that of the one
-/// in which this crate lies.
+/// The hash (FNV-1a, 64 bits) of what the lock file of the build says of crates from elsewhere: that of the workspace whose target folder
+/// this is, else that of the one in which this crate lies. A crate of the workspace that comes or goes is no other build of the rest.
 fn lock() -> Result<String, Box<dyn std::error::Error>> {
     let (out, own) = (PathBuf::from(variable("OUT_DIR")), PathBuf::from(variable("CARGO_MANIFEST_DIR")));
     let beside = |folder: &Path| Some(folder.join("Cargo.lock")).filter(|lock| lock.is_file());
@@ -58,10 +57,10 @@ fn lock() -> Result<String, Box<dyn std::error::Error>> {
         return Ok("none".into());
     };
     println!("cargo:rerun-if-changed={}", file.display());
-    let hash = std::fs::read(file)?.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    let text = std::fs::read_to_string(file)?;
+    let crates = text.split("[[package]]").filter(|entry| entry.contains("\nsource = "));
+    let hash = crates.flat_map(str::bytes).fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
     });
-    let mut text = String::new();
-    write!(text, "{hash:016x}")?;
-    Ok(text)
+    Ok(format!("{hash:016x}"))
 }
