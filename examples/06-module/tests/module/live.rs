@@ -58,7 +58,8 @@ impl Robot {
 
     /// How far the ball is by messages to come; the first may be from before.
     fn distance(&self) -> f64 {
-        let said = self.done(&["topic", "echo", "soccer/ball", "--count", "3", "--format", "json"]);
+        let said =
+            self.done(&["topic", "echo", "soccer/ball", "--count", "3", "--for", "30s", "--format", "json"]);
         let number = objects(&said).iter().rev().find_map(distance_in);
         number.unwrap_or_else(|| panic!("no distance in {said}"))
     }
@@ -92,7 +93,7 @@ fn the_set_up_is_saved_with_its_modules() {
     let file = robot.put(&eyes());
     robot.done(&["module", "load", &file, "--agent", "Head"]);
     let saved = robot.done(&["agent", "save"]);
-    let begin = format!("<module>{file}</module>\n<agent frequency=\"20\">");
+    let begin = format!("<module>{file}</module>\n<agent frequency=\"5\">");
     assert!(saved.starts_with(&begin) && saved.contains("<activity>Eyes</activity>"), "{saved}");
     let path = robot.folder.path().join("saved.xml").display().to_string();
     robot.done(&["agent", "save", &path]);
@@ -171,9 +172,9 @@ fn a_run_with_modules_is_replayed() {
     };
     done(&["module", "load", &eyes]);
     done(&["agent", "add-activity", "Head", "Eyes", "range=1.5"]);
-    done(&["topic", "echo", "soccer/ball", "--count", "3"]);
+    done(&["topic", "echo", "soccer/ball", "--count", "3", "--for", "30s"]);
     done(&["module", "reload", "eyes", &sharp]);
-    done(&["topic", "echo", "soccer/ball", "--count", "3"]);
+    done(&["topic", "echo", "soccer/ball", "--count", "3", "--for", "30s"]);
     done(&["module", "unload", "eyes"]);
     assert_eq!(run.interrupt().code, Some(130));
     let replayed = ask(folder.path(), &["tape", "replay", &tape]);
