@@ -1,5 +1,6 @@
 use std::sync::Arc;
 
+use proptest::prelude::*;
 use yase::{Chart, Diagnostic, Source, Vocabulary};
 
 use super::*;
@@ -98,4 +99,57 @@ fn a_scenario_names_its_model_and_starts_once() {
     assert_eq!(found, []);
     assert_eq!(script.after.map(|link: Link| link.path).as_deref(), Some("b.scenario"));
     let _: Arc<Source> = script.source;
+}
+
+/// Whatever a text says, it is understood or answered with findings, each at a place in it.
+fn exercise(text: &str) {
+    let found = match read(text) {
+        Ok(steps) => return assert!(matches!(steps[0].cause, Cause::Start), "{text:?}"),
+        Err(found) => found,
+    };
+    assert!(!found.is_empty());
+    for finding in found {
+        assert!(text.get(finding.span.start..finding.span.end).is_some(), "{finding:?}");
+    }
+}
+
+const WORDS: [&str; 24] = [
+    "start\n",
+    "\n",
+    "  ",
+    "model m\n",
+    "after b\n",
+    "return ",
+    "wait ",
+    "timer ",
+    "event ",
+    "messages\n",
+    "in ",
+    "not ",
+    "starts ",
+    "publishes ",
+    "nothing",
+    "Look",
+    "late",
+    "off\n",
+    "1s\n",
+    ", ",
+    ": over\n",
+    "[In(Look)]\n",
+    "a.b = 2; ",
+    "ω# \u{e9}\r\n",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_heap_of_words(words in prop::collection::vec(prop::sample::select(WORDS.to_vec()), 0..40)) {
+        exercise(&format!("model m\nstart\n{}", words.concat()));
+    }
+
+    #[test]
+    fn any_text(text in any::<String>()) {
+        exercise(&text);
+    }
 }
