@@ -138,12 +138,12 @@ fn marks(covered: &Covered) -> Marks {
     let mut set = |element, mark| marks.set(&covered.chart, element, mark);
     for (id, _) in covered.chart.nodes().filter(|(_, node)| node.kind == NodeKind::Basic) {
         let is_met = covered.entered[id.0 as usize] > 0;
-        set(Element::Node(id), if is_met { Mark::Added } else { Mark::Removed });
+        set(Element::Node(id), if is_met { Mark::Added } else { Mark::Missed });
     }
     for (id, transition) in covered.chart.transitions() {
         if !transition.expression.is_never() {
             let is_met = covered.fired[id.0 as usize] > 0;
-            set(Element::Transition(id), if is_met { Mark::Added } else { Mark::Removed });
+            set(Element::Transition(id), if is_met { Mark::Added } else { Mark::Missed });
         }
     }
     for missed in covered.missed().iter().filter(|missed| missed.what == count::ALWAYS_HELD) {

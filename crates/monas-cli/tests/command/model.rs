@@ -277,9 +277,11 @@ fn the_coverage_of_tapes_is_told_added_up_and_drawn() {
         "{}",
         answer.out
     );
-    for name in ["goalie.svg", "player.svg", "player-2.svg"] {
+    for (name, is_something_missed) in [("goalie.svg", true), ("player.svg", true), ("player-2.svg", false)] {
         let drawing = fs::read_to_string(folder.path().join("drawings").join(name)).expect("it is drawn");
-        assert!(drawing.contains("added") && drawing.contains("removed"), "{name}");
+        assert!(drawing.contains("<g class=\"added\">"), "{name}");
+        assert_eq!(drawing.contains("<g class=\"missed\">"), is_something_missed, "{name}");
+        assert!(!drawing.contains("<g class=\"removed\">"), "{name}: nothing is struck out");
     }
 
     let counts = |tapes: &[&str]| -> Vec<(usize, usize)> {

@@ -1,4 +1,4 @@
-//! Parts of a chart that a drawing sets apart: what was added, taken away or changed.
+//! Parts of a chart that a drawing sets apart: what was added, taken away or changed, or never met.
 
 use std::collections::BTreeMap;
 
@@ -14,10 +14,12 @@ pub enum Mark {
     Removed,
     /// It is another than it was: orange.
     Changed,
+    /// It is there, and nothing came by it: red.
+    Missed,
 }
 
 impl Mark {
-    pub(super) const ALL: [Mark; 3] = [Mark::Added, Mark::Removed, Mark::Changed];
+    pub(super) const ALL: [Mark; 4] = [Mark::Added, Mark::Removed, Mark::Changed, Mark::Missed];
 
     /// Its word, which is its class in SVG.
     pub const fn word(self) -> &'static str {
@@ -25,13 +27,14 @@ impl Mark {
             Mark::Added => "added",
             Mark::Removed => "removed",
             Mark::Changed => "changed",
+            Mark::Missed => "missed",
         }
     }
 
     pub(super) const fn colour(self) -> &'static str {
         match self {
             Mark::Added => "#1a7f37",
-            Mark::Removed => "#c0261d",
+            Mark::Removed | Mark::Missed => "#c0261d",
             Mark::Changed => "#c46a00",
         }
     }

@@ -41,7 +41,10 @@ pub(super) fn document(chart: &Statechart, layout: &Layout<'_>, marks: &Marks) -
     for id in depth_first(chart) {
         page.marked(marks.of_node(id), |page| page.node(chart, id, layout.shape(id)));
     }
-    for arrow in &layout.arrows {
+    // where several run together the line is that of one by which something came
+    let (missed, others): (Vec<_>, Vec<_>) =
+        layout.arrows.iter().partition(|arrow| arrow.label.mark == Some(Mark::Missed));
+    for arrow in missed.into_iter().chain(others) {
         page.marked(arrow.label.mark, |page| page.arrow(arrow));
     }
     for arrow in &layout.arrows {
@@ -74,7 +77,8 @@ fn marked_style() -> (String, String) {
     };
     let styles: String = Mark::ALL.map(style).concat();
     let heads = Mark::ALL.map(|mark| head(&format!("{}-head", mark.word()), mark.colour())).concat();
-    (format!("{styles}.removed text{{text-decoration:line-through}}"), heads)
+    let more = ".removed text{text-decoration:line-through}.removed .basic,.missed .basic{fill:#fbe4e2}";
+    (styles + more, heads)
 }
 
 struct Page {
