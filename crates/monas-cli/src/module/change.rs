@@ -5,6 +5,7 @@ use std::path::Path;
 use monas::ModuleFile;
 use monas::records::{Action, Change};
 
+use super::list;
 use crate::agent::change::{ask_for, tell};
 use crate::arguments::Format;
 use crate::console::Console;
@@ -45,8 +46,11 @@ pub(super) fn reload(
     run: &RunChoice,
     console: &mut Console<'_>,
 ) -> Result<Exit, Failure> {
-    let file = path.map(|path| Ok::<_, Failure>((path, read(path, run.format.value)?))).transpose()?;
-    let file = file.as_ref().map(|(path, file)| (*path, file));
+    // Where it came from, unless another is named; the run says of one that is not loaded that it is not.
+    let known = list::loaded(run)?.into_iter().find(|module| module.name == name);
+    let path = path.map(Path::to_path_buf).or_else(|| known.map(|module| module.file.into()));
+    let file = path.map(|path| Ok::<_, Failure>((read(&path, run.format.value)?, path))).transpose()?;
+    let file = file.as_ref().map(|(file, path)| (path.as_path(), file));
     let changed = ask_for(meant(Action::ReloadModule, name, file, run)?, run)?;
     tell(&changed, &format!("module `{name}` is exchanged"), run.format.value, console)
 }

@@ -29,7 +29,9 @@ impl ModuleFile {
     /// # Errors
     /// Diagnostics (`E0360`): it cannot be read, or is no module of Monas.
     pub fn read(path: impl AsRef<Path>) -> Result<ModuleFile, Vec<Diagnostic>> {
-        let path = path.as_ref().to_path_buf();
+        // Whoever asks for it later may be in another folder.
+        let path = path.as_ref();
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
         let bytes = bytes_of(&path).map_err(|error| unread(&path, &error.to_string()))?;
         match BuildNote::of_file(&bytes) {
             Ok(note) => Ok(ModuleFile { path, bytes, note }),

@@ -173,6 +173,7 @@ fn a_run_with_modules_is_replayed() {
     done(&["module", "load", &eyes]);
     done(&["agent", "add-activity", "Head", "Eyes", "range=1.5"]);
     done(&["topic", "echo", "soccer/ball", "--count", "3", "--for", "30s"]);
+    done(&["module", "reload", "eyes"]);
     done(&["module", "reload", "eyes", &sharp]);
     done(&["topic", "echo", "soccer/ball", "--count", "3", "--for", "30s"]);
     done(&["module", "unload", "eyes"]);
