@@ -61,7 +61,7 @@ impl Shared {
         let mut talws = Talws::new();
         let body: Option<Box<dyn Robot>> = Some(Box::new(Body::new(self.clone())));
         let number = self.lock().number;
-        let (agents, links) = (setup.agents, setup.links);
+        let (agents, links, modules) = (setup.agents, setup.links, setup.modules);
         talws.host(HostConfig {
             name: "robot".into(),
             team: 1,
@@ -69,6 +69,7 @@ impl Shared {
             body,
             agents,
             links,
+            modules,
             configuration: None,
         });
         talws.simulate(1).unwrap()
