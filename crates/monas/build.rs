@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    narukom_build::compile(&["proto/monas.proto", "tests/proto/test.proto"], &["proto", "tests/proto"])?;
+    let protos = ["proto/monas.proto", "proto/foxglove.proto", "tests/proto/test.proto"];
+    narukom_build::compile(&protos, &["proto", "tests/proto"])?;
     let facts = [
         ("COMPILER", compiler()?),
         ("TARGET", variable("TARGET")),

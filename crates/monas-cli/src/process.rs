@@ -6,7 +6,7 @@ use std::panic;
 use clap::CommandFactory;
 use clap_complete::CompleteEnv;
 use indicatif::MultiProgress;
-use monas::logger::{self, Logger, Settings};
+use monas::logger::{self, Logger, Settings, Severity};
 use tracing_subscriber::prelude::*;
 use tracing_subscriber::{EnvFilter, Registry, reload};
 
@@ -71,6 +71,11 @@ impl Log {
             tracing::warn!("MONAS_LOG is not understood, warnings and errors are logged: {mistake}");
         }
         is_ours.then(|| Log { logger, usual, bars: bars.clone() })
+    }
+
+    /// From now on, lines that are so grave or graver are published on the hosts of the run.
+    pub(crate) fn publish(&self, least_grave: Severity) {
+        self.logger.publish(least_grave);
     }
 
     /// Has a log written besides. It says what is on the console, unless MONAS_LOG does.

@@ -13,7 +13,7 @@ pub(crate) mod table;
 use std::path::Path;
 
 use monas::config;
-use monas::logger::Settings;
+use monas::logger::{Settings, Severity};
 use yase::Diagnostic;
 
 use crate::arguments::{Format, RunArguments};
@@ -48,17 +48,19 @@ pub(crate) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Re
         return Err(invalid(unlinked));
     }
     let layers = layers::of(&arguments.config, &arguments.layers).map_err(invalid)?;
-    if let Some(file) = &arguments.log {
-        write_log(file, arguments.format.value, console)?;
-    }
+    let asked = match &arguments.log {
+        Some(file) => write_log(file, arguments.format.value, console)?,
+        None => Severity::Info,
+    };
+    console.log.iter().for_each(|log| log.publish(asked.max(Severity::Info)));
     match kind {
         Kind::Match => play::execute(arguments, &layers, console),
         Kind::Agents => live::execute(arguments, &layers, console),
     }
 }
 
-/// Has a log written as a file says.
-fn write_log(file: &Path, format: Format, console: &Console<'_>) -> Result<(), Failure> {
+/// Has a log written as a file says. Gives the least grave lines that are wanted.
+fn write_log(file: &Path, format: Format, console: &Console<'_>) -> Result<Severity, Failure> {
     let (mut settings, diagnostics) = Settings::load(file);
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(Failure::Invalid(format, diagnostics));
@@ -69,7 +71,9 @@ fn write_log(file: &Path, format: Format, console: &Console<'_>) -> Result<(), F
         ));
     };
     settings.colour &= console.colour_err;
+    let verbosity = settings.verbosity;
     log.write(settings)
+        .map(|()| verbosity)
         .map_err(|error| Failure::failed(format, format_args!("the log of {}: {error}", file.display())))
 }
 

@@ -195,7 +195,7 @@ impl Runner {
                 continue;
             };
             if let Err(failure) = call::stop(activity, blackboard) {
-                tracing::error!(agent = %self.desk.agent, "activity failed to stop: {failure}");
+                tracing::error!(robot = %self.desk.host, agent = %self.desk.agent, "activity failed to stop: {failure}");
             }
             self.desk.lending.publish_all(activation.region, now);
         }
@@ -327,7 +327,7 @@ impl Runner {
         if let Err(failure) = returned {
             self.posts.failed(activation, FIRST_PAUSE, DOUBLINGS);
             let activity = self.posts.name(activation);
-            tracing::error!(agent = %self.desk.agent, %activity, "activity failed after its state was left: {failure}");
+            tracing::error!(robot = %self.desk.host, agent = %self.desk.agent, %activity, "activity failed after its state was left: {failure}");
         }
     }
 

@@ -38,6 +38,11 @@
 //! | `LogFileVerbosityLevel` | 0 fatal errors, 1 errors, 2 info, 3 extra info, 4 all; errors are always written |
 //! | `MessageLogFormat` | `text`, or `json` for a JSON object a line; the thesis does not have it |
 //!
+//! # On the tape
+//!
+//! A logger may also [publish](Logger::publish) lines: on [`LOG`](crate::records::LOG) (`monas/log`) of the host that they are about, as `foxglove.Log`. So they stand in recordings
+//! between the messages of their moment, and `monas topic echo monas/log` shows them live. The command does so with what is as grave as `Info`, or as `--log` asks for.
+//!
 //! # Example
 //!
 //! Monas sets nothing for the whole process, so a program puts the logger's [`layer`] where it wants it; the command `monas run --log logger.xml` does.
@@ -66,11 +71,13 @@ mod output;
 mod queue;
 mod record;
 mod settings;
+mod topic;
 
 pub(crate) use context::{Caller, Simulating, calling};
 pub use layer::{Logger, layer};
 pub use record::Severity;
 pub use settings::{Format, Settings};
+pub(crate) use topic::{Hosted, Hosting};
 
 /// Writes a message in the name of an activity, or of whatever else: the thesis's `WriteMsg`. Code that knows its place uses the macros of
 /// [`tracing`] instead.

@@ -5,6 +5,11 @@
 
 narukom::include_messages!("monas.runtime");
 
+/// A line of the log, in the form that viewers of recordings know.
+pub mod foxglove {
+    narukom::include_messages!("foxglove");
+}
+
 narukom::topic! {
     /// The host and the paths of its topics.
     pub HOST: narukom::State<Host> = "monas/host";
@@ -18,6 +23,8 @@ narukom::topic! {
     pub CHANGE: narukom::Data<Change, 64> = "monas/change";
     /// What became of it.
     pub CHANGED: narukom::Data<Changed, 64> = "monas/changed";
+    /// What the log says of the host and its agents: see [`Logger::publish`](crate::logger::Logger::publish).
+    pub LOG: narukom::Data<foxglove::Log, 64> = "monas/log";
     /// What was counted and measured of each agent, in real time, as often as the agent is to say it.
     pub STATISTICS: narukom::Data<AgentEntry, 16> = "monas/statistics";
 }

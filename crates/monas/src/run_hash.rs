@@ -4,10 +4,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use narukom::{Observer, Publication};
 
+use crate::records::LOG;
+
 /// Hashes every message published on every host, in order of publication, with BLAKE3.
 ///
 /// Of each message: the moment of publication (nanoseconds, u64), host, publisher and path of the topic (each with its length in
-/// front, u32), the sequence number (u64), and the protobuf encoding. Numbers are little endian. Clones share one hash.
+/// front, u32), the sequence number (u64), and the protobuf encoding. Numbers are little endian. Lines of the log are left out: a run is the same whatever is logged of it.
+/// Clones share one hash.
 ///
 /// ```
 /// use monas::{RunHash, Talws};
@@ -46,6 +49,9 @@ impl RunHash {
 
 impl Observer for RunHash {
     fn observe(&mut self, publication: Publication<'_>) {
+        if publication.topic.path() == LOG.path() {
+            return;
+        }
         let mut state = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         state.add(publication);
     }

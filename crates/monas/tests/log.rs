@@ -7,10 +7,13 @@ use std::cell::Cell;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::{Arc, Mutex};
 
 use monas::logger::{self, Format, Logger, Settings, Severity};
-use monas::records::{Action, Change};
-use monas::{Agent, Blackboard, BoxError, Hz, Talws};
+use monas::records::foxglove::Log;
+use monas::records::foxglove::log::Level;
+use monas::records::{Action, Change, LOG};
+use monas::{Agent, Blackboard, BoxError, Hz, RunHash, Talws};
 use narukom::Moment;
 use tracing::Dispatch;
 use tracing_subscriber::prelude::*;
@@ -186,6 +189,74 @@ fn a_line_says_which_activity_of_which_robot_wrote_it_and_when_and_the_same_run_
     assert_eq!(of(&["Second"]).lines().count(), 3 + 1, "an error is always written");
     assert_eq!(of(&["vision"]).lines().count(), 6 + 1, "an agent stands for its activities");
     assert_eq!(of(&["Behaviour"]).lines().count(), 1);
+}
+
+/// A dispatch whose logger writes nothing and publishes this.
+fn publishing(least_grave: Option<Severity>) -> Dispatch {
+    let (layer, logger) = logger::layer();
+    let dispatch = Dispatch::new(tracing_subscriber::registry().with(layer));
+    let begin = || least_grave.into_iter().for_each(|least_grave| logger.publish(least_grave));
+    tracing::dispatcher::with_default(&dispatch, begin);
+    dispatch
+}
+
+/// What is published of a run of so many cycles at 100 Hz, and its hash.
+fn published(talws: Talws, least_grave: Option<Severity>, cycles: u64) -> (Vec<(String, Log)>, String) {
+    let (lines, hash) = (Arc::new(Mutex::new(Vec::new())), RunHash::new());
+    let (mut talws, seen) = (talws, lines.clone());
+    talws.observe(Box::new(hash.clone()));
+    talws.observe(Box::new(move |publication: narukom::Publication<'_>| {
+        if publication.topic.path() == LOG.path() {
+            let mut bytes = Vec::new();
+            publication.sample.message.encode_to(&mut bytes);
+            let log = <Log as prost::Message>::decode(&bytes[..]).unwrap();
+            seen.lock().unwrap().push((publication.host.to_owned(), log));
+        }
+    }));
+    tracing::dispatcher::with_default(&publishing(least_grave), || {
+        talws.simulate(1).unwrap().run_until(Moment::from_nanos(cycles * 10_000_000)).unwrap();
+        tracing::info!("the run is over");
+    });
+    let lines = lines.lock().unwrap().clone();
+    (lines, hash.finish().0)
+}
+
+#[test]
+fn lines_are_messages_of_the_host_they_are_about_and_the_hash_of_the_run_does_not_count_them() {
+    let run = |least_grave| published(team(), least_grave, 3);
+    let (lines, hash) = run(Some(Severity::Info));
+    assert_eq!((lines.clone(), hash.clone()), run(Some(Severity::Info)), "each time the same");
+    assert_eq!((Vec::new(), hash.clone()), run(None));
+    let (errors, same) = run(Some(Severity::Error));
+    assert_eq!(same, hash);
+    let [(host, error)] = errors.as_slice() else { panic!("{errors:?}") };
+    assert_eq!(host, "local");
+    assert_eq!((error.level(), error.name.as_str()), (Level::Error, "mind/Behavior"));
+    assert_eq!(error.message, "activity failed: no ball cycle=3");
+    assert_eq!(error.timestamp.map(|it| (it.seconds, it.nanos)), Some((0, 20_000_000)));
+    let second = lines.iter().filter(|(_, line)| line.name == "vision/Second");
+    let words: Vec<&str> = second.map(|(_, line)| line.message.as_str()).collect();
+    let expected = [1, 2, 3].map(|cycle| format!("the second is at work cycle={cycle}"));
+    assert_eq!(words, expected);
+    let (_, first) = &lines[0];
+    assert!(first.file.ends_with("log.rs") && first.line > 0, "{first:?}");
+    assert_eq!(lines.len(), 7, "what is said outside of the run is no host's: {lines:?}");
+}
+
+#[test]
+fn publishing_a_line_allocates_nothing() {
+    let allocations = |least_grave| {
+        let works = |_: &mut Blackboard| tracing::info!(x = 0.41, "a message of {} words", 5);
+        let mut simulation =
+            Talws::new().agent(Agent::new("a", Hz(100)).activity(works)).simulate(1).unwrap();
+        tracing::dispatcher::with_default(&publishing(least_grave), || {
+            simulation.run_until(Moment::from_nanos(2_000_000_000)).unwrap();
+            let before = ALLOCATIONS.get();
+            simulation.run_until(Moment::from_nanos(12_000_000_000)).unwrap();
+            ALLOCATIONS.get() - before
+        })
+    };
+    assert_eq!(allocations(Some(Severity::Info)), allocations(None));
 }
 
 #[test]

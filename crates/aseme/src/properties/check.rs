@@ -147,22 +147,6 @@ fn unread(bound: &Bound, abstraction: &Abstraction) -> Vec<Diagnostic> {
 fn fields<'a>(expression: &'a Expression, told: &mut impl FnMut(&'a Path)) {
     match &expression.kind {
         ExpressionKind::Variable(path) if path.segments.len() > 1 => told(path),
-        ExpressionKind::Or(parts) | ExpressionKind::And(parts) | ExpressionKind::Call(_, parts) => {
-            parts.iter().for_each(|part| fields(part, told));
-        }
-        ExpressionKind::Not(inner) | ExpressionKind::Negative(inner) => fields(inner, told),
-        ExpressionKind::Compare(one, _, other) => {
-            fields(one, told);
-            fields(other, told);
-        }
-        ExpressionKind::Sum(first, rest) => {
-            fields(first, told);
-            rest.iter().for_each(|(_, part)| fields(part, told));
-        }
-        ExpressionKind::Product(first, rest) => {
-            fields(first, told);
-            rest.iter().for_each(|(_, part)| fields(part, told));
-        }
-        _ => {}
+        _ => expression.parts().into_iter().for_each(|operand| fields(operand, told)),
     }
 }

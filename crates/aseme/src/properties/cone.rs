@@ -33,13 +33,7 @@ fn looks_at_states(chart: &Statechart) -> bool {
 }
 
 fn asks_for_states(guard: &Expression) -> bool {
-    match &guard.kind {
-        ExpressionKind::In(_) => true,
-        ExpressionKind::And(parts) | ExpressionKind::Or(parts) => parts.iter().any(asks_for_states),
-        ExpressionKind::Not(inner) => asks_for_states(inner),
-        ExpressionKind::Compare(one, _, other) => asks_for_states(one) || asks_for_states(other),
-        _ => false,
-    }
+    guard.find_map(&mut |part| matches!(part.kind, ExpressionKind::In(_)).then_some(())).is_some()
 }
 
 /// Whether anything leads out of an AND, or out of what it lies in.

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use yase::diagnostic::nearest;
-use yase::expression::{EventId, EventTable, Guard, Name, Names, ScriptTable, TransitionExpression};
+use yase::expression::{
+    EventId, EventTable, Expression, ExpressionKind, Guard, Name, Names, ScriptTable, TransitionExpression,
+};
 use yase::{Chart, Diagnostic, NodeId, NodeKind, Vocabulary};
 
 use super::plan::{Atom, Lowering, Plan};
@@ -23,7 +25,7 @@ pub struct Bound {
 /// Looks up the states and events of a property in a chart. What conditions name is [another's](guards) to know.
 ///
 /// # Errors
-/// Names that the chart does not have (E0845, E0846), and a property that is too large (E0844).
+/// Names that the chart does not have (E0845, E0846), timers in a condition (E0841), and a property that is too large (E0844).
 pub fn bind(property: &Property, chart: &Chart) -> Result<Bound, Vec<Diagnostic>> {
     let mut found = Vec::new();
     let is_lasting = matches!(property.formula.kind, FormulaKind::Always(_));
@@ -51,7 +53,7 @@ fn atom(formula: &Formula, chart: &Chart, found: &mut Vec<Diagnostic>) -> Option
         FormulaKind::Entering(name) => state(name, chart).map(Atom::Entering),
         FormulaKind::Leaving(name) => state(name, chart).map(Atom::Leaving),
         FormulaKind::Event(name) => event(name, chart).map(Atom::Event),
-        FormulaKind::Condition(condition) => Ok(Atom::Condition(condition.clone())),
+        FormulaKind::Condition(condition) => without_timers(condition, chart).map(Atom::Condition),
         _ => return None,
     };
     looked_up.map_err(|wrong| found.push(wrong)).ok()
@@ -105,6 +107,25 @@ pub(crate) fn event(name: &Name, chart: &Chart) -> Result<EventId, Diagnostic> {
         Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
         None => wrong.with_hint("a chart is offered the events that its triggers and actions name"),
     })
+}
+
+/// A condition that asks for no timer of the chart: what an exploration knows of a timer, and what a monitor could, is not the same.
+fn without_timers(condition: &Expression, chart: &Chart) -> Result<Expression, Diagnostic> {
+    let timer = condition.find_map(&mut |part| match &part.kind {
+        ExpressionKind::Variable(path) => {
+            path.bare().filter(|name| chart.timers().any(|(_, it)| it == *name))
+        }
+        _ => None,
+    });
+    match timer {
+        None => Ok(condition.clone()),
+        Some(timer) => {
+            let message =
+                format!("`{timer}` is a timer of the chart and has no place in the condition of a property");
+            let wrong = Diagnostic::error("E0841", condition.span(), message);
+            Err(wrong.with_hint("write `within` behind what must come in time"))
+        }
+    }
 }
 
 /// The conditions of a plan, in the order of its atoms, ready to be read: none for an atom that is no condition.

@@ -421,27 +421,13 @@ fn milliseconds(digits: &str, unit: &str) -> Option<u64> {
 
 /// The first part of a condition that is not about messages.
 fn foreign(expression: &Expression) -> Option<(Span, &'static str)> {
-    let what = match &expression.kind {
-        ExpressionKind::In(_) => Some("In"),
-        ExpressionKind::TimeoutCheck(_) => Some("TimeoutCheck"),
-        ExpressionKind::Script(_) => Some("script"),
-        _ => None,
-    };
-    if let Some(what) = what {
-        return Some((expression.span(), what));
-    }
-    match &expression.kind {
-        ExpressionKind::Or(parts) | ExpressionKind::And(parts) | ExpressionKind::Call(_, parts) => {
-            parts.iter().find_map(foreign)
-        }
-        ExpressionKind::Not(inner) | ExpressionKind::Negative(inner) => foreign(inner),
-        ExpressionKind::Compare(one, _, other) => foreign(one).or_else(|| foreign(other)),
-        ExpressionKind::Sum(first, rest) => {
-            foreign(first).or_else(|| rest.iter().find_map(|(_, part)| foreign(part)))
-        }
-        ExpressionKind::Product(first, rest) => {
-            foreign(first).or_else(|| rest.iter().find_map(|(_, part)| foreign(part)))
-        }
-        _ => None,
-    }
+    expression.find_map(&mut |part| {
+        let what = match &part.kind {
+            ExpressionKind::In(_) => "In",
+            ExpressionKind::TimeoutCheck(_) => "TimeoutCheck",
+            ExpressionKind::Script(_) => "script",
+            _ => return None,
+        };
+        Some((part.span(), what))
+    })
 }

@@ -167,6 +167,20 @@ fn names_that_the_chart_does_not_have_are_said_with_the_nearest() {
 }
 
 #[test]
+fn timers_have_no_place_in_conditions() {
+    let model = "Role: r\nLiveness:\nr = a~\nTransitions:\na -> a : [t] / StartTimeout(t, 200ms)\n";
+    for formula in ["always [t]", "always eventually [Ball.found && !t]"] {
+        let wrong = said(model, formula, &Settings::default());
+        assert_eq!(
+            (wrong[0].0, wrong[0].2.as_str()),
+            ("E0841", "write `within` behind what must come in time")
+        );
+    }
+    let (_, judgements, findings) = judged(model, "always [ready]", &Settings::default());
+    assert_eq!(judgements.len(), 1, "`ready` may be a function of the program: {findings:?}");
+}
+
+#[test]
 fn the_world_knows_messages_and_fields() {
     let field = FieldEntry { id: FieldId(0), name: "found".into(), kind: ValueType::Bool };
     let (path, message) = ("soccer/ball".to_owned(), "Ball".to_owned());

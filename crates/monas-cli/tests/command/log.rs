@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use crate::kit::{Answer, command, root};
+use serde_json::Value;
+
+use crate::kit::{Answer, command, monas, root};
 
 /// Plays a second with a log as a text says, in a folder.
 fn run(folder: &Path, settings: &str) -> Answer {
@@ -35,6 +37,57 @@ fn a_run_is_logged_as_the_file_says() {
     let answer =
         run(folder.path(), "<MessageLogCerr>1</MessageLogCerr><MessageLogFormat>json</MessageLogFormat>");
     assert_eq!(answer.code, Some(0), "{}", answer.err);
+}
+
+/// The lines on a tape: level, name and words of each.
+fn on_tape(tape: &str) -> Vec<(Value, String, String)> {
+    let exported = monas(&["tape", "export", tape, "--topic", "monas/log", "--format", "jsonl"]);
+    assert_eq!(exported.code, Some(0), "{exported:?}");
+    let lines = exported.out.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
+    let texts = |line: &Value, field: &str| line["message"][field].as_str().unwrap_or_default().to_owned();
+    lines
+        .map(|line| (line["message"]["level"].clone(), texts(&line, "name"), texts(&line, "message")))
+        .collect()
+}
+
+#[test]
+fn lines_are_on_the_tape_between_the_messages_of_their_moment_and_what_is_replayed_is_the_same() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let settings = at("logger.toml");
+    fs::write(&settings, "log_file_verbosity_level = 4\n").expect("a file");
+    let played = |tape: &str| {
+        let answer = monas(&["run", "config/match.xml", "--for", "2s", "--log", &settings, "--record", tape]);
+        assert_eq!(answer.code, Some(0), "{answer:?}");
+        answer.out
+    };
+    let hash = |out: &str| out.lines().find(|line| line.starts_with("hash: ")).map(str::to_owned);
+    let (one, two) = (at("one.mcap"), at("two.mcap"));
+    let (first, second) = (played(&one), played(&two));
+    assert!(fs::read(&one).expect("a tape") == fs::read(&two).expect("a tape"), "each time the same bytes");
+    let quiet = monas(&["run", "config/match.xml", "--for", "2s"]);
+    assert!(hash(&first).is_some() && hash(&first) == hash(&second));
+    assert_eq!(hash(&quiet.out), hash(&first), "the run is the same whatever is logged");
+    let lines = on_tape(&one);
+    assert!(
+        lines.iter().any(|(_, name, words)| name == "Goalie" && words.starts_with("no way out")),
+        "{lines:?}"
+    );
+    let replayed = monas(&["tape", "replay", &one, "--verify"]);
+    assert_eq!(replayed.code, Some(0), "{replayed:?}");
+
+    let (live, config) = (at("live.mcap"), at("live.xml"));
+    let agent = "<agent ThreadFrequency=\"100\" StatsCycle=\"5\"><name>Eyes</name><activity>Vision</activity></agent>";
+    fs::write(&config, agent).expect("a file");
+    let answer = monas(&["run", &config, "--for", "300ms", "--record", &live]);
+    assert_eq!(answer.code, Some(0), "{answer:?}");
+    let lines = on_tape(&live);
+    assert!(
+        lines.iter().any(|(_, name, words)| name == "Eyes" && words.starts_with("a cycle takes")),
+        "{lines:?}"
+    );
+    let replayed = monas(&["tape", "replay", &live, "--verify"]);
+    assert_eq!(replayed.code, Some(0), "{replayed:?}");
 }
 
 #[test]

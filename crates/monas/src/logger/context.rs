@@ -59,12 +59,11 @@ pub(super) fn called(look: impl FnOnce(&Caller, u64)) {
 }
 
 /// Simulated time goes on on this thread, until it is dropped.
-pub(crate) struct Simulating(PhantomData<*const ()>);
+pub(crate) struct Simulating(Option<Moment>, PhantomData<*const ()>);
 
 impl Simulating {
     pub(crate) fn begin(now: Moment) -> Simulating {
-        SIMULATED.set(Some(now));
-        Simulating(PhantomData)
+        Simulating(SIMULATED.replace(Some(now)), PhantomData)
     }
 
     /// It is later now.
@@ -75,7 +74,8 @@ impl Simulating {
 
 impl Drop for Simulating {
     fn drop(&mut self) {
-        SIMULATED.set(None);
+        // Who is called within a moment comes back to that moment.
+        SIMULATED.set(self.0);
     }
 }
 

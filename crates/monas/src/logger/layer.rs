@@ -16,22 +16,21 @@ use super::output::{Batch, Console, Outputs};
 use super::queue::Queue;
 use super::record::{Record, Severity};
 use super::settings::Settings;
+use super::topic;
 
 /// A layer that does nothing until its logger begins, and that logger.
 pub fn layer<S: Subscriber + for<'a> tracing_subscriber::registry::LookupSpan<'a>>() -> (impl Layer<S>, Logger)
 {
     let shared = Arc::new(Shared {
         begun: OnceLock::new(),
-        least_grave: AtomicU8::new(SILENT),
+        written: Reach::default(),
+        published: Reach::default(),
         thread: Mutex::new(None),
     });
     let layer = LogLayer { shared: shared.clone() };
     let wanted = Wanted { shared: shared.clone() };
     (layer.with_filter(wanted), Logger { shared })
 }
-
-/// What nobody wants yet.
-const SILENT: u8 = u8::MAX;
 
 /// Has a log written. Clones are handles to the same.
 #[derive(Clone)]
@@ -46,8 +45,10 @@ struct LogLayer {
 
 struct Shared {
     begun: OnceLock<Begun>,
-    /// The number of the least grave events that are wanted, or [`SILENT`].
-    least_grave: AtomicU8,
+    /// What is written into the file or onto the console.
+    written: Reach,
+    /// What is published on the hosts.
+    published: Reach,
     thread: Mutex<Option<JoinHandle<()>>>,
 }
 
@@ -85,23 +86,28 @@ impl Logger {
         }
         let console: Console = Box::new(console);
         let outputs = Outputs::open(&settings, console)?;
-        let least_grave = settings.verbosity.number();
+        let least_grave = settings.verbosity.max(Severity::Error);
         let begun = Begun { settings, outputs, queue: Queue::new() };
         self.shared.begun.set(begun).map_err(|_| again())?;
         let shared = self.shared.clone();
         let thread = thread::Builder::new().name("logger".into()).spawn(move || shared.write_all())?;
         *self.shared.thread.lock().unwrap_or_else(PoisonError::into_inner) = Some(thread);
-        self.shared.least_grave.store(least_grave.max(Severity::Error.number()), Ordering::Relaxed);
-        tracing::callsite::rebuild_interest_cache();
+        self.shared.written.reach_to(least_grave);
         Ok(())
+    }
+
+    /// From now on, what is so grave or graver is published on [`LOG`](crate::records::LOG) of the host that it is about, whatever is written elsewhere and whether anything
+    /// is: so it is recorded, crosses links, and is seen by who looks on. That is what agents, their activities and the threads of a [`Talws`](crate::Talws) say; what the rest of a program says
+    /// belongs to no host. In simulated time it is published in the course of the simulation, and no [`RunHash`](crate::RunHash) counts it.
+    pub fn publish(&self, least_grave: Severity) {
+        self.shared.published.reach_to(least_grave);
     }
 
     /// Writes all that has been said, and no more after that.
     pub fn end(&self) {
         let thread = self.shared.thread.lock().unwrap_or_else(PoisonError::into_inner).take();
         let (Some(thread), Some(begun)) = (thread, self.shared.begun.get()) else { return };
-        self.shared.least_grave.store(SILENT, Ordering::Relaxed);
-        tracing::callsite::rebuild_interest_cache();
+        self.shared.written.reach_nothing();
         begun.queue.end();
         // It only panics where the console does; then there is nothing more to write to.
         let _ = thread.join();
@@ -138,7 +144,20 @@ impl Shared {
 
 impl<S: Subscriber> Layer<S> for LogLayer {
     fn on_event(&self, event: &Event<'_>, _: Context<'_, S>) {
-        let Some(Begun { settings, outputs, queue }) = self.shared.begun.get() else { return };
+        let level = event.metadata().level();
+        if *level <= self.shared.written.level() {
+            self.shared.write(event);
+        }
+        if *level <= self.shared.published.level() {
+            topic::publish(event);
+        }
+    }
+}
+
+impl Shared {
+    /// Writes an event, or leaves it to the logger's thread.
+    fn write(&self, event: &Event<'_>) {
+        let Some(Begun { settings, outputs, queue }) = self.begun.get() else { return };
         if Severity::of(*event.metadata().level()).is_urgent() {
             let mut record = Record::new();
             record.take(event);
@@ -160,8 +179,40 @@ struct Wanted {
 
 impl Wanted {
     fn level(&self) -> LevelFilter {
-        match self.shared.least_grave.load(Ordering::Relaxed) {
-            SILENT => LevelFilter::OFF,
+        self.shared.written.level().max(self.shared.published.level())
+    }
+}
+
+/// The least grave events that are wanted for something: none at first.
+#[derive(Debug)]
+struct Reach(AtomicU8);
+
+/// Stands for no severity.
+const NOTHING: u8 = u8::MAX;
+
+impl Default for Reach {
+    fn default() -> Reach {
+        Reach(AtomicU8::new(NOTHING))
+    }
+}
+
+impl Reach {
+    fn reach_to(&self, least_grave: Severity) {
+        self.set(least_grave.number());
+    }
+
+    fn reach_nothing(&self) {
+        self.set(NOTHING);
+    }
+
+    fn set(&self, number: u8) {
+        self.0.store(number, Ordering::Relaxed);
+        tracing::callsite::rebuild_interest_cache();
+    }
+
+    fn level(&self) -> LevelFilter {
+        match self.0.load(Ordering::Relaxed) {
+            NOTHING => LevelFilter::OFF,
             0 | 1 => LevelFilter::ERROR,
             2 => LevelFilter::INFO,
             3 => LevelFilter::DEBUG,

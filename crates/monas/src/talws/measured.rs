@@ -41,7 +41,7 @@ impl RoundTrip {
         runner.start(Moment::ZERO);
         // The chart does not come into this: whatever its limits are, the first step is within them.
         let assignment = runner.step(Moment::ZERO).ok().and_then(|()| runner.next_started());
-        let pool = Pool::new("bench", 1, Clock::start());
+        let pool = Pool::new("bench", 1, Clock::start(), &hub);
         Ok(RoundTrip {
             pool,
             mailbox: Arc::new(Mailbox::new(0)),

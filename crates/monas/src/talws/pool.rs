@@ -7,10 +7,13 @@ use std::num::NonZeroUsize;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 
+use narukom::Narukom;
+
 use super::clock::{CPU_EVERY, Clock, cpu_time};
 use super::handover::{Mailbox, Work};
 use crate::chart::{Assignment, Returned, Took};
 use crate::error::{Error, ErrorKind};
+use crate::logger::Hosting;
 
 /// The largest number of threads of a pool whose agent does not say how many there are to be.
 const MOST_WORKERS: usize = 12;
@@ -19,6 +22,7 @@ const MOST_WORKERS: usize = 12;
 pub(super) struct Pool {
     name: String,
     clock: Clock,
+    hub: Narukom,
     work: Arc<Work<Job>>,
     workers: Mutex<Vec<JoinHandle<()>>>,
 }
@@ -44,8 +48,9 @@ pub(super) fn workers(set: Option<NonZeroUsize>, useful: usize) -> usize {
 
 impl Pool {
     /// A pool that will have so many threads, without any yet.
-    pub(super) fn new(name: &str, most: usize, clock: Clock) -> Pool {
-        Pool { name: name.into(), clock, work: Arc::new(Work::new(most)), workers: Mutex::default() }
+    pub(super) fn new(name: &str, most: usize, clock: Clock, hub: &Narukom) -> Pool {
+        let work = Arc::new(Work::new(most));
+        Pool { name: name.into(), clock, hub: hub.clone(), work, workers: Mutex::default() }
     }
 
     /// Has an activity called; what it returned goes to the mailbox.
@@ -64,7 +69,8 @@ impl Pool {
         let mut workers = self.workers.lock().unwrap_or_else(PoisonError::into_inner);
         let (work, clock) = (self.work.clone(), self.clock);
         let name = format!("{} {}", self.name, workers.len() + 1);
-        match thread::Builder::new().name(name).spawn(move || run(&work, clock)) {
+        let hosting = Hosting::real([&self.hub], clock);
+        match thread::Builder::new().name(name).spawn(move || hosting.during(|| run(&work, clock))) {
             Ok(worker) => workers.push(worker),
             Err(error) if self.work.one_less() => {
                 tracing::warn!(agent = %self.name, "no further thread for activities: {error}");

@@ -19,6 +19,7 @@ use super::stopper::Stopper;
 use super::supervisor::{Event, Supervisor, SupervisorLine, ring};
 use super::workforce::{Site, Wake, Workforce, spawn};
 use crate::error::{Error, ErrorKind};
+use crate::logger::Hosting;
 use crate::statistics::{AgentStatistics, Statistics};
 
 /// A run in real time. It ends when it is [stopped](Running::stop) or dropped, or when its [stopper](Running::stopper) says so.
@@ -57,7 +58,8 @@ impl Running {
             // Those who have begun are ended.
             running.stopper.stop();
         }
-        running.supervisor = Some(spawn("supervisor", move || supervisor.run())?);
+        let hosting = Hosting::real(&running.hubs, running.clock);
+        running.supervisor = Some(spawn("supervisor", move || hosting.during(|| supervisor.run()))?);
         launched.map(|()| running)
     }
 
@@ -112,7 +114,9 @@ impl Running {
 
     fn launch_world(&mut self, mut world: Environment) -> Result<(), Error> {
         let (stopper, clock) = (self.stopper.clone(), self.clock);
+        let hosting = Hosting::real([world.hub()], clock);
         let thread = spawn("world", move || {
+            let _hosted = hosting.begin();
             while stopper.wait_until(world.due(), &clock) {
                 if let Err(error) = world.advance(world.due()) {
                     tracing::error!("{error}");
@@ -142,13 +146,15 @@ impl Running {
         let site = Site { hub: hub.clone(), place, clock, rests: rests.clone(), linked, line };
         hosts.push(Workforce::new(site, crew.clone(), ground, profiles, configuration)?);
         hosts[place].launch(members)?;
-        body.map_or(Ok(()), |body| self.launch_body(body, hub.host(), rests))
+        body.map_or(Ok(()), |body| self.launch_body(body, &hub, rests))
     }
 
     /// Hands the newest commands to a body and publishes what it senses, in each of its cycles.
-    fn launch_body(&mut self, mut body: Body, host: &str, rests: Arc<AtomicBool>) -> Result<(), Error> {
-        let (stopper, clock, host) = (self.stopper.clone(), self.clock, host.to_owned());
+    fn launch_body(&mut self, mut body: Body, hub: &Narukom, rests: Arc<AtomicBool>) -> Result<(), Error> {
+        let (stopper, clock, host) = (self.stopper.clone(), self.clock, hub.host().to_owned());
+        let hosting = Hosting::real([hub], clock);
         let thread = spawn(&format!("{host} body"), move || {
+            let _hosted = hosting.begin();
             let mut next = first_tick(body.period(), clock.begin());
             while stopper.wait_until(tick(body.period(), next), &clock) {
                 next += 1;

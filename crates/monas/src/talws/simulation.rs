@@ -16,7 +16,7 @@ use super::setup::{Environment, Stage};
 use super::stopper::Stopper;
 use crate::coverage::ChartCoverage;
 use crate::error::{Error, ErrorKind};
-use crate::logger::Simulating;
+use crate::logger::{Hosted, Hosting, Simulating};
 use crate::records::{Change, Changed};
 use crate::statistics::Statistics;
 
@@ -35,6 +35,8 @@ pub struct Simulation {
     hosts: Vec<Host>,
     links: Vec<RunningLink>,
     inlet: Inlet,
+    /// To whom the lines of the log belong that are written meanwhile.
+    hosting: Hosting,
     /// Changes of agents at moments to come, by these and the order in which they were written.
     script: BTreeMap<(Moment, usize), (usize, Change)>,
 }
@@ -45,9 +47,16 @@ impl Simulation {
         let shown = Arc::new(ShownMoment::default());
         let mut links = Vec::new();
         let hosts = stations.into_iter().map(|station| Host::new(station, &crew, &shown, &mut links));
-        let hosts = hosts.collect::<Result<_, Error>>()?;
+        let hosts = hosts.collect::<Result<Vec<Host>, Error>>()?;
+        let hubs = world.iter().map(Environment::hub).chain(hosts.iter().map(Host::hub));
+        let hosting = Hosting::simulated(hubs);
         let (inlet, script) = (Inlet::new(), BTreeMap::new());
-        Ok(Simulation { now: Moment::ZERO, shown, world, hosts, links, inlet, script })
+        Ok(Simulation { now: Moment::ZERO, shown, world, hosts, links, inlet, hosting, script })
+    }
+
+    /// Until what is given is dropped, this thread is in the simulation.
+    fn enter(&self) -> (Simulating, Hosted) {
+        (Simulating::begin(self.now), self.hosting.begin())
     }
 
     /// The moment up to which everything has happened.
@@ -61,7 +70,7 @@ impl Simulation {
     /// # Errors
     /// The world or a body failed. Agents do not fail: see [`Policy`](crate::Policy).
     pub fn run_until(&mut self, end: Moment) -> Result<(), Error> {
-        let _time = Simulating::begin(self.now);
+        let _time = self.enter();
         loop {
             self.let_in();
             let next = self.due();
@@ -81,7 +90,7 @@ impl Simulation {
     /// # Errors
     /// As in [`run_until`](Simulation::run_until).
     pub fn run_paced(&mut self, end: Moment, stopper: &Stopper) -> Result<(), Error> {
-        let _time = Simulating::begin(self.now);
+        let _time = self.enter();
         let (clock, begun) = (Clock::start(), self.now);
         while self.due() < end {
             self.let_in();
@@ -103,7 +112,7 @@ impl Simulation {
     /// There is no such host. That a change is refused is said by the answer.
     pub fn change(&mut self, host: &str, change: Change) -> Result<Changed, Error> {
         let (place, now) = (self.place(host)?, self.now);
-        let _time = Simulating::begin(now);
+        let _time = self.enter();
         Ok(self.hosts[place].change(change, now))
     }
 
@@ -156,7 +165,7 @@ impl Simulation {
 
     /// Stops all agents; their activities are told so.
     pub fn stop(&mut self) {
-        let _time = Simulating::begin(self.now);
+        let _time = self.enter();
         self.hosts.iter_mut().for_each(|host| host.stop(self.now));
     }
 

@@ -29,6 +29,7 @@ use crate::chart::Runner;
 use crate::error::{Error, ErrorKind};
 use crate::frequency::Frequency;
 use crate::list::List;
+use crate::logger::Hosting;
 use crate::records::{AgentEntry, CHANGE, Change, Changed};
 use crate::statistics::{AgentStatistics, Timing};
 
@@ -240,7 +241,7 @@ impl Team {
         let Member { name, policy, frequency, workers, list, charts, teller, .. } = member;
         let (statistics_every, scheduling) = (member.statistics_every, member.scheduling);
         let useful = charts.iter().map(Runner::max_activities).sum();
-        let pool = Arc::new(Pool::new(&name, pool::workers(workers, useful), self.clock));
+        let pool = Arc::new(Pool::new(&name, pool::workers(workers, useful), self.clock, &self.hub));
         let mut threads = Vec::new();
         for (runner, part) in charts.into_iter().zip(chart_parts) {
             let (unit, pool, teller) = (unit.clone(), pool.clone(), teller.another()?);
@@ -281,7 +282,8 @@ impl Team {
             was_late: false,
             has_ended: false,
         };
-        spawn(&name, move || thread.run())
+        let hosting = Hosting::real([&self.hub], self.clock);
+        spawn(&name, move || hosting.during(|| thread.run()))
     }
 
     fn spawn_chart(
@@ -316,7 +318,8 @@ impl Team {
             has_ended: false,
             pauses: false,
         };
-        spawn(&name, move || thread.run())
+        let hosting = Hosting::real([&self.hub], self.clock);
+        spawn(&name, move || hosting.during(|| thread.run()))
     }
 
     fn worker(&self, agent: &str) -> Option<&Worker> {

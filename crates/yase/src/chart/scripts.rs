@@ -64,24 +64,8 @@ fn of_actions(actions: &[Action], place: ActionPlace, note: &mut impl FnMut(&str
 
 /// Finds the scripts in an expression.
 fn walk(expression: &Expression, found: &mut dyn FnMut(&str)) {
-    match &expression.kind {
-        ExpressionKind::Script(text) => found(text),
-        ExpressionKind::Or(parts) | ExpressionKind::And(parts) | ExpressionKind::Call(_, parts) => {
-            parts.iter().for_each(|part| walk(part, found));
-        }
-        ExpressionKind::Not(part) | ExpressionKind::Negative(part) => walk(part, found),
-        ExpressionKind::Compare(left, _, right) => {
-            walk(left, found);
-            walk(right, found);
-        }
-        ExpressionKind::Sum(first, rest) => {
-            walk(first, found);
-            rest.iter().for_each(|(_, part)| walk(part, found));
-        }
-        ExpressionKind::Product(first, rest) => {
-            walk(first, found);
-            rest.iter().for_each(|(_, part)| walk(part, found));
-        }
-        _ => {}
+    if let ExpressionKind::Script(text) = &expression.kind {
+        found(text);
     }
+    expression.parts().into_iter().for_each(|operand| walk(operand, found));
 }

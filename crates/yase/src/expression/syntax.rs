@@ -125,6 +125,41 @@ impl Expression {
     pub fn span(&self) -> Span {
         self.place.0
     }
+
+    /// What it is made of, as it is written: none of a name, a value or a question that has no expressions in it.
+    pub fn parts(&self) -> Vec<&Expression> {
+        match &self.kind {
+            ExpressionKind::Or(parts) | ExpressionKind::And(parts) | ExpressionKind::Call(_, parts) => {
+                parts.iter().collect()
+            }
+            ExpressionKind::Not(operand) | ExpressionKind::Negative(operand) => vec![operand],
+            ExpressionKind::Compare(left, _, right) => vec![left, right],
+            ExpressionKind::Sum(first, rest) => {
+                std::iter::once(&**first).chain(rest.iter().map(|(_, operand)| operand)).collect()
+            }
+            ExpressionKind::Product(first, rest) => {
+                std::iter::once(&**first).chain(rest.iter().map(|(_, operand)| operand)).collect()
+            }
+            ExpressionKind::Absent(_)
+            | ExpressionKind::Present(_)
+            | ExpressionKind::Bool(_)
+            | ExpressionKind::Integer(_)
+            | ExpressionKind::Decimal(_)
+            | ExpressionKind::Text(_)
+            | ExpressionKind::Variable(_)
+            | ExpressionKind::TimeoutCheck(_)
+            | ExpressionKind::In(_)
+            | ExpressionKind::Script(_) => Vec::new(),
+        }
+    }
+
+    /// The first expression in it, itself and outer ones before inner ones, of which something can be told.
+    pub fn find_map<'a, T>(&'a self, told: &mut dyn FnMut(&'a Expression) -> Option<T>) -> Option<T> {
+        if let Some(found) = told(self) {
+            return Some(found);
+        }
+        self.parts().into_iter().find_map(|operand| operand.find_map(told))
+    }
 }
 
 /// What an [`Expression`] says.

@@ -242,20 +242,7 @@ pub(in crate::check) fn messages(expression: &Expression) -> Vec<String> {
                 let text = path.text();
                 found.extend(text.rsplit_once('.').map(|(message, _)| message.to_owned()));
             }
-            ExpressionKind::Or(parts) | ExpressionKind::And(parts) | ExpressionKind::Call(_, parts) => {
-                open.extend(parts)
-            }
-            ExpressionKind::Not(inner) | ExpressionKind::Negative(inner) => open.push(inner),
-            ExpressionKind::Compare(left, _, right) => open.extend([left.as_ref(), right.as_ref()]),
-            ExpressionKind::Sum(first, others) => {
-                open.push(first);
-                open.extend(others.iter().map(|(_, other)| other));
-            }
-            ExpressionKind::Product(first, others) => {
-                open.push(first);
-                open.extend(others.iter().map(|(_, other)| other));
-            }
-            _ => {}
+            _ => open.extend(expression.parts()),
         }
     }
     found.sort();

@@ -20,7 +20,7 @@ use super::repeated::Repeated;
 use super::{Company, Difference, Recorded, RecordedMessage, Tally, no_input};
 use crate::chart::Lead as _;
 use crate::error::{Error, ErrorKind};
-use crate::records::{Action, CHANGE, CHANGED, CYCLE, Change, Changed, Cycle, HOST, Turn};
+use crate::records::{Action, CHANGE, CHANGED, CYCLE, Change, Changed, Cycle, HOST, STATISTICS, Turn};
 use crate::registry::Registry;
 
 /// Agents that repeat their turns.
@@ -437,7 +437,12 @@ impl Part {
         ledger: &mut Ledger,
         told: &mut dyn FnMut(Difference),
     ) {
+        // What was measured then is not measured again.
+        let measured = self.hub.topic(STATISTICS.path());
         for Own { topic, line, bytes, .. } in self.own.drain(..) {
+            if topic.is_some() && topic == measured {
+                continue;
+            }
             self.window.recorded(topic, line, bytes);
         }
         for produced in self.ear.take() {

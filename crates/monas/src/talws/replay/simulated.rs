@@ -9,7 +9,7 @@ use super::compare::Ledger;
 use super::scene::{Scene, Spy};
 use super::{Company, Difference, Recorded, RecordedMessage, Tally, no_input};
 use crate::error::Error;
-use crate::records::{CHANGED, CHART, HOST, MODEL};
+use crate::records::{CHANGED, CHART, HOST, LOG, MODEL};
 
 /// Agents that run again in simulated time.
 ///
@@ -87,7 +87,8 @@ impl Simulated {
         let answers = topic == CHANGED.path() && publisher == HOST_ITSELF;
         let place = self.scenes[scene].place(publisher);
         let publisher = hub.publisher_by_name(topic, publisher).map_err(Error::hub)?;
-        let sets_up = [HOST.path(), MODEL.path(), CHART.path()].contains(&topic);
+        // A line of the log may stand anywhere.
+        let sets_up = [HOST.path(), MODEL.path(), CHART.path(), LOG.path()].contains(&topic);
         Ok(Route::Published { scene, publisher, place, sets_up, answers })
     }
 
