@@ -76,6 +76,12 @@ pub(crate) enum Command {
     /// a file that is found when the project is built.
     #[command(after_help = "Example: monas new my-team && cd my-team && cargo test")]
     New(NewArguments),
+    /// Bring the program, a configuration and its models to a robot, and have it run them.
+    ///
+    /// The program is built for the robot, copied over ssh with all that the configuration names, held against its hashes there, and started as a service. If it does not go on,
+    /// what ran before runs again. Robots stand in a file with their addresses: `<robot name="nao-2" address="nao@10.0.2.2" config="config/agents.xml"/>`.
+    #[command(after_help = "Example: monas deploy nao-2")]
+    Deploy(DeployArguments),
     /// Look at toolchain, permissions, clock, ports and configuration, and say what to do about what is missing.
     #[command(after_help = "Example: monas doctor config/agents.xml")]
     Doctor(DoctorArguments),
@@ -239,6 +245,30 @@ pub(crate) struct NewArguments {
     /// if not given.
     #[arg(long, value_name = "PATH|GIT|VERSION")]
     pub(crate) monas: Option<String>,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
+}
+
+/// What `deploy` may be told.
+#[derive(Args, Debug)]
+pub(crate) struct DeployArguments {
+    /// The robot, by its name in the file.
+    pub(crate) robot: String,
+    /// The file of robots, in XML or TOML.
+    #[arg(long, value_name = "FILE", default_value = "config/robots.xml", value_hint = ValueHint::FilePath)]
+    pub(crate) robots: PathBuf,
+    /// Bring this program, and build none.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) program: Option<PathBuf>,
+    /// Only say what would be brought.
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+    /// Have what ran before run again.
+    #[arg(long, conflicts_with_all = ["program", "dry_run", "list"])]
+    pub(crate) rollback: bool,
+    /// Say what was brought so far.
+    #[arg(long, conflicts_with_all = ["program", "dry_run"])]
+    pub(crate) list: bool,
     #[command(flatten)]
     pub(crate) format: FormatArgument,
 }
@@ -458,6 +488,9 @@ pub(crate) enum ConfigCommand {
         /// JSON Schema 2020-12.
         #[arg(long, group = "language")]
         json: bool,
+        /// Of the file of robots that `deploy` reads, and not of runs.
+        #[arg(long)]
+        robots: bool,
     },
 }
 

@@ -2,7 +2,7 @@
 
 use std::env;
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::new::project_around;
@@ -16,8 +16,7 @@ fn instead(arguments: &[OsString], here: &Path, program: &Path) -> Option<Comman
     if OWN.contains(&first.as_str()) {
         return None;
     }
-    let project = project_around(here)?;
-    let own = program_of(&std::fs::read_to_string(project.join("Cargo.toml")).ok()?)?;
+    let (project, own) = own_program(here)?;
     if program.file_stem().is_some_and(|stem| stem == own.as_str()) {
         return None;
     }
@@ -25,6 +24,13 @@ fn instead(arguments: &[OsString], here: &Path, program: &Path) -> Option<Comman
     command.args(["run", "--quiet", "--package", &own, "--manifest-path"]).arg(project.join("Cargo.toml"));
     command.arg("--").args(arguments);
     Some(command)
+}
+
+/// The folder of the project around a folder, and the name of its program.
+pub(crate) fn own_program(here: &Path) -> Option<(PathBuf, String)> {
+    let project = project_around(here)?;
+    let own = program_of(&std::fs::read_to_string(project.join("Cargo.toml")).ok()?)?;
+    Some((project, own))
 }
 
 /// The name of a project's program.

@@ -30,6 +30,7 @@ mod agent;
 mod arguments;
 mod config;
 mod console;
+mod deploy;
 mod doctor;
 mod duration;
 mod exit;
@@ -104,6 +105,7 @@ fn execute(command: Command, console: &mut Console<'_>) -> Result<Exit, Failure>
         Command::Top(arguments) => top::execute(&arguments, console),
         Command::Tape(command) => tape::execute(&command, console),
         Command::New(arguments) => new::execute(&arguments, console),
+        Command::Deploy(arguments) => deploy::execute(&arguments, console),
         Command::Doctor(arguments) => doctor::execute(&arguments, console),
         Command::Completions { shell } => completions(shell, console).map_err(Failure::from),
     }

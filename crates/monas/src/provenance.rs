@@ -9,12 +9,13 @@ use crate::config;
 use crate::config::{Element, Grammar};
 
 /// What the names of configurations and models end with. Nothing else that a configuration names belongs to it: least of all keys.
-const PARTS: [(&str, &str); 5] = [
+const PARTS: [(&str, &str); 6] = [
     ("xml", "text/xml"),
     ("toml", "application/toml"),
     ("srm", "text/plain"),
     ("xmi", "text/xml"),
     ("scxml", "text/xml"),
+    ("properties", "text/plain"),
 ];
 
 /// A configuration and every configuration and model that it names, directly or not, so that the same agents can be put together

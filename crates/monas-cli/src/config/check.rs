@@ -18,10 +18,32 @@ use crate::run::{Kind, kind_of};
 
 pub(super) fn execute(arguments: &ConfigArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
     let (config, format) = (&arguments.config, arguments.format.value);
+    let layers = |config: &Path| layers::of(config, &arguments.layers);
+    let diagnostics = without_errors(config, format, &layers)?;
+    report::write(console, format, &diagnostics)?;
+    if format == Format::Text {
+        writeln!(console.out, "{}: no errors", config.display())?;
+    }
+    Ok(Exit::Success)
+}
+
+/// Everything that is wrong with a configuration, if none of it is an error.
+///
+/// # Errors
+/// The errors.
+pub(crate) fn checked(config: &Path, format: Format) -> Result<Vec<Diagnostic>, Failure> {
+    without_errors(config, format, &|_| Ok(Layers::new()))
+}
+
+fn without_errors(
+    config: &Path,
+    format: Format,
+    layers: &dyn Fn(&Path) -> Result<Layers, Vec<Diagnostic>>,
+) -> Result<Vec<Diagnostic>, Failure> {
     let invalid = |diagnostics| Failure::Invalid(format, diagnostics);
     let registry = Registry::linked();
     let kind = kind_of(config).map_err(|unread| invalid(vec![*unread]))?;
-    let layers = layers::of(config, &arguments.layers).map_err(invalid)?;
+    let layers = layers(config).map_err(invalid)?;
     let diagnostics = match kind {
         Kind::Match => match Match::load_with(config, &registry, &layers) {
             Ok(plan) => {
@@ -34,14 +56,10 @@ pub(super) fn execute(arguments: &ConfigArguments, console: &mut Console<'_>) ->
         Kind::Agents => agents(config, registry, &layers),
     };
     let diagnostics = [differences(config), diagnostics].concat();
-    if diagnostics.iter().any(Diagnostic::is_error) {
-        return Err(invalid(diagnostics));
+    match diagnostics.iter().any(Diagnostic::is_error) {
+        true => Err(invalid(diagnostics)),
+        false => Ok(diagnostics),
     }
-    report::write(console, format, &diagnostics)?;
-    if format == Format::Text {
-        writeln!(console.out, "{}: no errors", config.display())?;
-    }
-    Ok(Exit::Success)
 }
 
 /// What is wrong with a file of agents, and, if it can be read, what is wrong with them together.

@@ -7,6 +7,8 @@ mod agent;
 mod chapter;
 mod config;
 mod convert;
+#[cfg(unix)]
+mod deploy;
 mod doctor;
 #[cfg(unix)]
 mod elsewhere;
