@@ -39,6 +39,11 @@ fn changing_what_runs() {
 }
 
 #[test]
+fn to_the_robot() {
+    read("deploy.md", 2);
+}
+
+#[test]
 fn coming_from_elsewhere() {
     read("porting.md", 2);
 }

@@ -21,6 +21,7 @@ fn help_lists_the_commands_and_exit_codes() {
         "model",
         "config",
         "new",
+        "deploy",
         "doctor",
         "tape",
         "top",
