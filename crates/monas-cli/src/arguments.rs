@@ -255,7 +255,7 @@ pub(crate) struct DeployArguments {
     /// The robot, by its name in the file.
     pub(crate) robot: String,
     /// The file of robots, in XML or TOML.
-    #[arg(long, value_name = "FILE", default_value = "config/robots.xml", value_hint = ValueHint::FilePath)]
+    #[arg(long, value_name = "FILE", default_value = "robots.xml", value_hint = ValueHint::FilePath)]
     pub(crate) robots: PathBuf,
     /// Bring this program, and build none.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]

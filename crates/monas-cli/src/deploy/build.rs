@@ -27,7 +27,7 @@ pub(super) fn build(here: &Path, target: Option<&str>) -> Result<PathBuf, String
         return Err(format!("the program does not compile{}", hint.unwrap_or_default()));
     }
     let told = String::from_utf8_lossy(&output.stdout);
-    let made = told.lines().filter_map(|line| executable(line, name)).last();
+    let made = told.lines().rev().find_map(|line| executable(line, name));
     made.ok_or_else(|| format!("cargo has not said where `{name}` is"))
 }
 

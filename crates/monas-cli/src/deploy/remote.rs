@@ -36,15 +36,14 @@ impl Said {
     }
 }
 
+/// Writes what a task reads.
+pub(super) type Feed<'f> = dyn Fn(&mut dyn Write) -> io::Result<()> + Sync + 'f;
+
 /// Has the robot do a task of the script, with its arguments. `feed` writes what the task reads.
 ///
 /// # Errors
 /// The robot is not reached, or the task fails.
-pub(super) fn task(
-    robot: &RobotEntry,
-    arguments: &[&str],
-    feed: Option<&(dyn Fn(&mut dyn Write) -> io::Result<()> + Sync)>,
-) -> Result<Said, Refusal> {
+pub(super) fn task(robot: &RobotEntry, arguments: &[&str], feed: Option<&Feed<'_>>) -> Result<Said, Refusal> {
     // Standard input is for what the task reads, so the script is an argument.
     let words = ["sh", "-c", SCRIPT, "monas-deploy"].into_iter();
     let words = words.chain([arguments[0], &*robot.folder]).chain(arguments[1..].iter().copied());
@@ -59,11 +58,7 @@ pub(super) fn task(
     }
 }
 
-fn spoken(
-    robot: &RobotEntry,
-    line: &str,
-    feed: Option<&(dyn Fn(&mut dyn Write) -> io::Result<()> + Sync)>,
-) -> io::Result<Output> {
+fn spoken(robot: &RobotEntry, line: &str, feed: Option<&Feed<'_>>) -> io::Result<Output> {
     let (program, first) = robot.ssh.split_first().ok_or_else(|| io::Error::other("no command is named"))?;
     let mut process = Command::new(program)
         .args(first)

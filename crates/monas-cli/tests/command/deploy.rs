@@ -49,6 +49,10 @@ fn keys(path: &Path) {
 
 impl Site {
     /// None if no ssh server is installed here.
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "somebody has to listen to the server while the test goes on"
+    )]
     fn open() -> Option<Site> {
         let sshd = installed(&["/usr/sbin/sshd", "/usr/local/sbin/sshd", "/usr/bin/sshd"]);
         let (Some(sshd), Some(_)) = (sshd, installed(&["/usr/bin/ssh", "/usr/local/bin/ssh"])) else {
@@ -123,7 +127,7 @@ impl Site {
             self.at("ssh_config").display(),
             self.at("robot").display(),
         );
-        write(&self.at("config/robots.xml"), &text);
+        write(&self.at("robots.xml"), &text);
     }
 
     fn deploy(&self, arguments: &[&str]) -> Answer {
@@ -232,16 +236,16 @@ fn mistakes_are_told_before_anything_is_brought() {
         copy(&root().join(part), &folder.path().join(part));
     }
     let deploy = |robots: &str, arguments: &[&str]| -> Answer {
-        write(&folder.path().join("config/robots.xml"), robots);
+        write(&folder.path().join("robots.xml"), robots);
         let mut command = command(&[&["deploy", "nao-2", "--program", "/bin/true"], arguments].concat());
         command.current_dir(folder.path()).output().expect("the command starts").into()
     };
     let robot =
-        |attributes: &str| format!("<robot name=\"nao-2\" config=\"roles/goalie.xml\" {attributes}/>");
+        |attributes: &str| format!("<robot name=\"nao-2\" config=\"config/roles/goalie.xml\" {attributes}/>");
     let answer = deploy(&robot("adress=\"nao@10.0.2.2\""), &[]);
     assert_eq!(answer.code, Some(3), "{answer:?}");
     assert!(
-        answer.err.contains("robots.xml:1:47") && answer.err.contains("did you mean `address`?"),
+        answer.err.contains("robots.xml:1:54") && answer.err.contains("did you mean `address`?"),
         "{}",
         answer.err
     );
