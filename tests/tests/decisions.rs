@@ -6,6 +6,8 @@
 mod attack;
 #[path = "decisions/monitors.rs"]
 mod monitors;
+#[path = "decisions/safety.rs"]
+mod safety;
 
 use std::collections::BTreeMap;
 use std::fs;

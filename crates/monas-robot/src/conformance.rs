@@ -2,9 +2,9 @@
 
 use narukom::Moment;
 
-use crate::{Actuators, Percepts, Robot};
+use crate::{Actuators, Percepts, Posture, Robot, Sensors};
 
-/// Runs the suite on a body that stands free: ten seconds of its own time.
+/// Runs the suite on a body that stands free: some twenty seconds of its own time. It rests in the end.
 ///
 /// # Panics
 /// With the promise that was broken, if one was: the suite is for tests.
@@ -23,6 +23,26 @@ pub fn check(robot: &mut dyn Robot) {
                 panic!("{command:?} was refused: {error}");
             }
         }
+    }
+    come_to_rest(robot, now);
+}
+
+/// A body that is to rest does so, and stays where it is.
+#[allow(clippy::panic)] // see `check`
+fn come_to_rest(robot: &mut dyn Robot, mut now: Moment) {
+    let (cycle, mut percepts) = (robot.anatomy().cycle, Percepts::default());
+    for round in 0..600 {
+        now += cycle;
+        sense(robot, now, &mut percepts);
+        if let Err(error) = robot.rest(now) {
+            panic!("it does not rest: {error}");
+        }
+        let Sensors { odometry_x, odometry_y, .. } = percepts.sensors;
+        let still = odometry_x.abs() < 1e-3 && odometry_y.abs() < 1e-3;
+        assert!(
+            round < 500 || (still && percepts.sensors.posture() != Posture::Walking),
+            "it does not rest: {percepts:?}"
+        );
     }
 }
 

@@ -31,6 +31,15 @@ pub trait Robot: Send {
     /// Takes what is to be done from now on. Values beyond the limits of the anatomy are brought within them.
     fn act(&mut self, now: Moment, actuators: &Actuators) -> Result<(), Error>;
 
+    /// Makes the body safe, for good: whatever it does, it comes to rest, sits down and takes the stiffness off its joints, and takes no more commands. It may be told so more than once. A
+    /// body that cannot sit stands still, which is what this does if a body does not say otherwise.
+    ///
+    /// # Errors
+    /// As of [`act`](Robot::act).
+    fn rest(&mut self, now: Moment) -> Result<(), Error> {
+        self.act(now, &Actuators::default())
+    }
+
     /// Says something to the others of the team, over the air: at most [`Anatomy::radio`] bytes, and none of it may arrive.
     ///
     /// # Errors

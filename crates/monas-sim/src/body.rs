@@ -30,6 +30,10 @@ pub enum Phase {
     Fallen(Direction),
     /// Standing up.
     StandingUp,
+    /// Sitting down.
+    SittingDown,
+    /// Sitting until told to stand up.
+    Sitting,
 }
 
 impl Phase {
@@ -150,6 +154,8 @@ impl Body {
             Phase::Falling(direction) => self.fall(direction, physics),
             Phase::Fallen(_) => self.lie(),
             Phase::StandingUp => self.stand_up(physics),
+            Phase::SittingDown => self.sit_down(physics),
+            Phase::Sitting => self.lie(),
         };
         let felt = self.gait.felt();
         let step = Pose { position: felt.linear() * STEP, heading: felt.turn * STEP };
@@ -202,12 +208,13 @@ impl Body {
     /// Part of the phase that is done, from 0 to 1; that of the stride while walking.
     pub(crate) fn progress(&self, physics: &Physics) -> f64 {
         let duration = match self.phase {
-            Phase::Standing | Phase::Fallen(_) => return 0.0,
+            Phase::Standing | Phase::Fallen(_) | Phase::Sitting => return 0.0,
             Phase::Walking => return self.gait.stride(),
             Phase::Kicking(_) => physics.kick_duration,
             Phase::SideFalling(_) | Phase::Diving(_) => physics.dive_duration,
             Phase::Falling(_) => physics.fall_duration,
             Phase::StandingUp => physics.stand_up_duration,
+            Phase::SittingDown => physics.sit_down_duration,
         };
         (self.elapsed / duration).min(1.0)
     }
@@ -216,10 +223,10 @@ impl Body {
     fn forget_untimely_skill(&mut self, held: bool) {
         let possible = match self.command.motion {
             Motion::Stand | Motion::Walk(_) | Motion::Freeze => true,
-            Motion::Kick(_) | Motion::Fall(_) | Motion::Dive(_) => {
+            Motion::Kick(_) | Motion::Fall(_) | Motion::Dive(_) | Motion::Sit => {
                 !held && matches!(self.phase, Phase::Standing | Phase::Walking)
             }
-            Motion::StandUp => self.phase.is_fallen(),
+            Motion::StandUp => self.phase.is_fallen() || self.phase == Phase::Sitting,
         };
         if !possible {
             self.command.motion = Motion::Stand;
@@ -255,6 +262,10 @@ impl Body {
             Motion::Kick(foot) => self.begin_skill(Phase::Kicking(foot)),
             Motion::Fall(side) => return self.act(side, false),
             Motion::Dive(side) => return self.act(side, true),
+            Motion::Sit => {
+                self.gait.stop();
+                self.begin_skill(Phase::SittingDown);
+            }
             Motion::Freeze => self.walk(None, physics),
             Motion::Walk(wanted) => self.walk(Some(wanted), physics),
             Motion::Stand | Motion::StandUp => self.walk(Some(Velocity::default()), physics),
@@ -318,6 +329,13 @@ impl Body {
         None
     }
 
+    fn sit_down(&mut self, physics: &Physics) -> Option<Deed> {
+        if self.elapsed >= physics.sit_down_duration {
+            self.enter(Phase::Sitting);
+        }
+        None
+    }
+
     fn stand_up(&mut self, physics: &Physics) -> Option<Deed> {
         if self.elapsed < physics.stand_up_duration {
             return None;
@@ -376,6 +394,25 @@ mod tests {
         body.command.motion = Motion::Walk(Velocity::new(0.2, 0.0, 0.0));
         run(&mut body, 1.0);
         assert!(body.phase.is_fallen());
+    }
+
+    #[test]
+    fn who_is_to_sit_stops_sits_down_and_stays_until_told_to_stand_up() {
+        let physics = Physics::default();
+        let mut body = body(Motion::Walk(Velocity::new(0.2, 0.0, 0.0)));
+        run(&mut body, 2.0);
+        body.command.motion = Motion::Sit;
+        run(&mut body, 0.1);
+        assert_eq!(body.phase, Phase::SittingDown);
+        body.take_odometry();
+        run(&mut body, physics.sit_down_duration);
+        assert_eq!((body.phase, body.take_odometry()), (Phase::Sitting, Pose::default()));
+        body.command.motion = Motion::Walk(Velocity::new(0.2, 0.0, 0.0));
+        run(&mut body, 1.0);
+        assert_eq!(body.phase, Phase::Sitting);
+        body.command.motion = Motion::StandUp;
+        run(&mut body, 0.1);
+        assert_eq!(body.phase, Phase::StandingUp);
     }
 
     #[test]

@@ -28,8 +28,10 @@ pub enum Motion {
     Fall(Side),
     /// Dive to a side, to block far from the body.
     Dive(Side),
-    /// Stand up, when lying.
+    /// Stand up, when lying or sitting.
     StandUp,
+    /// Sit down, when standing or walking.
+    Sit,
     /// Stop every joint at once, the head too.
     Freeze,
 }

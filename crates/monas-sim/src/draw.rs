@@ -149,7 +149,9 @@ impl Picture {
         let opacity = if robot.on_field { 1.0 } else { 0.45 };
         writeln!(self.text, r#"<g transform="translate({x:.1} {y:.1})" opacity="{opacity}">"#)?;
         writeln!(self.text, r#"<g transform="rotate({degrees:.1})">"#)?;
-        if robot.phase.is_upright() || robot.phase == Phase::StandingUp {
+        let lies = robot.phase.is_fallen()
+            || matches!(robot.phase, Phase::SideFalling(_) | Phase::Diving(_) | Phase::Falling(_));
+        if !lies {
             self.upright(world, robot, shirt)?;
         } else {
             self.lying(world, robot, shirt)?;

@@ -65,6 +65,8 @@ parameters! {
         fall_rate_pushed: "1/s" = 0.12 in 0.0 to 10.0;
         /// Time from losing balance to lying (a free fall from this height takes about as long).
         fall_duration: "s" = 0.6 in 0.05 to 5.0;
+        /// Time of sitting down (chosen; a Nao's takes about as long).
+        sit_down_duration: "s" = 1.5 in 0.1 to 20.0;
         /// Time of the stand-up motion (chosen; 2010's took 3 to 6 s).
         stand_up_duration: "s" = 3.5 in 0.5 to 20.0;
         /// Probability that a stand-up motion ends upright (chosen).

@@ -60,7 +60,7 @@ pub(crate) fn torso_tilt(phase: Phase, progress: f64, sway: f64) -> (f64, f64) {
         (-down.y, down.x)
     };
     match phase {
-        Phase::Standing => (0.0, 0.0),
+        Phase::Standing | Phase::SittingDown | Phase::Sitting => (0.0, 0.0),
         Phase::Walking => (sway * libm::sin(TAU * progress), 0.0),
         Phase::Kicking(foot) => (foot.sign() * sway, 0.0),
         Phase::SideFalling(side) | Phase::Diving(side) => toward(side.into(), progress),

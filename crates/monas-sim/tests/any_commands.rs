@@ -19,6 +19,7 @@ fn motion() -> impl Strategy<Value = Motion> {
         6 => walk,
         1 => Just(Motion::Stand),
         3 => Just(Motion::StandUp),
+        1 => Just(Motion::Sit),
         1 => Just(Motion::Freeze),
         1 => side().prop_map(Motion::Kick),
         1 => side().prop_map(Motion::Fall),

@@ -161,7 +161,9 @@ pub(crate) fn phase(phase: GamePhase) -> Phase {
 pub(crate) fn report(sensors: &monas_robot::Sensors) -> Report {
     let posture = match sensors.posture() {
         BodyPosture::Standing | BodyPosture::Walking => Posture::Upright,
-        BodyPosture::Busy | BodyPosture::StandingUp | BodyPosture::Unknown => Posture::Busy,
+        BodyPosture::Busy | BodyPosture::StandingUp | BodyPosture::Sitting | BodyPosture::Unknown => {
+            Posture::Busy
+        }
         BodyPosture::Fallen => Posture::Fallen,
         BodyPosture::Lifted => Posture::Lifted,
     };

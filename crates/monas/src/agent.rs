@@ -31,7 +31,7 @@ pub enum Policy {
     Skip,
     /// The agent stops.
     StopAgent,
-    /// The agent stops, and the body of its host stands still from then on.
+    /// The agent stops, and the body of its host sits down and rests from then on.
     SafeState,
 }
 

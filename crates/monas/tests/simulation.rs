@@ -277,7 +277,7 @@ fn at_one_moment_the_world_moves_bodies_sense_agents_run_and_bodies_act() {
 }
 
 #[test]
-fn in_the_safe_state_the_body_stands_still_whatever_is_published() {
+fn in_the_safe_state_the_body_rests_whatever_is_published() {
     let walks = |b: &mut Blackboard| b.publish(ACTUATORS, Actuators { walk_x: 0.3, ..Actuators::default() });
     let fails = |b: &mut Blackboard| if b.now() < at(20) { Ok(()) } else { Err("broken leg") };
     let (talws, log) = embodied(vec![
@@ -287,7 +287,7 @@ fn in_the_safe_state_the_body_stands_still_whatever_is_published() {
     let mut simulation = talws.simulate(1).unwrap();
     simulation.run_until(at(50)).unwrap();
     let acts: Vec<String> = log.lock().unwrap().iter().filter(|line| line.contains("act")).cloned().collect();
-    assert_eq!(acts, ["0 act 0.3", "10 act 0.3", "20 act 0"]);
+    assert_eq!(acts, ["0 act 0.3", "10 act 0.3", "20 act 0"], "a body that cannot sit stands still");
     let stopped = simulation.statistics().agents[1].stopped.clone();
     assert_eq!(stopped.as_deref(), Some("activity `closure` failed in cycle 3: broken leg"));
 }

@@ -27,13 +27,15 @@ pub struct FieldBody {
     skill: SkillTrack,
     command: Actuators,
     announced: Option<(Moment, Announcement)>,
+    /// It sits, or is to, and no command counts any more.
+    rests: bool,
 }
 
 impl FieldBody {
     pub(super) fn new(pitch: Pitch, robot: usize) -> FieldBody {
         let anatomy = pitch.look(|world| anatomy(world.physics()));
         let (senses, skill, command) = Default::default();
-        FieldBody { pitch, robot, anatomy, senses, skill, command, announced: None }
+        FieldBody { pitch, robot, anatomy, senses, skill, command, announced: None, rests: false }
     }
 
     /// The announcement, if it is news or has not been said for a while.
@@ -67,6 +69,7 @@ impl FieldBody {
             posture: posture(self.senses.phase, on_field) as i32,
             skill_done: self.skill.done(),
             battery: 1.0,
+            relaxed: self.rests && (self.senses.phase == Phase::Sitting || self.senses.phase.is_fallen()),
         };
     }
 
@@ -89,7 +92,11 @@ impl FieldBody {
             limits.walk_turn.clamp(walk_turn),
         );
         let still = walk == Velocity::default();
-        let legs = if still { Motion::Stand } else { Motion::Walk(walk) };
+        let legs = match still {
+            true if self.rests => Motion::Sit,
+            true => Motion::Stand,
+            false => Motion::Walk(walk),
+        };
         let command = Command {
             head_yaw: limits.head_yaw.clamp(head_yaw),
             head_pitch: limits.head_pitch.clamp(head_pitch),
@@ -113,7 +120,7 @@ impl Robot for FieldBody {
         };
         let was_busy = self.skill.motion().is_some();
         self.skill.observe(self.senses.phase);
-        if was_busy && self.skill.motion().is_none() {
+        if self.rests || (was_busy && self.skill.motion().is_none()) {
             self.drive()?;
         }
         self.feel(now, on_field, &mut percepts.sensors);
@@ -123,8 +130,18 @@ impl Robot for FieldBody {
     }
 
     fn act(&mut self, _now: Moment, actuators: &Actuators) -> Result<(), Error> {
+        if self.rests {
+            return Ok(());
+        }
         self.command = *actuators;
         self.skill.command(actuators);
+        self.drive()
+    }
+
+    /// It sits down as soon as it stands; a body that lies stays where it is.
+    fn rest(&mut self, _now: Moment) -> Result<(), Error> {
+        self.rests = true;
+        self.command = Actuators::default();
         self.drive()
     }
 
@@ -177,6 +194,7 @@ fn posture(phase: Phase, on_field: bool) -> Posture {
         Phase::Kicking(_) | Phase::SideFalling(_) | Phase::Diving(_) | Phase::Falling(_) => Posture::Busy,
         Phase::Fallen(_) => Posture::Fallen,
         Phase::StandingUp => Posture::StandingUp,
+        Phase::SittingDown | Phase::Sitting => Posture::Sitting,
     }
 }
 
@@ -227,6 +245,14 @@ mod tests {
         let mut body = pitch.body(0).unwrap();
         monas_robot::conformance::check(&mut body);
         assert!(pitch.body(1).is_none());
+        let mut percepts = Percepts::default();
+        body.act(Moment::MAX, &Actuators { walk_x: 0.2, ..Actuators::default() }).unwrap();
+        body.sense(Moment::MAX, &mut percepts).unwrap();
+        assert_eq!(
+            (percepts.sensors.posture(), percepts.sensors.relaxed),
+            (Posture::Sitting, true),
+            "it was to rest"
+        );
     }
 
     #[test]

@@ -23,7 +23,7 @@ pub(crate) struct Body {
     /// The actuators and the words that were handed over last.
     handed: Option<Which>,
     said: Option<Which>,
-    /// Whether it is to stand still whatever the agents want.
+    /// Whether it is to rest whatever the agents want.
     safe: bool,
 }
 
@@ -88,10 +88,10 @@ impl Body {
         }
     }
 
-    /// Lets it stand still from now on, whatever the agents want.
+    /// Lets it rest from now on, whatever the agents want.
     pub(crate) fn rest(&mut self, now: Moment) -> Result<(), Error> {
         self.safe = true;
-        self.robot.act(now, &Actuators::default()).map_err(failed)
+        self.robot.rest(now).map_err(failed)
     }
 }
 
