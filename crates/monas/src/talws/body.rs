@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use monas_robot::topics::{ACTUATORS, ANNOUNCEMENT, HEARD, SAID, SENSORS, SIGHTINGS};
-use monas_robot::{Actuators, Announcement, Heard, Percepts, Robot, Sensors, Sightings};
+use monas_robot::{Announcement, Heard, Percepts, Robot, Sensors, Sightings};
 use narukom::{Blackboard, Keep, Moment, Narukom, Publisher, PublisherId, Topic};
 
 use crate::error::{Error, ErrorKind};
