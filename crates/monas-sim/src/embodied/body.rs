@@ -245,14 +245,24 @@ mod tests {
         let mut body = pitch.body(0).unwrap();
         monas_robot::conformance::check(&mut body);
         assert!(pitch.body(1).is_none());
+    }
+
+    #[test]
+    fn a_body_that_rests_sits_relaxed_and_takes_no_commands() {
+        let pitch = pitch();
+        let mut body = pitch.body(0).unwrap();
         let mut percepts = Percepts::default();
-        body.act(Moment::MAX, &Actuators { walk_x: 0.2, ..Actuators::default() }).unwrap();
-        body.sense(Moment::MAX, &mut percepts).unwrap();
-        assert_eq!(
-            (percepts.sensors.posture(), percepts.sensors.relaxed),
-            (Posture::Sitting, true),
-            "it was to rest"
-        );
+        let walk = Actuators { walk_x: 0.2, ..Actuators::default() };
+        for cycle in 0..200 {
+            let now = Moment::from_nanos(cycle * 20_000_000);
+            (0..2).for_each(|_| pitch.lock().world.step());
+            body.sense(now, &mut percepts).unwrap();
+            if cycle == 20 {
+                body.rest(now).unwrap();
+            }
+            body.act(now, &walk).unwrap();
+        }
+        assert_eq!((percepts.sensors.posture(), percepts.sensors.relaxed), (Posture::Sitting, true));
     }
 
     #[test]
