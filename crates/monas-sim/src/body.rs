@@ -141,7 +141,7 @@ impl Body {
         }
     }
 
-    /// Goes on for one step of time. A body that is `held` by the referee only turns its head and stands up.
+    /// Goes on for one step of time. A body that is `held` by the referee only turns its head, sits down and stands up.
     pub(crate) fn advance(&mut self, physics: &Physics, held: bool) -> Option<Deed> {
         self.elapsed += STEP;
         self.turn_head(physics);
@@ -223,9 +223,10 @@ impl Body {
     fn forget_untimely_skill(&mut self, held: bool) {
         let possible = match self.command.motion {
             Motion::Stand | Motion::Walk(_) | Motion::Freeze => true,
-            Motion::Kick(_) | Motion::Fall(_) | Motion::Dive(_) | Motion::Sit => {
+            Motion::Kick(_) | Motion::Fall(_) | Motion::Dive(_) => {
                 !held && matches!(self.phase, Phase::Standing | Phase::Walking)
             }
+            Motion::Sit => matches!(self.phase, Phase::Standing | Phase::Walking),
             Motion::StandUp => self.phase.is_fallen() || self.phase == Phase::Sitting,
         };
         if !possible {
@@ -257,7 +258,11 @@ impl Body {
     }
 
     fn follow_command(&mut self, physics: &Physics, held: bool) -> Option<Deed> {
-        let motion = if held { Motion::Stand } else { self.command.motion };
+        let motion = match self.command.motion {
+            Motion::Sit => Motion::Sit,
+            _ if held => Motion::Stand,
+            motion => motion,
+        };
         match motion {
             Motion::Kick(foot) => self.begin_skill(Phase::Kicking(foot)),
             Motion::Fall(side) => return self.act(side, false),
