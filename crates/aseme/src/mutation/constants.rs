@@ -57,7 +57,7 @@ fn names(condition: &Expression, found: &mut BTreeSet<String>) {
     if let ExpressionKind::Variable(path) = &condition.kind {
         found.extend(path.bare().map(str::to_owned));
     }
-    super::guards::parts(condition).into_iter().for_each(|part| names(part, found));
+    condition.parts().into_iter().for_each(|part| names(part, found));
 }
 
 /// Where each constant of a role stands; nothing for charts in files of their own.

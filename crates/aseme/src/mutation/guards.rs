@@ -80,22 +80,11 @@ fn negated(condition: &Expression) -> Expression {
         ExpressionKind::Absent(message) => ExpressionKind::Present(message.clone()),
         ExpressionKind::Present(message) => ExpressionKind::Absent(message.clone()),
         ExpressionKind::Compare(left, comparison, right) => {
-            ExpressionKind::Compare(left.clone(), contrary(*comparison), right.clone())
+            ExpressionKind::Compare(left.clone(), comparison.contrary(), right.clone())
         }
         _ => ExpressionKind::Not(Box::new(condition.clone())),
     };
     Expression { kind, place: condition.place }
-}
-
-const fn contrary(comparison: Comparison) -> Comparison {
-    match comparison {
-        Comparison::Equal => Comparison::NotEqual,
-        Comparison::NotEqual => Comparison::Equal,
-        Comparison::Less => Comparison::GreaterOrEqual,
-        Comparison::LessOrEqual => Comparison::Greater,
-        Comparison::Greater => Comparison::LessOrEqual,
-        Comparison::GreaterOrEqual => Comparison::Less,
-    }
 }
 
 const fn neighbour(comparison: Comparison) -> Comparison {
@@ -112,7 +101,7 @@ const fn neighbour(comparison: Comparison) -> Comparison {
 /// A condition with one part of it changed, in each way.
 fn variants(condition: &Expression) -> Vec<Variant> {
     let mut found = own(condition);
-    for (place, part) in parts(condition).into_iter().enumerate() {
+    for (place, part) in condition.parts().into_iter().enumerate() {
         for variant in variants(part) {
             let guard = with_part(condition, place, variant.guard);
             let wanted = match (variant.kind, &condition.kind) {
@@ -220,24 +209,7 @@ fn negative(number: Expression) -> Expression {
     Expression { place: number.place, kind: ExpressionKind::Negative(Box::new(number)) }
 }
 
-pub(super) fn parts(condition: &Expression) -> Vec<&Expression> {
-    match &condition.kind {
-        ExpressionKind::Or(operands) | ExpressionKind::And(operands) | ExpressionKind::Call(_, operands) => {
-            operands.iter().collect()
-        }
-        ExpressionKind::Not(inner) | ExpressionKind::Negative(inner) => vec![inner],
-        ExpressionKind::Compare(left, _, right) => vec![left, right],
-        ExpressionKind::Sum(first, rest) => {
-            std::iter::once(&**first).chain(rest.iter().map(|(_, part)| part)).collect()
-        }
-        ExpressionKind::Product(first, rest) => {
-            std::iter::once(&**first).chain(rest.iter().map(|(_, part)| part)).collect()
-        }
-        _ => Vec::new(),
-    }
-}
-
-/// A condition with another part at a place among its [`parts`].
+/// A condition with another part at a place among its [parts](Expression::parts).
 fn with_part(condition: &Expression, place: usize, part: Expression) -> Expression {
     let mut changed = condition.clone();
     let found = match &mut changed.kind {

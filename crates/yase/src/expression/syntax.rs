@@ -221,6 +221,18 @@ pub enum Comparison {
 }
 
 impl Comparison {
+    /// The comparison that says the contrary of two values that can be compared.
+    pub const fn contrary(self) -> Comparison {
+        match self {
+            Comparison::Equal => Comparison::NotEqual,
+            Comparison::NotEqual => Comparison::Equal,
+            Comparison::Less => Comparison::GreaterOrEqual,
+            Comparison::LessOrEqual => Comparison::Greater,
+            Comparison::Greater => Comparison::LessOrEqual,
+            Comparison::GreaterOrEqual => Comparison::Less,
+        }
+    }
+
     /// The comparison that says the same with its sides exchanged.
     pub(super) fn mirrored(self) -> Comparison {
         match self {

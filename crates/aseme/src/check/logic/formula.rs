@@ -133,7 +133,7 @@ impl Reading<'_> {
             return known(whole, wanted, vec![(says, is_equality)]);
         }
         let difference = Linear::of(left, self).minus(&Linear::of(right, self));
-        let comparison = if wanted.is_positive() { comparison } else { opposite(comparison) };
+        let comparison = if wanted.is_positive() { comparison } else { comparison.contrary() };
         // two fields that are compared for equality may be of any type
         let is_number = !(is_equality && is_field(left) && is_field(right));
         let bounds = difference.bounds(comparison).into_iter().map(|all| {
@@ -191,17 +191,6 @@ fn is_condition(expression: &Expression) -> bool {
             | ExpressionKind::TimeoutCheck(_)
             | ExpressionKind::In(_)
     )
-}
-
-fn opposite(comparison: Comparison) -> Comparison {
-    match comparison {
-        Comparison::Equal => Comparison::NotEqual,
-        Comparison::NotEqual => Comparison::Equal,
-        Comparison::Less => Comparison::GreaterOrEqual,
-        Comparison::LessOrEqual => Comparison::Greater,
-        Comparison::Greater => Comparison::LessOrEqual,
-        Comparison::GreaterOrEqual => Comparison::Less,
-    }
 }
 
 fn presence(path: &Path, present: bool) -> Formula {
