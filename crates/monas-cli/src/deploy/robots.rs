@@ -75,6 +75,14 @@ pub(crate) fn grammar() -> Grammar {
 /// # Errors
 /// Whatever is wrong with the file, or that it has no such robot.
 pub(super) fn find(path: &Path, name: &str) -> Result<RobotEntry, Vec<Diagnostic>> {
+    if !path.exists() {
+        let wrong =
+            Diagnostic::error("E0740", yase::Span::default(), format!("there is no file {}", path.display()));
+        let example = format!(
+            "write it: `<robot name=\"{name}\" address=\"nao@10.0.2.2\" config=\"config/agents.xml\"/>`; `--robots` names another file"
+        );
+        return Err(vec![wrong.with_hint(example)]);
+    }
     let resolved = resolve(path, &grammar(), &Layers::new());
     let robots: Vec<Element> = resolved.elements.clone();
     let diagnostics = resolved.into_diagnostics();

@@ -262,6 +262,13 @@ fn mistakes_are_told_before_anything_is_brought() {
         "{}",
         answer.out
     );
+    let answer = deploy(&robot("address=\"nao@10.0.2.2\""), &["--dry-run", "--robots", "fleet.xml"]);
+    assert_eq!(answer.code, Some(3), "{answer:?}");
+    assert!(
+        answer.err.contains("there is no file fleet.xml (write it: `<robot name=\"nao-2\""),
+        "{}",
+        answer.err
+    );
     let goalie = folder.path().join("config/roles/goalie.xml");
     let wrong = fs::read_to_string(&goalie).expect("a role").replace("goalie.srm", "goalee.srm");
     write(&goalie, &wrong);

@@ -103,7 +103,10 @@ impl Kind {
             Kind::Number { least, most: f64::MAX } => format!("a number of at least {least}"),
             Kind::Number { least, most } => format!("a number from {least} to {most}"),
             Kind::Duration { least: Duration::ZERO } => "a time such as `300s` or `100ms`".into(),
-            Kind::Duration { least } => format!("a time of at least `{least:?}`, such as `200ms`"),
+            Kind::Duration { least } => {
+                let example = Duration::from_millis(200).max(*least * 2);
+                format!("a time of at least `{least:?}`, such as `{example:?}`")
+            }
             Kind::Word(words) => format!("one of {}", listed(words)),
             Kind::Name => "a name of letters, digits, `_` and `-`".into(),
             Kind::File => "the path of a file".into(),
