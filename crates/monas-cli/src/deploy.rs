@@ -4,6 +4,7 @@
 //! the program has started once. Then the release becomes the current one and its service starts; if it does not go on, the release before comes back.
 
 mod build;
+mod modules;
 mod release;
 mod remote;
 mod robots;
@@ -50,6 +51,10 @@ struct Deploying<'d> {
 impl Deploying<'_> {
     fn deploy(&self, arguments: &DeployArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
         let robot = self.robot;
+        let left_behind = modules::left_behind(robot);
+        if !left_behind.is_empty() {
+            return Err(Failure::Invalid(self.format, left_behind));
+        }
         checked(&robot.config, self.format)?;
         let program = self.program(arguments.program.as_deref())?;
         let release =
@@ -124,7 +129,7 @@ impl Deploying<'_> {
                 self.failed(format!("release {release} did not go on for {settle} s: the one before runs again. Its last words: {said}"))
             }
             Refusal::Task(NOTHING_BACK, said) => {
-                self.failed(format!("release {release} did not go on for {settle} s, and there is none before it: nothing runs. Its last words: {said}"))
+                self.failed(format!("release {release} did not go on for {settle} s, and there is no release before it that starts: nothing runs. Its last words: {said}"))
             }
             refusal => self.failure(refusal),
         })?;

@@ -247,7 +247,7 @@ impl Runner {
             let Some((mut old, activation)) = self.posts.renew(node, activity, &self.hub) else { continue };
             let Some(blackboard) = self.desk.lending.free_mut(activation.region, now) else { continue };
             if let Err(failure) = call::stop(old.as_mut(), blackboard) {
-                tracing::error!(agent = %self.desk.agent, "activity failed to stop: {failure}");
+                tracing::error!(robot = %self.desk.host, agent = %self.desk.agent, "activity failed to stop: {failure}");
             }
             self.desk.lending.publish_all(activation.region, now);
         }

@@ -36,7 +36,7 @@
 //! memory, so a program that reloads all day grows by the size of the module each time.
 
 mod file;
-mod forward;
+pub(crate) mod forward;
 pub(crate) mod gate;
 mod guarded;
 mod load;

@@ -6,7 +6,7 @@
 #   run FOLDER RELEASE UNIT SERVICE SECONDS   makes it the current one; if it does not go on for so long, the one before comes back
 #
 # A release is a folder below `releases`, and `current` points to one. Lines on standard output that begin with `@` are for the command; what else is said is for people.
-# Exit codes: 21 hashes differ, 22 the program does not start, 23 it did not go on and the release before is back, 24 it did not go on and there is none.
+# Exit codes: 21 hashes differ, 22 the program does not start, 23 it did not go on and the release before is back, 24 it did not go on and nothing runs.
 set -eu
 task=$1
 mkdir -p "$2/releases"
@@ -185,6 +185,12 @@ check)
 run)
     release=$3 unit=$4 kind=$(kind_of "$5")
     before=$(current)
+    # What comes back if this one does not go on.
+    if [ "$before" = "$release" ]; then
+        back=$(cat previous 2>/dev/null || true)
+    else
+        back=$before
+    fi
     [ -d "releases/$release" ] || { echo "there is no release $release" >&2; exit 1; }
     echo "@service $kind"
     point_to "$release"
@@ -195,12 +201,12 @@ run)
     fi
     last_words >&2
     stop
-    if [ -z "$before" ]; then
+    if [ -z "$back" ] || [ ! -d "releases/$back" ]; then
         rm -f current
         exit 24
     fi
-    point_to "$before"
-    start
+    point_to "$back"
+    start || exit 24
     exit 23
     ;;
 *)

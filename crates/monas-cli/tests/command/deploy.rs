@@ -270,6 +270,12 @@ fn mistakes_are_told_before_anything_is_brought() {
         answer.err
     );
     let goalie = folder.path().join("config/roles/goalie.xml");
+    let plain = fs::read_to_string(&goalie).expect("a role");
+    write(&goalie, &plain.replacen("<agent ", "<module>eyes.so</module>\n<agent ", 1));
+    let answer = deploy(&robot("address=\"nao@10.0.2.2\""), &["--dry-run"]);
+    assert_eq!(answer.code, Some(3), "{answer:?}");
+    assert!(answer.err.contains("the module `eyes.so` would not go along"), "{}", answer.err);
+    write(&goalie, &plain);
     let wrong = fs::read_to_string(&goalie).expect("a role").replace("goalie.srm", "goalee.srm");
     write(&goalie, &wrong);
     let answer = deploy(&robot("address=\"nao@10.0.2.2\""), &["--dry-run"]);

@@ -14,6 +14,7 @@ use tracing::Event;
 
 use super::context;
 use super::record::{Record, Severity, Time};
+use crate::module::forward;
 use crate::records::LOG;
 use crate::records::foxglove::Log;
 use crate::records::foxglove::log::Level;
@@ -106,7 +107,9 @@ impl Desk {
             // A program may have made its hubs of some topics only: then there is nobody who could look.
             *publisher = hub.publisher(LOG, PUBLISHER).ok();
         }
-        let (file, line) = (event.metadata().file(), event.metadata().line());
+        let metadata = event.metadata();
+        let place = (metadata.target() != forward::TARGET).then(|| (metadata.file(), metadata.line()));
+        let (file, line) = place.unwrap_or_default();
         let make = |log: &mut Log| {
             fill(log, record);
             log.file.push_str(file.unwrap_or_default());

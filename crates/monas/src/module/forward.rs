@@ -51,11 +51,13 @@ fn guarded_take(line: &Line) {
     let _ = catch_unwind(AssertUnwindSafe(|| take(line)));
 }
 
-/// Lines of modules have this target in the host.
+/// Lines of modules have this target in the host. Their places in the module's text are not known there.
+pub(crate) const TARGET: &str = "monas::module";
+
 macro_rules! at {
     ($level:expr, $wanted:expr, $macro:ident) => {
         if $wanted == $level {
-            return tracing::$macro!(target: "monas::module", $level);
+            return tracing::$macro!(target: TARGET, $level);
         }
     };
 }
@@ -65,7 +67,7 @@ fn wants(level: Level) -> bool {
     at!(Level::WARN, level, enabled);
     at!(Level::INFO, level, enabled);
     at!(Level::DEBUG, level, enabled);
-    tracing::enabled!(target: "monas::module", Level::TRACE)
+    tracing::enabled!(target: TARGET, Level::TRACE)
 }
 
 fn take(line: &Line) {
@@ -74,7 +76,7 @@ fn take(line: &Line) {
     let fatal = fatal.then_some(true);
     macro_rules! say {
         ($level:expr) => {
-            tracing::event!(target: "monas::module", $level, fatal, robot, agent, activity, cycle, module = *target, "{words}")
+            tracing::event!(target: TARGET, $level, fatal, robot, agent, activity, cycle, module = *target, "{words}")
         };
     }
     match *level {
