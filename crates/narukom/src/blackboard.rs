@@ -18,7 +18,7 @@ use crate::moment::Moment;
 use crate::random::Random;
 use crate::reading::{Delivery, Reader, Window};
 use crate::ring::Origin;
-use crate::sample::{Channel, HostId, TopicSlot};
+use crate::sample::{AnySample, Channel, Header, HostId, TopicSlot};
 use crate::topic;
 
 use place::Place;
@@ -107,8 +107,10 @@ impl Blackboard {
     pub fn publish_all(&mut self, now: Moment) {
         for slot in self.outbox.drain(..) {
             let Some(writing) = self.places[slot.index()].writing.as_mut() else { continue };
-            let Some((sample, nth)) = writing.take_next() else { continue };
-            self.outgoing.push(Outgoing::new(sample, Origin { blackboard: self.number, nth }));
+            let Some((message, nth)) = writing.take_next() else { continue };
+            let header = Header::local(self.sender.publisher, slot, now);
+            let origin = Origin { blackboard: self.number, nth };
+            self.outgoing.push(Outgoing::new(AnySample { message, header }, origin));
         }
         self.hub.send(&self.sender, &mut self.outgoing, now);
         for Outgoing { header, origin, left, .. } in self.outgoing.drain(..) {
@@ -198,10 +200,11 @@ impl Blackboard {
         let reader = place.reader(self.number, channel.host);
         let Some(reading) = place.reading_mut(channel.host) else { return false };
         let was_open = reading.is_open();
-        let front = self.hub.front();
-        let Some(newest) = front.publication(last) else { return false };
-        reading.deliver_next(last, newest, reader, &mut self.delivery);
-        drop(front);
+        let exchange = self.hub.unshelved();
+        let Some(entry) = exchange.at_front(last) else { return false };
+        let (sample, origin) = (entry.sample.clone(), entry.origin);
+        drop(exchange);
+        reading.deliver_next(last, sample, origin, reader, &mut self.delivery);
         reading.expire(self.now, &mut self.delivery.leaving);
         if reading.is_open() && !was_open {
             self.open.get_mut().push(channel);

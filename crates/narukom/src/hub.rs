@@ -9,7 +9,6 @@ use crate::catalogue::Catalogue;
 use crate::encoding::Encoding;
 use crate::error::{Error, ErrorKind};
 use crate::exchange::{Exchange, Outgoing, Sender};
-use crate::front::Front;
 use crate::head::{Head, Recent};
 use crate::moment::Moment;
 use crate::observer::{Observer, Publication, Waker};
@@ -38,7 +37,6 @@ struct Shared {
     is_observed: AtomicBool,
     observers: Mutex<Observers>,
     exchange: Apart<Mutex<Exchange>>,
-    front: Apart<Mutex<Front>>,
     head: Head,
 }
 
@@ -71,7 +69,6 @@ impl Narukom {
             is_observed: AtomicBool::new(false),
             observers: Mutex::default(),
             exchange: Apart(Mutex::new(exchange)),
-            front: Apart(Mutex::default()),
             head: Head::new(),
         };
         Ok(Narukom { shared: Arc::new(shared) })
@@ -258,14 +255,17 @@ impl Narukom {
         self.shared.head.recent(since, last)
     }
 
+    /// What the hub holds, each message in its ring.
     pub(crate) fn exchange(&self) -> MutexGuard<'_, Exchange> {
-        self.shared.exchange.0.lock().unwrap_or_else(PoisonError::into_inner)
+        let mut exchange = self.unshelved();
+        exchange.shelve();
+        exchange
     }
 
-    /// The last publication. Whoever has this lock takes no other.
+    /// As [`exchange`](Narukom::exchange), but the last publication may still be at the front.
     #[inline]
-    pub(crate) fn front(&self) -> MutexGuard<'_, Front> {
-        self.shared.front.0.lock().unwrap_or_else(PoisonError::into_inner)
+    pub(crate) fn unshelved(&self) -> MutexGuard<'_, Exchange> {
+        self.shared.exchange.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn observers(&self) -> MutexGuard<'_, Observers> {
@@ -300,7 +300,7 @@ impl Narukom {
             return;
         }
         let observers = self.is_observed().then(|| self.observers());
-        let mut exchange = self.exchange();
+        let mut exchange = self.unshelved();
         let head = &self.shared.head;
         for message in &mut *outgoing {
             let before = exchange.order();
@@ -309,14 +309,10 @@ impl Narukom {
                 head.note(exchange.order(), message.header.channel());
             }
         }
-        let newest = outgoing.last().and_then(|last| exchange.newest(last.header.channel()));
-        let before = newest.and_then(|newest| self.front().put(newest));
         let waker = exchange.waker.clone();
         // The last thing before the lock is free: who polls the head wants the lock at once.
         head.move_to(exchange.order());
         drop(exchange);
-        // Its counter is with the core that read it: nobody waits for that.
-        drop(before);
         if let Some(mut observers) = observers {
             outgoing.iter_mut().for_each(|message| self.show(&mut observers, host, sender, message));
         }

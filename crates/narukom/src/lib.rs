@@ -34,7 +34,7 @@
 //! message 96. A blackboard takes 24 bytes for each topic of the hub, and for each topic that it reads less than 200 bytes and
 //! 64 for a reference to each message that it was delivered, which are at most as many again. Messages are shared: with N topics of depth
 //! D and M readers there are at most N·D messages in the hub, and readers that stop fetching hold on to at most D more each.
-//! The front of the hub is one reference more to the last of these. Each writer keeps four messages of a topic that left the hub, to make the next ones of. `tests/memory.rs` holds the crate to this.
+//! Each writer keeps four messages of a topic that left the hub, to make the next ones of. `tests/memory.rs` holds the crate to this.
 //! Hosts, and the names that other hosts give their publishers, are bounded too ([`HOST_LIMIT`], [`REMOTE_PUBLISHER_LIMIT`]).
 //!
 //! # Other hosts, and topics known at run time
@@ -50,21 +50,25 @@
 //! `cargo bench -p narukom` measures publishing and reading in one thread and across threads, beside what others make of it.
 //!
 //! Whoever polls and finds nothing for itself compares one number, and takes no lock: the channels of the last publications stand in the
-//! same cache line. A blackboard that is one publication behind takes that one from the front of the hub, which has a lock of its own in
-//! the same two cache lines; whoever has missed more fetches under the hub's lock, so that messages of all topics come as they were
-//! published together.
+//! same cache line. The last publication lies beside the hub's lock, and is put into its topic's ring when the next one comes or somebody looks
+//! there: a blackboard that is one publication behind takes it from the two cache lines that the lock begins. Whoever has missed more
+//! fetches from the rings, so that messages of all topics come as they were published together.
 //!
-//! Across threads the time goes where one processor waits for lines that the other one wrote: the number, the front, the message with its
-//! count, and on the way back the memory of an earlier message, which is used again. `cargo bench -p narukom -- polling 5`, three runs in
-//! turns with the same before there was a front, on two processors of a virtual machine, which stand near each other in some runs and far
-//! apart in others (medians, µs):
+//! Within a thread the time goes to atomic operations, about 5 ns each: the publisher takes and frees the lock, and makes sure twice that nobody
+//! holds the memory that it uses again; the reader takes and frees the lock, counts itself, and lets go of the message before.
 //!
-//! | | through the hub's lock | through the front | `arc-swap`, which holds one value |
+//! Across threads it goes where one processor waits for lines that the other one wrote: the number, the lock with the last publication, and the
+//! message with its count. The memory that a message is made in is fetched earlier, when it comes back. `cargo bench -p narukom -- polling`,
+//! six runs in turns with the same when the last publication had a lock of its own, on two processors of a virtual machine, which stand near
+//! each other in some runs and far apart in others (medians, µs):
+//!
+//! | | with a lock of its own | beside the hub's lock | `arc-swap`, which holds one value |
 //! |---|---:|---:|---:|
-//! | near | 0.46, 0.47 | 0.32, 0.34 | 0.26 to 0.29 |
-//! | far | 1.51 | 0.90 | 0.60 |
+//! | near | 0.26 to 0.34 | 0.20 | 0.17 to 0.19 |
+//! | far | 0.82 to 0.90 | 0.75 to 0.85 | 0.57 to 0.65 |
 //!
-//! What is left beside `arc-swap` is the number apart from the message, the count of readers in the message, and the lock.
+//! What is left beside `arc-swap` is one line, which far apart takes 0.15 µs to come: `arc-swap` polls the pointer itself, where here the number that
+//! is polled is apart from the lock, so that those who poll do not slow down those who publish; and the count of readers in the message is written.
 //!
 //! All tables of one run of `cargo bench -p narukom -- 7` there, the processors far apart and other work on them (medians):
 //!
@@ -136,7 +140,6 @@ mod error;
 #[doc(hidden)]
 pub mod example;
 mod exchange;
-mod front;
 #[doc(hidden)]
 #[allow(missing_docs)]
 pub mod generated;

@@ -5,7 +5,6 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::front::Newest;
 use crate::message::AnyMessage;
 use crate::moment::Moment;
 use crate::ring::{Entry, Origin, Ring};
@@ -107,13 +106,14 @@ impl Reading {
     pub(crate) fn deliver_next(
         &mut self,
         order: u64,
-        newest: &Newest,
+        sample: AnySample,
+        origin: Origin,
         reader: Reader,
         delivery: &mut Delivery,
     ) {
-        let Header { topic, host, .. } = newest.header;
+        let Header { topic, host, .. } = sample.header;
         delivery.arrivals.push((order, topic, host));
-        self.accept(newest.sample(), newest.origin, reader, &mut delivery.leaving);
+        self.accept(sample, origin, reader, &mut delivery.leaving);
         self.cursor += 1;
     }
 

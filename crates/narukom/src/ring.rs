@@ -1,9 +1,10 @@
 //! What a hub holds of one topic of one host: its last messages, and the counters of its publishers.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use crate::encoding::Encoding;
-use crate::exchange::Outgoing;
+use crate::message::AnyMessage;
 use crate::sample::{AnySample, PublisherId};
 
 /// Identifies a blackboard among those of a hub, so that it knows its own messages when they come back.
@@ -20,7 +21,7 @@ impl Origin {
     pub(crate) const OUTSIDE: Origin = Origin { blackboard: 0, nth: 0 };
 }
 
-/// A message in a ring. It lies in two cache lines, and never in three.
+/// A message in a ring, or on its way there. It lies in two cache lines, and never in three.
 #[repr(align(32))]
 pub(crate) struct Entry {
     pub(crate) sample: AnySample,
@@ -35,9 +36,8 @@ pub(crate) struct Entry {
 /// in one cache line.
 #[repr(C, align(64))]
 pub(crate) struct Ring {
-    /// In order of publication from `start` on, and then from 0.
-    entries: Vec<Entry>,
-    start: usize,
+    /// In order of publication.
+    entries: VecDeque<Entry>,
     capacity: usize,
     next: u64,
     /// The number over all topics of the first message there ever was.
@@ -52,8 +52,7 @@ pub(crate) struct Ring {
 impl Ring {
     pub(crate) fn new(capacity: usize) -> Ring {
         Ring {
-            entries: Vec::new(),
-            start: 0,
+            entries: VecDeque::new(),
             capacity,
             next: 0,
             begun: 0,
@@ -83,30 +82,31 @@ impl Ring {
         }
     }
 
-    /// Appends a message. When the ring is full the oldest leaves, and is given back with it.
+    /// Makes room for one message. If the ring is full the oldest leaves, and is given back.
     #[inline]
-    pub(crate) fn push(&mut self, message: &mut Outgoing, order: u64, is_observed: bool) {
-        let content = if is_observed { message.message.clone() } else { message.message.take() };
-        let Some(content) = content else { return };
-        if self.taps > 0 {
-            message.encoding = Some(self.spare.take().unwrap_or_default());
-        }
-        let (header, origin, encoding) = (message.header, message.origin, message.encoding.clone());
+    pub(crate) fn make_room(&mut self) -> Option<Arc<dyn AnyMessage>> {
         if self.entries.len() < self.capacity {
-            let sample = AnySample { message: content, header };
-            self.entries.push(Entry { sample, order, origin, encoding });
-        } else {
-            let oldest = &mut self.entries[self.start];
-            message.left = Some(std::mem::replace(&mut oldest.sample.message, content));
-            (oldest.sample.header, oldest.order, oldest.origin) = (header, order, origin);
-            let encoding = std::mem::replace(&mut oldest.encoding, encoding);
-            self.start = if self.start + 1 == self.capacity { 0 } else { self.start + 1 };
-            self.reuse(encoding);
+            return None;
         }
+        let Entry { sample, encoding, .. } = self.entries.pop_front()?;
+        self.reuse(encoding);
+        Some(sample.message)
+    }
+
+    /// Where taps share the encoding of the next message, if there are any.
+    #[inline]
+    pub(crate) fn next_encoding(&mut self) -> Option<Arc<Encoding>> {
+        (self.taps > 0).then(|| self.spare.take().unwrap_or_default())
+    }
+
+    /// Appends a message, for which there is room.
+    #[inline]
+    pub(crate) fn push(&mut self, entry: Entry) {
         if self.next == 0 {
-            self.begun = order;
+            self.begun = entry.order;
         }
         self.next += 1;
+        self.entries.push_back(entry);
     }
 
     /// Keeps an encoding that left, if nobody holds it.
@@ -122,7 +122,7 @@ impl Ring {
     /// The newest message, and where its encoding is shared.
     #[inline]
     pub(crate) fn newest(&self) -> Option<&Entry> {
-        self.entries[..self.start].last().or_else(|| self.entries.last())
+        self.entries.back()
     }
 
     /// Counts the taps.
@@ -149,9 +149,7 @@ impl Ring {
     #[inline]
     pub(crate) fn from(&self, cursor: u64) -> impl Iterator<Item = &Entry> {
         let skipped = cursor.saturating_sub(self.first()).min(self.entries.len() as u64) as usize;
-        let (newer, older) = self.entries.split_at(self.start);
-        let (older_skipped, newer_skipped) = (skipped.min(older.len()), skipped.saturating_sub(older.len()));
-        older[older_skipped..].iter().chain(&newer[newer_skipped..])
+        self.entries.range(skipped..)
     }
 
     /// How many messages from the one with index `cursor` on are no longer held.
@@ -161,9 +159,7 @@ impl Ring {
 
     /// The index of the first message that was published later than the one with number `order`.
     pub(crate) fn after(&self, order: u64) -> u64 {
-        let (newer, older) = self.entries.split_at(self.start);
-        let count = |entries: &[Entry]| entries.partition_point(|entry| entry.order <= order);
-        self.first() + (count(older) + count(newer)) as u64
+        self.first() + self.entries.partition_point(|entry| entry.order <= order) as u64
     }
 
     /// Whether there was a message by number `order`, held or not.

@@ -114,11 +114,11 @@ impl Writing {
     }
 
     /// The next message to be published, and its number.
-    pub(crate) fn take_next(&mut self) -> Option<(AnySample, u64)> {
+    pub(crate) fn take_next(&mut self) -> Option<(Arc<dyn AnyMessage>, u64)> {
         let own = self.own.get(self.published)?;
         self.published += 1;
         self.draft &= self.published < self.own.len();
-        Some((own.sample.clone(), own.nth))
+        Some((own.sample.message.clone(), own.nth))
     }
 
     /// Notes the header with which a message was published, and takes back what left the hub's ring in its place.
@@ -141,8 +141,8 @@ impl Writing {
 
     /// Ends a cycle: what was published comes back from the hub.
     pub(crate) fn close(&mut self) {
-        self.own.drain(..self.published);
-        self.published = 0;
+        // One by one: most cycles publish one, and what is made ready for many costs more than that.
+        (0..std::mem::take(&mut self.published)).for_each(|_| drop(self.own.pop_front()));
         self.inherited.clear();
     }
 
