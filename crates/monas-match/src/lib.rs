@@ -35,7 +35,7 @@ mod summary;
 
 pub use error::{Error, ErrorKind};
 pub use grammar::of_matches as grammar;
-pub use label::{END, RUN, SETTINGS, ended, label_real_time};
+pub use label::{END, FOLDER, RUN, SETTINGS, ended, label_real_time};
 pub use parameters::simulator_file;
 pub use plan::{Match, MatchPlan, Options};
 pub use running::RunningMatch;

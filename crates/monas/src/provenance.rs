@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+
+use yase::{Source, Span};
 
 use crate::config;
 use crate::config::{Element, Grammar};
@@ -26,20 +29,27 @@ pub struct Provenance {
     root: String,
     /// The files' contents by their names: their paths from the folder that holds all of them, with slashes.
     files: BTreeMap<String, Vec<u8>>,
+    /// That folder, if what is in the files depends on where they are.
+    folder: Option<PathBuf>,
 }
 
 impl Provenance {
     /// The configuration at `path`, with what it names. What it names and is not there is left out: whoever loads the configuration
     /// hears of that.
     pub fn of(path: impl AsRef<Path>) -> Provenance {
+        let path = path.as_ref();
+        let root = normal(&std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
         let mut found = BTreeMap::new();
-        let root = normal(path.as_ref());
         collect(&root, &mut found);
-        let folder = common_folder(found.keys());
+        let folder = common_folder(found.keys().chain([&root]));
         let name = |path: &Path| slashes(path.strip_prefix(&folder).unwrap_or(path));
+        let is_bound = found.iter().any(|(path, content)| {
+            named_in(path, content).1.iter().any(|named| named.resolved(path).is_some())
+        });
         Provenance {
             root: name(&root),
             files: found.iter().map(|(path, content)| (name(path), content.clone())).collect(),
+            folder: is_bound.then_some(folder),
         }
     }
 
@@ -48,7 +58,19 @@ impl Provenance {
         root: impl Into<String>,
         files: impl IntoIterator<Item = (String, Vec<u8>)>,
     ) -> Provenance {
-        Provenance { root: root.into(), files: files.into_iter().collect() }
+        Provenance { root: root.into(), files: files.into_iter().collect(), folder: None }
+    }
+
+    /// The same, with the folder that its files were in.
+    #[must_use]
+    pub fn in_folder(self, folder: impl Into<PathBuf>) -> Provenance {
+        Provenance { folder: Some(folder.into()), ..self }
+    }
+
+    /// The folder that the files are in, if what is in them depends on it: a file names another by its whole path, or a module, which is
+    /// no part of a configuration, by a path that is not whole.
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
     }
 
     /// The name of the configuration itself.
@@ -76,7 +98,8 @@ impl Provenance {
         hasher.finalize().to_hex().to_string()
     }
 
-    /// Writes the files into a folder, and answers the path of the configuration there.
+    /// Writes the files into a folder, and answers the path of the configuration there. Whole paths of files of the configuration become those
+    /// of the files that are written, and modules are named by their whole paths.
     ///
     /// # Errors
     /// A file cannot be written, or its name leads out of the folder.
@@ -93,10 +116,78 @@ impl Provenance {
         for (name, content) in &self.files {
             let path = inside(name)?;
             path.parent().map_or(Ok(()), fs::create_dir_all)?;
-            fs::write(path, content)?;
+            let elsewhere = self.folder.as_deref().map(|home| self.moved(&home.join(name), home, folder));
+            fs::write(path, elsewhere.transpose()?.as_deref().unwrap_or(content))?;
         }
         inside(&self.root)
     }
+
+    /// What is written for the file at `path` in `home`, once the files of that folder are in another one.
+    fn moved(&self, path: &Path, home: &Path, folder: &Path) -> io::Result<Vec<u8>> {
+        let name = |path: &Path| slashes(path.strip_prefix(home).unwrap_or(path));
+        let content = self.files.get(&name(path)).map_or(&[][..], Vec::as_slice);
+        let (source, named) = named_in(path, content);
+        let mut text = source.text.clone();
+        // From the end on, so that what stands before stays where it is.
+        for named in named.iter().rev() {
+            let Some(target) = named.resolved(path) else { continue };
+            let target =
+                if self.files.contains_key(&name(&target)) { folder.join(name(&target)) } else { target };
+            let target = target.display().to_string();
+            let is_plain = source.text.get(named.span.start..named.span.end) == Some(&*named.text);
+            if !is_plain || target.contains(['<', '>', '&', '"', '\'', '\\', '\n']) {
+                let file = path.display();
+                return Err(io::Error::other(format!(
+                    "{file} names `{}`, which cannot become `{target}`",
+                    named.text
+                )));
+            }
+            text.replace_range(named.span.start..named.span.end, &target);
+        }
+        Ok(text.into_bytes())
+    }
+}
+
+/// A file that a configuration names.
+struct Named {
+    text: String,
+    span: Span,
+    is_module: bool,
+}
+
+impl Named {
+    /// Where the file is, if that depends on where the configuration at `path` is, or is said with its whole path.
+    fn resolved(&self, path: &Path) -> Option<PathBuf> {
+        let named = Path::new(&self.text);
+        if named.is_absolute() {
+            return Some(normal(named));
+        }
+        self.is_module.then(|| config::locate(path, &self.text).ok()).flatten()
+    }
+}
+
+/// The text of the file at `path`, and what it names if it is a configuration, in the order of the text.
+fn named_in(path: &Path, content: &[u8]) -> (Arc<Source>, Vec<Named>) {
+    let text = String::from_utf8_lossy(content);
+    let source = Source::new(path.display().to_string(), &*text);
+    let mut named = Vec::new();
+    if is_configuration(path) {
+        Grammar::agents().parse(&source).0.iter().for_each(|element| add_named(element, &mut named));
+    }
+    named.sort_by_key(|named| named.span.start);
+    (source, named)
+}
+
+/// Adds the files that an element and those in it name, in attributes or as text.
+fn add_named(element: &Element, named: &mut Vec<Named>) {
+    let values = element.attributes().iter().map(|attribute| (&*attribute.value, attribute.value_span));
+    for (text, span) in values.chain([(element.text(), element.text_span())]) {
+        let is_module = element.is("module");
+        if is_module || media_type(Path::new(text)).is_some() {
+            named.push(Named { text: text.to_owned(), span, is_module });
+        }
+    }
+    element.children().iter().for_each(|child| add_named(child, named));
 }
 
 /// Adds a file and what it names.
@@ -105,23 +196,18 @@ fn collect(path: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
         return;
     }
     let Ok(source) = config::read_file(path) else { return };
-    found.insert(path.to_owned(), source.text.clone().into_bytes());
-    if path.extension().is_some_and(|extension| extension == "xml" || extension == "toml") {
-        Grammar::agents().parse(&source).0.iter().for_each(|element| collect_named(path, element, found));
-    }
-}
-
-/// Adds the files that an element and those in it name, in attributes or as text.
-fn collect_named(path: &Path, element: &Element, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
-    let values = element.attributes().iter().map(|attribute| &*attribute.value);
-    for named in values.chain([element.text()]) {
-        if media_type(Path::new(named)).is_some()
-            && let Ok(file) = config::locate(path, named)
-        {
+    let content = source.text.clone().into_bytes();
+    let (_, named) = named_in(path, &content);
+    found.insert(path.to_owned(), content);
+    for named in named.iter().filter(|named| !named.is_module) {
+        if let Ok(file) = config::locate(path, &named.text) {
             collect(&normal(&file), found);
         }
     }
-    element.children().iter().for_each(|child| collect_named(path, child, found));
+}
+
+fn is_configuration(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "xml" || extension == "toml")
 }
 
 fn media_type(path: &Path) -> Option<&'static str> {
@@ -203,6 +289,39 @@ mod tests {
         assert_eq!((&again, again.hash()), (&provenance, provenance.hash()));
         fs::write(elsewhere.path().join("models/g.srm"), "Liveness:\ng = B").unwrap();
         assert_ne!(Provenance::of(elsewhere.path().join("config/match.xml")).hash(), provenance.hash());
+    }
+
+    #[test]
+    fn whole_paths_lead_to_the_files_that_were_unpacked() {
+        let folder = project(&[("models/g.srm", "Liveness:\ng = A"), ("lib/eyes.so", "code")]);
+        let home = folder.path().display().to_string();
+        let agents = format!(
+            "<agents><module>../lib/eyes.so</module><agent><statechart>{home}/models/../models/g.srm</statechart></agent></agents>"
+        );
+        fs::create_dir(folder.path().join("config")).unwrap();
+        fs::write(folder.path().join("config/agents.xml"), &agents).unwrap();
+        let provenance = Provenance::of(folder.path().join("config/agents.xml"));
+        assert_eq!(provenance.folder(), Some(folder.path()));
+        assert_eq!(
+            provenance.files().map(|(name, ..)| name).collect::<Vec<_>>(),
+            ["config/agents.xml", "models/g.srm"]
+        );
+        let elsewhere = tempfile::tempdir().unwrap();
+        let files = provenance.files().map(|(name, _, content)| (name.to_owned(), content.to_vec()));
+        let carried = Provenance::from_files(provenance.root(), files).in_folder(folder.path());
+        fs::write(folder.path().join("models/g.srm"), "changed since").unwrap();
+        let root = carried.unpack(elsewhere.path()).unwrap();
+        let there = elsewhere.path().display();
+        let expected = format!(
+            "<agents><module>{home}/config/../lib/eyes.so</module><agent><statechart>{there}/models/g.srm</statechart></agent></agents>"
+        );
+        assert_eq!(fs::read_to_string(root).unwrap(), expected);
+        assert_eq!(fs::read_to_string(elsewhere.path().join("models/g.srm")).unwrap(), "Liveness:\ng = A");
+    }
+
+    #[test]
+    fn a_configuration_that_names_files_from_where_it_is_can_be_anywhere() {
+        assert_eq!(Provenance::of(project(&FILES).path().join("config/match.xml")).folder(), None);
     }
 
     #[test]

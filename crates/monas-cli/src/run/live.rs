@@ -32,7 +32,8 @@ pub(super) fn execute(
     let tape = tape.map_err(|error| Failure::failed(format, error))?;
     if let Some(tape) = &tape {
         let files = Provenance::of(&arguments.config);
-        monas_match::label_real_time(tape, &files, &[Talws::LOCAL.to_owned()])
+        let settings = layers.settings().collect::<Vec<_>>().join("\n");
+        monas_match::label_real_time(tape, &files, &settings, &[Talws::LOCAL.to_owned()])
             .map_err(|error| Failure::failed(format, error))?;
         talws.observe(Box::new(tape.clone()));
     }

@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use serde_json::Value;
 
-use crate::kit::{Answer, changed, command, monas};
+use crate::kit::{Answer, changed, command, monas, root};
 
 const MATCH: &str = "config/match.xml";
 
@@ -176,6 +176,30 @@ fn what_was_recorded_in_real_time_is_replayed() {
     let answer = monas(&["tape", "replay", &live, "--verify", "--config", &config]);
     assert_eq!(answer.code, Some(5), "{answer:?}");
     assert!(answer.out.contains("first difference: local/Goalie, cycle "), "{}", answer.out);
+}
+
+/// A model that a configuration names by its whole path is on the tape, and that one is replayed; what was set for the run is too.
+#[test]
+fn a_replay_needs_neither_the_place_nor_the_settings_of_its_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = folder.path().join("elsewhere/goalie.srm");
+    fs::create_dir(folder.path().join("elsewhere")).expect("a folder");
+    let role = fs::read_to_string(root().join("models/goalie.srm")).expect("the model");
+    fs::write(&model, &role).expect("a file");
+    let agents = fs::read_to_string(root().join("config/roles/goalie.xml")).expect("the agents");
+    assert!(agents.contains("models/goalie.srm"), "{agents}");
+    let (config, live) = (folder.path().join("agents.xml"), text(&folder.path().join("live.mcap")));
+    fs::write(&config, agents.replace("models/goalie.srm", &text(&model))).expect("a file");
+    let slower = ["--set", "agent.Goalie.stats_cycle=3"];
+    done(&[&["run", &text(&config), "--for", "300ms", "--record", &live], &slower[..]].concat());
+    let info = done(&["tape", "info", &live]);
+    assert!(info.out.contains("agent.Goalie.stats_cycle=3"), "{}", info.out);
+
+    fs::write(&model, role.replace("motion_timeout, 100ms", "motion_timeout, 20ms")).expect("a file");
+    let answer = done(&["tape", "replay", &live, "--verify"]);
+    assert!(answer.out.contains(" 0 differences"), "{}", answer.out);
+    fs::remove_dir_all(folder.path().join("elsewhere")).expect("it is there");
+    done(&["tape", "replay", &live, "--verify"]);
 }
 
 #[test]

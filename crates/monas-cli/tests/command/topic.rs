@@ -74,6 +74,18 @@ fn a_running_match_is_looked_at() {
         delay.out
     );
 
+    let ask_json = |arguments: &[&str]| {
+        let answer = ask(&[arguments, &["--host", "blue-2", "--format", "json"]].concat());
+        assert_eq!(answer.code, Some(0), "{arguments:?}: {}", answer.err);
+        objects(&answer.out).pop().expect("an object")
+    };
+    let info = ask_json(&["topic", "info", "soccer/ball"]);
+    assert_eq!((&info["topic"], &info["type"]), (&"soccer/ball".into(), &"monas.soccer.Ball".into()), "{info}");
+    let delay = ask_json(&["topic", "delay", "body/sensors", "--for", "300ms"]);
+    assert!(delay["seen"].as_u64().is_some_and(|seen| seen > 0), "{delay}");
+    let published = ask_json(&["topic", "pub", "soccer/calibration", r#"{"number": 6}"#]);
+    assert_eq!(published["topic"], "soccer/calibration", "{published}");
+
     let json = r#"{"number": 7}"#;
     let published = ask(&["topic", "pub", "soccer/calibration", json, "--host", "blue-2"]);
     assert_eq!(published.out, "published on soccer/calibration of blue-2\n", "{}", published.err);
@@ -84,6 +96,24 @@ fn a_running_match_is_looked_at() {
 
     assert_eq!(run.interrupt().code, Some(130));
     assert!(!socket.exists(), "its socket is gone with it");
+}
+
+/// Started anew each time, as from a shell; the quickest counts, since other tests are at work beside it.
+#[test]
+#[allow(clippy::disallowed_methods, reason = "how long a person waits is measured")]
+fn answers_come_in_less_than_a_tenth_of_a_second() {
+    let folder = folder();
+    let run = play(folder.path());
+    for question in [&["topic", "list"][..], &["topic", "info", "soccer/ball", "--host", "blue-2"]] {
+        let quickest = (0..10).map(|_| {
+            let start = std::time::Instant::now();
+            assert_eq!(ask(folder.path(), question).code, Some(0));
+            start.elapsed()
+        });
+        let quickest = quickest.min().expect("ten times");
+        assert!(quickest < std::time::Duration::from_millis(100), "{question:?}: {quickest:?}");
+    }
+    assert_eq!(run.interrupt().code, Some(130));
 }
 
 #[test]

@@ -23,6 +23,8 @@ pub(super) struct Run {
     configuration: String,
     /// What the command line had set, a line each.
     settings: String,
+    /// Where the configuration was, if that makes a difference.
+    folder: Option<String>,
     time: Time,
 }
 
@@ -62,7 +64,8 @@ pub(super) fn run_of(overview: &Overview) -> Result<Run, String> {
         ));
     }
     let settings = facts.get(monas_match::SETTINGS).cloned().unwrap_or_default();
-    Ok(Run { version: fact("version")?, configuration: fact("configuration")?, settings, time })
+    let folder = facts.get(monas_match::FOLDER).cloned();
+    Ok(Run { version: fact("version")?, configuration: fact("configuration")?, settings, folder, time })
 }
 
 fn seed(text: &str) -> Result<u64, String> {
@@ -122,7 +125,11 @@ fn files(recording: &Recording, run: &Run) -> Result<Provenance, monas_tape::Err
             files.push((file.name.to_owned(), file.bytes.to_vec()));
         }
     }
-    Ok(Provenance::from_files(run.configuration.clone(), files))
+    let files = Provenance::from_files(run.configuration.clone(), files);
+    Ok(match &run.folder {
+        Some(folder) => files.in_folder(folder),
+        None => files,
+    })
 }
 
 /// The agents of a configuration; warnings have been given when it was recorded, or are given when it is run.
