@@ -6,7 +6,8 @@ use std::sync::Arc;
 use narukom::{AnyPublisher, Arrival, Moment, Narukom, Receiver, Tap};
 
 use crate::error::{Error, ErrorKind};
-use crate::protocol::{Delivery, MessageBytes, Node, Packet, Publication};
+use crate::memory::Memory;
+use crate::protocol::{Delivery, Node, Packet, Publication};
 use crate::settings::{LinkSettings, Place, Plan};
 
 /// So many publishers of other hosts are told apart; messages of more are refused.
@@ -19,6 +20,7 @@ pub struct Bridge {
     /// One for each topic that is sent.
     taps: Vec<Tap>,
     places: Vec<Place>,
+    memory: Memory,
     others: BTreeMap<(Arc<str>, usize, String), Receiver>,
     own: BTreeMap<(usize, String), AnyPublisher>,
 }
@@ -34,7 +36,9 @@ impl Bridge {
         let tap =
             |path: &str| hub.tap(path).map_err(|error| Error::new(ErrorKind::Settings, error.to_string()));
         let taps = node.sends().iter().map(|topic| tap(&topic.path)).collect::<Result<_, _>>()?;
-        Ok(Bridge { hub: hub.clone(), node, taps, places, others: BTreeMap::new(), own: BTreeMap::new() })
+        let memory = Memory::default();
+        let (others, own) = (BTreeMap::new(), BTreeMap::new());
+        Ok(Bridge { hub: hub.clone(), node, taps, places, memory, others, own })
     }
 
     /// What it knows and has counted.
@@ -80,7 +84,7 @@ impl Bridge {
                         publisher: &publisher,
                         sequence: encoded.header.sequence,
                         published: encoded.header.published,
-                        payload: MessageBytes::copy_from_slice(encoded.bytes()),
+                        payload: self.memory.copy(encoded.bytes()),
                     },
                 );
             }

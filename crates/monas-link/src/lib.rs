@@ -89,6 +89,7 @@ mod error;
 pub mod fuzzed;
 mod inbox;
 mod link;
+mod memory;
 mod protocol;
 mod settings;
 mod transport;

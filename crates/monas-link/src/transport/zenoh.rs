@@ -14,7 +14,7 @@ mod config;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt::Display;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use zenoh::bytes::ZBytes;
 use zenoh::pubsub::Publisher;
@@ -25,6 +25,7 @@ use zenoh::{Session, Wait};
 use crate::error::{Error, ErrorKind};
 use crate::inbox::Inbox;
 use crate::link::Transport;
+use crate::memory::Memory;
 use crate::protocol::{MessageBytes, Node, Packet};
 
 pub use config::{Tls, ZenohSettings};
@@ -74,9 +75,11 @@ impl Zenoh {
     fn subscribe(&self, realm: &str, node: &Node, inbox: &Arc<Inbox>) -> Result<(), Error> {
         let mut keys = vec![format!("{realm}/*/c"), format!("{realm}/*/r/{}/**", node.host())];
         keys.extend(node.receives().iter().map(|topic| format!("{realm}/*/m/{}", topic.path)));
+        let memory = Arc::new(Mutex::new(Memory::default()));
         for key in keys {
-            let (inbox, skipped, largest) = (inbox.clone(), realm.len() + 1, self.largest);
-            let take = move |sample: Sample| receive(&sample, skipped, largest, &inbox);
+            let (inbox, memory, skipped, largest) =
+                (inbox.clone(), memory.clone(), realm.len() + 1, self.largest);
+            let take = move |sample: Sample| receive(&sample, skipped, largest, &memory, &inbox);
             let subscriber =
                 self.session.declare_subscriber(key).allowed_origin(Locality::Remote).callback(take);
             subscriber.background().wait().map_err(refused)?;
@@ -152,15 +155,15 @@ fn reliability(is_reliable: bool) -> Reliability {
 }
 
 /// The bytes of a sample, whoever else can still write into its memory.
-fn own(bytes: Cow<'_, [u8]>) -> MessageBytes {
+fn own(bytes: Cow<'_, [u8]>, memory: &Mutex<Memory>) -> MessageBytes {
     match bytes {
-        Cow::Borrowed(bytes) => MessageBytes::copy_from_slice(bytes),
+        Cow::Borrowed(bytes) => memory.lock().unwrap_or_else(PoisonError::into_inner).copy(bytes),
         Cow::Owned(bytes) => bytes.into(),
     }
 }
 
-fn receive(sample: &Sample, skipped: usize, largest: usize, inbox: &Inbox) {
-    let Some(packet) = packet(sample, skipped, largest) else { return };
+fn receive(sample: &Sample, skipped: usize, largest: usize, memory: &Mutex<Memory>, inbox: &Inbox) {
+    let Some(packet) = packet(sample, skipped, largest, memory) else { return };
     if sample.payload().as_shm().is_some() {
         inbox.count_shared();
     }
@@ -169,7 +172,7 @@ fn receive(sample: &Sample, skipped: usize, largest: usize, inbox: &Inbox) {
 
 /// The packet that a sample is, if its key is one of a link. What lies in shared memory is copied before anybody looks at it: whoever
 /// sent it could still change it. What is too long becomes a packet that nobody understands, and is counted as such.
-fn packet(sample: &Sample, skipped: usize, largest: usize) -> Option<Packet> {
+fn packet(sample: &Sample, skipped: usize, largest: usize, memory: &Mutex<Memory>) -> Option<Packet> {
     if sample.kind() != SampleKind::Put {
         return None;
     }
@@ -189,7 +192,7 @@ fn packet(sample: &Sample, skipped: usize, largest: usize) -> Option<Packet> {
         to: to.map(Arc::from),
         path: path.map(Arc::from),
         stamp: (&*stamp).into(),
-        payload: own(payload),
+        payload: own(payload, memory),
         priority: sample.priority() as u8,
         is_reliable: sample.reliability() == Reliability::Reliable,
     })
