@@ -80,7 +80,11 @@ fn a_running_match_is_looked_at() {
         objects(&answer.out).pop().expect("an object")
     };
     let info = ask_json(&["topic", "info", "soccer/ball"]);
-    assert_eq!((&info["topic"], &info["type"]), (&"soccer/ball".into(), &"monas.soccer.Ball".into()), "{info}");
+    assert_eq!(
+        (&info["topic"], &info["type"]),
+        (&"soccer/ball".into(), &"monas.soccer.Ball".into()),
+        "{info}"
+    );
     let delay = ask_json(&["topic", "delay", "body/sensors", "--for", "300ms"]);
     assert!(delay["seen"].as_u64().is_some_and(|seen| seen > 0), "{delay}");
     let published = ask_json(&["topic", "pub", "soccer/calibration", r#"{"number": 6}"#]);
