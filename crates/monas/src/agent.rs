@@ -1,5 +1,6 @@
 //! Agents: what runs together under one name.
 
+mod chart_settings;
 mod profile;
 
 use std::collections::BTreeMap;
@@ -16,6 +17,7 @@ use crate::generated::GeneratedChart;
 use crate::monitors::{OnViolation, Rules};
 use crate::parameters::Parameters;
 
+pub use chart_settings::ChartSettings;
 pub(crate) use profile::{ActivityProfile, ChartProfile, Profile};
 
 /// What happens when an activity fails or panics. Whatever it is, the failure is logged with the agent and the cycle, and no
@@ -62,6 +64,8 @@ pub struct Agent {
     pub(crate) frequency: Option<Frequency>,
     pub(crate) activities: Vec<Listed>,
     pub(crate) charts: Vec<Statechart>,
+    /// What each chart has of its own, by its place.
+    pub(crate) own: Vec<ChartSettings>,
     /// By their place among the charts: those that are code.
     pub(crate) generated: BTreeMap<usize, GeneratedChart>,
     pub(crate) policy: Policy,
@@ -106,6 +110,7 @@ impl Agent {
             frequency: None,
             activities: Vec::new(),
             charts: Vec::new(),
+            own: Vec::new(),
             generated: BTreeMap::new(),
             policy: Policy::default(),
             real_time: false,
@@ -148,6 +153,7 @@ impl Agent {
     pub(crate) fn chart_of(mut self, model: impl Into<String>, chart: Statechart) -> Agent {
         self.models.push(model.into());
         self.charts.push(chart);
+        self.own.push(ChartSettings::new());
         self
     }
 
@@ -162,6 +168,14 @@ impl Agent {
         let statechart = chart.statechart().clone();
         self.generated.insert(self.charts.len(), chart);
         self.chart_of(name, statechart)
+    }
+
+    /// Says what the statechart that was added last has of its own; what it does not say is as the agent says.
+    pub fn chart_settings(mut self, settings: ChartSettings) -> Agent {
+        if let Some(own) = self.own.last_mut() {
+            *own = settings;
+        }
+        self
     }
 
     /// Says what happens when an activity fails.
@@ -231,7 +245,8 @@ impl Agent {
         self
     }
 
-    /// Has [properties](aseme::properties) of its statechart followed while it runs: of the one that it has.
+    /// Has [properties](aseme::properties) of its statechart followed while it runs: of the one that it has. Of several each has its own,
+    /// [`ChartSettings::monitor`].
     pub fn monitor(self, properties: Vec<Property>, on_violation: OnViolation) -> Agent {
         self.ruled(Rules { file: String::new(), properties, on_violation, source: None })
     }

@@ -7,6 +7,7 @@ use narukom::TOPICS;
 use yase::{ActivityEntry, Chart, Diagnostic, NodeId, Semantics, Source, Span, Statechart, Vocabulary};
 
 use crate::activity::Activity;
+use crate::agent::ChartSettings;
 use crate::error::{Error, ErrorKind};
 use crate::function::FunctionDeclaration;
 use crate::generated::GeneratedChart;
@@ -27,6 +28,18 @@ pub(crate) struct BoundChart {
     pub(crate) functions: Arc<[FunctionDeclaration]>,
     /// In the order of [`Chart::activities`].
     pub(crate) activities: Vec<Box<dyn Activity>>,
+}
+
+impl BoundChart {
+    /// Gives its activities the parameters that are said of them.
+    pub(crate) fn configured(mut self, own: &ChartSettings) -> BoundChart {
+        for (entry, activity) in self.chart.activities().zip(&mut self.activities) {
+            if let Some(known) = own.of_activity(entry.name) {
+                activity.configure(&known.parameters.fresh());
+            }
+        }
+        self
+    }
 }
 
 impl<'a> Binder<'a> {
@@ -101,23 +114,24 @@ impl<'a> Binder<'a> {
         Ok(BoundChart { chart, functions: self.functions.clone(), activities: taken })
     }
 
-    /// The properties of an agent with so many charts, to be followed along this one; none if it has none.
+    /// The properties of an agent with so many charts, and this one's own, to be followed along it; none if there are none.
     ///
     /// # Errors
-    /// Names that the chart or the program does not have.
+    /// Names that the chart or the program does not have, and properties of an agent of which nobody knows whose they are.
     pub(crate) fn monitors(
         &self,
-        rules: &[Rules],
-        agent: &str,
-        charts: usize,
+        of_agent: Option<(&[Rules], &str, usize)>,
+        own: &[Rules],
         chart: &Chart,
     ) -> Result<Option<Monitors>, Vec<Diagnostic>> {
-        if rules.is_empty() {
-            return Ok(None);
+        let (rules, agent, charts) = of_agent.unwrap_or_default();
+        if let Some(wrong) = needs_one_chart(agent, charts).filter(|_| !rules.is_empty()) {
+            return Err(vec![wrong]);
         }
-        match needs_one_chart(agent, charts) {
-            Some(wrong) => Err(vec![wrong]),
-            None => Monitors::new(rules, chart, &self.vocabulary).map(Some),
+        let all: Vec<Rules> = rules.iter().chain(own).cloned().collect();
+        match all.is_empty() {
+            true => Ok(None),
+            false => Monitors::new(&all, chart, &self.vocabulary).map(Some),
         }
     }
 

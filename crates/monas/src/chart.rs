@@ -7,6 +7,7 @@ mod desk;
 mod fetching;
 mod following;
 mod lending;
+mod own;
 mod post;
 mod swap;
 mod urgency;
@@ -19,6 +20,7 @@ use narukom::{HostId, Moment, Narukom, TopicSlot};
 use yase::{Activation, Chooser, Machine, MachineError, NodeId, Outcome, Status, TopicId};
 
 use crate::activity::{Activity, Progress};
+use crate::agent::ChartSettings;
 use crate::binder::BoundChart;
 use crate::call::{self, Failure};
 use crate::coverage::ChartCoverage;
@@ -34,6 +36,7 @@ pub(crate) use desk::transition_name;
 use desk::{Desk, Root};
 use fetching::Fetching;
 pub(crate) use fetching::Lead;
+pub(crate) use own::OfAgent;
 pub(crate) use post::{Assignment, Posts, Returned, Took};
 pub(crate) use swap::Swap;
 
@@ -55,6 +58,9 @@ pub(crate) struct Runner {
     desk: Desk,
     posts: Posts,
     monitors: Option<Monitors>,
+    own: ChartSettings,
+    /// Whether the body is to rest since an activity has failed, if one has.
+    rests_body: Option<bool>,
     micro_steps: u64,
 }
 
@@ -85,14 +91,24 @@ impl Home<'_> {
 }
 
 impl Runner {
-    pub(crate) fn new(bound: BoundChart, home: Home<'_>) -> Result<Runner, Error> {
+    pub(crate) fn new(bound: BoundChart, own: ChartSettings, home: Home<'_>) -> Result<Runner, Error> {
         let BoundChart { chart, functions, activities } = bound;
         let desk = Desk::new(&chart, home, functions)?;
         let posts = Posts::new(&chart, activities, home.hub, home.agent);
         let mut machine = Machine::new(chart);
         machine.set_chooser(Chooser::seeded(home.chance()));
         let number = RUNNERS.fetch_add(1, Ordering::Relaxed);
-        Ok(Runner { number, hub: home.hub.clone(), machine, desk, posts, monitors: None, micro_steps: 0 })
+        Ok(Runner {
+            number,
+            hub: home.hub.clone(),
+            machine,
+            desk,
+            posts,
+            monitors: None,
+            own,
+            rests_body: None,
+            micro_steps: 0,
+        })
     }
 
     /// Follows properties of the chart from its start on.

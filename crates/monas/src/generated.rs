@@ -61,6 +61,13 @@ impl GeneratedChart {
     pub fn statechart(&self) -> &Statechart {
         self.chart.statechart()
     }
+
+    /// The activity of that name which it brings, of the first state that has it.
+    pub(crate) fn into_activity(self, name: &str) -> Option<Box<dyn Activity>> {
+        let GeneratedChart { chart, instances } = self;
+        let is_it = |node| chart.statechart().node(node).activity.as_deref() == Some(name);
+        instances.into_iter().find(|instance| is_it(instance.node)).map(|instance| instance.activity)
+    }
 }
 
 /// A generated statechart as [`statechart!`](crate::statechart!) registers it.

@@ -94,7 +94,7 @@ mod talws;
 mod vocabulary;
 
 pub use activity::{Activity, BoxError, IntoProgress, Progress, Topics};
-pub use agent::{Agent, Policy};
+pub use agent::{Agent, ChartSettings, Policy};
 pub use coverage::{ChartCoverage, StateCoverage, TransitionCoverage};
 pub use error::{Error, ErrorKind};
 pub use frequency::{Frequency, Hz};

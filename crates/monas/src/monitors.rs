@@ -256,8 +256,9 @@ fn letter(one: &Followed, machine: &Machine, seen: &Seen, facts: &impl Facts) ->
 pub(crate) fn needs_one_chart(agent: &str, charts: usize) -> Option<Diagnostic> {
     let message =
         format!("agent `{agent}` has {charts} statecharts: nobody knows whose properties these are");
-    (charts != 1).then(|| {
-        Diagnostic::error("E0324", Span::default(), message)
-            .with_hint("give the properties to an agent with one statechart")
-    })
+    let hint = match charts {
+        0 => "give the properties to an agent with a statechart",
+        _ => "put the `monitor` into the `statechart` that is to keep to it",
+    };
+    (charts != 1).then(|| Diagnostic::error("E0324", Span::default(), message).with_hint(hint))
 }

@@ -52,6 +52,17 @@ impl Parameters {
         self.values.is_empty()
     }
 
+    /// The same values, of which nobody has asked anything yet.
+    pub(crate) fn fresh(&self) -> Parameters {
+        self.iter().fold(Parameters::new(), |all, (key, value)| all.with(key, value))
+    }
+
+    /// Whether keys and values are the same, in whatever order.
+    pub(crate) fn says_the_same(&self, other: &Parameters) -> bool {
+        let has = |all: &Parameters, one: (&str, &str)| all.iter().any(|known| known == one);
+        self.values.len() == other.values.len() && self.iter().all(|one| has(other, one))
+    }
+
     /// Keys and values, in the order they were given.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &str)> {
         self.values.iter().map(|(key, value)| (key.as_str(), value.as_str()))

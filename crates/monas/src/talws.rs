@@ -53,6 +53,7 @@ pub use overview::Overview;
 pub(crate) use pulse::Pulse;
 pub use real_time::Running;
 pub use replay::{Company, Difference, Input, Recorded, RecordedMessage, Replay, Tally};
+pub(crate) use scheduling::Scheduling;
 pub(crate) use seeds::component_seed;
 pub use simulation::Simulation;
 pub use stopper::Stopper;

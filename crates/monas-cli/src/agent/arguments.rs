@@ -21,12 +21,12 @@ pub(crate) enum AgentCommand {
         #[command(flatten)]
         run: RunChoice,
     },
-    /// Start an agent that has stopped: its activities and charts begin anew.
+    /// Start an agent that has stopped, or one of its statecharts: what it consists of begins anew.
     #[command(after_help = "Example: monas agent start Motion")]
-    Start(OneAgent),
-    /// Stop an agent. It can be started again.
-    #[command(after_help = "Example: monas agent stop Motion")]
-    Stop(OneAgent),
+    Start(AgentOrChart),
+    /// Stop an agent, or one of its statecharts: the others and its list go on. It can be started again.
+    #[command(after_help = "Example: monas agent stop Player --chart models/goalie.srm")]
+    Stop(AgentOrChart),
     /// Hold an agent where it is.
     #[command(after_help = "Example: monas agent pause Motion")]
     Pause(OneAgent),
@@ -106,7 +106,7 @@ pub(crate) enum AgentCommand {
         #[command(flatten)]
         run: RunChoice,
     },
-    /// Set attributes of an agent, and parameters of its activities: all of them at one edge of its cycles, or none.
+    /// Set attributes of an agent or a statechart, and parameters of its activities: all of them at one edge of its cycles, or none.
     #[command(
         after_help = "Example: monas agent set Motion frequency=50 priority=2 MotionController.gait=quick"
     )]
@@ -117,6 +117,9 @@ pub(crate) enum AgentCommand {
         /// `frequency`, `priority`, `is_real_time`, `stats_cycle` or `on_failure`, or ACTIVITY.PARAMETER.
         #[arg(required = true, value_name = "KEY=VALUE")]
         settings: Vec<String>,
+        /// Set them of one of the agent's statecharts, named by its model or its place, counted from 1.
+        #[arg(long)]
+        chart: Option<String>,
         #[command(flatten)]
         run: RunChoice,
     },
@@ -162,6 +165,16 @@ pub(crate) struct OneAgent {
     pub(crate) agent: String,
     #[command(flatten)]
     pub(crate) run: RunChoice,
+}
+
+/// An agent of a run, or one of its statecharts.
+#[derive(clap::Args, Debug)]
+pub(crate) struct AgentOrChart {
+    #[command(flatten)]
+    pub(crate) one: OneAgent,
+    /// One of its statecharts, by its model or its place, counted from 1.
+    #[arg(long)]
+    pub(crate) chart: Option<String>,
 }
 
 /// The names of the agents of the only run, if there is one.

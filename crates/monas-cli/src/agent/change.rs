@@ -7,7 +7,7 @@ use std::path::Path;
 use monas::records::{Action, Change, Changed, Finding, Inquiry, Setting};
 use serde_json::json;
 
-use super::arguments::{AgentCommand, OneAgent};
+use super::arguments::{AgentCommand, AgentOrChart, OneAgent};
 use super::{ask, odd};
 use crate::arguments::Format;
 use crate::console::Console;
@@ -17,8 +17,9 @@ use crate::topic::arguments::RunChoice;
 
 pub(super) fn execute(command: &AgentCommand, console: &mut Console<'_>) -> Result<Exit, Failure> {
     let Some((change, run)) = asked(command)? else { return Ok(Exit::Success) };
+    let chart = change.chart.clone();
     let changed = ask_for(change, run)?;
-    tell(&changed, &sentence(&changed), run.format.value, console)
+    tell(&changed, &sentence(&changed, &chart), run.format.value, console)
 }
 
 /// What became of a change.
@@ -32,8 +33,8 @@ pub(crate) fn ask_for(change: Change, run: &RunChoice) -> Result<Changed, Failur
 fn asked(command: &AgentCommand) -> Result<Option<(Change, &RunChoice)>, Failure> {
     Ok(Some(match command {
         AgentCommand::List { .. } | AgentCommand::Save { .. } => return Ok(None),
-        AgentCommand::Start(one) => one_agent(Action::StartAgent, one),
-        AgentCommand::Stop(one) => one_agent(Action::StopAgent, one),
+        AgentCommand::Start(meant) => agent_or_chart(Action::StartAgent, meant),
+        AgentCommand::Stop(meant) => agent_or_chart(Action::StopAgent, meant),
         AgentCommand::Pause(one) => one_agent(Action::PauseAgent, one),
         AgentCommand::Resume(one) => one_agent(Action::ResumeAgent, one),
         AgentCommand::Step(one) => one_agent(Action::StepAgent, one),
@@ -59,8 +60,9 @@ fn asked(command: &AgentCommand) -> Result<Option<(Change, &RunChoice)>, Failure
             let settings = settings(parameters)?;
             (Change { activity, replacement, settings, ..about(Action::ReplaceActivity, agent) }, run)
         }
-        AgentCommand::Set { agent, settings: given, run } => {
-            (Change { settings: settings(given)?, ..about(Action::Set, agent) }, run)
+        AgentCommand::Set { agent, settings: given, chart, run } => {
+            let chart = chart.clone().unwrap_or_default();
+            (Change { settings: settings(given)?, chart, ..about(Action::Set, agent) }, run)
         }
         AgentCommand::Swap { agent, model, chart, states, lossy, run } => {
             let (states, accept_losses) = (settings(states)?, *lossy);
@@ -81,6 +83,11 @@ fn about(action: Action, agent: &str) -> Change {
 
 fn one_agent(action: Action, OneAgent { agent, run }: &OneAgent) -> (Change, &RunChoice) {
     (about(action, agent), run)
+}
+
+fn agent_or_chart(action: Action, AgentOrChart { one, chart }: &AgentOrChart) -> (Change, &RunChoice) {
+    let (change, run) = one_agent(action, one);
+    (Change { chart: chart.clone().unwrap_or_default(), ..change }, run)
 }
 
 /// `KEY=VALUE`s.
@@ -135,17 +142,18 @@ pub(crate) fn tell(
     })
 }
 
-fn sentence(changed: &Changed) -> String {
+fn sentence(changed: &Changed, chart: &str) -> String {
     let Changed { agent, cycle, .. } = changed;
+    let its = if chart.is_empty() { String::new() } else { format!("statechart `{chart}` of ") };
     match changed.action() {
         Action::AddAgents => "the agents are added".into(),
         Action::RemoveAgent => format!("`{agent}` is removed"),
-        Action::StartAgent => format!("`{agent}` starts after its cycle {cycle}"),
-        Action::StopAgent => format!("`{agent}` has stopped after its cycle {cycle}"),
+        Action::StartAgent => format!("{its}`{agent}` starts after its cycle {cycle}"),
+        Action::StopAgent => format!("{its}`{agent}` has stopped after its cycle {cycle}"),
         Action::PauseAgent => format!("`{agent}` pauses after its cycle {cycle}"),
         Action::ResumeAgent => format!("`{agent}` goes on after its cycle {cycle}"),
         Action::StepAgent => format!("`{agent}` has done its cycle {cycle}"),
-        _ => format!("`{agent}` is changed after its cycle {cycle}"),
+        _ => format!("{its}`{agent}` is changed after its cycle {cycle}"),
     }
 }
 

@@ -93,7 +93,12 @@ fn describe(agent: &AgentEntry, console: &mut Console<'_>) -> Result<(), Failure
         agent.overruns
     )?;
     for chart in &agent.charts {
-        writeln!(console.out, "  chart {}: in {}", chart.model, chart.active.join(", "))?;
+        let is = match chart.state.as_str() {
+            "runs" => format!("in {}", chart.active.join(", ")),
+            "stopped" => "stopped".into(),
+            state => format!("{state} in {}", chart.active.join(", ")),
+        };
+        writeln!(console.out, "  chart {}: {is}", chart.model)?;
     }
     let header = ["", "activity", "parameters", "state", "calls", "failures", "mean call", "longest"];
     let rows = agent.activities.iter().zip(1..).map(activity);
@@ -143,7 +148,7 @@ fn object(agent: &AgentEntry) -> Value {
         })
         .collect();
     let charts: Vec<Value> =
-        agent.charts.iter().map(|chart| json!({"model": chart.model, "active": chart.active})).collect();
+        agent.charts.iter().map(|chart| json!({"model": chart.model, "name": chart.name, "state": chart.state, "active": chart.active})).collect();
     json!({"host": agent.host, "agent": agent.name, "state": agent.state, "reason": agent.reason,
         "frequency": agent.frequency, "priority": agent.priority, "on_failure": agent.on_failure,
         "cycles": agent.cycles, "overruns": agent.overruns, "missed": agent.missed, "micro_steps": agent.micro_steps,

@@ -79,8 +79,12 @@ fn spelt_once(properties: &Map<String, Value>) -> impl Iterator<Item = (&str, &M
 fn add_element(name: &str, schema: &Map<String, Value>, page: &mut String) {
     let text = |key: &str| schema.get(key).and_then(Value::as_str).unwrap_or_default();
     let _ = write!(page, "\n## `<{name}>`\n\n{}.\n", text("description").trim_end_matches('.'));
-    let Some(properties) = schema.get("properties").and_then(Value::as_object) else { return };
+    // What is a text, or a table with that text and more.
+    let either = schema.get("anyOf").and_then(Value::as_array).into_iter().flatten();
+    let table = either.filter_map(Value::as_object).chain([schema]).find_map(|one| one.get("properties"));
+    let Some(properties) = table.and_then(Value::as_object) else { return };
     let (inside, attributes): (Vec<_>, Vec<_>) = spelt_once(properties)
+        .filter(|(_, schema)| schema.contains_key("description") || !schema.contains_key("type"))
         .partition(|(_, schema)| schema.contains_key("anyOf") || schema.contains_key("$ref"));
     if !attributes.is_empty() {
         page.push_str("\n| attribute | value | default | |\n|---|---|---|---|\n");

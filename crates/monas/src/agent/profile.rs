@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 
 use yase::{Semantics, Statechart};
 
-use super::{Agent, Listed, Policy};
+use super::{Agent, ChartSettings, Listed, Policy};
 use crate::frequency::Frequency;
 use crate::monitors::Rules;
 use crate::parameters::Parameters;
@@ -25,7 +25,7 @@ pub(crate) struct Profile {
     /// In the order of the list.
     pub(crate) activities: Vec<ActivityProfile>,
     pub(crate) charts: Vec<ChartProfile>,
-    /// What its chart is to keep to.
+    /// What its one chart is to keep to.
     pub(crate) rules: Vec<Rules>,
 }
 
@@ -53,11 +53,13 @@ pub(crate) struct ChartProfile {
     pub(crate) statechart: Statechart,
     /// Whether it is code.
     pub(crate) is_generated: bool,
+    /// What it has of its own.
+    pub(crate) own: ChartSettings,
 }
 
 impl Profile {
     pub(crate) fn of(agent: &Agent) -> Profile {
-        let charts = agent.models.iter().zip(&agent.charts).enumerate();
+        let charts = agent.models.iter().zip(&agent.charts).zip(&agent.own).enumerate();
         Profile {
             name: agent.name.clone(),
             frequency: agent.frequency,
@@ -72,10 +74,11 @@ impl Profile {
             rules: agent.rules.clone(),
             activities: agent.activities.iter().map(ActivityProfile::of).collect(),
             charts: charts
-                .map(|(place, (model, statechart))| ChartProfile {
+                .map(|(place, ((model, statechart), own))| ChartProfile {
                     model: model.clone(),
                     statechart: statechart.clone(),
                     is_generated: agent.generated.contains_key(&place),
+                    own: own.clone(),
                 })
                 .collect(),
         }

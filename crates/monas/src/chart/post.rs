@@ -9,6 +9,7 @@ use yase::{Activation, Chart, NodeId};
 use crate::activity::{Activity, Progress, Topics};
 use crate::call::{self, Failure};
 use crate::logger::{self, Caller};
+use crate::parameters::Parameters;
 use crate::statistics::{ActivityStatistics, Timing};
 
 /// One for each BASIC state with an activity, in the order of the document.
@@ -28,6 +29,8 @@ struct Post {
     declared: Option<Box<[TopicSlot]>>,
     /// None while it is being called.
     activity: Option<Box<dyn Activity>>,
+    /// Parameters that it takes when it comes back from being called.
+    parameters: Option<Parameters>,
     /// Takes its place when it comes back from being called.
     successor: Option<Box<dyn Activity>>,
     /// The number of the activation for which it is being called.
@@ -128,6 +131,7 @@ impl Posts {
                 duration: entry.duration.unwrap_or_default(),
                 declared: declared(&activity.topics(), hub),
                 activity: Some(activity),
+                parameters: None,
                 successor: None,
                 called_for: None,
                 started: false,
@@ -218,6 +222,9 @@ impl Posts {
             }
             None => (Some(activity), started),
         };
+        if let Some((activity, parameters)) = post.activity.as_mut().zip(post.parameters.take()) {
+            activity.configure(&parameters);
+        }
         match (called, took) {
             (true, Some(took)) => post.timing.add(took.wall, took.cpu),
             (true, None) => {}
@@ -262,6 +269,16 @@ impl Posts {
         let was_started = std::mem::take(&mut post.started);
         let waiting = post.waits.as_ref().filter(|_| was_started)?;
         Some((old, waiting.activation))
+    }
+
+    /// Gives the activities of a name other parameters, those that are being called when they come back.
+    pub(super) fn configure(&mut self, name: &str, parameters: &Parameters) {
+        for post in self.posts.iter_mut().filter(|post| post.name == name) {
+            match &mut post.activity {
+                Some(activity) => activity.configure(&parameters.fresh()),
+                None => post.parameters = Some(parameters.fresh()),
+            }
+        }
     }
 
     /// Takes over from the posts of a chart that this one replaces; `counterpart` says which node an old one is.

@@ -1,30 +1,26 @@
 //! Agents and links from elements: Listing 4.17 of the thesis, read with diagnostics.
 
+mod charts;
+mod monitors;
+
 use std::path::Path;
 use std::sync::Arc;
 
-use monas_link::Place;
-use narukom::Narukom;
-use yase::diagnostic::nearest;
-use yase::{Diagnostic, Source, Statechart};
+use yase::{Diagnostic, Source};
 
-use super::element::{Attribute, Element};
+use super::element::Element;
 use super::grammar::Grammar;
 use super::layers::Layers;
 use super::links::LinkReader;
-use super::model;
 use super::modules;
-use super::paths;
 use super::resolve::{resolve, sort};
 use super::values::Values;
 use crate::activity::Activity;
 use crate::agent::{Agent, Listed, Policy};
-use crate::binder::Binder;
-use crate::error::{Error, ErrorKind};
+use crate::error::ErrorKind;
 use crate::frequency::Hz;
 use crate::link::LinkConfig;
 use crate::module::Module;
-use crate::monitors::{OnViolation, Rules, needs_one_chart};
 use crate::parameters::Parameters;
 use crate::registry::Registry;
 
@@ -146,64 +142,6 @@ impl Reader<'_> {
         self.add(element, agent, enabled);
     }
 
-    /// The properties that an agent's chart is to keep to.
-    fn monitor(&mut self, element: &Element, agent: Agent) -> Agent {
-        let values = Values::of(element, self.grammar);
-        if element.text().is_empty() || !is_enabled(&values) {
-            return agent; // what is empty has been said
-        }
-        let found = match paths::locate(self.path, element.text()) {
-            Ok(found) => found,
-            Err(hint) => {
-                let message = format!("no file of properties `{}`", element.text());
-                let wrong = element.error("E0316", element.text_span(), message);
-                self.diagnostics.push(match hint {
-                    Some(hint) => wrong.with_hint(format!("did you mean `{hint}`?")),
-                    None => wrong,
-                });
-                return agent;
-            }
-        };
-        let source = match paths::read(&found) {
-            Ok(source) => source,
-            Err(unread) => {
-                self.diagnostics.push(*unread);
-                return agent;
-            }
-        };
-        let (properties, wrong) = aseme::properties::parse(&source.text);
-        self.diagnostics.extend(wrong.into_iter().map(|wrong| wrong.in_source(&source)));
-        let on_violation = values.word("on_violation", &OnViolation::NAMES).unwrap_or_default();
-        let file = element.text().to_owned();
-        let rules = Rules { file, properties, on_violation, source: Some(source) };
-        self.judge(element, &rules, &agent);
-        agent.ruled(rules)
-    }
-
-    /// Says which names of properties an agent's chart does not have.
-    fn judge(&mut self, element: &Element, rules: &Rules, agent: &Agent) {
-        let Some(chart) = agent.charts().first() else {
-            let wrong = needs_one_chart(agent.name(), 0);
-            let is_said = element.is("monitor") && self.diagnostics.iter().any(Diagnostic::is_error);
-            let placed = wrong.filter(|_| !is_said).map(|wrong| {
-                let error = element.error(wrong.code, element.text_span(), wrong.message);
-                error.with_hint(wrong.hint.unwrap_or_default())
-            });
-            self.diagnostics.extend(placed);
-            return;
-        };
-        if let Some(wrong) = needs_one_chart(agent.name(), agent.charts().len()) {
-            let error = element.error(wrong.code, element.text_span(), wrong.message);
-            return self.diagnostics.push(error.with_hint(wrong.hint.unwrap_or_default()));
-        }
-        // What is wrong with the program's words or with the chart has been said.
-        let Ok(binder) = Binder::new(&self.registry) else { return };
-        let Ok(compiled) = binder.compiled(chart, agent.generated.get(&0)) else { return };
-        if let Err(wrong) = binder.monitors(std::slice::from_ref(rules), agent.name(), 1, &compiled) {
-            self.diagnostics.extend(wrong);
-        }
-    }
-
     /// A provider is an agent with the one activity that it is named after.
     fn provider(&mut self, element: &Element) {
         let name = element.text().to_owned();
@@ -243,8 +181,7 @@ impl Reader<'_> {
 
     fn activity(&mut self, element: &Element, agent: Agent) -> Agent {
         let values = Values::of(element, self.grammar);
-        let parameters =
-            values.parameters().fold(Parameters::new(), |all, one| all.with(&*one.name, &*one.value));
+        let parameters = parameters(&values);
         let activity = self.instance(element, element.text(), &parameters);
         match activity.filter(|_| is_enabled(&values)) {
             Some(activity) => agent.listed(Listed {
@@ -301,107 +238,6 @@ impl Reader<'_> {
         }
     }
 
-    fn statechart(&mut self, element: &Element, agent: Agent) -> Agent {
-        if element.text().is_empty() {
-            return agent; // which has been said
-        }
-        let values = Values::of(element, self.grammar);
-        let (enabled, elsewhere) = (is_enabled(&values), values.given("elsewhere").cloned());
-        let agent = match self.registry.chart(element.text()) {
-            Some(Ok(generated)) if enabled => agent.generated_as(element.text(), generated),
-            Some(Ok(_)) => return agent,
-            Some(Err(error)) => return self.unusable(element, &error, agent),
-            None => match self.chart(element).filter(|_| enabled) {
-                Some(chart) => agent.chart_of(element.text(), chart),
-                None => return agent,
-            },
-        };
-        let chart = agent.charts().last();
-        let named = elsewhere.zip(chart).map(|(given, chart)| self.elsewhere(&given, chart));
-        named.unwrap_or_default().into_iter().fold(agent, Agent::elsewhere)
-    }
-
-    /// A generated chart cannot be used.
-    fn unusable(&mut self, element: &Element, error: &Error, agent: Agent) -> Agent {
-        let diagnostic = element.error("E0322", element.text_span(), error.to_string());
-        self.diagnostics.push(match error.hint() {
-            Some(hint) => diagnostic.with_hint(hint),
-            None => diagnostic,
-        });
-        agent
-    }
-
-    /// The activities of a chart that another process runs: each must be one of the chart's, and links must bring what it publishes.
-    fn elsewhere(&mut self, given: &Attribute, chart: &Statechart) -> Vec<String> {
-        let names: Vec<String> = given.value.split_whitespace().map(str::to_owned).collect();
-        let mut known: Vec<&str> = chart.nodes().filter_map(|(_, node)| node.activity.as_deref()).collect();
-        known.sort_unstable();
-        known.dedup();
-        for name in &names {
-            if !known.contains(&name.as_str()) {
-                let message = format!("the chart `{}` has no activity `{name}`", chart.name);
-                let diagnostic = given.error("E0338", message);
-                self.diagnostics.push(diagnostic.with_nearest(name, known.iter().copied()));
-            } else if let Ok(activity) = self.registry.activity(name) {
-                let topics = activity.topics();
-                let published = topics.published_paths().iter();
-                let missing: Vec<&str> = published.copied().filter(|topic| !self.is_brought(topic)).collect();
-                for topic in missing {
-                    let message = format!("`{name}` runs elsewhere, and no link brings its `{topic}`");
-                    let hint = format!("add to a `<link>`: `<receive topics=\"{topic}\" as=\"own\"/>`");
-                    self.diagnostics.push(given.error("E0339", message).with_hint(hint));
-                }
-            }
-        }
-        names
-    }
-
-    /// Whether a link brings a topic as the host's own.
-    fn is_brought(&self, topic: &str) -> bool {
-        let rules = self.setup.links.iter().flat_map(|link| &link.settings.receive);
-        let mut own = rules.filter(|rule| rule.place == Place::Own);
-        let hub = Narukom::with_linked_topics("configuration").ok();
-        hub.is_some_and(|hub| {
-            let slot = hub.topic(topic);
-            own.any(|rule| {
-                let brought = hub.matching(&rule.topics).unwrap_or_default();
-                slot.is_some_and(|slot| brought.contains(&slot))
-            })
-        })
-    }
-
-    /// The model that a statechart names, checked; none, and why, if it cannot be used.
-    fn chart(&mut self, element: &Element) -> Option<Statechart> {
-        let found = match paths::locate(self.path, element.text()) {
-            Ok(found) => found,
-            Err(hint) => {
-                let what = match element.text().contains(['/', '.']) {
-                    true => "no model file",
-                    false => "no model file and no generated statechart",
-                };
-                let message = format!("{what} `{}`", element.text());
-                let diagnostic = element.error("E0316", element.text_span(), message);
-                let known = || nearest(element.text(), self.registry.chart_names()).map(str::to_owned);
-                self.diagnostics.push(match hint.or_else(known) {
-                    Some(hint) => diagnostic.with_hint(format!("did you mean `{hint}`?")),
-                    None => diagnostic,
-                });
-                return None;
-            }
-        };
-        let (chart, diagnostics) = model::load(&found);
-        // Without its formulas a chart is not the one that was meant, and nothing more can be said of it.
-        let is_known = !diagnostics.iter().any(model::is_about_formulas);
-        self.diagnostics.extend(diagnostics);
-        let (chart, source) = chart.filter(|_| is_known)?;
-        let bound = match Binder::new(&self.registry) {
-            Ok(binder) => binder.check(&chart, Some(&source)),
-            Err(error) => vec![element.error("E0318", element.text_span(), error.to_string())],
-        };
-        self.diagnostics.extend(bound);
-        Some(chart)
-    }
-
     fn add(&mut self, element: &Element, agent: Agent, enabled: bool) {
         if agent.frequency.is_none() && !agent.activities.is_empty() {
             let values = Values::of(element, self.grammar);
@@ -425,6 +261,11 @@ impl Reader<'_> {
             self.diagnostics.push(element.error("E0311", named.text_span(), message).with_hint(hint));
         }
     }
+}
+
+/// The parameters that are given to an activity.
+fn parameters(values: &Values<'_>) -> Parameters {
+    values.parameters().fold(Parameters::new(), |all, one| all.with(&*one.name, &*one.value))
 }
 
 /// Whether an element is not left out.

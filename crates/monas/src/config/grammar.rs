@@ -290,6 +290,7 @@ impl AttributeRule {
     }
 
     pub(super) fn is(&self, name: &str) -> bool {
-        super::element::is_written(name, self.key) || self.alias == Some(name)
+        let is_written = super::element::is_written;
+        is_written(name, self.key) || self.alias.is_some_and(|alias| is_written(name, alias))
     }
 }

@@ -1,6 +1,8 @@
 //! A configuration brought up to date: what its agents are made of now goes over the text they were read from. Whatever did not change
 //! keeps its bytes; what is new is written as its neighbours are.
 
+mod charts;
+
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,7 +16,6 @@ use super::modules;
 use super::values::Values;
 use crate::agent::{ActivityProfile, Policy, Profile};
 use crate::module::Module;
-use crate::monitors::OnViolation;
 
 type Splice = (Range<usize>, String);
 
@@ -106,19 +107,26 @@ impl Update<'_> {
         if element.is("agent") {
             self.update_activities(element, profile, splices);
             let charts = element.children_named("statechart").filter(|chart| self.is_enabled(chart));
-            for (chart, now) in charts.zip(&profile.charts).filter(|(chart, now)| chart.text() != now.model) {
-                let span = chart.text_span();
-                splices.push((span.start..span.end, element_text(&now.model)));
+            for (chart, now) in charts.zip(&profile.charts) {
+                self.update_chart(chart, now, splices);
             }
         }
     }
 
     /// The attributes that are others now, named as the element names its own.
     fn changed_attributes(&self, element: &Element, profile: &Profile) -> Vec<(String, String)> {
+        self.changed(element, attributes(profile).into_iter())
+    }
+
+    fn changed(
+        &self,
+        element: &Element,
+        now: impl Iterator<Item = (&'static str, String)>,
+    ) -> Vec<(String, String)> {
         let values = Values::of(element, &self.grammar);
         let as_in_thesis =
             element.attributes().iter().any(|given| given.name.starts_with(char::is_uppercase));
-        let changed = attributes(profile).into_iter().filter(|(key, value)| {
+        let changed = now.filter(|(key, value)| {
             let before = values.text(key);
             let is_same = |before: &str| {
                 before == value
@@ -283,7 +291,6 @@ fn module_element(module: &Module) -> String {
 
 /// The attributes of an agent; empty where nothing is said.
 fn attributes(profile: &Profile) -> [(&'static str, String); 7] {
-    let policy = Policy::NAMES.into_iter().find(|(_, policy)| *policy == profile.policy);
     [
         (
             "thread_frequency",
@@ -294,8 +301,13 @@ fn attributes(profile: &Profile) -> [(&'static str, String); 7] {
         ("stats_cycle", profile.statistics_every.unwrap_or_default().to_string()),
         ("workers", profile.workers.map(|workers| workers.to_string()).unwrap_or_default()),
         ("cores", profile.cores.iter().map(usize::to_string).collect::<Vec<_>>().join(" ")),
-        ("on_failure", policy.map(|(name, _)| name.to_owned()).unwrap_or_default()),
+        ("on_failure", word(profile.policy).to_owned()),
     ]
+}
+
+/// The name of a policy.
+fn word(policy: Policy) -> &'static str {
+    Policy::NAMES.into_iter().find(|(_, known)| *known == policy).map_or("", |(name, _)| name)
 }
 
 /// An agent as it is written where there was none: what is as it would be anyway is not said.
@@ -313,20 +325,10 @@ fn agent(profile: &Profile, indentation: &str) -> String {
     for one in &profile.activities {
         text += &format!("{indentation}  {}", activity(one));
     }
-    for chart in &profile.charts {
-        let elsewhere = match profile.elsewhere.is_empty() {
-            true => String::new(),
-            false => format!(" elsewhere=\"{}\"", attribute_text(&profile.elsewhere.join(" "))),
-        };
-        text += &format!("{indentation}  <statechart{elsewhere}>{}</statechart>", element_text(&chart.model));
+    for one in &profile.charts {
+        text += &format!("{indentation}  {}", charts::chart(one, &profile.elsewhere));
     }
-    for rules in profile.rules.iter().filter(|rules| !rules.file.is_empty()) {
-        let acts = match rules.on_violation {
-            OnViolation::Log => "",
-            OnViolation::Policy => " on_violation=\"policy\"",
-        };
-        text += &format!("{indentation}  <monitor{acts}>{}</monitor>", element_text(&rules.file));
-    }
+    text += &charts::monitors(&profile.rules, &format!("{indentation}  "));
     text + &format!("{indentation}</agent>")
 }
 

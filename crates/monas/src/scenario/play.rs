@@ -13,6 +13,7 @@ use yase::{Chart, NodeId, NodeKind, Outcome, RegionId, TopicId};
 use super::newest::Newest;
 use super::{Difference, Played};
 use crate::activity::{Activity, BoxError, Progress};
+use crate::agent::ChartSettings;
 use crate::binder::BoundChart;
 use crate::call::Failure;
 use crate::chart::{Assignment, Home, Runner, values};
@@ -69,7 +70,7 @@ impl<'a> Play<'a> {
             Home { hub: &hub, agent: "chart", number: 0, seed: 0, listeners: &listeners, now: Moment::ZERO };
         let activities = chart.activities().map(|_| Box::new(Actor) as Box<dyn Activity>).collect();
         let bound = BoundChart { chart: chart.clone(), functions: functions.clone(), activities };
-        let runner = Runner::new(bound, home)?;
+        let runner = Runner::new(bound, ChartSettings::new(), home)?;
         let news: Arc<Mutex<Vec<TopicSlot>>> = Arc::default();
         let noted = news.clone();
         hub.set_waker(Arc::new(move |topic: TopicSlot, _: HostId| locked(&noted).push(topic)));

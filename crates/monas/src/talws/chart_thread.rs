@@ -8,7 +8,7 @@ use narukom::{HostId, Moment, TopicSlot};
 use super::ENDED;
 use super::clock::Clock;
 use super::handover::Mail;
-use super::orders::{Directive, Orders, TOLD};
+use super::orders::{Directive, Orders, ShownChart, Standing, TOLD};
 use super::pool::{Called, Pool};
 use super::scheduling::Scheduling;
 use super::teller::{self, Teller};
@@ -16,7 +16,7 @@ use super::turn::{Told, TurnNotes};
 use super::unit::{Batch, Part, Unit};
 use crate::agent::Policy;
 use crate::call::Failure;
-use crate::chart::{Assignment, Runner};
+use crate::chart::{Assignment, OfAgent, Runner};
 use crate::frequency::Frequency;
 use crate::monitors::{self, Broken};
 use crate::records::Turn;
@@ -27,10 +27,8 @@ pub(super) struct ChartThread {
     pub(super) unit: Arc<Unit>,
     pub(super) part: Arc<Part>,
     pub(super) runner: Runner,
-    pub(super) policy: Policy,
-    pub(super) scheduling: Scheduling,
-    pub(super) frequency: Option<Frequency>,
-    pub(super) statistics_every: Option<u64>,
+    /// What its agent says of all its charts.
+    pub(super) of_agent: OfAgent,
     pub(super) pool: Arc<Pool>,
     pub(super) teller: Teller,
     pub(super) clock: Clock,
@@ -47,6 +45,8 @@ pub(super) struct ChartThread {
     pub(super) notes: TurnNotes,
     /// Whether the run ends.
     pub(super) run_ends: bool,
+    /// Whether it alone has been told to stop, and not its agent.
+    pub(super) is_idle: bool,
     /// Whether the chart has been ended.
     pub(super) has_ended: bool,
     /// Whether it has been told to pause: between two turns, so that a record tells between which.
@@ -57,7 +57,7 @@ impl ChartThread {
     /// Steps whenever something has happened, until the run ends.
     pub(super) fn run(mut self) -> AgentStatistics {
         let mut mail = Mail::<Called>::default();
-        self.unit.schedule(&self.scheduling, &Scheduling::default());
+        self.unit.schedule(&self.scheduling(), &Scheduling::default());
         self.begin();
         while !self.run_ends {
             self.turn(&mut mail);
@@ -78,7 +78,8 @@ impl ChartThread {
         self.runner.note_fetches();
         self.runner.start(now);
         self.tell_turn(Turn::Start, now);
-        self.has_ended = false;
+        (self.has_ended, self.is_idle) = (false, false);
+        self.part.begins();
         self.show(true);
     }
 
@@ -114,7 +115,7 @@ impl ChartThread {
             self.tell_turn(Turn::Stop, now);
             self.wait(Moment::MAX, mail);
         }
-        self.unit.is_over_for(&self.part);
+        self.unit.is_over_for(&self.part, self.is_idle);
         self.show(true);
     }
 
@@ -149,7 +150,8 @@ impl ChartThread {
         if self.has_ended {
             mail.messages.clear();
         } else if let Err(reason) = self.go_on(mail) {
-            self.unit.fail(&reason, self.policy == Policy::SafeState);
+            let rests_body = self.runner.rests_body(self.of_agent.policy);
+            self.unit.fail(&reason, rests_body);
             self.end(mail);
         }
         if self.runner.is_over() {
@@ -236,7 +238,8 @@ impl ChartThread {
 
     fn answer(&self, broken: &[Broken], now: Moment) -> Result<(), String> {
         let who = (self.runner.host(), self.unit.name.as_str());
-        monitors::answer(broken, who, self.policy, self.teller.number(), now)
+        let policy = self.runner.policy(self.of_agent.policy);
+        monitors::answer(broken, who, policy, self.teller.number(), now)
     }
 
     fn submit(&mut self, assignment: Assignment) -> Result<(), String> {
@@ -271,7 +274,8 @@ impl ChartThread {
 
     fn returned(&mut self, called: Called, now: Moment) -> Result<(), String> {
         let activation = self.runner.known_as(&called.assignment);
-        let result = self.take_back(called, self.policy == Policy::Restart, now);
+        let policy = self.runner.policy_of(activation, self.of_agent.policy);
+        let result = self.take_back(called, policy == Policy::Restart, now);
         // What came on a topic before it was followed has to be assumed.
         let news: Vec<TopicSlot> = self
             .runner
@@ -282,16 +286,7 @@ impl ChartThread {
             .collect();
         news.into_iter().for_each(|topic| self.runner.message_arrived(topic, HostId::LOCAL, None, now));
         let Err(failure) = result else { return Ok(()) };
-        let activity = self.runner.activity_name(activation);
-        let cycle = self.teller.number();
-        let robot = self.runner.host();
-        tracing::error!(%robot, agent = %self.unit.name, %activity, cycle, "activity failed: {failure}");
-        match self.policy {
-            Policy::Restart | Policy::Skip => Ok(()),
-            Policy::StopAgent | Policy::SafeState => {
-                Err(format!("activity `{activity}` failed in cycle {cycle}: {failure}"))
-            }
-        }
+        self.runner.has_failed(activation, &failure, self.of_agent.policy, self.teller.number())
     }
 
     fn look_up(&mut self, mail: &mut Mail<Called>) {
@@ -318,26 +313,50 @@ impl ChartThread {
             self.skip_ticks(now);
             self.begin();
         }
+        if let Some((_, own)) = orders.own {
+            said.extend(self.settle(|thread| thread.runner.settle(*own), now));
+        }
+        self.is_idle |= orders.only.is_some() && orders.directives.contains(&Directive::Stop);
         for directive in orders.directives {
             match directive {
                 Directive::Stop => self.end(mail),
                 Directive::Step => self.step_once(mail).map_err(|reason| vec![reason])?,
                 Directive::Frequency(frequency) => {
-                    self.frequency = Some(frequency);
-                    self.skip_ticks(now);
+                    said.extend(self.settle(|thread| thread.of_agent.frequency = Some(frequency), now));
                 }
-                Directive::Policy(policy) => self.policy = policy,
-                Directive::StatisticsEvery(cycles) => self.statistics_every = cycles,
+                Directive::Policy(policy) => self.of_agent.policy = policy,
+                Directive::StatisticsEvery(cycles) => self.of_agent.statistics_every = cycles,
                 Directive::Scheduling(priority, real_time) => {
-                    let wanted = Scheduling { priority, real_time, ..self.scheduling.clone() };
-                    let was = std::mem::replace(&mut self.scheduling, wanted);
-                    said.extend(self.unit.schedule(&self.scheduling, &was));
+                    let scheduling = &mut self.of_agent.scheduling;
+                    let wanted = Scheduling { priority, real_time, ..scheduling.clone() };
+                    said.extend(self.settle(|thread| thread.of_agent.scheduling = wanted, now));
                 }
                 Directive::Pause => self.pauses = true,
                 Directive::Start | Directive::Resume => self.pauses = false,
             }
         }
         Ok(said)
+    }
+
+    /// Changes what its thread goes by. Says what the system does not grant.
+    fn settle(&mut self, change: impl FnOnce(&mut ChartThread), now: Moment) -> Vec<String> {
+        let (frequency, scheduling) = (self.frequency(), self.scheduling());
+        change(self);
+        if self.frequency() != frequency {
+            self.skip_ticks(now);
+        }
+        match self.scheduling() {
+            wanted if wanted != scheduling => self.unit.schedule(&wanted, &scheduling),
+            _ => Vec::new(),
+        }
+    }
+
+    fn frequency(&self) -> Option<Frequency> {
+        self.runner.frequency(self.of_agent.frequency)
+    }
+
+    fn scheduling(&self) -> Scheduling {
+        self.runner.own().scheduling(&self.of_agent.scheduling)
     }
 
     /// Does one step if there is one to be made, and has the activities called that it starts.
@@ -363,12 +382,13 @@ impl ChartThread {
     }
 
     fn skip_ticks(&mut self, now: Moment) {
-        self.ticks = self.frequency.map_or(0, |frequency| frequency.first_due(now));
+        self.ticks = self.frequency().map_or(0, |frequency| frequency.first_due(now));
     }
 
     /// Writes to the log what steps and calls take, as often as that is wanted.
     fn tell_times(&mut self, now: Moment) {
-        if self.statistics_every.is_some_and(|every| self.steps.is_multiple_of(every)) {
+        let every = self.runner.statistics_every(self.of_agent.statistics_every);
+        if every.is_some_and(|every| self.steps.is_multiple_of(every)) {
             let statistics = self.statistics();
             teller::log_times(&statistics);
             self.teller.tell_statistics(&statistics, now);
@@ -376,11 +396,18 @@ impl ChartThread {
     }
 
     fn tick(&self) -> Moment {
-        self.frequency.map_or(Moment::MAX, |frequency| frequency.due(self.ticks))
+        self.frequency().map_or(Moment::MAX, |frequency| frequency.due(self.ticks))
     }
 
     fn show(&self, always: bool) {
-        self.part.show(self.looked, always, || (self.statistics(), self.runner.active()));
+        let standing = match (self.has_ended, self.pauses) {
+            (true, _) => Standing::Stopped,
+            (false, true) => Standing::Pauses,
+            (false, false) => Standing::Runs,
+        };
+        self.part.show(self.looked, always, || {
+            (self.statistics(), ShownChart { active: self.runner.active(), standing })
+        });
     }
 
     fn statistics(&self) -> AgentStatistics {

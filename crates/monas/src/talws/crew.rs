@@ -12,7 +12,7 @@ use super::scheduling::Scheduling;
 use super::seeds::component_seed;
 use super::setup::{Observers, collect_all};
 use super::teller::Teller;
-use crate::agent::{Agent, Listed, Policy, Profile};
+use crate::agent::{Agent, ChartSettings, Listed, Policy, Profile};
 use crate::binder::{Binder, BoundChart};
 use crate::chart::{Home, Runner};
 use crate::error::{Error, ErrorKind};
@@ -76,22 +76,21 @@ impl Crew {
         names: &[String],
         now: Moment,
     ) -> Result<Member, Error> {
-        let Agent { name, policy, frequency, activities, charts, mut generated, semantics, .. } = agent;
+        let Agent { name, policy, frequency, activities, charts, own, mut generated, semantics, .. } = agent;
         if frequency.is_none() && !activities.is_empty() {
             let message = format!("agent `{name}` has activities, but nothing says how often they run");
             return Err(Error::new(ErrorKind::NoFrequency, message).with_hint("say so with `every`"));
         }
         let place = Place { ground, names, agent: &name, elsewhere: &agent.elsewhere, now };
         let count = charts.len();
-        let charts = charts.iter().zip(0..).map(|(chart, number)| {
+        let charts = charts.iter().zip(own).zip(0..).map(|((chart, own), number)| {
             let bound = match generated.remove(&(number as usize)) {
                 Some(generated) => binder.bind_generated(generated, semantics),
                 None => binder.bind(chart, semantics, None),
             };
             let bound = bound.map_err(Error::invalid)?;
-            let monitors =
-                binder.monitors(&agent.rules, &name, count, &bound.chart).map_err(Error::invalid)?;
-            self.runner(bound, number, monitors, &place)
+            let monitors = binder.monitors(Some((&agent.rules, &name, count)), &own.rules, &bound.chart);
+            self.runner(bound, number, monitors.map_err(Error::invalid)?, own, &place)
         });
         let charts = collect_all(charts)?;
         if let Some(wrong) = needs_one_chart(&name, count).filter(|_| !agent.rules.is_empty()) {
@@ -132,17 +131,25 @@ impl Crew {
         registry: &Registry,
     ) -> Result<Vec<Runner>, Error> {
         let binder = Binder::new(registry)?;
-        let charts = profile.charts.iter().zip(0..).map(|(chart, number)| {
-            let bound = match chart.is_generated {
-                true => self.generated(&binder, &chart.model, profile.semantics)?,
-                false => binder.bind(&chart.statechart, profile.semantics, None).map_err(Error::invalid)?,
-            };
-            let (rules, count) = (&profile.rules, profile.charts.len());
-            let monitors =
-                binder.monitors(rules, &profile.name, count, &bound.chart).map_err(Error::invalid)?;
-            self.runner(bound, number, monitors, place)
-        });
-        collect_all(charts)
+        collect_all((0..profile.charts.len()).map(|number| self.chart_anew(&binder, profile, number, place)))
+    }
+
+    /// One of them, by its place.
+    pub(super) fn chart_anew(
+        &self,
+        binder: &Binder<'_>,
+        profile: &Profile,
+        number: usize,
+        place: &Place<'_>,
+    ) -> Result<Runner, Error> {
+        let chart = &profile.charts[number];
+        let bound = match chart.is_generated {
+            true => self.generated(binder, &chart.model, profile.semantics)?,
+            false => binder.bind(&chart.statechart, profile.semantics, None).map_err(Error::invalid)?,
+        };
+        let of_agent = Some((&profile.rules[..], profile.name.as_str(), profile.charts.len()));
+        let monitors = binder.monitors(of_agent, &chart.own.rules, &bound.chart).map_err(Error::invalid)?;
+        self.runner(bound, u32::try_from(number).unwrap_or(u32::MAX), monitors, chart.own.clone(), place)
     }
 
     /// A generated chart by its name.
@@ -164,23 +171,31 @@ impl Crew {
         bound: BoundChart,
         number: u32,
         monitors: Option<Monitors>,
+        own: ChartSettings,
         place: &Place<'_>,
     ) -> Result<Runner, Error> {
-        let bound = self.fitting(bound, place)?;
+        let bound = self.fitting(bound, &own, place)?;
         let Place { ground, agent, now, .. } = *place;
         let listeners = &self.listeners;
         let home = Home { hub: &ground.hub, agent, number, seed: self.seed, listeners, now };
-        let mut runner = Runner::new(bound, home)?;
+        let mut runner = Runner::new(bound, own, home)?;
         if let Some(monitors) = monitors {
             runner.follow(monitors);
         }
         Ok(runner)
     }
 
-    /// A chart with activities that run elsewhere taken out, if all that it reads can arrive.
-    pub(super) fn fitting(&self, mut bound: BoundChart, place: &Place<'_>) -> Result<BoundChart, Error> {
+    /// A chart with what is said of its activities, and with those that run elsewhere taken out, if all that it reads can arrive.
+    pub(super) fn fitting(
+        &self,
+        bound: BoundChart,
+        own: &ChartSettings,
+        place: &Place<'_>,
+    ) -> Result<BoundChart, Error> {
         let Place { ground, names, elsewhere, .. } = *place;
+        let mut bound = bound.configured(own);
         put_elsewhere(&mut bound, elsewhere);
+        put_elsewhere(&mut bound, &own.elsewhere);
         let publishers: Vec<String> = names.iter().chain(&ground.others).cloned().collect();
         let reach = Reach {
             hub: &ground.hub,

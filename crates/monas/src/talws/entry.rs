@@ -1,29 +1,38 @@
 //! An agent as it is now, as a message.
 
-use super::orders::Standing;
-use crate::agent::{Policy, Profile};
+use super::orders::{ShownChart, Standing};
+use crate::agent::{ChartProfile, Policy, Profile};
 use crate::parameters::Parameters;
 use crate::records::{ActivityEntry, AgentEntry, ChartEntry, Setting, Times};
 use crate::statistics::{ActivityStatistics, AgentStatistics, Average, Percentiles};
 
-/// What an agent is made of, with what it does and has done. `active` has the states of each chart.
+/// What an agent is made of, with what it does and has done, and its charts as they stand.
 pub(super) fn of(
     profile: &Profile,
     standing: Standing,
     statistics: &AgentStatistics,
-    active: Vec<Vec<String>>,
+    charts: Vec<ShownChart>,
 ) -> AgentEntry {
     let policy = Policy::NAMES.into_iter().find(|(_, policy)| *policy == profile.policy);
-    let charts = profile.charts.iter().zip(active.into_iter().chain(std::iter::repeat(Vec::new())));
+    let shown = charts.into_iter().chain(std::iter::repeat_with(ShownChart::default));
     AgentEntry {
         state: standing.word().into(),
         frequency: profile.frequency.map(|frequency| frequency.hertz()).unwrap_or_default(),
         priority: profile.priority,
         on_failure: policy.map(|(name, _)| name.to_owned()).unwrap_or_default(),
-        charts: charts.map(|(chart, active)| ChartEntry { model: chart.model.clone(), active }).collect(),
+        charts: profile.charts.iter().zip(shown).map(|(chart, shown)| chart_entry(chart, shown)).collect(),
         activities: activities(profile, statistics),
         name: profile.name.clone(),
         ..counted(statistics)
+    }
+}
+
+fn chart_entry(chart: &ChartProfile, shown: ShownChart) -> ChartEntry {
+    ChartEntry {
+        model: chart.model.clone(),
+        active: shown.active,
+        state: shown.standing.word().into(),
+        name: chart.statechart.name.clone(),
     }
 }
 

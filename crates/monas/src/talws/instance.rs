@@ -4,10 +4,11 @@ use narukom::{HostId, Moment, TopicSlot};
 
 use super::ENDED;
 use super::crew::Member;
-use super::orders::{Directive, Orders, Standing, TOLD};
+use super::orders::{Directive, Orders, ShownChart, Standing, TOLD};
 use super::simulated_chart::SimulatedChart;
 use super::teller::Teller;
 use crate::agent::Policy;
+use crate::chart::Runner;
 use crate::coverage::ChartCoverage;
 use crate::frequency::Frequency;
 use crate::list::{List, Outcome};
@@ -93,10 +94,11 @@ impl Instance {
         act: impl Fn(&mut SimulatedChart, Moment, &str, Policy, &mut Teller) -> Result<(), String>,
     ) -> Outcome {
         for index in 0..self.charts.len() {
-            if let Err(reason) = act(&mut self.charts[index], now, &self.name, self.policy, &mut self.teller)
-            {
+            let chart = &mut self.charts[index];
+            if let Err(reason) = act(chart, now, &self.name, self.policy, &mut self.teller) {
+                let rests_body = chart.rests_body(self.policy);
                 self.stop(&reason, now);
-                return if self.policy == Policy::SafeState { Outcome::SafeState } else { Outcome::Stopped };
+                return if rests_body { Outcome::SafeState } else { Outcome::Stopped };
             }
         }
         Outcome::Continues
@@ -129,7 +131,7 @@ impl Instance {
     /// What stands against it; nothing has changed then.
     pub(super) fn obey(
         &mut self,
-        orders: Orders,
+        mut orders: Orders,
         now: Moment,
     ) -> Result<(Outcome, Vec<String>), Vec<String>> {
         let mut said = Vec::new();
@@ -149,6 +151,15 @@ impl Instance {
         if let Some(scheduled) = &mut self.list {
             orders.edits.into_iter().for_each(|edit| scheduled.list.edit(edit));
         }
+        if let Some((place, own)) = orders.own
+            && let Some(chart) = self.charts.get_mut(place)
+        {
+            chart.settle(*own, now);
+        }
+        if let Some(place) = orders.only {
+            self.follow_alone(place, orders.charts.pop(), &orders.directives, now);
+            return Ok((Outcome::Continues, said));
+        }
         if !orders.charts.is_empty() {
             let frequency = self.frequency;
             let anew = orders.charts.into_iter();
@@ -159,6 +170,17 @@ impl Instance {
             outcome = self.follow(directive, now);
         }
         Ok((outcome, said))
+    }
+
+    /// One of its charts is told something, and the others notice nothing.
+    fn follow_alone(&mut self, place: usize, anew: Option<Runner>, directives: &[Directive], now: Moment) {
+        let Some(chart) = self.charts.get_mut(place) else { return };
+        if directives.contains(&Directive::Stop) {
+            chart.stop(now);
+        }
+        if let Some(runner) = anew {
+            *chart = SimulatedChart::new(runner, self.frequency, now);
+        }
     }
 
     fn follow(&mut self, directive: Directive, now: Moment) -> Outcome {
@@ -227,9 +249,13 @@ impl Instance {
         self.teller.number()
     }
 
-    /// The active states of each chart.
-    pub(super) fn active(&self) -> Vec<Vec<String>> {
-        self.charts.iter().map(SimulatedChart::active).collect()
+    /// Its charts as they stand.
+    pub(super) fn shown(&self) -> Vec<ShownChart> {
+        let is_held = |chart: ShownChart| match self.pauses && chart.standing == Standing::Runs {
+            true => ShownChart { standing: Standing::Pauses, ..chart },
+            false => chart,
+        };
+        self.charts.iter().map(|chart| is_held(chart.shown())).collect()
     }
 
     pub(super) fn statistics(&self, host: &str) -> AgentStatistics {

@@ -9,7 +9,7 @@ use super::ENDED;
 use super::clock::{CPU_EVERY, Clock, cpu_time};
 use super::deadlines::Deadlines;
 use super::handover::Mail;
-use super::orders::{Directive, Orders, TOLD};
+use super::orders::{Directive, Orders, ShownChart, TOLD};
 use super::pool::Called;
 use super::scheduling::Scheduling;
 use super::teller::{self, Teller};
@@ -96,7 +96,7 @@ impl ListThread {
         if !self.has_ended {
             self.has_ended = true;
             self.list.stop(&self.unit.reason().unwrap_or_else(|| TOLD.into()));
-            self.unit.is_over_for(&self.part);
+            self.unit.is_over_for(&self.part, false);
             self.show(true);
         }
     }
@@ -147,7 +147,7 @@ impl ListThread {
         if outcome != Outcome::Continues {
             self.has_ended = true;
             self.unit.fail(self.list.stopped().unwrap_or_default(), outcome == Outcome::SafeState);
-            self.unit.is_over_for(&self.part);
+            self.unit.is_over_for(&self.part, false);
         }
         self.show(outcome != Outcome::Continues);
     }
@@ -176,7 +176,7 @@ impl ListThread {
     }
 
     fn show(&self, always: bool) {
-        self.part.show(self.clock.now(), always, || (self.statistics(), Vec::new()));
+        self.part.show(self.clock.now(), always, || (self.statistics(), ShownChart::default()));
     }
 
     fn statistics(&self) -> AgentStatistics {

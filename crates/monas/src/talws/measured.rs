@@ -9,6 +9,7 @@ use yase::{Semantics, Source};
 use super::clock::Clock;
 use super::handover::{Mail, Mailbox};
 use super::pool::{Called, Pool};
+use crate::agent::ChartSettings;
 use crate::binder::Binder;
 use crate::chart::{Assignment, Home, Runner};
 use crate::error::Error;
@@ -37,7 +38,7 @@ impl RoundTrip {
         let listeners = Listeners::default();
         let (number, seed, now) = (0, 0, Moment::ZERO);
         let home = Home { hub: &hub, agent: "bench", number, seed, listeners: &listeners, now };
-        let mut runner = Runner::new(bound, home)?;
+        let mut runner = Runner::new(bound, ChartSettings::new(), home)?;
         runner.start(Moment::ZERO);
         // The chart does not come into this: whatever its limits are, the first step is within them.
         let assignment = runner.step(Moment::ZERO).ok().and_then(|()| runner.next_started());

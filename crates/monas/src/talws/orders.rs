@@ -5,7 +5,7 @@ use std::sync::Arc;
 use yase::NodeId;
 
 use crate::activity::Activity;
-use crate::agent::Policy;
+use crate::agent::{ChartSettings, Policy};
 use crate::chart::{Runner, Swap};
 use crate::frequency::Frequency;
 use crate::list::{List, ListEdit};
@@ -23,6 +23,10 @@ pub(super) struct Orders {
     pub(super) swap: Option<(usize, Box<Swap>)>,
     /// Other instances of activities for the charts at these places.
     pub(super) instances: Vec<(usize, Instances)>,
+    /// What the chart at a place has of its own from now on.
+    pub(super) own: Option<(usize, Box<ChartSettings>)>,
+    /// They are for the chart at this place alone.
+    pub(super) only: Option<usize>,
     /// What they follow from, for the records of real time.
     pub(super) asked: Option<Asked>,
 }
@@ -75,6 +79,20 @@ impl Standing {
             Standing::Stopped => "stopped",
             Standing::Stuck => "stuck",
         }
+    }
+}
+
+/// A chart as its agent shows it.
+#[derive(Clone, Debug)]
+pub(super) struct ShownChart {
+    /// The paths of the BASIC states that are active.
+    pub(super) active: Vec<String>,
+    pub(super) standing: Standing,
+}
+
+impl Default for ShownChart {
+    fn default() -> ShownChart {
+        ShownChart { active: Vec::new(), standing: Standing::Stopped }
     }
 }
 

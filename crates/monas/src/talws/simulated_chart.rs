@@ -2,9 +2,9 @@
 
 use narukom::{HostId, Moment, TopicSlot};
 
-use super::orders::Instances;
+use super::orders::{Instances, ShownChart, Standing};
 use super::teller::Teller;
-use crate::agent::Policy;
+use crate::agent::{ChartSettings, Policy};
 use crate::chart::{Assignment, Returned, Runner, Swap};
 use crate::coverage::ChartCoverage;
 use crate::frequency::Frequency;
@@ -17,7 +17,7 @@ pub(super) struct SimulatedChart {
     runner: Runner,
     /// Activities whose declared duration is not over, in the order of the calls. What they did nobody knows yet.
     under_way: Vec<UnderWay>,
-    /// Wakes it beside what happens.
+    /// Wakes it beside what happens, if it has no frequency of its own.
     frequency: Option<Frequency>,
     ticks: u64,
     /// How many calls there were at the moment of the last one.
@@ -38,14 +38,40 @@ impl SimulatedChart {
     /// Starts a chart.
     pub(super) fn new(mut runner: Runner, frequency: Option<Frequency>, now: Moment) -> SimulatedChart {
         runner.start(now);
-        let ticks = frequency.map_or(0, |frequency| frequency.first_due(now));
-        SimulatedChart { runner, under_way: Vec::new(), frequency, ticks, calls: 0, instant: now }
+        let first = runner.frequency(frequency).map_or(0, |frequency| frequency.first_due(now));
+        let under_way = Vec::new();
+        SimulatedChart { runner, under_way, frequency, ticks: first, calls: 0, instant: now }
     }
 
     /// Wakes it as often as that from now on.
     pub(super) fn set_frequency(&mut self, frequency: Frequency, now: Moment) {
         self.frequency = Some(frequency);
-        self.ticks = frequency.first_due(now);
+        self.skip_ticks(now);
+    }
+
+    fn skip_ticks(&mut self, now: Moment) {
+        let frequency = self.runner.frequency(self.frequency);
+        self.ticks = frequency.map_or(0, |frequency| frequency.first_due(now));
+    }
+
+    /// Has other settings of its own.
+    pub(super) fn settle(&mut self, own: ChartSettings, now: Moment) {
+        let before = self.runner.frequency(self.frequency);
+        self.runner.settle(own);
+        if self.runner.frequency(self.frequency) != before {
+            self.skip_ticks(now);
+        }
+    }
+
+    /// Whether the body is to rest when the agent stops because of it.
+    pub(super) fn rests_body(&mut self, of_agent: Policy) -> bool {
+        self.runner.rests_body(of_agent)
+    }
+
+    /// As its agent shows it.
+    pub(super) fn shown(&self) -> ShownChart {
+        let standing = if self.is_over() { Standing::Stopped } else { Standing::Runs };
+        ShownChart { active: self.runner.active(), standing }
     }
 
     /// Goes on with another model.
@@ -66,10 +92,6 @@ impl SimulatedChart {
         self.runner.host()
     }
 
-    pub(super) fn active(&self) -> Vec<String> {
-        self.runner.active()
-    }
-
     /// Does one step if there is one to be made, and calls the activities that it starts.
     ///
     /// # Errors
@@ -82,7 +104,7 @@ impl SimulatedChart {
         teller: &mut Teller,
     ) -> Result<(), String> {
         while let Some(over) = self.next_return(now) {
-            self.returned(over, now, agent, policy, teller.number())?;
+            self.returned(over, now, policy, teller.number())?;
         }
         while let Some(assignment) = self.runner.next_waiting(now) {
             self.call(assignment.in_cycle(teller.number()), now)?;
@@ -107,7 +129,8 @@ impl SimulatedChart {
     }
 
     fn tick(&self) -> Moment {
-        self.frequency.map_or(Moment::MAX, |frequency| frequency.due(self.ticks))
+        let frequency = self.runner.frequency(self.frequency);
+        frequency.map_or(Moment::MAX, |frequency| frequency.due(self.ticks))
     }
 
     pub(super) fn message_arrived(
@@ -143,7 +166,7 @@ impl SimulatedChart {
             } else if self.runner.needs_step(now) || self.tick() <= now {
                 self.step(now, agent, policy, teller)?;
             } else if let Some(over) = self.next_return(now) {
-                self.returned(over, now, agent, policy, teller.number())?;
+                self.returned(over, now, policy, teller.number())?;
             } else if let Some(assignment) = self.runner.next_waiting(now) {
                 self.call(assignment.in_cycle(teller.number()), now)?;
             } else {
@@ -159,6 +182,7 @@ impl SimulatedChart {
             true => {
                 let broken = self.runner.broken();
                 teller.tell_step(now, [], &broken);
+                let policy = self.runner.policy(policy);
                 monitors::answer(&broken, (self.runner.host(), agent), policy, teller.number(), now)
             }
             false => Ok(()),
@@ -194,6 +218,7 @@ impl SimulatedChart {
         let stepped = self.runner.step(now);
         let broken = self.runner.broken();
         teller.tell_step(now, self.runner.delivered().iter().cloned(), &broken);
+        let policy = self.runner.policy(policy);
         let answered = monitors::answer(&broken, (self.runner.host(), agent), policy, teller.number(), now);
         while let Some(cancelled) = self.runner.next_cancelled() {
             let under_way =
@@ -210,27 +235,13 @@ impl SimulatedChart {
         Some(self.under_way.remove(place))
     }
 
-    fn returned(
-        &mut self,
-        over: UnderWay,
-        now: Moment,
-        agent: &str,
-        policy: Policy,
-        cycle: u64,
-    ) -> Result<(), String> {
+    fn returned(&mut self, over: UnderWay, now: Moment, of_agent: Policy, cycle: u64) -> Result<(), String> {
         let UnderWay { assignment, returned, .. } = over;
         let activation = self.runner.known_as(&assignment);
-        let result = self.runner.returned(assignment, returned, None, policy == Policy::Restart, now);
+        let restart = self.runner.policy_of(activation, of_agent) == Policy::Restart;
+        let result = self.runner.returned(assignment, returned, None, restart, now);
         let Err(failure) = result else { return Ok(()) };
-        let activity = self.runner.activity_name(activation);
-        let robot = self.runner.host();
-        tracing::error!(%robot, %agent, %activity, cycle, "activity failed: {failure}");
-        match policy {
-            Policy::Restart | Policy::Skip => Ok(()),
-            Policy::StopAgent | Policy::SafeState => {
-                Err(format!("activity `{activity}` failed in cycle {cycle}: {failure}"))
-            }
-        }
+        self.runner.has_failed(activation, &failure, of_agent, cycle)
     }
 
     pub(super) fn is_over(&self) -> bool {

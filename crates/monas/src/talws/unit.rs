@@ -9,7 +9,7 @@ use std::time::Duration;
 use narukom::Moment;
 
 use super::handover::Mailbox;
-use super::orders::{Orders, Standing, TOLD};
+use super::orders::{Orders, ShownChart, Standing, TOLD};
 use super::pool::Called;
 use super::pulse::{Pulse, UnderWay};
 use super::scheduling::Scheduling;
@@ -67,7 +67,7 @@ type Answer = Result<Vec<String>, Vec<String>>;
 #[derive(Clone, Default)]
 struct Board {
     statistics: AgentStatistics,
-    active: Vec<String>,
+    chart: ShownChart,
     shown: Moment,
 }
 
@@ -105,13 +105,18 @@ impl Part {
         &self,
         now: Moment,
         always: bool,
-        look: impl FnOnce() -> (AgentStatistics, Vec<String>),
+        look: impl FnOnce() -> (AgentStatistics, ShownChart),
     ) {
         let Ok(mut board) = self.board.try_lock() else { return };
         if always || now >= board.shown + SHOW {
-            (board.statistics, board.active) = look();
+            (board.statistics, board.chart) = look();
             board.shown = now;
         }
+    }
+
+    /// It has something to do.
+    pub(super) fn begins(&self) {
+        self.is_over.store(false, Ordering::SeqCst);
     }
 
     fn give(&self, orders: Orders) -> (u64, Receiver<Answer>) {
@@ -152,9 +157,11 @@ impl Unit {
         }
     }
 
-    /// A thread that has nothing to do any more says so. An agent that was told to stop may be told to start, so that is nobody's business.
-    pub(super) fn is_over_for(&self, part: &Part) {
-        if !part.is_over.swap(true, Ordering::SeqCst) && self.reason().as_deref() != Some(TOLD) {
+    /// A thread that has nothing to do any more says so. An agent that was told to stop, or a chart that was, may be told to start, so that is
+    /// nobody's business.
+    pub(super) fn is_over_for(&self, part: &Part, was_told: bool) {
+        let was_told = was_told || self.reason().as_deref() == Some(TOLD);
+        if !part.is_over.swap(true, Ordering::SeqCst) && !was_told {
             // Without a supervisor the run has ended.
             let _ = self.supervisor.send(Event::Rested);
         }
@@ -286,8 +293,8 @@ impl Unit {
         list.iter().chain(&charts).for_each(|part| act(part));
     }
 
-    /// What all its threads have shown last, and the active states of each chart.
-    pub(super) fn shown(&self) -> (AgentStatistics, Vec<Vec<String>>) {
+    /// What all its threads have shown last, and its charts.
+    pub(super) fn shown(&self) -> (AgentStatistics, Vec<ShownChart>) {
         let Parts { list, charts } = locked(&self.parts).clone();
         let mut all = AgentStatistics::default();
         for part in list.iter().chain(&charts) {
@@ -296,7 +303,7 @@ impl Unit {
             all.add(board.statistics);
         }
         all.stopped = self.trouble();
-        (all, charts.iter().map(|part| locked(&part.board).active.clone()).collect())
+        (all, charts.iter().map(|part| locked(&part.board).chart.clone()).collect())
     }
 
     /// Gives every thread its part of the orders, and waits until all have followed.
@@ -305,20 +312,27 @@ impl Unit {
     /// What stands against them. Nothing has changed then.
     pub(super) fn obey(&self, orders: Orders, patience: Duration) -> Answer {
         let Parts { list, charts } = locked(&self.parts).clone();
-        let Orders { directives, edits, charts: runners, swap, mut instances, asked, .. } = orders;
-        let told = || Orders { asked: asked.clone(), ..Orders::of(directives.clone()) };
+        let Orders { directives, edits, charts: runners, swap, mut instances, mut own, only, asked, .. } =
+            orders;
+        let told = |place: Option<usize>| {
+            let is_meant = only.is_none() || place == only;
+            let directives = if is_meant { directives.clone() } else { Vec::new() };
+            Orders { asked: asked.clone(), only, ..Orders::of(directives) }
+        };
         let mut given: Vec<(Arc<Part>, Orders, bool)> = Vec::new();
         if let Some(part) = list {
             let is_own = !edits.is_empty();
-            given.push((part, Orders { edits, ..told() }, is_own));
+            given.push((part, Orders { edits, ..told(None) }, is_own));
         }
         let (mut runners, mut swap) = (runners.into_iter(), swap);
         for (place, part) in charts.into_iter().enumerate() {
-            let own = swap.take_if(|(chart, _)| *chart == place).map(|(_, swap)| (0, swap));
+            let swap = swap.take_if(|(chart, _)| *chart == place).map(|(_, swap)| (0, swap));
+            let own = own.take_if(|(chart, _)| *chart == place);
             let fresh: Vec<_> = instances.extract_if(.., |(chart, _)| *chart == place).collect();
-            let is_own = own.is_some() || !fresh.is_empty();
-            let charts = runners.next().into_iter().collect();
-            given.push((part, Orders { charts, swap: own, instances: fresh, ..told() }, is_own));
+            let is_own = swap.is_some() || own.is_some() || !fresh.is_empty();
+            let is_meant = only.is_none_or(|only| only == place);
+            let charts = if is_meant { runners.next().into_iter().collect() } else { Vec::new() };
+            given.push((part, Orders { charts, swap, own, instances: fresh, ..told(Some(place)) }, is_own));
         }
         given.retain(|(_, orders, is_own)| *is_own || !orders.directives.is_empty());
         let given: Vec<_> = given

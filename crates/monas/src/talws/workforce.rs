@@ -24,8 +24,8 @@ use super::supervisor::{Event, asked};
 use super::teller::Teller;
 use super::turn::TurnNotes;
 use super::unit::{Part, Unit};
-use crate::agent::{Policy, Profile};
-use crate::chart::Runner;
+use crate::agent::Profile;
+use crate::chart::{OfAgent, Runner};
 use crate::error::{Error, ErrorKind};
 use crate::frequency::Frequency;
 use crate::list::List;
@@ -240,14 +240,19 @@ impl Team {
     ) -> Result<Vec<JoinHandle<AgentStatistics>>, Error> {
         let Member { name, policy, frequency, workers, list, charts, teller, .. } = member;
         let (statistics_every, scheduling) = (member.statistics_every, member.scheduling);
-        let useful = charts.iter().map(Runner::max_activities).sum();
+        let sharing = charts.iter().filter(|runner| runner.own().workers.is_none());
+        let useful = sharing.map(Runner::max_activities).sum();
         let pool = Arc::new(Pool::new(&name, pool::workers(workers, useful), self.clock, &self.hub));
         let mut threads = Vec::new();
+        let of_agent = OfAgent { frequency, policy, scheduling: scheduling.clone(), statistics_every };
         for (runner, part) in charts.into_iter().zip(chart_parts) {
-            let (unit, pool, teller) = (unit.clone(), pool.clone(), teller.another()?);
-            let scheduling = scheduling.clone();
-            let chart = Chart { runner, policy, frequency, statistics_every, scheduling };
-            threads.push(self.spawn_chart(unit, part, chart, pool, teller)?);
+            let own_pool = |workers| {
+                let name = format!("{name} {}", runner.place() + 1);
+                Arc::new(Pool::new(&name, workers, self.clock, &self.hub))
+            };
+            let own_pool = runner.own().workers.map(|workers| own_pool(workers.get()));
+            let (unit, pool) = (unit.clone(), own_pool.unwrap_or_else(|| pool.clone()));
+            threads.push(self.spawn_chart(unit, part, runner, of_agent.clone(), pool, teller.another()?)?);
         }
         if let (Some(list), Some(frequency), Some(part)) = (list, frequency, list_part) {
             let list = Listing { list, frequency, statistics_every, scheduling };
@@ -290,20 +295,18 @@ impl Team {
         &self,
         unit: Arc<Unit>,
         part: Arc<Part>,
-        chart: Chart,
+        runner: Runner,
+        of_agent: OfAgent,
         pool: Arc<Pool>,
         teller: Teller,
     ) -> Result<JoinHandle<AgentStatistics>, Error> {
-        let Chart { runner, policy, frequency, statistics_every, scheduling } = chart;
         let (name, now) = (unit.name.clone(), self.clock.now());
+        let frequency = runner.frequency(of_agent.frequency);
         let thread = ChartThread {
             unit,
             part,
             runner,
-            policy,
-            scheduling,
-            frequency,
-            statistics_every,
+            of_agent,
             pool,
             teller,
             clock: self.clock,
@@ -315,6 +318,7 @@ impl Team {
             calls: Vec::new(),
             notes: TurnNotes::default(),
             run_ends: false,
+            is_idle: false,
             has_ended: false,
             pauses: false,
         };
@@ -345,15 +349,6 @@ impl Team {
         }
         Ok(())
     }
-}
-
-/// A chart with what it is run by.
-struct Chart {
-    runner: Runner,
-    policy: Policy,
-    frequency: Option<Frequency>,
-    statistics_every: Option<u64>,
-    scheduling: Scheduling,
 }
 
 /// A list with what it is run by.
@@ -407,6 +402,11 @@ impl Staff for Team {
         self.worker(agent).is_some_and(|worker| worker.unit.has_list())
     }
 
+    fn standing_of_chart(&self, agent: &str, place: usize) -> Standing {
+        let shown = self.worker(agent).map(|worker| worker.unit.shown().1);
+        shown.and_then(|charts| charts.get(place).map(|chart| chart.standing)).unwrap_or(Standing::Stopped)
+    }
+
     fn cycles(&self, agent: &str) -> u64 {
         self.worker(agent).map_or(0, |worker| worker.teller.number())
     }
@@ -418,7 +418,8 @@ impl Staff for Team {
         let Some(worker) = self.workers.iter_mut().find(|worker| worker.unit.name == agent) else {
             return Err(vec![format!("`{agent}` is not there")]);
         };
-        for directive in &orders.directives {
+        let of_agent = orders.only.is_none();
+        for directive in orders.directives.iter().filter(|_| of_agent) {
             match directive {
                 Directive::Start => worker.unit.start(),
                 Directive::Stop => drop(worker.unit.stop(TOLD)),
@@ -472,9 +473,9 @@ impl Staff for Team {
 
     fn entry(&self, profile: &Profile) -> AgentEntry {
         let Some(worker) = self.worker(&profile.name) else { return AgentEntry::default() };
-        let (mut statistics, active) = worker.unit.shown();
+        let (mut statistics, charts) = worker.unit.shown();
         statistics.cycles = worker.teller.number();
-        entry::of(profile, worker.unit.standing(), &statistics, active)
+        entry::of(profile, worker.unit.standing(), &statistics, charts)
     }
 }
 

@@ -8,6 +8,7 @@ mod taped;
 
 mod charts;
 mod many;
+mod of_one_chart;
 mod real_time;
 mod replayed;
 mod saved;

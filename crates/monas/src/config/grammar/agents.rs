@@ -72,7 +72,8 @@ fn settings() -> [AttributeRule; 8] {
             Kind::whole_from(1),
             "how many threads the activities of its statecharts have in real time; as many as can be active at once, \
              at most twelve, if it is not said",
-        ),
+        )
+        .alias("threads"),
         attribute(
             "cores",
             Kind::List,
@@ -80,6 +81,53 @@ fn settings() -> [AttributeRule; 8] {
         ),
         enable(),
         attribute("on_failure", policies, "what happens when an activity fails").or("restart"),
+    ]
+}
+
+/// The attributes of statecharts. What is not said is as the agent has it, so nothing has a default of its own.
+fn chart_settings() -> [AttributeRule; 9] {
+    let hertz = Kind::number_in(0.0, Frequency::HIGHEST);
+    let policies = Kind::Word(Policy::NAMES.map(|(name, _)| name).to_vec());
+    [
+        attribute(
+            "thread_frequency",
+            hertz,
+            "how often a second it is stepped besides what wakes it; as its agent, if it is not said",
+        )
+        .alias("frequency"),
+        attribute(
+            "priority",
+            Kind::whole(),
+            "how urgent the thread is that steps it; as its agent, if it is not said",
+        ),
+        attribute(
+            "is_real_time",
+            Kind::Flag,
+            "whether real-time scheduling is wanted for the thread that steps it; as its agent, if it is not said",
+        ),
+        attribute(
+            "stats_cycle",
+            Kind::whole_from(0),
+            "after how many steps its times are written to the log; as its agent, if it is not said",
+        ),
+        attribute(
+            "workers",
+            Kind::whole_from(1),
+            "how many threads of its own its activities have in real time; those of its agent, if it is not said",
+        )
+        .alias("threads"),
+        attribute(
+            "cores",
+            Kind::List,
+            "the numbers of the computer's cores that the thread that steps it may run on; as its agent, if it is not said",
+        ),
+        enable(),
+        attribute(
+            "on_failure",
+            policies,
+            "what happens when one of its activities fails; as its agent says, if it is not said",
+        ),
+        attribute("elsewhere", Kind::List, "activities that another process runs"),
     ]
 }
 
@@ -104,12 +152,15 @@ fn provider() -> ElementRule {
 }
 
 fn activity() -> ElementRule {
-    ElementRule::new("activity", "an activity by its name; other attributes are its parameters")
+    ElementRule::new(
+        "activity",
+        "an activity by its name; other attributes are its parameters; in a statechart that of every state that has it",
+    )
         .attribute(enable())
         .attribute(attribute(
             "on_failure",
             Kind::Word(Policy::NAMES.map(|(name, _)| name).to_vec()),
-            "what happens when it fails; as its agent says, if it is not said",
+            "what happens when it fails; as its agent or statechart says, if it is not said",
         ))
         .text("name", Kind::Text)
         .with_parameters()
@@ -118,14 +169,15 @@ fn activity() -> ElementRule {
 
 fn statechart() -> ElementRule {
     ElementRule::new("statechart", "a model file, or the name of a generated statechart")
-        .attribute(enable())
-        .attribute(attribute("elsewhere", Kind::List, "activities that another process runs"))
+        .attributes(chart_settings())
         .text("model", Kind::Text)
+        .children("activity")
+        .children("monitor")
         .identified_by(Identity::Text)
 }
 
 fn monitor() -> ElementRule {
-    ElementRule::new("monitor", "a file of properties that the agent's statechart is to keep to")
+    ElementRule::new("monitor", "a file of properties that its statechart is to keep to, or the one of its agent")
         .attribute(enable())
         .attribute(
             attribute(

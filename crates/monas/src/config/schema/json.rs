@@ -31,7 +31,7 @@ pub(super) fn write(grammar: &Grammar) -> String {
 fn definition(rule: &ElementRule, grammar: &Grammar) -> Json {
     let mut properties: Vec<(String, Json)> = Vec::new();
     for known in &rule.attributes {
-        let names = spellings(known.key).into_iter().chain(known.alias.map(str::to_owned));
+        let names = spellings(known.key).into_iter().chain(known.alias.into_iter().flat_map(spellings));
         properties.extend(names.map(|name| (name, attribute(known))));
     }
     for child in rule.children.iter().filter(|child| grammar.element(child.name).is_some()) {

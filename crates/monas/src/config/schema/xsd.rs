@@ -30,8 +30,14 @@ fn element(out: &mut String, rule: &ElementRule, grammar: &Grammar) {
 }
 
 fn content(out: &mut String, rule: &ElementRule, grammar: &Grammar) {
-    line(out, 2, "<xs:complexType>");
+    let is_mixed = rule.text.is_some() && !rule.children.is_empty();
+    line(out, 2, if is_mixed { "<xs:complexType mixed=\"true\">" } else { "<xs:complexType>" });
     match &rule.text {
+        // What holds elements too is mixed: version 1.0 cannot say what its text may be.
+        Some(_) if !rule.children.is_empty() => {
+            children(out, rule, grammar);
+            attributes(out, 3, rule);
+        }
         Some(text) => {
             line(out, 3, "<xs:simpleContent>");
             line(out, 4, &format!("<xs:extension base=\"{}\">", base(&text.kind)));
@@ -62,7 +68,7 @@ fn children(out: &mut String, rule: &ElementRule, grammar: &Grammar) {
 
 fn attributes(out: &mut String, depth: usize, rule: &ElementRule) {
     for known in &rule.attributes {
-        let alias = known.alias.map(str::to_owned);
+        let alias = known.alias.into_iter().flat_map(spellings);
         for name in spellings(known.key).into_iter().chain(alias) {
             attribute(out, depth, &name, known);
         }

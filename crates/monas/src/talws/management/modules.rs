@@ -143,7 +143,7 @@ fn renewed(profile: &Profile, module: &Module, registry: &Registry) -> Result<Or
     let mut instances: Vec<(usize, Instances)> = Vec::new();
     for (place, chart) in profile.charts.iter().enumerate() {
         let states = states(chart, profile, module).into_iter().map(|(node, name)| {
-            Ok::<_, Refusal>((node, settings::instance(registry, &name, &Parameters::new())?))
+            Ok::<_, Refusal>((node, settings::instance(registry, &name, &chart.own.parameters(&name))?))
         });
         let states = states.collect::<Result<Instances, _>>()?;
         if !states.is_empty() {
@@ -172,8 +172,8 @@ fn states(chart: &ChartProfile, profile: &Profile, module: &Module) -> Vec<(yase
         return Vec::new();
     }
     let named = chart.statechart.nodes().filter_map(|(id, node)| Some((id, node.activity.as_deref()?)));
-    let own =
-        named.filter(|(_, name)| has(module, name) && !profile.elsewhere.iter().any(|other| other == name));
+    let elsewhere = || profile.elsewhere.iter().chain(&chart.own.elsewhere);
+    let own = named.filter(|(_, name)| has(module, name) && !elsewhere().any(|other| other == name));
     own.map(|(id, name)| (id, name.to_owned())).collect()
 }
 

@@ -60,8 +60,15 @@ impl Plan {
         match change.action() {
             Action::NoAction => Err(refusal("E0350", "the change does not say what is to be done")),
             Action::AddAgents => desk.add_agents(),
+            _ if desk.is_of_no_chart() => Err(refusal_with(
+                "E0352",
+                "a statechart alone cannot be told that",
+                "one can be stopped, started, set and swapped; the rest is for its agent",
+            )),
             Action::RemoveAgent => desk.agent().map(|profile| Step::Dismiss(profile.name).into()),
+            Action::StartAgent if !change.chart.is_empty() => desk.start_chart(),
             Action::StartAgent => desk.start(),
+            Action::StopAgent if !change.chart.is_empty() => desk.stop_chart(),
             Action::StopAgent => desk.direct(Directive::Stop, &[Standing::Runs, Standing::Pauses]),
             Action::PauseAgent => desk.direct(Directive::Pause, &[Standing::Runs]),
             Action::ResumeAgent => desk.direct(Directive::Resume, &[Standing::Pauses]),
@@ -85,11 +92,23 @@ impl From<Step> for Plan {
     }
 }
 
+/// A chart as it is spoken of.
+fn named(profile: &Profile, place: usize) -> String {
+    let model = profile.charts.get(place).map_or("", |chart| chart.model.as_str());
+    format!("statechart `{model}` of `{}`", profile.name)
+}
+
 fn tell(profile: Profile, orders: Orders) -> Plan {
     Step::Tell(Box::new(profile), Box::new(orders)).into()
 }
 
 impl Desk<'_> {
+    /// Whether a chart is named for something that concerns agents as a whole.
+    fn is_of_no_chart(&self) -> bool {
+        let alone = [Action::StartAgent, Action::StopAgent, Action::Set, Action::SwapModel];
+        !self.change.chart.is_empty() && !alone.contains(&self.change.action())
+    }
+
     /// What the agent that is meant is made of.
     pub(super) fn agent(&self) -> Result<Profile, Refusal> {
         let name = &self.change.agent;
@@ -138,6 +157,41 @@ impl Desk<'_> {
             self.roster.crew.charts_anew(&profile, &self.place(&profile, &names), &self.roster.registry);
         let charts = charts.map_err(|error| unusable("E0354", &error))?;
         Ok(tell(profile, Orders { charts, ..Orders::of([Directive::Start]) }))
+    }
+
+    /// One of an agent's charts becomes idle; its list and its other charts go on.
+    fn stop_chart(&self) -> Result<Plan, Refusal> {
+        let (profile, place, standing) = self.chart()?;
+        if standing == Standing::Stopped {
+            return Err(refusal("E0352", format!("{} has stopped already", named(&profile, place))));
+        }
+        Ok(tell(profile, Orders { only: Some(place), ..Orders::of([Directive::Stop]) }))
+    }
+
+    /// One of an agent's charts that is idle begins anew.
+    fn start_chart(&self) -> Result<Plan, Refusal> {
+        let (profile, place, standing) = self.chart()?;
+        if standing != Standing::Stopped {
+            return Err(refusal("E0352", format!("{} has not stopped", named(&profile, place))));
+        }
+        let Roster { crew, registry, .. } = self.roster;
+        let (names, failed) = (self.names(), |error: Error| unusable("E0354", &error));
+        let binder = Binder::new(registry).map_err(failed)?;
+        let runner = crew.chart_anew(&binder, &profile, place, &self.place(&profile, &names));
+        let charts = vec![runner.map_err(failed)?];
+        Ok(tell(profile, Orders { charts, only: Some(place), ..Orders::of([Directive::Start]) }))
+    }
+
+    /// The chart that is meant, of an agent that has not stopped, and whether it does anything.
+    fn chart(&self) -> Result<(Profile, usize, Standing), Refusal> {
+        let profile = self.agent()?;
+        let place = settings::chart(&profile, &self.change.chart)?;
+        if self.staff.standing(&profile.name) == Standing::Stopped {
+            let message = format!("`{}` has stopped", profile.name);
+            return Err(refusal_with("E0352", message, "start it first: all its charts begin anew then"));
+        }
+        let standing = self.staff.standing_of_chart(&profile.name, place);
+        Ok((profile, place, standing))
     }
 
     fn names(&self) -> Vec<String> {
@@ -270,7 +324,8 @@ impl Desk<'_> {
 
     fn set(&self) -> Result<Plan, Refusal> {
         let mut profile = self.agent()?;
-        let orders = settings::set(&mut profile, &self.change.settings, &self.roster.registry)?;
+        let Change { settings, chart, .. } = self.change;
+        let orders = settings::set(&mut profile, settings, chart, &self.roster.registry)?;
         Ok(tell(profile, orders))
     }
 
@@ -298,12 +353,13 @@ impl Desk<'_> {
         };
         let statechart = bound.chart.statechart().clone();
         let names = self.names();
-        let bound = crew.fitting(bound, &self.place(&profile, &names)).map_err(failed)?;
+        let own = profile.charts[place].own.clone();
+        let bound = crew.fitting(bound, &own, &self.place(&profile, &names)).map_err(failed)?;
         profile.charts[place] =
-            ChartProfile { model: file.clone(), statechart, is_generated: text.is_empty() };
+            ChartProfile { model: file.clone(), statechart, is_generated: text.is_empty(), own };
         let states = states.iter().map(|state| (state.key.clone(), state.value.clone())).collect();
-        let (rules, count) = (&profile.rules, profile.charts.len());
-        let monitors = binder.monitors(rules, &profile.name, count, &bound.chart)?;
+        let of_agent = Some((&profile.rules[..], profile.name.as_str(), profile.charts.len()));
+        let monitors = binder.monitors(of_agent, &profile.charts[place].own.rules, &bound.chart)?;
         let swap = Box::new(Swap { bound, states, accepts_losses: *accept_losses, monitors });
         Ok(Plan { warnings, ..tell(profile, Orders { swap: Some((place, swap)), ..Orders::default() }) })
     }

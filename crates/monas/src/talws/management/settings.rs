@@ -1,26 +1,37 @@
 //! What can be set of an agent that runs: its attributes, as its configuration has them, and the parameters of its activities.
 
+use std::collections::BTreeSet;
+
 use super::findings::{Refusal, refusal, refusal_with, unknown, unusable};
 use crate::activity::Activity;
-use crate::agent::{ActivityProfile, Policy, Profile};
+use crate::agent::{ActivityProfile, ChartProfile, ChartSettings, Policy, Profile};
 use crate::config::{Grammar, is_written};
 use crate::error::ErrorKind;
-use crate::frequency::Hz;
+use crate::frequency::{Frequency, Hz};
 use crate::list::ListEdit;
 use crate::parameters::Parameters;
 use crate::records::Setting;
 use crate::registry::Registry;
 use crate::talws::orders::{Directive, Orders};
 
-/// Sets attributes (`frequency`) and parameters (`Vision.speed`) in what an agent is made of; all of them, or none.
+/// Sets attributes (`frequency`) and parameters (`Vision.speed`) in what an agent is made of, or one of its charts if that is named; all of them,
+/// or none.
 pub(super) fn set(
     profile: &mut Profile,
     settings: &[Setting],
+    chart_name: &str,
     registry: &Registry,
 ) -> Result<Orders, Refusal> {
     if settings.is_empty() {
         let hint = "name an attribute, or a parameter of an activity: `frequency=50`, `Vision.speed=0.5`";
         return Err(refusal_with("E0353", "nothing is to be set", hint));
+    }
+    if !chart_name.is_empty() {
+        let place = chart(profile, chart_name)?;
+        return set_chart(profile, place, settings, registry);
+    }
+    if let Some(place) = chart_with(profile, settings) {
+        return set_chart(profile, place, settings, registry);
     }
     let mut orders = Orders::default();
     let mut configured: Vec<usize> = Vec::new();
@@ -52,48 +63,157 @@ pub(super) fn set(
     Ok(orders)
 }
 
-fn attribute(profile: &mut Profile, key: &str, value: &str) -> Result<Directive, Refusal> {
+/// An attribute with its value.
+enum Given {
+    Frequency(Frequency),
+    Priority(i32),
+    RealTime(bool),
+    StatisticsEvery(Option<u64>),
+    Policy(Policy),
+}
+
+/// What an attribute of an agent or a statechart is set to.
+fn given(element: &str, key: &str, value: &str) -> Result<Given, Refusal> {
     let grammar = Grammar::agents();
-    let rule = grammar.element("agent").and_then(|agent| agent.attribute_named(key));
+    let rule = grammar.element(element).and_then(|rule| rule.attribute_named(key));
     let known = ["thread_frequency", "priority", "is_real_time", "stats_cycle", "on_failure"];
     let Some(rule) = rule.filter(|rule| known.contains(&rule.key())) else {
         let message = match rule {
-            Some(rule) => format!("`{}` of an agent is what it begins with, and cannot be set", rule.key()),
-            None => format!("an agent has no attribute `{key}`"),
+            Some(rule) => {
+                format!("`{}` of an {element} is what it begins with, and cannot be set", rule.key())
+            }
+            None => format!("an {element} has no attribute `{key}`"),
         };
-        return Err(unknown("E0304", message, key, known));
+        return Err(unknown("E0304", message.replace("an statechart", "a statechart"), key, known));
     };
+    let unread = || refusal("E0306", format!("`{key}` is `{value}`, expected {}", rule.kind().expected()));
     if !rule.kind().allows(value) {
-        let message = format!("`{key}` is `{value}`, expected {}", rule.kind().expected());
-        return Err(refusal("E0306", message));
+        return Err(unread());
     }
     let value = value.trim();
-    let unread = || refusal("E0306", format!("`{key}` is `{value}`, expected {}", rule.kind().expected()));
     Ok(match rule.key() {
-        "thread_frequency" => {
-            let frequency = Hz(value.parse::<f64>().map_err(|_| unread())?);
+        "thread_frequency" => Given::Frequency(Hz(value.parse::<f64>().map_err(|_| unread())?)),
+        "priority" => Given::Priority(value.parse().map_err(|_| unread())?),
+        "is_real_time" => Given::RealTime(is_written(value, "1") || value == "true"),
+        "stats_cycle" => {
+            let cycles: u64 = value.parse().map_err(|_| unread())?;
+            Given::StatisticsEvery((cycles > 0).then_some(cycles))
+        }
+        _ => Given::Policy(policy(value).ok_or_else(unread)?),
+    })
+}
+
+fn attribute(profile: &mut Profile, key: &str, value: &str) -> Result<Directive, Refusal> {
+    Ok(match given("agent", key, value)? {
+        Given::Frequency(frequency) => {
             profile.frequency = Some(frequency);
             Directive::Frequency(frequency)
         }
-        "priority" => {
-            profile.priority = value.parse().map_err(|_| unread())?;
-            Directive::Scheduling(profile.priority, profile.real_time)
+        Given::Priority(priority) => {
+            profile.priority = priority;
+            Directive::Scheduling(priority, profile.real_time)
         }
-        "is_real_time" => {
-            profile.real_time = is_written(value, "1") || value == "true";
-            Directive::Scheduling(profile.priority, profile.real_time)
+        Given::RealTime(is_wanted) => {
+            profile.real_time = is_wanted;
+            Directive::Scheduling(profile.priority, is_wanted)
         }
-        "stats_cycle" => {
-            let cycles: u64 = value.parse().map_err(|_| unread())?;
-            profile.statistics_every = (cycles > 0).then_some(cycles);
-            Directive::StatisticsEvery(profile.statistics_every)
+        Given::StatisticsEvery(cycles) => {
+            profile.statistics_every = cycles;
+            Directive::StatisticsEvery(cycles)
         }
-        _ => {
-            let policy = policy(value).ok_or_else(unread)?;
+        Given::Policy(policy) => {
             profile.policy = policy;
             Directive::Policy(policy)
         }
     })
+}
+
+/// Sets attributes and parameters of one of an agent's charts; all of them, or none.
+fn set_chart(
+    profile: &mut Profile,
+    place: usize,
+    settings: &[Setting],
+    registry: &Registry,
+) -> Result<Orders, Refusal> {
+    let chart = &profile.charts[place];
+    let mut own = chart.own.clone();
+    let mut configured: Vec<&str> = Vec::new();
+    for Setting { key, value } in settings {
+        match key.split_once('.') {
+            Some((name, parameter)) => {
+                known_in_chart(chart, name)?;
+                let known = own.of_activity_mut(name);
+                if parameter == "on_failure" {
+                    let policy = policy(value).ok_or_else(|| refusal("E0306", unknown_policy(key, value)))?;
+                    known.policy = Some(policy);
+                } else {
+                    known.parameters = known.parameters.clone().with(parameter, value);
+                    configured.push(name);
+                }
+            }
+            None => set_own(&mut own, given("statechart", key, value)?),
+        }
+    }
+    for name in configured {
+        // Another instance tries them first, so that the one that runs never sees what it would refuse.
+        charts_instance(chart, registry, name, &own.parameters(name))?;
+    }
+    profile.charts[place].own = own.clone();
+    Ok(Orders { own: Some((place, Box::new(own))), ..Orders::default() })
+}
+
+fn set_own(own: &mut ChartSettings, given: Given) {
+    match given {
+        Given::Frequency(frequency) => own.frequency = Some(frequency),
+        Given::Priority(priority) => own.priority = Some(priority),
+        Given::RealTime(is_wanted) => own.real_time = Some(is_wanted),
+        Given::StatisticsEvery(steps) => own.statistics_every = Some(steps),
+        Given::Policy(policy) => own.policy = Some(policy),
+    }
+}
+
+/// The names of the activities of a chart's states.
+fn named_in(chart: &ChartProfile) -> impl Iterator<Item = &str> {
+    chart.statechart.nodes().filter_map(|(_, node)| node.activity.as_deref())
+}
+
+fn known_in_chart(chart: &ChartProfile, name: &str) -> Result<(), Refusal> {
+    if named_in(chart).any(|known| known == name) {
+        return Ok(());
+    }
+    let message = format!("the statechart `{}` has no activity `{name}`", chart.model);
+    let known: BTreeSet<&str> = named_in(chart).collect();
+    Err(unknown("E0353", message, name, known))
+}
+
+/// A new instance of an activity of a chart. What a generated chart calls it brings itself.
+fn charts_instance(
+    chart: &ChartProfile,
+    registry: &Registry,
+    name: &str,
+    parameters: &Parameters,
+) -> Result<Box<dyn Activity>, Refusal> {
+    if !chart.is_generated {
+        return instance(registry, name, parameters);
+    }
+    let generated = registry.chart(&chart.model).and_then(Result::ok);
+    match generated.and_then(|generated| generated.into_activity(name)) {
+        Some(activity) => configured(activity, name, parameters),
+        None => {
+            Err(refusal("E0312", format!("the statechart `{}` brings no activity `{name}`", chart.model)))
+        }
+    }
+}
+
+/// Where an activity is that is set by its name alone: the one chart that has it, if the agent's list does not.
+fn chart_with(profile: &Profile, settings: &[Setting]) -> Option<usize> {
+    let names: Vec<&str> = settings.iter().filter_map(|one| Some(one.key.split_once('.')?.0)).collect();
+    let name = names.first().filter(|_| names.len() == settings.len())?;
+    let is_listed =
+        activity(profile, name).is_ok() || profile.activities.iter().any(|one| one.name == **name);
+    let mut having =
+        (0..profile.charts.len()).filter(|place| named_in(&profile.charts[*place]).any(|one| one == *name));
+    having.next().filter(|_| !is_listed && having.next().is_none())
 }
 
 fn policy(name: &str) -> Option<Policy> {
@@ -146,13 +266,13 @@ pub(super) fn chart(profile: &Profile, name: &str) -> Result<usize, Refusal> {
     }
 }
 
-/// A new activity that takes these parameters.
+/// A new activity of the registry that takes these parameters.
 pub(super) fn instance(
     registry: &Registry,
     name: &str,
     parameters: &Parameters,
 ) -> Result<Box<dyn Activity>, Refusal> {
-    let mut activity = registry.activity(name).map_err(|error| {
+    let activity = registry.activity(name).map_err(|error| {
         let code = match error.kind() {
             ErrorKind::AmbiguousActivity => "E0313",
             ErrorKind::Module => "E0364",
@@ -160,8 +280,17 @@ pub(super) fn instance(
         };
         unusable(code, &error)
     })?;
+    configured(activity, name, parameters)
+}
+
+/// An activity with these parameters, if it takes them.
+fn configured(
+    mut activity: Box<dyn Activity>,
+    name: &str,
+    parameters: &Parameters,
+) -> Result<Box<dyn Activity>, Refusal> {
     // What has been asked for before was asked by others.
-    let parameters = parameters.iter().fold(Parameters::new(), |all, (key, value)| all.with(key, value));
+    let parameters = parameters.fresh();
     activity.configure(&parameters);
     let faults = parameters.faults().into_iter().flat_map(|fault| {
         let code = if fault.unknown { "E0314" } else { "E0315" };

@@ -11,6 +11,9 @@ pub(in crate::talws) trait Staff {
     fn standing(&self, agent: &str) -> Standing;
 
     /// Whether it has a list, be it an empty one.
+    /// Whether a chart of an agent does anything, by its place.
+    fn standing_of_chart(&self, agent: &str, place: usize) -> Standing;
+
     fn has_list(&self, agent: &str) -> bool;
 
     /// How many cycles it has had.

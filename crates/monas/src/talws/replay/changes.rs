@@ -45,6 +45,11 @@ impl Staff for Replayed<'_> {
         self.instance(agent).map_or(Standing::Stopped, Instance::standing)
     }
 
+    fn standing_of_chart(&self, agent: &str, place: usize) -> Standing {
+        let shown = self.instance(agent).map(Instance::shown).unwrap_or_default();
+        shown.get(place).map_or(Standing::Stopped, |chart| chart.standing)
+    }
+
     fn has_list(&self, agent: &str) -> bool {
         self.instance(agent).is_some_and(Instance::has_list)
     }
@@ -74,7 +79,7 @@ impl Staff for Replayed<'_> {
 
     fn entry(&self, profile: &Profile) -> AgentEntry {
         let Some(instance) = self.instance(&profile.name) else { return AgentEntry::default() };
-        entry::of(profile, instance.standing(), &instance.statistics(self.host), instance.active())
+        entry::of(profile, instance.standing(), &instance.statistics(self.host), instance.shown())
     }
 }
 

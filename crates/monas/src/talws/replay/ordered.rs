@@ -84,7 +84,13 @@ impl Ordered {
         let asked = record.asked.clone().unwrap_or_default();
         let change = self.taken(&asked).ok_or_else(|| lacking(&asked))?;
         let now = Moment::from_nanos(record.time);
-        let mut staff = Again { action: change.action(), repeated, now, was_told: false };
+        let mut staff = Again {
+            action: change.action(),
+            repeated,
+            now,
+            is_of_chart: !change.chart.is_empty(),
+            was_told: false,
+        };
         let changed = self.roster.repeat(&change, &mut staff, now);
         if staff.was_told { Ok(()) } else { Err(refused(&changed, now)) }
     }
@@ -104,7 +110,13 @@ impl Ordered {
         };
         let request = self.asked.iter().position(is_it).and_then(|place| self.asked.remove(place));
         let Some(Request { change, .. }) = request.filter(|_| changed.done) else { return Ok(()) };
-        let mut staff = Again { action: change.action(), repeated, now, was_told: false };
+        let mut staff = Again {
+            action: change.action(),
+            repeated,
+            now,
+            is_of_chart: !change.chart.is_empty(),
+            was_told: false,
+        };
         let again = self.roster.repeat(&change, &mut staff, now);
         if again.done { Ok(()) } else { Err(refused(&again, now)) }
     }
@@ -124,6 +136,8 @@ struct Again<'a> {
     action: Action,
     repeated: &'a mut Repeated,
     now: Moment,
+    /// It is about one chart.
+    is_of_chart: bool,
     was_told: bool,
 }
 
@@ -131,10 +145,14 @@ impl Staff for Again<'_> {
     /// It was told, so it stood as it must.
     fn standing(&self, _: &str) -> Standing {
         match self.action {
-            Action::StartAgent => Standing::Stopped,
+            Action::StartAgent if !self.is_of_chart => Standing::Stopped,
             Action::ResumeAgent | Action::StepAgent => Standing::Pauses,
             _ => Standing::Runs,
         }
+    }
+
+    fn standing_of_chart(&self, _: &str, _: usize) -> Standing {
+        if self.action == Action::StartAgent { Standing::Stopped } else { Standing::Runs }
     }
 
     fn has_list(&self, _: &str) -> bool {

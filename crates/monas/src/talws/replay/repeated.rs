@@ -156,6 +156,9 @@ impl RepeatedChart {
             self.follow_guards();
         }
         orders.instances.into_iter().for_each(|(_, instances)| self.runner.renew(instances, now));
+        if let Some((_, own)) = orders.own {
+            self.settle(|chart| chart.runner.settle(*own), now);
+        }
         if let Some(mut runner) = orders.charts.pop() {
             runner.be_led(Box::new(self.feed.clone()));
             self.next = Some(runner);
@@ -165,8 +168,7 @@ impl RepeatedChart {
                 Directive::Pause => self.pauses = true,
                 Directive::Start | Directive::Resume => self.pauses = false,
                 Directive::Frequency(frequency) => {
-                    self.frequency = Some(frequency);
-                    self.ticks = frequency.first_due(now);
+                    self.settle(|chart| chart.frequency = Some(frequency), now);
                 }
                 Directive::Policy(policy) => self.policy = policy,
                 // That it stopped, or made a step, is a turn of its own; the others change nothing of what it does.
@@ -177,6 +179,16 @@ impl RepeatedChart {
             }
         }
         Ok(said)
+    }
+
+    /// Changes what it goes by.
+    fn settle(&mut self, change: impl FnOnce(&mut RepeatedChart), now: Moment) {
+        let before = self.runner.frequency(self.frequency);
+        change(self);
+        let frequency = self.runner.frequency(self.frequency);
+        if frequency != before {
+            self.ticks = frequency.map_or(0, |frequency| frequency.first_due(now));
+        }
     }
 
     fn follow_guards(&mut self) {
@@ -328,11 +340,13 @@ impl RepeatedChart {
 
     fn answer(&self, broken: &[Broken], now: Moment) -> bool {
         let who = (self.runner.host(), self.runner.agent());
-        monitors::answer(broken, who, self.policy, self.teller.number(), now).is_ok()
+        let policy = self.runner.policy(self.policy);
+        monitors::answer(broken, who, policy, self.teller.number(), now).is_ok()
     }
 
     fn tick(&self) -> Moment {
-        self.frequency.map_or(Moment::MAX, |frequency| frequency.due(self.ticks))
+        let frequency = self.runner.frequency(self.frequency);
+        frequency.map_or(Moment::MAX, |frequency| frequency.due(self.ticks))
     }
 
     fn step(&mut self, now: Moment) -> bool {
@@ -349,14 +363,15 @@ impl RepeatedChart {
     /// An activity has come back: it is called. False if the agent is to stop.
     fn returned(&mut self, assignment: Assignment, now: Moment) -> bool {
         let activation = self.runner.known_as(&assignment);
-        let has_failed = self.take_back(assignment, self.policy == Policy::Restart, now);
+        let policy = self.runner.policy_of(activation, self.policy);
+        let has_failed = self.take_back(assignment, policy == Policy::Restart, now);
         // What came on a topic before it was followed has to be assumed.
         for topic in self.runner.waits_for(activation).to_vec() {
             if self.follow(topic) {
                 self.runner.message_arrived(topic, HostId::LOCAL, None, now);
             }
         }
-        !has_failed || matches!(self.policy, Policy::Restart | Policy::Skip)
+        !has_failed || matches!(policy, Policy::Restart | Policy::Skip)
     }
 
     /// Whether the activity failed.

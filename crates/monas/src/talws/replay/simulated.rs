@@ -4,12 +4,13 @@ use narukom::{AnyPublisher, Arrival, Moment, Receiver, TopicSlot};
 
 use super::super::Talws;
 use super::super::management::HOST_ITSELF;
+use super::super::overview::OUTSIDE;
 use super::super::setup::Stage;
 use super::compare::Ledger;
 use super::scene::{Scene, Spy};
 use super::{Company, Difference, Recorded, RecordedMessage, Tally, no_input};
 use crate::error::Error;
-use crate::records::{CHANGED, CHART, HOST, LOG, MODEL};
+use crate::records::{CHANGE, CHANGED, CHART, HOST, LOG, MODEL};
 
 /// Agents that run again in simulated time.
 ///
@@ -28,7 +29,14 @@ enum Route {
     /// They are what an agent is compared with.
     Compared { scene: usize, actor: usize, topic: Option<TopicSlot>, path: usize },
     /// They are published again. Those of an agent are published when it is its turn.
-    Published { scene: usize, publisher: AnyPublisher, place: Option<usize>, sets_up: bool, answers: bool },
+    Published {
+        scene: usize,
+        publisher: AnyPublisher,
+        place: Option<usize>,
+        sets_up: bool,
+        asks: bool,
+        answers: bool,
+    },
     /// They came from another host, and come from it again.
     Received { scene: usize, receiver: Receiver },
     /// Nothing: their host is not replayed, or nobody here declares the topic.
@@ -85,11 +93,13 @@ impl Simulated {
         }
         // Where the answer to a change stands the change was made.
         let answers = topic == CHANGED.path() && publisher == HOST_ITSELF;
+        // One that was asked for from outside was made at once, before anybody had a turn.
+        let asks = topic == CHANGE.path() && publisher == OUTSIDE;
         let place = self.scenes[scene].place(publisher);
         let publisher = hub.publisher_by_name(topic, publisher).map_err(Error::hub)?;
         // A line of the log may stand anywhere.
         let sets_up = [HOST.path(), MODEL.path(), CHART.path(), LOG.path()].contains(&topic);
-        Ok(Route::Published { scene, publisher, place, sets_up, answers })
+        Ok(Route::Published { scene, publisher, place, sets_up, asks, answers })
     }
 
     pub(super) fn feed(
@@ -109,7 +119,7 @@ impl Simulated {
                 scene.reach(message.received, spy, ledger, told);
                 scene.expect(*actor, *topic, *path, message.bytes, spy);
             }
-            Route::Published { scene, publisher, place, sets_up, answers } => {
+            Route::Published { scene, publisher, place, sets_up, asks, answers } => {
                 let scene = &mut scenes[*scene];
                 scene.reach(message.received, spy, ledger, told);
                 scene.turn_of_another(*place, *sets_up, spy);
@@ -117,6 +127,9 @@ impl Simulated {
                     scene.attend(spy);
                 }
                 publisher.publish_bytes(message.bytes, scene.now).map_err(Error::hub)?;
+                if *asks {
+                    scene.attend(spy);
+                }
             }
             Route::Received { scene, receiver } => {
                 let scene = &mut scenes[*scene];

@@ -204,6 +204,11 @@ impl Staff for Working<'_> {
         self.team.instance(agent).map_or(Standing::Stopped, Instance::standing)
     }
 
+    fn standing_of_chart(&self, agent: &str, place: usize) -> Standing {
+        let shown = self.team.instance(agent).map(Instance::shown).unwrap_or_default();
+        shown.get(place).map_or(Standing::Stopped, |chart| chart.standing)
+    }
+
     fn has_list(&self, agent: &str) -> bool {
         self.team.instance(agent).is_some_and(Instance::has_list)
     }
@@ -240,6 +245,6 @@ impl Staff for Working<'_> {
     fn entry(&self, profile: &Profile) -> AgentEntry {
         let Some(instance) = self.team.instance(&profile.name) else { return AgentEntry::default() };
         let statistics = instance.statistics(&self.team.host);
-        entry::of(profile, instance.standing(), &statistics, instance.active())
+        entry::of(profile, instance.standing(), &statistics, instance.shown())
     }
 }
