@@ -8,7 +8,7 @@ mod save;
 use monas::records::{Inquiry, Reply};
 use prost::Message;
 
-pub(crate) use arguments::AgentCommand;
+pub(crate) use arguments::{AgentCommand, agents};
 
 use crate::console::Console;
 use crate::exit::Exit;

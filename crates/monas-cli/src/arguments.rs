@@ -8,10 +8,14 @@ use clap_complete::Shell;
 
 #[cfg(unix)]
 use crate::agent::AgentCommand;
+#[cfg(unix)]
+use crate::chart::ChartCommand;
 use crate::duration;
+use crate::log::LogArguments;
 #[cfg(unix)]
 use crate::module::ModuleCommand;
 use crate::tape::arguments::TapeCommand;
+#[cfg(unix)]
 use crate::top::TopArguments;
 #[cfg(unix)]
 use crate::topic::TopicCommand;
@@ -56,6 +60,10 @@ pub(crate) enum Command {
     #[cfg(unix)]
     #[command(subcommand)]
     Agent(AgentCommand),
+    /// Look into the statecharts of a run while it runs, and raise events in them.
+    #[cfg(unix)]
+    #[command(subcommand)]
+    Chart(ChartCommand),
     /// Load activities into a run and exchange them, from shared objects.
     #[cfg(unix)]
     #[command(subcommand)]
@@ -67,6 +75,11 @@ pub(crate) enum Command {
     #[cfg(unix)]
     #[command(after_help = "Example: monas top --host blue-2")]
     Top(TopArguments),
+    /// Follow what the agents of a run have to say, or read it off a tape.
+    ///
+    /// Lines are those on `monas/log` of each robot: they are there whatever the logger's settings keep out of files and consoles.
+    #[command(after_help = "Example: monas log --robot blue-2 --agent Attacker --level warning")]
+    Log(LogArguments),
     /// Look at recordings, mend, cut and merge them, write them as text, replay them.
     #[command(subcommand)]
     Tape(TapeCommand),

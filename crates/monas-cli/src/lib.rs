@@ -28,6 +28,8 @@
 #[cfg(unix)]
 mod agent;
 mod arguments;
+#[cfg(unix)]
+mod chart;
 mod config;
 mod console;
 mod deploy;
@@ -37,6 +39,7 @@ mod exit;
 mod failure;
 mod generate;
 mod handover;
+mod log;
 mod model;
 #[cfg(unix)]
 mod module;
@@ -62,6 +65,7 @@ use console::Console;
 use failure::Failure;
 
 pub use exit::Exit;
+pub use monas::memory::Counting;
 
 /// The command with the arguments, output and signals of this process.
 pub fn main() -> ExitCode {
@@ -100,9 +104,12 @@ fn execute(command: Command, console: &mut Console<'_>) -> Result<Exit, Failure>
         #[cfg(unix)]
         Command::Agent(command) => agent::execute(&command, console),
         #[cfg(unix)]
+        Command::Chart(command) => chart::execute(&command, console),
+        #[cfg(unix)]
         Command::Module(command) => module::execute(&command, console),
         #[cfg(unix)]
         Command::Top(arguments) => top::execute(&arguments, console),
+        Command::Log(arguments) => log::execute(&arguments, console),
         Command::Tape(command) => tape::execute(&command, console),
         Command::New(arguments) => new::execute(&arguments, console),
         Command::Deploy(arguments) => deploy::execute(&arguments, console),

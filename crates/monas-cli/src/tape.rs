@@ -13,7 +13,7 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::failure::Failure;
 
-use arguments::TapeCommand;
+use arguments::{ReplayArguments, TapeCommand};
 pub(crate) use replay::recorded_hosts;
 
 pub(crate) fn execute(command: &TapeCommand, console: &mut Console<'_>) -> Result<Exit, Failure> {
@@ -24,6 +24,11 @@ pub(crate) fn execute(command: &TapeCommand, console: &mut Console<'_>) -> Resul
             edit::recover(file, output.as_deref(), format.value, console)
         }
         TapeCommand::Replay(arguments) => replay::execute(arguments, console),
+        TapeCommand::Verify { file, format } => {
+            let (agents, config) = (Vec::new(), None);
+            let (file, format) = (file.clone(), *format);
+            replay::execute(&ReplayArguments { file, agents, verify: true, config, format }, console)
+        }
         TapeCommand::Cut(arguments) => edit::cut(arguments, console),
         TapeCommand::Merge { files, output, format } => edit::merge(files, output, format.value, console),
     }

@@ -26,6 +26,7 @@ use crate::topic::connect::{self, failure};
 
 use draw::Screen;
 use figures::Figures;
+pub(crate) use told::memory;
 
 /// What may be written after `monas top`.
 #[derive(Args, Debug)]

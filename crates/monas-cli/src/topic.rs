@@ -9,6 +9,7 @@ mod publish;
 mod schemas;
 
 pub(crate) use arguments::TopicCommand;
+pub(crate) use echo::watch;
 
 use crate::console::Console;
 use crate::exit::Exit;

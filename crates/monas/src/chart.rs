@@ -10,6 +10,7 @@ mod lending;
 mod own;
 mod post;
 mod swap;
+mod told;
 mod urgency;
 pub(crate) mod values;
 

@@ -78,6 +78,7 @@ mod link;
 mod list;
 mod listener;
 pub mod logger;
+pub mod memory;
 mod module;
 mod monitors;
 mod origin;

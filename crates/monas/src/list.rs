@@ -11,6 +11,7 @@ use crate::activity::Activity;
 use crate::agent::{Listed, Policy};
 use crate::call::{self, Failure};
 use crate::logger::{self, Caller};
+use crate::memory::Growth;
 use crate::statistics::{ActivityStatistics, Timing};
 use crate::talws::{Clock, Pulse, cpu_time};
 
@@ -53,6 +54,7 @@ struct Entry {
     calls: u64,
     failures: u64,
     timing: Timing,
+    growth: Growth,
 }
 
 /// Whether an activity may be called.
@@ -94,7 +96,7 @@ impl List {
             if let Some(watch) = &watch {
                 watch.pulse.calls(index);
             }
-            let result = self.entries[index].run(self.cycles, &mut self.blackboard);
+            let result = self.entries[index].run(self.cycles, &mut self.blackboard, watch.is_some());
             if let Some(watch) = &mut watch {
                 self.entries[index].measure(watch);
                 if watch.pulse.is_cut() {
@@ -185,6 +187,8 @@ impl List {
             call_time: entry.timing.wall(),
             call_cpu: entry.timing.cpu(),
             call_percentiles: entry.timing.percentiles(),
+            held: entry.growth.held(),
+            grows: entry.growth.grows(),
             state: None,
         })
     }
@@ -208,22 +212,27 @@ impl Entry {
             calls: 0,
             failures: 0,
             timing: Timing::default(),
+            growth: Growth::default(),
         }
     }
 
-    fn run(&mut self, cycle: u64, blackboard: &mut Blackboard) -> Result<(), Failure> {
+    fn run(&mut self, cycle: u64, blackboard: &mut Blackboard, counts: bool) -> Result<(), Failure> {
         if matches!(self.health, Health::Down { retry, .. } if cycle < retry) {
             return Ok(());
         }
         let (activity, is_up) = (self.activity.as_mut(), matches!(self.health, Health::Up));
         let calls = &mut self.calls;
-        logger::calling(&self.caller, cycle, || {
+        let mut call = || {
             if !is_up {
                 call::start(activity, blackboard)?;
             }
             *calls += 1;
             // Whatever it says, its next call is in the next cycle.
             call::execute(activity, blackboard).map(drop)
+        };
+        logger::calling(&self.caller, cycle, || match counts {
+            true => self.caller.account.during(call),
+            false => call(),
         })?;
         self.health = Health::Up;
         Ok(())
@@ -235,6 +244,7 @@ impl Entry {
         let cpu_now = watch.cpu.and_then(|_| cpu_time());
         let cpu = cpu_now.zip(watch.cpu).map(|(now, since)| now.saturating_sub(since));
         self.timing.add(now.since(watch.since), cpu);
+        self.caller.has_called(&mut self.growth);
         (watch.since, watch.cpu) = (now, cpu_now);
     }
 

@@ -58,6 +58,10 @@ pub struct ActivityStatistics {
     pub call_cpu: Option<Average>,
     /// How long calls take, one with another.
     pub call_percentiles: Option<Percentiles>,
+    /// How many bytes it holds that it has asked for; in real time, in programs that [count](crate::memory).
+    pub held: Option<u64>,
+    /// Whether that grows from call to call: it leaks, or keeps what it need not.
+    pub grows: bool,
 }
 
 /// The lengths that so many of a hundred times do not exceed, to within a sixteenth.

@@ -178,7 +178,7 @@ pub(crate) struct AgentOrChart {
 }
 
 /// The names of the agents of the only run, if there is one.
-fn agents() -> Vec<CompletionCandidate> {
+pub(crate) fn agents() -> Vec<CompletionCandidate> {
     let run = RunChoice { run: None, host: None, format: FormatArgument { value: Format::Text } };
     let reply = ask(Inquiry { agents: true, ..Inquiry::default() }, &run);
     let known = reply.ok().and_then(|reply| reply.agents).unwrap_or_default();

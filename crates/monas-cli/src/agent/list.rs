@@ -9,6 +9,7 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::run::table;
+use crate::top::memory;
 use crate::topic::arguments::RunChoice;
 
 pub(super) fn execute(
@@ -100,13 +101,14 @@ fn describe(agent: &AgentEntry, console: &mut Console<'_>) -> Result<(), Failure
         };
         writeln!(console.out, "  chart {}: {is}", chart.model)?;
     }
-    let header = ["", "activity", "parameters", "state", "calls", "failures", "mean call", "longest"];
+    let header =
+        ["", "activity", "parameters", "state", "calls", "failures", "mean call", "longest", "memory"];
     let rows = agent.activities.iter().zip(1..).map(activity);
     writeln!(console.out, "{}", table::of_numbers(header, 4, rows))?;
     Ok(())
 }
 
-fn activity((activity, place): (&ActivityEntry, usize)) -> [String; 8] {
+fn activity((activity, place): (&ActivityEntry, usize)) -> [String; 9] {
     let parameters: Vec<String> =
         activity.parameters.iter().map(|one| format!("{}={}", one.key, one.value)).collect();
     let times = activity.call_time.as_ref();
@@ -120,6 +122,7 @@ fn activity((activity, place): (&ActivityEntry, usize)) -> [String; 8] {
         activity.failures.to_string(),
         millis(times.map(|times| times.mean)),
         millis(times.map(|times| times.longest)),
+        if activity.grows { format!("{}, grows", memory(activity.held)) } else { memory(activity.held) },
     ]
 }
 
@@ -144,7 +147,7 @@ fn object(agent: &AgentEntry) -> Value {
             let parameters: serde_json::Map<String, Value> =
                 activity.parameters.iter().map(|one| (one.key.clone(), one.value.clone().into())).collect();
             json!({"name": activity.name, "state": activity.state, "parameters": parameters, "calls": activity.calls,
-                "failures": activity.failures, "call_time": times(activity.call_time.as_ref())})
+                "failures": activity.failures, "held_bytes": activity.held, "grows": activity.grows, "call_time": times(activity.call_time.as_ref())})
         })
         .collect();
     let charts: Vec<Value> =

@@ -42,6 +42,15 @@ pub(crate) enum TapeCommand {
     /// Run agents again on what was recorded, and compare what they publish with what they published then.
     #[command(after_help = "Example: monas tape replay match.mcap --agents goalie --verify")]
     Replay(ReplayArguments),
+    /// Run all agents again on what was recorded, and end with 5 if anything that they publish differs: `replay --verify` of all.
+    #[command(after_help = "Example: monas tape verify match.mcap")]
+    Verify {
+        /// The tape, with all topics of a run from its beginning, in simulated or in real time.
+        #[arg(value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        #[command(flatten)]
+        format: FormatArgument,
+    },
     /// Write several tapes into one, ordered by time.
     #[command(after_help = "Example: monas tape merge one.mcap two.mcap -o both.mcap")]
     Merge {

@@ -146,7 +146,7 @@ fn style_of(agent: &AgentFigures) -> Style {
 fn style_of_activity(activity: &ActivityFigures) -> Style {
     match activity.remark {
         Some(Remark::Stuck | Remark::Fails) => WRONG,
-        Some(Remark::Burns | Remark::Blocks) => WORTH_A_LOOK,
+        Some(Remark::Burns | Remark::Blocks | Remark::Leaks) => WORTH_A_LOOK,
         None => Style::new(),
     }
 }

@@ -57,6 +57,8 @@ pub(super) enum Remark {
     Stuck,
     /// It has failed since the last look.
     Fails,
+    /// It holds more and more memory.
+    Leaks,
 }
 
 impl Remark {
@@ -66,6 +68,7 @@ impl Remark {
             Remark::Blocks => "blocks",
             Remark::Stuck => "stuck",
             Remark::Fails => "fails",
+            Remark::Leaks => "leaks",
         }
     }
 }
@@ -140,6 +143,7 @@ fn activity(entry: &ActivityEntry, hz: f64, failures: u64, stuck: &str) -> Activ
     let remark = match (load, called) {
         _ if stuck.contains(&format!("`{}`", entry.name)) => Some(Remark::Stuck),
         _ if failures > 0 => Some(Remark::Fails),
+        _ if entry.grows => Some(Remark::Leaks),
         (Some(load), _) if load >= BURNS => Some(Remark::Burns),
         (Some(load), Some(called)) if called >= LONG && load < IDLE * called => Some(Remark::Blocks),
         _ => None,
@@ -271,6 +275,9 @@ mod tests {
         assert_eq!(remark(90, 0, times(0.01, 0.005), "runs"), None);
         assert_eq!(remark(40, 0, times(0.01, 0.001), "runs"), None);
         assert_eq!(remark(10, 1, times(0.01, 0.001), "runs"), Some(Remark::Fails));
+        let grows =
+            |grows| super::activity(&ActivityEntry { grows, ..ActivityEntry::default() }, 1.0, 0, "").remark;
+        assert_eq!((grows(true), grows(false)), (Some(Remark::Leaks), None));
         assert_eq!(remark(0, 0, None, "stuck"), Some(Remark::Stuck));
         assert_eq!(remark(0, 0, None, "runs"), None);
     }

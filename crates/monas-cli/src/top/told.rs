@@ -13,15 +13,15 @@ const TOPICS: usize = 10;
 
 pub(super) const AGENT_HEADER: [&str; 10] =
     ["host", "agent", "state", "Hz", "of", "core", "mean", "p99", "overruns", "missed"];
-pub(super) const ACTIVITY_HEADER: [&str; 8] =
-    ["activity", "state", "", "calls/s", "core", "mean", "p99", "failures"];
+pub(super) const ACTIVITY_HEADER: [&str; 9] =
+    ["activity", "state", "", "calls/s", "core", "mean", "p99", "failures", "memory"];
 
 pub(super) fn text(figures: &Figures, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "{}", table::of_numbers(AGENT_HEADER, 3, figures.agents.iter().map(agent)))?;
     let activities = figures.agents.iter().flat_map(|agent| {
         agent.activities.iter().map(|one| {
             let [name, rest @ ..] = activity(one);
-            let [state, remark, hz, core, mean, p99, failures] = rest;
+            let [state, remark, hz, core, mean, p99, failures, memory] = rest;
             [
                 agent.entry.host.clone(),
                 agent.entry.name.clone(),
@@ -33,11 +33,12 @@ pub(super) fn text(figures: &Figures, out: &mut dyn Write) -> io::Result<()> {
                 mean,
                 p99,
                 failures,
+                memory,
             ]
         })
     });
-    let [name, state, remark, hz, core, mean, p99, failures] = ACTIVITY_HEADER;
-    let header = ["host", "agent", name, state, remark, hz, core, mean, p99, failures];
+    let [name, state, remark, hz, core, mean, p99, failures, memory] = ACTIVITY_HEADER;
+    let header = ["host", "agent", name, state, remark, hz, core, mean, p99, failures, memory];
     writeln!(out, "\n{}", table::of_numbers(header, 5, activities))?;
     let topics = figures
         .topics
@@ -65,7 +66,7 @@ pub(super) fn agent(agent: &AgentFigures) -> [String; 10] {
     ]
 }
 
-pub(super) fn activity(activity: &ActivityFigures) -> [String; 8] {
+pub(super) fn activity(activity: &ActivityFigures) -> [String; 9] {
     let ActivityFigures { entry, hz, load, remark } = activity;
     let times = entry.call_time.as_ref();
     [
@@ -77,7 +78,18 @@ pub(super) fn activity(activity: &ActivityFigures) -> [String; 8] {
         millis(times.map(|times| times.mean)),
         millis(times.map(|times| times.p99)),
         entry.failures.to_string(),
+        memory(entry.held),
     ]
+}
+
+/// Bytes as people read them; nothing where nobody counts.
+pub(crate) fn memory(held: Option<u64>) -> String {
+    match held {
+        None => "-".into(),
+        Some(bytes) if bytes < 10 * 1024 => format!("{bytes} B"),
+        Some(bytes) if bytes < 10 * 1024 * 1024 => format!("{} KiB", bytes / 1024),
+        Some(bytes) => format!("{} MiB", bytes / (1024 * 1024)),
+    }
 }
 
 pub(super) fn number(value: f64) -> String {
@@ -96,7 +108,7 @@ pub(super) fn objects(figures: &Figures) -> impl Iterator<Item = Value> {
             .iter()
             .map(|one| {
                 json!({"name": one.entry.name, "state": one.entry.state, "calls_per_second": one.hz, "core": one.load,
-                    "failures": one.entry.failures, "remark": one.remark.map(|remark| remark.name())})
+                    "failures": one.entry.failures, "held_bytes": one.entry.held, "remark": one.remark.map(|remark| remark.name())})
             })
             .collect();
         json!({"host": agent.entry.host, "agent": agent.entry.name, "state": agent.entry.state, "hz": agent.hz,

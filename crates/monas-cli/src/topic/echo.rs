@@ -45,19 +45,19 @@ pub(super) fn execute(
             }
             lost = seen.lost;
         }
-        Ok(())
+        Ok(true)
     })?;
     Ok(end)
 }
 
-/// Hands over what is published, and nothing now and then, until a limit is reached or somebody interrupts.
-pub(super) fn watch(
+/// Hands over what is published, and nothing now and then, until a limit is reached, somebody interrupts, or whoever takes it has enough.
+pub(crate) fn watch(
     pattern: &str,
     payload: bool,
     limits: &Limits,
     choice: &RunChoice,
     console: &mut Console<'_>,
-    mut take: impl FnMut(Option<Seen>, &mut Console<'_>) -> Result<(), Failure>,
+    mut take: impl FnMut(Option<Seen>, &mut Console<'_>) -> Result<bool, Failure>,
 ) -> Result<Exit, Failure> {
     let format = choice.format.value;
     let host = choice.host.as_deref().unwrap_or_default();
@@ -73,7 +73,9 @@ pub(super) fn watch(
         }
         let seen = watching.wait(left.unwrap_or(LOOK).min(LOOK)).map_err(failure(format))?;
         count += u64::from(seen.is_some());
-        take(seen, console)?;
+        if !take(seen, console)? {
+            break;
+        }
     }
     // Whoever looks until they have seen enough ends by interrupting; that is no failure.
     Ok(Exit::Success)

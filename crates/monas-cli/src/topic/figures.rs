@@ -102,7 +102,7 @@ fn measure(
             next = clock.elapsed() + AGAIN;
             tell(figure, streams.values(), lost, format, console)?;
         }
-        Ok(())
+        Ok(true)
     })?;
     if streams.is_empty() && format == Format::Text {
         writeln!(console.out, "nothing was published on `{pattern}` meanwhile")?;

@@ -35,7 +35,12 @@ fn how_time_works() {
 
 #[test]
 fn changing_what_runs() {
-    read("live.md", 12);
+    read("live.md", 21);
+}
+
+#[test]
+fn a_session_with_a_match() {
+    read("session.md", 11);
 }
 
 #[test]

@@ -5,6 +5,8 @@
 #[cfg(unix)]
 mod agent;
 mod chapter;
+#[cfg(unix)]
+mod chart;
 mod config;
 mod convert;
 #[cfg(unix)]

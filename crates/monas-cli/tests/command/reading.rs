@@ -51,7 +51,9 @@ impl Reading {
         let typed = line.strip_prefix("monas ").expect("a command of this program");
         if let Some(typed) = typed.strip_suffix(" &") {
             let words: Vec<&str> = typed.split(' ').collect();
-            return self.background.push(Running::of(&mut self.command(&words), "running, "));
+            // One that can be looked at can be asked from then on.
+            let begin = if words.contains(&"--control") { "control socket: " } else { "running, " };
+            return self.background.push(Running::of(&mut self.command(&words), begin));
         }
         let (typed, code) = typed.split_once(" # ends with ").unwrap_or((typed, "0"));
         let words: Vec<&str> = typed.split(' ').map(|word| word.trim_matches('\'')).collect();

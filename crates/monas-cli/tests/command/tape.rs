@@ -34,6 +34,33 @@ fn text(path: &Path) -> String {
     path.display().to_string()
 }
 
+#[test]
+fn a_tape_is_verified_as_a_whole_and_its_log_is_read() {
+    let answer = done(&["tape", "verify", &tape(), "--format", "json"]);
+    let replayed = done(&["tape", "replay", &tape(), "--verify", "--format", "json"]);
+    let tallies = |answer: &Answer| {
+        let tallies = objects(&answer.out).into_iter().filter(|object| object["kind"] == "tally");
+        tallies.collect::<Vec<_>>()
+    };
+    assert!(tallies(&answer).len() > 20, "{}", answer.out);
+    assert_eq!(tallies(&answer), tallies(&replayed));
+
+    let all = objects(&done(&["log", &tape(), "--format", "json"]).out);
+    assert!(!all.is_empty());
+    let lines = |more: &[&str]| {
+        let tape = tape();
+        let arguments = [&["log", tape.as_str(), "--format", "json"], more].concat();
+        objects(&done(&arguments).out)
+    };
+    let few = lines(&["--robot", "blue-1", "--agent", "Goalie", "--count", "1"]);
+    assert_eq!(few.len(), 1);
+    assert_eq!((&few[0]["robot"], &few[0]["agent"]), (&"blue-1".into(), &"Goalie".into()));
+    assert_eq!(lines(&["--robot", "nobody"]).len(), 0);
+    assert!(lines(&["--level", "warning"]).len() < all.len());
+    let text = done(&["log", &tape(), "--robot", "blue-1", "--count", "1"]).out;
+    assert!(text.contains(" s ") && text.contains(" blue-1 Goalie"), "{text}");
+}
+
 /// The answer of a command that does what it is asked for.
 fn done(arguments: &[&str]) -> Answer {
     let answer = monas(arguments);

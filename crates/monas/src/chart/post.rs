@@ -9,6 +9,7 @@ use yase::{Activation, Chart, NodeId};
 use crate::activity::{Activity, Progress, Topics};
 use crate::call::{self, Failure};
 use crate::logger::{self, Caller};
+use crate::memory::Growth;
 use crate::parameters::Parameters;
 use crate::statistics::{ActivityStatistics, Timing};
 
@@ -45,6 +46,7 @@ struct Post {
     waits: Option<Waiting>,
     calls: u64,
     timing: Timing,
+    growth: Growth,
     failures: u64,
     failures_in_a_row: u32,
 }
@@ -99,6 +101,12 @@ impl Assignment {
         self
     }
 
+    /// Calls the activity, with what it takes of the memory put down to it.
+    pub(crate) fn call_counted(&mut self) -> Returned {
+        let caller = self.caller.clone();
+        caller.account.during(|| self.call())
+    }
+
     /// Calls the activity, where it is.
     pub(crate) fn call(&mut self) -> Returned {
         let Assignment { activity, caller, cycle, started, blackboard, called, .. } = self;
@@ -140,6 +148,7 @@ impl Posts {
                 waits: None,
                 calls: 0,
                 timing: Timing::default(),
+                growth: Growth::default(),
                 failures: 0,
                 failures_in_a_row: 0,
             }
@@ -226,7 +235,10 @@ impl Posts {
             activity.configure(&parameters);
         }
         match (called, took) {
-            (true, Some(took)) => post.timing.add(took.wall, took.cpu),
+            (true, Some(took)) => {
+                post.timing.add(took.wall, took.cpu);
+                post.caller.has_called(&mut post.growth);
+            }
             (true, None) => {}
             (false, _) => post.calls -= 1,
         }
@@ -418,6 +430,8 @@ impl Posts {
             call_time: post.timing.wall(),
             call_cpu: post.timing.cpu(),
             call_percentiles: post.timing.percentiles(),
+            held: post.growth.held(),
+            grows: post.growth.grows(),
         })
     }
 }

@@ -6,17 +6,22 @@ use std::sync::Arc;
 
 use narukom::Moment;
 
+use crate::memory::{Account, Growth};
+
 /// An activity, as log lines name it.
 #[derive(Debug)]
 pub(crate) struct Caller {
     pub(super) robot: String,
     pub(super) agent: String,
     pub(super) activity: String,
+    /// What it holds of the memory, in real time.
+    pub(crate) account: Account,
 }
 
 impl Caller {
     pub(crate) fn new(robot: &str, agent: &str, activity: &str) -> Arc<Caller> {
-        Arc::new(Caller { robot: robot.into(), agent: agent.into(), activity: activity.into() })
+        let (robot, agent, activity) = (robot.into(), agent.into(), activity.into());
+        Arc::new(Caller { robot, agent, activity, account: Account::default() })
     }
 }
 
@@ -29,6 +34,18 @@ thread_local! {
 struct Called {
     caller: Arc<Caller>,
     cycle: u64,
+}
+
+impl Caller {
+    /// An activity was called: says so when it is found to hold more and more.
+    pub(crate) fn has_called(&self, growth: &mut Growth) {
+        let held = self.account.held();
+        if growth.add(held) {
+            let Caller { robot, agent, activity, .. } = self;
+            let kilobytes = held.unwrap_or_default() / 1024;
+            tracing::warn!(%robot, %agent, %activity, kilobytes, "holds more memory after each round of calls");
+        }
+    }
 }
 
 /// Calls an activity; what is written meanwhile is its own.

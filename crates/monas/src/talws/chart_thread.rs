@@ -299,6 +299,9 @@ impl ChartThread {
     }
 
     fn obey(&mut self, orders: Orders, mail: &mut Mail<Called>) -> Result<Vec<String>, Vec<String>> {
+        if orders.look {
+            return Ok(self.runner.told());
+        }
         let mut said = Vec::new();
         let now = self.look();
         self.teller.tell_ordered(now, &orders, self.runner.place());
@@ -316,6 +319,7 @@ impl ChartThread {
         if let Some((_, own)) = orders.own {
             said.extend(self.settle(|thread| thread.runner.settle(*own), now));
         }
+        orders.events.iter().for_each(|event| _ = self.runner.raise(event));
         self.is_idle |= orders.only.is_some() && orders.directives.contains(&Directive::Stop);
         for directive in orders.directives {
             match directive {

@@ -70,6 +70,8 @@ fn called(activity: &ActivityStatistics, parameters: Option<&Parameters>) -> Act
         parameters: settings.map(|(key, value)| Setting { key: key.into(), value: value.into() }).collect(),
         calls: activity.calls,
         failures: activity.failures,
+        held: activity.held,
+        grows: activity.grows,
         call_time: times(activity.call_time, activity.call_cpu, activity.call_percentiles),
     }
 }

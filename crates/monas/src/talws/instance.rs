@@ -156,6 +156,11 @@ impl Instance {
         {
             chart.settle(*own, now);
         }
+        let is_meant = |place: usize| orders.only.is_none_or(|only| only == place);
+        let meant = self.charts.iter_mut().enumerate().filter(|(place, _)| is_meant(*place));
+        for (_, chart) in meant {
+            orders.events.iter().for_each(|event| _ = chart.raise(event));
+        }
         if let Some(place) = orders.only {
             self.follow_alone(place, orders.charts.pop(), &orders.directives, now);
             return Ok((Outcome::Continues, said));
@@ -247,6 +252,11 @@ impl Instance {
 
     pub(super) fn cycles(&self) -> u64 {
         self.teller.number()
+    }
+
+    /// What one of its charts is doing, see [`Runner::told`].
+    pub(super) fn told(&self, place: usize) -> Option<Vec<String>> {
+        self.charts.get(place).map(SimulatedChart::told)
     }
 
     /// Its charts as they stand.

@@ -13,6 +13,8 @@ use crate::list::{List, ListEdit};
 /// Everything that one change means for an agent. Its list and its charts each take their part at the edge of a cycle of their own.
 #[derive(Default)]
 pub(super) struct Orders {
+    /// Nothing changes: the chart says what it is doing, see [`Runner::told`].
+    pub(super) look: bool,
     pub(super) directives: Vec<Directive>,
     pub(super) edits: Vec<ListEdit>,
     /// A list for an agent that had none.
@@ -25,6 +27,8 @@ pub(super) struct Orders {
     pub(super) instances: Vec<(usize, Instances)>,
     /// What the chart at a place has of its own from now on.
     pub(super) own: Option<(usize, Box<ChartSettings>)>,
+    /// Events that come to its charts.
+    pub(super) events: Vec<String>,
     /// They are for the chart at this place alone.
     pub(super) only: Option<usize>,
     /// What they follow from, for the records of real time.

@@ -12,7 +12,8 @@ use prost::Message;
 use super::clock::Clock;
 use super::supervisor::SupervisorLine;
 use crate::records::{
-    AgentEntry, Agents, Change, Changed, Configuration, Inquiry, ModuleEntry, Modules, Reply,
+    AgentEntry, Agents, Change, Changed, ChartChoice, ChartState, Configuration, Inquiry, ModuleEntry,
+    Modules, Reply,
 };
 
 /// Whoever publishes from outside does so under this name.
@@ -55,7 +56,7 @@ impl ShownMoment {
 pub(super) enum HandedIn {
     Message { hub: Narukom, path: String, bytes: Vec<u8>, answer: SyncSender<Result<(), String>> },
     Change { host: String, change: Box<Change>, answer: SyncSender<Result<Changed, String>> },
-    Look { answer: SyncSender<Vec<View>> },
+    Look { chart: Option<ChartChoice>, answer: SyncSender<Vec<View>> },
 }
 
 /// A host as it is now.
@@ -64,6 +65,8 @@ pub(super) struct View {
     pub(super) agents: Vec<AgentEntry>,
     pub(super) configuration: Configuration,
     pub(super) modules: Vec<ModuleEntry>,
+    /// The chart that was asked for, or why it cannot be told.
+    pub(super) chart: Option<Result<ChartState, String>>,
 }
 
 /// Where a simulated run finds what was handed in.
@@ -177,10 +180,24 @@ impl Overview {
         view.map(|view| view.configuration).ok_or_else(|| format!("no agents run on `{host}`"))
     }
 
+    /// What a statechart of an agent is doing at the end of its last step.
+    ///
+    /// # Errors
+    /// There is no such host, agent or chart, or the run stands still.
+    pub fn chart(&self, host: &str, choice: &ChartChoice) -> Result<ChartState, String> {
+        let view = self.views_with(Some(host), Some(choice))?.into_iter().next();
+        view.and_then(|view| view.chart).ok_or_else(|| format!("no agents run on `{host}`"))?
+    }
+
     fn views(&self, host: Option<&str>) -> Result<Vec<View>, String> {
+        self.views_with(host, None)
+    }
+
+    fn views_with(&self, host: Option<&str>, chart: Option<&ChartChoice>) -> Result<Vec<View>, String> {
+        let chart = chart.cloned();
         let mut views = match &self.time {
-            Time::Real(_, supervisor) => supervisor.views()?,
-            Time::Simulated(_, inlet) => handed_in(inlet, |answer| HandedIn::Look { answer })?,
+            Time::Real(_, supervisor) => supervisor.views(chart)?,
+            Time::Simulated(_, inlet) => handed_in(inlet, |answer| HandedIn::Look { chart, answer })?,
         };
         if let Some(host) = host {
             let known: Vec<String> = views.iter().map(|view| format!("`{}`", view.host)).collect();
@@ -206,12 +223,28 @@ impl Overview {
             reply.modules = Some(Modules { modules: self.modules(host)? });
         } else if inquiry.configuration {
             reply.configuration = Some(self.configuration(&self.only(host)?)?);
+        } else if let Some(choice) = inquiry.chart {
+            reply.chart = Some(self.chart(&self.host_of(host, &choice.agent)?, &choice)?);
         } else if let Some(change) = inquiry.change {
             reply.changed = Some(self.change(&self.only(host)?, change)?);
         } else {
             return Err("nothing is asked".into());
         }
         Ok(reply.encode_to_vec())
+    }
+
+    /// The host that is meant: the one that is named, or the only one with that agent.
+    fn host_of(&self, host: Option<&str>, agent: &str) -> Result<String, String> {
+        let having = |view: &View| view.agents.iter().any(|known| known.name == agent);
+        let mut hosts: Vec<String> =
+            self.views(host)?.into_iter().filter(having).map(|view| view.host).collect();
+        match (hosts.pop(), hosts.is_empty()) {
+            (Some(only), true) => Ok(only),
+            (None, _) => Err(format!("no agent is named `{agent}`")),
+            (Some(last), false) => {
+                Err(format!("`{agent}` is on several hosts: say which of {}, {last}", hosts.join(", ")))
+            }
+        }
     }
 
     /// The host that is meant, if it is not named.

@@ -91,7 +91,7 @@ fn run(work: &Work<Job>, clock: Clock) {
         calls += 1;
         let cpu = if calls % CPU_EVERY == 1 { cpu_time() } else { None };
         let began = clock.now();
-        let returned = assignment.call();
+        let returned = assignment.call_counted();
         let wall = clock.now().since(began);
         let cpu = cpu
             .and_then(|before| Some((before, cpu_time()?)))

@@ -68,6 +68,11 @@ impl SimulatedChart {
         self.runner.rests_body(of_agent)
     }
 
+    /// What it is doing.
+    pub(super) fn told(&self) -> Vec<String> {
+        self.runner.told()
+    }
+
     /// As its agent shows it.
     pub(super) fn shown(&self) -> ShownChart {
         let standing = if self.is_over() { Standing::Stopped } else { Standing::Runs };

@@ -223,8 +223,9 @@ impl Simulation {
                 Ok(changed) => answer.try_send(Ok(changed)).is_ok(),
                 Err(error) => answer.try_send(Err(error.to_string())).is_ok(),
             },
-            HandedIn::Look { answer } => {
-                answer.try_send(self.hosts.iter_mut().map(Host::view).collect()).is_ok()
+            HandedIn::Look { chart, answer } => {
+                let views = self.hosts.iter_mut().map(|host| host.view(chart.as_ref()));
+                answer.try_send(views.collect()).is_ok()
             }
         };
     }

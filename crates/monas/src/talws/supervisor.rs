@@ -9,7 +9,7 @@ use super::clock::Clock;
 use super::overview::View;
 use super::stopper::Stopper;
 use super::workforce::{Workforce, nap};
-use crate::records::{Change, Changed};
+use crate::records::{Change, Changed, ChartChoice};
 use crate::statistics::AgentStatistics;
 
 /// How often it looks after everybody without being asked.
@@ -24,8 +24,8 @@ pub(super) enum Event {
     Asked(usize),
     /// Somebody from outside wants a change.
     Change { host: String, change: Box<Change>, answer: SyncSender<Result<Changed, String>> },
-    /// Somebody wants to see the agents.
-    Look { answer: SyncSender<Vec<View>> },
+    /// Somebody wants to see the agents, and one of their charts.
+    Look { chart: Option<ChartChoice>, answer: SyncSender<Vec<View>> },
     /// A thread of an agent has nothing to do any more.
     Rested,
     /// The run ends.
@@ -41,8 +41,8 @@ impl SupervisorLine {
         self.ask(|answer| Event::Change { host: host.into(), change: Box::new(change), answer })?
     }
 
-    pub(super) fn views(&self) -> Result<Vec<View>, String> {
-        self.ask(|answer| Event::Look { answer })
+    pub(super) fn views(&self, chart: Option<ChartChoice>) -> Result<Vec<View>, String> {
+        self.ask(|answer| Event::Look { chart, answer })
     }
 
     fn ask<T>(&self, what: impl FnOnce(SyncSender<T>) -> Event) -> Result<T, String> {
@@ -104,8 +104,9 @@ impl Supervisor {
                 // Whoever has given up is not told.
                 let _ = answer.try_send(changed.ok_or_else(|| format!("no host is named `{host}`")));
             }
-            Event::Look { answer } => {
-                let _ = answer.try_send(self.hosts.iter_mut().map(Workforce::view).collect());
+            Event::Look { chart, answer } => {
+                let views = self.hosts.iter_mut().map(|host| host.view(chart.as_ref()));
+                let _ = answer.try_send(views.collect());
             }
             Event::Rested => self.somebody_rests(),
             Event::End => {}

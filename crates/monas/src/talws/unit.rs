@@ -306,18 +306,39 @@ impl Unit {
         (all, charts.iter().map(|part| locked(&part.board).chart.clone()).collect())
     }
 
+    /// What the chart at a place is doing, see [`Runner::told`](crate::chart::Runner::told).
+    pub(super) fn told(&self, place: usize, patience: Duration) -> Result<Vec<String>, String> {
+        let part = locked(&self.parts).charts.get(place).cloned();
+        let part = part.ok_or_else(|| format!("`{}` has no such statechart", self.name))?;
+        let (_, answered) = part.give(Orders { look: true, ..Orders::default() });
+        let told = answered.recv_timeout(patience).map_err(|_| format!("`{}` does not answer", self.name))?;
+        told.map_err(|reasons| reasons.join("; "))
+    }
+
     /// Gives every thread its part of the orders, and waits until all have followed.
     ///
     /// # Errors
     /// What stands against them. Nothing has changed then.
     pub(super) fn obey(&self, orders: Orders, patience: Duration) -> Answer {
         let Parts { list, charts } = locked(&self.parts).clone();
-        let Orders { directives, edits, charts: runners, swap, mut instances, mut own, only, asked, .. } =
-            orders;
+        let Orders {
+            directives,
+            edits,
+            charts: runners,
+            swap,
+            mut instances,
+            mut own,
+            events,
+            only,
+            asked,
+            ..
+        } = orders;
         let told = |place: Option<usize>| {
             let is_meant = only.is_none() || place == only;
             let directives = if is_meant { directives.clone() } else { Vec::new() };
-            Orders { asked: asked.clone(), only, ..Orders::of(directives) }
+            let is_chart = place.is_some() && is_meant;
+            let events = if is_chart { events.clone() } else { Vec::new() };
+            Orders { asked: asked.clone(), only, events, ..Orders::of(directives) }
         };
         let mut given: Vec<(Arc<Part>, Orders, bool)> = Vec::new();
         if let Some(part) = list {
@@ -334,7 +355,9 @@ impl Unit {
             let charts = if is_meant { runners.next().into_iter().collect() } else { Vec::new() };
             given.push((part, Orders { charts, swap, own, instances: fresh, ..told(Some(place)) }, is_own));
         }
-        given.retain(|(_, orders, is_own)| *is_own || !orders.directives.is_empty());
+        given.retain(|(_, orders, is_own)| {
+            *is_own || !orders.directives.is_empty() || !orders.events.is_empty()
+        });
         let given: Vec<_> = given
             .into_iter()
             .map(|(part, orders, is_own)| {

@@ -30,7 +30,7 @@ use crate::error::{Error, ErrorKind};
 use crate::frequency::Frequency;
 use crate::list::List;
 use crate::logger::Hosting;
-use crate::records::{AgentEntry, CHANGE, Change, Changed};
+use crate::records::{AgentEntry, CHANGE, Change, Changed, ChartChoice};
 use crate::statistics::{AgentStatistics, Timing};
 
 /// A thread that is told something answers within this time, unless its cycle takes longer.
@@ -143,8 +143,9 @@ impl Workforce {
         self.roster.attend(&mut self.team, now);
     }
 
-    pub(super) fn view(&mut self) -> View {
+    pub(super) fn view(&mut self, chart: Option<&ChartChoice>) -> View {
         View {
+            chart: chart.map(|chart| self.roster.chart(chart, &self.team)),
             host: self.name().into(),
             agents: self.roster.entries(&self.team),
             configuration: self.roster.configuration(),
@@ -405,6 +406,11 @@ impl Staff for Team {
     fn standing_of_chart(&self, agent: &str, place: usize) -> Standing {
         let shown = self.worker(agent).map(|worker| worker.unit.shown().1);
         shown.and_then(|charts| charts.get(place).map(|chart| chart.standing)).unwrap_or(Standing::Stopped)
+    }
+
+    fn told(&self, agent: &str, place: usize) -> Result<Vec<String>, String> {
+        let worker = self.worker(agent).ok_or_else(|| format!("`{agent}` is not there"))?;
+        worker.unit.told(place, PATIENCE)
     }
 
     fn cycles(&self, agent: &str) -> u64 {

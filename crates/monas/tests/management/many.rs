@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
-use monas::records::{Action, CHANGED, Change, Changed};
+use monas::records::{CHANGED, Changed};
 use monas::{Agent, Blackboard, Hz, Registry, Simulation, Talws};
 use narukom::{Observer, Publication, Random};
 use yase::{Source, Statechart};
 
+use crate::changes::{MODELS, any_change};
 use crate::kit::{BALL, Ball, GAME, Game, at};
-use crate::{change, settings};
 
 /// How many changes there are, and in how many milliseconds.
 const CHANGES: u64 = 1000;
@@ -34,8 +34,6 @@ impl Observer for Seen {
         hasher.update(publication.bytes());
     }
 }
-
-const MODELS: [&str; 3] = ["m = W . V", "m = (W | V) . V", "m = (W . V . W)~"];
 
 fn chart(text: &str) -> Statechart {
     aseme::statechart_of(&Source::new("m.srm", text)).0
@@ -62,58 +60,6 @@ fn simulation(seen: &Seen) -> Simulation {
         talws = talws.agent(agent.named_activity("V", registry.activity("V").unwrap()));
     }
     talws.agent(Agent::statechart("y", chart(MODELS[0]))).simulate(7).unwrap()
-}
-
-/// Any change of an agent that may be changed, right or wrong.
-fn any_change(number: u64, random: &mut Random) -> Change {
-    let mut below = |count: usize| (random.uniform() * count as f64) as usize;
-    let actions = [
-        Action::StartAgent,
-        Action::StopAgent,
-        Action::PauseAgent,
-        Action::ResumeAgent,
-        Action::ResumeAgent,
-        Action::StepAgent,
-        Action::AddAgents,
-        Action::RemoveAgent,
-        Action::AddActivity,
-        Action::RemoveActivity,
-        Action::MoveActivity,
-        Action::ReplaceActivity,
-        Action::Set,
-        Action::SwapModel,
-        Action::StartAgent,
-    ];
-    let action = actions[below(actions.len())];
-    let agent = match action {
-        Action::SwapModel => "y".to_owned(),
-        Action::AddAgents | Action::RemoveAgent => format!("new{}", below(5)),
-        _ => ["x0", "x1", "x2", "x3", "y"][below(5)].to_owned(),
-    };
-    let text = match action {
-        Action::AddAgents => {
-            format!(
-                "<agent frequency='{}'><name>{agent}</name><activity>W</activity></agent>",
-                1 + below(200)
-            )
-        }
-        Action::SwapModel => MODELS[below(3)].to_owned(),
-        _ => String::new(),
-    };
-    let frequency = (1 + below(500)).to_string();
-    let policy = ["skip", "restart", "sometimes"][below(3)];
-    let set = [("frequency", frequency.as_str()), ("on_failure", policy), ("priority", "3")];
-    Change {
-        number,
-        activity: ["W", "V", "1", "2", "U"][below(5)].into(),
-        replacement: ["W", "V"][below(2)].into(),
-        place: below(4) as u32,
-        settings: if action == Action::Set { settings(&set[..1 + below(3)]) } else { Vec::new() },
-        file: if action == Action::SwapModel { "m.srm".into() } else { String::new() },
-        text,
-        accept_losses: true,
-        ..change(action, &agent)
-    }
 }
 
 /// What was seen of a run with so many changes.

@@ -16,10 +16,12 @@ pub enum Mark {
     Changed,
     /// It is there, and nothing came by it: red.
     Missed,
+    /// It is active in a machine that runs: blue.
+    Active,
 }
 
 impl Mark {
-    pub(super) const ALL: [Mark; 4] = [Mark::Added, Mark::Removed, Mark::Changed, Mark::Missed];
+    pub(super) const ALL: [Mark; 5] = [Mark::Added, Mark::Removed, Mark::Changed, Mark::Missed, Mark::Active];
 
     /// Its word, which is its class in SVG.
     pub const fn word(self) -> &'static str {
@@ -28,6 +30,7 @@ impl Mark {
             Mark::Removed => "removed",
             Mark::Changed => "changed",
             Mark::Missed => "missed",
+            Mark::Active => "active",
         }
     }
 
@@ -36,6 +39,7 @@ impl Mark {
             Mark::Added => "#1a7f37",
             Mark::Removed | Mark::Missed => "#c0261d",
             Mark::Changed => "#c46a00",
+            Mark::Active => "#0b57d0",
         }
     }
 }

@@ -78,6 +78,7 @@ impl Plan {
             Action::MoveActivity => desk.move_activity(),
             Action::ReplaceActivity => desk.replace_activity(),
             Action::Set => desk.set(),
+            Action::RaiseEvent => desk.raise(),
             Action::SwapModel => desk.swap(),
             Action::LoadModule => desk.load_module(),
             Action::UnloadModule => desk.unload_module(),
@@ -105,7 +106,8 @@ fn tell(profile: Profile, orders: Orders) -> Plan {
 impl Desk<'_> {
     /// Whether a chart is named for something that concerns agents as a whole.
     fn is_of_no_chart(&self) -> bool {
-        let alone = [Action::StartAgent, Action::StopAgent, Action::Set, Action::SwapModel];
+        let alone =
+            [Action::StartAgent, Action::StopAgent, Action::Set, Action::SwapModel, Action::RaiseEvent];
         !self.change.chart.is_empty() && !alone.contains(&self.change.action())
     }
 
@@ -180,6 +182,43 @@ impl Desk<'_> {
         let runner = crew.chart_anew(&binder, &profile, place, &self.place(&profile, &names));
         let charts = vec![runner.map_err(failed)?];
         Ok(tell(profile, Orders { charts, only: Some(place), ..Orders::of([Directive::Start]) }))
+    }
+
+    /// An event comes to the charts of an agent that name it, or to one of them.
+    fn raise(&self) -> Result<Plan, Refusal> {
+        let (profile, event) = (self.agent()?, &self.change.event);
+        let only = match self.change.chart.as_str() {
+            "" => None,
+            chart => Some(settings::chart(&profile, chart)?),
+        };
+        if self.staff.standing(&profile.name) == Standing::Stopped {
+            return Err(refusal_with("E0352", format!("`{}` has stopped", profile.name), "start it first"));
+        }
+        let known = self.events(&profile, only)?;
+        if !known.contains(event) {
+            let message =
+                format!("no expression of a statechart of `{}` names the event `{event}`", profile.name);
+            return Err(unknown("E0366", message, event, known.iter().map(String::as_str)));
+        }
+        Ok(tell(profile, Orders { events: vec![event.clone()], only, ..Orders::default() }))
+    }
+
+    /// The events that charts name, of an agent or of one of them.
+    fn events(&self, profile: &Profile, only: Option<usize>) -> Result<Vec<String>, Refusal> {
+        let registry = &self.roster.registry;
+        let binder = Binder::new(registry).map_err(|error| unusable("E0354", &error))?;
+        let mut known = Vec::new();
+        for (place, chart) in profile.charts.iter().enumerate() {
+            if only.is_some_and(|only| only != place) {
+                continue;
+            }
+            let generated = registry.chart(&chart.model).filter(|_| chart.is_generated).and_then(Result::ok);
+            let compiled = binder.compiled(&chart.statechart, generated.as_ref())?;
+            let events = (0..compiled.events().len() as u32).map(yase::expression::EventId);
+            known.extend(events.map(|event| compiled.events().name(event).to_owned()));
+        }
+        known.retain(|name| name != "?");
+        Ok(known)
     }
 
     /// The chart that is meant, of an agent that has not stopped, and whether it does anything.

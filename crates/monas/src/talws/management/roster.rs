@@ -9,10 +9,14 @@ use super::findings::{Refusal, finding, refusal, refusal_with, remark};
 use super::modules::{self, Equipment};
 use super::plan::{Plan, Step};
 use super::save;
+use super::settings;
 use super::staff::Staff;
 use crate::agent::Profile;
 use crate::error::Error;
-use crate::records::{AgentEntry, CHANGE, CHANGED, Change, Changed, Configuration, Finding, ModuleEntry};
+use crate::records::{
+    AgentEntry, CHANGE, CHANGED, Change, Changed, ChartChoice, ChartState, Configuration, Finding,
+    ModuleEntry,
+};
 use crate::registry::Registry;
 use crate::talws::crew::{Crew, Ground};
 use crate::talws::orders::{Asked, Orders};
@@ -234,6 +238,37 @@ impl Roster {
     /// All agents as they are now.
     pub(in crate::talws) fn entries(&self, staff: &dyn Staff) -> Vec<AgentEntry> {
         self.profiles.iter().map(|profile| staff.entry(profile)).collect()
+    }
+
+    /// What one of their charts is doing.
+    ///
+    /// # Errors
+    /// There is no such agent or chart, or it does not answer.
+    pub(in crate::talws) fn chart(
+        &self,
+        choice: &ChartChoice,
+        staff: &dyn Staff,
+    ) -> Result<ChartState, String> {
+        let ChartChoice { agent, chart } = choice;
+        let profile = self.profiles.iter().find(|profile| profile.name == *agent);
+        let profile = profile.ok_or_else(|| format!("no agent is named `{agent}`"))?;
+        let said = |refusal: Refusal| {
+            let reasons = refusal.into_iter().map(|reason| match reason.hint {
+                Some(hint) => format!("{} ({hint})", reason.message),
+                None => reason.message,
+            });
+            reasons.collect::<Vec<_>>().join("; ")
+        };
+        let place = settings::chart(profile, chart).map_err(said)?;
+        let mut told = staff.told(agent, place)?.into_iter();
+        Ok(ChartState {
+            host: self.hub().host().into(),
+            agent: agent.clone(),
+            model: profile.charts[place].model.clone(),
+            state: staff.standing_of_chart(agent, place).word().into(),
+            snapshot: told.next().unwrap_or_default(),
+            drawing: told.next().unwrap_or_default(),
+        })
     }
 
     /// The present set-up, as it is saved.

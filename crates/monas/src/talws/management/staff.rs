@@ -14,6 +14,9 @@ pub(in crate::talws) trait Staff {
     /// Whether a chart of an agent does anything, by its place.
     fn standing_of_chart(&self, agent: &str, place: usize) -> Standing;
 
+    /// What a chart of an agent is doing: a snapshot of its machine in JSON, and a drawing.
+    fn told(&self, agent: &str, place: usize) -> Result<Vec<String>, String>;
+
     fn has_list(&self, agent: &str) -> bool;
 
     /// How many cycles it has had.

@@ -50,6 +50,11 @@ impl Staff for Replayed<'_> {
         shown.get(place).map_or(Standing::Stopped, |chart| chart.standing)
     }
 
+    fn told(&self, agent: &str, place: usize) -> Result<Vec<String>, String> {
+        let told = self.instance(agent).and_then(|instance| instance.told(place));
+        told.ok_or_else(|| format!("`{agent}` has no such statechart"))
+    }
+
     fn has_list(&self, agent: &str) -> bool {
         self.instance(agent).is_some_and(Instance::has_list)
     }
@@ -142,6 +147,7 @@ pub(super) fn refuse_in_real_time(changed: &Changed, is_list: bool, at: Moment) 
         Action::ReplaceActivity => "given an activity in the place of another",
         Action::Set => "set otherwise",
         Action::SwapModel => "given another model",
+        Action::RaiseEvent => "given an event",
         Action::LoadModule => "given activities of a module",
         Action::UnloadModule | Action::ReloadModule => "given other activities of a module",
     };

@@ -155,6 +155,10 @@ impl Staff for Again<'_> {
         if self.action == Action::StartAgent { Standing::Stopped } else { Standing::Runs }
     }
 
+    fn told(&self, agent: &str, _: usize) -> Result<Vec<String>, String> {
+        Err(format!("`{agent}` is replayed"))
+    }
+
     fn has_list(&self, _: &str) -> bool {
         matches!(self.repeated, Repeated::List(_))
     }

@@ -159,6 +159,7 @@ impl RepeatedChart {
         if let Some((_, own)) = orders.own {
             self.settle(|chart| chart.runner.settle(*own), now);
         }
+        orders.events.iter().for_each(|event| _ = self.runner.raise(event));
         if let Some(mut runner) = orders.charts.pop() {
             runner.be_led(Box::new(self.feed.clone()));
             self.next = Some(runner);

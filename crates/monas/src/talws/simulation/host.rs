@@ -8,7 +8,7 @@ use narukom::{Moment, Narukom};
 use crate::agent::Profile;
 use crate::error::{Error, ErrorKind};
 use crate::list::Outcome;
-use crate::records::{AgentEntry, CHANGE, Change, Changed};
+use crate::records::{AgentEntry, CHANGE, Change, Changed, ChartChoice};
 use crate::statistics::AgentStatistics;
 use crate::talws::ENDED;
 use crate::talws::body::Body;
@@ -163,9 +163,10 @@ impl Host {
         }
     }
 
-    pub(super) fn view(&mut self) -> View {
+    pub(super) fn view(&mut self, chart: Option<&ChartChoice>) -> View {
         let working = Working { team: &mut self.team, now: Moment::ZERO };
         View {
+            chart: chart.map(|chart| self.roster.chart(chart, &working)),
             host: working.team.host.clone(),
             agents: self.roster.entries(&working),
             configuration: self.roster.configuration(),
@@ -207,6 +208,11 @@ impl Staff for Working<'_> {
     fn standing_of_chart(&self, agent: &str, place: usize) -> Standing {
         let shown = self.team.instance(agent).map(Instance::shown).unwrap_or_default();
         shown.get(place).map_or(Standing::Stopped, |chart| chart.standing)
+    }
+
+    fn told(&self, agent: &str, place: usize) -> Result<Vec<String>, String> {
+        let told = self.team.instance(agent).and_then(|instance| instance.told(place));
+        told.ok_or_else(|| format!("`{agent}` has no such statechart"))
     }
 
     fn has_list(&self, agent: &str) -> bool {
