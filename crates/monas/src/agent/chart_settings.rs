@@ -131,7 +131,7 @@ impl ChartSettings {
     /// The parameters of the activity of that name.
     pub(crate) fn parameters(&self, name: &str) -> Parameters {
         let parameters = self.of_activity(name).map(|known| known.parameters.fresh());
-        parameters.unwrap_or_else(Parameters::new)
+        parameters.unwrap_or_default()
     }
 
     /// How the thread that steps it is scheduled, if the agent's threads are so.
