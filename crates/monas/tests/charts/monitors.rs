@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use aseme::properties::{Property, parse};
 use monas::generated::{Draft, GeneratedChart, Instance, NodeId, NodeKind};
 use monas::records::Cycle;
-use monas::{Agent, Blackboard, Hz, Moment, OnViolation, Policy, Registry, Simulation, Talws};
+use monas::{Agent, Blackboard, ChartSettings, Hz, Moment, OnViolation, Policy, Registry, Simulation, Talws};
 use narukom::{Observer, Publication};
 
 use super::kit::at;
@@ -164,6 +164,22 @@ fn a_replay_finds_the_same_violations() {
     assert_eq!(outcome.differences.len(), 0);
     assert!(outcome.compared("m", "monas/cycle") > 3);
     assert_eq!(times(&violations).len(), 3);
+}
+
+#[test]
+fn of_several_charts_each_keeps_to_its_own_properties() {
+    let rules = |text| ChartSettings::new().monitor(properties(text), OnViolation::Policy);
+    let of = |first, second| {
+        let agent =
+            Agent::statechart("m", chart(LOOP)).chart_settings(rules(first).on_failure(Policy::StopAgent));
+        let agent = agent.chart(chart(LOOP)).chart_settings(rules(second));
+        let mut simulation = Talws::new().registry(noting().1).agent(agent).simulate(1).unwrap();
+        simulation.run_until(at(300)).unwrap();
+        simulation.statistics().agents[0].stopped.is_some()
+    };
+    let (kept, broken) = ("always true", "always eventually entering A within 50 ms");
+    assert!(of(broken, kept), "the first does what its own policy says");
+    assert!(!of(kept, broken), "the other goes by its agent's, which goes on");
 }
 
 #[test]

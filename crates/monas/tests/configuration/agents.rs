@@ -102,6 +102,69 @@ fn canonical_names_and_the_thesis_s_mean_the_same() {
     assert_eq!(agents[0].worker_count().map(|count| count.get()), Some(4));
 }
 
+/// What is wrong with statecharts of an agent, of which there are two models.
+fn check_charts(elements: &str, expected: &[&str]) {
+    let files =
+        [("walker.srm", "walker = Vision . Walk"), ("p.properties", "property \"p\": always not in Walk")];
+    let (_, said) = read(&format!("<agent><name>a</name>\n{elements}\n</agent>"), &files);
+    assert_eq!(said, expected);
+}
+
+#[test]
+fn statecharts_have_what_agents_have_as_they_or_the_thesis_write_it() {
+    check_charts(
+        "<statechart ThreadFrequency='20' Priority='3' IsRealTime='1' StatsCycle='10' Threads='2' cores='0' OnFailure='skip'>\
+         models/walker.srm<activity speed='0.5' on_failure='restart'>Walk</activity><monitor>models/p.properties</monitor>\
+         </statechart><statechart>models/walker.srm</statechart>",
+        &[],
+    );
+    let toml = "[[agent]]\nname = \"a\"\n[[agent.statechart]]\nmodel = \"models/walker.srm\"\nthread_frequency = 20\n\
+                threads = 2\n[[agent.statechart.activity]]\nname = \"Walk\"\nspeed = 0.5\n";
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir_all(folder.path().join("models")).unwrap();
+    fs::write(folder.path().join("models/walker.srm"), "walker = Vision . Walk").unwrap();
+    let path = folder.path().join("agents.toml");
+    let (_, said) = config::read(&Source::new("agents.toml", toml), &path, &registry());
+    assert!(said.is_empty(), "{said:?}");
+}
+
+#[test]
+fn what_is_said_of_a_statechart_is_checked() {
+    let chart = |attributes: &str, within: &str| {
+        format!("<statechart {attributes}>models/walker.srm{within}</statechart>")
+    };
+    for (elements, expected) in [
+        (
+            chart("threads='0'", ""),
+            "agents.xml:2:22: error[E0306]: `threads` is `0`, expected a whole number from 1",
+        ),
+        (
+            chart("priorty='1'", ""),
+            "agents.xml:2:13: error[E0304]: unknown attribute `priorty` of `statechart` (did you mean `priority`?)",
+        ),
+        (
+            chart("", "<activity>Wolk</activity>"),
+            "agents.xml:2:41: error[E0338]: the chart `walker` has no activity `Wolk` (did you mean `Walk`?)",
+        ),
+        (
+            chart("", "<activity sped='1'>Walk</activity>"),
+            "agents.xml:2:41: error[E0314]: activity `Walk`: unknown parameter `sped` (did you mean `speed`?)",
+        ),
+        (
+            chart("", "<activity>Walk</activity><activity>Walk</activity>"),
+            "agents.xml:2:66: error[E0311]: of the activity `Walk` of the chart `walker` something is said already (say it all in one \
+             `activity`: it holds for every state that has it)",
+        ),
+        (
+            chart("", "") + &chart("", "") + "<monitor>models/p.properties</monitor>",
+            "agents.xml:2:96: error[E0324]: agent `a` has 2 statecharts: nobody knows whose properties these are (put the `monitor` into \
+             the `statechart` that is to keep to it)",
+        ),
+    ] {
+        check_charts(&elements, &[expected]);
+    }
+}
+
 #[test]
 fn a_pool_has_at_least_one_thread() {
     check_agent(
