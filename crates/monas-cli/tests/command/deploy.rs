@@ -71,9 +71,12 @@ impl Site {
             &at("sshd_config"),
             &format!(
                 "Port {port}\nListenAddress 127.0.0.1\nHostKey {}\nAuthorizedKeysFile {}\nPidFile none\nUsePAM no\n\
-                 StrictModes no\nPasswordAuthentication no\nPermitRootLogin prohibit-password\n",
+                 StrictModes no\nPasswordAuthentication no\nPermitRootLogin prohibit-password\n\
+                 SetEnv PATH={}:/usr/local/bin:/usr/bin:/bin XDG_CONFIG_HOME={}\n",
                 at("host").display(),
                 at("mine.pub").display(),
+                at("tools").display(),
+                at("units").display(),
             ),
         );
         let mut server = Command::new(sshd)
@@ -102,7 +105,8 @@ impl Site {
             ),
         );
         let site = Site { folder, server, port };
-        site.describe("config/roles/goalie.xml", "ssh");
+        fs::create_dir(site.at("tools")).expect("the folder takes folders");
+        site.describe("config/roles/goalie.xml", "ssh", "script");
         Some(site)
     }
 
@@ -115,13 +119,13 @@ impl Site {
         self.at("robot").join(name)
     }
 
-    /// Writes the file of robots: one that runs a configuration and is reached by a command.
-    fn describe(&self, config: &str, ssh: &str) {
+    /// Writes the file of robots: one that runs a configuration in a service of some kind, and is reached by a command.
+    fn describe(&self, config: &str, ssh: &str, service: &str) {
         let user = Command::new("id").arg("-un").output().expect("a user").stdout;
         let user = String::from_utf8(user).expect("a name").trim().to_owned();
         let text = format!(
             "<robot name=\"nao-2\" address=\"{user}@127.0.0.1\" port=\"{}\" identity=\"{}\" ssh=\"{ssh} -F {}\" config=\"{config}\"\n  \
-             folder=\"{}\" service=\"script\" settle=\"1s\" arguments=\"--no-control\"/>\n",
+             folder=\"{}\" service=\"{service}\" settle=\"1s\" arguments=\"--no-control\"/>\n",
             self.port,
             self.at("mine").display(),
             self.at("ssh_config").display(),
@@ -137,9 +141,20 @@ impl Site {
 
     /// Brings this very program.
     fn bring(&self) -> Value {
-        let answer = self.deploy(&["--program", env!("CARGO_BIN_EXE_monas"), "--format", "json"]);
+        let answer = self.deploy(&["--program", &self.program(), "--format", "json"]);
         assert_eq!(answer.code, Some(0), "{answer:?}");
         serde_json::from_str(&answer.out).expect("JSON")
+    }
+
+    /// This very program, without what only debuggers read where there is somebody to take it out: that is most of it.
+    fn program(&self) -> String {
+        let (whole, small) = (env!("CARGO_BIN_EXE_monas"), self.at("monas"));
+        let mut strip = Command::new("strip");
+        strip.args(["--strip-debug", "-o"]).arg(&small).arg(whole);
+        match small.is_file() || strip.status().is_ok_and(|status| status.success()) {
+            true => small.display().to_string(),
+            false => whole.into(),
+        }
     }
 
     /// The release that the robot has for its current one.
@@ -202,6 +217,34 @@ fn a_robot_gets_program_configuration_and_models_and_runs_them_and_what_fails_do
 }
 
 #[test]
+fn a_robot_with_systemd_gets_a_unit_that_starts_the_current_release() {
+    let Some(site) = Site::open() else { return };
+    // What it is asked is written down; the services of this computer are left alone.
+    let log = site.at("systemctl.log");
+    script(&site.at("tools/systemctl"), &format!("echo \"$@\" >>{}", log.display()));
+    site.describe("config/roles/goalie.xml", "ssh", "auto");
+    site.bring();
+    let asked = fs::read_to_string(&log).expect("it was asked");
+    let asked: Vec<&str> = asked.lines().collect();
+    let begin = asked.iter().position(|line| *line == "--user daemon-reload").expect("the unit is read anew");
+    let unit = asked[begin + 1].strip_prefix("--user enable ").expect("it starts with the robot");
+    assert_eq!(asked[begin + 2], format!("--user restart {unit}"));
+    assert_eq!(asked[begin + 3], format!("--user is-active --quiet {unit}"));
+    let file = site.at("units/systemd/user").join(unit);
+    let text = fs::read_to_string(&file).expect("a unit");
+    let start = site.there("current/start");
+    assert!(text.contains(&format!("ExecStart={}\n", start.display())), "{text}");
+    assert!(start.is_file());
+    if let Some(analyze) = installed(&["/usr/bin/systemd-analyze"]) {
+        let mut verify = Command::new(analyze);
+        let verified =
+            verify.args(["--user", "verify"]).arg(&file).env("XDG_RUNTIME_DIR", site.folder.path());
+        let verified: Answer = verified.output().expect("it starts").into();
+        assert_eq!((verified.code, verified.err.as_str()), (Some(0), ""), "{text}");
+    }
+}
+
+#[test]
 fn what_arrives_changed_is_not_used_and_a_robot_that_is_not_there_is_said_to_be() {
     let Some(site) = Site::open() else { return };
     // Somewhere on the way one word becomes another.
@@ -209,7 +252,7 @@ fn what_arrives_changed_is_not_used_and_a_robot_that_is_not_there_is_said_to_be(
         &site.at("way"),
         "case \"$*\" in *receive*) LC_ALL=C sed 's/Goalie/Goalee/' | ssh \"$@\" ;; *) ssh \"$@\" ;; esac",
     );
-    site.describe("config/roles/goalie.xml", &way);
+    site.describe("config/roles/goalie.xml", &way, "script");
     let answer = site.deploy(&["--program", "/bin/true"]);
     assert_eq!(answer.code, Some(1), "{answer:?}");
     assert!(answer.err.contains("what has arrived is not what was sent"), "{}", answer.err);
@@ -219,7 +262,7 @@ fn what_arrives_changed_is_not_used_and_a_robot_that_is_not_there_is_said_to_be(
     assert!(back.err.contains("no release before the current one"), "{}", back.err);
 
     let nobody = script(&site.at("nobody"), "echo 'no route to host' >&2; exit 255");
-    site.describe("config/roles/goalie.xml", &nobody);
+    site.describe("config/roles/goalie.xml", &nobody, "script");
     let answer = site.deploy(&["--list"]);
     assert_eq!(answer.code, Some(4), "{answer:?}");
     assert!(
