@@ -1,0 +1,29 @@
+//! Match files: any text, beside files that are there and files that are not, with nothing registered.
+#![no_main]
+
+use std::sync::LazyLock;
+
+use libfuzzer_sys::fuzz_target;
+use monas::Registry;
+use monas_fuzz::assert_findings_fit;
+use monas_match::Match;
+use tempfile::TempDir;
+
+/// A folder with files that a match can name.
+static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().expect("there is room for a folder");
+    let role = "<agents><agent name=\"a\"/></agents>";
+    for (name, text) in [("role.xml", role), ("field.xml", "<field/>"), ("simulator.xml", "<simulator/>")] {
+        std::fs::write(folder.path().join(name), text).expect("there is room for a file");
+    }
+    folder
+});
+
+fuzz_target!(|text: &str| {
+    let path = FOLDER.path().join("match.xml");
+    std::fs::write(&path, text).expect("there is room for a file");
+    if let Err(findings) = Match::load(&path, &Registry::empty()) {
+        assert!(!findings.is_empty(), "it is refused without a reason");
+        assert_findings_fit(text, &findings);
+    }
+});

@@ -1,0 +1,30 @@
+//! Scenarios: findings fit, and what is understood is taken through a chart's names.
+#![no_main]
+
+use std::sync::LazyLock;
+
+use aseme::scenario::Script;
+use libfuzzer_sys::fuzz_target;
+use monas_fuzz::assert_findings_fit;
+use yase::{Chart, Source, Vocabulary};
+
+fuzz_target!(|text: &str| {
+    let source = Source::new("a.scenario", text);
+    let (script, findings) = Script::parse(&source);
+    assert_findings_fit(text, &findings);
+    for link in script.model.iter().chain(&script.after) {
+        assert_eq!(text.get(link.span.start..link.span.end), Some(&*link.path));
+    }
+    let Some(chart) = CHART.as_ref() else { return };
+    match script.bind(chart, &Vocabulary::default()) {
+        Ok(steps) => steps.iter().for_each(|step| assert!(!step.passage.text().is_empty())),
+        Err(findings) => assert_findings_fit(text, &findings),
+    }
+});
+
+/// A chart that has some of the names.
+static CHART: LazyLock<Option<Chart>> = LazyLock::new(|| {
+    let text = "Role: r\nLiveness:\nr = Stand . (SearchBall | Track)\nTransitions:\n\
+                Stand -> (SearchBall|Track) : go / StartTimeout(patience, 100ms)\n";
+    aseme::statechart_of(&Source::new("r.srm", text)).0.compile(&Vocabulary::default()).ok()
+});
