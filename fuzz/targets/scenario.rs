@@ -13,7 +13,8 @@ fuzz_target!(|text: &str| {
     let (script, findings) = Script::parse(&source);
     assert_findings_fit(text, &findings);
     for link in script.model.iter().chain(&script.after) {
-        assert_eq!(text.get(link.span.start..link.span.end), Some(&*link.path));
+        let line = text.get(link.span.start..link.span.end);
+        assert!(line.is_some_and(|line| line.contains(&link.path)), "{link:?}");
     }
     let Some(chart) = CHART.as_ref() else { return };
     match script.bind(chart, &Vocabulary::default()) {
