@@ -410,3 +410,42 @@ fn errors_are_on_the_disk_when_a_process_is_killed() {
     let log = of_the_doomed("errors_are_on_the_disk_when_a_process_is_killed", true, wait);
     assert_eq!(without_times(&log), ["ERROR one leg is gone", "FATAL so is the other"]);
 }
+
+/// A file that takes only what somebody reads: the logger's thread waits, those who write do not.
+#[test]
+#[cfg(unix)]
+#[expect(clippy::disallowed_methods, reason = "somebody has to read what others write")]
+fn what_comes_faster_than_it_can_be_written_is_dropped_and_that_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("log.txt");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let opening = {
+        let pipe = pipe.clone();
+        std::thread::spawn(move || std::fs::File::open(pipe).unwrap())
+    };
+    let (dispatch, logger) = begun(to(&pipe));
+    let reader = opening.join().unwrap();
+    let much = "x".repeat(200);
+    let count = 20_000;
+    tracing::dispatcher::with_default(&dispatch, || {
+        (0..count).for_each(|number| tracing::info!("{much} {number}"));
+    });
+    let reading = std::thread::spawn(move || {
+        BufReader::new(reader).lines().map(Result::unwrap).collect::<Vec<String>>()
+    });
+    logger.end();
+    drop((dispatch, logger));
+    let lines = reading.join().unwrap();
+    let dropped = lines.iter().filter_map(|line| {
+        let said = line.strip_suffix(" messages were dropped here: they came too fast")?;
+        said.rsplit(' ').next()?.parse::<usize>().ok()
+    });
+    let dropped: Vec<usize> = dropped.collect();
+    let sum: usize = dropped.iter().sum();
+    assert!(sum > 0, "{} lines", lines.len());
+    assert_eq!(
+        lines.len() - dropped.len() + sum,
+        count,
+        "each is written, or counted among those that are not"
+    );
+}

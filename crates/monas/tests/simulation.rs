@@ -8,7 +8,8 @@ use std::time::Duration;
 
 use kit::{BALL, Ball, NEWS, at, recorder};
 use monas::{
-    Agent, Blackboard, BoxError, ErrorKind, HostConfig, Hz, Moment, Policy, Progress, RunHash, Talws, World,
+    Agent, Blackboard, BoxError, ChartSettings, ErrorKind, HostConfig, Hz, Moment, Parameters, Policy,
+    Progress, Registry, RunHash, Talws, World,
 };
 use monas_robot::topics::{ACTUATORS, SAID, SENSORS};
 use monas_robot::{Actuators, Anatomy, Percepts, Robot, Said};
@@ -290,6 +291,33 @@ fn in_the_safe_state_the_body_rests_whatever_is_published() {
     assert_eq!(acts, ["0 act 0.3", "10 act 0.3", "20 act 0"], "a body that cannot sit stands still");
     let stopped = simulation.statistics().agents[1].stopped.clone();
     assert_eq!(stopped.as_deref(), Some("activity `closure` failed in cycle 3: broken leg"));
+}
+
+#[test]
+fn a_chart_and_its_activities_say_themselves_whether_the_body_rests_when_one_fails() {
+    let walked = |own: ChartSettings| {
+        let walks =
+            |b: &mut Blackboard| b.publish(ACTUATORS, Actuators { walk_x: 0.3, ..Actuators::default() });
+        let (chart, _) = aseme::statechart_of(&yase::Source::new("m.srm", "m = Limps"));
+        let (talws, log) = embodied(vec![
+            Agent::new("a", Hz(100)).activity(walks),
+            Agent::statechart("b", chart).chart_settings(own),
+        ]);
+        let registry = Registry::empty().with("Limps", || {
+            |_: &mut Blackboard| -> Result<Progress, BoxError> { Err("broken leg".into()) }
+        });
+        let mut simulation = talws.registry(registry).simulate(1).unwrap();
+        simulation.run_until(at(15)).unwrap();
+        let stopped = simulation.statistics().agents[1].stopped.is_some();
+        let acts = log.lock().unwrap().iter().filter(|line| line.ends_with("act 0.3")).count();
+        (stopped, acts > 1)
+    };
+    let safe = || ChartSettings::new().on_failure(Policy::SafeState);
+    let limps = |own: ChartSettings, policy| own.activity("Limps", Parameters::new(), Some(policy));
+    assert_eq!(walked(ChartSettings::new()), (false, true), "it is restarted");
+    assert_eq!(walked(safe()), (true, false));
+    assert_eq!(walked(limps(safe(), Policy::StopAgent)), (true, true));
+    assert_eq!(walked(limps(ChartSettings::new(), Policy::SafeState)), (true, false));
 }
 
 #[test]

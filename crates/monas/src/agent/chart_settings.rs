@@ -143,3 +143,30 @@ impl ChartSettings {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_chart_does_not_say_is_as_its_agent_says() {
+        let of_agent = Scheduling { priority: 5, real_time: true, cores: vec![0] };
+        assert_eq!(ChartSettings::new().scheduling(&of_agent), of_agent);
+        let own = ChartSettings::new().priority(7).cores([1, 2]);
+        let expected = Scheduling { priority: 7, real_time: true, cores: vec![1, 2] };
+        assert_eq!(own.scheduling(&of_agent), expected);
+        let anywhere = ChartSettings::new().real_time(false).cores([]);
+        let expected = Scheduling { priority: 5, real_time: false, cores: Vec::new() };
+        assert_eq!(anywhere.scheduling(&of_agent), expected);
+    }
+
+    #[test]
+    fn of_an_activity_the_parameters_are_those_that_are_said() {
+        let said = Parameters::new().with("speed", "2");
+        let mut own = ChartSettings::new().activity("Kick", said, None);
+        assert_eq!(own.parameters("Kick").iter().collect::<Vec<_>>(), [("speed", "2")]);
+        assert!(own.parameters("Walk").is_empty());
+        own.of_activity_mut("Walk").policy = Some(Policy::Skip);
+        assert_eq!(own.of_activity("Walk").and_then(|known| known.policy), Some(Policy::Skip));
+    }
+}
