@@ -43,6 +43,7 @@ mod roles;
 mod structure;
 mod subject;
 mod timers;
+mod topics;
 mod world;
 
 use std::collections::BTreeSet;
@@ -126,7 +127,12 @@ pub const CHECKS: &[Check] = {
             "a transition that waits for a composite to complete which never can",
         ),
         of("M16", Structure, Warning, "an event that is never raised, or never waited for"),
-        of("M17", Structure, Error, "a message, field, function or type that the program does not have"),
+        of(
+            "M17",
+            Structure,
+            Error,
+            "a message, field, function or type that the program does not have, or that nobody publishes or reads",
+        ),
         of("M18", Exploration, Warning, "a guard on a message that need not have come"),
         of(
             "M19",
@@ -139,7 +145,7 @@ pub const CHECKS: &[Check] = {
             "M21",
             Exploration,
             Error,
-            "an activity that the program does not have; more of them at once than the pool runs",
+            "an activity that the program does not have, or that runs twice at once and publishes; more of them than the pool runs",
         ),
         of(
             "M22",
@@ -171,11 +177,24 @@ pub struct Settings {
     pub pool: Option<usize>,
     /// The messages, functions and activities that there are; names are not judged if it is not said.
     pub world: Option<World>,
+    /// What charts have been through, as recordings tell.
+    pub recorded: Vec<Recorded>,
+}
+
+/// What a chart has been through in runs that were recorded.
+#[derive(Clone, Debug)]
+pub struct Recorded {
+    /// The chart.
+    pub chart: Statechart,
+    /// The nodes that were entered at least once.
+    pub entered: BTreeSet<yase::NodeId>,
+    /// The transitions that fired at least once.
+    pub fired: BTreeSet<yase::TransitionId>,
 }
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { events: BTreeSet::new(), states: 100_000, pool: None, world: None }
+        Settings { events: BTreeSet::new(), states: 100_000, pool: None, world: None, recorded: Vec::new() }
     }
 }
 
@@ -312,6 +331,7 @@ fn charted(
         found.extend(profiles::check(&subject));
         found.extend(world::same_step(&subject));
         found.extend(settings.world.iter().flat_map(|world| world::names(&subject, world)));
+        found.extend(settings.world.iter().flat_map(|world| topics::unmet(&subject, world)));
     }
     let can_be_explored = settings.states > 0 && is_ours(&subject) && !found.iter().any(Diagnostic::is_error);
     let (explored, extent) = match can_be_explored {

@@ -3,7 +3,7 @@
 //! Both are sets of traces, the order in which activities return. Every trace of the chart is to be one of the formulas, and the other way round. A
 //! chart that is left early by a guard or an event cuts traces short, on purpose.
 
-mod graph;
+pub(super) mod graph;
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -47,7 +47,20 @@ pub(super) fn differences(
     found: &Exploration,
     liveness: &Liveness,
 ) -> (Vec<Difference>, bool) {
-    compared(chart, found, liveness, false)
+    compared(chart, found, Language::new(liveness), false)
+}
+
+/// The first thing that the chart does and formulas do not allow, even if composites may be left before they are done: those of such names.
+pub(super) fn difference_beyond(
+    chart: &Statechart,
+    found: &Exploration,
+    liveness: &Liveness,
+    cut: BTreeSet<String>,
+) -> Option<Difference> {
+    let (language, all) = Language::with_cut(liveness, cut)?;
+    let full = Graph::of(found, |edge| shows(&language, chart, &found.edges()[edge]));
+    let mut comparison = Comparison { chart, found, language, may_end_early: false };
+    comparison.does_more(&full, all).difference()
 }
 
 /// The same of a chart that may be left early: that it ends where the formulas go on is no difference.
@@ -56,16 +69,16 @@ pub(super) fn differences_of_what_is_left_early(
     found: &Exploration,
     liveness: &Liveness,
 ) -> (Vec<Difference>, bool) {
-    compared(chart, found, liveness, true)
+    compared(chart, found, Language::new(liveness), true)
 }
 
 fn compared(
     chart: &Statechart,
     found: &Exploration,
-    liveness: &Liveness,
+    language: Option<(Language, Rest)>,
     may_end_early: bool,
 ) -> (Vec<Difference>, bool) {
-    let Some((language, all)) = Language::new(liveness) else { return (Vec::new(), false) };
+    let Some((language, all)) = language else { return (Vec::new(), false) };
     let full = Graph::of(found, |edge| shows(&language, chart, &found.edges()[edge]));
     let mut comparison = Comparison { chart, found, language, may_end_early };
     let small = full.collapsed();

@@ -30,7 +30,9 @@ pub(super) fn check(
 ) -> (Vec<Finding>, Option<Explored>) {
     let abstraction = match Abstraction::new(subject) {
         Ok(abstraction) => abstraction,
-        Err(reasons) => return (reasons.into_iter().map(not_explored).collect(), None),
+        Err(reasons) => {
+            return (reasons.into_iter().map(|reason| not_explored(subject, reason)).collect(), None);
+        }
     };
     let mut surroundings = abstraction.surroundings();
     let found = explore(&abstraction.chart, &mut surroundings, settings.states);
@@ -52,7 +54,13 @@ pub(super) fn check(
 }
 
 /// What keeps a chart from being explored is said: silence would look like a chart without faults.
-fn not_explored(reason: Diagnostic) -> Finding {
+fn not_explored(subject: &Subject, reason: Diagnostic) -> Finding {
+    if reason.code.starts_with('M') {
+        // a fault of the structure that only shows when ways through connectors are put together
+        let span =
+            if reason.span == Span::default() { subject.places.node(Statechart::ROOT) } else { reason.span };
+        return Diagnostic { span, ..reason }.into();
+    }
     let message = format!("not explored: {}", reason.message);
     Diagnostic { severity: Severity::Warning, message, ..reason }.into()
 }
@@ -88,11 +96,14 @@ impl Checks<'_> {
         if let Some(world) = settings.world.as_ref().filter(|_| self.found.is_finished()) {
             findings.extend(world::undelivered(self.subject, world, self.found));
         }
+        if let Some(world) = &settings.world {
+            findings.extend(world::at_once_twice(self.subject, world, self.found));
+        }
         if findings.is_empty() && self.is_whole {
             findings.extend(self.differences());
         }
         findings.extend(self.pool(settings));
-        findings.push(self.metrics(explored).into());
+        findings.push(self.metrics(explored, settings).into());
         findings
     }
 
@@ -302,9 +313,21 @@ impl Checks<'_> {
     /// M24. Where something else is wrong, what follows from it is not said again.
     fn differences(&self) -> Vec<Finding> {
         let Some(liveness) = &self.subject.liveness else { return Vec::new() };
-        let (differences, is_whole) = conformance::differences(&self.subject.chart, self.found, liveness);
+        let chart = &self.subject.chart;
+        let (differences, is_whole) = conformance::differences(chart, self.found, liveness);
         let undecided = !is_whole && self.found.is_finished() && differences.is_empty();
-        let found = differences.into_iter().map(|difference| self.difference(difference));
+        let cut = self.cut_short();
+        let found = differences.into_iter().map(|difference| {
+            let does_more =
+                matches!(difference.kind, DifferenceKind::NotAllowed(_) | DifferenceKind::EndsEarly);
+            // what leaves a composite early cuts traces short, as it is meant to; what cannot come of that is told instead
+            let beyond = match does_more && !cut.is_empty() {
+                true => conformance::difference_beyond(chart, self.found, liveness, cut.clone()),
+                false => None,
+            };
+            let is_meant = does_more && !cut.is_empty() && beyond.is_none();
+            self.difference(beyond.unwrap_or(difference), is_meant)
+        });
         found.chain(undecided.then(|| self.undecided().into())).collect()
     }
 
@@ -316,7 +339,7 @@ impl Checks<'_> {
         found.with_hint("check the parts of it that matter as roles of their own")
     }
 
-    fn difference(&self, difference: Difference) -> Finding {
+    fn difference(&self, difference: Difference, is_meant: bool) -> Finding {
         let before = match difference.before.as_slice() {
             [] => String::from("at the beginning"),
             names => format!("after `{}`", names.join(" ")),
@@ -336,26 +359,26 @@ impl Checks<'_> {
             }
         };
         let found = self.subject.warn("M24", node, format!("{before} {says}"));
-        let is_cut = self.found.edges().is_empty() || self.cuts_short();
         let does_more = matches!(difference.kind, DifferenceKind::NotAllowed(_) | DifferenceKind::EndsEarly);
-        // what leaves a composite early cuts traces short, as it is meant to
-        let severity = if does_more && is_cut { Severity::Warning } else { Severity::Error };
-        let hint = match does_more {
-            true => {
+        let severity = if is_meant { Severity::Warning } else { Severity::Error };
+        let hint = match (does_more, is_meant) {
+            (true, true) => {
                 "a composite is left before it has completed: leave it by `[false]` or without a guard to have it do all"
             }
-            false => "some guard or transition stands in the way",
+            (true, false) => "some transition leads where the formulas do not",
+            (false, _) => "some guard or transition stands in the way",
         };
         let trace = difference.trace.map(|trace| trace.to_string());
         Finding { diagnostic: Diagnostic { severity, ..found }.with_hint(hint), trace }
     }
 
-    /// Whether the chart leaves a composite by a guard or an event.
-    fn cuts_short(&self) -> bool {
-        self.subject.chart.transitions().any(|(id, transition)| {
+    /// The names of the composites that the chart leaves by a guard or an event.
+    fn cut_short(&self) -> BTreeSet<String> {
+        let left = self.subject.chart.transitions().filter(|(id, transition)| {
             let is_composite = matches!(self.subject.kind(transition.source), NodeKind::Or | NodeKind::And);
-            is_composite && !completion::waits(self.subject, id) && self.found.was_taken(id)
-        })
+            is_composite && !completion::waits(self.subject, *id) && self.found.was_taken(*id)
+        });
+        left.map(|(_, transition)| self.subject.chart.node(transition.source).name.clone()).collect()
     }
 
     /// M21: more activities at once than the pool runs.
@@ -372,16 +395,35 @@ impl Checks<'_> {
     }
 
     /// M26.
-    fn metrics(&self, explored: &Explored) -> Diagnostic {
+    fn metrics(&self, explored: &Explored, settings: &Settings) -> Diagnostic {
         let depth = self.subject.chart.nodes().map(|(id, _)| self.subject.chart.ancestors(id).count()).max();
         let bound = if explored.is_finished { "" } else { " found before the end of the search" };
         let message = format!(
-            "states nest {} levels deep; {} configurations, {} states of the machine{bound}",
+            "states nest {} levels deep; {} configurations, {} states of the machine{bound}{}",
             depth.unwrap_or(0),
             explored.configurations,
-            explored.states
+            explored.states,
+            self.recorded(settings)
         );
         let found = self.subject.warn("M26", Statechart::ROOT, message);
         Diagnostic { severity: Severity::Information, ..found }
+    }
+
+    /// What of the chart recordings have been through, if there are any of it.
+    fn recorded(&self, settings: &Settings) -> String {
+        let Some(recorded) = settings.recorded.iter().find(|it| it.chart == self.subject.chart) else {
+            return String::new();
+        };
+        let is_basic = |id: &NodeId| self.subject.kind(*id) == NodeKind::Basic;
+        let states: Vec<NodeId> = self.subject.chart.nodes().map(|(id, _)| id).filter(is_basic).collect();
+        let ways = self.subject.chart.transitions().filter(|(_, it)| !it.expression.is_never());
+        let ways: Vec<TransitionId> = ways.map(|(id, _)| id).collect();
+        format!(
+            "; recordings have been through {} of {} basic states and {} of {} transitions",
+            states.iter().filter(|&id| recorded.entered.contains(id)).count(),
+            states.len(),
+            ways.iter().filter(|&id| recorded.fired.contains(id)).count(),
+            ways.len()
+        )
     }
 }

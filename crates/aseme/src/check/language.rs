@@ -25,6 +25,8 @@ enum Expression {
     /// Any number of times.
     Star(Rest),
     Forever(Rest),
+    /// No more of it than anyone likes.
+    Cut(Rest),
 }
 
 /// So many different rests are told apart.
@@ -38,11 +40,18 @@ pub(super) struct Language {
     letters: Vec<String>,
     numbers: BTreeMap<String, Letter>,
     derivatives: BTreeMap<(Rest, Letter), BTreeSet<Rest>>,
+    /// The terms that may be left before they are done, by what states are called that stand for them.
+    cut: BTreeSet<String>,
 }
 
 impl Language {
     /// The language of formulas and all of the first one; none if they refine each other in a circle or are too large.
     pub(super) fn new(liveness: &Liveness) -> Option<(Language, Rest)> {
+        Language::with_cut(liveness, BTreeSet::new())
+    }
+
+    /// The same, of formulas some terms of which may be left before they are done.
+    pub(super) fn with_cut(liveness: &Liveness, cut: BTreeSet<String>) -> Option<(Language, Rest)> {
         let mut language = Language {
             expressions: Vec::new(),
             places: BTreeMap::new(),
@@ -50,6 +59,7 @@ impl Language {
             letters: Vec::new(),
             numbers: BTreeMap::new(),
             derivatives: BTreeMap::new(),
+            cut,
         };
         let first = liveness.formulas().first()?.expression?;
         let all = language.term(liveness, first, &mut vec![0])?;
@@ -57,6 +67,12 @@ impl Language {
     }
 
     fn term(&mut self, liveness: &Liveness, id: TermId, open: &mut Vec<usize>) -> Option<Rest> {
+        let rest = self.uncut(liveness, id, open)?;
+        let is_cut = !self.cut.is_empty() && self.cut.contains(&liveness.compact(id));
+        Some(if is_cut { self.cut(rest) } else { rest })
+    }
+
+    fn uncut(&mut self, liveness: &Liveness, id: TermId, open: &mut Vec<usize>) -> Option<Rest> {
         if open.len() > crate::transform::MAX_LEVELS || self.expressions.len() > MOST {
             return None;
         }
@@ -155,6 +171,13 @@ impl Language {
         self.place(Expression::Done)
     }
 
+    fn cut(&mut self, rest: Rest) -> Rest {
+        match self.expressions[rest.0 as usize] {
+            Expression::Done | Expression::Cut(_) => rest,
+            _ => self.place(Expression::Cut(rest)),
+        }
+    }
+
     fn sequence(&mut self, first: Rest, then: Rest) -> Rest {
         match self.expressions[first.0 as usize] {
             Expression::Done => then,
@@ -177,7 +200,7 @@ impl Language {
         }
         let null = |rest: Rest| self.nullable[rest.0 as usize];
         let nullable = match expression {
-            Expression::Done | Expression::Star(_) => true,
+            Expression::Done | Expression::Star(_) | Expression::Cut(_) => true,
             Expression::Name(_) | Expression::Forever(_) => false,
             Expression::Sequence(one, other) | Expression::Shuffle(one, other) => null(one) && null(other),
             Expression::Either(one, other) => null(one) || null(other),
@@ -225,6 +248,7 @@ impl Language {
             Expression::Star(inner) | Expression::Forever(inner) => {
                 self.each(inner, letter, |it, after| it.sequence(after, rest))
             }
+            Expression::Cut(inner) => self.each(inner, letter, |it, after| it.cut(after)),
         }
     }
 
@@ -275,6 +299,23 @@ mod tests {
         assert_eq!(allows("r = |(a.b)~|2", "a a b"), (true, false));
         assert_eq!(allows("r = |(a.b)~|2", "a a a"), (false, false));
         assert_eq!(allows("r = x . b\nx = a | c", "c b"), (true, true));
+    }
+
+    #[test]
+    fn what_is_cut_short_may_end_at_any_time_and_what_comes_behind_it_begin() {
+        let (liveness, _) = crate::liveness::parse("r = (a . b~) . c");
+        let allows = |cut: &[&str], trace: &str| {
+            let cut = cut.iter().map(|&name| name.to_owned()).collect();
+            let (mut language, all) = Language::with_cut(&liveness, cut).unwrap();
+            trace.split_whitespace().fold(BTreeSet::from([all]), |rests, name| {
+                let letter = language.find(name).unwrap();
+                language.after_any(&rests, letter)
+            })
+        };
+        for trace in ["c", "a c", "a b b c"] {
+            assert!(allows(&[], trace).is_empty() && !allows(&["(a.b~)"], trace).is_empty(), "{trace}");
+        }
+        assert!(allows(&["(a.b~)"], "b").is_empty() && allows(&["b~"], "c").is_empty());
     }
 
     #[test]

@@ -21,6 +21,10 @@ pub struct World {
     pub vocabulary: Vocabulary,
     /// Each activity, and the paths of the topics that it publishes, if it says so.
     pub activities: BTreeMap<String, Option<BTreeSet<String>>>,
+    /// The paths of the topics that each activity reads, if it says so.
+    pub readers: BTreeMap<String, Option<BTreeSet<String>>>,
+    /// The paths of the topics that others than activities publish or read: bodies, the runtime.
+    pub elsewhere: BTreeSet<String>,
 }
 
 /// M17 and M21: names that the world does not have.
@@ -158,6 +162,34 @@ fn undelivered_at(
         }
     }
     None
+}
+
+/// M21: two states whose activity is the same run at once, and both publish: what the one says the other overwrites.
+pub(super) fn at_once_twice(subject: &Subject, world: &World, found: &Exploration) -> Vec<Finding> {
+    let publishing = |node: NodeId| -> Option<(&str, &str)> {
+        let name = subject.chart.node(node).activity.as_deref()?;
+        let topic = world.activities.get(name)?.as_ref()?.first()?;
+        Some((name, topic))
+    };
+    let (mut told, mut findings) = (BTreeSet::new(), Vec::new());
+    for (number, state) in found.states().iter().enumerate() {
+        for (index, &node) in state.running.iter().enumerate() {
+            let Some((name, topic)) = publishing(node) else { continue };
+            let same = |&&other: &&NodeId| publishing(other).is_some_and(|(it, _)| it == name);
+            let Some(&other) = state.running[..index].iter().find(same) else { continue };
+            if !told.insert(name) {
+                continue;
+            }
+            let (one, other) = (subject.path(other), subject.path(node));
+            let message =
+                format!("`{name}` may run in `{one}` and in `{other}` at once, and both publish `{topic}`");
+            let diagnostic = subject.warn("M21", node, message).with_hint(
+                "each state has an instance of its own: let one of them do it, or give the two topics of their own",
+            );
+            findings.push(Finding { diagnostic, trace: Some(found.trace_to(number).to_string()) });
+        }
+    }
+    findings
 }
 
 /// The states whose activities publish a message, if these are all who do; none if that is not known.

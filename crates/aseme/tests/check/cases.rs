@@ -1,12 +1,12 @@
 //! One folder for each check, by its code: `fault.*` has the fault and `near.*` nearly has it; `fault.txt` and `near.txt` are the findings about
 //! them. With `MONAS_BLESS=1` these are written anew.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use aseme::check::{CHECKS, Finding, Report, Settings, World, check};
+use aseme::check::{CHECKS, Finding, Recorded, Report, Settings, World, check};
 use yase::vocabulary::{FieldEntry, MessageEntry, TopicEntry, TopicKind, ValueType};
-use yase::{FieldId, Severity, Source, TopicId, Vocabulary};
+use yase::{FieldId, NodeKind, Severity, Source, TopicId, Vocabulary};
 
 fn folder(id: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/check").join(id.to_lowercase())
@@ -33,28 +33,69 @@ fn report(file: &Path) -> Report {
     settings.states = 500;
     let id = file.parent().and_then(Path::file_name).and_then(|name| name.to_str());
     let of_names = matches!(id, Some("m17" | "m18")) || name.contains("known");
-    settings.world = of_names.then(world);
+    settings.recorded = recorded(file);
+    settings.world = of_names.then(|| world(name));
     let report = check(&Source::new(name, std::fs::read_to_string(file).unwrap()), &settings);
     assert!(!report.is_unreadable(), "{}: {:?}", file.display(), report.findings);
     report
 }
 
-/// A program with a ball, which Look publishes.
-fn world() -> World {
+/// A run of the model in which nothing was entered but the first state, if its name says that there is one.
+fn recorded(file: &Path) -> Vec<Recorded> {
+    if !file.file_name().is_some_and(|name| name.to_string_lossy().contains("recorded")) {
+        return Vec::new();
+    }
+    let (chart, _) = aseme::statechart_of(&Source::new("r.srm", std::fs::read_to_string(file).unwrap()));
+    let entered = chart.nodes().map(|(id, _)| id).find(|&id| chart.node(id).kind == NodeKind::Basic);
+    let fired = chart.transitions().map(|(id, _)| id).next();
+    vec![Recorded { chart, entered: entered.into_iter().collect(), fired: fired.into_iter().collect() }]
+}
+
+/// A program with a ball, which Look publishes, and with news that nobody reads; whoever is called Hearsay says nothing of what it reads and publishes.
+fn world(model: &str) -> World {
     let field = |id, name: &str, kind| FieldEntry { id: FieldId(id), name: name.into(), kind };
-    let (id, kind) = (TopicId(0), TopicKind::State);
+    let topic = |id, path: &str, message: &str| TopicEntry {
+        id: TopicId(id),
+        path: path.into(),
+        kind: TopicKind::State,
+        message: message.into(),
+    };
     let vocabulary = Vocabulary {
-        topics: vec![TopicEntry { id, path: "soccer/ball".into(), kind, message: "Ball".into() }],
-        messages: vec![MessageEntry {
-            name: "Ball".into(),
-            fields: vec![field(0, "found", ValueType::Bool), field(1, "distance", ValueType::Number)],
-        }],
+        topics: vec![
+            topic(0, "soccer/ball", "Ball"),
+            topic(1, "soccer/news", "News"),
+            topic(2, "body/eyes", "Eyes"),
+        ],
+        messages: vec![
+            MessageEntry {
+                name: "Ball".into(),
+                fields: vec![field(0, "found", ValueType::Bool), field(1, "distance", ValueType::Number)],
+            },
+            MessageEntry { name: "News".into(), fields: vec![field(0, "good", ValueType::Bool)] },
+            MessageEntry { name: "Eyes".into(), fields: vec![field(0, "open", ValueType::Bool)] },
+        ],
         ..Vocabulary::default()
     };
-    let nothing = || Some(BTreeSet::new());
-    let look = Some(BTreeSet::from([String::from("soccer/ball")]));
-    let activities = [("Look", look), ("Turn", nothing()), ("Walk", nothing())];
-    World { vocabulary, activities: activities.map(|(name, topics)| (name.into(), topics)).into() }
+    let paths = |paths: &[&str]| Some(paths.iter().map(|&path| path.to_owned()).collect::<BTreeSet<_>>());
+    let mut activities =
+        BTreeMap::from([("Look", paths(&["soccer/ball"])), ("Turn", paths(&[])), ("Walk", paths(&[]))]);
+    let mut readers = BTreeMap::from([
+        ("Look", paths(&["body/eyes"])),
+        ("Turn", paths(&["soccer/ball"])),
+        ("Walk", paths(&[])),
+    ]);
+    if model.contains("hearsay") {
+        activities.insert("Hearsay", None);
+        readers.insert("Hearsay", None);
+    }
+    let named =
+        |list: BTreeMap<&str, _>| list.into_iter().map(|(name, topics)| (name.to_owned(), topics)).collect();
+    World {
+        vocabulary,
+        activities: named(activities),
+        readers: named(readers),
+        elsewhere: BTreeSet::from(["body/eyes".into()]),
+    }
 }
 
 /// A finding, and below it the way there.

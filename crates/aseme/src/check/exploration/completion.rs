@@ -82,6 +82,9 @@ fn reaches_end(subject: &Subject, completes: &[bool], composite: NodeId) -> bool
         }
         // whatever is active inside may leave too: its own transitions may lead anywhere
         open.extend(subject.chart.children(node));
+        // and so may what lies around a node that a transition from outside leads to, such as a HISTORY
+        let around = subject.chart.node(node).parent.filter(|&parent| inside && parent != composite);
+        open.extend(around);
         let ways = subject.outgoing(node).iter().filter(|&&id| can_leave(subject, completes, id));
         open.extend(
             ways.map(|&id| subject.transition(id).target)
