@@ -12,9 +12,14 @@ use std::sync::{Arc, Barrier, Mutex};
 use std::time::Duration;
 
 use kit::{BALL, Ball};
-use monas::{Agent, Blackboard, BoxError, HostConfig, Hz, Moment, Progress, Registry, Stopper, Talws, World};
+use monas::records::Cycle;
+use monas::{
+    Agent, Blackboard, BoxError, HostConfig, Hz, Moment, OnViolation, Policy, Progress, Registry, Stopper,
+    Talws, World,
+};
 use monas_robot::topics::{ACTUATORS, SENSORS};
 use monas_robot::{Actuators, Anatomy, Percepts, Robot};
+use narukom::{Observer, Publication};
 use yase::{Source, Statechart};
 
 /// Longer than anything takes that works.
@@ -66,6 +71,47 @@ fn a_stopper_ends_a_run_from_another_thread() {
     let running = Talws::new().agent(Agent::new("a", Hz(1000)).activity(stops)).start().unwrap();
     *stopper.lock().unwrap() = Some(running.stopper());
     assert!(running.wait().cycles() >= 1);
+}
+
+/// Sends on what is violated, as the records of cycles have it.
+struct Violated(Sender<String>);
+
+impl Observer for Violated {
+    fn observe(&mut self, publication: Publication<'_>) {
+        let cycle = publication.sample.message.as_any().downcast_ref::<Cycle>();
+        for violation in cycle.into_iter().flat_map(|cycle| &cycle.violations) {
+            // whoever has heard enough hears no more
+            let _ = self.0.send(violation.property.clone());
+        }
+    }
+}
+
+/// A chart that waits for what never comes, with a property, and what is violated of it.
+fn waiting(property: &str, on_violation: OnViolation) -> (Talws, Receiver<String>) {
+    let (properties, findings) = aseme::properties::parse(&format!("property \"p\": {property}"));
+    assert_eq!(findings, []);
+    let (sender, violated) = news();
+    let registry = Registry::linked().with("A", || |_: &mut Blackboard| ());
+    let text = "Liveness:\nm = A . A\nTransitions:\nA -> A : [ball.found]";
+    let agent = Agent::statechart("m", chart(text)).on_failure(Policy::StopAgent);
+    let mut talws = Talws::new().registry(registry).agent(agent.monitor(properties, on_violation));
+    talws.observe(Box::new(Violated(sender)));
+    (talws, violated)
+}
+
+#[test]
+fn a_bound_of_a_property_is_over_when_the_clock_says_so_though_the_chart_does_nothing() {
+    let (talws, violated) = waiting("eventually entering END within 20 ms", OnViolation::Log);
+    let running = talws.start().unwrap();
+    assert_eq!(next(&violated, 1), ["p"]);
+    let statistics = running.stop();
+    assert_eq!(statistics.agents[0].stopped, None, "it is only told");
+    let (talws, violated) = waiting("eventually entering END within 1 ms", OnViolation::Policy);
+    // the run is over when its only agent is
+    let statistics = talws.start().unwrap().wait();
+    assert_eq!(next(&violated, 1), ["p"]);
+    let reason = statistics.agents[0].stopped.clone().unwrap();
+    assert!(reason.starts_with("the property `p` was violated in cycle "), "{reason}");
 }
 
 #[test]
@@ -144,7 +190,7 @@ fn a_panic_harms_only_its_own_agent() {
     let goes_on = move |_: &mut Blackboard| sender.send(());
     // to write down where it panicked may take a busy machine longer than an agent is waited for
     let patient = Duration::from_secs(600);
-    let stops = Agent::new("a", Hz(1000)).activity(panics).on_failure(monas::Policy::StopAgent);
+    let stops = Agent::new("a", Hz(1000)).activity(panics).on_failure(Policy::StopAgent);
     let stops = stops.stuck_after(patient);
     let running =
         Talws::new().agent(stops).agent(Agent::new("b", Hz(1000)).activity(goes_on)).start().unwrap();

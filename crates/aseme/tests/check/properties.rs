@@ -48,6 +48,15 @@ fn what_guards_say_holds_and_its_contrary_has_a_run() {
     );
 }
 
+/// What a region has read is old when the root's blackboard, which properties are about, has been written in the same step.
+#[test]
+fn what_the_chart_writes_on_the_blackboard_of_the_root_is_not_what_a_region_has_read_before() {
+    let role = "Role: r\nLiveness:\nr = (a || b) . c\nTransitions:\n\
+        b -> END : [Ball.found]\n(a||b) -> c : go / Ball.found = true\n";
+    let text = run_against(role, "always (entering c implies not [Ball.found])");
+    assert!(text.contains("event go\n  false  Ball.found\n  # entering c, [Ball.found]\n"), "{text}");
+}
+
 #[test]
 fn what_need_never_come_is_a_run_that_goes_round() {
     let restless = WALKER.replace(" : [!Ball.found]", " :");

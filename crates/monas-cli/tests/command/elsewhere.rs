@@ -84,6 +84,38 @@ fn the_vision_of_a_robot_runs_in_a_second_process() {
     }
 }
 
+/// What a property asks of a message that comes over a link is seen when that comes.
+#[test]
+fn a_property_is_followed_with_what_comes_from_another_process() {
+    let folder = tempfile::tempdir().expect("a folder");
+    project(folder.path());
+    let role = folder.path().join("config/elsewhere/attacker.xml");
+    let text = fs::read_to_string(&role).expect("it is there");
+    let chart = "models/attacker.srm</statechart>";
+    assert!(text.contains(chart));
+    fs::write(
+        &role,
+        text.replace(chart, &format!("{chart}\n    <monitor>models/blind.properties</monitor>")),
+    )
+    .expect("the folder takes files");
+    let blind = "property \"it is blind\": always not [Ball.found]\n";
+    fs::write(folder.path().join("models/blind.properties"), blind).expect("the folder takes files");
+    let config = |name: &str| folder.path().join("config/elsewhere").join(name).display().to_string();
+    let (game, vision) = (config("match.xml"), config("vision.xml"));
+    let told = "control socket: ";
+    let game = Running::start(
+        folder.path(),
+        &["run", &game, "--realtime", "--control", "game", "--format", "json"],
+        told,
+    );
+    let vision =
+        Running::start(folder.path(), &["run", &vision, "--control", "vision", "--format", "json"], told);
+    let broken = |cycle: &Value| cycle["violations"].as_array().is_some_and(|it| !it.is_empty());
+    let cycle = await_message(folder.path(), "monas/cycle", broken);
+    assert_eq!(cycle["message"]["violations"][0]["property"], "it is blind", "{cycle}");
+    assert_eq!((vision.interrupt().code, game.interrupt().code), (Some(130), Some(130)));
+}
+
 /// Something of the topic has come, and the figures add up.
 pub(crate) fn assert_counted(answer: &Answer, topic: &str) {
     let figures = figures(answer, topic);

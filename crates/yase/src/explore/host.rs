@@ -15,6 +15,9 @@ use super::permits::Permits;
 /// Stands for the blackboard of whoever asks beside the chart.
 const BESIDE: RegionId = RegionId(u32::MAX);
 
+/// The blackboard of the chart's root.
+const ROOT: RegionId = RegionId(0);
+
 /// A world in which conditions have the values that are chosen for them.
 pub(super) struct Chosen<'s, 'a> {
     decisions: RefCell<Decisions<'s, 'a>>,
@@ -35,6 +38,8 @@ struct Decisions<'s, 'a> {
     idle: &'s [bool],
     /// The blackboards that show the newest messages.
     delivered: Vec<RegionId>,
+    /// Whether the chart has written on the blackboard of its root, which then differs from the others until the next step.
+    is_root_written: bool,
 }
 
 /// A condition that was decided on.
@@ -53,6 +58,7 @@ pub(super) struct Notes {
     pub(super) taken: Vec<TransitionId>,
     pub(super) held: Vec<TransitionId>,
     pub(super) events: Vec<EventId>,
+    pub(super) dropped: Vec<EventId>,
     /// Whether an action wrote something.
     pub(super) wrote: bool,
     /// The trace, if it is wanted: a line for each micro-step.
@@ -69,6 +75,7 @@ impl<'s, 'a> Chosen<'s, 'a> {
             on_board: Vec::new(),
             idle: &[],
             delivered: Vec::new(),
+            is_root_written: false,
         };
         Chosen { decisions: RefCell::new(decisions), notes: Notes::default() }
     }
@@ -87,6 +94,7 @@ impl<'s, 'a> Chosen<'s, 'a> {
         decisions.log.clear();
         decisions.known.clear();
         decisions.delivered.clear();
+        decisions.is_root_written = false;
         self.notes.clear();
     }
 
@@ -95,7 +103,7 @@ impl<'s, 'a> Chosen<'s, 'a> {
         &self.decisions.get_mut().log
     }
 
-    /// Decides on what is asked of the newest messages after a step.
+    /// Decides on what is asked after a step, of what the blackboard of the root shows then: the newest messages, and what the chart has written there itself.
     pub(super) fn decide_beside(&mut self, script: ScriptId) -> bool {
         self.decisions.get_mut().decide_beside(script)
     }
@@ -110,6 +118,7 @@ impl Notes {
             segments.clear();
         }
         self.events.clear();
+        self.dropped.clear();
         self.wrote = false;
         self.lines.iter_mut().for_each(Vec::clear);
     }
@@ -147,7 +156,9 @@ impl Decisions<'_, '_> {
     }
 
     fn decide_beside(&mut self, script: ScriptId) -> bool {
-        let is_new = |region: RegionId| self.delivered.contains(&region) && !self.is_idle(region);
+        let is_alike = |region: RegionId| region == ROOT || !self.is_root_written;
+        let is_new =
+            |region: RegionId| self.delivered.contains(&region) && !self.is_idle(region) && is_alike(region);
         let mut known: Vec<(ScriptId, bool)> = Vec::new();
         let of_boards = self.known.iter().filter(|(region, ..)| is_new(*region) || *region == BESIDE);
         known.extend(of_boards.map(|&(_, script, value)| (script, value)));
@@ -189,7 +200,9 @@ impl Host for Chosen<'_, '_> {
 
     /// What is written on a blackboard may change what is read there.
     fn perform(&mut self, _: ScriptId, region: RegionId, _: &mut Performance<'_>) -> Result<(), CallError> {
-        self.decisions.get_mut().known.retain(|(board, ..)| *board != region);
+        let decisions = self.decisions.get_mut();
+        decisions.known.retain(|(board, ..)| *board != region);
+        decisions.is_root_written |= region == ROOT;
         self.notes.wrote = true;
         Ok(())
     }
@@ -210,6 +223,7 @@ impl Host for Chosen<'_, '_> {
         }
         if let Occasion::Event(event) = record.occasion {
             self.notes.events.push(event);
+            self.notes.dropped.extend(record.is_dropped().then_some(event));
         }
         self.notes.entered.extend(record.entries);
         self.notes.left.extend(record.exits);

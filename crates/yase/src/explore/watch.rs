@@ -24,7 +24,7 @@ use crate::chart::Chart;
 use crate::expression::{EventId, ScriptId};
 use crate::machine::explored::{Key, Sight};
 use crate::machine::{Machine, Status};
-use crate::statechart::NodeId;
+use crate::statechart::{NodeId, TransitionId};
 
 /// So many ways are tried in which one step may go.
 const WAYS: usize = 4_096;
@@ -53,6 +53,14 @@ pub struct Pace {
 /// What a step has shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen<'s> {
+    /// Why it happened.
+    pub cause: &'s Move,
+    /// The segments that were taken, in order.
+    pub taken: &'s [TransitionId],
+    /// The events that nobody took, now or later.
+    pub dropped: &'s [EventId],
+    /// What guards have read, in order: each condition once for each blackboard on which it was read.
+    pub decisions: &'s [(ScriptId, bool)],
     /// The nodes that are active after it.
     pub configuration: &'s [NodeId],
     /// The nodes that were entered.
@@ -79,6 +87,8 @@ pub enum Pending {
 pub struct WatchedState {
     /// What the machine does.
     pub status: Status,
+    /// The nodes that are active, composites before what is in them.
+    pub configuration: Vec<NodeId>,
     /// What goes on.
     pub pending: Vec<Pending>,
 }
@@ -123,6 +133,11 @@ impl Watched {
     /// The steps, those that start the chart first, each state's own side by side.
     pub fn steps(&self) -> &[WatchedStep] {
         &self.steps
+    }
+
+    /// Why a step happens and what is chosen in it, by its place; none if there is no such step.
+    pub fn step(&self, place: usize) -> Option<&Step> {
+        self.texts.get(self.steps.get(place)?.step)
     }
 
     /// A way from the start, by the places of its steps.
@@ -271,20 +286,25 @@ impl Search<'_, '_, '_> {
         let started = machine.timers_started();
         machine.put_timers_off();
         let configuration = machine.configuration();
+        let step = Step {
+            cause: cause.clone(),
+            decisions: decisions.iter().take(own).map(|it| (it.script, it.value)).collect(),
+            choices: choices.iter().map(|&(chosen, _)| chosen).collect(),
+        };
         let letter = (self.watch.letter)(&Seen {
+            cause,
+            taken: &notes.taken,
+            dropped: &notes.dropped,
+            decisions: &step.decisions,
             configuration: &configuration,
             entered: &notes.entered,
             left: &notes.left,
             events: &notes.events,
             conditions: &conditions,
         });
-        let step = Step {
-            cause: cause.clone(),
-            decisions: decisions.iter().take(own).map(|it| (it.script, it.value)).collect(),
-            choices: choices.iter().map(|&(chosen, _)| chosen).collect(),
-        };
         let clocks = self.clocks(&machine, &started, &from.clocks, elapsed);
-        self.arrive(from.number, machine, clocks, letter, elapsed, step);
+        let place = Place { number: from.number, machine, clocks };
+        self.arrive(place, configuration, letter, elapsed, step);
     }
 
     /// What goes on after a step, and for how long if time is counted.
@@ -319,11 +339,11 @@ impl Search<'_, '_, '_> {
         running.chain(set).collect()
     }
 
+    /// Takes a step down that led to a place, which is numbered by where it came from.
     fn arrive(
         &mut self,
-        from: Option<usize>,
-        machine: Machine,
-        clocks: Vec<Clock>,
+        Place { number: from, machine, clocks }: Place,
+        configuration: Vec<NodeId>,
         letter: u64,
         elapsed: u64,
         step: Step,
@@ -342,7 +362,7 @@ impl Search<'_, '_, '_> {
             Entry::Vacant(place) => {
                 place.insert(count);
                 let pending = clocks.iter().map(|clock| clock.of).collect();
-                self.found.states.push(WatchedState { status: machine.status(), pending });
+                self.found.states.push(WatchedState { status: machine.status(), configuration, pending });
                 self.open.push_back(Place { number: Some(count), machine, clocks });
                 count
             }
