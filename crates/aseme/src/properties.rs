@@ -57,7 +57,7 @@
 
 mod check;
 mod clause;
-mod cone;
+pub(crate) mod cone;
 mod explore;
 mod monitor;
 pub(crate) mod names;

@@ -5,9 +5,11 @@
 //!
 //! [`chart_conforms`] looks at the chart of a protocol: every part is there and does what its formulas say, is engaged in by its rule only, has an
 //! exit for each outcome and for nothing else, and guards what it may leave out. [`player_conforms`] looks at the chart of a player: it contains the parts that it takes,
-//! with their transitions, rules and exits. Both then explore what these charts do, and hold every trace against the formulas of the protocol.
+//! with their transitions, rules and exits. Both then explore what these charts do, and hold every trace against the formulas of the protocol: of a player both its
+//! parts alone, and whatever it does while it is engaged in them.
 
 mod part;
+mod whole;
 
 use yase::explore::explore;
 use yase::expression::{Expression, parse_transition};
@@ -98,7 +100,9 @@ pub fn player_conforms(player: &Iac, eac: &Iac, aip: &Aip) -> Conformance {
                 part_named(aip, protocol, name).map(|it| participant_formula(&it.name, &it.liveness));
             if let (true, Some(formulas)) = (found.findings.len() == before, formulas) {
                 let alone = part::alone(player, place, eac, part);
-                traces(&alone, &liveness::parse(&formulas).0, name, &mut found);
+                let liveness = liveness::parse(&formulas).0;
+                traces(&alone, &liveness, name, &mut found);
+                whole::in_whole(player, place, (eac, part), &liveness, &mut found);
             }
         }
     }
@@ -108,6 +112,13 @@ pub fn player_conforms(player: &Iac, eac: &Iac, aip: &Aip) -> Conformance {
         found.report("E0861", Span::default(), message, hint);
     }
     found
+}
+
+/// The parts that a protocol's chart has, each with whether a player takes it.
+pub fn parts_taken(player: &Iac, eac: &Iac) -> Vec<(String, bool)> {
+    let takes = |name: &str| player.nodes.iter().any(|node| node.kind == "OR" && node.name == name);
+    let names = participants(eac).into_iter().map(|part| eac.nodes[part].name.clone());
+    names.map(|name| (name.clone(), takes(&name))).collect()
 }
 
 fn protocol_of<'a>(eac: &Iac, aip: &'a Aip, found: &mut Conformance) -> Option<&'a Protocol> {

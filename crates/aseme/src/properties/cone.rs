@@ -13,6 +13,11 @@ use super::plan::{Atom, Plan};
 
 /// The regions that cannot matter to a property.
 pub(super) fn idle(chart: &Statechart, plan: &Plan) -> Vec<NodeId> {
+    idle_but(chart, &|region| is_spoken_of(chart, plan, region))
+}
+
+/// The regions that cannot matter to whoever asks about some of them, and about what these wait for.
+pub(crate) fn idle_but(chart: &Statechart, is_spoken_of: &dyn Fn(NodeId) -> bool) -> Vec<NodeId> {
     if looks_at_states(chart) {
         return Vec::new();
     }
@@ -20,10 +25,10 @@ pub(super) fn idle(chart: &Statechart, plan: &Plan) -> Vec<NodeId> {
         let is_left = is_left(chart, and);
         chart.children(and).iter().copied().filter(move |_| !is_left)
     });
-    regions.filter(|&region| !is_spoken_of(chart, plan, region) && keeps_to_itself(chart, region)).collect()
+    regions.filter(|&region| !is_spoken_of(region) && keeps_to_itself(chart, region)).collect()
 }
 
-fn is_within(chart: &Statechart, node: NodeId, outer: NodeId) -> bool {
+pub(crate) fn is_within(chart: &Statechart, node: NodeId, outer: NodeId) -> bool {
     node == outer || chart.ancestors(node).any(|ancestor| ancestor == outer)
 }
 

@@ -124,7 +124,30 @@ fn the_chart_of_the_protocol_and_that_of_the_player_conform() {
         .chain(&player.explored)
         .map(|(name, it)| (name.as_str(), it.states, it.is_finished))
         .collect();
-    assert_eq!(explored, [("Attack", 20, true), ("center", 3, true), ("center_for", 4, true)]);
+    let expected = [
+        ("Attack", 20, true),
+        ("center", 3, true),
+        ("center in all that player does", 39, true),
+        ("center_for", 4, true),
+        ("center_for in all that player does", 39, true),
+    ];
+    assert_eq!(explored, expected);
+}
+
+/// The part itself is the protocol's, and so is the rule; only all that the player does shows that it begins in its middle.
+#[test]
+fn a_way_into_the_middle_of_a_part_is_found_in_all_that_the_player_does() {
+    let whole = text("extended_attacker.iac");
+    let way = whole.lines().find(|line| line.contains("/CONDITION -> center !1 : ")).unwrap();
+    let middle = way.replace("-> center !1", "-> [passBall] !2");
+    let player = chart(&whole.replace(way, &format!("{way}\n{middle}")));
+    let found = player_conforms(&player, &eac(), &aip());
+    assert_eq!(
+        said(&found),
+        [
+            "E0867: `player` does `passBall` while it is engaged as `center`, where the protocol does not allow it"
+        ]
+    );
 }
 
 /// What is said of the chart of the protocol after an edit.
