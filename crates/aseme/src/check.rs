@@ -30,6 +30,7 @@
 //! ```
 
 pub(crate) mod abstraction;
+pub mod compose;
 mod conformance;
 mod events;
 mod exploration;
@@ -52,7 +53,7 @@ use std::sync::Arc;
 
 use yase::{Diagnostic, Severity, Source, Span, Statechart};
 
-pub use protocol::{Conformance, chart_conforms, player_conforms};
+pub use protocol::{Conformance, chart_conforms, parts_taken, player_conforms};
 pub use world::World;
 
 use crate::convert::{self, Model};

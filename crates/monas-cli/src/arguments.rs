@@ -199,6 +199,15 @@ pub(crate) enum ModelCommand {
         #[command(flatten)]
         format: FormatArgument,
     },
+    /// Say whether robots, each with a role of its own, may wait for each other for ever.
+    ///
+    /// A message passes from one robot to another if the one's chart publishes or writes it, and the other's reads it by the one's name, as in
+    /// `receiver.ready.Signal.Ready`. Messages are some time on their way. Given a protocol (AIP, EAC) too, who takes part in it is held against it, and each part must be taken.
+    /// Ends with 0 if nothing is wrong or there are warnings only, with 3 if a model cannot be read, and with 5 if some wait for ever or that is not decided.
+    #[command(
+        after_help = "Example: monas model compose passer.srm receiver.srm --traces . ; monas model run passer.srm receiver.srm composed-E0930-1.trace"
+    )]
+    Compose(ComposeArguments),
     /// Say what of their charts the runs on tapes have been through: states, transitions, guards.
     ///
     /// A guard is seen to hold when its transition fires, and not to hold when a way out of the same state fires that is tried after it.
@@ -225,18 +234,18 @@ What another role, or a chart from an editor, says is taken in by --from: monas 
         after_help = "Example: monas model mutate models/goalie.srm --scenarios tests/scenarios --least 80"
     )]
     Mutate(MutateArguments),
-    /// Play a scenario, or a trace that `model check` has found, and print each step.
+    /// Play a scenario, or a trace that `model check` or `model compose` has found, and print each step.
     ///
     /// In a scenario messages come and time goes by as it says, and what it expects is looked at. In a trace conditions on messages have the values that it says, and
-    /// timers expire when it says. Ends with 5 if something else happens than is expected, or the chart stops by itself.
+    /// timers expire when it says. A trace of several robots is played on the charts of all of them. Ends with 5 if something else happens than is expected, or the chart stops by itself.
     #[command(
         after_help = "Example: monas model run models/goalie.srm tests/scenarios/goalie/dive_right.scenario
 A trace: monas model check role.srm --traces . ; monas model run role.srm role-M14-1.trace"
     )]
     Run {
-        /// The model file.
-        #[arg(value_name = "CHART", value_hint = ValueHint::FilePath)]
-        file: PathBuf,
+        /// The model file; of a trace of several robots one for each, `NAME=CHART` if it is not called like its robot.
+        #[arg(required = true, value_name = "CHART", value_hint = ValueHint::FilePath)]
+        files: Vec<PathBuf>,
         /// The scenario or the trace.
         #[arg(value_name = "SCENARIO", value_hint = ValueHint::FilePath)]
         trace: PathBuf,
@@ -314,6 +323,9 @@ pub(crate) struct CheckArguments {
     /// Check names too: against the messages, functions and activities that this program has.
     #[arg(long)]
     pub(crate) linked: bool,
+    /// Say too what of the charts this recording has been through (with --all).
+    #[arg(long = "tape", value_name = "TAPE", value_hint = ValueHint::FilePath, requires = "all")]
+    pub(crate) tapes: Vec<PathBuf>,
     /// Check the properties in this file, and nothing else: whether each holds of all that the charts can do.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) properties: Vec<PathBuf>,
@@ -326,6 +338,34 @@ pub(crate) struct CheckArguments {
     /// For people, or for programs: one JSON object a line, or one document of SARIF 2.1.0 on standard output.
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     pub(crate) format: CheckFormat,
+}
+
+/// What `model compose` may be told.
+#[derive(Args, Debug)]
+pub(crate) struct ComposeArguments {
+    /// The model of each robot, `NAME=FILE` if the robot is not called like its file; and the models of a protocol.
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) files: Vec<PathBuf>,
+    /// How many messages are on their way at once from one robot to another; one more, and the oldest is lost.
+    #[arg(long, value_name = "NUMBER", default_value_t = 2, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=64))]
+    pub(crate) channel: usize,
+    /// Let any message be lost on its way.
+    #[arg(long)]
+    pub(crate) lose: bool,
+    /// An event that comes from outside: an activity or a person raises it.
+    #[arg(long = "event", value_name = "NAME")]
+    pub(crate) events: Vec<String>,
+    /// How many states of each robot, and of all together, are explored at most.
+    #[arg(long, value_name = "NUMBER", default_value_t = 100_000)]
+    pub(crate) states: usize,
+    /// Ask this program which messages its activities publish: when they return, it is taken to be.
+    #[arg(long)]
+    pub(crate) linked: bool,
+    /// Write each way to a finding as a file into this folder, for `model run`.
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) traces: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
 }
 
 /// What `model coverage` may be told.

@@ -1,6 +1,7 @@
 //! `monas model`: models read, transformed, converted, compared, drawn and checked.
 
 mod check;
+mod compose;
 mod conform;
 mod convert;
 mod coverage;
@@ -36,11 +37,12 @@ pub(crate) fn execute(command: &ModelCommand, console: &mut Console<'_>) -> Resu
         }
         ModelCommand::Check(arguments) => check::execute(arguments, console),
         ModelCommand::Conform { files, format } => conform::execute(files, format.value, console),
+        ModelCommand::Compose(arguments) => compose::execute(arguments, console),
         ModelCommand::Coverage(arguments) => coverage::execute(arguments, console),
         ModelCommand::Diff(arguments) => diff::execute(arguments, console),
         ModelCommand::Regenerate(arguments) => regenerate::execute(arguments, console),
         ModelCommand::Mutate(arguments) => mutate::execute(arguments, console),
-        ModelCommand::Run { file, trace, format } => run::execute(file, trace, format.value, console),
+        ModelCommand::Run { files, trace, format } => run::execute(files, trace, format.value, console),
     }
 }
 

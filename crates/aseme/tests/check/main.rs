@@ -9,6 +9,7 @@
 
 mod allocation;
 mod cases;
+mod composition;
 mod large;
 mod logic;
 mod properties;

@@ -2,7 +2,7 @@
 
 mod properties;
 mod sarif;
-mod traces;
+pub(super) mod traces;
 
 use std::path::Path;
 
@@ -17,11 +17,15 @@ use crate::failure::Failure;
 use crate::report;
 use properties::Judged;
 
+/// The topics that the runtime, bodies and the simulator publish and read, by how their paths begin.
+const ELSEWHERE: [&str; 3] = ["monas/", "body/", "sim/"];
+
 pub(crate) fn execute(arguments: &CheckArguments, console: &mut Console<'_>) -> Result<Exit, Failure> {
     let mut settings = Settings::default();
     settings.events.extend(arguments.events.iter().cloned());
     (settings.states, settings.pool) = (arguments.states, arguments.pool);
     settings.world = arguments.linked.then(linked).transpose()?;
+    settings.recorded = super::coverage::recorded(&arguments.tapes)?;
     let (mut reports, mut judged): (Vec<(&Path, Report)>, Vec<Judged>) = (Vec::new(), Vec::new());
     for path in &arguments.files {
         let report = match arguments.properties.as_slice() {
@@ -50,17 +54,23 @@ pub(crate) fn execute(arguments: &CheckArguments, console: &mut Console<'_>) -> 
     Ok(verdict(&reports))
 }
 
-/// The messages and functions of this program, and its activities with what they say that they publish.
-fn linked() -> Result<World, Failure> {
+/// The messages and functions of this program, and its activities with what they say that they publish and read.
+pub(super) fn linked() -> Result<World, Failure> {
     let registry = Registry::linked();
     let vocabulary = registry.vocabulary().map_err(|error| Failure::failed(Format::Text, error))?;
     let mut world = World { vocabulary, ..World::default() };
     for name in registry.activity_names() {
         let activity = registry.activity(name).map_err(|error| Failure::failed(Format::Text, error))?;
         let topics = activity.topics();
-        let published = topics.published_paths().iter().map(|&path| path.to_owned()).collect();
-        world.activities.insert(name.to_owned(), topics.is_declared().then_some(published));
+        let named = |paths: &[&str]| {
+            topics.is_declared().then(|| paths.iter().map(|&path| path.to_owned()).collect())
+        };
+        world.activities.insert(name.to_owned(), named(topics.published_paths()));
+        world.readers.insert(name.to_owned(), named(topics.read_paths()));
     }
+    let paths = world.vocabulary.topics.iter().map(|topic| topic.path.clone());
+    let is_elsewhere = |path: &String| ELSEWHERE.iter().any(|begin| path.starts_with(begin));
+    world.elsewhere = paths.filter(is_elsewhere).collect();
     Ok(world)
 }
 
@@ -88,13 +98,19 @@ fn text(reports: &[(&Path, Report)], is_told: bool, console: &mut Console<'_>) -
     for (path, report) in reports {
         for finding in &report.findings {
             report::write(console, Format::Text, std::slice::from_ref(&finding.diagnostic))?;
-            if let Some(trace) = &finding.trace {
-                writeln!(console.err, "  a way there:\n{}", indented(trace))?;
-            }
+            way_there(finding, console)?;
         }
         if let Some(what) = report.what.as_ref().filter(|_| is_told && !report.has_errors()) {
             writeln!(console.out, "{}: {what}{}, no errors", path.display(), extent(report))?;
         }
+    }
+    Ok(())
+}
+
+/// The way to a finding, if there is one.
+pub(super) fn way_there(finding: &Finding, console: &mut Console<'_>) -> Result<(), Failure> {
+    if let Some(trace) = &finding.trace {
+        writeln!(console.err, "  a way there:\n{}", indented(trace))?;
     }
     Ok(())
 }
@@ -120,7 +136,7 @@ fn json(reports: &[(&Path, Report)], console: &mut Console<'_>) -> Result<(), Fa
     Ok(())
 }
 
-fn object(finding: &Finding) -> serde_json::Value {
+pub(super) fn object(finding: &Finding) -> serde_json::Value {
     let mut object = report::object(&finding.diagnostic);
     if let (Some(trace), Some(fields)) = (&finding.trace, object.as_object_mut()) {
         fields.insert("trace".into(), trace.clone().into());

@@ -35,7 +35,7 @@ pub(crate) fn execute(files: &[PathBuf], format: Format, console: &mut Console<'
 type Chart = (PathBuf, Arc<Source>, Iac);
 
 /// What the files hold, told apart by their kinds.
-struct Models {
+pub(super) struct Models {
     protocols: PathBuf,
     aip: Aip,
     /// The charts of protocols that were given.
@@ -44,7 +44,11 @@ struct Models {
 }
 
 impl Models {
-    fn read(files: &[PathBuf], format: Format, console: &mut Console<'_>) -> Result<Models, Failure> {
+    pub(super) fn read(
+        files: &[PathBuf],
+        format: Format,
+        console: &mut Console<'_>,
+    ) -> Result<Models, Failure> {
         let (mut protocols, mut charts, mut players) = (None, Vec::new(), Vec::new());
         for path in files {
             let (source, model, ..) = valid_model(path, format, console)?;
@@ -87,7 +91,7 @@ impl Models {
     }
 
     /// The charts of the protocols: those given, or as the protocols make them.
-    fn charts(&self, format: Format) -> Result<Vec<Chart>, Failure> {
+    pub(super) fn charts(&self, format: Format) -> Result<Vec<Chart>, Failure> {
         if !self.charts.is_empty() {
             return Ok(self.charts.clone());
         }

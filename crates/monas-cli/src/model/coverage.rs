@@ -7,14 +7,15 @@
 mod count;
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use aseme::check::Recorded;
 use monas::records::{CHART, Chart};
 use monas_tape::Recording;
 use narukom::prost::Message as _;
 use serde_json::{Value, json};
 use yase::export::{Mark, Marks, to_svg_marked};
-use yase::{Element, NodeKind};
+use yase::{Element, NodeId, NodeKind, TransitionId};
 
 use crate::arguments::{CoverageArguments, Format};
 use crate::console::Console;
@@ -43,6 +44,24 @@ pub(crate) fn execute(arguments: &CoverageArguments, console: &mut Console<'_>) 
         draw(&charts, folder, format)?;
     }
     Ok(Exit::Success)
+}
+
+/// What the charts on tapes have been through.
+pub(super) fn recorded(tapes: &[PathBuf]) -> Result<Vec<Recorded>, Failure> {
+    let mut charts: Vec<Covered> = Vec::new();
+    for tape in tapes {
+        gather(tape, Format::Text, &mut charts)?;
+    }
+    let recorded = charts.into_iter().map(|it| {
+        let met =
+            |counts: Vec<u64>| (0..).zip(counts).filter(|(_, count)| *count > 0).map(|(number, _)| number);
+        Recorded {
+            chart: it.chart,
+            entered: met(it.entered).map(NodeId).collect(),
+            fired: met(it.fired).map(TransitionId).collect(),
+        }
+    });
+    Ok(recorded.collect())
 }
 
 /// Adds what is on a tape.

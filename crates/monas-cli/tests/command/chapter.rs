@@ -64,6 +64,18 @@ fn what_a_role_does() {
 }
 
 #[test]
+fn from_goals_to_robots_that_act_together() {
+    let Reading { folder, .. } = read("goals.md", 14);
+    let drawn = fs::read(folder.path().join("protocol.svg")).expect("it is drawn");
+    let page = root().join("docs/protocol.svg");
+    if std::env::var_os("MONAS_BLESS").is_some() {
+        fs::write(&page, &drawn).expect("the folder takes files");
+    }
+    let shown = fs::read(page).expect("it is shown");
+    assert!(drawn == shown, "docs/protocol.svg is not up to date: MONAS_BLESS=1 draws it anew");
+}
+
+#[test]
 fn from_a_protocol_to_a_match() {
     let Reading { folder, hashes, .. } = read("attack.md", 16);
     for drawing in ["attack.svg", "extended_attacker.svg"] {

@@ -7,6 +7,7 @@ mod agent;
 mod chapter;
 #[cfg(unix)]
 mod chart;
+mod compose;
 mod config;
 mod convert;
 #[cfg(unix)]

@@ -8,19 +8,19 @@ use yase::explore::Exploration;
 use crate::check::language::Letter;
 
 /// A way from one state to another.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Way {
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(in crate::check) struct Way {
     /// What a trace shows of it.
-    pub(super) shows: Shows,
+    pub(in crate::check) shows: Shows,
     /// Where it leads.
-    pub(super) to: usize,
+    pub(in crate::check) to: usize,
     /// An edge of the exploration that it stands for.
-    pub(super) edge: usize,
+    pub(in crate::check) edge: usize,
 }
 
 /// What a trace shows of a step.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
-pub(super) enum Shows {
+pub(in crate::check) enum Shows {
     /// No activity returned.
     Nothing,
     /// One did that formulas name.
@@ -31,12 +31,12 @@ pub(super) enum Shows {
 
 /// States and ways.
 #[derive(Debug)]
-pub(super) struct Graph {
-    pub(super) initial: Vec<usize>,
+pub(in crate::check) struct Graph {
+    pub(in crate::check) initial: Vec<usize>,
     /// Whether the chart has ended in a state.
-    pub(super) ends: Vec<bool>,
+    pub(in crate::check) ends: Vec<bool>,
     /// The ways out of each state.
-    pub(super) ways: Vec<Vec<Way>>,
+    pub(in crate::check) ways: Vec<Vec<Way>>,
 }
 
 /// What a state has, as bits: the numbers of what ways show with where they lead.
@@ -65,7 +65,12 @@ impl Graph {
     /// another class, perhaps behind steps within the class that show nothing. Loops that go on at a pace of their own, which are what makes a player's
     /// chart large, are one state each by that.
     pub(super) fn collapsed(&self) -> Option<Graph> {
-        let mut classes: Vec<usize> = self.ends.iter().map(|&ends| usize::from(ends)).collect();
+        let (classes, count) = self.classes(self.ends.iter().map(|&ends| usize::from(ends)).collect())?;
+        Some(self.of_classes(&classes, count))
+    }
+
+    /// The class of each state and how many there are, if those are to be told apart that are told apart to begin with. None if there are too many.
+    pub(in crate::check) fn classes(&self, mut classes: Vec<usize>) -> Option<(Vec<usize>, usize)> {
         let mut count = 0;
         loop {
             let mut numbers = BTreeMap::new();
@@ -75,7 +80,7 @@ impl Graph {
                 next.push(*numbers.entry(state).or_insert(number));
             }
             match numbers.len() {
-                same if same == count => return Some(self.of_classes(&next, count)),
+                same if same == count => return Some((next, count)),
                 more if more > MOST_CLASSES => return None,
                 more => (classes, count) = (next, more),
             }
@@ -105,7 +110,8 @@ impl Graph {
         signatures
     }
 
-    fn of_classes(&self, classes: &[usize], count: usize) -> Graph {
+    /// Classes as states, and the ways between them.
+    pub(in crate::check) fn of_classes(&self, classes: &[usize], count: usize) -> Graph {
         let mut ways: Vec<BTreeMap<(Shows, usize), usize>> = vec![BTreeMap::new(); count];
         let mut ends = vec![false; count];
         for (from, out) in self.ways.iter().enumerate() {
