@@ -90,6 +90,9 @@ impl Cast {
                 }
             }
         }
+        if robots.is_empty() {
+            return Err(Failure::Usage("no file is the model of a robot (a role or a chart)".into()));
+        }
         let files: Vec<PathBuf> = robots.iter().map(|(file, _)| file.clone()).collect();
         let names = named(&files)?;
         let robots =
