@@ -5,7 +5,7 @@
 //! | SAG, SUC, AIP | text, XMI |
 //! | SRM | text, XMI, and for one role the text that is refined and run |
 //! | FT | text |
-//! | EAC, IAC | text, XMI in four dialects, SCXML |
+//! | EAC, IAC | text, XMI in four dialects, SCXML; Rust, which is only written |
 //!
 //! What a format cannot say is listed by [`Model::write`], never dropped in silence.
 
@@ -61,11 +61,13 @@ pub enum Format {
     Statechart(Dialect),
     /// SCXML, for statecharts.
     Scxml,
+    /// Rust, for statecharts of events alone: see [`yase::flatten`].
+    Rust,
 }
 
 impl Format {
     /// The words for formats on a command line.
-    pub const WORDS: [(&'static str, Format); 8] = [
+    pub const WORDS: [(&'static str, Format); 9] = [
         ("text", Format::Text),
         ("role", Format::Role),
         ("xmi", Format::Xmi),
@@ -74,6 +76,7 @@ impl Format {
         ("xmi-2012", Format::Statechart(Dialect::Nested2012)),
         ("xmi-2018", Format::Statechart(Dialect::Nested2018)),
         ("scxml", Format::Scxml),
+        ("rust", Format::Rust),
     ];
 
     /// Its word.
@@ -88,6 +91,7 @@ impl Format {
             "stct" => Format::Statechart(Dialect::Nested2018),
             "xmi" => Format::Xmi,
             "scxml" => Format::Scxml,
+            "rs" => Format::Rust,
             "txt" => Format::Text,
             _ => return None,
         })

@@ -510,8 +510,8 @@ pub(crate) struct ConvertArguments {
     /// Where to write it; `-` is standard output.
     #[arg(value_name = "OUT", value_hint = ValueHint::FilePath)]
     pub(crate) output: PathBuf,
-    /// The format: text, role, xmi, xmi-2010, xmi-flat, xmi-2012, xmi-2018 or scxml. If not given, the ending of OUT says it
-    /// (.model, .stct, .xmi, .scxml, .txt); any other ending means XMI for what is text, and text for what is XMI.
+    /// The format: text, role, xmi, xmi-2010, xmi-flat, xmi-2012, xmi-2018, scxml or rust. If not given, the ending of OUT says it
+    /// (.model, .stct, .xmi, .scxml, .rs, .txt); any other ending means XMI for what is text, and text for what is XMI.
     #[arg(long = "as", value_name = "FORMAT")]
     pub(crate) written: Option<String>,
     /// Write it even if the format cannot say all of it.

@@ -56,7 +56,9 @@ use crate::expression::ScriptId;
 use crate::machine::{MachineErrorKind, Status};
 use crate::statechart::{NodeId, TransitionId};
 
+pub(crate) use numbers::Numbers;
 pub use search::explore;
+pub(crate) use search::go;
 pub use trace::{Move, ParseError, Step, Trace, replay};
 pub use watch::{Pace, Pending, Seen, Watch, Watched, WatchedState, WatchedStep, watch};
 

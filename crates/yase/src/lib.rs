@@ -93,6 +93,10 @@
 //! let lost = "`short/enough` is of the kind TERMINATE; for Mermaid it is a state";
 //! assert_eq!(mermaid.lost[0].message, lost);
 //! ```
+//!
+//! # Rust alone
+//!
+//! [`flatten`] writes a chart of events, conditions and actions as Rust: one `enum`, one `match`, no library.
 
 /// What the README shows runs as a test.
 #[cfg(doctest)]
@@ -105,6 +109,7 @@ pub mod diagnostic;
 pub mod explore;
 pub mod export;
 pub mod expression;
+pub mod flatten;
 mod host;
 mod machine;
 mod moment;

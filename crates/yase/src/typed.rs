@@ -7,7 +7,8 @@
 //! **The machine is the same.** A generator could write out every step as code instead. That would be a second engine: what holds activities
 //! back, what history remembers, which of two regions wins would be decided in two places, and every chart would be a new chance for them to
 //! differ. Here a chart's structure is data for [`Machine`](crate::Machine) as ever, and what is particular to a chart, its guards and
-//! values, is code. The traces of both are equal because one thing makes them.
+//! values, is code. The traces of both are equal because one thing makes them. Where a chart has no activities and no timers there is nothing left to be decided while
+//! it runs: [`flatten`](crate::flatten) has the machine go through all of it beforehand, and writes down what it did as code.
 //!
 //! A guard has three answers: it holds, it does not, or it cannot tell, since a message that it reads has not arrived ([`Undecided`]).
 //! [`all!`](crate::all!) and [`any!`](crate::any!) join answers as Kleene's logic does; `?` gives up on the innermost of them.

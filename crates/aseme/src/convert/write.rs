@@ -1,6 +1,7 @@
 //! From a model to a file's text.
 
-use yase::{Diagnostic, Span};
+use yase::flatten::flatten;
+use yase::{Diagnostic, Semantics, Span};
 
 use super::{Format, Model, comments, scxml};
 use crate::document::Document;
@@ -8,6 +9,9 @@ use crate::iac::{self, Dialect};
 use crate::meta::{Typed, to_text, to_xmi};
 use crate::roles::SystemRoles;
 use crate::{text, xmi};
+
+/// Code for more states than this is no longer read by anybody.
+const MOST_STATES: usize = 1_000;
 
 /// A model as text, and what the text does not say.
 #[derive(Clone, PartialEq, Debug)]
@@ -44,6 +48,7 @@ impl Model {
             (Model::Srm(roles), Format::Role) => {
                 roles.to_role().map(|(text, lost)| Written { text, lost })?
             }
+            (Model::Chart(chart), Format::Rust) => return rust(chart, original),
             (_, Format::Text) => return Ok(self.with_comments(original)),
             (Model::Sag(model), Format::Xmi) => xmi(model)?,
             (Model::Suc(model), Format::Xmi) => xmi(model)?,
@@ -64,7 +69,7 @@ impl Model {
             Model::Sag(_) | Model::Suc(_) | Model::Aip(_) => "text and xmi",
             Model::Srm(_) | Model::Role(_) => "text, role and xmi",
             Model::Ft(_) => "text",
-            Model::Chart(_) => "text, xmi, xmi-2010, xmi-flat, xmi-2012, xmi-2018 and scxml",
+            Model::Chart(_) => "text, xmi, xmi-2010, xmi-flat, xmi-2012, xmi-2018, scxml and rust",
         };
         let hint = format!("formats of this kind: {formats}");
         Diagnostic::error("E0851", Span::default(), message).with_hint(hint)
@@ -107,6 +112,21 @@ fn xmi<T: Typed>(model: &T) -> Outcome {
 
 fn chart_xmi(chart: &iac::Iac, dialect: Dialect) -> Outcome {
     Ok(Written { text: chart.to_xmi(dialect)?, lost: chart.lost_in_xmi(dialect) })
+}
+
+/// The chart as code: it means what it means where it comes from.
+fn rust(chart: &iac::Iac, original: &str) -> Outcome {
+    let (chart, findings) = chart.to_statechart();
+    if findings.iter().any(Diagnostic::is_error) {
+        return Err(findings);
+    }
+    let semantics = if is_scxml(original) { Semantics::scxml() } else { Semantics::yase() };
+    Ok(Written::of(&flatten(&chart, semantics, MOST_STATES)?.to_rust()))
+}
+
+fn is_scxml(original: &str) -> bool {
+    xmi::is_xml(original)
+        && xmi::parse(original).is_ok_and(|document| document.root_element().tag_name().name() == "scxml")
 }
 
 /// XML has comments, but the editors of models drop them.

@@ -52,6 +52,35 @@ fn what_would_get_lost_is_listed_and_needs_a_word() {
     assert!(fs::read_to_string(output).expect("written").contains("statechart:Model"));
 }
 
+const DOOR: &str = r#"<scxml xmlns="http://www.w3.org/2005/07/scxml" version="1.0" name="door" initial="shut">
+  <state id="shut"><transition event="push" target="open"/></state>
+  <state id="open"><onentry><raise event="creak"/></onentry><transition event="creak" target="broken"/></state>
+  <final id="broken"/>
+</scxml>
+"#;
+
+#[test]
+fn a_chart_of_events_goes_to_rust_and_others_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let input = file(folder.path(), "door.scxml", DOOR);
+    let output = folder.path().join("door.rs").display().to_string();
+    let answer = monas(&["model", "convert", &input, &output]);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    let code = fs::read_to_string(output).expect("written");
+    assert!(
+        code.contains("(State::Shut, Event::Push) => *self = State::Over,"),
+        "it creaks and breaks at once: {code}"
+    );
+
+    let input = file(folder.path(), "a.txt", CHART);
+    let output = folder.path().join("a.rs").display().to_string();
+    let refused = monas(&["model", "convert", &input, &output]);
+    assert_eq!(refused.code, Some(3));
+    let why = "`r/Scan` has an activity: a flat chart knows events and conditions only";
+    assert!(refused.err.contains("E0160") && refused.err.contains(why), "{}", refused.err);
+    assert!(!Path::new(&output).exists());
+}
+
 #[test]
 fn charts_go_to_scxml_and_back() {
     let folder = tempfile::tempdir().expect("a folder");

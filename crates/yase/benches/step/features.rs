@@ -4,6 +4,7 @@ use yase::Statechart;
 use yase::statechart::{Node, NodeKind};
 
 use crate::counts::{DEEP, FLAT};
+use crate::flattened;
 use crate::harness::{Contestant, Race, Racer};
 use crate::ours::{self, Ours, connect};
 use crate::table;
@@ -16,13 +17,19 @@ pub(crate) fn run(race: &Race) {
 
 /// A guard reads an array behind [`Host::field`](yase::Host::field), so that what is measured is the machine's own share.
 fn guards(race: &Race) {
-    let nine = vec!["[M.n > 100]"; 9];
+    let one = guarded(&["[M.n == 0]"]);
+    let nine: Vec<String> = (100..109).map(|limit| format!("[M.n > {limit}]")).collect();
+    let nine: Vec<&str> = nine.iter().map(String::as_str).chain(["[M.n == 0]"]).collect();
+    let nine = guarded(&nine);
     let mut contestants: Vec<Box<dyn Contestant>> = vec![
         racer("no guard", &ours::flat()),
-        racer("a field compared with a constant", &guarded(&["[M.n == 0]"])),
+        racer("a field compared with a constant", &one),
         racer("two of them with `and`", &guarded(&["[M.n == 0 && M.m < 5]"])),
         racer("In(state)", &guarded(&["[!In(s9)]"])),
-        racer("nine false ones, then a true one", &guarded(&[nine.as_slice(), &["[M.n == 0]"]].concat())),
+        racer("nine false ones, then a true one", &nine),
+        Box::new(Racer::new("flattened, no guard", FLAT, flattened::Flat::new(&ours::flat()))),
+        Box::new(Racer::new("flattened, a field", FLAT, flattened::Guarded::new(&one))),
+        Box::new(Racer::new("flattened, nine and one", FLAT, flattened::Nine::new(&nine))),
     ];
     race.run("guards on flat, ns an event", &mut contestants);
 }

@@ -4,7 +4,7 @@
 ///
 /// It is a table with open addresses over one store of words. Rows are never gone through by their place in it, so nothing hangs on how words are mixed.
 #[derive(Default)]
-pub(super) struct Numbers {
+pub(crate) struct Numbers {
     words: Vec<u32>,
     /// Where each row ends.
     ends: Vec<usize>,
@@ -14,7 +14,7 @@ pub(super) struct Numbers {
 
 impl Numbers {
     /// The number of a row, if it is known.
-    pub(super) fn find(&self, row: &[u32]) -> Option<usize> {
+    pub(crate) fn find(&self, row: &[u32]) -> Option<usize> {
         if self.slots.is_empty() {
             return None;
         }
@@ -22,7 +22,7 @@ impl Numbers {
     }
 
     /// The number of a row, which is a new one if the row was not known.
-    pub(super) fn number(&mut self, row: &[u32]) -> usize {
+    pub(crate) fn number(&mut self, row: &[u32]) -> usize {
         if self.slots.len() <= 2 * self.ends.len() {
             self.grow();
         }

@@ -8,7 +8,7 @@ use super::numbers::Numbers;
 use super::{Edge, Exploration, Failure, Happened, Move, State, Step, Surroundings};
 use crate::bits::BitSet;
 use crate::chart::Chart;
-use crate::host::Outcome;
+use crate::host::{Host, Outcome};
 use crate::machine::explored::Sight;
 use crate::machine::{Chooser, Machine, MachineError, Status};
 
@@ -269,11 +269,11 @@ pub(super) fn take(
 }
 
 /// Takes a step for a cause. Timers that it set know when they are due.
-pub(super) fn go(
+pub(crate) fn go<H: Host>(
     machine: &mut Machine,
     cause: &Move,
     choices: Vec<u32>,
-    host: &mut Chosen<'_, '_>,
+    host: &mut H,
 ) -> Result<(), MachineError> {
     let now = machine.next_moment();
     machine.set_chooser(Chooser::scripted(choices));

@@ -2,6 +2,7 @@
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // the functions around the tests are tests too
 
+mod flat;
 #[path = "../kit/mod.rs"]
 mod kit;
 mod oracle;

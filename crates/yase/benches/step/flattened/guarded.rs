@@ -1,0 +1,71 @@
+//! The statechart `guarded`, flattened: generated, so that what is changed here is lost when that is done again.
+//!
+//! `State::start` begins, `State::handle` says what an event leads to. What it asks and does on the way are the methods of `World`.
+#![allow(dead_code)] // not every program asks for everything
+
+/// What comes from outside.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Event {
+    /// `toggle`
+    Toggle,
+}
+
+/// What the chart asks, and what it has done.
+pub trait World {
+    /// Whether this holds: `M.n == 0`
+    fn m_n_equals_0(&self) -> bool;
+    /// Does this: `enter 0`
+    fn enter_0(&mut self);
+    /// Does this: `leave 0`
+    fn leave_0(&mut self);
+    /// Does this: `enter 1`
+    fn enter_1(&mut self);
+    /// Does this: `leave 1`
+    fn leave_1(&mut self);
+}
+
+/// What is active.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum State {
+    /// In `s0`.
+    S0,
+    /// In `s1`.
+    S1,
+}
+
+impl State {
+    /// Begins.
+    pub fn start(world: &mut impl World) -> State {
+        world.enter_0();
+        State::S0
+    }
+
+    /// Does what an event leads to.
+    #[inline]
+    pub fn handle(&mut self, event: Event, world: &mut impl World) {
+        match (*self, event) {
+            (State::S0, Event::Toggle) => {
+                if world.m_n_equals_0() {
+                    world.leave_0();
+                    world.enter_1();
+                    *self = State::S1;
+                }
+            }
+            (State::S1, Event::Toggle) => {
+                if world.m_n_equals_0() {
+                    world.leave_1();
+                    world.enter_0();
+                    *self = State::S0;
+                }
+            }
+        }
+    }
+
+    /// The innermost states that are active, by their paths; none when it is over.
+    pub const fn active(self) -> &'static [&'static str] {
+        match self {
+            State::S0 => &["s0"],
+            State::S1 => &["s1"],
+        }
+    }
+}

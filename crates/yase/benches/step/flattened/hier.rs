@@ -1,0 +1,104 @@
+//! The statechart `hier`, flattened: generated, so that what is changed here is lost when that is done again.
+//!
+//! `State::start` begins, `State::handle` says what an event leads to. What it asks and does on the way are the methods of `World`.
+#![allow(dead_code)] // not every program asks for everything
+
+/// What comes from outside.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Event {
+    /// `toggle`
+    Toggle,
+}
+
+/// What the chart asks, and what it has done.
+pub trait World {
+    /// Does this: `enter 0`
+    fn enter_0(&mut self);
+    /// Does this: `leave 0`
+    fn leave_0(&mut self);
+    /// Does this: `enter 1`
+    fn enter_1(&mut self);
+    /// Does this: `leave 1`
+    fn leave_1(&mut self);
+    /// Does this: `enter 2`
+    fn enter_2(&mut self);
+    /// Does this: `leave 2`
+    fn leave_2(&mut self);
+    /// Does this: `enter 3`
+    fn enter_3(&mut self);
+    /// Does this: `leave 3`
+    fn leave_3(&mut self);
+    /// Does this: `enter 4`
+    fn enter_4(&mut self);
+    /// Does this: `leave 4`
+    fn leave_4(&mut self);
+    /// Does this: `enter 5`
+    fn enter_5(&mut self);
+    /// Does this: `leave 5`
+    fn leave_5(&mut self);
+    /// Does this: `enter 6`
+    fn enter_6(&mut self);
+    /// Does this: `leave 6`
+    fn leave_6(&mut self);
+    /// Does this: `enter 7`
+    fn enter_7(&mut self);
+    /// Does this: `leave 7`
+    fn leave_7(&mut self);
+}
+
+/// What is active.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum State {
+    /// In `s0/s1/s2/s3`.
+    S3,
+    /// In `s4/s5/s6/s7`.
+    S7,
+}
+
+impl State {
+    /// Begins.
+    pub fn start(world: &mut impl World) -> State {
+        world.enter_0();
+        world.enter_1();
+        world.enter_2();
+        world.enter_3();
+        State::S3
+    }
+
+    /// Does what an event leads to.
+    #[inline]
+    pub fn handle(&mut self, event: Event, world: &mut impl World) {
+        match (*self, event) {
+            (State::S3, Event::Toggle) => {
+                world.leave_3();
+                world.leave_2();
+                world.leave_1();
+                world.leave_0();
+                world.enter_4();
+                world.enter_5();
+                world.enter_6();
+                world.enter_7();
+                *self = State::S7;
+            }
+            (State::S7, Event::Toggle) => {
+                world.leave_7();
+                world.leave_6();
+                world.leave_5();
+                world.leave_4();
+                world.enter_0();
+                world.enter_1();
+                world.enter_2();
+                world.enter_3();
+                *self = State::S3;
+            }
+        }
+    }
+
+    /// The innermost states that are active, by their paths; none when it is over.
+    pub const fn active(self) -> &'static [&'static str] {
+        match self {
+            State::S3 => &["s0/s1/s2/s3"],
+            State::S7 => &["s4/s5/s6/s7"],
+        }
+    }
+}

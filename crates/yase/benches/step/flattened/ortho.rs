@@ -1,0 +1,91 @@
+//! The statechart `ortho`, flattened: generated, so that what is changed here is lost when that is done again.
+//!
+//! `State::start` begins, `State::handle` says what an event leads to. What it asks and does on the way are the methods of `World`.
+#![allow(dead_code)] // not every program asks for everything
+
+/// What comes from outside.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Event {
+    /// `toggle`
+    Toggle,
+}
+
+/// What the chart asks, and what it has done.
+pub trait World {
+    /// Does this: `enter 0`
+    fn enter_0(&mut self);
+    /// Does this: `leave 0`
+    fn leave_0(&mut self);
+    /// Does this: `enter 3`
+    fn enter_3(&mut self);
+    /// Does this: `leave 3`
+    fn leave_3(&mut self);
+    /// Does this: `enter 1`
+    fn enter_1(&mut self);
+    /// Does this: `leave 1`
+    fn leave_1(&mut self);
+    /// Does this: `enter 4`
+    fn enter_4(&mut self);
+    /// Does this: `leave 4`
+    fn leave_4(&mut self);
+    /// Does this: `enter 2`
+    fn enter_2(&mut self);
+    /// Does this: `leave 2`
+    fn leave_2(&mut self);
+    /// Does this: `enter 5`
+    fn enter_5(&mut self);
+    /// Does this: `leave 5`
+    fn leave_5(&mut self);
+}
+
+/// What is active.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum State {
+    /// In `both/1/s0`, `both/2/s1`, `both/3/s2`.
+    S0S1S2,
+    /// In `both/1/s3`, `both/2/s4`, `both/3/s5`.
+    S3S4S5,
+}
+
+impl State {
+    /// Begins.
+    pub fn start(world: &mut impl World) -> State {
+        world.enter_0();
+        world.enter_1();
+        world.enter_2();
+        State::S0S1S2
+    }
+
+    /// Does what an event leads to.
+    #[inline]
+    pub fn handle(&mut self, event: Event, world: &mut impl World) {
+        match (*self, event) {
+            (State::S0S1S2, Event::Toggle) => {
+                world.leave_0();
+                world.enter_3();
+                world.leave_1();
+                world.enter_4();
+                world.leave_2();
+                world.enter_5();
+                *self = State::S3S4S5;
+            }
+            (State::S3S4S5, Event::Toggle) => {
+                world.leave_3();
+                world.enter_0();
+                world.leave_4();
+                world.enter_1();
+                world.leave_5();
+                world.enter_2();
+                *self = State::S0S1S2;
+            }
+        }
+    }
+
+    /// The innermost states that are active, by their paths; none when it is over.
+    pub const fn active(self) -> &'static [&'static str] {
+        match self {
+            State::S0S1S2 => &["both/1/s0", "both/2/s1", "both/3/s2"],
+            State::S3S4S5 => &["both/1/s3", "both/2/s4", "both/3/s5"],
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! A flat chart as Rust.
+
+use std::fmt::Write as _;
+
+use super::names::Names;
+use super::{Flat, FlatEvent, Piece, Way};
+
+impl Flat {
+    /// A module of Rust: an enumeration of its events, a trait of its conditions and actions, an enumeration of its states that handles events.
+    pub fn to_rust(&self) -> String {
+        let mut code = Code { flat: self, names: NamesOfParts::of(self), text: String::new() };
+        code.head();
+        code.events();
+        code.world();
+        code.states();
+        code.text
+    }
+}
+
+/// How the parts of a chart are called.
+struct NamesOfParts {
+    states: Vec<String>,
+    events: Vec<String>,
+    conditions: Vec<String>,
+    actions: Vec<String>,
+}
+
+impl NamesOfParts {
+    fn of(flat: &Flat) -> NamesOfParts {
+        let (mut states, mut events, mut methods) = (Names::default(), Names::default(), Names::default());
+        let last = |path: &String| path.rsplit('/').next().unwrap_or_default().to_owned();
+        let state = |state: &super::FlatState| match state.is_over {
+            true => String::from("Over"),
+            false => state.leaves.iter().map(last).collect::<Vec<_>>().join(" "),
+        };
+        let event = |event: &FlatEvent| match event {
+            FlatEvent::Named(name) => name.clone(),
+            FlatEvent::Other => String::from("Other"),
+            FlatEvent::Nothing => String::from("Nothing"),
+        };
+        NamesOfParts {
+            states: flat.states.iter().map(|it| states.variant(&state(it))).collect(),
+            events: flat.events.iter().map(|it| events.variant(&event(it))).collect(),
+            conditions: flat.conditions.iter().map(|text| methods.method(text)).collect(),
+            actions: flat.actions.iter().map(|text| methods.method(text)).collect(),
+        }
+    }
+}
+
+struct Code<'f> {
+    flat: &'f Flat,
+    names: NamesOfParts,
+    text: String,
+}
+
+impl Code<'_> {
+    fn line(&mut self, depth: usize, text: &str) {
+        if !text.is_empty() {
+            _ = write!(self.text, "{:1$}", "", 4 * depth);
+        }
+        self.text.push_str(text);
+        self.text.push('\n');
+    }
+
+    fn lines(&mut self, text: &str) {
+        self.text.push_str(text);
+    }
+
+    fn head(&mut self) {
+        let name = in_words(&self.flat.name);
+        self.lines(&format!(
+            "\
+//! The statechart `{name}`, flattened: generated, so that what is changed here is lost when that is done again.
+//!
+//! `State::start` begins, `State::handle` says what an event leads to. What it asks and does on the way are the methods of `World`.
+#![allow(dead_code)] // not every program asks for everything
+
+"
+        ));
+    }
+
+    fn events(&mut self) {
+        self.lines("/// What comes from outside.\n#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]\npub enum Event {\n");
+        for (event, name) in self.flat.events.iter().zip(&self.names.events.clone()) {
+            let about = match event {
+                FlatEvent::Named(text) => format!("/// `{}`", in_words(text)),
+                FlatEvent::Other => String::from("/// Any event that the chart does not name."),
+                FlatEvent::Nothing => String::from("/// None, but conditions may hold now that did not."),
+            };
+            self.line(1, &about);
+            self.line(1, &format!("{name},"));
+        }
+        self.lines("}\n\n");
+    }
+
+    fn world(&mut self) {
+        self.lines("/// What the chart asks, and what it has done.\npub trait World {\n");
+        for (text, name) in self.flat.conditions.iter().zip(&self.names.conditions.clone()) {
+            self.line(1, &format!("/// Whether this holds: `{}`", in_words(text)));
+            self.line(1, &format!("fn {name}(&self) -> bool;"));
+        }
+        for (text, name) in self.flat.actions.iter().zip(&self.names.actions.clone()) {
+            self.line(1, &format!("/// Does this: `{}`", in_words(text)));
+            self.line(1, &format!("fn {name}(&mut self);"));
+        }
+        self.lines("}\n\n");
+    }
+
+    fn states(&mut self) {
+        self.lines(
+            "/// What is active.\n#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]\npub enum State {\n",
+        );
+        let states = self.flat.states.iter().zip(self.names.states.clone());
+        for (state, name) in states.clone() {
+            self.line(1, &about(&state.leaves));
+            self.line(1, &format!("{name},"));
+        }
+        self.lines("}\n\nimpl State {\n    /// Begins.\n");
+        self.start();
+        self.lines("\n    /// Does what an event leads to.\n");
+        self.handle();
+        self.lines("\n    /// The innermost states that are active, by their paths; none when it is over.\n");
+        self.line(1, "pub const fn active(self) -> &'static [&'static str] {");
+        self.line(2, "match self {");
+        for (state, name) in states {
+            let paths: Vec<String> = state.leaves.iter().map(|leaf| format!("{leaf:?}")).collect();
+            self.line(3, &format!("State::{name} => &[{}],", paths.join(", ")));
+        }
+        self.line(2, "}");
+        self.line(1, "}");
+        self.lines("}\n");
+    }
+
+    fn start(&mut self) {
+        let flat = self.flat;
+        let world = if flat.start.pieces.is_empty() { "_world" } else { "world" };
+        self.line(1, &format!("pub fn start({world}: &mut impl World) -> State {{"));
+        self.way(&flat.start, 2, Ending::Is { is_last: true });
+        self.line(1, "}");
+    }
+
+    fn handle(&mut self) {
+        let flat = self.flat;
+        let is_quiet = flat.ways.iter().flatten().all(|way| way.pieces.is_empty());
+        let world = if is_quiet { "_world" } else { "world" };
+        self.line(1, "#[inline]");
+        self.line(1, &format!("pub fn handle(&mut self, event: Event, {world}: &mut impl World) {{"));
+        self.line(2, "match (*self, event) {");
+        let mut has_all = !flat.events.is_empty();
+        for (state, ways) in flat.ways.iter().enumerate() {
+            for (event, way) in ways.iter().enumerate() {
+                has_all &= self.arm(state, event, way);
+            }
+        }
+        if !has_all {
+            self.line(3, "_ => {}");
+        }
+        self.line(2, "}");
+        self.line(1, "}");
+    }
+
+    /// What an event does in a state; false if nothing.
+    fn arm(&mut self, state: usize, event: usize, way: &Way) -> bool {
+        let head = format!("(State::{}, Event::{}) =>", self.names.states[state], self.names.events[event]);
+        match (way.pieces.is_empty(), way.to == state) {
+            (true, true) => return false,
+            (true, false) => {
+                self.line(3, &format!("{head} *self = State::{},", self.names.states[way.to].clone()))
+            }
+            _ => {
+                self.line(3, &format!("{head} {{"));
+                self.way(way, 4, Ending::Becomes { from: state, is_last: true });
+                self.line(3, "}");
+            }
+        }
+        true
+    }
+
+    fn way(&mut self, way: &Way, depth: usize, ending: Ending) {
+        for (index, piece) in way.pieces.iter().enumerate() {
+            match piece {
+                Piece::Do(action) => {
+                    self.line(depth, &format!("world.{}();", self.names.actions[*action].clone()))
+                }
+                Piece::If(condition, other) => {
+                    self.line(depth, &format!("if world.{}() {{", self.names.conditions[*condition].clone()));
+                    let nothing_follows = index + 1 == way.pieces.len() && ending.is_done_at(way.to);
+                    let early = if nothing_follows { ending } else { ending.early() };
+                    self.way(other, depth + 1, early);
+                    self.line(depth, "}");
+                }
+            }
+        }
+        let to = format!("State::{}", self.names.states[way.to]);
+        match ending {
+            Ending::Is { is_last: true } => self.line(depth, &to),
+            Ending::Is { is_last: false } => self.line(depth, &format!("return {to};")),
+            Ending::Becomes { from, is_last } => {
+                if way.to != from {
+                    self.line(depth, &format!("*self = {to};"));
+                }
+                if !is_last {
+                    self.line(depth, "return;");
+                }
+            }
+        }
+    }
+}
+
+/// What a way ends with.
+#[derive(Clone, Copy)]
+enum Ending {
+    /// The state is the answer.
+    Is { is_last: bool },
+    /// The state is another than this from then on.
+    Becomes { from: usize, is_last: bool },
+}
+
+impl Ending {
+    /// The same in the midst of a way.
+    fn early(self) -> Ending {
+        match self {
+            Ending::Is { .. } => Ending::Is { is_last: false },
+            Ending::Becomes { from, .. } => Ending::Becomes { from, is_last: false },
+        }
+    }
+
+    /// Whether it writes nothing if this is the state.
+    fn is_done_at(self, to: usize) -> bool {
+        matches!(self, Ending::Becomes { from, is_last: true } if from == to)
+    }
+}
+
+fn about(leaves: &[String]) -> String {
+    match leaves {
+        [] => String::from("/// It is over."),
+        leaves => format!(
+            "/// In {}.",
+            leaves.iter().map(|leaf| format!("`{}`", in_words(leaf))).collect::<Vec<_>>().join(", ")
+        ),
+    }
+}
+
+/// A text in one line, with nothing that would end a piece of code in a remark.
+fn in_words(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ").replace('`', "'")
+}

@@ -1,0 +1,165 @@
+//! The conditions and actions of a chart, each as a script with a number: what they mean is not asked.
+
+use crate::diagnostic::{Diagnostic, Span};
+use crate::expression::{Action, ActionKind, Expression, ExpressionKind, Trigger};
+use crate::flatten::FlatEvent;
+use crate::statechart::{Statechart, TransitionId};
+
+const CONDITION: &str = "condition ";
+const ACTION: &str = "action ";
+
+/// A chart that speaks in numbers, and what they stand for.
+pub(super) struct Words {
+    pub(super) chart: Statechart,
+    pub(super) events: Vec<FlatEvent>,
+    pub(super) conditions: Vec<String>,
+    pub(super) actions: Vec<String>,
+}
+
+/// What a script of such a chart stands for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Word {
+    Condition(usize),
+    Action(usize),
+}
+
+impl Word {
+    pub(super) fn of(script: &str) -> Option<Word> {
+        let number = |prefix| script.strip_prefix(prefix).and_then(|number| number.parse().ok());
+        number(CONDITION).map(Word::Condition).or_else(|| number(ACTION).map(Word::Action))
+    }
+}
+
+impl Words {
+    pub(super) fn of(chart: &Statechart) -> Words {
+        let mut words = Words {
+            chart: chart.clone(),
+            events: events(chart),
+            conditions: Vec::new(),
+            actions: Vec::new(),
+        };
+        for (id, transition) in chart.transitions() {
+            let mut expression = transition.expression.clone();
+            expression.guard.iter_mut().for_each(|guard| words.condition(guard));
+            expression.actions.iter_mut().for_each(|action| words.action(action));
+            words.chart.transition_mut(id).expression = expression;
+        }
+        for (id, node) in chart.nodes() {
+            let (mut entry, mut exit) = (node.entry.clone(), node.exit.clone());
+            entry.iter_mut().chain(&mut exit).for_each(|action| words.action(action));
+            let changed = words.chart.node_mut(id);
+            (changed.entry, changed.exit) = (entry, exit);
+        }
+        words
+    }
+
+    /// What speaks of states stays, and what is around it, and what turns an answer round.
+    fn condition(&mut self, guard: &mut Expression) {
+        let is_in = |part: &Expression| matches!(part.kind, ExpressionKind::In(_)).then_some(());
+        let speaks_of_states = guard.find_map(&mut |part| is_in(part)).is_some();
+        match &mut guard.kind {
+            ExpressionKind::Bool(_) | ExpressionKind::In(_) => {}
+            ExpressionKind::Or(parts) | ExpressionKind::And(parts) if speaks_of_states => {
+                parts.iter_mut().for_each(|part| self.condition(part));
+            }
+            ExpressionKind::Not(operand) => self.condition(operand),
+            kind => {
+                let text = match kind {
+                    ExpressionKind::Script(text) => text.clone(),
+                    _ => guard.to_string(),
+                };
+                guard.kind = ExpressionKind::Script(numbered(CONDITION, &mut self.conditions, text));
+            }
+        }
+    }
+
+    fn action(&mut self, action: &mut Action) {
+        let text = match &action.kind {
+            ActionKind::Raise(_) => return,
+            ActionKind::Script(text) => text.clone(),
+            _ => action.to_string(),
+        };
+        action.kind = ActionKind::Script(numbered(ACTION, &mut self.actions, text));
+    }
+}
+
+/// The script for a text, which is known or new.
+fn numbered(prefix: &str, known: &mut Vec<String>, text: String) -> String {
+    let number = known.iter().position(|it| *it == text).unwrap_or_else(|| {
+        known.push(text);
+        known.len() - 1
+    });
+    format!("{prefix}{number}")
+}
+
+fn events(chart: &Statechart) -> Vec<FlatEvent> {
+    let mut events = Vec::new();
+    let (mut others, mut waits) = (false, false);
+    let mut note = |name: String| {
+        let event = FlatEvent::Named(name);
+        if !events.contains(&event) {
+            events.push(event);
+        }
+    };
+    for (_, transition) in chart.transitions() {
+        match &transition.expression.trigger {
+            Some(Trigger::OneOf(names)) => names.iter().for_each(|name| note(name.text())),
+            Some(Trigger::Not(name)) => {
+                note(name.text());
+                others = true;
+            }
+            Some(Trigger::Any) => others = true,
+            None => waits |= transition.expression.guard.is_some() && !transition.expression.is_never(),
+        }
+    }
+    events.extend(others.then_some(FlatEvent::Other));
+    events.extend(waits.then_some(FlatEvent::Nothing));
+    events
+}
+
+/// What in a chart hangs on more than events and conditions.
+pub(super) fn not_known_beforehand(chart: &Statechart) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for (id, node) in chart.nodes() {
+        let what = [
+            (node.activity.is_some(), "has an activity"),
+            (node.duration.is_some(), "has a duration"),
+            (!node.defer.is_empty(), "defers events"),
+            (node.entry.iter().chain(&node.exit).any(starts_timer), "starts a timer"),
+        ];
+        found.extend(said(&what, || format!("`{}`", chart.path(id))));
+    }
+    for (id, transition) in chart.transitions() {
+        let expression = &transition.expression;
+        let looks_at_timer =
+            |part: &Expression| matches!(part.kind, ExpressionKind::TimeoutCheck(_)).then_some(());
+        let guard =
+            expression.guard.as_ref().and_then(|guard| guard.find_map(&mut |part| looks_at_timer(part)));
+        let what = [
+            (transition.weight.is_some(), "is taken at random"),
+            (expression.actions.iter().any(starts_timer), "starts a timer"),
+            (guard.is_some(), "looks at a timer"),
+        ];
+        found.extend(said(&what, || of_transition(chart, id)));
+    }
+    found
+}
+
+fn said(what: &[(bool, &str)], of: impl Fn() -> String) -> Vec<Diagnostic> {
+    let so = what.iter().filter(|(is_so, _)| *is_so);
+    so.map(|(_, what)| {
+        let message = format!("{} {what}: a flat chart knows events and conditions only", of());
+        Diagnostic::error("E0160", Span::default(), message)
+            .with_hint("run it on a machine, or generate its crate with `monas generate`")
+    })
+    .collect()
+}
+
+fn of_transition(chart: &Statechart, id: TransitionId) -> String {
+    let transition = chart.transition(id);
+    format!("what leads from `{}` to `{}`", chart.path(transition.source), chart.path(transition.target))
+}
+
+fn starts_timer(action: &Action) -> bool {
+    matches!(action.kind, ActionKind::StartTimeout { .. })
+}

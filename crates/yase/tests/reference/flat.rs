@@ -1,0 +1,223 @@
+//! Flat charts against the machine: both are given the same events and the same answers, and must do the same.
+
+use std::sync::Arc;
+
+use yase::expression::{Action, ActionKind, CallError, Expression, ExpressionKind, Place, ScriptId, Trigger};
+use yase::flatten::{Flat, FlatEvent, Piece, Way, flatten};
+use yase::statechart::Statechart;
+use yase::{
+    Activation, Chart, ConflictChoice, Host, Machine, Moment, Performance, RegionId, States, Status,
+    Vocabulary,
+};
+
+use crate::kit::script::Input;
+use crate::oracle::random::Case;
+
+/// So many charts are looked at; those with very many configurations are not flat.
+const CHARTS: u64 = 4_000;
+
+/// Charts with more states are left out.
+const LIMIT: usize = 40;
+
+#[test]
+fn a_flat_chart_does_what_the_machine_does() {
+    let (mut flat_ones, mut deeds, mut questions, mut together) = (0, 0, 0, 0);
+    for number in 0..CHARTS {
+        let mut case = Case::numbered(number);
+        case.semantics.conflict = ConflictChoice::Declared;
+        let chart = simple(&case.chart);
+        let flat = match flatten(&chart, case.semantics, LIMIT) {
+            Ok(flat) => flat,
+            Err(found) => {
+                let is_expected = found.iter().all(|it| ["E0161", "E0162"].contains(&it.code));
+                assert!(is_expected, "{number}: {found:?}");
+                continue;
+            }
+        };
+        let events: Vec<String> = case.script.inputs.iter().filter_map(|(_, input)| named(input)).collect();
+        let events = [events.as_slice(); 3].concat();
+        let vocabulary = Vocabulary { scripts: true, ..Vocabulary::default() };
+        let compiled = Arc::new(chart.compile_with(&vocabulary, case.semantics).expect("it was flattened"));
+        let expected = play(&compiled, &flat, &events, number);
+        let seen = walk(&compiled, &flat, &events, number);
+        assert_eq!(
+            seen,
+            expected,
+            "chart {number}, events {events:?}, {:?}\n{}\n{flat:#?}",
+            case.semantics,
+            yase::export::to_mermaid(&chart).text
+        );
+        flat_ones += 1;
+        deeds += expected.iter().map(|line| line.deeds.len()).sum::<usize>();
+        questions += usize::from(flat.conditions.len() > 1);
+        together += usize::from(flat.states.iter().any(|state| state.leaves.len() > 1));
+    }
+    println!(
+        "{flat_ones} flat charts, {deeds} actions, {questions} with conditions, {together} with regions"
+    );
+    assert!(flat_ones > CHARTS / 4 && deeds > 5_000 && questions > 200 && together > 100);
+}
+
+fn named(input: &Input) -> Option<String> {
+    match input {
+        Input::Event(name) => Some(name.clone()),
+        _ => None,
+    }
+}
+
+/// What is seen of a step.
+#[derive(Clone, PartialEq, Debug)]
+struct Line {
+    deeds: Vec<String>,
+    active: Vec<String>,
+}
+
+/// Without whatever keeps a chart from being flat; conditions and actions are scripts.
+fn simple(chart: &Statechart) -> Statechart {
+    let mut simple = chart.clone();
+    let mut count = 0;
+    for (id, node) in chart.nodes() {
+        let changed = simple.node_mut(id);
+        (changed.activity, changed.duration) = (None, None);
+        changed.defer.clear();
+        changed.entry = actions(&node.entry, &mut count);
+        changed.exit = actions(&node.exit, &mut count);
+    }
+    for (id, transition) in chart.transitions() {
+        let changed = simple.transition_mut(id);
+        changed.weight = None;
+        changed.expression.actions = actions(&transition.expression.actions, &mut count);
+        if let Some(guard) = &mut changed.expression.guard {
+            condition(guard, &mut count);
+        }
+        let messages = |name: &yase::expression::Path| name.text().starts_with("Message.");
+        if let Some(Trigger::OneOf(names)) = &mut changed.expression.trigger {
+            names.retain(|name| !messages(name));
+            if names.is_empty() {
+                changed.expression.trigger = None;
+            }
+        }
+    }
+    simple
+}
+
+fn actions(actions: &[Action], count: &mut usize) -> Vec<Action> {
+    let simple = |action: &Action| match action.kind {
+        ActionKind::Raise(_) => action.clone(),
+        _ => Action { kind: ActionKind::Script(fresh("do", count)), place: Place::default() },
+    };
+    actions.iter().map(simple).collect()
+}
+
+/// `In` stays, and what is around it; everything else becomes a script.
+fn condition(guard: &mut Expression, count: &mut usize) {
+    let is_in = |part: &Expression| matches!(part.kind, ExpressionKind::In(_)).then_some(());
+    let has_in = guard.find_map(&mut |part| is_in(part)).is_some();
+    match &mut guard.kind {
+        ExpressionKind::Or(parts) | ExpressionKind::And(parts) if has_in => {
+            parts.iter_mut().for_each(|part| condition(part, count));
+        }
+        ExpressionKind::Not(operand) => condition(operand, count),
+        ExpressionKind::Bool(_) | ExpressionKind::In(_) => {}
+        kind => *kind = ExpressionKind::Script(fresh("if", count)),
+    }
+}
+
+fn fresh(word: &str, count: &mut usize) -> String {
+    *count += 1;
+    format!("{word}{count}")
+}
+
+/// A condition holds or not by its text, the step and how much has been done in it.
+fn holds(text: &str, seed: u64, step: usize, done: usize) -> bool {
+    let start = seed.wrapping_mul(31).wrapping_add(step as u64 * 1_009 + done as u64 * 7_919);
+    let sum = text.bytes().fold(start, |sum, byte| (sum ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
+    (sum ^ sum >> 29).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 63 == 1
+}
+
+struct World<'c> {
+    chart: &'c Chart,
+    seed: u64,
+    step: usize,
+    deeds: Vec<String>,
+}
+
+impl Host for World<'_> {
+    fn condition(&self, script: ScriptId, _: RegionId, _: &States<'_>) -> Result<bool, CallError> {
+        Ok(holds(self.chart.script(script), self.seed, self.step, self.deeds.len()))
+    }
+
+    fn perform(&mut self, script: ScriptId, _: RegionId, _: &mut Performance<'_>) -> Result<(), CallError> {
+        self.deeds.push(self.chart.script(script).to_owned());
+        Ok(())
+    }
+
+    fn start(&mut self, _: Activation) {}
+
+    fn cancel(&mut self, _: Activation) {}
+
+    fn stop(&mut self, _: Activation) {}
+}
+
+/// What the machine does.
+fn play(chart: &Arc<Chart>, flat: &Flat, events: &[String], seed: u64) -> Vec<Line> {
+    let mut machine = Machine::new(chart.clone());
+    let mut world = World { chart, seed, step: 0, deeds: Vec::new() };
+    machine.start(Moment::ZERO, &mut world);
+    machine.run_to_completion(Moment::ZERO, &mut world).expect("it comes to rest");
+    let mut lines = vec![line(&machine, flat, std::mem::take(&mut world.deeds))];
+    for (event, step) in events.iter().zip(1..) {
+        world.step = step;
+        let now = Moment::from_nanos(step as u64);
+        machine.dispatch_name(event);
+        machine.run_to_completion(now, &mut world).expect("it comes to rest");
+        lines.push(line(&machine, flat, std::mem::take(&mut world.deeds)));
+    }
+    lines
+}
+
+fn line(machine: &Machine, flat: &Flat, deeds: Vec<String>) -> Line {
+    let configuration = machine.configuration();
+    let runs = machine.status() == Status::Running;
+    let state =
+        flat.states.iter().find(|state| runs && !state.is_over && state.configuration == configuration);
+    Line { deeds, active: state.map_or_else(Vec::new, |state| state.leaves.clone()) }
+}
+
+/// What the flat chart does.
+fn walk(chart: &Chart, flat: &Flat, events: &[String], seed: u64) -> Vec<Line> {
+    let mut lines = Vec::new();
+    let mut state = follow(flat, &flat.start, (seed, 0), &mut lines);
+    for (event, step) in events.iter().zip(1..) {
+        let known = |it: &FlatEvent| match it {
+            FlatEvent::Named(name) => chart.events().find(name) == Some(chart.event(event).0),
+            _ => false,
+        };
+        let index = flat.events.iter().position(known);
+        let kinds = [FlatEvent::Other, FlatEvent::Nothing];
+        let unknown = || kinds.iter().find_map(|kind| flat.events.iter().position(|it| it == kind));
+        let index = index.or_else(unknown);
+        let stays = Way { pieces: Vec::new(), to: state };
+        let way = index.map_or(&stays, |index| &flat.ways[state][index]);
+        state = follow(flat, way, (seed, step), &mut lines);
+    }
+    lines
+}
+
+fn follow(flat: &Flat, way: &Way, (seed, step): (u64, usize), lines: &mut Vec<Line>) -> usize {
+    let mut deeds: Vec<String> = Vec::new();
+    let (mut way, mut index) = (way, 0);
+    while let Some(piece) = way.pieces.get(index) {
+        index += 1;
+        match piece {
+            Piece::Do(action) => deeds.push(flat.actions[*action].clone()),
+            Piece::If(condition, other) => {
+                if holds(&flat.conditions[*condition], seed, step, deeds.len()) {
+                    (way, index) = (other, 0);
+                }
+            }
+        }
+    }
+    lines.push(Line { deeds, active: flat.states[way.to].leaves.clone() });
+    way.to
+}
