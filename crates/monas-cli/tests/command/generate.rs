@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::kit::{copy, monas, root};
+use crate::kit::{changed, copy, monas, root};
 
 /// The parts of the project that a generated crate is linked into, elsewhere.
 pub(crate) fn project() -> tempfile::TempDir {
@@ -40,6 +40,38 @@ fn a_match_with_generated_charts_has_the_hash_of_one_with_interpreted_ones() {
         line.expect("there is a hash")
     };
     assert_eq!(hash("config/match_generated.xml"), hash("config/match_attack.xml"));
+}
+
+/// A goalie that violates a property stops, and the match goes on without it.
+#[test]
+fn properties_of_generated_charts_are_followed_in_a_match_as_those_of_interpreted_ones() {
+    let monitor = "<monitor on_violation=\"policy\">models/strict.properties</monitor>";
+    let (folder, _) = changed("config/roles/goalie.xml", "<agent ", "<agent on_failure=\"stop-agent\" ");
+    for role in ["goalie.xml", "goalie_generated.xml"] {
+        let path = folder.path().join("config/roles").join(role);
+        let text = fs::read_to_string(&path).expect("it is there");
+        let text = text.replace("<agent is_real_time", "<agent on_failure=\"stop-agent\" is_real_time");
+        let monitored = text.replace("</statechart>", &format!("</statechart>\n    {monitor}"));
+        assert!(monitored.contains("stop-agent") && monitored != text, "{monitored}");
+        fs::write(&path, monitored).expect("the folder takes files");
+    }
+    let hash = |game: &str, property: &str| {
+        let text = format!("property \"p\": {property}\n");
+        fs::write(folder.path().join("models/strict.properties"), text).expect("the folder takes files");
+        let game = folder.path().join("config").join(game).display().to_string();
+        let answer = monas(&["run", &game, "--seed", "7", "--for", "40s"]);
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        answer
+            .out
+            .lines()
+            .find(|line| line.starts_with("hash: "))
+            .map(str::to_owned)
+            .expect("there is a hash")
+    };
+    let (strict, mild) = ("always not entering TrackBall", "always not (in TrackBall and in SearchBall)");
+    let violated = hash("match_attack.xml", strict);
+    assert_eq!(hash("match_generated.xml", strict), violated);
+    assert_ne!(hash("match_generated.xml", mild), violated, "the goalie stops when it tracks the ball");
 }
 
 #[test]
