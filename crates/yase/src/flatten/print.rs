@@ -241,7 +241,24 @@ fn about(leaves: &[String]) -> String {
     }
 }
 
-/// A text in one line, with nothing that would end a piece of code in a remark.
+/// A text in one line, with nothing that would end a piece of code in a remark, and nothing that turns what stands behind it round.
 fn in_words(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ").replace('`', "'")
+    let shown = |letter: char| match letter {
+        '`' => '\'',
+        '"' | '\'' | '\\' => letter,
+        _ if letter.escape_debug().len() > 1 => '?',
+        _ => letter,
+    };
+    let words: Vec<&str> = text.split_whitespace().collect();
+    words.join(" ").chars().map(shown).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn remarks_stay_remarks() {
+        assert_eq!(in_words("a\n  `b`\u{202e}c \"d\" \\ e'f ü"), "a 'b'?c \"d\" \\ e'f ü");
+    }
 }
