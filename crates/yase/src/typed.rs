@@ -191,4 +191,25 @@ mod tests {
             assert_eq!(any!(first.clone()?, second.clone()?), result, "{first:?} || {second:?}");
         }
     }
+
+    /// A text says what it asks of a timer; code may ask anything.
+    #[test]
+    fn code_may_tell_apart_what_its_text_does_not() {
+        let mut draft = Draft::new("waits");
+        draft.starts(Timer(0), "late");
+        draft.add(NodeId(1), NodeId(0), NodeKind::Start, "");
+        draft.add(NodeId(2), NodeId(0), NodeKind::Basic, "wait");
+        draft.add(NodeId(3), NodeId(0), NodeKind::Basic, "go");
+        draft.connect(NodeId(1), NodeId(2), "/ StartTimeout(late, 1s)");
+        draft.connect(NodeId(2), NodeId(3), "[late]");
+        draft.guard(|world| Ok(world.is_over(Timer(0))));
+        let chart = draft.finish().unwrap();
+        let vocabulary = crate::Vocabulary::default();
+        let typed = chart.compile(&vocabulary, crate::Semantics::yase()).unwrap();
+        let plain = chart.statechart().compile(&vocabulary).unwrap();
+        let told_apart = |chart: &crate::Chart| -> usize {
+            chart.guards.iter().map(|scoped| scoped.guard.timers_told_apart().len()).sum()
+        };
+        assert_eq!((told_apart(&plain), told_apart(&typed)), (0, 1));
+    }
 }

@@ -183,3 +183,136 @@ fn compare_whole(whole: i128, float: f64) -> Result<Ordering, GuardError> {
         order => Ok(order),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COMPARISONS: [Comparison; 6] = [
+        Comparison::Equal,
+        Comparison::NotEqual,
+        Comparison::Less,
+        Comparison::LessOrEqual,
+        Comparison::Greater,
+        Comparison::GreaterOrEqual,
+    ];
+
+    fn expected(comparison: Comparison, order: Ordering) -> bool {
+        match comparison {
+            Comparison::Equal => order.is_eq(),
+            Comparison::NotEqual => order.is_ne(),
+            Comparison::Less => order.is_lt(),
+            Comparison::LessOrEqual => order.is_le(),
+            Comparison::Greater => order.is_gt(),
+            Comparison::GreaterOrEqual => order.is_ge(),
+        }
+    }
+
+    /// Rows in which each value is less than the next; numbers of all widths stand in one.
+    const ROWS: [&[Value<'static>]; 4] = [
+        &[
+            Value::Int(i64::MIN),
+            Value::Float(-3.5),
+            Value::Int(-3),
+            Value::Float(-0.5),
+            Value::Uint(0),
+            Value::Float(0.5),
+            Value::Int(1),
+            Value::Uint(2),
+            Value::Float(2.5),
+            Value::Int(i64::MAX),
+            Value::Uint(1 << 63),
+            Value::Uint(u64::MAX),
+            Value::Float(1e30),
+        ],
+        &[Value::Enum(-1), Value::Enum(0), Value::Enum(7)],
+        &[Value::Bool(false), Value::Bool(true)],
+        &[Value::Text(""), Value::Text("a"), Value::Text("b")],
+    ];
+
+    fn literal(value: Value<'_>) -> Literal {
+        match value {
+            Value::Bool(value) => Literal::Bool(value),
+            Value::Int(value) => Literal::Int(value),
+            Value::Uint(value) => Literal::Uint(value),
+            Value::Float(value) => Literal::Float(value),
+            Value::Enum(value) => Literal::Enum(value),
+            Value::Text(value) => Literal::Text(value.into()),
+            value => panic!("{value:?} is no literal"),
+        }
+    }
+
+    #[test]
+    fn values_are_in_order_whatever_their_width() {
+        for row in ROWS {
+            for (i, &left) in row.iter().enumerate() {
+                for (j, &right) in row.iter().enumerate() {
+                    for comparison in COMPARISONS {
+                        let holds = expected(comparison, i.cmp(&j));
+                        let said = compare(left, comparison, right);
+                        assert_eq!(said, Ok(Some(holds)), "{left:?} {comparison:?} {right:?}");
+                        let plainly = compare_plainly(left, comparison, &literal(right));
+                        assert!(
+                            plainly.is_none_or(|said| said == holds),
+                            "{left:?} {comparison:?} {right:?}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_guards_mostly_compare_takes_the_short_way() {
+        for value in [Value::Int(3), Value::Uint(3), Value::Float(3.0), Value::Enum(3), Value::Bool(true)] {
+            assert_eq!(compare_plainly(value, Comparison::Equal, &literal(value)), Some(true), "{value:?}");
+        }
+        assert_eq!(compare_plainly(Value::Int(-1), Comparison::Less, &Literal::Uint(0)), Some(true));
+        assert_eq!(compare_plainly(Value::Missing, Comparison::Equal, &Literal::Uint(0)), None);
+    }
+
+    #[test]
+    fn equal_numbers_are_equal_in_every_width() {
+        let threes = [Value::Int(3), Value::Uint(3), Value::Float(3.0)];
+        for (left, right) in threes.into_iter().flat_map(|left| threes.map(|right| (left, right))) {
+            for comparison in COMPARISONS {
+                let holds = expected(comparison, Ordering::Equal);
+                assert_eq!(compare(left, comparison, right), Ok(Some(holds)));
+                let (left, right) = (Number::of(left).unwrap(), Number::of(right).unwrap());
+                assert_eq!(compare_numbers(left, right), Ok(Ordering::Equal));
+            }
+        }
+        let (less, more) = (Number::Whole(1), Number::Whole(2));
+        assert_eq!(compare_numbers(less, more), Ok(Ordering::Less));
+        assert_eq!(compare_numbers(Number::Float(1.0), Number::Float(2.0)), Ok(Ordering::Less));
+    }
+
+    #[test]
+    fn what_is_no_number_has_no_order() {
+        for other in [Value::Int(1), Value::Uint(0), Value::Float(0.0)] {
+            for (left, right) in [(other, Value::Float(f64::NAN)), (Value::Float(f64::NAN), other)] {
+                assert_eq!(compare(left, Comparison::Less, right), Err(GuardError::NotANumber));
+            }
+        }
+        assert_eq!(compare(Value::Text("1"), Comparison::Equal, Value::Int(1)), Err(GuardError::WrongType));
+    }
+
+    fn float(value: Result<Value<'_>, GuardError>) -> f64 {
+        match value {
+            Ok(Value::Float(value)) => value,
+            other => panic!("{other:?} has no fraction"),
+        }
+    }
+
+    #[test]
+    fn numbers_with_fractions_are_reckoned_with_as_such() {
+        let (left, right) = (Value::Float(4.5), Value::Float(1.5));
+        for (operator, result) in
+            [(Operator::Plus, 6.0), (Operator::Minus, 3.0), (Operator::Times, 6.75), (Operator::Over, 3.0)]
+        {
+            assert_eq!(float(arithmetic(left, operator, right)), result);
+        }
+        assert_eq!(float(arithmetic(Value::Int(3), Operator::Minus, Value::Float(0.5))), 2.5);
+        assert_eq!(float(negative(Value::Float(0.5))), -0.5);
+    }
+}

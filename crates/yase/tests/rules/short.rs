@@ -114,6 +114,46 @@ fn r21_a_timer_that_was_over_long_ago_expires_in_the_next_step() {
 }
 
 #[test]
+fn r13_beside_others_nothing_fires_after_the_end_of_the_chart() {
+    let chart = chart(
+        "
+        START
+        & both
+          one
+            START
+            A
+            B
+          two
+            START
+            C
+            x stop
+          three
+            START
+            E
+            F
+        c/START -> both
+        one/START -> A
+        two/START -> C
+        three/START -> E
+        A -> B : go
+        C -> stop : go
+        E -> F : go
+        ",
+    );
+    let played = [false, true].map(|silent| {
+        let mut world = World { silent, ..World::new(&chart) };
+        let mut machine = Machine::new(script::compile(&chart));
+        machine.start(Moment::ZERO, &mut world);
+        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.dispatch_name("go");
+        let summary = machine.run_to_completion(Moment::from_millis(1), &mut world).unwrap();
+        (summary.transitions, machine.status(), machine.configuration())
+    });
+    assert_eq!(played[0], played[1]);
+    assert_eq!((played[1].0, played[1].1), (2, yase::Status::Stopped), "the third does not fire any more");
+}
+
+#[test]
 fn r10_what_leaves_nothing_does_not_fire_when_another_has_left_its_source_before() {
     // the transition of `P` comes first, in the order of the document
     check(

@@ -22,6 +22,14 @@ fn nothing_compiles_to_nothing() {
 }
 
 #[test]
+fn a_value_knows_what_it_reads() {
+    let effects = effects("GameState.score = Ball.distance + 1");
+    let [Effect::Assign { value, .. }] = &*effects else { panic!("{effects:?}") };
+    let sources: Vec<_> = value.sources().iter().map(|source| source.topic).collect();
+    assert_eq!((value.reads(), sources.as_slice()), ([BALL].as_slice(), [BALL].as_slice()));
+}
+
+#[test]
 fn a_topic_is_named_in_every_way() {
     let world = World::new().with(BALL, &[DISTANCE], Value::Float(2.0));
     for variable in [

@@ -220,6 +220,39 @@ fn texts_and_truths_compare_for_sameness() {
 
 /// What a field and a constant are compared by costs one look at the field.
 #[test]
+fn what_does_not_hold_is_a_value_too() {
+    for (found, is_so, is_not_so) in
+        [(Some(true), Some(true), Some(false)), (Some(false), Some(false), Some(true)), (None, None, None)]
+    {
+        let world = world(found, None);
+        assert_eq!(truth(&world, "(Ball.found && true) == true"), is_so);
+        assert_eq!(truth(&world, "(Ball.found && true) == false"), is_not_so);
+    }
+}
+
+#[test]
+fn a_guard_knows_what_it_reads_wherever_that_stands() {
+    let topics = |condition: &str| guard(condition).reads().to_vec();
+    let both = [BALL, GAME];
+    for condition in [
+        "Ball.distance < GameState.score",
+        "GameState.score < Ball.distance",
+        "abs(Ball.distance) + GameState.score > 1",
+        "1 + Ball.distance - GameState.score > 1",
+        "Ball.distance * GameState.score > 1",
+        "2 * Ball.distance / GameState.score > 1",
+        "-Ball.distance < -GameState.score",
+        "(Ball.found && true) == (GameState.score > 0)",
+        "!(Ball.found || GameState == NULL)",
+    ] {
+        assert_eq!(topics(condition), both, "{condition}");
+        let guard = guard(condition);
+        let sources: Vec<_> = guard.sources().iter().map(|source| source.topic).collect();
+        assert_eq!(sources, both, "{condition}");
+    }
+}
+
+#[test]
 fn a_guard_is_evaluated_again_and_again() {
     let guard = guard("Ball.distance <= limit");
     for (distance, expected) in [(0.2, true), (0.25, true), (0.3, false)] {
