@@ -40,6 +40,7 @@
 //! | E0161 | there are too many configurations or ways |
 //! | E0162 | a step has no end |
 
+mod merged;
 mod names;
 mod print;
 mod record;

@@ -67,13 +67,16 @@ impl Code<'_> {
     }
 
     fn head(&mut self) {
-        let name = in_words(&self.flat.name);
+        let chart = match in_words(&self.flat.name) {
+            name if name.is_empty() => String::from("A statechart"),
+            name => format!("The statechart `{name}`"),
+        };
         self.lines(&format!(
             "\
-//! The statechart `{name}`, flattened: generated, so that what is changed here is lost when that is done again.
+//! {chart}, flattened: generated, so that what is changed here is lost when that is done again.
 //!
 //! `State::start` begins, `State::handle` says what an event leads to. What it asks and does on the way are the methods of `World`.
-#![allow(dead_code)] // not every program asks for everything
+#![allow(dead_code, clippy::all)] // not every program asks for everything, and generated code has one style
 
 "
         ));
@@ -90,7 +93,7 @@ impl Code<'_> {
             self.line(1, &about);
             self.line(1, &format!("{name},"));
         }
-        self.lines("}\n\n");
+        self.end();
     }
 
     fn world(&mut self) {
@@ -102,6 +105,14 @@ impl Code<'_> {
         for (text, name) in self.flat.actions.iter().zip(&self.names.actions.clone()) {
             self.line(1, &format!("/// Does this: `{}`", in_words(text)));
             self.line(1, &format!("fn {name}(&mut self);"));
+        }
+        self.end();
+    }
+
+    /// The end of an item, which stands in one line if there is nothing in it.
+    fn end(&mut self) {
+        if self.text.ends_with("{\n") {
+            self.text.pop();
         }
         self.lines("}\n\n");
     }
@@ -256,6 +267,17 @@ fn in_words(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_empty_stands_in_one_line() {
+        let mut chart = crate::Statechart::new("");
+        let start = chart.add(crate::Statechart::ROOT, crate::Node::new(crate::NodeKind::Start, ""));
+        let only = chart.add(crate::Statechart::ROOT, crate::Node::new(crate::NodeKind::Basic, "only"));
+        chart.connect(crate::Transition::new(start, only));
+        let code = crate::flatten::flatten(&chart, crate::Semantics::yase(), 1).unwrap().to_rust();
+        assert!(code.starts_with("//! A statechart, flattened: "), "{code}");
+        assert!(code.contains("pub enum Event {}\n\n") && code.contains("pub trait World {}\n\n"), "{code}");
+    }
 
     #[test]
     fn remarks_stay_remarks() {

@@ -51,7 +51,9 @@ pub(super) fn search(chart: &Arc<Chart>, words: Words, limit: usize) -> Result<F
     }
     let Words { events, conditions, actions, .. } = words;
     let name = chart.statechart().name.clone();
-    Ok(Flat { name, states: search.states, events, conditions, actions, start, ways }.without_unused())
+    Ok(Flat { name, states: search.states, events, conditions, actions, start, ways }
+        .merged()
+        .without_unused())
 }
 
 struct Search<'s> {
@@ -124,7 +126,7 @@ fn behind(records: &[Record], asked: usize) -> &[Record] {
 }
 
 /// A condition that changes nothing is not asked.
-fn without_idle_questions(mut way: Way) -> Way {
+pub(super) fn without_idle_questions(mut way: Way) -> Way {
     for index in (0..way.pieces.len()).rev() {
         let is_idle = match &way.pieces[index] {
             Piece::If(_, other) => other.to == way.to && other.pieces == way.pieces[index + 1..],

@@ -221,3 +221,93 @@ fn follow(flat: &Flat, way: &Way, (seed, step): (u64, usize), lines: &mut Vec<Li
     lines.push(Line { deeds, active: flat.states[way.to].leaves.clone() });
     way.to
 }
+
+/// Two regions, one of which waits for the other, and a memory of the second.
+const BOTH: &str = r#"
+    START
+    & both
+      one
+        START
+        A | exit=script("leave A")
+        B
+      two
+        START
+        C
+        D
+        h last
+    Z
+    c/START -> both
+    one/START -> A
+    two/START -> C
+    last -> C
+    A -> B : go [script("ready")] / raise(moved); script("move")
+    C -> D : moved [In(B) && !script("tired")]
+    both -> Z : stop / script("stop")
+    Z -> last : back
+"#;
+
+/// What `to_rust` wrote of it.
+#[rustfmt::skip]
+#[allow(unreachable_pub)]
+mod written;
+
+/// Answers and takes note as [`World`] does.
+#[derive(Default)]
+struct Surroundings {
+    ready: bool,
+    tired: bool,
+    deeds: Vec<&'static str>,
+}
+
+impl written::World for Surroundings {
+    fn ready(&self) -> bool {
+        self.ready
+    }
+
+    fn tired(&self) -> bool {
+        self.tired
+    }
+
+    fn leave_a(&mut self) {
+        self.deeds.push("leave A");
+    }
+
+    fn move_(&mut self) {
+        self.deeds.push("move");
+    }
+
+    fn stop(&mut self) {
+        self.deeds.push("stop");
+    }
+}
+
+#[test]
+fn a_chart_that_was_written_as_rust_runs() {
+    let chart = crate::kit::chart::chart(BOTH);
+    let code = flatten(&chart, yase::Semantics::yase(), 20).expect("it is simple").to_rust();
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/flat/written.rs");
+    if std::env::var_os("MONAS_BLESS").is_some() {
+        std::fs::write(file, &code).expect("it can be written");
+    }
+    assert_eq!(std::fs::read_to_string(file).expect("it is there"), code, "MONAS_BLESS=1 writes it anew");
+
+    use written::Event::{Back, Go, Stop};
+    let mut world = Surroundings::default();
+    let mut state = written::State::start(&mut world);
+    assert_eq!(state.active(), ["both/one/A", "both/two/C"]);
+    state.handle(Go, &mut world);
+    assert_eq!(
+        (state.active(), world.deeds.as_slice()),
+        (["both/one/A", "both/two/C"].as_slice(), [].as_slice())
+    );
+    world.ready = true;
+    state.handle(Go, &mut world);
+    assert_eq!(state.active(), ["both/one/B", "both/two/D"], "what it raises is taken in the same step");
+    state.handle(Stop, &mut world);
+    state.handle(Back, &mut world);
+    assert_eq!(state.active(), ["both/one/A", "both/two/D"], "the second region remembers");
+    assert_eq!(world.deeds, ["leave A", "move", "stop"]);
+    world.tired = true;
+    state.handle(Stop, &mut world);
+    assert_eq!(state.active(), ["Z"]);
+}

@@ -1,7 +1,7 @@
 //! The statechart `hier`, flattened: generated, so that what is changed here is lost when that is done again.
 //!
 //! `State::start` begins, `State::handle` says what an event leads to. What it asks and does on the way are the methods of `World`.
-#![allow(dead_code)] // not every program asks for everything
+#![allow(dead_code, clippy::all)] // not every program asks for everything, and generated code has one style
 
 /// What comes from outside.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
