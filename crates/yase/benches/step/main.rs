@@ -15,9 +15,9 @@
 //!
 //! Further tables: what guards, traces and deep transitions cost, and how long it takes to make charts ready.
 //!
-//! One run, medians: flat 10 ns, 2.9 times the table interpreter; hier 17 ns, 2.3 times; ortho 22 ns, 2.3 times. Flattened: flat 1.3 ns, hier 2.2 ns, ortho 2.3 ns,
-//! each as the `match` by hand. A field compared with a constant adds 4 ns, two with `and` 6 ns, nine that do not hold 26 ns; flattened, all of them less than half a
-//! nanosecond. A trace adds 19 ns. A chart of 1,000 states is parsed and compiled in 4 ms, one of 100,000 in 0.8 s. Nothing of a step allocates. Run by `cargo test` without
+//! Three runs, medians: flat 10 to 14 ns, 2.5 to 2.9 times the table interpreter; hier 17 to 20 ns, 2.2 to 2.3 times; ortho 22 to 32 ns, 2.3 to 3.1 times. Flattened: flat 1.3 to
+//! 2.1 ns, 1.0 to 1.2 times the `match` by hand; hier 2.3 ns and ortho 1.9 ns, below it. A field compared with a constant adds 4.5 ns, nine that do not hold 27 ns; flattened, all of
+//! them less than half a nanosecond. A trace adds 19 ns. A chart of 1,000 states is parsed and compiled in 4 ms, one of 100,000 in 0.8 s. Nothing of a step allocates. Run by `cargo test` without
 //! `--bench`, each contestant only shows that it counts right.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a bench that cannot go on ends")]
 
