@@ -115,9 +115,9 @@ pub struct Input(usize);
 /// what was recorded.
 ///
 /// Changes of agents that were made meanwhile are made again: in simulated time when they were asked for, in real time between those turns
-/// of the agent between which it followed them. Agents that were added are not replayed: what they published is given to the others. One
-/// that was removed and added anew is refused; in real time one that was given a list beside its chart is too, since what two threads
-/// publish under one name cannot be told apart.
+/// of the agent between which it followed them. One that was removed and added anew comes back as it did. Agents that were new then are not
+/// replayed: what they published is given to the others. In real time one that was given a list beside its chart is refused, since what two
+/// threads publish under one name cannot be told apart.
 ///
 /// What comes from outside and is no message, an event that somebody raised by hand, is not in a recording and so not in a replay. Nor is
 /// what an activity learns in other ways: from a clock, a device or another thread. That shows as a difference.

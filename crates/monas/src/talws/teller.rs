@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use narukom::{Moment, Narukom, Publisher};
 
 use super::entry;
-use super::orders::Orders;
+use super::orders::{Asked, Orders};
 use crate::error::Error;
 use crate::monitors::Broken;
 use crate::records::{self, CYCLE, Delivery, STATISTICS, Turn};
@@ -77,9 +77,17 @@ impl Teller {
 
     /// The agent's thread follows a change from now on. That is for recordings; if nobody makes one, nothing is said.
     pub(super) fn tell_ordered(&mut self, now: Moment, orders: &Orders, chart: u32) {
-        let Some(asked) = orders.asked.as_ref().filter(|_| self.hub.is_observed()) else { return };
+        let Some(asked) = &orders.asked else { return };
         // The blackboards of a chart that begins are there already, others are yet to be made.
         let seen = if orders.charts.is_empty() { self.hub.position() } else { asked.ready_at };
+        self.tell_asked(now, asked, seen, chart);
+    }
+
+    /// The agent does what somebody asked, when so many publications had happened; if nobody makes a recording, nothing is said.
+    pub(super) fn tell_asked(&mut self, now: Moment, asked: &Asked, seen: u64, chart: u32) {
+        if !self.hub.is_observed() {
+            return;
+        }
         self.tell_turn(now, |cycle| {
             (cycle.time, cycle.turn, cycle.chart) = (now.as_nanos(), Turn::Ordered.into(), chart);
             cycle.seen.push(seen);

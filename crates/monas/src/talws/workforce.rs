@@ -16,7 +16,7 @@ use super::entry;
 use super::handover::Mailbox;
 use super::list_thread::ListThread;
 use super::management::{Roster, Staff};
-use super::orders::{Directive, Orders, Standing, TOLD};
+use super::orders::{Asked, Directive, Orders, Standing, TOLD};
 use super::overview::View;
 use super::pool::{self, Called, Pool};
 use super::scheduling::Scheduling;
@@ -442,8 +442,11 @@ impl Staff for Team {
         worker.unit.obey(orders, PATIENCE)
     }
 
-    fn launch(&mut self, member: Member) -> Result<(), String> {
+    fn launch(&mut self, mut member: Member, asked: Option<&Asked>) -> Result<(), String> {
         let name = member.name.clone();
+        if let Some(asked) = asked {
+            member.teller.tell_asked(self.clock.now(), asked, asked.ready_at, 0);
+        }
         self.launch_all(vec![member]).map_err(|error| {
             // the threads that there are end, and nobody is left without the others
             if let Some(place) = self.workers.iter().position(|worker| worker.unit.name == name) {

@@ -9,7 +9,7 @@ use narukom::prost::Message as _;
 use yase::Source;
 
 use crate::kit::{BALL, Ball, GAME, Game, NEWS, Phase, at};
-use crate::taped::{Kept, Tape, replay, replay_simulated};
+use crate::taped::{Kept, Outcome, Tape, replay, replay_simulated};
 use crate::{change, made, settings};
 
 /// Throws balls, further with each.
@@ -140,7 +140,7 @@ fn in_simulated_time_changes_are_made_again() {
     let messages = changed_run();
     let outcome = replay_simulated(asking(), 7, &messages).unwrap();
     assert_eq!(outcome.differences, []);
-    for (agent, topic, least) in [
+    let expected = [
         ("thrower", "test/ball", 15),
         ("thrower", "test/news", 10),
         ("thrower", "test/game", 15),
@@ -149,11 +149,8 @@ fn in_simulated_time_changes_are_made_again() {
         ("mind", "test/news", 20),
         ("mind", "monas/model", 2),
         ("asker", "monas/change", 3),
-    ] {
-        let recorded = messages.iter().filter(|kept| kept.publisher == agent && kept.topic == topic).count();
-        assert_eq!(outcome.compared(agent, topic), recorded as u64, "{agent} {topic}");
-        assert!(recorded >= least, "{agent} {topic}: {recorded}");
-    }
+    ];
+    assert_compared(&messages, &outcome, &expected);
     // Some of them alone, on the changes that the others asked for.
     let some = agents();
     assert_eq!(replay_simulated(some, 7, &messages).unwrap().differences, []);
@@ -176,20 +173,88 @@ fn without_the_changes_it_would_be_another_run() {
     }
 }
 
+/// Agents as a text of XML has them.
+fn adding(text: &str) -> Change {
+    Change { file: "more.xml".into(), text: text.into(), ..change(Action::AddAgents, "") }
+}
+
+/// A run in which agents leave and come back, made of something else.
+fn run_of_returns() -> Vec<Kept> {
+    let tape = Tape::default();
+    let mut talws = asking();
+    talws.observe(Box::new(tape.clone()));
+    let mut simulation = talws.simulate(7).unwrap();
+    let sayer =
+        "<agent frequency='50'><name>sayer</name><activity>Throw</activity><activity>Say</activity></agent>";
+    let guest = "<agent frequency='10'><name>guest</name><activity>Say</activity></agent>";
+    let script = [
+        (100, change(Action::RemoveAgent, "sayer")),
+        // Beside one that was never there before.
+        (250, adding(&format!("{guest}{sayer}"))),
+        (300, Change { activity: "Play".into(), ..change(Action::AddActivity, "sayer") }),
+        (400, change(Action::RemoveAgent, "sayer")),
+        (400, adding(sayer)),
+        (1500, change(Action::RemoveAgent, "thrower")),
+        (1550, adding("<agent frequency='20'><name>thrower</name><activity>Throw</activity></agent>")),
+    ];
+    for (moment, asked) in script {
+        simulation.change_at(at(moment), "local", asked).unwrap();
+    }
+    simulation.run_until(at(2000)).unwrap();
+    let messages = tape.kept();
+    let mut answers = messages.iter().filter(|kept| kept.topic == CHANGED.path());
+    assert!(answers.all(|kept| monas::records::Changed::decode(&kept.bytes[..]).unwrap().done));
+    messages
+}
+
 #[test]
-fn an_agent_that_was_removed_and_came_back_is_refused() {
+fn in_simulated_time_agents_that_left_come_back() {
+    let messages = run_of_returns();
+    let outcome = replay_simulated(asking(), 7, &messages).unwrap();
+    assert_eq!(outcome.differences, []);
+    let expected = [
+        ("sayer", "test/ball", 60),
+        ("sayer", "test/news", 60),
+        ("sayer", "test/game", 5),
+        ("sayer", "monas/cycle", 60),
+        ("thrower", "test/ball", 20),
+    ];
+    assert_compared(&messages, &outcome, &expected);
+}
+
+#[test]
+fn one_that_comes_back_as_another_than_then_is_another_run() {
+    let mut messages = run_of_returns();
+    let is_last = |kept: &&mut Kept| kept.topic == CHANGE.path() && kept.publisher == "outside";
+    let kept = messages.iter_mut().rfind(is_last).unwrap();
+    let mut other = Change::decode(&kept.bytes[..]).unwrap();
+    other.text = other.text.replace("frequency='20'", "frequency='10'");
+    kept.bytes = other.encode_to_vec();
+    let outcome = replay_simulated(asking(), 7, &messages).unwrap();
+    assert!(outcome.differences.iter().any(|difference| difference.agent == "thrower"));
+    assert!(outcome.differences.iter().all(|difference| difference.time >= at(1550)));
+}
+
+#[test]
+fn who_was_refused_for_the_sake_of_one_that_is_not_replayed_is_not_brought_back() {
     let tape = Tape::default();
     let mut talws = agents();
     talws.observe(Box::new(tape.clone()));
     let mut simulation = talws.simulate(7).unwrap();
     simulation.run_until(at(100)).unwrap();
     made(&simulation.change("local", change(Action::RemoveAgent, "sayer")).unwrap());
-    let text = "<agent frequency='10'><name>sayer</name><activity>Say</activity></agent>".to_owned();
-    made(&simulation.change("local", Change { text, ..change(Action::AddAgents, "") }).unwrap());
+    let both = "<agent frequency='10'><name>sayer</name><activity>Say</activity></agent>
+        <agent frequency='10'><name>thrower</name><activity>Throw</activity></agent>";
+    assert!(!simulation.change("local", adding(both)).unwrap().done);
     simulation.run_until(at(300)).unwrap();
-    let error = replay_simulated(agents(), 7, &tape.kept()).err().unwrap();
-    let reason = "agent `sayer` was removed and added anew while it was recorded, which cannot be replayed";
-    assert_eq!(error.to_string(), reason);
+    assert_eq!(replay_simulated(agents(), 7, &tape.kept()).unwrap().differences, []);
+    // Who does not know the thrower cannot know why.
+    let text = "<agent frequency='20'><name>sayer</name><activity>Say</activity></agent>";
+    let (setup, _) = monas::config::read(&Source::new("a.xml", text), "a.xml".as_ref(), &registry());
+    let sayer = Talws::new().registry(registry()).setup(setup);
+    let error = replay_simulated(sayer, 7, &tape.kept()).err().unwrap();
+    assert!(error.to_string().starts_with("agents that left were refused "), "{error}");
+    assert_eq!(error.hint(), Some("replay all agents of the host"));
 }
 
 /// A run in real time of a thrower, in which something is changed.
@@ -252,8 +317,8 @@ fn live_run(talws: impl Fn(Sender<()>) -> Talws, asked: &[Change]) -> Vec<Kept> 
     for change in asked {
         made(&running.overview().change("local", change.clone()).unwrap());
         rests = match change.action() {
-            Action::PauseAgent | Action::StopAgent => true,
-            Action::StartAgent | Action::ResumeAgent => false,
+            Action::PauseAgent | Action::StopAgent | Action::RemoveAgent => true,
+            Action::StartAgent | Action::ResumeAgent | Action::AddAgents => false,
             _ => rests,
         };
         if !rests {
@@ -335,6 +400,16 @@ fn of_chart() -> Vec<Change> {
     ]
 }
 
+/// That so many messages at least were recorded of agents on topics, and that each of them was compared.
+fn assert_compared(messages: &[Kept], outcome: &Outcome, expected: &[(&str, &str, usize)]) {
+    for (agent, topic, least) in expected {
+        let of_agent = messages.iter().filter(|kept| kept.publisher == *agent && kept.topic == *topic);
+        let recorded = of_agent.filter(|kept| is_compared(kept)).count();
+        assert_eq!(outcome.compared(agent, topic), recorded as u64, "{agent} {topic}");
+        assert!(recorded >= *least, "{agent} {topic}: {recorded}");
+    }
+}
+
 /// Without the turns that a chart's records tell of beside its cycles, and where it was changed.
 fn is_compared(kept: &Kept) -> bool {
     kept.topic != CYCLE.path() || Cycle::decode(&kept.bytes[..]).unwrap().number > 0
@@ -352,12 +427,8 @@ fn in_real_time_changes_are_made_again_between_the_turns_between_which_they_were
             "mind" => &[("test/news", 20), ("monas/model", 4), ("monas/chart", 5), ("monas/cycle", 8)],
             _ => &[("test/ball", 20), ("test/news", 20), ("test/game", 5), ("monas/cycle", 40)],
         };
-        for (topic, least) in topics {
-            let of_agent = messages.iter().filter(|kept| kept.publisher == agent && kept.topic == *topic);
-            let recorded = of_agent.filter(|kept| is_compared(kept)).count();
-            assert_eq!(outcome.compared(agent, topic), recorded as u64, "{topic}");
-            assert!(recorded >= *least, "{topic}: {recorded}");
-        }
+        let expected: Vec<_> = topics.iter().map(|(topic, least)| (agent, *topic, *least)).collect();
+        assert_compared(&messages, &outcome, &expected);
     }
 }
 
@@ -411,6 +482,56 @@ fn in_real_time_what_the_recording_does_not_tell_is_refused_with_the_reason() {
         let reason = "the recording lacks change 1 of `outside`, which an agent followed";
         assert_eq!(error.to_string(), reason);
     }
+}
+
+#[test]
+fn in_real_time_agents_that_left_come_back() {
+    let thrower = "<agent frequency='500'><name>thrower</name><activity>Tell</activity><activity>Throw</activity><activity>Say</activity></agent>";
+    let asked = [
+        change(Action::RemoveAgent, "thrower"),
+        adding(thrower),
+        Change { activity: "Play".into(), ..change(Action::AddActivity, "thrower") },
+        change(Action::RemoveAgent, "thrower"),
+        adding(thrower),
+    ];
+    let messages = live_run(list, &asked);
+    let outcome = replay(list(channel().0), &messages).unwrap();
+    assert_eq!(outcome.differences, []);
+    let expected = [
+        ("thrower", "test/ball", 20),
+        ("thrower", "test/news", 10),
+        ("thrower", "test/game", 5),
+        ("thrower", "monas/cycle", 20),
+    ];
+    assert_compared(&messages, &outcome, &expected);
+    // A recording of an earlier version does not tell where the agent came back.
+    let is_ordered = |kept: &Kept| {
+        kept.topic == CYCLE.path() && Cycle::decode(&kept.bytes[..]).unwrap().turn() == Turn::Ordered
+    };
+    let mut untold = messages.clone();
+    untold.iter_mut().filter(|kept| is_ordered(kept)).for_each(|kept| kept.publisher = "somebody".into());
+    let error = replay(list(channel().0), &untold).err().unwrap();
+    let reason = "agent `thrower` was removed and added anew: the recording, of an earlier version, does not tell by which change";
+    assert_eq!(error.to_string(), reason);
+}
+
+#[test]
+fn in_real_time_a_chart_that_left_comes_back_from_its_beginning() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("m.srm");
+    std::fs::write(&model, "m = Play . Play . Watch").unwrap();
+    let model = model.display();
+    let text = format!("<agent frequency='100'><name>mind</name><statechart>{model}</statechart></agent>");
+    let messages = live_run(mind, &[change(Action::RemoveAgent, "mind"), adding(&text)]);
+    let outcome = replay(mind(channel().0), &messages).unwrap();
+    assert_eq!(outcome.differences, []);
+    let expected = [
+        ("mind", "test/news", 10),
+        ("mind", "test/game", 3),
+        ("mind", "monas/model", 2),
+        ("mind", "monas/cycle", 4),
+    ];
+    assert_compared(&messages, &outcome, &expected);
 }
 
 #[test]

@@ -59,7 +59,7 @@ impl Plan {
         let desk = Desk { change, roster, staff, now };
         match change.action() {
             Action::NoAction => Err(refusal("E0350", "the change does not say what is to be done")),
-            Action::AddAgents => desk.add_agents(),
+            Action::AddAgents => desk.add_agents(|_| true),
             _ if desk.is_of_no_chart() => Err(refusal_with(
                 "E0352",
                 "a statechart alone cannot be told that",
@@ -84,6 +84,19 @@ impl Plan {
             Action::UnloadModule => desk.unload_module(),
             Action::ReloadModule => desk.reload_module(),
         }
+    }
+}
+
+impl Plan {
+    /// In a replay: what a change that adds agents comes to for those that had left.
+    pub(super) fn of_return(
+        change: &Change,
+        gone: &[String],
+        roster: &Roster,
+        staff: &dyn Staff,
+        now: Moment,
+    ) -> Result<Plan, Refusal> {
+        Desk { change, roster, staff, now }.add_agents(|name| gone.iter().any(|gone| gone == name))
     }
 }
 
@@ -242,7 +255,8 @@ impl Desk<'_> {
         Place { ground: &self.roster.ground, names, agent: name, elsewhere, now: self.now }
     }
 
-    fn add_agents(&self) -> Result<Plan, Refusal> {
+    /// Those agents of a text begin that are wanted.
+    fn add_agents(&self, is_wanted: impl Fn(&str) -> bool) -> Result<Plan, Refusal> {
         let file = if self.change.file.is_empty() { "agents.xml" } else { &self.change.file };
         let source = Source::new(file, self.change.text.clone());
         let (setup, diagnostics) = config::read(&source, Path::new(file), &self.roster.registry);
@@ -270,7 +284,8 @@ impl Desk<'_> {
         let Roster { crew, ground, registry, .. } = self.roster;
         let failed = |error: Error| unusable("E0354", &error);
         let binder = Binder::new(registry).map_err(failed)?;
-        let members = setup.agents.into_iter().map(|agent| {
+        let wanted = setup.agents.into_iter().filter(|agent| is_wanted(&agent.name));
+        let members = wanted.map(|agent| {
             let profile = Profile::of(&agent);
             Ok((profile, crew.member(&binder, agent, ground, &names, self.now).map_err(failed)?))
         });

@@ -115,6 +115,23 @@ impl Roster {
         self.make(change, None, staff, now)
     }
 
+    /// In a replay: of the agents that a change adds, has those begin again that had left. The others are not replayed.
+    pub(in crate::talws) fn bring_back(
+        &mut self,
+        change: &Change,
+        gone: &[String],
+        staff: &mut dyn Staff,
+        now: Moment,
+    ) -> Changed {
+        let plan = Plan::of_return(change, gone, self, staff, now);
+        self.follow(change, plan, None, staff)
+    }
+
+    /// In a replay: an agent has left.
+    pub(in crate::talws) fn forget(&mut self, agent: &str) {
+        self.profiles.retain(|profile| profile.name != agent);
+    }
+
     /// Whether an agent of that name is here.
     pub(in crate::talws) fn knows(&self, agent: &str) -> bool {
         self.profiles.iter().any(|profile| profile.name == agent)
@@ -138,6 +155,17 @@ impl Roster {
         now: Moment,
     ) -> Changed {
         let plan = Plan::of(change, self, staff, now);
+        self.follow(change, plan, header, staff)
+    }
+
+    /// Carries out what a change comes to, and answers it.
+    fn follow(
+        &mut self,
+        change: &Change,
+        plan: Result<Plan, Refusal>,
+        header: Option<&Header>,
+        staff: &mut dyn Staff,
+    ) -> Changed {
         let asked = header.and_then(|header| self.asked(header));
         let made = plan.and_then(|plan| self.carry_out(plan, asked, staff));
         let (done, findings) = match made {
@@ -182,7 +210,7 @@ impl Roster {
             }
             Step::Launch(agents) => {
                 for (profile, member) in agents {
-                    staff.launch(member).map_err(|reason| refusal("E0357", reason))?;
+                    staff.launch(member, asked.as_ref()).map_err(|reason| refusal("E0357", reason))?;
                     let place = self.profiles.partition_point(|known| known.name < profile.name);
                     self.profiles.insert(place, profile);
                 }
@@ -192,7 +220,7 @@ impl Roster {
             }
             Step::Dismiss(name) => {
                 staff.dismiss(&name).map_err(|reason| refusal("E0357", reason))?;
-                self.profiles.retain(|profile| profile.name != name);
+                self.forget(&name);
             }
         }
         Ok(said)

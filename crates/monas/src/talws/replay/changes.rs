@@ -14,7 +14,7 @@ use super::super::crew::Member;
 use super::super::entry;
 use super::super::instance::Instance;
 use super::super::management::Staff;
-use super::super::orders::{Orders, Standing};
+use super::super::orders::{Asked, Orders, Standing};
 use super::scene::Actor;
 use crate::agent::Profile;
 use crate::config;
@@ -70,8 +70,14 @@ impl Staff for Replayed<'_> {
         instance.obey(orders, now).map(|(_, said)| said)
     }
 
-    fn launch(&mut self, member: Member) -> Result<(), String> {
-        Err(format!("`{}` is not replayed: it was added while the others ran", member.name))
+    /// One that had left comes back.
+    fn launch(&mut self, member: Member, _: Option<&Asked>) -> Result<(), String> {
+        let now = self.now;
+        let Some(instance) = self.instance_mut(&member.name) else {
+            return Err(format!("`{}` is not replayed: it was added while the others ran", member.name));
+        };
+        *instance = Instance::new(member, now);
+        Ok(())
     }
 
     fn dismiss(&mut self, agent: &str) -> Result<(), String> {
@@ -102,26 +108,18 @@ pub(super) fn concerning(change: &Change, knows: impl Fn(&str) -> bool) -> Optio
     }
 }
 
-/// An agent that left and comes back is another one, whose set-up is not that of the replay.
-///
-/// # Errors
-/// The change adds such an agent.
-pub(super) fn refuse_return(change: &Change, registry: &Registry, gone: &[String]) -> Result<(), Error> {
-    if change.action() != Action::AddAgents || gone.is_empty() {
-        return Ok(());
+/// The names of the agents that a change adds.
+pub(super) fn added(change: &Change, registry: &Registry) -> Vec<String> {
+    if change.action() != Action::AddAgents {
+        return Vec::new();
     }
     let source = Source::new(&change.file, change.text.clone());
     let (setup, _) = config::read(&source, Path::new(&change.file), registry);
-    match setup.agents.iter().find(|agent| gone.contains(&agent.name)) {
-        Some(agent) => {
-            let message = format!(
-                "agent `{}` was removed and added anew while it was recorded, which cannot be replayed",
-                agent.name
-            );
-            Err(Error::new(ErrorKind::Invalid, message).with_hint("replay other agents, or the time before"))
-        }
-        None => Ok(()),
-    }
+    setup.agents.into_iter().map(|agent| agent.name).collect()
+}
+
+pub(super) fn unread(error: prost::DecodeError) -> Error {
+    Error::new(ErrorKind::Invalid, format!("a recorded change of agents cannot be read: {error}"))
 }
 
 /// What became of an agent in real time, by a recording without records of it.

@@ -7,7 +7,7 @@ use narukom::Moment;
 
 use super::super::crew::{Crew, Ground, Member};
 use super::super::management::{Roster, Staff};
-use super::super::orders::{Orders, Standing};
+use super::super::orders::{Asked as ByWhom, Orders, Standing};
 use super::changes::refuse_in_real_time;
 use super::repeated::Repeated;
 use crate::agent::Profile;
@@ -43,6 +43,27 @@ impl Ordered {
         self.asked.push_back(Request { publisher: publisher.to_owned(), sequence, change });
     }
 
+    /// The agent has left.
+    pub(super) fn left(&mut self, agent: &str) {
+        self.roster.forget(agent);
+    }
+
+    /// The agent that had left, as a change adds it anew.
+    ///
+    /// # Errors
+    /// What is replayed now cannot be added like that.
+    pub(super) fn anew(
+        &mut self,
+        change: &Change,
+        agent: &str,
+        repeated: &mut Repeated,
+        now: Moment,
+    ) -> Result<Member, Error> {
+        let mut staff = Again::of(change, repeated, now);
+        let changed = self.roster.bring_back(change, &[agent.to_owned()], &mut staff, now);
+        staff.begun.ok_or_else(|| refused(&Changed { agent: agent.to_owned(), ..changed }, now))
+    }
+
     /// A change was made, or refused, at a moment.
     ///
     /// # Errors
@@ -75,23 +96,28 @@ impl Ordered {
         }
     }
 
-    /// Here the agent was told to follow a change: it does so again.
+    /// The change that the agent was told to follow here, or that added it.
     ///
     /// # Errors
-    /// The recording lacks the change, or what is replayed now cannot be changed like that.
-    pub(super) fn follow(&mut self, record: &Cycle, repeated: &mut Repeated) -> Result<(), Error> {
+    /// The recording lacks it.
+    pub(super) fn ordered_by(&mut self, record: &Cycle) -> Result<Change, Error> {
         (self.is_told, self.untold) = (true, None);
         let asked = record.asked.clone().unwrap_or_default();
-        let change = self.taken(&asked).ok_or_else(|| lacking(&asked))?;
-        let now = Moment::from_nanos(record.time);
-        let mut staff = Again {
-            action: change.action(),
-            repeated,
-            now,
-            is_of_chart: !change.chart.is_empty(),
-            was_told: false,
-        };
-        let changed = self.roster.repeat(&change, &mut staff, now);
+        self.taken(&asked).ok_or_else(|| lacking(&asked))
+    }
+
+    /// The agent follows a change again.
+    ///
+    /// # Errors
+    /// What is replayed now cannot be changed like that.
+    pub(super) fn follow(
+        &mut self,
+        change: &Change,
+        repeated: &mut Repeated,
+        now: Moment,
+    ) -> Result<(), Error> {
+        let mut staff = Again::of(change, repeated, now);
+        let changed = self.roster.repeat(change, &mut staff, now);
         if staff.was_told { Ok(()) } else { Err(refused(&changed, now)) }
     }
 
@@ -110,13 +136,7 @@ impl Ordered {
         };
         let request = self.asked.iter().position(is_it).and_then(|place| self.asked.remove(place));
         let Some(Request { change, .. }) = request.filter(|_| changed.done) else { return Ok(()) };
-        let mut staff = Again {
-            action: change.action(),
-            repeated,
-            now,
-            is_of_chart: !change.chart.is_empty(),
-            was_told: false,
-        };
+        let mut staff = Again::of(&change, repeated, now);
         let again = self.roster.repeat(&change, &mut staff, now);
         if again.done { Ok(()) } else { Err(refused(&again, now)) }
     }
@@ -139,6 +159,15 @@ struct Again<'a> {
     /// It is about one chart.
     is_of_chart: bool,
     was_told: bool,
+    /// It had left, and begins anew as this.
+    begun: Option<Member>,
+}
+
+impl<'a> Again<'a> {
+    fn of(change: &Change, repeated: &'a mut Repeated, now: Moment) -> Again<'a> {
+        let (action, is_of_chart) = (change.action(), !change.chart.is_empty());
+        Again { action, repeated, now, is_of_chart, was_told: false, begun: None }
+    }
 }
 
 impl Staff for Again<'_> {
@@ -172,8 +201,9 @@ impl Staff for Again<'_> {
         self.repeated.obey(orders, self.now)
     }
 
-    fn launch(&mut self, member: Member) -> Result<(), String> {
-        Err(format!("`{}` is another agent", member.name))
+    fn launch(&mut self, member: Member, _: Option<&ByWhom>) -> Result<(), String> {
+        self.begun = Some(member);
+        Ok(())
     }
 
     fn dismiss(&mut self, agent: &str) -> Result<(), String> {

@@ -12,7 +12,7 @@ use narukom::{Arrival, Moment, Narukom, TopicSlot};
 use super::super::links::Brought;
 use super::super::setup::{Stage, Station};
 use super::super::{HostConfig, REAL_TIME_SEED, Talws};
-use super::changes::{concerning, is_of_module, refuse_return};
+use super::changes::{added, concerning, is_of_module, unread};
 use super::compare::{Ledger, Window};
 use super::feed::{Ear, Feed, Foreign, Inlet};
 use super::ordered::Ordered;
@@ -152,7 +152,7 @@ impl RealTime {
     ) -> Result<(), Error> {
         let Entrance { hub, about, .. } = self.inputs.get(input).ok_or_else(no_input)?;
         let (hub, about) = (*hub, *about);
-        self.heed(input, about, &message)?;
+        self.heed(input, about, &message, told)?;
         let Entrance { routes, .. } = &self.inputs[input];
         let count = &mut self.hubs[hub].1;
         *count += 1;
@@ -176,7 +176,13 @@ impl RealTime {
     }
 
     /// Takes note of changes of the agents that are replayed.
-    fn heed(&mut self, input: usize, about: About, message: &RecordedMessage<'_>) -> Result<(), Error> {
+    fn heed(
+        &mut self,
+        input: usize,
+        about: About,
+        message: &RecordedMessage<'_>,
+        told: &mut dyn FnMut(Difference),
+    ) -> Result<(), Error> {
         let Entrance { hub, publisher, .. } = &self.inputs[input];
         let host = &self.hubs[*hub].0;
         let mut parts = self.parts.iter_mut().filter(|part| part.host == *host);
@@ -195,9 +201,13 @@ impl RealTime {
                     part.ordered.ask(publisher, message.sequence, change);
                     return Ok(());
                 }
-                let gone = self.parts.iter().filter(|part| part.is_gone && part.host == *host);
-                let gone: Vec<String> = gone.map(|part| part.agent.clone()).collect();
-                refuse_return(&change, &self.registry, &gone)
+                let names = added(&change, &self.registry);
+                for part in self.parts.iter_mut().filter(|part| part.host == *host) {
+                    if names.contains(&part.agent) {
+                        part.ordered.ask(publisher, message.sequence, change.clone());
+                    }
+                }
+                Ok(())
             }
             About::Made => {
                 let changed = Changed::decode(message.bytes).map_err(unread)?;
@@ -205,7 +215,9 @@ impl RealTime {
                     return parts.try_for_each(|part| part.equip(&changed, message.received));
                 }
                 let Some(part) = parts.find(|part| part.agent == changed.agent) else { return Ok(()) };
-                part.is_gone |= changed.done && changed.action() == Action::RemoveAgent;
+                if changed.done && changed.action() == Action::RemoveAgent {
+                    part.left(&mut self.ledger, told)?;
+                }
                 let is_list = matches!(part.repeated, Repeated::List(_));
                 part.ordered.answered(&changed, is_list, message.received)
             }
@@ -222,10 +234,6 @@ impl RealTime {
         }
         Ok(self.ledger.tallies())
     }
-}
-
-fn unread(error: prost::DecodeError) -> Error {
-    Error::new(ErrorKind::Invalid, format!("a recorded change of agents cannot be read: {error}"))
 }
 
 fn arrival(message: &RecordedMessage<'_>) -> Arrival {
@@ -320,6 +328,7 @@ impl Part {
         }
         match (&self.repeated, record.turn()) {
             (_, Turn::Ordered) => self.follow(&record, ledger, told)?,
+            (_, Turn::None | Turn::Start) if self.is_gone => return Err(came_back_untold(&self.agent)),
             (Repeated::Chart(_), Turn::None) if self.is_told => self.own.push(own),
             (Repeated::Chart(_), Turn::None) => return Err(self.untold()),
             (Repeated::List(_), Turn::None) if record.seen.is_empty() => return Err(self.untold()),
@@ -355,8 +364,28 @@ impl Part {
         self.run_unrecorded(Moment::from_nanos(record.time), ledger, told)?;
         self.feed.begin(&record.seen, std::iter::empty());
         self.feed.fetching();
-        self.ordered.follow(record, &mut self.repeated)?;
+        let (change, now) = (self.ordered.ordered_by(record)?, Moment::from_nanos(record.time));
+        match change.action() {
+            Action::AddAgents => self.come_back(&change, now)?,
+            _ => self.ordered.follow(&change, &mut self.repeated, now)?,
+        }
         self.feed.failure()
+    }
+
+    /// The agent was removed: its last cycle is known.
+    fn left(&mut self, ledger: &mut Ledger, told: &mut dyn FnMut(Difference)) -> Result<(), Error> {
+        self.run_begun(true, ledger, told)?;
+        self.is_gone = true;
+        self.ordered.left(&self.agent);
+        Ok(())
+    }
+
+    /// The agent, which had left, was added anew.
+    fn come_back(&mut self, change: &Change, now: Moment) -> Result<(), Error> {
+        let member = self.ordered.anew(change, &self.agent, &mut self.repeated, now)?;
+        self.repeated = Repeated::new(member, &self.feed).ok_or_else(|| not_alone(&self.agent))?;
+        (self.is_told, self.is_gone) = (false, false);
+        Ok(())
     }
 
     /// A module came, went or was exchanged. If the agent was told so it has followed; if not it knows the names now.
@@ -473,6 +502,13 @@ impl Part {
         }
         Ok(())
     }
+}
+
+fn came_back_untold(agent: &str) -> Error {
+    let message = format!(
+        "agent `{agent}` was removed and added anew: the recording, of an earlier version, does not tell by which change"
+    );
+    Error::new(ErrorKind::Invalid, message).with_hint("replay other agents, or the time before")
 }
 
 fn not_alone(agent: &str) -> Error {

@@ -11,12 +11,12 @@ use super::super::instance::Instance;
 use super::super::management::Roster;
 use super::super::moved::Moved;
 use super::super::setup::Station;
-use super::changes::{Replayed, concerning, refuse_return};
+use super::changes::{Replayed, added, concerning};
 use super::compare::{Ledger, Window};
 use super::{Company, Difference};
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::logger::Simulating;
-use crate::records::{Action, Change};
+use crate::records::{Action, Change, Changed};
 
 /// A message that was published in the replay.
 pub(super) struct Produced {
@@ -76,6 +76,8 @@ pub(super) struct Scene {
     roster: Roster,
     /// Agents that were removed.
     gone: Vec<String>,
+    /// The number of the change by which the last of them came back.
+    returned_by: Option<u64>,
     /// Why the replay cannot go on.
     refused: Option<Error>,
     actors: Vec<Actor>,
@@ -120,6 +122,7 @@ impl Scene {
             hub,
             moved,
             gone: Vec::new(),
+            returned_by: None,
             refused: None,
             actors,
             places,
@@ -169,8 +172,8 @@ impl Scene {
     /// Makes the changes again that were published since the last time, if they are about agents that are replayed.
     pub(super) fn attend(&mut self, spy: &Spy) {
         while let Some(change) = self.roster.next_asked().filter(|_| !self.has_ended) {
-            if let Err(error) = refuse_return(&change, self.roster.registry(), &self.gone) {
-                self.refused.get_or_insert(error);
+            if !self.gone.is_empty() {
+                self.bring_back(&change, spy);
             }
             if let Some(change) = concerning(&change, |agent| self.roster.knows(agent)) {
                 self.repeat(&change, spy);
@@ -179,20 +182,56 @@ impl Scene {
     }
 
     fn repeat(&mut self, change: &Change, spy: &Spy) {
-        self.is_setting_up = false;
-        let (now, host) = (self.now, self.hub.host());
-        let mut staff = Replayed { host, actors: &mut self.actors, now };
-        let mut is_done = false;
-        let produced = spy.watch(|| is_done = self.roster.repeat(change, &mut staff, now).done);
+        let is_done = self.make(spy, |roster, staff, now| roster.repeat(change, staff, now));
         if is_done && change.action() == Action::RemoveAgent {
             self.gone.push(change.agent.clone());
         }
+    }
+
+    /// Agents that left begin again if the change adds them.
+    fn bring_back(&mut self, change: &Change, spy: &Spy) {
+        let names = added(change, self.roster.registry());
+        let back: Vec<String> = self.gone.iter().filter(|gone| names.contains(gone)).cloned().collect();
+        if back.is_empty() {
+            return;
+        }
+        if self.make(spy, |roster, staff, now| roster.bring_back(change, &back, staff, now)) {
+            self.gone.retain(|gone| !back.contains(gone));
+            self.returned_by = Some(change.number);
+        }
+    }
+
+    /// Makes a change; false if it cannot be made.
+    fn make(
+        &mut self,
+        spy: &Spy,
+        make: impl FnOnce(&mut Roster, &mut Replayed<'_>, Moment) -> Changed,
+    ) -> bool {
+        self.is_setting_up = false;
+        let now = self.now;
+        let mut staff = Replayed { host: self.hub.host(), actors: &mut self.actors, now };
+        let mut is_done = false;
+        let produced = spy.watch(|| is_done = make(&mut self.roster, &mut staff, now).done);
         for one in produced {
             if let Some(actor) = self.actor(&one.publisher) {
                 self.actors[actor].window.produced(one.topic, one.bytes);
             }
         }
         self.wake();
+        is_done
+    }
+
+    /// This is what was answered when agents came back: it may have been refused for the sake of one that is not replayed.
+    pub(super) fn answered(&mut self, changed: &Changed) {
+        let is_it = changed.action() == Action::AddAgents && self.returned_by == Some(changed.number);
+        if is_it && !changed.done {
+            let message = "agents that left were refused when somebody added them anew, because of others that are not replayed";
+            let error = Error::new(ErrorKind::Invalid, message).with_hint("replay all agents of the host");
+            self.refused.get_or_insert(error);
+        }
+        if is_it {
+            self.returned_by = None;
+        }
     }
 
     /// # Errors

@@ -1,16 +1,18 @@
 //! The replay of a recording of simulated time.
 
+use narukom::prost::Message as _;
 use narukom::{AnyPublisher, Arrival, Moment, Receiver, TopicSlot};
 
 use super::super::Talws;
 use super::super::management::HOST_ITSELF;
 use super::super::overview::OUTSIDE;
 use super::super::setup::Stage;
+use super::changes::unread;
 use super::compare::Ledger;
 use super::scene::{Scene, Spy};
 use super::{Company, Difference, Recorded, RecordedMessage, Tally, no_input};
 use crate::error::Error;
-use crate::records::{CHANGE, CHANGED, CHART, HOST, LOG, MODEL};
+use crate::records::{CHANGE, CHANGED, CHART, Changed, HOST, LOG, MODEL};
 
 /// Agents that run again in simulated time.
 ///
@@ -125,6 +127,7 @@ impl Simulated {
                 scene.turn_of_another(*place, *sets_up, spy);
                 if *answers {
                     scene.attend(spy);
+                    scene.answered(&Changed::decode(message.bytes).map_err(unread)?);
                 }
                 publisher.publish_bytes(message.bytes, scene.now).map_err(Error::hub)?;
                 if *asks {

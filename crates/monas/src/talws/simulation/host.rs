@@ -18,7 +18,7 @@ use crate::talws::instance::Instance;
 use crate::talws::links::RunningLink;
 use crate::talws::management::{Roster, Staff};
 use crate::talws::moved::Moved;
-use crate::talws::orders::{Orders, Standing};
+use crate::talws::orders::{Asked, Orders, Standing};
 use crate::talws::overview::{ShownMoment, View};
 use crate::talws::setup::{Station, tick};
 
@@ -232,7 +232,7 @@ impl Staff for Working<'_> {
         Ok(said)
     }
 
-    fn launch(&mut self, member: Member) -> Result<(), String> {
+    fn launch(&mut self, member: Member, _: Option<&Asked>) -> Result<(), String> {
         let instance = Instance::new(member, self.now);
         let place = self.team.instances.partition_point(|known| known.name() < instance.name());
         self.team.instances.insert(place, instance);
