@@ -26,7 +26,7 @@
 //! ```
 //!
 //! In text a node is named by as much of its path as makes it the only one, and written as in a formula, `(play|wait)~`; what is called by its label alone
-//! is known by its type or its number. Labels and the names of transitions are written where they are not the usual ones.
+//! is known by its type or its number. `at = 40 120` and `size = 160 60` below a node, `via = 40 80, 120 80` below a transition say where they are drawn. Labels and the names of transitions are written where they are not the usual ones.
 
 mod chart;
 mod from_text;
@@ -40,7 +40,7 @@ mod to_xmi;
 use std::time::Duration;
 
 use yase::expression::Place;
-use yase::statechart::Constant;
+use yase::statechart::{Constant, Frame, Point};
 
 pub(crate) use from_text::from_text;
 pub(crate) use from_xmi::from_xmi;
@@ -98,6 +98,8 @@ pub struct IacNode {
     pub metadata: String,
     /// What only text can say.
     pub refinement: StateRefinement,
+    /// Where it is drawn: in the files of the old tools that is nowhere, but in a diagram's beside the model's.
+    pub frame: Frame,
     /// Where it stands.
     pub place: Place,
 }
@@ -134,6 +136,8 @@ pub struct IacTransition {
     pub metadata: String,
     /// What only text can say.
     pub refinement: TransitionRefinement,
+    /// The corners it is drawn with.
+    pub bends: Vec<Point>,
     /// Where it stands.
     pub place: Place,
     /// Where its expression stands.

@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 use yase::export::notation::{depth_first, kind_word};
-use yase::{NodeId, Statechart, Transition};
+use yase::statechart::Frame;
+use yase::{NodeId, Statechart, TransitionId};
 
 use crate::names::{names, transition_name};
 
@@ -10,24 +11,34 @@ use crate::names::{names, transition_name};
 ///
 /// `{"model", "nodes": [{"label", "name", "type", "parent"}], "transitions": [{"source", "target", "name", "te"}]}`: nodes with a
 /// parent before its children and its children in order, `parent`, `source` and `target` being labels; transitions in the
-/// chart's order, `te` being `null` where nothing is said.
+/// chart's order, `te` being `null` where nothing is said. Nodes that have a place in drawings say it as `"at": [right, down]` and `"size": [width, height]`,
+/// transitions that have corners as `"via": [[right, down], ...]`.
 pub fn to_json(chart: &Statechart) -> Value {
     let (names, labels) = (names(chart), chart.labels());
     let nodes: Vec<Value> = depth_first(chart).map(|id| node(chart, id, &names, &labels)).collect();
     let transitions: Vec<Value> =
-        chart.transitions().map(|(_, transition)| self::transition(transition, &names, &labels)).collect();
+        chart.transitions().map(|(id, _)| transition(chart, id, &names, &labels)).collect();
     json!({ "model": chart.name, "nodes": nodes, "transitions": transitions })
 }
 
 fn node(chart: &Statechart, id: NodeId, names: &[String], labels: &[String]) -> Value {
     let index = id.0 as usize;
     let parent = chart.node(id).parent.map(|parent| &labels[parent.0 as usize]);
-    json!({ "label": labels[index], "name": names[index], "type": kind_word(chart.node(id).kind), "parent": parent })
+    let mut node = json!({ "label": labels[index], "name": names[index], "type": kind_word(chart.node(id).kind), "parent": parent });
+    if let Some(Frame { at, size }) = chart.layout.frames.get(&id) {
+        at.iter().for_each(|at| node["at"] = json!(at));
+        size.iter().for_each(|size| node["size"] = json!(size));
+    }
+    node
 }
 
-fn transition(transition: &Transition, names: &[String], labels: &[String]) -> Value {
+fn transition(chart: &Statechart, id: TransitionId, names: &[String], labels: &[String]) -> Value {
+    let transition = chart.transition(id);
     let te = (!transition.expression.is_empty()).then(|| transition.expression.to_string());
     let label = |node: NodeId| &labels[node.0 as usize];
     let (source, target) = (label(transition.source), label(transition.target));
-    json!({ "source": source, "target": target, "name": transition_name(transition, names), "te": te })
+    let mut transition =
+        json!({ "source": source, "target": target, "name": transition_name(transition, names), "te": te });
+    chart.layout.bends.get(&id).into_iter().for_each(|bends| transition["via"] = json!(bends));
+    transition
 }

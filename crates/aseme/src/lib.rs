@@ -76,6 +76,7 @@ pub mod functionality;
 pub mod generate;
 pub mod iac;
 mod json;
+mod layout;
 pub mod liveness;
 mod meta;
 pub mod mutation;

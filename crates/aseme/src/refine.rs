@@ -5,6 +5,8 @@
 //! dropped silently. An entry with a wildcard is for all that it names and that no entry without wildcard names. An entry with `also` is no word about
 //! the transition that it names: it adds another one beside it, after all others, in the order of the entries.
 
+mod layout;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use yase::diagnostic::nearest;
@@ -12,6 +14,9 @@ use yase::{Diagnostic, NodeId, NodeKind, Span, Statechart, Transition, Transitio
 
 use crate::path::{self, Path};
 use crate::srm::{StateEntry, TransitionEntry};
+
+pub(crate) use layout::place_among_twins;
+pub use layout::refine_layout;
 
 /// An entry that could not be applied.
 #[derive(Clone, PartialEq, Debug)]
@@ -117,7 +122,7 @@ fn transitions_of<'a>(chart: &Statechart, entry: &'a TransitionEntry) -> Wish<'a
     };
     let named: Vec<TransitionId> =
         path::transitions(chart, &entry.source, &entry.target).filter(is_first).collect();
-    let near = if named.is_empty() { near_transitions(chart, entry) } else { Vec::new() };
+    let near = if named.is_empty() { near_ways(chart, &entry.source, &entry.target) } else { Vec::new() };
     let has_wildcard = entry.has_wildcard();
     Wish { text: &entry.text, span: entry.span, thing: "transition", has_wildcard, named, near }
 }
@@ -144,16 +149,15 @@ fn near_names<'a>(chart: &'a Statechart, path: &'a Path) -> impl Iterator<Item =
 }
 
 /// If a name is misspelt, the right one; else the transitions that share the source, then those that share the target.
-fn near_transitions(chart: &Statechart, entry: &TransitionEntry) -> Vec<String> {
-    let names: Vec<String> =
-        near_names(chart, &entry.source).chain(near_names(chart, &entry.target)).collect();
+fn near_ways(chart: &Statechart, source: &Path, target: &Path) -> Vec<String> {
+    let names: Vec<String> = near_names(chart, source).chain(near_names(chart, target)).collect();
     if !names.is_empty() {
         return names;
     }
     let sharing_source =
-        chart.transitions().filter(|(_, transition)| entry.source.matches(chart, transition.source));
+        chart.transitions().filter(|(_, transition)| source.matches(chart, transition.source));
     let sharing_target =
-        chart.transitions().filter(|(_, transition)| entry.target.matches(chart, transition.target));
+        chart.transitions().filter(|(_, transition)| target.matches(chart, transition.target));
     let near = sharing_source.chain(sharing_target).map(|(id, _)| path::shortest_transition(chart, id));
     near.take(CANDIDATES).collect()
 }

@@ -8,11 +8,12 @@
 mod charts;
 mod entries;
 
+use yase::statechart::Layout;
 use yase::{Diagnostic, NodeId, NodeKind, Statechart, Transition, TransitionId};
 
 use crate::path;
 use crate::refine::{self, Unmatched};
-use crate::srm::{Entry, Section, SrmFile, StateEntry, TransitionEntry};
+use crate::srm::{Entry, LayoutEntry, Section, SrmFile, StateEntry, TransitionEntry};
 use crate::{liveness_to_statechart, srm_to_iac};
 
 pub use charts::keep;
@@ -41,6 +42,7 @@ pub fn put_aside(file: &SrmFile) -> Result<Regenerated, Vec<Diagnostic>> {
     }
     let srm = file.srm();
     let mut lost = refine::refine(&mut chart, &srm.transitions);
+    lost.extend(refine::refine_layout(&mut chart, &srm.layout));
     lost.extend(refine::refine_states(&mut chart, &srm.states));
     let entries: Vec<Entry> = file.entries().iter().copied().filter(is_refinement).collect();
     let mut text = file.text().to_owned();
@@ -56,7 +58,7 @@ pub fn put_aside(file: &SrmFile) -> Result<Regenerated, Vec<Diagnostic>> {
 }
 
 fn is_refinement(entry: &Entry) -> bool {
-    matches!(entry.section, Section::Transitions | Section::States)
+    matches!(entry.section, Section::Transitions | Section::States | Section::Layout)
 }
 
 /// Puts `# ` before each line of an entry, and the reason above it.
@@ -86,13 +88,16 @@ pub fn carry(file: &SrmFile, entries: &[(Section, String)]) -> Result<Regenerate
         return Err(found);
     }
     let (plain, _) = liveness_to_statechart(&file.srm().liveness);
-    let mut carrying = Carrying { plain, chart, added: Vec::new(), kept: 0, lost: Vec::new() };
+    let mut placed = plain.clone();
+    refine::refine(&mut placed, &file.srm().transitions);
+    refine::refine_layout(&mut placed, &file.srm().layout);
+    let mut carrying = Carrying { plain, placed, chart, added: Vec::new(), kept: 0, lost: Vec::new() };
     for (section, text) in entries {
         carrying.entry(*section, text);
     }
     let Carrying { added, kept, lost, .. } = carrying;
     let mut text = file.text().to_owned();
-    for section in [Section::Constants, Section::Transitions, Section::States] {
+    for section in entries::CARRIED {
         let lines: Vec<&str> =
             added.iter().filter(|(of, _)| *of == section).map(|(_, line)| line.as_str()).collect();
         text = entries::inserted(&text, section, &lines);
@@ -107,6 +112,8 @@ pub fn carry(file: &SrmFile, entries: &[(Section, String)]) -> Result<Regenerate
 struct Carrying {
     /// The chart of the formulas alone, in which paths are looked up.
     plain: Statechart,
+    /// The same with the transitions that stand beside those, and with the places of all: what a layout is about.
+    placed: Statechart,
     /// The chart as it is refined so far.
     chart: Statechart,
     added: Vec<(Section, String)>,
@@ -120,13 +127,14 @@ impl Carrying {
             SrmFile::parse(format!("Role: r\nLiveness:\nr = a\n{}:\n{text}\n", section.word()));
         let srm = file.srm();
         let errors = found.into_iter().find(Diagnostic::is_error);
-        let outcome = match (errors, srm.transitions.first(), srm.states.first()) {
+        let outcome = match (errors, srm.transitions.first(), srm.states.first(), srm.layout.first()) {
             (Some(error), ..) => {
                 Err(Box::new(Unmatched { text: text.into(), candidates: Vec::new(), diagnostic: error }))
             }
-            (None, Some(entry), _) => self.transition(entry),
-            (None, _, Some(entry)) => self.state(entry),
-            (None, None, None) => self.constants(&srm.constants, text),
+            (None, Some(entry), ..) => self.transition(entry),
+            (None, _, Some(entry), _) => self.state(entry),
+            (None, _, _, Some(entry)) => self.layout(entry),
+            (None, None, None, None) => self.constants(&srm.constants, text),
         };
         match outcome {
             Ok(is_new) => {
@@ -169,14 +177,40 @@ impl Carrying {
     fn beside(&mut self, entry: &TransitionEntry, scratch: &Statechart) -> bool {
         let is_there = |wished: &Transition| {
             let same = |own: &Transition| (own.source, own.target) == (wished.source, wished.target);
-            self.chart.transitions().any(|(_, own)| same(own) && says(own) == says(wished))
+            // in the chart itself what enters a composite may lead to what remembers inside
+            self.placed.transitions().any(|(_, own)| same(own) && says(own) == says(wished))
         };
         let added = scratch.transitions().skip(self.plain.transitions().len());
         let is_new = !added.map(|(_, wished)| wished).all(is_there);
         if is_new {
             refine::refine(&mut self.chart, std::slice::from_ref(entry));
+            refine::refine(&mut self.placed, std::slice::from_ref(entry));
         }
         is_new
+    }
+
+    /// Whether the places are to be added, or are said already.
+    fn layout(&mut self, entry: &LayoutEntry) -> Result<bool, Box<Unmatched>> {
+        let mut scratch = self.placed.clone();
+        scratch.layout = Layout::default();
+        if let Some(unmatched) = refine::refine_layout(&mut scratch, std::slice::from_ref(entry)).pop() {
+            return Err(Box::new(unmatched));
+        }
+        let own = &mut self.placed.layout;
+        let nodes = scratch.layout.frames.iter();
+        let taken = nodes.clone().find(|(id, frame)| own.frames.get(id).is_some_and(|own| own != *frame));
+        let ways = scratch.layout.bends.iter();
+        let way = ways.clone().find(|(id, bends)| own.bends.get(id).is_some_and(|own| own != *bends));
+        let taken = taken.map(|(&id, _)| path::shortest_path(&self.plain, id));
+        let taken = taken.or(way.map(|(&id, _)| path::shortest_transition(&scratch, id)));
+        if let Some(taken) = taken {
+            return Err(conflict(&entry.text, &taken));
+        }
+        let is_new = nodes.clone().any(|(id, _)| !own.frames.contains_key(id))
+            || ways.clone().any(|(id, _)| !own.bends.contains_key(id));
+        own.frames.extend(scratch.layout.frames);
+        own.bends.extend(scratch.layout.bends);
+        Ok(is_new)
     }
 
     fn state(&mut self, entry: &StateEntry) -> Result<bool, Box<Unmatched>> {

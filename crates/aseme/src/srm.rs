@@ -1,6 +1,6 @@
 //! Roles as text: the System Roles Model of one role, with the refinements of its chart.
 //!
-//! The layout is that of the thesis's Figures 5.2 to 5.4, with three sections more. `#` begins a comment.
+//! The form is that of the thesis's Figures 5.2 to 5.4, with four sections more. `#` begins a comment.
 //!
 //! ```text
 //! Role: goalie
@@ -16,6 +16,9 @@
 //! *~ -> END : [false]
 //! States:
 //! SearchBall : priority = 5, duration = 2s
+//! Layout:
+//! decision/SearchBall : at = 20 90, size = 120 40
+//! decision: CONDITION -> SearchBall : via = 80 60
 //! ```
 //!
 //! - **Transitions**: `[scope:] source -> target [also] [!priority] [%weight] [interrupts] [: expression]`. Paths are described in
@@ -24,18 +27,22 @@
 //! - **States**: `path : key = value, ...` with the keys `activity`, `priority`, `entry`, `exit`, `defer`, `duration` and, for
 //!   composites, `history`: with `shallow` or `deep` one that is entered again goes on where it was left. A line without `:` goes on with the entry
 //!   above it.
+//! - **Layout**: where things are drawn, for whoever wants them elsewhere than where a drawing puts them. `path : at = right down, size = width height` for
+//!   states and connectors, `[scope:] source -> target [also [number]] : via = right down, ...` for the corners of a transition; pixels from where the
+//!   content of the composite around it begins ([`yase::statechart::Layout`]). Nothing else depends on it.
 //!
 //! What a text is, is told by its content: one that begins with `<` is XMI, the form in which the method's Eclipse tools keep a System
 //! Roles Model, of which the role's name and formulas are read; one with a section header is as above, any other is bare formulas.
 
 mod constants;
 mod entries;
+mod layout;
 mod sections;
 mod states;
 mod xmi;
 
 use yase::expression::{Action, TransitionExpression};
-use yase::statechart::Constant;
+use yase::statechart::{Constant, Frame, Point};
 use yase::{Diagnostic, Node, NodeId, NodeKind, Span, Statechart, TransitionId};
 
 use crate::liveness::{self, Liveness};
@@ -61,6 +68,8 @@ pub struct Srm {
     pub transitions: Vec<TransitionEntry>,
     /// What is said of states.
     pub states: Vec<StateEntry>,
+    /// Where states and transitions are drawn.
+    pub layout: Vec<LayoutEntry>,
 }
 
 /// A part in a protocol between agents.
@@ -157,6 +166,37 @@ impl StateEntry {
             remember(chart, id, kind);
         }
     }
+}
+
+/// Where one state or transition is drawn, or by wildcards several.
+#[derive(Clone, PartialEq, Debug)]
+pub struct LayoutEntry {
+    /// What is drawn there.
+    pub of: Placed,
+    /// Of a state: its place and size.
+    pub frame: Frame,
+    /// Of a transition: its corners.
+    pub bends: Vec<Point>,
+    /// The entry as it is written, on one line, without comments.
+    pub text: String,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// What a layout has a place for.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Placed {
+    /// A state or a connector.
+    State(Path),
+    /// A transition.
+    Transition {
+        /// The node it leaves.
+        source: Path,
+        /// The node it leads to.
+        target: Path,
+        /// 0 for the one that the formulas make; from 1 on those that were added beside it, in order.
+        beside: usize,
+    },
 }
 
 /// Has what leads into a composite from outside lead to a HISTORY in it, behind its other children, so that their labels stay.
@@ -266,6 +306,7 @@ impl Reader {
             Section::Constants => self.constants(blanked, body),
             Section::Transitions => self.transitions(blanked, body),
             Section::States => self.states(blanked, body),
+            Section::Layout => self.layout(blanked, body),
         }
     }
 

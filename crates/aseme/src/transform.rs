@@ -45,6 +45,7 @@ pub fn srm_to_iac(srm: &Srm) -> (Statechart, Vec<Diagnostic>) {
     }
     chart.constants.clone_from(&srm.constants);
     let mut unmatched = crate::refine::refine(&mut chart, &srm.transitions);
+    unmatched.extend(crate::refine::refine_layout(&mut chart, &srm.layout));
     unmatched.extend(crate::refine::refine_states(&mut chart, &srm.states));
     diagnostics.extend(unmatched.into_iter().map(|unmatched| unmatched.diagnostic));
     (chart, diagnostics)

@@ -158,6 +158,9 @@ pub(crate) enum ModelCommand {
         /// Where to write the drawing; standard output if not given.
         #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
         output: Option<PathBuf>,
+        /// Leave out of account what the model says of where its states and transitions are drawn.
+        #[arg(long)]
+        no_layout: bool,
         #[command(flatten)]
         format: FormatArgument,
     },

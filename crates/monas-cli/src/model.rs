@@ -19,6 +19,7 @@ use std::sync::Arc;
 
 use aseme::convert::Model;
 use monas::config;
+use yase::statechart::Layout;
 use yase::{Diagnostic, Source, Statechart};
 
 use crate::arguments::{Format, ModelCommand};
@@ -31,7 +32,9 @@ pub(crate) fn execute(command: &ModelCommand, console: &mut Console<'_>) -> Resu
     match command {
         ModelCommand::Transform(arguments) => transform::execute(arguments, console),
         ModelCommand::Convert(arguments) => convert::execute(arguments, console),
-        ModelCommand::Draw { file, output, format } => draw(file, output.as_deref(), format.value, console),
+        ModelCommand::Draw { file, output, no_layout, format } => {
+            draw(file, output.as_deref(), *no_layout, format.value, console)
+        }
         ModelCommand::Ontology { file, package, output, format } => {
             ontology::execute(file, package, output.as_deref(), format.value, console)
         }
@@ -49,11 +52,15 @@ pub(crate) fn execute(command: &ModelCommand, console: &mut Console<'_>) -> Resu
 fn draw(
     file: &Path,
     output: Option<&Path>,
+    no_layout: bool,
     format: Format,
     console: &mut Console<'_>,
 ) -> Result<Exit, Failure> {
-    let drawing = aseme::to_svg(&valid_chart(file, format, console)?);
-    write(output, &drawing, format, console)
+    let mut chart = valid_chart(file, format, console)?;
+    if no_layout {
+        chart.layout = Layout::default();
+    }
+    write(output, &aseme::to_svg(&chart), format, console)
 }
 
 /// Writes a text into a file, or on standard output.

@@ -3,8 +3,12 @@
 //! A [`Statechart`] is what model files, formulas and editors produce, and what checks, drawings and the compiler read.
 //! It holds expressions as they were understood, not as they will run; nothing here steps.
 
+mod layout;
+
 use std::sync::Arc;
 use std::time::Duration;
+
+pub use layout::{Frame, Layout, Point};
 
 use crate::expression::{Action, TransitionExpression};
 
@@ -176,14 +180,23 @@ impl From<&str> for ConstantValue {
 
 /// A statechart: nodes in a tree, transitions between them, constants for their expressions.
 ///
-/// A copy costs next to nothing, however large the chart is: it shares what it is made of until one of the two is changed.
-#[derive(Clone, PartialEq, Debug)]
+/// A copy costs next to nothing, however large the chart is: it shares what it is made of until one of the two is changed. Two charts are equal
+/// if they say the same, wherever their parts are drawn.
+#[derive(Clone, Debug)]
 pub struct Statechart {
     /// The model's name.
     pub name: String,
     /// Constants that its expressions may name.
     pub constants: Vec<Constant>,
+    /// Where its parts are drawn.
+    pub layout: Layout,
     parts: Arc<Parts>,
+}
+
+impl PartialEq for Statechart {
+    fn eq(&self, other: &Statechart) -> bool {
+        self.name == other.name && self.constants == other.constants && self.parts == other.parts
+    }
 }
 
 #[derive(Clone, PartialEq, Debug)]
@@ -199,7 +212,7 @@ impl Statechart {
         let name = name.into();
         let root = Node::new(NodeKind::Or, name.clone());
         let parts = Parts { nodes: vec![root], children: vec![vec![]], transitions: vec![] };
-        Statechart { name, constants: vec![], parts: Arc::new(parts) }
+        Statechart { name, constants: vec![], layout: Layout::default(), parts: Arc::new(parts) }
     }
 
     /// The root.
@@ -383,6 +396,15 @@ mod tests {
         assert_eq!(chart.find("x/2/A"), None);
         assert_eq!(chart.find("c/both/2/A/more"), None);
         assert_eq!(chart.find(""), None);
+    }
+
+    #[test]
+    fn charts_that_are_drawn_elsewhere_are_equal() {
+        let (chart, second, _) = nested();
+        let mut moved = chart.clone();
+        moved.layout.frames.insert(second, Frame { at: Some((1.0, 2.0)), size: None });
+        assert_eq!(moved, chart);
+        assert!(!moved.layout.is_empty());
     }
 
     #[test]

@@ -7,6 +7,7 @@ use yase::{Diagnostic, Node, NodeId, NodeKind, Statechart, Transition};
 
 use super::Written;
 use crate::iac::Iac;
+use crate::layout::frame_settings;
 use crate::names::encode;
 
 /// The chart as SCXML. Where SCXML cannot say all of it, the text is of the nearest chart that it can say.
@@ -47,6 +48,9 @@ fn beside_the_chart(model: &Iac, chart: &Statechart) -> Vec<Diagnostic> {
         for (what, text, _) in texts.into_iter().filter(|(_, text, usual)| text != usual) {
             add(node.place, format!("the {what} of `{}`, `{text}`", node.name));
         }
+        for (key, value) in frame_settings(&node.frame) {
+            add(node.place, format!("where `{}` is drawn, `{key} = {value}`", node.name));
+        }
         if !node.variables.is_empty() {
             add(node.place, format!("the variables of `{}`", node.name));
         }
@@ -54,6 +58,9 @@ fn beside_the_chart(model: &Iac, chart: &Statechart) -> Vec<Diagnostic> {
     for (transition, usual) in model.transitions.iter().zip(&plain.transitions) {
         if transition.name != usual.name {
             add(transition.place, format!("the name of the transition `{}`", transition.name));
+        }
+        if !transition.bends.is_empty() {
+            add(transition.place, format!("the way of `{}` in a drawing", transition.name));
         }
         if !transition.metadata.is_empty() {
             add(transition.place, format!("the metadata of `{}`", transition.name));

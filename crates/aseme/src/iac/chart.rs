@@ -54,9 +54,11 @@ impl Iac {
         for (place, id) in depth_first(chart).enumerate() {
             places[id.0 as usize] = place;
             let parent = chart.node(id).parent.map(|parent| places[parent.0 as usize]);
-            iac.nodes.push(node_of(chart.node(id), &labels[id.0 as usize], parent));
+            let frame = chart.layout.frames.get(&id).copied().unwrap_or_default();
+            let node = node_of(chart.node(id), &labels[id.0 as usize], parent);
+            iac.nodes.push(IacNode { frame, ..node });
         }
-        for (_, transition) in chart.transitions() {
+        for (id, transition) in chart.transitions() {
             let (source, target) =
                 (places[transition.source.0 as usize], places[transition.target.0 as usize]);
             iac.transitions.push(IacTransition {
@@ -70,6 +72,7 @@ impl Iac {
                     interrupts: transition.interrupts,
                     internal: transition.internal,
                 },
+                bends: chart.layout.bends.get(&id).cloned().unwrap_or_default(),
                 ..IacTransition::default()
             });
         }
@@ -141,6 +144,9 @@ impl Builder {
             // A second root was reported when the model was read.
             None => self.chart.add(Statechart::ROOT, made),
         };
+        if !node.frame.is_empty() {
+            self.chart.layout.frames.insert(id, node.frame);
+        }
         self.ids.push(id);
     }
 
@@ -203,7 +209,10 @@ impl Builder {
             internal,
             ..Transition::new(source, target)
         };
-        self.chart.connect(made);
+        let id = self.chart.connect(made);
+        if !transition.bends.is_empty() {
+            self.chart.layout.bends.insert(id, transition.bends.clone());
+        }
     }
 
     /// Places within an expression are those of the file where it stands there letter by letter, else the whole.

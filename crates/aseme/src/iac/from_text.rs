@@ -12,6 +12,7 @@ use super::path::{Paths, name_of};
 use super::to_text::label_name;
 use super::{ChartKind, Iac, IacNode, IacTransition, MAX_LEVELS, Variable, lint, without_null};
 use crate::document::{Document, Item, Line, Reference, Setting, Word, list, settings, unquoted};
+use crate::layout::{self, BENDS_KEY};
 use crate::srm::constant_value;
 use crate::text::outside_quotes;
 
@@ -40,7 +41,7 @@ pub(crate) fn from_text(document: &Document) -> (Iac, Vec<Diagnostic>) {
 }
 
 const WORDS: [&str; 5] = ["IAC", "Variable", "Constants", "States", "Transitions"];
-const NODE_KEYS: [&str; 12] = [
+const NODE_KEYS: [&str; 14] = [
     "type",
     "label",
     "activity",
@@ -49,6 +50,8 @@ const NODE_KEYS: [&str; 12] = [
     "exit",
     "defer",
     "duration",
+    "at",
+    "size",
     "variables",
     "functionality",
     "actions",
@@ -250,14 +253,27 @@ impl Reader {
             "actions" => set(&mut node.actions, text),
             "metadata" => set(&mut node.metadata, text),
             "activity" => set(&mut refinement.activity, Some(text)),
+            "at" => set(&mut node.frame.at, layout::place(&text)) && node.frame.at.is_some(),
+            "size" => set(&mut node.frame.size, layout::size(&text)) && node.frame.size.is_some(),
             "priority" => text.parse().map(|priority| refinement.priority = priority).is_ok(),
             "duration" => set(&mut refinement.duration, duration(&text)) && refinement.duration.is_some(),
             _ => return self.unknown_key(key, "state", &NODE_KEYS),
         };
         if !understood {
-            let message = format!("`{}` is not a value for `{}`", value.text, key.text);
-            self.report(Diagnostic::error("E0245", value.span, message));
+            self.no_value(key, value);
         }
+    }
+
+    fn no_value(&mut self, key: &Word, value: &Word) {
+        let message = format!("`{}` is not a value for `{}`", value.text, key.text);
+        let hint = match key.text.as_str() {
+            "at" => layout::AT,
+            "size" => layout::SIZE,
+            "priority" => "a whole number; higher runs first",
+            "duration" => "a time such as `250ms` or `2s`",
+            _ => layout::VIA,
+        };
+        self.report(Diagnostic::error("E0245", value.span, message).with_hint(hint));
     }
 
     fn variable_named(&mut self, word: &Word) -> Option<usize> {
@@ -373,7 +389,11 @@ impl Reader {
         match key.text.as_str() {
             "name" => self.chart.transitions[index].name = text,
             "metadata" => self.chart.transitions[index].metadata = text,
-            _ => self.unknown_key(key, "transition", &["name", "metadata"]),
+            BENDS_KEY => match layout::bends(&text) {
+                Some(bends) => self.chart.transitions[index].bends = bends,
+                None => self.no_value(key, value),
+            },
+            _ => self.unknown_key(key, "transition", &["name", "metadata", BENDS_KEY]),
         }
     }
 }

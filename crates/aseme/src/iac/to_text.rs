@@ -5,6 +5,7 @@ use yase::statechart::ConstantValue;
 use super::path::{Paths, name_text};
 use super::{ChartKind, Iac, IacNode, IacTransition};
 use crate::document::{Document, Item, reference, value_text};
+use crate::layout::{BENDS_KEY, bends_text, frame_settings};
 
 /// A chart as text: variables, constants, the tree of states, the transitions in their order.
 pub(crate) fn to_text(chart: &Iac) -> Document {
@@ -117,6 +118,9 @@ fn settings(node: &IacNode, label: &str, variables: &[String], indent: usize, it
     if let Some(duration) = refinement.duration {
         item.line(indent, format!("duration = {}", duration_text(duration)));
     }
+    for (key, value) in frame_settings(&node.frame) {
+        item.line(indent, format!("{key} = {value}"));
+    }
     if !node.variables.is_empty() {
         let names = node.variables.iter().filter_map(|&index| variables.get(index).map(String::as_str));
         item.line(indent, format!("variables = {}", names.collect::<Vec<_>>().join(", ")));
@@ -172,6 +176,9 @@ fn transitions(chart: &Iac, names_are_labels: bool) -> Item {
             item.line(4, format!("name = {}", value_text(&transition.name)));
         }
         set(&mut item, 4, "metadata", &transition.metadata);
+        if !transition.bends.is_empty() {
+            item.line(4, format!("{BENDS_KEY} = {}", bends_text(&transition.bends)));
+        }
     }
     item
 }

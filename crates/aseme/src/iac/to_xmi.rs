@@ -4,6 +4,7 @@ use yase::Diagnostic;
 use yase::statechart::ConstantValue;
 
 use super::{Dialect, Iac, IacNode, IacTransition};
+use crate::layout::frame_settings;
 use crate::xmi::{self, Writer, fits_xml};
 
 const STATECHART: &str = "http://statechart/1.0";
@@ -110,6 +111,9 @@ impl Lost {
         for (what, text) in texts.into_iter().filter(|(_, text)| !text.is_empty()) {
             self.add(node.place, format!("the {what} of `{}`, `{text}`", node.name));
         }
+        for (key, value) in frame_settings(&node.frame) {
+            self.add(node.place, format!("where `{}` is drawn, `{key} = {value}`", node.name));
+        }
         if let Some(activity) = &refinement.activity {
             self.add(node.place, format!("the activity of `{}`, `{activity}`", node.name));
         }
@@ -124,6 +128,7 @@ impl Lost {
             ("weight", refinement.weight.is_some()),
             ("word `interrupts`", refinement.interrupts),
             ("word `internal`", refinement.internal),
+            ("way in a drawing", !transition.bends.is_empty()),
             ("metadata", !transition.metadata.is_empty() && self.dialect != Dialect::Nested2018),
         ];
         for (what, _) in said.into_iter().filter(|(_, said)| *said) {

@@ -1,9 +1,11 @@
 //! From an older model file of a chart to a newer one.
 
+use yase::statechart::Frame;
 use yase::{Diagnostic, NodeId, Span, Statechart};
 
 use crate::diff::pairs::Pairs;
 use crate::iac::{Iac, IacNode};
+use crate::layout::{bends_text, frame_settings};
 
 /// Gives a chart what an older one says and it does not: of states the functionality, the variables, metadata and refinements, of transitions expression,
 /// refinements and metadata. States are the same as in [`diff`](crate::diff): also those that have another name because the formula around them is another.
@@ -97,6 +99,12 @@ impl Keeping<'_> {
                 differing.push(format!("{what} = {old}"));
             }
         }
+        let own = &mut node.frame;
+        if own.is_empty() {
+            *own = old.frame;
+        } else if *own != old.frame && !old.frame.is_empty() {
+            differing.push(frame_text(&old.frame));
+        }
         if node.refinement == Default::default() {
             node.refinement = old.refinement.clone();
         } else if node.refinement != old.refinement && old.refinement != Default::default() {
@@ -120,7 +128,10 @@ impl Keeping<'_> {
                 let mut all = self.newer.transitions.iter().enumerate();
                 all.position(|(index, it)| !used[index] && (it.source, it.target) == (source, target))
             });
-            let plain = old.te.is_empty() && old.metadata.is_empty() && old.refinement == Default::default();
+            let plain = old.te.is_empty()
+                && old.metadata.is_empty()
+                && old.bends.is_empty()
+                && old.refinement == Default::default();
             if let Some(place) = place {
                 used[place] = true;
             }
@@ -129,7 +140,14 @@ impl Keeping<'_> {
             }
             let arrow = || {
                 let path = |node: usize| before.path(NodeId(node as u32));
-                format!("{} -> {} : {}", path(old.source), path(old.target), old.te)
+                let via = if old.bends.is_empty() { "" } else { " via " };
+                format!(
+                    "{} -> {} : {}{via}{}",
+                    path(old.source),
+                    path(old.target),
+                    old.te,
+                    bends_text(&old.bends)
+                )
             };
             let Some(place) = place else {
                 self.lose(old.place.0, format!("there is no such transition any more: `{}`", arrow()));
@@ -139,14 +157,28 @@ impl Keeping<'_> {
             if new.metadata.is_empty() {
                 new.metadata.clone_from(&old.metadata);
             }
+            let is_drawn_elsewhere = !new.bends.is_empty() && !old.bends.is_empty() && new.bends != old.bends;
+            if new.bends.is_empty() {
+                new.bends.clone_from(&old.bends);
+            }
+            let says_something = !old.te.is_empty() || old.refinement != Default::default();
+            let mut differs = is_drawn_elsewhere;
             if new.te.is_empty() && new.refinement == Default::default() {
                 (new.te, new.refinement) = (old.te.clone(), old.refinement.clone());
-            } else if (&new.te, &new.refinement) != (&old.te, &old.refinement) {
+            } else if says_something && (&new.te, &new.refinement) != (&old.te, &old.refinement) {
+                differs = true;
+            }
+            if differs {
                 let text = format!("the newer chart says another thing than `{}`", arrow());
                 self.lose(old.place.0, text);
             }
         }
     }
+}
+
+fn frame_text(frame: &Frame) -> String {
+    let settings = frame_settings(frame).into_iter().map(|(key, value)| format!("{key} = {value}"));
+    settings.collect::<Vec<_>>().join(", ")
 }
 
 /// All that a file says of a state.
@@ -171,6 +203,7 @@ fn said_of(node: &IacNode, iac: &Iac) -> String {
         ("exit", refinement.exit.clone()),
         ("defer", refinement.defer.clone()),
         ("duration", duration),
+        ("layout", frame_text(&node.frame)),
     ];
     let said =
         said.iter().filter(|(_, text)| !text.is_empty()).map(|(what, text)| format!("{what} = {text}"));

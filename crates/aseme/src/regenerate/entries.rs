@@ -4,17 +4,22 @@ use yase::export::notation::{modifiers, refinements};
 use yase::statechart::ConstantValue;
 use yase::{NodeId, NodeKind, Statechart, Transition, TransitionId};
 
+use crate::layout::{BENDS_KEY, bends_text, frame_settings};
 use crate::path;
+use crate::refine::place_among_twins;
 use crate::srm::{Section, SrmFile};
 use crate::text;
+
+/// What one model says and another can take in, in the order in which it is taken in.
+pub(super) const CARRIED: [Section; 4] =
+    [Section::Constants, Section::Transitions, Section::States, Section::Layout];
 
 /// The entries of a role, each on one line, without comments.
 pub fn entries_of_role(file: &SrmFile) -> Vec<(Section, String)> {
     let blanked = text::without_comments(file.text());
-    let carried = [Section::Constants, Section::Transitions, Section::States];
-    let entries = file.entries().iter().filter(|entry| carried.contains(&entry.section));
-    let line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-    entries.map(|entry| (entry.section, line(&blanked[entry.span.start..entry.span.end]))).collect()
+    let of_section = |section: Section| file.entries().iter().filter(move |entry| entry.section == section);
+    let entries = CARRIED.into_iter().flat_map(of_section);
+    entries.map(|entry| (entry.section, one_line(&blanked[entry.span.start..entry.span.end]))).collect()
 }
 
 /// All that a chart says of its states and transitions besides what its formulas make, each named by the shortest path.
@@ -30,7 +35,9 @@ pub fn entries_of_chart(chart: &Statechart) -> Vec<(Section, String)> {
     let transitions = chart.transitions().filter(|(_, it)| says_something(it));
     let transitions = transitions.map(|(id, it)| (Section::Transitions, transition(chart, id, it)));
     let states = chart.nodes().filter_map(|(id, _)| state(chart, id));
-    constants.chain(transitions).chain(states.map(|line| (Section::States, line))).collect()
+    let states = states.map(|line| (Section::States, line));
+    let layout = layout(chart).map(|line| (Section::Layout, line));
+    constants.chain(transitions).chain(states).chain(layout).collect()
 }
 
 fn says_something(transition: &Transition) -> bool {
@@ -38,26 +45,44 @@ fn says_something(transition: &Transition) -> bool {
 }
 
 fn transition(chart: &Statechart, id: TransitionId, transition: &Transition) -> String {
-    let path = match history_of(chart, transition.target) {
-        // in a role it is the composite that is entered so
+    let path = ends(chart, id);
+    let colon = if transition.expression.is_empty() {
+        String::new()
+    } else {
+        format!(" : {}", transition.expression)
+    };
+    let also = if place_among_twins(chart, id) > 0 { " also" } else { "" };
+    one_line(&format!("{path}{also}{}{colon}", modifiers(transition)))
+}
+
+/// `source -> target`; in a role it is the composite that is entered where a chart has a way to what remembers inside.
+fn ends(chart: &Statechart, id: TransitionId) -> String {
+    let transition = chart.transition(id);
+    match history_of(chart, transition.target) {
         Some(owner) => {
             let (source, target) =
                 (path::shortest_path(chart, transition.source), path::shortest_path(chart, owner));
             format!("{source} -> {target}")
         }
         None => path::shortest_transition(chart, id),
-    };
-    let colon = if transition.expression.is_empty() {
-        String::new()
-    } else {
-        format!(" : {}", transition.expression)
-    };
-    let is_beside = chart
-        .transitions()
-        .take(id.0 as usize)
-        .any(|(_, other)| (other.source, other.target) == (transition.source, transition.target));
-    let also = if is_beside { " also" } else { "" };
-    one_line(&format!("{path}{also}{}{colon}", modifiers(transition)))
+    }
+}
+
+/// Where states and transitions are drawn.
+fn layout(chart: &Statechart) -> impl Iterator<Item = String> {
+    let states = chart.layout.frames.iter().filter(|(_, frame)| !frame.is_empty()).map(|(&id, frame)| {
+        let settings = frame_settings(frame).into_iter().map(|(key, value)| format!("{key} = {value}"));
+        format!("{} : {}", path::shortest_path(chart, id), settings.collect::<Vec<_>>().join(", "))
+    });
+    let transitions = chart.layout.bends.iter().filter(|(_, bends)| !bends.is_empty()).map(|(&id, bends)| {
+        let also = match place_among_twins(chart, id) {
+            0 => String::new(),
+            1 => " also".into(),
+            number => format!(" also {number}"),
+        };
+        format!("{}{also} : {BENDS_KEY} = {}", ends(chart, id), bends_text(bends))
+    });
+    states.chain(transitions)
 }
 
 fn history_of(chart: &Statechart, id: NodeId) -> Option<NodeId> {

@@ -119,7 +119,7 @@ impl Modifiers {
 }
 
 /// Where the path of a target ends and its modifiers begin.
-fn modifiers_start(head: &str) -> usize {
+pub(super) fn modifiers_start(head: &str) -> usize {
     let sign = head.find(['!', '%']);
     let words = ["also", "interrupts"].into_iter().filter_map(|word| {
         let mut places = head.match_indices(word).map(|(at, _)| at);

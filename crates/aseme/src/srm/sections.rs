@@ -20,16 +20,19 @@ pub enum Section {
     Transitions,
     /// What is said of states.
     States,
+    /// Where states and transitions are drawn.
+    Layout,
 }
 
 impl Section {
-    const ALL: [(&'static str, Section); 6] = [
+    const ALL: [(&'static str, Section); 7] = [
         ("Role", Section::Role),
         ("Protocols", Section::Protocols),
         ("Liveness", Section::Liveness),
         ("Constants", Section::Constants),
         ("Transitions", Section::Transitions),
         ("States", Section::States),
+        ("Layout", Section::Layout),
     ];
 
     /// The word of its header.
@@ -43,7 +46,7 @@ impl Section {
 
     /// Whether a line of it may begin with `word:` without being a header.
     fn has_colons(self) -> bool {
-        matches!(self, Section::Transitions | Section::States)
+        matches!(self, Section::Transitions | Section::States | Section::Layout)
     }
 }
 

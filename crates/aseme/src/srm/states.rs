@@ -31,7 +31,7 @@ impl Reader {
         let path = self.path(blanked, Span::new(span.start, colon));
         let text = one_line(&blanked[span.start..span.end]);
         let mut settings = Settings::default();
-        for (key, value) in self.settings(blanked, Span::new(colon + 1, span.end)) {
+        for (key, value) in self.settings(blanked, Span::new(colon + 1, span.end), &KEYS) {
             self.setting(blanked, key, value, &mut settings);
         }
         let Some(path) = path else { return };
@@ -51,7 +51,7 @@ impl Reader {
     }
 
     /// The places of keys and values.
-    fn settings(&mut self, blanked: &str, span: Span) -> Vec<(Span, Span)> {
+    pub(super) fn settings(&mut self, blanked: &str, span: Span, keys: &[&str]) -> Vec<(Span, Span)> {
         let mut settings: Vec<(Span, Span)> = Vec::new();
         for piece in pieces(blanked, span) {
             match (key_of(blanked, piece), settings.last_mut()) {
@@ -59,7 +59,7 @@ impl Reader {
                 (None, Some((_, value))) => value.end = text::trimmed(blanked, piece).end.max(value.end),
                 (None, None) => {
                     let place = text::trimmed(blanked, span);
-                    let hint = format!("keys are {}", KEYS.join(", "));
+                    let hint = format!("keys are {}", keys.join(", "));
                     self.report(
                         Diagnostic::error("E0243", place, "a setting is `key = value`").with_hint(hint),
                     );

@@ -155,5 +155,6 @@ fn lost_of_role(srm: &Srm) -> Vec<Diagnostic> {
         srm.constants.iter().map(|it| lost(Span::default(), format!("the constant `{}`", it.name)));
     let transitions = srm.transitions.iter().map(|it| lost(it.span, format!("`{}`", it.text)));
     let states = srm.states.iter().map(|it| lost(it.span, format!("`{}`", it.text)));
-    protocols.chain(constants).chain(transitions).chain(states).collect()
+    let layout = srm.layout.iter().map(|it| lost(it.span, format!("`{}`", it.text)));
+    protocols.chain(constants).chain(transitions).chain(states).chain(layout).collect()
 }

@@ -180,3 +180,101 @@ fn a_chart_keeps_what_only_its_file_can_say() {
         ]
     );
 }
+
+const DRAWN: &str = "\
+Role: r
+Liveness:
+r = a . (b | c)
+Transitions:
+a -> (b|c) : [x]
+a -> (b|c) also : stop
+CONDITION -> b : [y]
+States:
+(b|c) : history = deep
+Layout:
+# beside each other
+a : at = 10 20, size = 100 40
+(b|c) : at = 200 0
+(b|c)/START : at = 3 3
+CONDITION -> b : via = 40 80,
+        120 80
+a -> (b|c) also : via = 1 2
+*~ : size = 300 200
+";
+
+#[test]
+fn a_layout_is_no_part_of_what_a_chart_means_and_is_kept_with_it() {
+    let text = DRAWN.replace("*~ : size = 300 200\n", "");
+    let drawn = chart(&text);
+    assert_eq!(drawn, chart(&text[..text.find("Layout:").unwrap()]));
+    assert_eq!((drawn.layout.frames.len(), drawn.layout.bends.len()), (3, 2));
+    let entries = entries_of_chart(&drawn);
+    let plain = file("Role: r\nLiveness:\nr = a . (b | c)\n");
+    let made = carry(&plain, &entries).unwrap();
+    assert_eq!(made.lost, []);
+    let again = chart(&made.text);
+    assert_eq!((&again, &again.layout), (&drawn, &drawn.layout), "{}", made.text);
+    let twice = carry(&file(&made.text), &entries).unwrap();
+    assert_eq!((twice.text, twice.lost), (made.text, Vec::new()), "it is said already");
+    let from_role = carry(&plain, &entries_of_role(&file(&text))).unwrap();
+    assert_eq!(chart(&from_role.text).layout, drawn.layout);
+}
+
+#[test]
+fn places_of_what_is_gone_become_comments_and_those_that_differ_are_listed() {
+    let made = put_aside(&file(&DRAWN.replace("(b | c)\n", "(b | d)\n").replace("(b|c)", "(b|d)"))).unwrap();
+    let lost: Vec<&str> = made.lost.iter().map(|it| it.text.as_str()).collect();
+    assert_eq!(lost, ["*~ : size = 300 200"], "nothing goes on forever");
+    let made = put_aside(&file(&DRAWN.replace("(b | c)\n", "b\n"))).unwrap();
+    for lost in ["# (b|c) : at = 200 0\n", "# CONDITION -> b : via = 40 80,\n#         120 80\n"] {
+        assert!(made.text.contains(lost), "{lost}\nis not in\n{}", made.text);
+    }
+    assert!(made.text.contains("\na : at = 10 20, size = 100 40\n"), "{}", made.text);
+    let own = file("Role: r\nLiveness:\nr = a\nLayout:\na : at = 1 1\n");
+    let made = carry(&own, &entries_of_role(&file(&DRAWN[..DRAWN.find("(b|c) : at").unwrap()]))).unwrap();
+    let codes: Vec<(&str, &str)> =
+        made.lost.iter().map(|it| (it.text.as_str(), it.diagnostic.code)).collect();
+    assert!(codes.contains(&("a : at = 10 20, size = 100 40", "E0255")), "{codes:?}");
+}
+
+#[test]
+fn a_layout_that_is_not_understood_is_said() {
+    for (line, code, what) in [
+        ("a : at = 10", "E0245", "`10` is not a value for `at`"),
+        ("a : size = 0 5", "E0245", "`0 5` is not a value for `size`"),
+        ("a : at = -1 5", "E0245", "`-1 5` is not a value for `at`"),
+        ("a -> END : via = 1 2 3", "E0245", "`1 2 3` is not a value for `via`"),
+        ("a : via = 1 2", "E0244", "the layout of a state has no `via`"),
+        ("a -> END : at = 1 2", "E0244", "the layout of a transition has no `at`"),
+        ("a -> END !2 : via = 1 2", "E0242", "`!2` is not understood after a target"),
+        ("a", "E0243", "an entry has a path, `:` and settings"),
+        ("b : at = 1 2", "E0250", "names no state of the chart"),
+        ("a -> END also : via = 1 2", "E0250", "names no transition of the chart"),
+        ("a : at = 1 2\na : at = 1 2", "E0252", "as `a : at = 1 2` is"),
+    ] {
+        let (read, mut found) = SrmFile::parse(format!("Role: r\nLiveness:\nr = a\nLayout:\n{line}\n"));
+        found.extend(srm_to_iac(read.srm()).1);
+        assert_eq!(found.len(), 1, "{line}: {found:?}");
+        assert_eq!(found[0].code, code, "{line}");
+        assert!(found[0].message.contains(what) && found[0].is_error(), "{line}: {}", found[0].message);
+    }
+}
+
+#[test]
+fn a_newer_model_file_keeps_the_places_of_an_older_one() {
+    let drawn = chart(&DRAWN.replace("*~ : size = 300 200\n", ""));
+    let older = Iac::from_statechart(&drawn, ChartKind::Intra);
+    let mut newer =
+        Iac::from_statechart(&chart("Role: r\nLiveness:\nr = z . a . (b | c)\n"), ChartKind::Intra);
+    keep(&older, &mut newer);
+    let (meant, _) = newer.to_statechart();
+    let place = |chart: &Statechart, name: &str| chart.layout.frames[&chart.find(name).unwrap()];
+    assert_eq!(place(&meant, "r/a"), place(&drawn, "r/a"));
+    assert_eq!(meant.layout.frames.len(), 3);
+    let mut other = newer.clone();
+    let a = newer.nodes.iter().position(|node| node.name == "a").unwrap();
+    other.nodes[a].frame.at = Some((7.0, 7.0));
+    let lost = keep(&newer, &mut other);
+    assert_eq!(lost.len(), 1, "{lost:?}");
+    assert!(lost[0].message.contains("than `at = 10 20, size = 100 40`"), "{}", lost[0].message);
+}

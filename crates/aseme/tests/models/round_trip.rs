@@ -11,6 +11,7 @@ use aseme::suc::{Role, RoleKind, Suc, UseCase};
 use aseme::{FunctionalityTable, aip, functionality, roles};
 use proptest::prelude::*;
 use proptest::sample::Index;
+use yase::statechart::Frame;
 
 use crate::kit::{read, whole};
 
@@ -210,6 +211,11 @@ fn there_and_back(model: &Model, format: Format) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+fn frames() -> impl Strategy<Value = Frame> {
+    let sizes = prop::option::of((0.5..1e5, 0.5..1e5));
+    (prop::option::of((0.0..1e5, 0.0..=1e5)), sizes).prop_map(|(at, size)| Frame { at, size })
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -225,11 +231,14 @@ proptest! {
     }
 
     #[test]
-    fn charts_in_text(chart in chart(), inter in any::<bool>(), priority in -3..3, weight in prop::option::of(0.0..9.0), entry in text()) {
+    fn charts_in_text(chart in chart(), inter in any::<bool>(), priority in -3..3, weight in prop::option::of(0.0..9.0), entry in text(),
+                      frame in frames(), bends in prop::collection::vec((0.0..9.0, 0.0..900.0), 0..3)) {
         let mut chart = chart;
         chart.kind = if inter { ChartKind::Inter } else { ChartKind::Intra };
         chart.nodes[0].refinement = StateRefinement { priority, entry, activity: Some(String::new()), ..StateRefinement::default() };
+        chart.nodes[0].frame = frame;
         for transition in &mut chart.transitions {
+            transition.bends.clone_from(&bends);
             transition.refinement = TransitionRefinement { priority, weight, interrupts: inter, internal: !inter };
         }
         there_and_back(&Model::Chart(chart), Format::Text)?;

@@ -68,6 +68,37 @@ fn after_an_edit_what_fits_stays_and_the_rest_is_listed() {
 }
 
 #[test]
+fn a_layout_is_drawn_converted_and_survives_an_edit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = format!("{ROLE}Layout:\nStand : at = 300 5\nTrack : at = 0 0, size = 200 50\n");
+    let role = file(folder.path(), "role.srm", &text);
+    let plain = file(folder.path(), "plain.srm", ROLE);
+    let drawn = |arguments: &[&str]| monas(&[&["model", "draw"], arguments].concat()).out;
+    assert_ne!(drawn(&[&role]), drawn(&[&plain]));
+    assert!(drawn(&[&role]).contains("width=\"200.0\" height=\"50.0\""));
+    assert_eq!(drawn(&[&role, "--no-layout"]), drawn(&[&plain]));
+    assert_eq!(monas(&["model", "diff", &role, &plain]).out, "no difference\n", "it means nothing else");
+
+    let chart = folder.path().join("chart.txt").display().to_string();
+    assert_eq!(monas(&["model", "transform", &role, "--to", "iac", "-o", &chart]).code, Some(0));
+    let said = fs::read_to_string(&chart).expect("it was written");
+    assert!(said.contains("at = 0 0\n") && said.contains("size = 200 50\n"), "{said}");
+    assert_eq!(drawn(&[&chart]), drawn(&[&role]));
+    let old = folder.path().join("chart.stct").display().to_string();
+    let refused = monas(&["model", "convert", &chart, &old]);
+    assert_eq!(refused.code, Some(1));
+    assert!(refused.err.contains("where `Track` is drawn, `size = 200 50`"), "{}", refused.err);
+
+    let edited = file(folder.path(), "role.srm", &text.replace("Track . Kick", "Follow . Kick"));
+    let answer = monas(&["model", "regenerate", &edited, "-o", &edited]);
+    assert_eq!((answer.code, answer.out.as_str()), (Some(0), "3 kept, 2 lost\n"), "{}", answer.err);
+    let left = fs::read_to_string(&edited).expect("it was written");
+    assert!(
+        left.contains("\nStand : at = 300 5\n") && left.contains("\n# Track : at = 0 0, size = 200 50\n")
+    );
+}
+
+#[test]
 fn what_a_chart_says_is_taken_into_a_role_and_into_a_newer_chart() {
     let folder = tempfile::tempdir().expect("a folder");
     let role = file(folder.path(), "role.srm", ROLE);

@@ -50,7 +50,7 @@ impl Dot<'_> {
             }
         }
         self.constants();
-        sound_transitions(self.chart).for_each(|transition| self.edge(transition));
+        sound_transitions(self.chart).for_each(|(_, transition)| self.edge(transition));
         self.close();
         self.lines.text
     }

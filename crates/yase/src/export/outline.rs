@@ -4,7 +4,7 @@ use std::fmt::{Arguments, Write};
 
 use super::lost::has_ends;
 use super::notation::{inscription, kind_word};
-use crate::statechart::{ConstantValue, NodeId, NodeKind, Statechart, Transition};
+use crate::statechart::{ConstantValue, NodeId, NodeKind, Statechart, Transition, TransitionId};
 
 /// Deeper lines stand no further in, or the text of a deep chart would consist of blanks.
 const MAX_DEPTH: usize = 40;
@@ -74,14 +74,14 @@ pub(super) fn title(chart: &Statechart, id: NodeId) -> String {
 }
 
 /// The transitions whose ends exist.
-pub(super) fn sound_transitions(chart: &Statechart) -> impl Iterator<Item = &Transition> {
-    chart.transitions().map(|(_, transition)| transition).filter(|it| has_ends(chart, it))
+pub(super) fn sound_transitions(chart: &Statechart) -> impl Iterator<Item = (TransitionId, &Transition)> {
+    chart.transitions().filter(|(_, it)| has_ends(chart, it))
 }
 
 /// The transitions that join two children of a node, by that node, and all others.
 pub(super) fn by_parent(chart: &Statechart) -> (Vec<Vec<&Transition>>, Vec<&Transition>) {
     let (mut inside, mut others) = (vec![Vec::new(); chart.nodes().len()], Vec::new());
-    for transition in sound_transitions(chart) {
+    for (_, transition) in sound_transitions(chart) {
         match chart.node(transition.source).parent {
             Some(parent) if chart.node(transition.target).parent == Some(parent) => {
                 inside[parent.0 as usize].push(transition);

@@ -172,7 +172,7 @@ impl PlantUml<'_> {
 /// For each node the transitions whose ends lie in it, and in none of its children together.
 fn by_ancestor(chart: &Statechart) -> Vec<Vec<&Transition>> {
     let mut inside = vec![Vec::new(); chart.nodes().len()];
-    for transition in sound_transitions(chart) {
+    for (_, transition) in sound_transitions(chart) {
         let holds_target = |&id: &NodeId| chart.ancestors(transition.target).any(|ancestor| ancestor == id);
         let around = chart.ancestors(transition.source).find(holds_target).unwrap_or(Statechart::ROOT);
         inside[around.0 as usize].push(transition);
@@ -186,7 +186,7 @@ fn boxed(chart: &Statechart) -> Vec<bool> {
     let regions = |id: NodeId| -> BTreeSet<NodeId> {
         std::iter::once(id).chain(chart.ancestors(id)).filter(|&id| is_region(chart, id)).collect()
     };
-    for transition in sound_transitions(chart) {
+    for (_, transition) in sound_transitions(chart) {
         let (of_source, of_target) = (regions(transition.source), regions(transition.target));
         for region in of_source.symmetric_difference(&of_target) {
             if let Some(parent) = chart.node(*region).parent {

@@ -4,12 +4,15 @@
 //! what is chosen from stands side by side, regions have dashed borders. The same layout by ranks draws charts of other origin, less finely:
 //! transitions that lead back go around the boxes of their composite, those across borders look for a way of their own. States bear the
 //! names they have in the formula.
+//!
+//! What the chart's [`Layout`](crate::statechart::Layout) has a place for stands there; without any, nothing is looked up.
 
 mod draw;
 mod flow;
 mod grid;
 mod layout;
 pub(in crate::export) mod lettering;
+mod placed;
 mod ranks;
 mod rectangle;
 mod route;

@@ -4,6 +4,7 @@
 
 mod drawing;
 mod golden;
+mod placed;
 mod random;
 mod text;
 

@@ -24,7 +24,7 @@ text{font-family:system-ui,-apple-system,'Segoe UI','Liberation Sans','DejaVu Sa
 /// Writes the whole document.
 pub(super) fn document(chart: &Statechart, layout: &Layout<'_>, marks: &Marks) -> String {
     let mut page = Page { svg: String::new() };
-    let (width, height) = page_size(layout);
+    let (width, height) = page_size(chart, layout);
     page.line(format_args!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\">"
     ));
@@ -54,9 +54,14 @@ pub(super) fn document(chart: &Statechart, layout: &Layout<'_>, marks: &Marks) -
     page.svg
 }
 
-fn page_size(layout: &Layout) -> Point {
+/// Around the root and, where corners of arrows were put somewhere, around these.
+fn page_size(chart: &Statechart, layout: &Layout) -> Point {
     let root = layout.shape(Statechart::ROOT);
-    (root.size.0 + 2.0 * MARGIN, root.size.1 + 2.0 * MARGIN)
+    let end = (root.at.0 + root.size.0, root.at.1 + root.size.1);
+    let arrows = if chart.layout.bends.is_empty() { &[][..] } else { &layout.arrows };
+    let corners = arrows.iter().flat_map(|arrow| &arrow.points);
+    let (right, bottom) = corners.fold(end, |end, corner| (end.0.max(corner.0), end.1.max(corner.1)));
+    (right + MARGIN, bottom + MARGIN)
 }
 
 fn head(id: &str, colour: &str) -> String {

@@ -4,7 +4,7 @@ use super::lettering::{
     LABEL_LINE, LABEL_SIZE, NAME_LINE, NAME_SIZE, formula_text, widest, wrap, wrap_condition,
 };
 use super::rectangle::Rectangle;
-use super::{flow, route};
+use super::{flow, placed, route};
 use crate::export::marks::{Mark, Marks};
 use crate::export::notation::{inscription, refinements};
 use crate::export::outline::sound_transitions;
@@ -21,8 +21,7 @@ const SHELF_WIDTH: f64 = 700.0;
 /// Around the whole drawing.
 pub(super) const MARGIN: f64 = 16.0;
 
-/// A place or a size, in pixels to the right and down.
-pub(super) type Point = (f64, f64);
+pub(super) use crate::statechart::Point;
 
 /// The drawn shape of a node.
 #[derive(Clone, Debug, Default)]
@@ -46,6 +45,11 @@ impl Shape {
     pub(super) fn head(&self) -> f64 {
         let lines = NAME_LINE * self.title.len() as f64 + LABEL_LINE * self.notes.len() as f64;
         if lines > 0.0 { lines + 8.0 } else { 0.0 }
+    }
+
+    /// All that it takes: itself and its name beside it.
+    pub(super) fn area(&self) -> Rectangle {
+        Rectangle::new(self.at, (self.size.0 + self.beside, self.size.1))
     }
 
     /// Where the name of a connector stands: beside it, and above the line through its middle.
@@ -131,12 +135,15 @@ pub(super) fn layout<'m>(chart: &Statechart, marks: &'m Marks) -> Layout<'m> {
             NodeKind::Or => {
                 let (drawn, leads) = (&inside[id.0 as usize], &leads[id.0 as usize]);
                 let content = flow::rows(chart, id, drawn, leads, &mut layout);
-                enclose(layout.shape_mut(id), content);
+                enclose(chart, id, content, &mut layout);
             }
-            NodeKind::And => shelves(chart, id, &mut layout),
+            NodeKind::And => {
+                let content = shelves(chart, id, &mut layout);
+                enclose(chart, id, content, &mut layout);
+            }
             kind => {
                 let shape = layout.shape_mut(id);
-                shape.size = leaf_size(kind, shape);
+                shape.size = placed::at_least(chart, id, leaf_size(kind, shape));
                 shape.beside = if kind == NodeKind::Basic { 0.0 } else { beside(shape) };
             }
         }
@@ -153,21 +160,24 @@ fn lettered(node: &Node) -> Shape {
     Shape { title: title.into_iter().collect(), notes, ..Shape::default() }
 }
 
-/// For each OR the transitions between its children.
+/// For each OR the transitions between its children that are drawn among its rows.
 fn transitions_inside(chart: &Statechart) -> Vec<Vec<&Transition>> {
     let mut inside = vec![Vec::new(); chart.nodes().len()];
-    for transition in sound_transitions(chart) {
-        if let Some(parent) = common_parent(chart, transition) {
+    for (id, transition) in sound_transitions(chart) {
+        if let Some(parent) = placed::among_rows(chart, id, transition) {
             inside[parent.0 as usize].push(transition);
         }
     }
     inside
 }
 
-/// For each OR which of its children lead to which by transitions from within or to within.
+/// For each OR which of its children lead to which by transitions that are not drawn among its rows.
 fn leads(chart: &Statechart) -> Vec<Vec<(NodeId, NodeId)>> {
     let mut leads = vec![Vec::new(); chart.nodes().len()];
-    for transition in sound_transitions(chart).filter(|it| common_parent(chart, it).is_none()) {
+    for (id, transition) in sound_transitions(chart) {
+        if placed::among_rows(chart, id, transition).is_some() {
+            continue;
+        }
         let line =
             |end: NodeId| -> Vec<NodeId> { std::iter::once(end).chain(chart.ancestors(end)).collect() };
         let (from, to) = (line(transition.source), line(transition.target));
@@ -215,18 +225,23 @@ fn lettering_width(shape: &Shape) -> f64 {
     widest(&shape.title, NAME_SIZE).max(widest(&shape.notes, LABEL_SIZE))
 }
 
-/// Sizes a composite around its content; its title is broken into lines of the content's width.
-fn enclose(shape: &mut Shape, content: Point) {
+/// Sizes a composite around its content, which is as large as said; its title is broken into lines of the content's width. Content stands in the
+/// middle, but where some of it has a place: that counts from the left.
+fn enclose(chart: &Statechart, id: NodeId, content: Point, layout: &mut Layout<'_>) {
+    let has_places = placed::holds_placed(chart, id);
+    let content = if has_places { placed::put(chart, id, layout) } else { content };
+    let shape = layout.shape_mut(id);
     shape.title = wrap(&shape.title.join(" "), NAME_SIZE, content.0.max(TITLE_WIDTH));
     let head = shape.head();
     let width = content.0.max(lettering_width(shape));
-    shape.size = (width + 2.0 * PADDING, head + content.1 + 2.0 * PADDING);
-    shape.inset = (PADDING + (width - content.0) / 2.0, head + PADDING);
+    shape.size = placed::at_least(chart, id, (width + 2.0 * PADDING, head + content.1 + 2.0 * PADDING));
+    let aside = if has_places { 0.0 } else { (shape.size.0 - 2.0 * PADDING - content.0) / 2.0 };
+    shape.inset = (PADDING + aside, head + PADDING);
 }
 
 /// Regions in shelves: one goes beside another as long as the shelf does not become wider than the widest region,
-/// or than [`SHELF_WIDTH`].
-fn shelves(chart: &Statechart, id: NodeId, layout: &mut Layout) {
+/// or than [`SHELF_WIDTH`]. The size of it all.
+fn shelves(chart: &Statechart, id: NodeId, layout: &mut Layout) -> Point {
     let regions = chart.children(id);
     let widths = regions.iter().map(|&region| layout.shape(region).size.0);
     let widest = widths.clone().fold(0.0, f64::max).max(widths.sum::<f64>().min(SHELF_WIDTH));
@@ -240,10 +255,10 @@ fn shelves(chart: &Statechart, id: NodeId, layout: &mut Layout) {
     }
     let mut top = 0.0;
     for shelf in shelves {
-        fill(&shelf, top, widest, layout);
+        fill(chart, &shelf, top, widest, layout);
         top += shelf.size.1;
     }
-    enclose(layout.shape_mut(id), (widest, top));
+    (widest, top)
 }
 
 struct Shelf {
@@ -259,13 +274,13 @@ impl Shelf {
 }
 
 /// Stretches the regions of a shelf until they fill it.
-fn fill(shelf: &Shelf, top: f64, width: f64, layout: &mut Layout) {
+fn fill(chart: &Statechart, shelf: &Shelf, top: f64, width: f64, layout: &mut Layout) {
     let extra = (width - shelf.size.0) / shelf.regions.len() as f64;
     let mut left = 0.0;
     for &region in &shelf.regions {
         let shape = layout.shape_mut(region);
         shape.at = (left, top);
-        shape.inset.0 += extra / 2.0;
+        shape.inset.0 += if placed::holds_placed(chart, region) { 0.0 } else { extra / 2.0 };
         shape.size = (shape.size.0 + extra, shelf.size.1);
         left += shape.size.0;
     }
@@ -288,10 +303,10 @@ fn place_on_page(chart: &Statechart, layout: &mut Layout) {
     }
 }
 
-fn content_origin(shape: &Shape) -> Point {
+pub(super) fn content_origin(shape: &Shape) -> Point {
     moved(shape.at, shape.inset)
 }
 
-fn moved(point: Point, by: Point) -> Point {
+pub(super) fn moved(point: Point, by: Point) -> Point {
     (point.0 + by.0, point.1 + by.1)
 }

@@ -42,6 +42,20 @@ impl Rectangle {
         ((self.left + self.right) / 2.0, (self.top + self.bottom) / 2.0)
     }
 
+    /// Where the line from the middle to a point leaves; a point inside has the border above or below it.
+    pub(super) fn border_towards(&self, point: Point) -> Point {
+        let (x, y) = self.centre();
+        let (right, down) = (point.0 - x, point.1 - y);
+        let (half_width, half_height) = (self.right - x, self.bottom - y);
+        if right.abs() * half_height > down.abs() * half_width {
+            (x + half_width.copysign(right), y + down * half_width / right.abs())
+        } else if down == 0.0 {
+            (x, self.bottom)
+        } else {
+            (x + right * half_height / down.abs(), y + half_height.copysign(down))
+        }
+    }
+
     pub(super) fn area(&self) -> f64 {
         (self.right - self.left) * (self.bottom - self.top)
     }
@@ -51,5 +65,20 @@ impl Rectangle {
         let width = self.right.min(other.right) - self.left.max(other.left);
         let height = self.bottom.min(other.bottom) - self.top.max(other.top);
         width.max(0.0) * height.max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_leaves_by_the_side_that_it_looks_at() {
+        let area = Rectangle::new((0.0, 0.0), (40.0, 20.0));
+        assert_eq!(area.border_towards((100.0, 10.0)), (40.0, 10.0));
+        assert_eq!(area.border_towards((-100.0, 10.0)), (0.0, 10.0));
+        assert_eq!(area.border_towards((20.0, -50.0)), (20.0, 0.0));
+        assert_eq!(area.border_towards((40.0, 30.0)), (30.0, 20.0), "aslant");
+        assert_eq!(area.border_towards((20.0, 10.0)), (20.0, 20.0), "the middle itself");
     }
 }

@@ -8,10 +8,12 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::grid::{Direction, Grid, GridLines};
-use super::layout::{Arrow, Label, Layout, Point, common_parent};
+use super::layout::{Arrow, Label, Layout, Point, content_origin, moved};
+use super::placed;
 use super::rectangle::Rectangle;
-use crate::export::lost::{has_ends, is_box};
-use crate::statechart::{NodeId, NodeKind, Statechart, Transition};
+use crate::export::lost::is_box;
+use crate::export::outline::sound_transitions;
+use crate::statechart::{NodeId, NodeKind, Statechart, Transition, TransitionId};
 
 /// From a box to the nearest line beside it.
 const CLEARANCE: f64 = 8.0;
@@ -24,17 +26,21 @@ const LONG: f64 = 28.0;
 
 /// Draws the transitions that no composite has drawn among its children.
 pub(super) fn across_borders(chart: &Statechart, layout: &mut Layout) {
-    let open: Vec<&Transition> = chart
-        .transitions()
-        .map(|(_, transition)| transition)
-        .filter(|it| has_ends(chart, it) && common_parent(chart, it).is_none())
+    let open: Vec<(TransitionId, &Transition)> = sound_transitions(chart)
+        .filter(|&(id, transition)| placed::among_rows(chart, id, transition).is_none())
         .collect();
     if open.is_empty() {
         return;
     }
     let mut router = Router::new(chart, layout, &open);
-    for transition in open {
-        let points = router.way(chart, transition);
+    // what has a place first, so that others keep away from it
+    let (bent, others): (Vec<_>, Vec<_>) =
+        open.into_iter().partition(|&(id, _)| !placed::bends(chart, id).is_empty());
+    for (id, transition) in bent.into_iter().chain(others) {
+        let points = match placed::bends(chart, id) {
+            [] => router.way(chart, transition),
+            bends => router.around(chart, transition, bends, layout),
+        };
         let label = Label::of(transition, layout.marks);
         let label_at = router.label_place(&points, label.size());
         let arrow = Arrow { frame: Statechart::ROOT, points, label, label_at };
@@ -62,7 +68,7 @@ struct Router {
 }
 
 impl Router {
-    fn new(chart: &Statechart, layout: &Layout, open: &[&Transition]) -> Router {
+    fn new(chart: &Statechart, layout: &Layout, open: &[(TransitionId, &Transition)]) -> Router {
         let boxes: Vec<Rectangle> =
             chart.nodes().map(|(id, _)| Rectangle::new(layout.shape(id).at, layout.shape(id).size)).collect();
         let heads: Vec<Option<Rectangle>> = chart.nodes().map(|(id, _)| head(chart, layout, id)).collect();
@@ -76,7 +82,7 @@ impl Router {
         let mut around: Vec<Rectangle> = boxes.clone();
         around.extend(names.iter().copied().flatten());
         around.extend(heads.iter().copied().flatten());
-        let ends = open.iter().flat_map(|it| [it.source, it.target]).map(|id| boxes[id.0 as usize]);
+        let ends = open.iter().flat_map(|(_, it)| [it.source, it.target]).map(|id| boxes[id.0 as usize]);
         let ends: Vec<Rectangle> = ends.collect();
         let mut grid_lines = GridLines::beside(&around, &ends, page, CLEARANCE);
         for end in &ends {
@@ -101,6 +107,22 @@ impl Router {
             self.grid.burden(&label);
             self.letters.push(label);
         }
+    }
+
+    /// The line by the bends that are said.
+    fn around(
+        &self,
+        chart: &Statechart,
+        transition: &Transition,
+        bends: &[Point],
+        layout: &Layout,
+    ) -> Vec<Point> {
+        let holder = innermost_around(chart, transition);
+        let origin = content_origin(layout.shape(holder));
+        let bends: Vec<Point> = bends.iter().map(|&bend| moved(bend, origin)).collect();
+        let (from, to) =
+            (&self.boxes[transition.source.0 as usize], &self.boxes[transition.target.0 as usize]);
+        placed::line(from, &bends, to)
     }
 
     /// The cheapest way, or a straight line if there is none.
@@ -274,6 +296,12 @@ fn head(chart: &Statechart, layout: &Layout, id: NodeId) -> Option<Rectangle> {
 
 fn holds(chart: &Statechart, outer: NodeId, inner: NodeId) -> bool {
     chart.ancestors(inner).any(|ancestor| ancestor == outer)
+}
+
+/// The innermost composite that holds both ends of a transition.
+fn innermost_around(chart: &Statechart, transition: &Transition) -> NodeId {
+    let around: Vec<NodeId> = chart.ancestors(transition.target).collect();
+    chart.ancestors(transition.source).find(|id| around.contains(id)).unwrap_or(Statechart::ROOT)
 }
 
 fn without_straight_corners(points: &[Point]) -> Vec<Point> {

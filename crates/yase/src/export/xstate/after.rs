@@ -42,7 +42,7 @@ impl<'a> Timers<'a> {
             begin(&node.exit, &|| Beginning::Exit);
         }
         let mut incoming = vec![Vec::new(); chart.nodes().len()];
-        for transition in sound_transitions(chart) {
+        for (_, transition) in sound_transitions(chart) {
             begin(&transition.expression.actions, &|| Beginning::Segment(transition));
             incoming[transition.target.0 as usize].push(transition);
         }

@@ -61,7 +61,7 @@ pub(super) struct Ways<'a> {
 impl<'a> Ways<'a> {
     pub(super) fn of(chart: &'a Statechart) -> Ways<'a> {
         let mut outgoing: Vec<Vec<&Transition>> = vec![Vec::new(); chart.nodes().len()];
-        for transition in sound_transitions(chart) {
+        for (_, transition) in sound_transitions(chart) {
             outgoing[transition.source.0 as usize].push(transition);
         }
         for segments in &mut outgoing {
