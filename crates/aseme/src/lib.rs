@@ -69,6 +69,7 @@
 pub mod aip;
 pub mod build;
 pub mod check;
+mod components;
 pub mod convert;
 pub mod diff;
 mod document;

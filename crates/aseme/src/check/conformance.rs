@@ -1,8 +1,9 @@
 //! M24: what a chart does against what its formulas say.
 //!
 //! Both are sets of traces, the order in which activities return. Every trace of the chart is to be one of the formulas, and the other way round. A
-//! chart that is left early by a guard or an event cuts traces short, on purpose.
+//! chart that is left early by a guard or an event cuts traces short, on purpose. Traces that have no end are judged by what can still come ([`endless`]).
 
+mod endless;
 pub(super) mod graph;
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -12,6 +13,7 @@ use yase::{NodeId, Statechart};
 
 use super::language::{Language, Letter, Rest};
 use crate::liveness::Liveness;
+use endless::{Endlessly, endlessly};
 use graph::{Graph, Shows};
 
 /// So many pairs of states and rests are looked at.
@@ -39,6 +41,15 @@ pub(super) enum DifferenceKind {
     NeverDone(String),
     /// The formulas may end, and the chart cannot.
     NeverEnds,
+    /// What the formulas do again and again the chart can no longer do: these `x~`, or something that comes once.
+    Starves(Vec<String>),
+}
+
+impl DifferenceKind {
+    /// Whether the chart does something; else there is something that it does not do.
+    pub(super) fn is_of_what_is_done(&self) -> bool {
+        matches!(self, DifferenceKind::NotAllowed(_) | DifferenceKind::EndsEarly)
+    }
 }
 
 /// The first difference in each direction: what the chart does, then what it cannot do. And whether all was judged: of what is too large, nothing is known.
@@ -60,7 +71,7 @@ pub(super) fn difference_beyond(
     let (language, all) = Language::with_cut(liveness, cut)?;
     let full = Graph::of(found, |edge| shows(&language, chart, &found.edges()[edge]));
     let mut comparison = Comparison { chart, found, language, may_end_early: false };
-    comparison.does_more(&full, all).difference()
+    comparison.does_more(&full, all).0.difference()
 }
 
 /// The same of a chart that may be left early: that it ends where the formulas go on is no difference.
@@ -85,7 +96,7 @@ fn compared(
     let (does, cannot) = comparison.both(small.as_ref().unwrap_or(&full), all);
     // classes tell that there is a difference, and only states the way there
     let does = match (does, small) {
-        (Verdict::Differs(brief), Some(_)) => match comparison.does_more(&full, all) {
+        (Verdict::Differs(brief), Some(_)) => match comparison.does(&full, all) {
             Verdict::Differs(whole) => Verdict::Differs(whole),
             _ => Verdict::Differs(Difference { trace: None, ..brief }),
         },
@@ -130,28 +141,70 @@ type Rests = BTreeSet<Rest>;
 /// A state of the chart, and what may be left of the formulas there.
 type At = (usize, Rests);
 
-/// Where each was reached from, and along which edge.
-type Came = BTreeMap<At, Option<(At, usize)>>;
+/// What was reached.
+#[derive(Default)]
+struct Came {
+    /// In the order in which it was.
+    order: Vec<At>,
+    /// From where, and along which edge.
+    from: BTreeMap<At, Option<(At, usize)>>,
+}
+
+impl Came {
+    /// Whether it is new.
+    fn to(&mut self, at: At, from: Option<(At, usize)>) -> bool {
+        let is_new = !self.from.contains_key(&at);
+        if is_new {
+            self.order.push(at.clone());
+            self.from.insert(at, from);
+        }
+        is_new
+    }
+}
 
 impl Comparison<'_> {
     fn both(&mut self, graph: &Graph, all: Rest) -> (Verdict, Verdict) {
-        let does = self.does_more(graph, all);
+        let does = self.does(graph, all);
         let cannot = if self.found.is_finished() { self.does_less(graph, all) } else { Verdict::Same };
         (does, cannot)
     }
 
-    /// Follows the chart, and looks whether the formulas allow it.
-    fn does_more(&mut self, graph: &Graph, all: Rest) -> Verdict {
-        let starts: Vec<At> = graph.initial.iter().map(|&state| (state, Rests::from([all]))).collect();
-        let mut came: Came = starts.iter().map(|start| (start.clone(), None)).collect();
-        let mut open = VecDeque::from(starts);
-        while let Some(at) = open.pop_front() {
-            if came.len() > MOST || self.language.is_too_large() {
-                return Verdict::Unknown;
+    /// What the chart does: each step of it, then what it can go on with.
+    fn does(&mut self, graph: &Graph, all: Rest) -> Verdict {
+        match self.does_more(graph, all) {
+            (Verdict::Same, came) if self.found.is_finished() => self.goes_on(graph, all, &came),
+            (does, _) => does,
+        }
+    }
+
+    /// Looks whether the formulas can still be met from wherever the chart has come.
+    fn goes_on(&mut self, graph: &Graph, all: Rest, came: &Came) -> Verdict {
+        match endlessly(graph, &mut self.language, all, &came.order, self.may_end_early) {
+            Endlessly::Met => Verdict::Same,
+            Endlessly::Missed(index, names) => {
+                let kind = DifferenceKind::Starves(names);
+                Verdict::Differs(self.difference(kind, came, &came.order[index], None))
+            }
+            Endlessly::Unknown => Verdict::Unknown,
+        }
+    }
+
+    /// Follows the chart, and looks whether the formulas allow it; with all that it came to.
+    fn does_more(&mut self, graph: &Graph, all: Rest) -> (Verdict, Came) {
+        let mut came = Came::default();
+        for &state in &graph.initial {
+            came.to((state, Rests::from([all])), None);
+        }
+        let mut open = 0;
+        while let Some(at) = came.order.get(open).cloned() {
+            open += 1;
+            if came.order.len() > MOST || self.language.is_too_large() {
+                return (Verdict::Unknown, came);
             }
             let may_end = self.may_end_early || at.1.iter().any(|&rest| self.language.may_end(rest));
             if graph.ends[at.0] && !may_end {
-                return Verdict::Differs(self.difference(DifferenceKind::EndsEarly, &came, &at, None));
+                let difference = self.difference(DifferenceKind::EndsEarly, &came, &at, None);
+                return (Verdict::Differs(difference), came);
             }
             for way in &graph.ways[at.0] {
                 let rests = match way.shows {
@@ -161,21 +214,18 @@ impl Comparison<'_> {
                 };
                 if let (true, Some(node)) = (rests.is_empty(), self.found.edges()[way.edge].returned) {
                     let kind = DifferenceKind::NotAllowed(node);
-                    return Verdict::Differs(self.difference(kind, &came, &at, Some(way.edge)));
+                    let difference = self.difference(kind, &came, &at, Some(way.edge));
+                    return (Verdict::Differs(difference), came);
                 }
-                let next = (way.to, rests);
-                if !came.contains_key(&next) {
-                    came.insert(next.clone(), Some((at.clone(), way.edge)));
-                    open.push_back(next);
-                }
+                came.to((way.to, rests), Some((at.clone(), way.edge)));
             }
         }
-        Verdict::Same
+        (Verdict::Same, came)
     }
 
     fn difference(&self, kind: DifferenceKind, came: &Came, at: &At, last: Option<usize>) -> Difference {
         let (mut edges, mut at) = (Vec::new(), at.clone());
-        while let Some(Some((before, edge))) = came.get(&at) {
+        while let Some(Some((before, edge))) = came.from.get(&at) {
             edges.push(*edge);
             at = before.clone();
         }
@@ -440,5 +490,14 @@ mod tests {
             set_guard(chart, way, "false");
         };
         assert_eq!(kinds("r = a+ . b", once), [DifferenceKind::NeverDone("a".into())]);
+        let until = |chart: &mut Statechart| {
+            let way = between(chart, "a", NodeKind::Basic);
+            set_guard(chart, way, "In(b)");
+        };
+        let ceases = kinds("r = a~ || b", until);
+        let [DifferenceKind::Starves(names), DifferenceKind::NeverDone(_)] = &ceases[..] else {
+            panic!("{ceases:?}")
+        };
+        assert_eq!(names, &["a~"]);
     }
 }

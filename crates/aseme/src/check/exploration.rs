@@ -318,8 +318,7 @@ impl Checks<'_> {
         let undecided = !is_whole && self.found.is_finished() && differences.is_empty();
         let cut = self.cut_short();
         let found = differences.into_iter().map(|difference| {
-            let does_more =
-                matches!(difference.kind, DifferenceKind::NotAllowed(_) | DifferenceKind::EndsEarly);
+            let does_more = difference.kind.is_of_what_is_done();
             // what leaves a composite early cuts traces short, as it is meant to; what cannot come of that is told instead
             let beyond = match does_more && !cut.is_empty() {
                 true => conformance::difference_beyond(chart, self.found, liveness, cut.clone()),
@@ -357,11 +356,22 @@ impl Checks<'_> {
             DifferenceKind::NeverEnds => {
                 (Statechart::ROOT, String::from("the formulas may end, and the chart never does"))
             }
+            DifferenceKind::Starves(names) if names.is_empty() => (
+                Statechart::ROOT,
+                String::from("what the formulas go on with can never come, whatever happens"),
+            ),
+            DifferenceKind::Starves(names) => {
+                let said = format!("`{}` is never done again, whatever happens", names.join("` and `"));
+                (Statechart::ROOT, said)
+            }
         };
         let found = self.subject.warn("M24", node, format!("{before} {says}"));
-        let does_more = matches!(difference.kind, DifferenceKind::NotAllowed(_) | DifferenceKind::EndsEarly);
-        let severity = if is_meant { Severity::Warning } else { Severity::Error };
+        let does_more = difference.kind.is_of_what_is_done();
+        // what ceases has been as the formulas say for as long as it went on
+        let ceases = matches!(difference.kind, DifferenceKind::Starves(_));
+        let severity = if is_meant || ceases { Severity::Warning } else { Severity::Error };
         let hint = match (does_more, is_meant) {
+            _ if ceases => "some way back is closed once this has happened, or the state is never left",
             (true, true) => {
                 "a composite is left before it has completed: leave it by `[false]` or without a guard to have it do all"
             }

@@ -14,6 +14,20 @@ pub(super) struct Rest(u32);
 /// An activity, by its place in [`Language::letters`].
 pub(super) type Letter = u32;
 
+/// An `x~`, by its place in [`Language::endless`].
+pub(super) type Endless = u32;
+
+/// What may be left when an activity has returned, and what that was for.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(super) struct Step {
+    /// What is left.
+    pub(super) rest: Rest,
+    /// Whether it was part of what goes on forever, and not of what comes once.
+    pub(super) recurs: bool,
+    /// Each `x~` of which it began a turn.
+    pub(super) begun: BTreeSet<Endless>,
+}
+
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum Expression {
     /// Nothing is left.
@@ -24,7 +38,10 @@ enum Expression {
     Shuffle(Rest, Rest),
     /// Any number of times.
     Star(Rest),
-    Forever(Rest),
+    /// Again and again; each `x~` of the formulas has a number of its own.
+    Forever(Rest, Endless),
+    /// What is left of one turn of what goes on forever, and that.
+    Turn(Rest, Rest),
     /// No more of it than anyone likes.
     Cut(Rest),
 }
@@ -37,8 +54,13 @@ pub(super) struct Language {
     expressions: Vec<Expression>,
     places: BTreeMap<Expression, Rest>,
     nullable: Vec<bool>,
+    /// Whether it has no end.
+    unending: Vec<bool>,
     letters: Vec<String>,
     numbers: BTreeMap<String, Letter>,
+    /// The terms that go on forever, as they are written.
+    endless: Vec<String>,
+    steps: BTreeMap<(Rest, Letter), BTreeSet<Step>>,
     derivatives: BTreeMap<(Rest, Letter), BTreeSet<Rest>>,
     /// The terms that may be left before they are done, by what states are called that stand for them.
     cut: BTreeSet<String>,
@@ -56,8 +78,11 @@ impl Language {
             expressions: Vec::new(),
             places: BTreeMap::new(),
             nullable: Vec::new(),
+            unending: Vec::new(),
             letters: Vec::new(),
             numbers: BTreeMap::new(),
+            endless: Vec::new(),
+            steps: BTreeMap::new(),
             derivatives: BTreeMap::new(),
             cut,
         };
@@ -115,7 +140,8 @@ impl Language {
             }
             Term::Forever(inner) => {
                 let inner = self.nested(liveness, *inner, open)?;
-                Some(self.place(Expression::Forever(inner)))
+                self.endless.push(liveness.compact(id));
+                Some(self.place(Expression::Forever(inner, self.endless.len() as Endless - 1)))
             }
         }
     }
@@ -185,6 +211,14 @@ impl Language {
         }
     }
 
+    /// What is left of a turn, and then the next.
+    fn turn(&mut self, left: Rest, forever: Rest) -> Rest {
+        match self.expressions[left.0 as usize] {
+            Expression::Done => forever,
+            _ => self.place(Expression::Turn(left, forever)),
+        }
+    }
+
     fn shuffle(&mut self, one: Rest, other: Rest) -> Rest {
         let is_done = |it: &Language, rest: Rest| it.expressions[rest.0 as usize] == Expression::Done;
         match (is_done(self, one), is_done(self, other)) {
@@ -201,13 +235,23 @@ impl Language {
         let null = |rest: Rest| self.nullable[rest.0 as usize];
         let nullable = match expression {
             Expression::Done | Expression::Star(_) | Expression::Cut(_) => true,
-            Expression::Name(_) | Expression::Forever(_) => false,
+            Expression::Name(_) | Expression::Forever(..) | Expression::Turn(..) => false,
             Expression::Sequence(one, other) | Expression::Shuffle(one, other) => null(one) && null(other),
             Expression::Either(one, other) => null(one) || null(other),
+        };
+        let endless = |rest: Rest| self.unending[rest.0 as usize];
+        let unending = match expression {
+            Expression::Forever(..) | Expression::Turn(..) => true,
+            Expression::Sequence(one, other) | Expression::Shuffle(one, other) => {
+                endless(one) || endless(other)
+            }
+            Expression::Either(one, other) => endless(one) && endless(other),
+            Expression::Done | Expression::Name(_) | Expression::Star(_) | Expression::Cut(_) => false,
         };
         let rest = Rest(self.expressions.len() as u32);
         self.expressions.push(expression.clone());
         self.nullable.push(nullable);
+        self.unending.push(unending);
         self.places.insert(expression, rest);
         rest
     }
@@ -222,21 +266,45 @@ impl Language {
         if let Some(known) = self.derivatives.get(&(rest, letter)) {
             return known.clone();
         }
-        let derivatives = self.derive(rest, letter);
+        let derivatives: BTreeSet<Rest> =
+            self.steps(rest, letter).into_iter().map(|step| step.rest).collect();
         self.derivatives.insert((rest, letter), derivatives.clone());
         derivatives
     }
 
-    fn derive(&mut self, rest: Rest, letter: Letter) -> BTreeSet<Rest> {
+    /// The same, with what the activity was for.
+    pub(super) fn steps(&mut self, rest: Rest, letter: Letter) -> BTreeSet<Step> {
+        if let Some(known) = self.steps.get(&(rest, letter)) {
+            return known.clone();
+        }
+        let steps = self.derive(rest, letter);
+        self.steps.insert((rest, letter), steps.clone());
+        steps
+    }
+
+    fn derive(&mut self, rest: Rest, letter: Letter) -> BTreeSet<Step> {
         match self.expressions[rest.0 as usize] {
             Expression::Done => BTreeSet::new(),
-            Expression::Name(name) if name == letter => BTreeSet::from([self.done()]),
+            Expression::Name(name) if name == letter => {
+                BTreeSet::from([Step { rest: self.done(), recurs: false, begun: BTreeSet::new() }])
+            }
             Expression::Name(_) => BTreeSet::new(),
-            Expression::Either(one, other) => &self.after(one, letter) | &self.after(other, letter),
+            Expression::Either(one, other) => &self.steps(one, letter) | &self.steps(other, letter),
             Expression::Sequence(first, then) => {
                 let mut all = self.each(first, letter, |it, rest| it.sequence(rest, then));
                 if self.may_end(first) {
-                    all.extend(self.after(then, letter));
+                    all.extend(self.steps(then, letter));
+                }
+                all
+            }
+            Expression::Turn(left, forever) => {
+                // what has no end itself keeps the next turn from ever beginning
+                let recurs = !self.unending[left.0 as usize];
+                let steps = self.each(left, letter, |it, rest| it.turn(rest, forever));
+                let mut all: BTreeSet<Step> =
+                    steps.into_iter().map(|step| Step { recurs: recurs || step.recurs, ..step }).collect();
+                if self.may_end(left) {
+                    all.extend(self.steps(forever, letter));
                 }
                 all
             }
@@ -245,8 +313,14 @@ impl Language {
                 all.extend(self.each(other, letter, |it, rest| it.shuffle(one, rest)));
                 all
             }
-            Expression::Star(inner) | Expression::Forever(inner) => {
-                self.each(inner, letter, |it, after| it.sequence(after, rest))
+            Expression::Star(inner) => self.each(inner, letter, |it, after| it.sequence(after, rest)),
+            Expression::Forever(inner, number) => {
+                let steps = self.each(inner, letter, |it, after| it.turn(after, rest));
+                let begun = |mut step: Step| {
+                    step.begun.insert(number);
+                    Step { recurs: true, ..step }
+                };
+                steps.into_iter().map(begun).collect()
             }
             Expression::Cut(inner) => self.each(inner, letter, |it, after| it.cut(after)),
         }
@@ -257,9 +331,38 @@ impl Language {
         rest: Rest,
         letter: Letter,
         make: impl Fn(&mut Language, Rest) -> Rest,
-    ) -> BTreeSet<Rest> {
-        let after = self.after(rest, letter);
-        after.into_iter().map(|rest| make(self, rest)).collect()
+    ) -> BTreeSet<Step> {
+        let steps = self.steps(rest, letter);
+        steps.into_iter().map(|step| Step { rest: make(self, step.rest), ..step }).collect()
+    }
+
+    /// Whether it has no end.
+    fn is_unending(&self, rest: Rest) -> bool {
+        self.unending.get(rest.0 as usize).copied().unwrap_or(false)
+    }
+
+    /// The `x~` that have to be gone through again and again from here on; none if before that something has to come that comes once. One whose turns may be
+    /// empty asks for nothing.
+    pub(super) fn owed(&self, rest: Rest) -> Option<BTreeSet<Endless>> {
+        match self.expressions[rest.0 as usize] {
+            Expression::Done | Expression::Star(_) | Expression::Cut(_) => Some(BTreeSet::new()),
+            Expression::Name(_) => None,
+            Expression::Either(..) => self.may_end(rest).then(BTreeSet::new),
+            Expression::Forever(inner, _) if self.may_end(inner) => Some(BTreeSet::new()),
+            Expression::Forever(_, number) => Some(BTreeSet::from([number])),
+            Expression::Sequence(first, _) | Expression::Turn(first, _) if self.is_unending(first) => {
+                self.owed(first)
+            }
+            Expression::Turn(_, forever) => self.owed(forever),
+            Expression::Sequence(first, then) if self.may_end(first) => self.owed(then),
+            Expression::Sequence(..) => None,
+            Expression::Shuffle(one, other) => Some(&self.owed(one)? | &self.owed(other)?),
+        }
+    }
+
+    /// An `x~` as it is written.
+    pub(super) fn endless(&self, number: Endless) -> &str {
+        self.endless.get(number as usize).map_or("", String::as_str)
     }
 
     /// What is left of any of several when an activity has returned.
@@ -316,6 +419,44 @@ mod tests {
             assert!(allows(&[], trace).is_empty() && !allows(&["(a.b~)"], trace).is_empty(), "{trace}");
         }
         assert!(allows(&["(a.b~)"], "b").is_empty() && allows(&["b~"], "c").is_empty());
+    }
+
+    #[test]
+    fn what_goes_on_forever_is_owed_until_its_turn_has_begun() {
+        let owed = |formulas: &str, trace: &str| {
+            let (mut language, all) = Language::new(&crate::liveness::parse(formulas).0).unwrap();
+            let rests = trace.split_whitespace().fold(BTreeSet::from([all]), |rests, name| {
+                let letter = language.find(name).unwrap();
+                language.after_any(&rests, letter)
+            });
+            let names =
+                |rest| Some(language.owed(rest)?.into_iter().map(|it| language.endless(it)).collect());
+            let owed: Vec<Option<Vec<&str>>> = rests.into_iter().map(names).collect();
+            format!("{owed:?}")
+        };
+        assert_eq!(owed("r = a~ || (b.c)~", "b"), "[Some([\"a~\", \"(b.c)~\"])]");
+        assert_eq!(owed("r = a~ || b", ""), "[None]", "`b` is to come first");
+        assert_eq!(owed("r = a~ || b", "b"), "[Some([\"a~\"])]");
+        assert_eq!(owed("r = a* . b~", "a"), "[Some([\"b~\"])]");
+        assert_eq!(owed("r = (a . b~)~", "a b"), "[Some([\"b~\"])]", "nothing comes after it");
+        assert_eq!(owed("r = ([a])~", ""), "[Some([])]");
+        assert_eq!(owed("r = |a~|2", "a"), "[Some([\"a~\", \"a~\"])]", "each of the two");
+        assert_eq!(owed("r = a~ | b", ""), "[None]", "neither has begun");
+    }
+
+    #[test]
+    fn steps_say_what_they_are_for() {
+        let (mut language, all) = Language::new(&crate::liveness::parse("r = a || (b.a)~").0).unwrap();
+        let (a, b) = (language.find("a").unwrap(), language.find("b").unwrap());
+        let said = |steps: &BTreeSet<Step>| -> Vec<(bool, usize)> {
+            steps.iter().map(|step| (step.recurs, step.begun.len())).collect()
+        };
+        assert_eq!(said(&language.steps(all, a)), [(false, 0)]);
+        let turn = language.steps(all, b);
+        assert_eq!(said(&turn), [(true, 1)]);
+        let mut both = said(&language.steps(turn.first().unwrap().rest, a));
+        both.sort_unstable();
+        assert_eq!(both, [(false, 0), (true, 0)], "the one that comes once, or the end of the turn");
     }
 
     #[test]

@@ -257,6 +257,9 @@ fn traces(chart: &Iac, liveness: &Liveness, name: &str, found: &mut Conformance)
                 ("E0868", format!("the protocol allows `{activity}`, and the chart never does it"))
             }
             DifferenceKind::NeverEnds => ("E0868", "the protocol may end, and the chart never does".into()),
+            DifferenceKind::Starves(_) => {
+                ("E0868", "what the protocol goes on with can never come, whatever happens".into())
+            }
         };
         let message = format!("in `{name}`, {before} {what}");
         found.report(code, Span::default(), message, "some guard or transition is not as in the protocol");

@@ -12,6 +12,7 @@ use yase::explore::{Pending, Watched, WatchedStep};
 
 use super::clause::{Clause, Position, Stack};
 use super::plan::{Plan, Term};
+use crate::components::components;
 
 /// A run that violates a property, by its steps.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -300,50 +301,4 @@ impl Circles<'_> {
 enum Stop {
     Place(usize),
     Step(usize, usize, usize),
-}
-
-/// The strongly connected component of each place, by Tarjan's algorithm, without recursion.
-fn components(next: &[Vec<(usize, usize)>]) -> Vec<usize> {
-    const UNSEEN: usize = usize::MAX;
-    let count = next.len();
-    let (mut index, mut low, mut component) = (vec![UNSEEN; count], vec![0; count], vec![UNSEEN; count]);
-    let (mut stack, mut seen, mut found) = (Vec::new(), 0, 0);
-    for root in 0..count {
-        if index[root] != UNSEEN {
-            continue;
-        }
-        let mut calls = vec![(root, 0)];
-        while let Some((at, edge)) = calls.pop() {
-            if edge == 0 {
-                (index[at], low[at]) = (seen, seen);
-                seen += 1;
-                stack.push(at);
-            }
-            match next[at].get(edge) {
-                Some(&(to, _)) => {
-                    calls.push((at, edge + 1));
-                    if index[to] == UNSEEN {
-                        calls.push((to, 0));
-                    } else if component[to] == UNSEEN {
-                        low[at] = low[at].min(index[to]);
-                    }
-                }
-                None => {
-                    if low[at] == index[at] {
-                        while let Some(member) = stack.pop() {
-                            component[member] = found;
-                            if member == at {
-                                break;
-                            }
-                        }
-                        found += 1;
-                    }
-                    if let Some(&(before, _)) = calls.last() {
-                        low[before] = low[before].min(low[at]);
-                    }
-                }
-            }
-        }
-    }
-    component
 }
