@@ -5,6 +5,8 @@
 //! [`Flat::to_rust`] writes it down as Rust that needs no library, allocates nothing, and takes as long as a `match` that a person wrote.
 //!
 //! Conditions and actions become methods of a trait, which whoever uses the chart writes. `In(state)` and `raise(event)` do not: they are known beforehand.
+//! A method has one answer for all regions. Where a message has not come that a condition reads, the answer is no; `!Ball.found` is asked for as such, and
+//! `Ball.found` is another question.
 //!
 //! What is not known beforehand keeps a chart from being flat: activities, timers and durations, deferred events, random choice. Such a chart is refused, with the reason, and runs on a
 //! [`Machine`](crate::Machine). So is one with very many configurations; three regions of ten states have a thousand.
@@ -22,13 +24,12 @@
 //!     lamp.connect(Transition { expression: parse_transition(text).0, ..Transition::new(source, target) });
 //! }
 //! let flat = flatten(&lamp, Semantics::yase(), 100).expect("it is simple enough");
-//! assert_eq!((flat.states.len(), flat.conditions.as_slice()), (2, ["broken".to_owned()].as_slice()));
+//! assert_eq!((flat.states.len(), flat.conditions.as_slice()), (2, ["!broken".to_owned()].as_slice()));
 //! assert!(flat.to_rust().contains("
 //!             (State::Off, Event::Button) => {
-//!                 if world.broken() {
-//!                     return;
+//!                 if world.not_broken() {
+//!                     *self = State::On;
 //!                 }
-//!                 *self = State::On;
 //!             }
 //!             (State::On, Event::Button) => *self = State::Off,
 //! "));

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use yase::Statechart;
-use yase::statechart::{Node, NodeId, NodeKind, Transition};
+use yase::statechart::{Node, NodeId, NodeKind, Transition, TransitionId};
 
 use crate::harness::{Contestant, Race};
 use crate::ours::{connect, vocabulary};
@@ -17,6 +17,7 @@ pub(crate) fn run(race: &Race) {
             building("a tree, parsed and compiled", both),
             compiling("a tree, compiled", tree(states)),
             compiling("all in one composite, compiled", wide(states)),
+            compiling("the same without guards, compiled", unguarded(states)),
         ];
         race.run(&format!("charts of {states} states, ns a chart"), &mut contestants);
     }
@@ -77,6 +78,13 @@ fn tree(states: usize) -> Statechart {
 fn wide(states: usize) -> Statechart {
     let mut chart = Statechart::new("wide");
     ring(&mut chart, Statechart::ROOT, states);
+    chart
+}
+
+fn unguarded(states: usize) -> Statechart {
+    let mut chart = wide(states);
+    let ways: Vec<TransitionId> = chart.transitions().map(|(id, _)| id).collect();
+    ways.into_iter().for_each(|way| chart.transition_mut(way).expression.guard = None);
     chart
 }
 

@@ -188,15 +188,6 @@ fn compare_whole(whole: i128, float: f64) -> Result<Ordering, GuardError> {
 mod tests {
     use super::*;
 
-    const COMPARISONS: [Comparison; 6] = [
-        Comparison::Equal,
-        Comparison::NotEqual,
-        Comparison::Less,
-        Comparison::LessOrEqual,
-        Comparison::Greater,
-        Comparison::GreaterOrEqual,
-    ];
-
     fn expected(comparison: Comparison, order: Ordering) -> bool {
         match comparison {
             Comparison::Equal => order.is_eq(),
@@ -247,7 +238,7 @@ mod tests {
         for row in ROWS {
             for (i, &left) in row.iter().enumerate() {
                 for (j, &right) in row.iter().enumerate() {
-                    for comparison in COMPARISONS {
+                    for comparison in Comparison::ALL {
                         let holds = expected(comparison, i.cmp(&j));
                         let said = compare(left, comparison, right);
                         assert_eq!(said, Ok(Some(holds)), "{left:?} {comparison:?} {right:?}");
@@ -275,7 +266,7 @@ mod tests {
     fn equal_numbers_are_equal_in_every_width() {
         let threes = [Value::Int(3), Value::Uint(3), Value::Float(3.0)];
         for (left, right) in threes.into_iter().flat_map(|left| threes.map(|right| (left, right))) {
-            for comparison in COMPARISONS {
+            for comparison in Comparison::ALL {
                 let holds = expected(comparison, Ordering::Equal);
                 assert_eq!(compare(left, comparison, right), Ok(Some(holds)));
                 let (left, right) = (Number::of(left).unwrap(), Number::of(right).unwrap());

@@ -221,6 +221,17 @@ pub enum Comparison {
 }
 
 impl Comparison {
+    /// All there are.
+    #[cfg(test)]
+    pub(super) const ALL: [Comparison; 6] = [
+        Comparison::Equal,
+        Comparison::NotEqual,
+        Comparison::Less,
+        Comparison::LessOrEqual,
+        Comparison::Greater,
+        Comparison::GreaterOrEqual,
+    ];
+
     /// The comparison that says the contrary of two values that can be compared.
     pub const fn contrary(self) -> Comparison {
         match self {

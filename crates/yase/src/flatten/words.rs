@@ -53,7 +53,8 @@ impl Words {
         words
     }
 
-    /// What speaks of states stays, and what is around it, and what turns an answer round.
+    /// What speaks of states stays, and what joins it with others. A condition that may be neither true nor false, since a message that it reads has not
+    /// come, is asked for together with what turns it round: both do not hold then.
     fn condition(&mut self, guard: &mut Expression) {
         let is_in = |part: &Expression| matches!(part.kind, ExpressionKind::In(_)).then_some(());
         let speaks_of_states = guard.find_map(&mut |part| is_in(part)).is_some();
@@ -62,7 +63,11 @@ impl Words {
             ExpressionKind::Or(parts) | ExpressionKind::And(parts) if speaks_of_states => {
                 parts.iter_mut().for_each(|part| self.condition(part));
             }
-            ExpressionKind::Not(operand) => self.condition(operand),
+            ExpressionKind::Not(operand) if has_two_values(operand) => self.condition(operand),
+            ExpressionKind::Not(operand) if speaks_of_states => {
+                guard.kind = negated(operand);
+                self.condition(guard);
+            }
             kind => {
                 let text = match kind {
                     ExpressionKind::Script(text) => text.clone(),
@@ -80,6 +85,30 @@ impl Words {
             _ => action.to_string(),
         };
         action.kind = ActionKind::Script(numbered(ACTION, &mut self.actions, text));
+    }
+}
+
+/// Whether a condition is always true or false.
+fn has_two_values(condition: &Expression) -> bool {
+    match &condition.kind {
+        ExpressionKind::Bool(_) | ExpressionKind::In(_) | ExpressionKind::Script(_) => true,
+        ExpressionKind::Not(operand) => has_two_values(operand),
+        ExpressionKind::Or(parts) | ExpressionKind::And(parts) => parts.iter().all(has_two_values),
+        _ => false,
+    }
+}
+
+/// The contrary, by De Morgan's laws, which hold in Kleene's logic too.
+fn negated(condition: &Expression) -> ExpressionKind {
+    let not = |part: &Expression| Expression {
+        kind: ExpressionKind::Not(Box::new(part.clone())),
+        place: part.place,
+    };
+    match &condition.kind {
+        ExpressionKind::Or(parts) => ExpressionKind::And(parts.iter().map(not).collect()),
+        ExpressionKind::And(parts) => ExpressionKind::Or(parts.iter().map(not).collect()),
+        ExpressionKind::Not(operand) => operand.kind.clone(),
+        _ => not(condition).kind,
     }
 }
 
@@ -162,4 +191,38 @@ fn of_transition(chart: &Statechart, id: TransitionId) -> String {
 
 fn starts_timer(action: &Action) -> bool {
     matches!(action.kind, ActionKind::StartTimeout { .. })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expression::parse_transition;
+    use crate::{Node, NodeKind, Transition};
+
+    fn words(guard: &str) -> (String, Vec<String>) {
+        let mut chart = Statechart::new("c");
+        let state = chart.add(Statechart::ROOT, Node::new(NodeKind::Basic, "s"));
+        let (expression, wrong) = parse_transition(&format!("e [{guard}]"));
+        assert_eq!(wrong, []);
+        let way = chart.connect(Transition { expression, ..Transition::new(state, state) });
+        let words = Words::of(&chart);
+        let guard = words.chart.transition(way).expression.guard.as_ref().map(ToString::to_string);
+        (guard.unwrap_or_default(), words.conditions)
+    }
+
+    #[test]
+    fn what_may_be_unknown_is_asked_for_with_its_negation() {
+        let cases: [(&str, &str, &[&str]); 6] = [
+            ("!Ball.found", r#"script("condition 0")"#, &["!Ball.found"]),
+            (r#"!script("x")"#, r#"!script("condition 0")"#, &["x"]),
+            ("!In(s)", "!In(s)", &[]),
+            ("In(s) && !Ball.found", r#"In(s) && script("condition 0")"#, &["!Ball.found"]),
+            ("!(In(s) && Ball.found)", r#"!In(s) || script("condition 0")"#, &["!Ball.found"]),
+            ("!!(In(s) || Ball.found)", r#"In(s) || script("condition 0")"#, &["Ball.found"]),
+        ];
+        for (guard, becomes, conditions) in cases {
+            let conditions = conditions.iter().map(|it| String::from(*it)).collect();
+            assert_eq!(words(guard), (becomes.to_owned(), conditions), "{guard}");
+        }
+    }
 }

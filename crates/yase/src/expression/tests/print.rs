@@ -87,14 +87,7 @@ fn state() -> impl Strategy<Value = Name> {
 }
 
 fn comparison() -> impl Strategy<Value = Comparison> {
-    prop::sample::select(vec![
-        Comparison::Equal,
-        Comparison::NotEqual,
-        Comparison::Less,
-        Comparison::LessOrEqual,
-        Comparison::Greater,
-        Comparison::GreaterOrEqual,
-    ])
+    prop::sample::select(Comparison::ALL.to_vec())
 }
 
 fn leaf() -> impl Strategy<Value = ExpressionKind> {
