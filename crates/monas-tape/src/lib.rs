@@ -5,7 +5,8 @@
 //!
 //! Each host, topic and publisher has a channel named `host/topic/path`, with the message's schema (encoding `protobuf`,
 //! the descriptor set with its imports) and, as metadata, `host`, `publisher`, `topic` and `kind`. What came to a host from another one has
-//! a channel `receiver/from/host/topic/path` with `received_by` besides. A message's log time is when the hub received it, its publish
+//! a channel `receiver/from/host/topic/path` with `received_by` besides. Threads of one agent have a channel each, with a `part` from the
+//! second on. A message's log time is when the hub received it, its publish
 //! time when it was published, by the clock of that hub; both count from the start of the run.
 //!
 //! # Why it is so

@@ -126,7 +126,7 @@ pub struct Attachment<'a> {
     pub bytes: &'a [u8],
 }
 
-/// What the messages of one host, topic and publisher have in common.
+/// What the messages of one host, topic and publisher, or of one of its parts, have in common.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct Channel {
@@ -136,6 +136,8 @@ pub struct Channel {
     pub received_by: Option<String>,
     /// Who published.
     pub publisher: String,
+    /// Which of those who published under that name, from 0: see [`Header::part`](narukom::Header::part).
+    pub part: u16,
     /// The topic's path, without the host.
     pub topic: String,
     /// The way of keeping: `state`, `signal` or `data`.
@@ -298,6 +300,7 @@ impl Channel {
             host: fact("host").unwrap_or_default(),
             received_by: fact("received_by"),
             publisher: fact("publisher").unwrap_or_default(),
+            part: fact("part").and_then(|part| part.parse().ok()).unwrap_or_default(),
             // Tapes of others have no such fact; there the channel's name is all there is.
             topic: fact("topic").unwrap_or_else(|| record.topic.to_owned()),
             kind: fact("kind").unwrap_or_default(),
@@ -312,9 +315,12 @@ impl Channel {
     pub(crate) fn of(publication: &Publication<'_>, received_by: Option<&str>) -> Channel {
         let Publication { host, publisher, topic, .. } = publication;
         let (descriptor, kind) = (topic.descriptor(), topic.kind().to_string());
+        let part = publication.sample.header.part;
+        let part_as_text = part.to_string();
         let mut facts =
             vec![("host", *host), ("kind", &kind), ("publisher", publisher), ("topic", topic.path())];
         facts.extend(received_by.map(|name| ("received_by", name)));
+        facts.extend((part != 0).then_some(("part", part_as_text.as_str())));
         let name = match received_by {
             Some(name) => format!("{name}/from/{host}/{}", topic.path()),
             None => format!("{host}/{}", topic.path()),
@@ -323,6 +329,7 @@ impl Channel {
             host: (*host).to_owned(),
             received_by: received_by.map(str::to_owned),
             publisher: (*publisher).to_owned(),
+            part,
             topic: topic.path().to_owned(),
             kind: kind.clone(),
             schema: Arc::new(Schema {

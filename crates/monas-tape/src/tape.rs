@@ -45,8 +45,8 @@ struct Channels {
     last: usize,
 }
 
-/// By host, then by topic, then by publisher.
-type Table = Vec<Vec<Vec<Option<(u32, Size)>>>>;
+/// By host, then by topic, then by publisher, then by part.
+type Table = Vec<Vec<Vec<Vec<Option<(u32, Size)>>>>>;
 
 impl Tape {
     /// A tape that is written to a new file at `path`; a file that is there is replaced. It is for simulated time: nothing is left out,
@@ -198,7 +198,8 @@ impl Channels {
         }
         let header = &publication.sample.header;
         let by_topic = entry(&mut self.hubs[self.last].1, header.host.index());
-        entry(entry(by_topic, header.topic.number() as usize), header.publisher.index())
+        let by_publisher = entry(by_topic, header.topic.number() as usize);
+        entry(entry(by_publisher, header.publisher.index()), header.part.into())
     }
 }
 

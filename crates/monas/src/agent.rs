@@ -80,6 +80,8 @@ pub struct Agent {
     pub(crate) cores: Vec<usize>,
     pub(crate) stuck_after: Option<Duration>,
     pub(crate) rules: Vec<Rules>,
+    /// In a replay: the places of the charts that run apart from the rest.
+    pub(crate) absent: Vec<usize>,
 }
 
 /// An activity of a list.
@@ -123,6 +125,7 @@ impl Agent {
             cores: Vec::new(),
             stuck_after: None,
             rules: Vec::new(),
+            absent: Vec::new(),
         }
     }
 
@@ -254,6 +257,46 @@ impl Agent {
     pub(crate) fn ruled(mut self, rules: Rules) -> Agent {
         self.rules.push(rules);
         self
+    }
+
+    /// For a replay: what each of its threads runs, as an agent of its own. A chart has its place, the list none.
+    pub(crate) fn apart(mut self) -> Vec<(Option<usize>, Agent)> {
+        let activities = std::mem::take(&mut self.activities);
+        let mut generated = std::mem::take(&mut self.generated);
+        let all = 0..self.charts.len();
+        let without = |place: Option<usize>| all.clone().filter(|other| Some(*other) != place).collect();
+        let list = (!activities.is_empty())
+            .then(|| (None, Agent { activities, absent: without(None), ..self.without_instances() }));
+        let charts = all.clone().map(|place| {
+            let generated = generated.remove(&place).map(|chart| (place, chart)).into_iter().collect();
+            let absent = without(Some(place));
+            (Some(place), Agent { generated, absent, ..self.without_instances() })
+        });
+        charts.chain(list).collect()
+    }
+
+    /// A copy, without what can be there only once.
+    fn without_instances(&self) -> Agent {
+        Agent {
+            name: self.name.clone(),
+            frequency: self.frequency,
+            activities: Vec::new(),
+            charts: self.charts.clone(),
+            own: self.own.clone(),
+            generated: BTreeMap::new(),
+            policy: self.policy,
+            real_time: self.real_time,
+            priority: self.priority,
+            statistics_every: self.statistics_every,
+            workers: self.workers,
+            semantics: self.semantics,
+            elsewhere: self.elsewhere.clone(),
+            models: self.models.clone(),
+            cores: self.cores.clone(),
+            stuck_after: self.stuck_after,
+            rules: self.rules.clone(),
+            absent: self.absent.clone(),
+        }
     }
 
     /// Its name.

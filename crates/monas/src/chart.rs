@@ -84,6 +84,11 @@ impl Home<'_> {
         format!("{}/{}/{}", self.hub.host(), self.agent, self.number)
     }
 
+    /// As which part of its agent it publishes.
+    fn part(&self) -> u16 {
+        u16::try_from(self.number).unwrap_or(u16::MAX)
+    }
+
     /// The seed of what the chart leaves open.
     fn chance(&self) -> u64 {
         let seed = component_seed(self.seed, &format!("{}#chooser", self.path()));
@@ -389,6 +394,11 @@ impl Runner {
     /// The chart's place among the charts of the agent.
     pub(crate) fn place(&self) -> u32 {
         self.desk.number
+    }
+
+    /// As which part of its agent it publishes.
+    pub(crate) fn part(&self) -> u16 {
+        self.desk.lending.part()
     }
 
     /// An activation that was asked to return since the last step began.

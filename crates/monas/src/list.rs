@@ -130,7 +130,8 @@ impl List {
         self.stop(&reason);
         // Whatever was written there is dropped with it.
         let random = self.blackboard.random().clone();
-        self.blackboard = self.blackboard.hub().blackboard(&self.agent);
+        let part = self.blackboard.part();
+        self.blackboard = self.blackboard.hub().blackboard(&self.agent).of_part(part);
         *self.blackboard.random() = random;
         if policy == Policy::SafeState { Outcome::SafeState } else { Outcome::Stopped }
     }

@@ -90,6 +90,18 @@ impl Blackboard {
         }
     }
 
+    /// The same, as another of those that publish under one name: [`Header::part`](crate::Header::part) then tells their messages apart, which
+    /// share their numbers. That is for recordings of agents with several threads.
+    pub fn of_part(mut self, part: u16) -> Blackboard {
+        self.sender.part = part;
+        self
+    }
+
+    /// Which of those that publish under its name it is, from 0.
+    pub fn part(&self) -> u16 {
+        self.sender.part
+    }
+
     /// Begins a cycle: signals of the last one end, and what was published on the hub since then is delivered.
     pub fn process_messages(&mut self, now: Moment) {
         self.now = now;
@@ -108,7 +120,7 @@ impl Blackboard {
         for slot in self.outbox.drain(..) {
             let Some(writing) = self.places[slot.index()].writing.as_mut() else { continue };
             let Some((message, nth)) = writing.take_next() else { continue };
-            let header = Header::local(self.sender.publisher, slot, now);
+            let header = Header::local(&self.sender, slot, now);
             let origin = Origin { blackboard: self.number, nth };
             self.outgoing.push(Outgoing::new(AnySample { message, header }, origin));
         }

@@ -26,6 +26,8 @@ pub const REMOTE_PUBLISHER_LIMIT: usize = 4096;
 pub(crate) struct Sender {
     pub(crate) publisher: PublisherId,
     pub(crate) name: Arc<str>,
+    /// Which of those who publish under the name.
+    pub(crate) part: u16,
 }
 
 /// A message on its way to the hub.
@@ -117,7 +119,7 @@ impl Exchange {
     }
 
     fn named_sender(&self, index: usize) -> Sender {
-        Sender { publisher: PublisherId(index as u32), name: self.publishers[index].clone() }
+        Sender { publisher: PublisherId(index as u32), name: self.publishers[index].clone(), part: 0 }
     }
 
     pub(crate) fn publisher_name(&self, publisher: PublisherId) -> Option<&Arc<str>> {
@@ -145,11 +147,11 @@ impl Exchange {
     #[inline]
     pub(crate) fn publish(&mut self, message: &mut Outgoing, now: Moment, is_observed: bool) {
         self.shelve();
-        let Header { host, publisher, topic, .. } = message.header;
+        let Header { host, publisher, part, topic, .. } = message.header;
         let Some(shelf) = self.shelves.get_mut(topic.index()) else { return };
         let sequence = shelf.local.next_sequence(publisher);
         let (published, local, received) = (now, now, now);
-        let header = Header { host, publisher, topic, sequence, published, local, received };
+        let header = Header { host, publisher, part, topic, sequence, published, local, received };
         self.put(message, header, is_observed);
     }
 

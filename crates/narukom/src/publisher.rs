@@ -40,6 +40,12 @@ impl<M: Message> Publisher<M> {
         Publisher { outlet: Outlet { hub, sender, slot, pool: Pool::default() }, message: PhantomData }
     }
 
+    /// The same, as another of those that publish under one name: see [`Blackboard::of_part`](crate::Blackboard::of_part).
+    pub fn of_part(mut self, part: u16) -> Publisher<M> {
+        self.outlet.sender.part = part;
+        self
+    }
+
     /// Publishes a message.
     pub fn publish(&mut self, message: M, now: Moment) {
         let message = self.outlet.pool.wrap(message);
@@ -62,6 +68,12 @@ impl AnyPublisher {
         topic: TopicDeclaration,
     ) -> AnyPublisher {
         AnyPublisher { outlet: Outlet { hub, sender, slot, pool: Pool::default() }, topic }
+    }
+
+    /// The same, as another of those that publish under one name: see [`Blackboard::of_part`](crate::Blackboard::of_part).
+    pub fn of_part(mut self, part: u16) -> AnyPublisher {
+        self.outlet.sender.part = part;
+        self
     }
 
     /// The topic.
@@ -92,7 +104,7 @@ impl AnyPublisher {
 
 impl Outlet {
     fn publish(&mut self, message: Arc<dyn AnyMessage>, now: Moment) {
-        let header = Header::local(self.sender.publisher, self.slot, now);
+        let header = Header::local(&self.sender, self.slot, now);
         let mut outgoing = Outgoing::new(AnySample { message, header }, Origin::OUTSIDE);
         self.hub.send(&self.sender, std::slice::from_mut(&mut outgoing), now);
         self.pool.take_back(outgoing.left);

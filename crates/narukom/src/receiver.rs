@@ -78,8 +78,16 @@ impl Receiver {
         let Arrival { sequence, published, local, received } = arrival;
         let (host, name) = &self.host;
         let publisher = self.sender.publisher;
-        let header =
-            Header { host: *host, publisher, topic: self.slot, sequence, published, local, received };
+        let header = Header {
+            host: *host,
+            publisher,
+            part: 0,
+            topic: self.slot,
+            sequence,
+            published,
+            local,
+            received,
+        };
         let mut message = Outgoing::new(AnySample { message, header }, Origin::OUTSIDE);
         self.hub.take_in(name, &self.sender, &mut message);
         self.pool.take_back(message.left);

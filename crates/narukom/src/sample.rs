@@ -3,6 +3,7 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
+use crate::exchange::Sender;
 use crate::message::AnyMessage;
 use crate::moment::Moment;
 
@@ -58,6 +59,9 @@ pub struct Header {
     pub host: HostId,
     /// Who published it.
     pub publisher: PublisherId,
+    /// Which of those who share the publisher's name, counted from 0: see [`Blackboard::of_part`](crate::Blackboard::of_part). What comes from
+    /// another host has 0.
+    pub part: u16,
     /// The topic.
     pub topic: TopicSlot,
     /// Counts the publisher's messages on the topic from 1; 0 until it is published.
@@ -78,10 +82,11 @@ impl Header {
     }
 
     /// The header of a message that is published here, or will be.
-    pub(crate) fn local(publisher: PublisherId, topic: TopicSlot, now: Moment) -> Header {
+    pub(crate) fn local(sender: &Sender, topic: TopicSlot, now: Moment) -> Header {
         Header {
             host: HostId::LOCAL,
-            publisher,
+            publisher: sender.publisher,
+            part: sender.part,
             topic,
             sequence: 0,
             published: now,

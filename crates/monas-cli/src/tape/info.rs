@@ -77,7 +77,11 @@ fn channels(channels: &[ChannelOverview]) -> comfy_table::Table {
             None => channel.host.clone(),
         };
         let frequency = one.frequency().map_or_else(|| "-".into(), |hertz| format!("{hertz:.1}"));
-        let names = [&*channel.topic, &*channel.kind, channel.message_type(), &*channel.publisher];
+        let publisher = match channel.part {
+            0 => channel.publisher.clone(),
+            part => format!("{} #{}", channel.publisher, part + 1),
+        };
+        let names = [&*channel.topic, &*channel.kind, channel.message_type(), &publisher];
         let names = names.map(str::to_owned);
         let figures = [grouped(one.messages), frequency, size(one.bytes)];
         std::iter::once(host).chain(names).chain(figures)
@@ -118,6 +122,7 @@ fn channel_object(one: &ChannelOverview) -> Value {
         "kept_as": channel.kind,
         "type": channel.message_type(),
         "publisher": channel.publisher,
+        "part": channel.part,
         "messages": one.messages,
         "bytes": one.bytes,
         "hertz": one.frequency(),

@@ -133,6 +133,7 @@ fn recorded(channel: &Channel) -> Recorded<'_> {
         host: &channel.host,
         received_by: channel.received_by.as_deref(),
         publisher: &channel.publisher,
+        part: channel.part,
         topic: &channel.topic,
     }
 }

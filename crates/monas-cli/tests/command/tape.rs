@@ -205,6 +205,26 @@ fn what_was_recorded_in_real_time_is_replayed() {
     assert!(answer.out.contains("first difference: local/Goalie, cycle "), "{}", answer.out);
 }
 
+/// The threads of an agent publish under one name, some on the same topics.
+#[test]
+fn an_agent_with_several_threads_is_replayed_thread_by_thread() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (config, live) = (folder.path().join("agents.xml"), text(&folder.path().join("live.mcap")));
+    let models = text(&root().join("models"));
+    let agent = format!(
+        "<agent frequency='100'><name>Player</name><activity>LedHandler</activity>\
+         <statechart>{models}/goalie.srm</statechart><statechart>{models}/attacker.srm</statechart></agent>"
+    );
+    fs::write(&config, agent).expect("a file");
+    done(&["run", &text(&config), "--for", "300ms", "--record", &live]);
+    let info = done(&["tape", "info", &live]).out;
+    assert!(["Player ", "Player #2 ", "Player #3 "].iter().all(|part| info.contains(part)), "{info}");
+    let replayed = objects(&done(&["tape", "replay", &live, "--verify", "--format", "json"]).out);
+    let last = replayed.last().expect("a summary");
+    assert_eq!(last["differences"], 0, "{replayed:?}");
+    assert!(last["compared"].as_u64().is_some_and(|compared| compared > 50), "{last}");
+}
+
 /// A model that a configuration names by its whole path is on the tape, and that one is replayed; what was set for the run is too.
 #[test]
 fn a_replay_needs_neither_the_place_nor_the_settings_of_its_run() {

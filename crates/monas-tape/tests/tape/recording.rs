@@ -167,6 +167,27 @@ fn what_comes_from_other_hosts_is_recorded_too() {
 }
 
 #[test]
+fn what_parts_of_one_publisher_say_is_told_apart() {
+    let output = Shared::default();
+    let tape = Tape::to_writer(output.clone()).unwrap();
+    let hub = hub("robot");
+    hub.observe(Box::new(tape.clone()));
+    let mut first = hub.publisher(SEEN, "vision").unwrap();
+    let mut third = hub.publisher(SEEN, "vision").unwrap().of_part(2);
+    first.publish(Ball { distance: 1.0 }, at(10));
+    third.publish(Ball { distance: 2.0 }, at(20));
+    first.publish(Ball { distance: 3.0 }, at(30));
+    tape.finish().unwrap();
+    let recording = Recording::from_bytes(output.bytes());
+    let messages: Vec<_> = recording.messages().unwrap().map(|message| message.unwrap()).collect();
+    let said = messages.iter().map(|message| {
+        let Channel { publisher, part, .. } = &*message.channel;
+        (publisher.as_str(), *part, message.sequence)
+    });
+    assert_eq!(said.collect::<Vec<_>>(), [("vision", 0, 1), ("vision", 2, 2), ("vision", 0, 3)]);
+}
+
+#[test]
 fn an_overview_counts() {
     let overview = Recording::from_bytes(recorded(10)).overview().unwrap();
     assert!(overview.is_finished && overview.damages.is_empty());

@@ -55,6 +55,7 @@ impl Desk {
         home.hub
             .publisher(MODEL, home.agent)
             .map_err(Error::hub)?
+            .of_part(home.part())
             .publish(model(chart, home.number), home.now);
         Ok(Desk {
             host: home.hub.host().into(),
@@ -70,7 +71,7 @@ impl Desk {
             delivered: Vec::new(),
             coverage: Counts::new(chart),
             seen: None,
-            records: home.hub.publisher(CHART, home.agent).map_err(Error::hub)?,
+            records: home.hub.publisher(CHART, home.agent).map_err(Error::hub)?.of_part(home.part()),
             listeners: home.listeners.clone(),
         })
     }

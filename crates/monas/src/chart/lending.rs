@@ -23,6 +23,8 @@ use crate::talws::component_seed;
 pub(super) struct Lending {
     hub: Narukom,
     agent: String,
+    /// As which part of its agent the chart publishes.
+    part: u16,
     seed: u64,
     /// The topics that guards read, in order.
     read: Box<[TopicSlot]>,
@@ -68,6 +70,7 @@ impl Lending {
         let mut lending = Lending {
             hub: home.hub.clone(),
             agent: home.agent.into(),
+            part: home.part(),
             seed: home.seed,
             read,
             regions,
@@ -112,6 +115,10 @@ impl Lending {
         }
     }
 
+    pub(super) fn part(&self) -> u16 {
+        self.part
+    }
+
     /// Has all blackboards show these topics too.
     pub(super) fn read_too(&mut self, topics: &[TopicSlot]) {
         let mut read: Vec<TopicSlot> = self.read.iter().chain(topics).copied().collect();
@@ -130,7 +137,7 @@ impl Lending {
     /// Gives a region a new blackboard.
     fn furnish(&mut self, place: usize) {
         let region = &mut self.regions[place];
-        let mut blackboard = self.hub.blackboard(&self.agent);
+        let mut blackboard = self.hub.blackboard(&self.agent).of_part(self.part);
         let seed = match region.made {
             0 => component_seed(self.seed, &region.path),
             more => component_seed(self.seed, &format!("{}#{more}", region.path)),

@@ -56,6 +56,12 @@ pub(super) struct Member {
     pub(super) teller: Teller,
 }
 
+/// As which part of its agent a thread publishes: charts by their places, then the list. So an agent with one thread is one part, the
+/// first.
+pub(super) fn part(number: usize) -> u16 {
+    u16::try_from(number).unwrap_or(u16::MAX)
+}
+
 /// Where a chart of an agent is to run.
 pub(super) struct Place<'a> {
     pub(super) ground: &'a Ground,
@@ -83,7 +89,9 @@ impl Crew {
         }
         let place = Place { ground, names, agent: &name, elsewhere: &agent.elsewhere, now };
         let count = charts.len();
-        let charts = charts.iter().zip(own).zip(0..).map(|((chart, own), number)| {
+        let charts = charts.iter().zip(own).zip(0..);
+        let here = charts.filter(|(_, number)| !agent.absent.contains(&(*number as usize)));
+        let charts = here.map(|((chart, own), number)| {
             let bound = match generated.remove(&(number as usize)) {
                 Some(generated) => binder.bind_generated(generated, semantics),
                 None => binder.bind(chart, semantics, None),
@@ -96,7 +104,9 @@ impl Crew {
         if let Some(wrong) = needs_one_chart(&name, count).filter(|_| !agent.rules.is_empty()) {
             return Err(Error::invalid(vec![wrong]));
         }
-        let list = (!activities.is_empty()).then(|| self.list(&name, policy, activities, &ground.hub));
+        let part = part(count);
+        let list =
+            (!activities.is_empty()).then(|| self.list((&name, part), policy, activities, &ground.hub));
         let teller = Teller::new(&ground.hub, &name)?;
         Ok(Member {
             policy,
@@ -116,9 +126,15 @@ impl Crew {
         })
     }
 
-    /// A list with its blackboard.
-    pub(super) fn list(&self, agent: &str, policy: Policy, activities: Vec<Listed>, hub: &Narukom) -> List {
-        let mut blackboard = hub.blackboard(agent);
+    /// The list of an agent, which is one of its parts, with its blackboard.
+    pub(super) fn list(
+        &self,
+        (agent, part): (&str, u16),
+        policy: Policy,
+        activities: Vec<Listed>,
+        hub: &Narukom,
+    ) -> List {
+        let mut blackboard = hub.blackboard(agent).of_part(part);
         blackboard.set_random(component_seed(self.seed, &format!("{}/{agent}", hub.host())));
         List::new(agent, policy, activities, blackboard)
     }

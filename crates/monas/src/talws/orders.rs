@@ -35,6 +35,15 @@ pub(super) struct Orders {
     pub(super) asked: Option<Asked>,
 }
 
+/// What one thread of an agent is told.
+pub(super) struct Share {
+    /// The chart's place; none for the list.
+    pub(super) place: Option<usize>,
+    pub(super) orders: Orders,
+    /// Whether it changes what the thread works on, beside what concerns the agent as a whole.
+    pub(super) is_own: bool,
+}
+
 /// Activities for the states of a chart.
 pub(super) type Instances = Vec<(NodeId, Box<dyn Activity>)>;
 
@@ -107,5 +116,38 @@ impl Orders {
     /// Nothing but what concerns the whole agent.
     pub(super) fn of(directives: impl IntoIterator<Item = Directive>) -> Orders {
         Orders { directives: directives.into_iter().collect(), ..Orders::default() }
+    }
+
+    /// What each thread of an agent with so many charts is told, of those that are told something.
+    pub(super) fn shares(self, has_list: bool, charts: usize) -> Vec<Share> {
+        let Orders { directives, edits, charts: runners, swap, instances, own, events, only, asked, .. } =
+            self;
+        let told = |place: Option<usize>| {
+            let is_meant = only.is_none() || place == only;
+            let directives = if is_meant { directives.clone() } else { Vec::new() };
+            let is_chart = place.is_some() && is_meant;
+            let events = if is_chart { events.clone() } else { Vec::new() };
+            Orders { asked: asked.clone(), only, events, ..Orders::of(directives) }
+        };
+        let mut shares = Vec::new();
+        if has_list {
+            let is_own = !edits.is_empty();
+            shares.push(Share { place: None, orders: Orders { edits, ..told(None) }, is_own });
+        }
+        let (mut runners, mut swap, mut own, mut instances) = (runners.into_iter(), swap, own, instances);
+        for place in 0..charts {
+            let swap = swap.take_if(|(chart, _)| *chart == place).map(|(_, swap)| (0, swap));
+            let own = own.take_if(|(chart, _)| *chart == place);
+            let fresh: Vec<_> = instances.extract_if(.., |(chart, _)| *chart == place).collect();
+            let is_own = swap.is_some() || own.is_some() || !fresh.is_empty();
+            let is_meant = only.is_none_or(|only| only == place);
+            let charts = if is_meant { runners.next().into_iter().collect() } else { Vec::new() };
+            let orders = Orders { charts, swap, own, instances: fresh, ..told(Some(place)) };
+            shares.push(Share { place: Some(place), orders, is_own });
+        }
+        shares.retain(|Share { orders, is_own, .. }| {
+            *is_own || !orders.directives.is_empty() || !orders.events.is_empty()
+        });
+        shares
     }
 }

@@ -41,6 +41,8 @@ pub struct Recorded<'a> {
     pub received_by: Option<&'a str>,
     /// Who published.
     pub publisher: &'a str,
+    /// Which of those who published under that name, see [`Header::part`](narukom::Header::part).
+    pub part: u16,
     /// The path of the topic.
     pub topic: &'a str,
 }
@@ -116,8 +118,7 @@ pub struct Input(usize);
 ///
 /// Changes of agents that were made meanwhile are made again: in simulated time when they were asked for, in real time between those turns
 /// of the agent between which it followed them. One that was removed and added anew comes back as it did. Agents that were new then are not
-/// replayed: what they published is given to the others. In real time one that was given a list beside its chart is refused, since what two
-/// threads publish under one name cannot be told apart.
+/// replayed: what they published is given to the others. In real time one that was given its first activity while it ran is refused.
 ///
 /// What comes from outside and is no message, an event that somebody raised by hand, is not in a recording and so not in a replay. Nor is
 /// what an activity learns in other ways: from a clock, a device or another thread. That shows as a difference.
@@ -146,7 +147,7 @@ impl Talws {
     /// As [`replay`](Talws::replay), on a recording of real time.
     ///
     /// # Errors
-    /// As there, and if the messages of several threads cannot be told apart: if an agent has charts and a list, or several charts.
+    /// As there, and if an agent has neither charts nor activities when the run begins.
     pub fn replay_real_time(self, company: &[Company]) -> Result<Replay, Error> {
         Ok(Replay { course: Course::RealTime(RealTime::new(self, company)?), now: Moment::ZERO })
     }

@@ -1,5 +1,6 @@
 //! Counts the cycles of an agent and publishes a record of each.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -17,6 +18,8 @@ pub(super) struct Teller {
     hub: Narukom,
     agent: String,
     number: Arc<AtomicU64>,
+    /// In a replay: the numbers that its next cycles had among those of all threads.
+    given: VecDeque<u64>,
     cycles: Publisher<records::Cycle>,
     statistics: Publisher<records::AgentEntry>,
 }
@@ -25,12 +28,37 @@ impl Teller {
     pub(super) fn new(hub: &Narukom, agent: &str) -> Result<Teller, Error> {
         let cycles = hub.publisher(CYCLE, agent).map_err(Error::hub)?;
         let statistics = hub.publisher(STATISTICS, agent).map_err(Error::hub)?;
-        Ok(Teller { hub: hub.clone(), agent: agent.into(), number: Arc::default(), cycles, statistics })
+        let (hub, agent) = (hub.clone(), agent.into());
+        Ok(Teller { hub, agent, number: Arc::default(), given: VecDeque::new(), cycles, statistics })
     }
 
-    /// Another one for the same agent.
-    pub(super) fn another(&self) -> Result<Teller, Error> {
-        Ok(Teller { number: self.number.clone(), ..Teller::new(&self.hub, &self.agent)? })
+    /// Another one for the same agent, which tells of one of its parts.
+    pub(super) fn of_part(&self, part: u16) -> Result<Teller, Error> {
+        let Teller { cycles, statistics, .. } = Teller::new(&self.hub, &self.agent)?;
+        Ok(Teller {
+            hub: self.hub.clone(),
+            agent: self.agent.clone(),
+            number: self.number.clone(),
+            given: VecDeque::new(),
+            cycles: cycles.of_part(part),
+            statistics: statistics.of_part(part),
+        })
+    }
+
+    /// In a replay: cycles had these numbers, since other threads of the agent count theirs with them.
+    pub(super) fn number_by(&mut self, given: impl Iterator<Item = u64>) {
+        self.given.clear();
+        self.given.extend(given);
+    }
+
+    fn count(&mut self) -> u64 {
+        match self.given.pop_front() {
+            Some(number) => {
+                self.number.store(number, Ordering::Relaxed);
+                number
+            }
+            None => self.number.fetch_add(1, Ordering::Relaxed) + 1,
+        }
     }
 
     /// A cycle has begun, and brought this.
@@ -45,7 +73,7 @@ impl Teller {
         delivered: impl IntoIterator<Item = Delivery>,
         seen: &[u64],
     ) {
-        let number = self.number.fetch_add(1, Ordering::Relaxed) + 1;
+        let number = self.count();
         let make = |cycle: &mut records::Cycle| {
             (cycle.number, cycle.time) = (number, now.as_nanos());
             cycle.delivered.extend(delivered);
@@ -61,7 +89,7 @@ impl Teller {
         delivered: impl IntoIterator<Item = Delivery>,
         broken: &[Broken],
     ) {
-        let number = self.number.fetch_add(1, Ordering::Relaxed) + 1;
+        let number = self.count();
         let make = |cycle: &mut records::Cycle| {
             (cycle.number, cycle.time) = (number, now.as_nanos());
             cycle.delivered.extend(delivered);

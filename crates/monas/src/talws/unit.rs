@@ -9,7 +9,7 @@ use std::time::Duration;
 use narukom::Moment;
 
 use super::handover::Mailbox;
-use super::orders::{Orders, ShownChart, Standing, TOLD};
+use super::orders::{Orders, Share, ShownChart, Standing, TOLD};
 use super::pool::Called;
 use super::pulse::{Pulse, UnderWay};
 use super::scheduling::Scheduling;
@@ -321,48 +321,13 @@ impl Unit {
     /// What stands against them. Nothing has changed then.
     pub(super) fn obey(&self, orders: Orders, patience: Duration) -> Answer {
         let Parts { list, charts } = locked(&self.parts).clone();
-        let Orders {
-            directives,
-            edits,
-            charts: runners,
-            swap,
-            mut instances,
-            mut own,
-            events,
-            only,
-            asked,
-            ..
-        } = orders;
-        let told = |place: Option<usize>| {
-            let is_meant = only.is_none() || place == only;
-            let directives = if is_meant { directives.clone() } else { Vec::new() };
-            let is_chart = place.is_some() && is_meant;
-            let events = if is_chart { events.clone() } else { Vec::new() };
-            Orders { asked: asked.clone(), only, events, ..Orders::of(directives) }
-        };
-        let mut given: Vec<(Arc<Part>, Orders, bool)> = Vec::new();
-        if let Some(part) = list {
-            let is_own = !edits.is_empty();
-            given.push((part, Orders { edits, ..told(None) }, is_own));
-        }
-        let (mut runners, mut swap) = (runners.into_iter(), swap);
-        for (place, part) in charts.into_iter().enumerate() {
-            let swap = swap.take_if(|(chart, _)| *chart == place).map(|(_, swap)| (0, swap));
-            let own = own.take_if(|(chart, _)| *chart == place);
-            let fresh: Vec<_> = instances.extract_if(.., |(chart, _)| *chart == place).collect();
-            let is_own = swap.is_some() || own.is_some() || !fresh.is_empty();
-            let is_meant = only.is_none_or(|only| only == place);
-            let charts = if is_meant { runners.next().into_iter().collect() } else { Vec::new() };
-            given.push((part, Orders { charts, swap, own, instances: fresh, ..told(Some(place)) }, is_own));
-        }
-        given.retain(|(_, orders, is_own)| {
-            *is_own || !orders.directives.is_empty() || !orders.events.is_empty()
-        });
-        let given: Vec<_> = given
+        let shares = orders.shares(list.is_some(), charts.len());
+        let given: Vec<_> = shares
             .into_iter()
-            .map(|(part, orders, is_own)| {
+            .filter_map(|Share { place, orders, is_own }| {
+                let part = place.map_or(list.as_ref(), |place| charts.get(place))?;
                 let (number, answered) = part.give(orders);
-                (part, number, answered, is_own)
+                Some((part, number, answered, is_own))
             })
             .collect();
         let mut said = Vec::new();

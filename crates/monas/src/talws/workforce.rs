@@ -200,7 +200,7 @@ impl Team {
                     statistics_every: member.statistics_every,
                     scheduling: member.scheduling.clone(),
                     stuck_after: member.stuck_after,
-                    teller: member.teller.another()?,
+                    teller: member.teller.of_part(0)?,
                 },
             );
             ready.push((member, unit, list, charts));
@@ -253,11 +253,12 @@ impl Team {
             };
             let own_pool = runner.own().workers.map(|workers| own_pool(workers.get()));
             let (unit, pool) = (unit.clone(), own_pool.unwrap_or_else(|| pool.clone()));
-            threads.push(self.spawn_chart(unit, part, runner, of_agent.clone(), pool, teller.another()?)?);
+            let teller = teller.of_part(runner.part())?;
+            threads.push(self.spawn_chart(unit, part, runner, of_agent.clone(), pool, teller)?);
         }
         if let (Some(list), Some(frequency), Some(part)) = (list, frequency, list_part) {
             let list = Listing { list, frequency, statistics_every, scheduling };
-            threads.push(self.spawn_list(unit.clone(), part, list, teller)?);
+            threads.push(self.spawn_list(unit.clone(), part, list, &teller)?);
         }
         Ok(threads)
     }
@@ -267,9 +268,10 @@ impl Team {
         unit: Arc<Unit>,
         part: Arc<Part>,
         list: Listing,
-        teller: Teller,
+        teller: &Teller,
     ) -> Result<JoinHandle<AgentStatistics>, Error> {
         let Listing { list, frequency, statistics_every, scheduling } = list;
+        let teller = teller.of_part(list.blackboard().part())?;
         let name = unit.name.clone();
         let thread = ListThread {
             host: self.hub.host().into(),
@@ -331,6 +333,17 @@ impl Team {
         self.workers.iter().find(|worker| worker.unit.name == agent)
     }
 
+    /// Each thread of an agent that begins tells who asked for it.
+    fn tell_asked(&self, member: &Member, asked: &Asked) -> Result<(), Error> {
+        let charts = member.charts.iter().map(|runner| (runner.part(), runner.place()));
+        let list = member.list.iter().map(|list| (list.blackboard().part(), 0));
+        for (part, chart) in charts.chain(list) {
+            let mut teller = member.teller.of_part(part)?;
+            teller.tell_asked(self.clock.now(), asked, asked.ready_at, chart);
+        }
+        Ok(())
+    }
+
     /// An agent that had no list gets one.
     fn add_list(&mut self, agent: &str, list: List) -> Result<(), String> {
         let part = Arc::new(Part::new(0));
@@ -338,10 +351,9 @@ impl Team {
         let Some(frequency) = worker.frequency else {
             return Err(format!("nothing says how often `{agent}` runs"));
         };
-        let teller = worker.teller.another().map_err(|error| error.to_string())?;
         let (unit, statistics_every) = (worker.unit.clone(), worker.statistics_every);
         let list = Listing { list, frequency, statistics_every, scheduling: worker.scheduling.clone() };
-        let thread = self.spawn_list(unit.clone(), part.clone(), list, teller);
+        let thread = self.spawn_list(unit.clone(), part.clone(), list, &worker.teller);
         let thread = thread.map_err(|error| error.to_string())?;
         unit.set_list(part);
         self.set_waker();
@@ -442,10 +454,10 @@ impl Staff for Team {
         worker.unit.obey(orders, PATIENCE)
     }
 
-    fn launch(&mut self, mut member: Member, asked: Option<&Asked>) -> Result<(), String> {
+    fn launch(&mut self, member: Member, asked: Option<&Asked>) -> Result<(), String> {
         let name = member.name.clone();
         if let Some(asked) = asked {
-            member.teller.tell_asked(self.clock.now(), asked, asked.ready_at, 0);
+            self.tell_asked(&member, asked).map_err(|error| error.to_string())?;
         }
         self.launch_all(vec![member]).map_err(|error| {
             // the threads that there are end, and nobody is left without the others

@@ -12,6 +12,7 @@ use narukom::{Observer, Publication};
 pub(crate) struct Kept {
     pub(crate) host: String,
     pub(crate) publisher: String,
+    pub(crate) part: u16,
     pub(crate) topic: String,
     pub(crate) sequence: u32,
     pub(crate) published: Moment,
@@ -34,6 +35,7 @@ impl Observer for Tape {
         self.0.lock().unwrap().push(Kept {
             host: publication.host.into(),
             publisher: publication.publisher.into(),
+            part: header.part,
             topic: publication.topic.path().into(),
             sequence: header.sequence as u32,
             published: header.local,
@@ -84,12 +86,13 @@ fn play(mut replay: Replay, messages: &[Kept]) -> Result<Outcome, Error> {
     let mut told = |difference| differences.push(difference);
     let mut inputs = std::collections::BTreeMap::new();
     for kept in messages {
-        let Kept { host, publisher, topic, sequence, published, received, bytes } = kept;
-        let input = match inputs.get(&(host, publisher, topic)) {
+        let Kept { host, publisher, part, topic, sequence, published, received, bytes } = kept;
+        let part = *part;
+        let input = match inputs.get(&(host, publisher, part, topic)) {
             Some(input) => *input,
             None => {
-                let input = replay.input(Recorded { host, received_by: None, publisher, topic })?;
-                inputs.insert((host, publisher, topic), input);
+                let input = replay.input(Recorded { host, received_by: None, publisher, part, topic })?;
+                inputs.insert((host, publisher, part, topic), input);
                 input
             }
         };

@@ -6,7 +6,7 @@ use std::time::Duration;
 use monas::records::{Action, CHANGE, CHANGED, CYCLE, Change, Cycle, Turn};
 use monas::{Activity, Agent, Blackboard, BoxError, Hz, Parameters, Progress, Registry, Talws};
 use narukom::prost::Message as _;
-use yase::Source;
+use yase::{Source, Statechart};
 
 use crate::kit::{BALL, Ball, GAME, Game, NEWS, Phase, at};
 use crate::taped::{Kept, Outcome, Tape, replay, replay_simulated};
@@ -330,24 +330,17 @@ fn live_run(talws: impl Fn(Sender<()>) -> Talws, asked: &[Change]) -> Vec<Kept> 
     tape.kept()
 }
 
-/// A list of an activity that throws balls, of which others may be made.
-fn list(calls: Sender<()>) -> Talws {
-    let registry = registry().with("Tell", move || {
-        let calls = calls.clone();
+/// What activities are made of that tell of each call.
+fn telling(calls: Sender<()>) -> Registry {
+    let told = calls.clone();
+    let tell = move || {
+        let told = told.clone();
         move |_: &mut Blackboard| {
             // Nobody listens in a replay.
-            let _ = calls.send(());
+            let _ = told.send(());
         }
-    });
-    let text = "<agent frequency='1000'><name>thrower</name><activity>Throw</activity><activity>Tell</activity></agent>";
-    let (setup, diagnostics) = monas::config::read(&Source::new("a.xml", text), "a.xml".as_ref(), &registry);
-    assert_eq!(diagnostics, []);
-    Talws::new().registry(registry).setup(setup)
-}
-
-/// A chart one of whose activities looks again and again.
-fn mind(calls: Sender<()>) -> Talws {
-    let registry = registry().with("Watch", move || {
+    };
+    let watch = move || {
         let (calls, mut times) = (calls.clone(), 0.0);
         move |blackboard: &mut Blackboard| -> Result<Progress, BoxError> {
             times += 1.0;
@@ -357,9 +350,34 @@ fn mind(calls: Sender<()>) -> Talws {
             let _ = calls.send(());
             Ok(Progress::after(Duration::from_millis(1)))
         }
-    });
-    let chart = aseme::statechart_of(&Source::new("m.srm", "m = Play . Watch")).0;
-    Talws::new().registry(registry).agent(Agent::statechart("mind", chart).every(Hz(200)))
+    };
+    registry().with("Tell", tell).with("Watch", watch)
+}
+
+fn chart(text: &str) -> Statechart {
+    aseme::statechart_of(&Source::new("m.srm", text)).0
+}
+
+/// A list of an activity that throws balls, of which others may be made.
+fn list(calls: Sender<()>) -> Talws {
+    let registry = telling(calls);
+    let text = "<agent frequency='1000'><name>thrower</name><activity>Throw</activity><activity>Tell</activity></agent>";
+    let (setup, diagnostics) = monas::config::read(&Source::new("a.xml", text), "a.xml".as_ref(), &registry);
+    assert_eq!(diagnostics, []);
+    Talws::new().registry(registry).setup(setup)
+}
+
+/// A chart one of whose activities looks again and again.
+fn mind(calls: Sender<()>) -> Talws {
+    let agent = Agent::statechart("mind", chart("m = Play . Watch")).every(Hz(200));
+    Talws::new().registry(telling(calls)).agent(agent)
+}
+
+/// A list and two charts, whose activities publish on the same topics.
+fn player(calls: Sender<()>) -> Talws {
+    let agent = Agent::new("player", Hz(500)).named_activity("Throw", Box::new(Throw::default()));
+    let agent = agent.chart(chart("m = Play . Watch")).chart(chart("n = Watch"));
+    Talws::new().registry(telling(calls)).agent(agent)
 }
 
 fn of_list() -> Vec<Change> {
@@ -410,6 +428,28 @@ fn assert_compared(messages: &[Kept], outcome: &Outcome, expected: &[(&str, &str
     }
 }
 
+fn of_player() -> Vec<Change> {
+    let all = |action| change(action, "player");
+    let of = |chart: &str, action| Change { chart: chart.into(), ..all(action) };
+    let set = |given: &[(&str, &str)], of: Change| Change { settings: settings(given), ..of };
+    let swap = Change { file: "n.srm".into(), text: "n = Watch . Play".into(), ..of("n", Action::SwapModel) };
+    vec![
+        Change { activity: "Say".into(), place: 1, ..all(Action::AddActivity) },
+        of("n", Action::StopAgent),
+        set(&[("frequency", "250"), ("Throw.speed", "3")], all(Action::Set)),
+        of("n", Action::StartAgent),
+        set(&[("frequency", "50")], of("m", Action::Set)),
+        swap,
+        all(Action::PauseAgent),
+        all(Action::StepAgent),
+        all(Action::ResumeAgent),
+        Change { activity: "Throw".into(), ..all(Action::RemoveActivity) },
+        all(Action::StopAgent),
+        all(Action::StartAgent),
+        Change { activity: "Throw".into(), ..all(Action::AddActivity) },
+    ]
+}
+
 /// Without the turns that a chart's records tell of beside its cycles, and where it was changed.
 fn is_compared(kept: &Kept) -> bool {
     kept.topic != CYCLE.path() || Cycle::decode(&kept.bytes[..]).unwrap().number > 0
@@ -417,14 +457,17 @@ fn is_compared(kept: &Kept) -> bool {
 
 #[test]
 fn in_real_time_changes_are_made_again_between_the_turns_between_which_they_were() {
-    for (agent, asked, talws) in
-        [("thrower", of_list(), list as fn(Sender<()>) -> Talws), ("mind", of_chart(), mind)]
-    {
+    for (agent, asked, talws) in [
+        ("thrower", of_list(), list as fn(Sender<()>) -> Talws),
+        ("mind", of_chart(), mind),
+        ("player", of_player(), player),
+    ] {
         let messages = live_run(talws, &asked);
         let outcome = replay(talws(channel().0), &messages).unwrap();
         assert_eq!(outcome.differences, []);
         let topics: &[(&str, usize)] = match agent {
             "mind" => &[("test/news", 20), ("monas/model", 4), ("monas/chart", 5), ("monas/cycle", 8)],
+            "player" => &[("test/news", 20), ("test/ball", 5), ("monas/model", 6), ("monas/cycle", 20)],
             _ => &[("test/ball", 20), ("test/news", 20), ("test/game", 5), ("monas/cycle", 40)],
         };
         let expected: Vec<_> = topics.iter().map(|(topic, least)| (agent, *topic, *least)).collect();
@@ -535,9 +578,36 @@ fn in_real_time_a_chart_that_left_comes_back_from_its_beginning() {
 }
 
 #[test]
-fn in_real_time_a_chart_that_was_given_a_list_is_refused() {
+fn in_real_time_an_agent_comes_back_thread_by_thread_if_it_has_those_that_it_had() {
+    let folder = tempfile::tempdir().unwrap();
+    for (file, model) in [("m.srm", "m = Play . Watch"), ("n.srm", "n = Watch")] {
+        std::fs::write(folder.path().join(file), model).unwrap();
+    }
+    let of = |elements: &str| {
+        let text = format!("<agent frequency='100'><name>player</name>{elements}</agent>");
+        let text = text.replace("F/", &format!("{}/", folder.path().display()));
+        [change(Action::RemoveAgent, "player"), adding(&text)]
+    };
+    let same = "<activity>Throw</activity><activity>Say</activity><statechart>F/m.srm</statechart><statechart>F/n.srm</statechart>";
+    let messages = live_run(player, &of(same));
+    let outcome = replay(player(channel().0), &messages).unwrap();
+    assert_eq!(outcome.differences, []);
+    let expected = [
+        ("player", "test/news", 10),
+        ("player", "test/ball", 1),
+        ("player", "monas/model", 4),
+        ("player", "monas/cycle", 4),
+    ];
+    assert_compared(&messages, &outcome, &expected);
+    let messages = live_run(player, &of("<statechart>F/n.srm</statechart>"));
+    let error = replay(player(channel().0), &messages).err().unwrap().to_string();
+    assert!(error.starts_with("agent `player` came back "), "{error}");
+}
+
+#[test]
+fn in_real_time_an_agent_that_was_given_a_list_is_refused() {
     let list = Change { activity: "Say".into(), ..change(Action::AddActivity, "mind") };
     let messages = live_run(mind, &[list]);
     let error = replay(mind(channel().0), &messages).err().unwrap().to_string();
-    assert!(error.starts_with("agent `mind` was given a list of its own "), "{error}");
+    assert!(error.starts_with("agent `mind` was given its first activity "), "{error}");
 }

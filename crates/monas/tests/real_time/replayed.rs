@@ -3,33 +3,39 @@
 use std::sync::mpsc::{Sender, channel};
 use std::time::Duration;
 
-use monas::replay::Company;
 use monas::{
     Agent, Blackboard, BoxError, HostConfig, Hz, LinkConfig, Policy, Progress, Registry, Talws, records,
 };
 use monas_link::{LinkSettings, Place, ReceiveRule};
 use narukom::prost::Message as _;
+use yase::Statechart;
 
 use crate::kit::{BALL, Ball, GAME, Game, NEWS, Phase};
 use crate::taped::{Kept, Tape, replay};
 use crate::{PATIENCE, chart, next};
 
-/// A list that throws balls to somewhere.
+/// Throws balls to somewhere.
+fn throws(b: &mut Blackboard) -> Result<(), BoxError> {
+    let far = b.random().uniform() * 10.0;
+    let before = b.read(BALL).map_or(0.0, |ball| ball.y);
+    b.publish(BALL, Ball { x: far, y: before + 1.0, found: true })?;
+    let phase = if far < 7.0 { Phase::Play } else { Phase::Wait };
+    b.publish(GAME, Game { phase: phase.into() })?;
+    b.publish(BALL, Ball { x: -far, y: before + 2.0, found: false }).map_err(Into::into)
+}
+
 fn thrower() -> Agent {
-    let throws = |b: &mut Blackboard| -> Result<(), BoxError> {
-        let far = b.random().uniform() * 10.0;
-        let before = b.read(BALL).map_or(0.0, |ball| ball.y);
-        b.publish(BALL, Ball { x: far, y: before + 1.0, found: true })?;
-        let phase = if far < 7.0 { Phase::Play } else { Phase::Wait };
-        b.publish(GAME, Game { phase: phase.into() })?;
-        b.publish(BALL, Ball { x: -far, y: before + 2.0, found: false }).map_err(Into::into)
-    };
     Agent::new("thrower", Hz(2000)).activity(throws)
 }
 
 /// A chart with two regions: one answers balls that are near, the other one looks again and again whether one is far. What they publish
 /// depends on what was delivered before which step, on when that was, on chance, on failures, and on what was written before.
 fn keeper(near: f64, calls: &Sender<&'static str>) -> (Registry, Agent) {
+    let (registry, chart) = keeping(near, "thrower", calls);
+    (registry, Agent::statechart("keeper", chart).on_failure(Policy::Restart))
+}
+
+fn keeping(near: f64, thrower: &str, calls: &Sender<&'static str>) -> (Registry, Statechart) {
     let (answered, looked) = (calls.clone(), calls.clone());
     let registry = Registry::linked()
         .with("Answer", move || {
@@ -56,9 +62,9 @@ fn keeper(near: f64, calls: &Sender<&'static str>) -> (Registry, Agent) {
         });
     let text = format!(
         "Liveness:\nm = Answer~ || Look~\nTransitions:\nAnswer -> Answer : [ball.State.Ball.x < {near:?}]\n\
-         Look -> Look : [thrower.Game.phase == PLAY]"
+         Look -> Look : [{thrower}.Game.phase == PLAY]"
     );
-    (registry, Agent::statechart("keeper", chart(&text)).on_failure(Policy::Restart))
+    (registry, chart(&text))
 }
 
 /// Both agents for a while, as they were recorded.
@@ -160,16 +166,83 @@ fn a_recording_without_turns_is_refused() {
     assert!(error.to_string().contains("does not tell what each turn of `"), "{error}");
 }
 
+/// One agent with the list and with two charts: the keeper's, and one that counts what that one says. All publish under one name, both
+/// charts on one topic.
+fn player(near: f64, calls: &Sender<&'static str>) -> Talws {
+    let (registry, keeping) = keeping(near, "player", calls);
+    let registry = registry.with("Count", || {
+        let mut count = 0.0;
+        move |b: &mut Blackboard| {
+            count += b.signals(NEWS).count() as f64;
+            b.publish(NEWS, Ball { x: -1.0, y: count, found: false })
+        }
+    });
+    let counting = chart("Liveness:\nn = Count~\nTransitions:\nCount -> Count : [news.Signal.Ball.found]");
+    let player = Agent::new("player", Hz(1000)).activity(throws).chart(keeping).chart(counting);
+    Talws::new().registry(registry).agent(player.on_failure(Policy::Restart))
+}
+
+fn recorded_player() -> Vec<Kept> {
+    let tape = Tape::default();
+    let (sender, calls) = channel();
+    let mut talws = player(-3.0, &sender);
+    talws.observe(Box::new(tape.clone()));
+    let running = talws.start().unwrap();
+    let count = |part, topic: &str| {
+        let kept = tape.kept();
+        kept.iter().filter(|kept| (kept.part, kept.topic.as_str()) == (part, topic)).count()
+    };
+    while count(0, "test/news") < 30 || count(1, "test/news") < 10 || count(2, "test/ball") < 60 {
+        next(&calls, 1);
+    }
+    running.stop();
+    tape.kept()
+}
+
 #[test]
-fn agents_whose_threads_share_a_name_are_refused() {
-    let (registry, keeper) = keeper(-3.0, &channel().0);
-    let both = keeper.every(Hz(10)).activity(|_: &mut Blackboard| {});
-    let host = HostConfig { name: "local".into(), agents: vec![both], ..HostConfig::default() };
-    let mut talws = Talws::new().registry(registry);
+fn each_thread_of_an_agent_repeats_its_own_turns() {
+    let messages = recorded_player();
+    let outcome = replay(player(-3.0, &channel().0), &messages).unwrap();
+    assert_eq!(outcome.differences, []);
+    let turns = messages.iter().filter(|kept| is_turn(kept)).count() as u64;
+    for topic in ["test/news", "test/ball", "test/game", "monas/chart", "monas/model", "monas/cycle"] {
+        let of_player = messages.iter().filter(|kept| kept.publisher == "player" && kept.topic == topic);
+        let published = of_player.count() as u64 - if topic == "monas/cycle" { turns } else { 0 };
+        assert_eq!(outcome.compared("player", topic), published, "{topic}");
+    }
+}
+
+#[test]
+fn a_changed_threshold_shows_at_the_thread_that_has_it_alone() {
+    let messages = recorded_player();
+    let outcome = replay(player(-100.0, &channel().0), &messages).unwrap();
+    assert!(!outcome.differences.is_empty());
+    let of_keeping = |topic: &str| ["test/news", "monas/chart", "monas/cycle"].contains(&topic);
+    let other = outcome.differences.iter().find(|difference| !of_keeping(&difference.topic));
+    assert_eq!(other, None);
+    // The list has as many cycles as it had, and the other chart counts what was said then.
+    assert!(outcome.compared("player", "test/ball") >= 60);
+}
+
+#[test]
+fn a_recording_that_does_not_tell_threads_of_one_name_apart_is_refused() {
+    let mut messages = recorded_player();
+    messages.iter_mut().for_each(|kept| kept.part = 0);
+    let error = replay(player(-3.0, &channel().0), &messages).err().unwrap();
+    assert!(error.to_string().contains("does not tell what each turn of `player`"), "{error}");
+}
+
+#[test]
+fn an_agent_that_begins_with_nothing_is_refused() {
+    let host = HostConfig {
+        name: "local".into(),
+        agents: vec![Agent::new("idle", Hz(10))],
+        ..HostConfig::default()
+    };
+    let mut talws = Talws::new();
     talws.host(host);
-    let thrower = Company { host: "local".into(), publisher: "thrower".into(), is_agent: true };
-    let error = talws.replay_real_time(&[thrower]).err().unwrap();
-    assert!(error.to_string().contains("`keeper` has several threads"), "{error}");
+    let error = talws.replay_real_time(&[]).err().unwrap();
+    assert!(error.to_string().contains("`idle` has neither charts nor activities"), "{error}");
 }
 
 #[test]

@@ -114,7 +114,7 @@ impl Blackboard {
 
     /// Writes a message that will be published in its turn.
     fn queue(&mut self, slot: TopicSlot, write: impl FnOnce(&mut Writing, Header)) {
-        let header = Header::local(self.sender.publisher, slot, self.now);
+        let header = Header::local(&self.sender, slot, self.now);
         let Some(writing) = self.writing(slot) else { return };
         let was_open = writing.is_open();
         write(writing, header);

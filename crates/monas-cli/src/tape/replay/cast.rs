@@ -1,12 +1,13 @@
 //! Who plays in a replay: the run that was recorded, its configuration, and the agents that are wanted.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::Path;
 
 use monas::replay::{Company, Replay};
 use monas::{Agent, HostConfig, Provenance, Registry, Talws};
 use monas_match::Match;
-use monas_tape::{Content, Overview, Recording};
+use monas_tape::{Channel, Content, Overview, Recording};
 use yase::Diagnostic;
 
 use super::super::arguments::ReplayArguments;
@@ -55,10 +56,7 @@ pub(super) fn run_of(overview: &Overview) -> Result<Run, String> {
             "{dropped} messages were left out of the tape because the disk was too slow: what agents were given is not on it"
         ));
     }
-    let begun_late =
-        overview.channels.iter().find(|one| one.channel.received_by.is_none() && one.first_sequence != 1);
-    if let Some(late) = begun_late {
-        let (topic, number) = (&late.channel.topic, late.first_sequence);
+    if let Some((topic, number)) = begun_late(overview) {
         return Err(format!(
             "the tape does not begin with its run: the first message on `{topic}` is number {number}"
         ));
@@ -66,6 +64,18 @@ pub(super) fn run_of(overview: &Overview) -> Result<Run, String> {
     let settings = facts.get(monas_match::SETTINGS).cloned().unwrap_or_default();
     let folder = facts.get(monas_match::FOLDER).cloned();
     Ok(Run { version: fact("version")?, configuration: fact("configuration")?, settings, folder, time })
+}
+
+/// A topic of whose publishers one had published before the tape began, and the number of the first message that it has of it.
+fn begun_late(overview: &Overview) -> Option<(&str, u32)> {
+    let mut first: BTreeMap<(&str, &str, &str), u32> = BTreeMap::new();
+    for one in overview.channels.iter().filter(|one| one.channel.received_by.is_none()) {
+        let Channel { host, topic, publisher, .. } = &*one.channel;
+        // Its parts count together.
+        let number = first.entry((host, topic, publisher)).or_insert(u32::MAX);
+        *number = one.first_sequence.min(*number);
+    }
+    first.into_iter().find(|(_, number)| *number != 1).map(|((_, topic, _), number)| (topic, number))
 }
 
 fn seed(text: &str) -> Result<u64, String> {

@@ -18,7 +18,7 @@ use crate::error::Error;
 use crate::list::ListEdit;
 use crate::parameters::Parameters;
 use crate::records::{Action, Change};
-use crate::talws::crew::{Member, Place};
+use crate::talws::crew::{Member, Place, part};
 use crate::talws::orders::{Directive, Orders, Standing};
 
 /// A change that can be made.
@@ -321,7 +321,8 @@ impl Desk<'_> {
             return Err(refusal_with("E0305", message, "set its `frequency` first"));
         }
         let Roster { crew, ground, .. } = self.roster;
-        let list = Box::new(crew.list(&profile.name, profile.policy, more, &ground.hub));
+        let part = part(profile.charts.len());
+        let list = Box::new(crew.list((&profile.name, part), profile.policy, more, &ground.hub));
         Ok((profile, Orders { list: Some(list), ..Orders::default() }))
     }
 

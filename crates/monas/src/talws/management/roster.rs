@@ -137,11 +137,6 @@ impl Roster {
         self.profiles.iter().any(|profile| profile.name == agent)
     }
 
-    /// Whether an agent has no activities of its own: the first one begins a list.
-    pub(in crate::talws) fn has_no_list(&self, agent: &str) -> bool {
-        self.profiles.iter().any(|profile| profile.name == agent && profile.activities.is_empty())
-    }
-
     /// What agents are made of.
     pub(in crate::talws) fn registry(&self) -> &Registry {
         &self.registry

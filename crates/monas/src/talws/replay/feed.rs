@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use narukom::{AnyPublisher, Arrival, Moment, Observer, Publication, Receiver, TopicSlot};
+use narukom::{AnyPublisher, Arrival, Header, Moment, Observer, Publication, Receiver, TopicSlot};
 
 use crate::chart::Lead;
 use crate::error::Error;
@@ -14,10 +14,12 @@ pub(super) struct Produced {
     pub(super) bytes: Vec<u8>,
 }
 
-/// Hears what an agent publishes, but not what comes under its name from the recording.
+/// Hears what a thread of an agent publishes, but not what comes under its name from the recording.
 #[derive(Clone)]
 pub(super) struct Ear {
     agent: String,
+    /// Which of the agent's threads it is.
+    part: u16,
     heard: Arc<Mutex<Heard>>,
 }
 
@@ -29,8 +31,8 @@ struct Heard {
 }
 
 impl Ear {
-    pub(super) fn new(agent: &str) -> Ear {
-        Ear { agent: agent.to_owned(), heard: Arc::default() }
+    pub(super) fn new(agent: &str, part: u16) -> Ear {
+        Ear { agent: agent.to_owned(), part, heard: Arc::default() }
     }
 
     fn heard(&self) -> MutexGuard<'_, Heard> {
@@ -46,8 +48,8 @@ impl Ear {
 impl Observer for Ear {
     fn observe(&mut self, publication: Publication<'_>) {
         let mut heard = self.heard();
-        if publication.publisher == self.agent && !heard.is_deaf {
-            let topic = publication.sample.header.topic;
+        let Header { topic, part, .. } = publication.sample.header;
+        if publication.publisher == self.agent && part == self.part && !heard.is_deaf {
             heard.produced.push(Produced { topic, bytes: publication.bytes().to_vec() });
         }
     }

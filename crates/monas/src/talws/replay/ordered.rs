@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use narukom::Moment;
 
-use super::super::crew::{Crew, Ground, Member};
+use super::super::crew::{Crew, Ground, Member, part};
 use super::super::management::{Roster, Staff};
 use super::super::orders::{Asked as ByWhom, Orders, Standing};
 use super::changes::refuse_in_real_time;
@@ -17,12 +17,47 @@ use crate::records::{Action, AgentEntry, Asked, Change, Changed, Cycle};
 /// What an agent was asked, and what it is made of by now.
 pub(super) struct Ordered {
     roster: Roster,
+    thread: Thread,
     /// What it was asked and has not followed, in the order in which it was.
     asked: VecDeque<Request>,
     /// The recording tells where changes were made.
     is_told: bool,
     /// A change was made, nobody knows where: why that cannot be replayed, and how many turns may begin before that is certain.
     untold: Option<(Error, u32)>,
+}
+
+/// Which of an agent's threads repeats its turns.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) struct Thread {
+    /// The place of its chart; none for the list.
+    pub(super) place: Option<usize>,
+    /// How many charts the agent has,
+    pub(super) charts: usize,
+    /// and whether it had a list when the run began.
+    pub(super) has_list: bool,
+}
+
+impl Thread {
+    /// As which part of its agent it publishes.
+    pub(super) fn part(self) -> u16 {
+        part(self.place.unwrap_or(self.charts))
+    }
+
+    /// What it runs of an agent that has the same threads; else none.
+    fn of(self, agent: Member) -> Option<Member> {
+        let Member { list, mut charts, .. } = agent;
+        let is_same = (charts.len(), list.is_some()) == (self.charts, self.has_list);
+        let (list, charts) = match self.place.filter(|_| is_same) {
+            Some(place) => (None, vec![charts.swap_remove(place)]),
+            None => (list, Vec::new()),
+        };
+        is_same.then_some(Member { list, charts, ..agent })
+    }
+
+    /// Whether the agent has others.
+    pub(super) fn has_siblings(self) -> bool {
+        self.charts + usize::from(self.has_list) > 1
+    }
 }
 
 /// A change and the message that asked for it.
@@ -33,9 +68,14 @@ struct Request {
 }
 
 impl Ordered {
-    pub(super) fn new(ground: Ground, crew: Arc<Crew>, profiles: Vec<Profile>) -> Result<Ordered, Error> {
-        let roster = Roster::new(ground, crew, profiles, None)?;
-        Ok(Ordered { roster, asked: VecDeque::new(), is_told: false, untold: None })
+    pub(super) fn new(
+        ground: Ground,
+        crew: Arc<Crew>,
+        profile: Profile,
+        thread: Thread,
+    ) -> Result<Ordered, Error> {
+        let roster = Roster::new(ground, crew, vec![profile], None)?;
+        Ok(Ordered { roster, thread, asked: VecDeque::new(), is_told: false, untold: None })
     }
 
     /// Somebody asked for a change.
@@ -48,10 +88,10 @@ impl Ordered {
         self.roster.forget(agent);
     }
 
-    /// The agent that had left, as a change adds it anew.
+    /// The thread of an agent that had left, as a change adds it anew.
     ///
     /// # Errors
-    /// What is replayed now cannot be added like that.
+    /// What is replayed now cannot be added like that, or the agent has other threads than it had.
     pub(super) fn anew(
         &mut self,
         change: &Change,
@@ -59,27 +99,59 @@ impl Ordered {
         repeated: &mut Repeated,
         now: Moment,
     ) -> Result<Member, Error> {
-        let mut staff = Again::of(change, repeated, now);
+        let mut staff = Again::of(change, self.thread, repeated, now);
         let changed = self.roster.bring_back(change, &[agent.to_owned()], &mut staff, now);
-        staff.begun.ok_or_else(|| refused(&Changed { agent: agent.to_owned(), ..changed }, now))
+        let begun =
+            staff.begun.ok_or_else(|| refused(&Changed { agent: agent.to_owned(), ..changed }, now))?;
+        self.thread.of(begun).ok_or_else(|| came_back_otherwise(agent, now))
     }
 
     /// A change was made, or refused, at a moment.
     ///
     /// # Errors
-    /// It made two threads of one.
-    pub(super) fn answered(&mut self, changed: &Changed, is_list: bool, at: Moment) -> Result<(), Error> {
+    /// It gave the agent one thread more.
+    pub(super) fn answered(
+        &mut self,
+        changed: &Changed,
+        repeated: &mut Repeated,
+        at: Moment,
+    ) -> Result<(), Error> {
         let adds = matches!(changed.action(), Action::AddActivity | Action::LoadModule);
-        let is_new = adds && self.roster.has_no_list(&changed.agent);
-        if changed.done && is_new && !is_list {
-            return Err(split(&changed.agent, at));
+        if changed.done && adds && !self.thread.has_list {
+            return Err(begun_late(&changed.agent, at));
         }
+        if self.thread.has_siblings() {
+            self.note(changed, repeated, at);
+            return Ok(());
+        }
+        let is_list = matches!(repeated, Repeated::List(_));
         // Whoever answers waits a second for a thread that is busy: a chart may end the turn that it is in.
         let patience = if is_list { 0 } else { 1 };
         if !self.is_told && self.untold.is_none() {
             self.untold = refuse_in_real_time(changed, is_list, at).err().map(|error| (error, patience));
         }
         Ok(())
+    }
+
+    /// If a change concerned other threads of the agent, this one has not been told, and the agent is made of something else all the same.
+    fn note(&mut self, changed: &Changed, repeated: &mut Repeated, at: Moment) {
+        let place = self.request_of(changed).filter(|_| changed.done);
+        // How agents leave and come is told elsewhere.
+        let comes_or_goes = matches!(changed.action(), Action::AddAgents | Action::RemoveAgent);
+        let Some(place) = place.filter(|_| !comes_or_goes) else { return };
+        let Request { change, .. } = &self.asked[place];
+        let mut staff = Again { is_bystander: true, ..Again::of(change, self.thread, repeated, at) };
+        if self.roster.repeat(change, &mut staff, at).done {
+            self.asked.remove(place);
+        }
+    }
+
+    /// Where the change that was answered stands among those that were not followed.
+    fn request_of(&self, changed: &Changed) -> Option<usize> {
+        let is_it = |request: &Request| {
+            (request.change.number, request.change.action) == (changed.number, changed.action)
+        };
+        self.asked.iter().position(is_it)
     }
 
     /// A turn begins.
@@ -116,7 +188,7 @@ impl Ordered {
         repeated: &mut Repeated,
         now: Moment,
     ) -> Result<(), Error> {
-        let mut staff = Again::of(change, repeated, now);
+        let mut staff = Again::of(change, self.thread, repeated, now);
         let changed = self.roster.repeat(change, &mut staff, now);
         if staff.was_told { Ok(()) } else { Err(refused(&changed, now)) }
     }
@@ -131,12 +203,9 @@ impl Ordered {
         repeated: &mut Repeated,
         now: Moment,
     ) -> Result<(), Error> {
-        let is_it = |request: &Request| {
-            (request.change.number, request.change.action) == (changed.number, changed.action)
-        };
-        let request = self.asked.iter().position(is_it).and_then(|place| self.asked.remove(place));
+        let request = self.request_of(changed).and_then(|place| self.asked.remove(place));
         let Some(Request { change, .. }) = request.filter(|_| changed.done) else { return Ok(()) };
-        let mut staff = Again::of(&change, repeated, now);
+        let mut staff = Again::of(&change, self.thread, repeated, now);
         let again = self.roster.repeat(&change, &mut staff, now);
         if again.done { Ok(()) } else { Err(refused(&again, now)) }
     }
@@ -158,15 +227,27 @@ struct Again<'a> {
     now: Moment,
     /// It is about one chart.
     is_of_chart: bool,
+    thread: Thread,
+    /// It follows nothing that is for itself.
+    is_bystander: bool,
     was_told: bool,
     /// It had left, and begins anew as this.
     begun: Option<Member>,
 }
 
 impl<'a> Again<'a> {
-    fn of(change: &Change, repeated: &'a mut Repeated, now: Moment) -> Again<'a> {
+    fn of(change: &Change, thread: Thread, repeated: &'a mut Repeated, now: Moment) -> Again<'a> {
         let (action, is_of_chart) = (change.action(), !change.chart.is_empty());
-        Again { action, repeated, now, is_of_chart, was_told: false, begun: None }
+        Again {
+            action,
+            repeated,
+            now,
+            is_of_chart,
+            thread,
+            is_bystander: false,
+            was_told: false,
+            begun: None,
+        }
     }
 }
 
@@ -189,7 +270,7 @@ impl Staff for Again<'_> {
     }
 
     fn has_list(&self, _: &str) -> bool {
-        matches!(self.repeated, Repeated::List(_))
+        self.thread.has_list
     }
 
     fn cycles(&self, _: &str) -> u64 {
@@ -197,8 +278,16 @@ impl Staff for Again<'_> {
     }
 
     fn obey(&mut self, _: &str, orders: Orders) -> Result<Vec<String>, Vec<String>> {
-        self.was_told = true;
-        self.repeated.obey(orders, self.now)
+        let Thread { place, charts, has_list } = self.thread;
+        let own = orders.shares(has_list, charts).into_iter().find(|share| share.place == place);
+        match own {
+            Some(_) if self.is_bystander => Err(vec!["the thread follows later".into()]),
+            Some(share) => {
+                self.was_told = true;
+                self.repeated.obey(share.orders, self.now)
+            }
+            None => Ok(Vec::new()),
+        }
     }
 
     fn launch(&mut self, member: Member, _: Option<&ByWhom>) -> Result<(), String> {
@@ -222,10 +311,18 @@ fn lacking(asked: &Asked) -> Error {
     Error::new(ErrorKind::Invalid, message).with_hint(hint)
 }
 
-fn split(agent: &str, at: Moment) -> Error {
+fn came_back_otherwise(agent: &str, at: Moment) -> Error {
     let message = format!(
-        "agent `{agent}` was given a list of its own {:.3} s after the run began: its threads are recorded under one name, and cannot be \
-         replayed one by one",
+        "agent `{agent}` came back {:.3} s after the run began, with another number of charts, or with a list that it had not had: what a \
+         thread that begins then is given is not repeated",
+        at.as_secs_f64()
+    );
+    Error::new(ErrorKind::Invalid, message).with_hint("replay other agents, or the time before")
+}
+
+fn begun_late(agent: &str, at: Moment) -> Error {
+    let message = format!(
+        "agent `{agent}` was given its first activity {:.3} s after the run began: what a thread that begins then is given is not repeated",
         at.as_secs_f64()
     );
     Error::new(ErrorKind::Invalid, message).with_hint("replay other agents, or the time before")

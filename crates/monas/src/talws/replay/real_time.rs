@@ -15,9 +15,10 @@ use super::super::{HostConfig, REAL_TIME_SEED, Talws};
 use super::changes::{added, concerning, is_of_module, unread};
 use super::compare::{Ledger, Window};
 use super::feed::{Ear, Feed, Foreign, Inlet};
-use super::ordered::Ordered;
+use super::ordered::{Ordered, Thread};
 use super::repeated::Repeated;
 use super::{Company, Difference, Recorded, RecordedMessage, Tally, no_input};
+use crate::agent::Profile;
 use crate::chart::Lead as _;
 use crate::error::{Error, ErrorKind};
 use crate::records::{Action, CHANGE, CHANGED, CYCLE, Change, Changed, Cycle, HOST, STATISTICS, Turn};
@@ -60,10 +61,11 @@ enum Route {
     Other(usize),
 }
 
-/// An agent.
+/// A thread of an agent: its list, or one of its charts.
 struct Part {
     host: String,
     agent: String,
+    thread: Thread,
     hub: Narukom,
     /// The topics that links bring to the host as its own: what is published there under the agent's name comes from another process.
     brought: Vec<TopicSlot>,
@@ -76,6 +78,8 @@ struct Part {
     own: Vec<Own>,
     /// The cycle of a list that has begun.
     begun: Option<Cycle>,
+    /// The numbers of the steps that have been told since the last turn.
+    numbers: Vec<u64>,
     /// The recording tells of the agent's turns.
     is_told: bool,
     has_diverged: bool,
@@ -97,14 +101,22 @@ impl RealTime {
         let mut parts = Vec::new();
         for HostConfig { name, team, number, agents, links, modules, .. } in hosts {
             for agent in agents {
-                let (name, links, modules) = (name.clone(), links.clone(), modules.clone());
-                let agents = vec![agent];
-                let mut alone = Talws { registry: registry.clone(), ..Talws::new() };
-                alone.company = company.to_vec();
-                let links_and_agents =
-                    HostConfig { name, team, number, agents, links, modules, ..HostConfig::default() };
-                alone.host(links_and_agents);
-                parts.push(Part::new(alone)?);
+                let (profile, charts) = (Profile::of(&agent), agent.charts.len());
+                let threads = agent.apart();
+                if threads.is_empty() {
+                    return Err(nothing_to_run(&profile.name));
+                }
+                let has_list = threads.iter().any(|(place, _)| place.is_none());
+                for (place, agent) in threads {
+                    let (name, links, modules) = (name.clone(), links.clone(), modules.clone());
+                    let agents = vec![agent];
+                    let mut alone = Talws { registry: registry.clone(), ..Talws::new() };
+                    alone.company = company.to_vec();
+                    let links_and_agents =
+                        HostConfig { name, team, number, agents, links, modules, ..HostConfig::default() };
+                    alone.host(links_and_agents);
+                    parts.push(Part::new(alone, profile.clone(), Thread { place, charts, has_list })?);
+                }
             }
         }
         let registry = registry.unwrap_or_else(Registry::linked);
@@ -197,8 +209,12 @@ impl RealTime {
                     }
                     return Ok(());
                 }
-                if let Some(part) = parts.find(|part| part.agent == change.agent) {
-                    part.ordered.ask(publisher, message.sequence, change);
+                let mut is_known = false;
+                for part in parts.filter(|part| part.agent == change.agent) {
+                    part.ordered.ask(publisher, message.sequence, change.clone());
+                    is_known = true;
+                }
+                if is_known {
                     return Ok(());
                 }
                 let names = added(&change, &self.registry);
@@ -214,12 +230,13 @@ impl RealTime {
                 if is_of_module(changed.action()) {
                     return parts.try_for_each(|part| part.equip(&changed, message.received));
                 }
-                let Some(part) = parts.find(|part| part.agent == changed.agent) else { return Ok(()) };
-                if changed.done && changed.action() == Action::RemoveAgent {
-                    part.left(&mut self.ledger, told)?;
+                for part in parts.filter(|part| part.agent == changed.agent) {
+                    if changed.done && changed.action() == Action::RemoveAgent {
+                        part.left(&mut self.ledger, told)?;
+                    }
+                    part.ordered.answered(&changed, &mut part.repeated, message.received)?;
                 }
-                let is_list = matches!(part.repeated, Repeated::List(_));
-                part.ordered.answered(&changed, is_list, message.received)
+                Ok(())
             }
         }
     }
@@ -246,26 +263,27 @@ fn arrival(message: &RecordedMessage<'_>) -> Arrival {
 }
 
 impl Part {
-    /// The one agent of a host, with a hub of its own.
-    fn new(mut talws: Talws) -> Result<Part, Error> {
-        let names = talws.hosts.iter().find_map(|host| Some((host.name.clone(), host.agents.first()?)));
-        let (host, agent) = names.map(|(host, agent)| (host, agent.name().to_owned())).unwrap_or_default();
-        let ear = Ear::new(&agent);
+    /// What one thread runs of the one agent of a host, which is made of all that its profile says, with a hub of its own.
+    fn new(mut talws: Talws, profile: Profile, thread: Thread) -> Result<Part, Error> {
+        let agent = profile.name.clone();
+        let ear = Ear::new(&agent, thread.part());
         talws.observe(Box::new(ear.clone()));
         let Stage { mut stations, crew, .. } = Stage::new(talws, REAL_TIME_SEED)?;
-        let Some(Station { hub, mut members, links, ground, profiles, .. }) = stations.pop() else {
-            return Err(not_alone(&agent));
+        let Some(Station { hub, mut members, links, ground, .. }) = stations.pop() else {
+            return Err(nothing_to_run(&agent));
         };
+        let host = hub.host().to_owned();
         let brought = Brought::by(&links, &hub)?.own;
         let feed = Feed::new(ear.clone());
-        let repeated = members.pop().and_then(|member| Repeated::new(member, &feed));
-        let repeated = repeated.ok_or_else(|| not_alone(&agent))?;
-        let ordered = Ordered::new(ground, crew, profiles)?;
+        let member = members.pop().ok_or_else(|| nothing_to_run(&agent))?;
+        let repeated = Repeated::new(member, &feed)?.ok_or_else(|| nothing_to_run(&agent))?;
+        let ordered = Ordered::new(ground, crew, profile, thread)?;
         let window = Window::new(&host, &agent);
-        let (own, begun) = (Vec::new(), None);
+        let (own, begun, numbers) = (Vec::new(), None, Vec::new());
         Ok(Part {
             host,
             agent,
+            thread,
             hub,
             brought,
             repeated,
@@ -275,6 +293,7 @@ impl Part {
             window,
             own,
             begun,
+            numbers,
             is_told: false,
             has_diverged: false,
             is_gone: false,
@@ -283,13 +302,14 @@ impl Part {
 
     /// What the messages of a publisher on a topic are to this agent.
     fn route(&self, recorded: Recorded<'_>, ledger: &mut Ledger) -> Result<Option<Route>, Error> {
-        let Recorded { host, received_by, publisher, topic } = recorded;
+        let Recorded { host, received_by, publisher, part, topic } = recorded;
         if received_by.unwrap_or(host) != self.host {
             return Ok(None);
         }
         let slot = self.hub.topic(topic);
         let is_brought = slot.is_some_and(|slot| self.brought.contains(&slot));
-        if received_by.is_none() && publisher == self.agent && !is_brought {
+        let is_own = publisher == self.agent && part == self.thread.part();
+        if received_by.is_none() && is_own && !is_brought {
             let (line, is_cycle) = (ledger.line(host, publisher, topic), topic == CYCLE.path());
             return Ok(Some(Route::Own { topic: slot, line, is_cycle }));
         }
@@ -299,7 +319,10 @@ impl Part {
         }
         let inlet = match received_by {
             Some(_) => self.hub.receiver(host, publisher, topic).map(Inlet::Received),
-            None => self.hub.publisher_by_name(topic, publisher).map(Inlet::Published),
+            None => {
+                let inlet = self.hub.publisher_by_name(topic, publisher);
+                inlet.map(|inlet| Inlet::Published(inlet.of_part(part)))
+            }
         };
         Ok(Some(Route::Other(self.feed.add_inlet(inlet.map_err(Error::hub)?))))
     }
@@ -326,10 +349,16 @@ impl Part {
                 "agents are given what they were given then: only a recording of all topics can be replayed";
             return Err(Error::new(ErrorKind::Invalid, message).with_hint(hint));
         }
+        if !self.is_of_thread(&record) {
+            return Err(self.untold());
+        }
         match (&self.repeated, record.turn()) {
             (_, Turn::Ordered) => self.follow(&record, ledger, told)?,
             (_, Turn::None | Turn::Start) if self.is_gone => return Err(came_back_untold(&self.agent)),
-            (Repeated::Chart(_), Turn::None) if self.is_told => self.own.push(own),
+            (Repeated::Chart(_), Turn::None) if self.is_told => {
+                self.numbers.push(record.number);
+                self.own.push(own);
+            }
             (Repeated::Chart(_), Turn::None) => return Err(self.untold()),
             (Repeated::List(_), Turn::None) if record.seen.is_empty() => return Err(self.untold()),
             (Repeated::List(_), Turn::None) => {
@@ -351,6 +380,15 @@ impl Part {
             }
         }
         Ok(())
+    }
+
+    /// Earlier versions recorded all threads of an agent alike.
+    fn is_of_thread(&self, record: &Cycle) -> bool {
+        match (self.thread.place, record.turn()) {
+            (Some(_), Turn::None) => record.seen.is_empty(),
+            (Some(place), _) => record.chart as usize == place,
+            (None, _) => true,
+        }
     }
 
     /// The agent was told to follow a change here. What it publishes by that is compared with its next turn.
@@ -383,16 +421,15 @@ impl Part {
     /// The agent, which had left, was added anew.
     fn come_back(&mut self, change: &Change, now: Moment) -> Result<(), Error> {
         let member = self.ordered.anew(change, &self.agent, &mut self.repeated, now)?;
-        self.repeated = Repeated::new(member, &self.feed).ok_or_else(|| not_alone(&self.agent))?;
+        self.repeated = Repeated::new(member, &self.feed)?.ok_or_else(|| nothing_to_run(&self.agent))?;
         (self.is_told, self.is_gone) = (false, false);
         Ok(())
     }
 
     /// A module came, went or was exchanged. If the agent was told so it has followed; if not it knows the names now.
     fn equip(&mut self, changed: &Changed, at: Moment) -> Result<(), Error> {
-        let is_list = matches!(self.repeated, Repeated::List(_));
         if changed.agent == self.agent {
-            self.ordered.answered(changed, is_list, at)?;
+            self.ordered.answered(changed, &mut self.repeated, at)?;
         }
         self.ordered.equip(changed, &mut self.repeated, at)
     }
@@ -430,6 +467,11 @@ impl Part {
         self.run_unrecorded(Moment::from_nanos(record.time), ledger, told)?;
         self.feed.begin(&record.seen, self.own.iter().map(|own| own.position));
         let now = Moment::from_nanos(record.time);
+        let numbers = std::mem::take(&mut self.numbers);
+        if self.thread.has_siblings() {
+            let own = (turn == Turn::None).then_some(record.number);
+            self.repeated.number_by(own.into_iter().chain(numbers));
+        }
         match &mut self.repeated {
             Repeated::List(list) => list.cycle(now),
             Repeated::Chart(chart) => chart.turn(turn, record, self.has_diverged),
@@ -511,12 +553,11 @@ fn came_back_untold(agent: &str) -> Error {
     Error::new(ErrorKind::Invalid, message).with_hint("replay other agents, or the time before")
 }
 
-fn not_alone(agent: &str) -> Error {
+fn nothing_to_run(agent: &str) -> Error {
     let message = format!(
-        "agent `{agent}` has several threads, for its list and its charts, whose messages are recorded under one name: they cannot \
-         be replayed one by one"
+        "agent `{agent}` has neither charts nor activities when the run begins: there is nothing to repeat"
     );
-    Error::new(ErrorKind::Invalid, message).with_hint("give each chart an agent of its own")
+    Error::new(ErrorKind::Invalid, message).with_hint("replay other agents")
 }
 
 /// The record as it is without what is recorded in real time only.

@@ -5,6 +5,7 @@ use narukom::{HostId, Moment, TopicSlot};
 use super::feed::Feed;
 use crate::agent::Policy;
 use crate::chart::{Assignment, Lead, Runner, call_record};
+use crate::error::Error;
 use crate::frequency::Frequency;
 use crate::list::List;
 use crate::monitors::{self, Broken};
@@ -21,24 +22,34 @@ pub(super) enum Repeated {
 }
 
 impl Repeated {
-    /// None if the agent has more than one of them, or none: its messages are told apart by its name alone.
-    pub(super) fn new(member: Member, feed: &Feed) -> Option<Repeated> {
+    /// What there is of the agent; none if that is not one of them.
+    pub(super) fn new(member: Member, feed: &Feed) -> Result<Option<Repeated>, Error> {
         let Member { policy, frequency, list, mut charts, teller, .. } = member;
-        match (list, charts.pop()) {
+        Ok(match (list, charts.pop()) {
             (Some(list), None) => {
+                let teller = teller.of_part(list.blackboard().part())?;
                 let list = RepeatedList { list, teller, feed: feed.clone(), is_over: false };
                 Some(Repeated::List(Box::new(list)))
             }
             (None, Some(runner)) if charts.is_empty() => {
+                let teller = teller.of_part(runner.part())?;
                 let chart = RepeatedChart::new(runner, policy, frequency, teller, feed);
                 Some(Repeated::Chart(Box::new(chart)))
             }
             _ => None,
-        }
+        })
     }
 }
 
 impl Repeated {
+    /// The next cycles had these numbers.
+    pub(super) fn number_by(&mut self, given: impl Iterator<Item = u64>) {
+        match self {
+            Repeated::List(list) => list.teller.number_by(given),
+            Repeated::Chart(chart) => chart.teller.number_by(given),
+        }
+    }
+
     /// Follows a change between two turns.
     ///
     /// # Errors

@@ -73,7 +73,7 @@ impl Simulated {
     }
 
     fn route(&mut self, recorded: Recorded<'_>) -> Result<Route, Error> {
-        let Recorded { host, received_by, publisher, topic } = recorded;
+        let Recorded { host, received_by, publisher, part, topic } = recorded;
         let recorder = received_by.unwrap_or(host);
         let Some(scene) = self.scenes.iter().position(|scene| scene.hub.host() == recorder) else {
             return Ok(Route::Ignored);
@@ -98,7 +98,7 @@ impl Simulated {
         // One that was asked for from outside was made at once, before anybody had a turn.
         let asks = topic == CHANGE.path() && publisher == OUTSIDE;
         let place = self.scenes[scene].place(publisher);
-        let publisher = hub.publisher_by_name(topic, publisher).map_err(Error::hub)?;
+        let publisher = hub.publisher_by_name(topic, publisher).map_err(Error::hub)?.of_part(part);
         // A line of the log may stand anywhere.
         let sets_up = [HOST.path(), MODEL.path(), CHART.path(), LOG.path()].contains(&topic);
         Ok(Route::Published { scene, publisher, place, sets_up, asks, answers })
