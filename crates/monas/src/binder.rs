@@ -8,6 +8,7 @@ use yase::{ActivityEntry, Chart, Diagnostic, NodeId, Semantics, Source, Span, St
 
 use crate::activity::Activity;
 use crate::agent::ChartSettings;
+use crate::call;
 use crate::error::{Error, ErrorKind};
 use crate::function::FunctionDeclaration;
 use crate::generated::GeneratedChart;
@@ -35,7 +36,7 @@ impl BoundChart {
     pub(crate) fn configured(mut self, own: &ChartSettings) -> BoundChart {
         for (entry, activity) in self.chart.activities().zip(&mut self.activities) {
             if let Some(known) = own.of_activity(entry.name) {
-                activity.configure(&known.parameters.fresh());
+                call::configure_again(entry.name, &mut **activity, &known.parameters.fresh());
             }
         }
         self

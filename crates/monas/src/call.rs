@@ -6,6 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use narukom::Blackboard;
 
 use crate::activity::{Activity, BoxError, Progress};
+use crate::parameters::Parameters;
 
 /// Why a call of an activity came to nothing.
 #[derive(Debug, thiserror::Error)]
@@ -34,6 +35,20 @@ pub(crate) fn stop(activity: &mut dyn Activity, blackboard: &mut Blackboard) -> 
         activity.stop(blackboard);
         Ok(())
     })
+}
+
+/// Calls `configure`. That it panicked is a fault of the parameters.
+pub(crate) fn configure(activity: &mut dyn Activity, parameters: &Parameters) {
+    if let Err(failure) = caught(|| activity.configure(parameters)) {
+        parameters.fail(failure.to_string());
+    }
+}
+
+/// Calls `configure` of an activity that is at work: it has shown that it takes such parameters, so it goes on whatever comes of them.
+pub(crate) fn configure_again(name: &str, activity: &mut dyn Activity, parameters: &Parameters) {
+    if let Err(failure) = caught(|| activity.configure(parameters)) {
+        tracing::error!(activity = %name, "activity failed to take its parameters: {failure}");
+    }
 }
 
 /// Whatever the activity left half done is its own affair: it is started again before it is called again, or never

@@ -27,7 +27,7 @@ pub enum ErrorKind {
     AmbiguousChart,
     /// No generated statechart is registered under that name.
     UnknownChart,
-    /// A module brings what there is already, or an activity of it cannot be made.
+    /// A module brings what there is already, or an activity cannot be made.
     Module,
     /// Two hosts, or two agents of a host, have one name.
     DuplicateName,

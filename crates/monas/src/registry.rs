@@ -6,6 +6,7 @@ use std::sync::Arc;
 use yase::diagnostic::nearest;
 
 use crate::activity::Activity;
+use crate::call;
 use crate::error::{Error, ErrorKind};
 use crate::function::{FUNCTIONS, FunctionDeclaration};
 use crate::generated::{CHARTS, ChartDeclaration, GeneratedChart};
@@ -209,7 +210,7 @@ impl Registry {
     /// a module while it is made is [`ErrorKind::Module`].
     pub fn activity(&self, name: &str) -> Result<Box<dyn Activity>, Error> {
         match self.activities.get(name).map(|entry| entry.makers.as_slice()) {
-            Some([(module, make)]) => make().map_err(|reason| {
+            Some([(module, make)]) => made(make).map_err(|reason| {
                 let message = format!("activity `{name}` of {module} cannot be made: {reason}");
                 Error::new(ErrorKind::Module, message)
             }),
@@ -283,6 +284,11 @@ impl Registry {
     pub(crate) fn functions(&self) -> Result<Vec<FunctionDeclaration>, Error> {
         self.functions.iter().map(|(name, same)| only(name, same)).collect()
     }
+}
+
+/// A new activity; else why there is none.
+fn made(make: &Make) -> Result<Box<dyn Activity>, String> {
+    call::caught(|| make()).map_err(|failure| failure.to_string()).flatten()
 }
 
 impl std::fmt::Debug for Registry {

@@ -1,10 +1,11 @@
 //! The chapters in `docs`: each of their commands does what the chapter says, in a folder with the models and configurations of the project. The Rust of
-//! the chapters is tested with the documentation of the crate `monas`; the chapter on modules in `examples/06-module`.
+//! the chapters is tested with the documentation of the crate `monas`; the chapters with modules in `examples/06-module`.
 
 use std::fs;
 
+use crate::copying::copy;
 use crate::generate::project;
-use crate::kit::{copy, root};
+use crate::kit::root;
 use crate::reading::{Reading, read_in};
 
 /// Goes through a chapter, which has at least so many commands.
@@ -36,11 +37,6 @@ fn how_time_works() {
 #[test]
 fn changing_what_runs() {
     read("live.md", 21);
-}
-
-#[test]
-fn a_session_with_a_match() {
-    read("session.md", 11);
 }
 
 #[test]

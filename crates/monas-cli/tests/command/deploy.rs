@@ -9,7 +9,8 @@ use std::process::{Child, Command, Stdio};
 
 use serde_json::Value;
 
-use crate::kit::{Answer, command, copy, root};
+use crate::copying::copy;
+use crate::kit::{Answer, command, root};
 
 /// A project's folder, with an ssh server that lets its keys in, whose robot is this computer.
 struct Site {

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::kit::{Answer, copy, monas, root};
+use crate::copying::copy;
+use crate::kit::{Answer, monas, root};
 use crate::running::{Running, ask, objects};
 
 /// So often it is looked whether something has come about.

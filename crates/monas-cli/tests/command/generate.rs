@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use crate::kit::{changed, copy, monas, root};
+use crate::copying::copy;
+use crate::kit::{changed, monas, root};
 
 /// The parts of the project that a generated crate is linked into, elsewhere.
 pub(crate) fn project() -> tempfile::TempDir {

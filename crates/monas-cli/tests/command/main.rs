@@ -10,6 +10,7 @@ mod chart;
 mod compose;
 mod config;
 mod convert;
+mod copying;
 #[cfg(unix)]
 mod deploy;
 mod doctor;

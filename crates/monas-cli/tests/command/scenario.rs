@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::kit::{Answer, copy, monas, root};
+use crate::copying::copy;
+use crate::kit::{Answer, monas, root};
 
 /// Every scenario of the project for a role.
 fn scenarios(role: &str) -> Vec<PathBuf> {

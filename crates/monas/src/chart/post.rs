@@ -232,7 +232,7 @@ impl Posts {
             None => (Some(activity), started),
         };
         if let Some((activity, parameters)) = post.activity.as_mut().zip(post.parameters.take()) {
-            activity.configure(&parameters);
+            call::configure_again(&post.name, &mut **activity, &parameters);
         }
         match (called, took) {
             (true, Some(took)) => {
@@ -287,7 +287,7 @@ impl Posts {
     pub(super) fn configure(&mut self, name: &str, parameters: &Parameters) {
         for post in self.posts.iter_mut().filter(|post| post.name == name) {
             match &mut post.activity {
-                Some(activity) => activity.configure(&parameters.fresh()),
+                Some(activity) => call::configure_again(name, &mut **activity, &parameters.fresh()),
                 None => post.parameters = Some(parameters.fresh()),
             }
         }

@@ -17,6 +17,7 @@ use super::resolve::{resolve, sort};
 use super::values::Values;
 use crate::activity::Activity;
 use crate::agent::{Agent, Listed, Policy};
+use crate::call;
 use crate::error::ErrorKind;
 use crate::frequency::Hz;
 use crate::link::LinkConfig;
@@ -206,7 +207,7 @@ impl Reader<'_> {
         }
         match self.registry.activity(name) {
             Ok(mut activity) => {
-                activity.configure(parameters);
+                call::configure(&mut *activity, parameters);
                 self.faults(element, parameters);
                 Some(activity)
             }

@@ -43,7 +43,8 @@ impl List {
                 self.entries[place] = self.entry(listed);
             }
             ListEdit::Configure(place, parameters) if place < count => {
-                self.entries[place].activity.configure(&parameters);
+                let Entry { name, activity, .. } = &mut self.entries[place];
+                call::configure_again(name, &mut **activity, &parameters);
             }
             ListEdit::SetPolicy(place, policy) if place < count => self.entries[place].policy = Some(policy),
             // There is no such place.

@@ -11,6 +11,7 @@ mod taped;
 mod charts;
 mod many;
 mod of_one_chart;
+mod panics;
 mod real_time;
 mod replayed;
 mod saved;

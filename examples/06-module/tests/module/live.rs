@@ -6,7 +6,8 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::built::{blind_eyes, eyes, sharp_eyes};
-use crate::kit::Answer;
+use crate::copying::copy;
+use crate::kit::{Answer, root};
 use crate::reading::read_in;
 use crate::running::{Running, ask, objects};
 
@@ -84,6 +85,18 @@ fn the_chapter_on_modules() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::copy(eyes(), folder.path().join("eyes.so")).expect("it was built");
     read_in(folder, "modules.md", 11);
+}
+
+#[test]
+fn the_session_with_a_match() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for part in ["config", "models"] {
+        copy(&root().join(part), &folder.path().join(part));
+    }
+    for (module, name) in [(eyes(), "eyes.so"), (sharp_eyes(), "sharp_eyes.so")] {
+        fs::copy(module, folder.path().join(name)).expect("it was built");
+    }
+    read_in(folder, "session.md", 14);
 }
 
 /// What runs is saved with its modules, and can be run again.

@@ -3,6 +3,8 @@
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot be prepared fails")]
 
 mod built;
+#[path = "../../../../crates/monas-cli/tests/command/copying.rs"]
+mod copying;
 mod kit;
 mod live;
 #[path = "../../../../crates/monas-cli/tests/command/reading.rs"]

@@ -12,6 +12,7 @@ use super::super::values::Values;
 use super::{Reader, is_enabled, parameters};
 use crate::agent::{ActivityProfile, Agent, ChartSettings, Policy};
 use crate::binder::Binder;
+use crate::call;
 use crate::error::Error;
 use crate::frequency::Hz;
 
@@ -105,7 +106,7 @@ impl Reader<'_> {
             Some(generated) => generated.ok()?.into_activity(name)?,
             None => self.registry.activity(name).ok()?,
         };
-        activity.configure(&parameters);
+        call::configure(&mut *activity, &parameters);
         self.faults(element, &parameters);
         Some(ActivityProfile {
             name: name.to_owned(),

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::findings::{Refusal, refusal, refusal_with, unknown, unusable};
 use crate::activity::Activity;
 use crate::agent::{ActivityProfile, ChartProfile, ChartSettings, Policy, Profile};
+use crate::call;
 use crate::config::{Grammar, is_written};
 use crate::error::ErrorKind;
 use crate::frequency::{Frequency, Hz};
@@ -291,7 +292,7 @@ fn configured(
 ) -> Result<Box<dyn Activity>, Refusal> {
     // What has been asked for before was asked by others.
     let parameters = parameters.fresh();
-    activity.configure(&parameters);
+    call::configure(&mut *activity, &parameters);
     let faults = parameters.faults().into_iter().flat_map(|fault| {
         let code = if fault.unknown { "E0314" } else { "E0315" };
         let message = format!("activity `{name}`: {}", fault.message);
