@@ -42,6 +42,8 @@ use std::time::Duration;
 use yase::expression::Place;
 use yase::statechart::{Constant, Frame, Point};
 
+use crate::names::decode;
+
 pub(crate) use from_text::from_text;
 pub(crate) use from_xmi::from_xmi;
 pub(crate) use to_text::to_text;
@@ -255,6 +257,15 @@ impl Iac {
     /// The name that a transition between two nodes usually has.
     pub(crate) fn usual_name(&self, source: usize, target: usize) -> String {
         format!("{}TO{}", self.nodes[source].name, self.nodes[target].name)
+    }
+}
+
+impl IacNode {
+    /// What it is called, as a person writes it: the term of a formula where its name encodes one.
+    pub(crate) fn written(&self) -> String {
+        let is_composite = matches!(self.kind.as_str(), "OR" | "AND");
+        let term = if is_composite { decode(&self.name) } else { None };
+        term.unwrap_or_else(|| self.name.clone())
     }
 }
 

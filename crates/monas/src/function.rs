@@ -192,6 +192,11 @@ impl Answer for i64 {
     }
 }
 
+/// Whether a function is one that expressions know by themselves, whatever a program registers.
+pub(crate) fn is_own(declaration: &FunctionDeclaration) -> bool {
+    declaration.module == module_path!()
+}
+
 fn abs(number: f64) -> f64 {
     libm::fabs(number)
 }

@@ -8,7 +8,7 @@ use yase::diagnostic::nearest;
 use crate::activity::Activity;
 use crate::call;
 use crate::error::{Error, ErrorKind};
-use crate::function::{FUNCTIONS, FunctionDeclaration};
+use crate::function::{self, FUNCTIONS, FunctionDeclaration};
 use crate::generated::{CHARTS, ChartDeclaration, GeneratedChart};
 use crate::module::Module;
 
@@ -108,9 +108,13 @@ pub struct Registry {
 }
 
 impl Registry {
-    /// A registry that knows nothing.
+    /// A registry that knows what expressions know by themselves, `abs`, `min` and `max`, and nothing else.
     pub fn empty() -> Registry {
-        Registry::default()
+        let mut registry = Registry::default();
+        for declaration in FUNCTIONS.iter().filter(|declaration| function::is_own(declaration)) {
+            registry.functions.entry(declaration.name.into()).or_default().push(*declaration);
+        }
+        registry
     }
 
     /// Everything that [`activity!`](crate::activity!) and [`function!`](crate::function!) registered in this program.
@@ -120,7 +124,7 @@ impl Registry {
             let make: Make = Arc::new(|| Ok((declaration.make)()));
             registry.insert_both(declaration.name, declaration.module, &make);
         }
-        for declaration in FUNCTIONS {
+        for declaration in FUNCTIONS.iter().filter(|declaration| !function::is_own(declaration)) {
             registry.functions.entry(declaration.name.into()).or_default().push(*declaration);
         }
         for declaration in CHARTS {
@@ -363,6 +367,16 @@ mod tests {
             assert!(registry.function_names().any(|known| known == name), "{name}");
         }
         assert_eq!(registry.functions().unwrap().len(), registry.function_names().count());
+    }
+
+    #[test]
+    fn what_expressions_know_by_themselves_needs_no_registry() {
+        let names: Vec<String> = Registry::empty().function_names().map(String::from).collect();
+        assert_eq!(names, ["abs", "max", "min"]);
+        let role = "Liveness:\nr = a | b\nConstants:\nnear = 0.3\nTransitions:\nCONDITION -> a : [abs(0 - near) < max(1, 2)]\n";
+        let (chart, findings) = aseme::statechart_of(&yase::Source::new("r.srm", role));
+        assert_eq!(findings, []);
+        assert!(chart.compile(&Registry::empty().vocabulary().unwrap()).is_ok());
     }
 
     #[test]

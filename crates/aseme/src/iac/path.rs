@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::Iac;
 use crate::document::{quoted, unquoted};
-use crate::names::{decode, encode};
+use crate::names::encode;
 use crate::text::{self, Quotes};
 
 /// The names of all nodes of a chart, ready to be looked up.
@@ -103,8 +103,7 @@ fn number(segments: &mut [String], siblings: &[usize]) {
 /// The name of a node as it is written in text: as a formula has it where that says the same.
 pub(super) fn name_text(node: &super::IacNode) -> String {
     let composite = matches!(node.kind.as_str(), "OR" | "AND");
-    let name =
-        if composite { decode(&node.name).unwrap_or_else(|| node.name.clone()) } else { node.name.clone() };
+    let name = node.written();
     let encoded = if composite { encode(&name) } else { name.clone() };
     if encoded == node.name && is_bare(&name) { name } else { quoted(&node.name) }
 }

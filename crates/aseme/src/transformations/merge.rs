@@ -254,5 +254,5 @@ fn is_refined(eac: &Iac, a: usize, iac: &Iac, b: usize) -> bool {
 /// What a node is, apart from its label.
 fn said(chart: &Iac, node: usize) -> String {
     let node = &chart.nodes[node];
-    if node.name == node.label { node.kind.clone() } else { format!("{} {}", node.name, node.kind) }
+    if node.name == node.label { node.kind.clone() } else { format!("{} {}", node.written(), node.kind) }
 }

@@ -159,3 +159,49 @@ fn messages_that_cannot_be_told_apart_are_refused() {
     let found = compose(&models, Channels::default(), &Settings::default()).unwrap();
     assert_eq!(codes(&found), ["E0935", "E0934"]);
 }
+
+fn of_texts(texts: &[(&str, &str)]) -> Models {
+    let model = |&(name, text): &(&str, &str)| (name.to_owned(), Source::new(name, text));
+    texts.iter().map(model).collect()
+}
+
+/// What a robot says to itself goes by a channel like any other message.
+#[test]
+fn who_says_something_to_itself_hears_it_if_it_has_been_said() {
+    let speaks = "Role: echo\nLiveness:\necho = Call . Listen . Act\nTransitions:\n\
+        Call -> Listen : / publish.word.Signal.Word\nListen -> Act : echo.word.Signal.Word\n";
+    let found = compose(&of_texts(&[("echo", speaks)]), Channels::default(), &Settings::default()).unwrap();
+    assert_eq!(found.passing, [("echo".into(), "echo".into(), "Word".into())]);
+    assert!(found.findings.is_empty() && found.is_finished, "{}", text(&found));
+    let waits = "Role: echo\nLiveness:\necho = Listen . Call . Act\nTransitions:\n\
+        Listen -> Call : echo.word.Signal.Word\nCall -> Act : / publish.word.Signal.Word\n";
+    let found = compose(&of_texts(&[("echo", waits)]), Channels::default(), &Settings::default()).unwrap();
+    assert_eq!(codes(&found), ["E0930"], "{}", text(&found));
+    let said = found.findings[0].diagnostic.message.clone();
+    assert!(said.contains("waits in `Listen` for `Word` of `echo`"), "{said}");
+}
+
+/// A robot that TERMINATE has stopped says nothing any more, and waits for nothing.
+#[test]
+fn who_waits_for_a_robot_that_was_stopped_waits_for_ever() {
+    let receiver = |end: &str| {
+        format!(
+            "IAC: receiver\n\nStates:\n  receiver OR\n    START\n    Walk BASIC\n    Ready BASIC\n    halt {end}\n\n\
+             Transitions:\n  START -> Walk\n  Walk -> Ready : [tired]\n  Walk -> halt : [!tired]\n  \
+             Ready -> Ready : passer.more.Signal.More / publish.ready.Signal.Ready\n"
+        )
+        .replace("tired", "passer.more.State.Tired.yes")
+        .replace("Walk -> Ready :", "Walk -> Ready !1 :")
+    };
+    let passer = "Role: passer\nLiveness:\npasser = Call . Wait . Pass\nTransitions:\n\
+        Call -> Wait : / publish.more.Signal.More\nWait -> Pass : receiver.ready.Signal.Ready\n";
+    let stopped = receiver("TERMINATE");
+    let models = of_texts(&[("passer", passer), ("receiver", &stopped)]);
+    let found = compose(&models, Channels::default(), &Settings::default()).unwrap();
+    let waits = found.findings.iter().find(|it| it.diagnostic.code == "E0930");
+    let waits = waits.unwrap_or_else(|| panic!("{}", text(&found)));
+    let said = &waits.diagnostic.message;
+    assert!(said.contains("`passer` waits in `Wait` for `Ready` of `receiver`"), "{said}");
+    assert!(!said.contains("`receiver` waits"), "it has stopped: {said}");
+    assert!(found.is_finished);
+}

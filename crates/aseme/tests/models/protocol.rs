@@ -199,6 +199,14 @@ fn a_protocol_with_an_unguarded_pass_is_refused() {
     assert_eq!(found, ["E0866: `passBall` is done whatever happens: the way to it is unguarded"]);
 }
 
+/// What is done in several steps is called as a formula has it, not as a file of the tools does.
+#[test]
+fn an_unguarded_composite_is_named_by_its_term() {
+    let found = broken(|text| text.replace(" : [Attack.ball_is_passed]", ""));
+    let name = "WalkTowardsBall.[kickBall]";
+    assert_eq!(found, [format!("E0866: `{name}` is done whatever happens: the way to it is unguarded")]);
+}
+
 #[test]
 fn a_protocol_that_is_engaged_in_at_any_time_is_refused() {
     let found = broken(|text| text.replace("Attack.ball_is_free && ", ""));

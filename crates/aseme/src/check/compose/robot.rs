@@ -42,7 +42,7 @@ impl Deed {
     }
 }
 
-/// A message of another robot that a chart reads or waits for.
+/// A message of a robot, another one or itself, that a chart reads or waits for.
 #[derive(Clone, Debug)]
 pub(super) struct Hearing {
     pub(super) called: Called,
@@ -90,9 +90,10 @@ impl Robot {
         hosts: &[&str],
         world: Option<&World>,
     ) -> Robot {
-        let others = || hosts.iter().copied().filter(|host| *host != name);
-        let hearings = hearings(&subject.chart, &others, world);
-        let waits = waits(&subject, &hearings, &others, world);
+        // itself among them: what it says is heard by itself too, if it calls itself by its name
+        let hosts = || hosts.iter().copied();
+        let hearings = hearings(&subject.chart, &hosts, world);
+        let waits = waits(&subject, &hearings, &hosts, world);
         let sayings = sayings(&subject.chart, world);
         Robot { name: name.into(), source: source.clone(), subject, abstraction, hearings, sayings, waits }
     }
@@ -244,7 +245,7 @@ fn literal(value: &Expression, constants: &[Constant]) -> Option<String> {
 
 fn hearings<'h, I: Iterator<Item = &'h str>>(
     chart: &Statechart,
-    others: &impl Fn() -> I,
+    hosts: &impl Fn() -> I,
     world: Option<&World>,
 ) -> Vec<Hearing> {
     let mut found: Vec<Hearing> = Vec::new();
@@ -252,7 +253,7 @@ fn hearings<'h, I: Iterator<Item = &'h str>>(
         let waited = triggers(transition).iter().map(|path| (path, Some(path.text())));
         let read = transition.expression.guard.iter().flat_map(paths).map(|path| (path, None));
         for (path, event) in waited.chain(read) {
-            let Some(called) = called(path, others(), world) else { continue };
+            let Some(called) = called(path, hosts(), world) else { continue };
             match found.iter_mut().find(|it| it.called.prefix == called.prefix) {
                 Some(known) if known.event.is_none() => (known.event, known.way) = (event, way),
                 Some(_) => {}
@@ -284,13 +285,13 @@ fn sayings(chart: &Statechart, world: Option<&World>) -> Vec<Saying> {
 fn waits<'h, I: Iterator<Item = &'h str>>(
     subject: &Subject,
     hearings: &[Hearing],
-    others: &impl Fn() -> I,
+    hosts: &impl Fn() -> I,
     world: Option<&World>,
 ) -> Vec<Wait> {
     let mut found: Vec<Wait> = Vec::new();
     for (way, transition) in subject.chart.transitions() {
         let read = transition.expression.guard.iter().flat_map(paths);
-        let named = triggers(transition).iter().chain(read).find_map(|path| called(path, others(), world));
+        let named = triggers(transition).iter().chain(read).find_map(|path| called(path, hosts(), world));
         let heard = named.and_then(|called| hearings.iter().position(|it| it.called.prefix == called.prefix));
         let Some(hearing) = heard else { continue };
         for node in resting(subject, transition.source) {

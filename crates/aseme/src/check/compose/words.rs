@@ -104,10 +104,10 @@ fn text(names: &[Name]) -> String {
     names.iter().map(|name| name.text.as_str()).collect::<Vec<_>>().join(".")
 }
 
-/// A message of another robot, as a path calls it.
+/// A message of a robot, as a path calls it.
 #[derive(Clone, Debug)]
 pub(super) struct Called {
-    /// The other robot.
+    /// The robot that says it.
     pub(super) host: String,
     pub(super) word: Word,
     /// The path without what stands behind the message.

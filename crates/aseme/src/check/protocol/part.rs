@@ -26,7 +26,7 @@ pub(super) fn guarded(chart: &Iac, part: usize, found: &mut Conformance) {
             ways.iter().filter(|way| !ends(way) && guard(way).is_none()).collect();
         let spared = if may_be_left_out { 0 } else { 1 };
         for way in open.iter().skip(spared) {
-            let name = &chart.nodes[way.target].name;
+            let name = chart.nodes[way.target].written();
             let message = format!("`{name}` is done whatever happens: the way to it is unguarded");
             let hint = "write in brackets when it is to be done";
             found.report("E0866", way.place.0, message, hint);
@@ -86,7 +86,7 @@ fn inside(player: &Iac, eac: &Iac, pairs: &BTreeMap<usize, usize>, found: &mut C
         match same {
             Some(same) => drop(there.remove(same)),
             None => {
-                let (from, to) = (&eac.nodes[theirs.source].name, &eac.nodes[theirs.target].name);
+                let (from, to) = (eac.nodes[theirs.source].written(), eac.nodes[theirs.target].written());
                 let message =
                     format!("the protocol has `{from} -> {to} : {}`, and the player does not", theirs.te);
                 found.report(
@@ -99,7 +99,7 @@ fn inside(player: &Iac, eac: &Iac, pairs: &BTreeMap<usize, usize>, found: &mut C
         }
     }
     for more in there {
-        let (from, to) = (&player.nodes[more.source].name, &player.nodes[more.target].name);
+        let (from, to) = (player.nodes[more.source].written(), player.nodes[more.target].written());
         let message = format!("the player has `{from} -> {to} : {}`, and the protocol does not", more.te);
         found.report("E0867", more.place.0, message, "merge the protocol's chart again");
     }
