@@ -45,7 +45,7 @@ pub(crate) fn execute(arguments: &GenerateArguments, console: &mut Console<'_>) 
     let files = generate::generate(&chart, &words).map_err(|found| Failure::Invalid(format, found))?;
     let files = laid_out(files, &project, console).map_err(|error| Failure::failed(format, error))?;
     let manifest = project
-        .manifest_of(&name, &crates(&files, &words))
+        .manifest_of(&name, &arguments.model, &crates(&files, &words))
         .map_err(|found| Failure::Invalid(format, vec![*found]))?;
     let mut writing = Writing { folder: &folder, format, changed: Vec::new() };
     writing.write("Cargo.toml", &manifest)?;

@@ -22,6 +22,7 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::generate::differences;
+use crate::report;
 
 pub(crate) use interrupt::Interrupt;
 pub(crate) use pace::WallClock;
@@ -44,9 +45,10 @@ pub(crate) fn execute(arguments: &RunArguments, console: &mut Console<'_>) -> Re
         return Err(Failure::Usage(message.into()));
     }
     let unlinked = differences(&arguments.config);
-    if !unlinked.is_empty() {
+    if unlinked.iter().any(Diagnostic::is_error) {
         return Err(invalid(unlinked));
     }
+    report::write(console, arguments.format.value, &unlinked)?;
     let layers = layers::of(&arguments.config, &arguments.layers).map_err(invalid)?;
     let asked = match &arguments.log {
         Some(file) => write_log(file, arguments.format.value, console)?,

@@ -73,3 +73,77 @@ fn the_namespace_of_protocols_is_misspelt_as_the_tools_have_it() {
     assert!(text.contains("http://www.acml.tuc.gr/aseme/metamodels/AIP"), "{text}");
     clean(&text.replace("acml", "amcl"));
 }
+
+/// All that only text can say.
+const SAID: &str = "\
+IAC: m
+
+Constants:
+  near = 0.5
+
+States:
+  r OR
+    START
+    a BASIC
+      activity = Walk
+      priority = 5
+      entry = raise(on)
+      exit = raise(off)
+      defer = stop
+      duration = 250ms
+      at = 10 20
+      size = 90 30
+    END
+
+Transitions:
+  START -> a !2 %0.5 interrupts
+  a -> a internal : stop
+  a -> END
+    via = 10 20
+";
+
+#[test]
+fn what_no_dialect_can_say_is_listed_thing_by_thing() {
+    let model = clean(SAID);
+    for (_, format) in Format::WORDS {
+        let Format::Statechart(dialect) = format else { continue };
+        let lost = model.write(format, SAID).unwrap().lost;
+        assert!(lost.iter().all(|it| it.code == "E0850" && !it.is_error()), "{lost:?}");
+        let lost: Vec<String> = lost.iter().map(|it| it.message.clone()).collect();
+        for what in [
+            "the constant `near = 0.5`",
+            "the activity of `a`, `Walk`",
+            "the priority of `a`, `5`",
+            "the entry action of `a`, `raise(on)`",
+            "the exit action of `a`, `raise(off)`",
+            "the deferred events of `a`, `stop`",
+            "the duration of `a`, `250ms`",
+            "where `a` is drawn, `at = 10 20`",
+            "where `a` is drawn, `size = 90 30`",
+            "the priority of `0.1 -> a`",
+            "the weight of `0.1 -> a`",
+            "the word `interrupts` of `0.1 -> a`",
+            "the word `internal` of `a -> a`",
+            "the way in a drawing of `a -> 0.3`",
+        ] {
+            let whole = format!("{what}: {} cannot say that", dialect.name());
+            assert!(lost.contains(&whole), "{whole}\nis not in\n{}", lost.join("\n"));
+        }
+        assert_eq!(lost.len(), 14, "{}", lost.join("\n"));
+    }
+    let lost = model.write(Format::Scxml, SAID).unwrap().lost;
+    let lost: Vec<&str> = lost.iter().map(|it| it.message.as_str()).collect();
+    for what in [
+        "`near`",
+        "`r/a` has an activity",
+        "a priority",
+        "deferred events",
+        "interrupts",
+        "duration",
+        "is drawn",
+        "the way of",
+        "a weight",
+    ] {
+        assert!(lost.iter().any(|it| it.contains(what)), "{what} is not in\n{}", lost.join("\n"));
+    }
+}

@@ -1,14 +1,16 @@
 //! Whether a project's folder of statecharts and the program that runs hold the same charts.
 //!
 //! They differ after a crate was put into the folder, or taken out of it, and the program was not built since. What would run then is
-//! not what lies there, so nothing is run.
+//! not what lies there, so nothing is run. And a model may have been edited, or generated anew, since the program was built: that is a warning, since whoever
+//! edits a model may well run it interpreted meanwhile.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use monas::Registry;
+use aseme::diff::diff;
 use monas::generated::is_generated_crate;
-use yase::Diagnostic;
+use monas::{Registry, config};
+use yase::{Diagnostic, Statechart};
 
 use super::project::Project;
 
@@ -17,9 +19,37 @@ pub(crate) fn differences(config: &Path) -> Vec<Diagnostic> {
     let Ok(project) = Project::around(config) else { return Vec::new() };
     let Ok(there) = project.generated() else { return Vec::new() };
     let registry = Registry::linked();
-    let linked = registry.chart_names().filter(|name| is_generated_crate(name)).map(str::to_owned).collect();
-    let there = there.into_iter().collect();
-    compared(&there, &linked, &project.relative(&project.statecharts()))
+    let linked: BTreeSet<String> =
+        registry.chart_names().filter(|name| is_generated_crate(name)).map(str::to_owned).collect();
+    let there: BTreeSet<String> = there.into_iter().collect();
+    let mut found = compared(&there, &linked, &project.relative(&project.statecharts()));
+    found.extend(there.intersection(&linked).filter_map(|name| outdated(&project, &registry, name)));
+    found
+}
+
+/// What the model of a chart says and the program does not. Where there is no model beside the program, nothing is expected of it.
+fn outdated(project: &Project, registry: &Registry, name: &str) -> Option<Diagnostic> {
+    let model = project.model_of(name)?;
+    let source = config::read_file(&model).ok()?;
+    let (chart, findings) = aseme::statechart_of(&source);
+    let linked = registry.chart(name)?.ok()?;
+    let told = project.relative(&model);
+    let says = match findings.iter().any(Diagnostic::is_error) {
+        true => Some("it has errors".to_owned()),
+        false => first_difference(linked.statechart(), &chart),
+    }?;
+    let message = format!("`{told}` is not what the statechart `{name}` of this program was made of: {says}");
+    let hint = format!("`monas generate {told}` and build the program again");
+    Some(Diagnostic::warning("E0928", 0..0, message).with_hint(hint))
+}
+
+fn first_difference(linked: &Statechart, model: &Statechart) -> Option<String> {
+    let changes = diff(linked, model).changes;
+    let first = changes.first()?;
+    Some(match changes.len() {
+        1 => first.to_string(),
+        count => format!("{first}, and {} more", count - 1),
+    })
 }
 
 fn compared(there: &BTreeSet<String>, linked: &BTreeSet<String>, folder: &str) -> Vec<Diagnostic> {
@@ -42,6 +72,15 @@ mod tests {
 
     fn set(names: &[&str]) -> BTreeSet<String> {
         names.iter().map(|name| (*name).to_owned()).collect()
+    }
+
+    #[test]
+    fn the_first_of_several_differences_is_told() {
+        let chart = |text: &str| aseme::statechart_of(&yase::Source::new("r.srm", text)).0;
+        let plain = chart("r = a . b");
+        assert_eq!(first_difference(&plain, &plain), None);
+        let told = first_difference(&plain, &chart("r = a . c . b")).expect("they differ");
+        assert!(told.starts_with("+ state `c`") && told.ends_with(" more"), "{told}");
     }
 
     #[test]

@@ -13,6 +13,9 @@ const END: &str = "# end of the statecharts";
 /// The crates among the members of a workspace.
 const MEMBERS: &str = "\"statecharts/*\"";
 
+/// Where a generated crate says what it was made of.
+const METADATA: &str = "[package.metadata.monas]";
+
 /// The file of the package that links the statecharts, beside its main.rs.
 const LINKS: &str = "src/statecharts.rs";
 
@@ -78,13 +81,14 @@ impl Project {
         path.strip_prefix(&self.root).unwrap_or(&path).display().to_string()
     }
 
-    /// The Cargo.toml of a generated crate that names these crates.
+    /// The Cargo.toml of a crate that is generated from a model and names these crates.
     ///
     /// # Errors
     /// The workspace does not say where one of them is.
     pub(super) fn manifest_of(
         &self,
         name: &str,
+        model: &Path,
         crates: &BTreeSet<String>,
     ) -> Result<String, Box<Diagnostic>> {
         let shared = table(&self.manifest, "[workspace.dependencies]").unwrap_or_default();
@@ -111,8 +115,16 @@ impl Project {
         Ok(format!(
             "# Generated with its sources by `monas generate`.\n[package]\nname = \"{name}\"\n\
              description = \"The statechart {name}, generated from its model\"\n{settings}\n\
-             [dependencies]\n{dependencies}\n[lib]\ndoctest = false\ntest = false\n{lints}"
+             [dependencies]\n{dependencies}\n{METADATA}\nmodel = \"{}\"\n\n[lib]\ndoctest = false\ntest = false\n{lints}",
+            self.relative(model)
         ))
+    }
+
+    /// The model that a generated crate was made of, if that lies there.
+    pub(super) fn model_of(&self, name: &str) -> Option<PathBuf> {
+        let manifest = fs::read_to_string(self.statecharts().join(name).join("Cargo.toml")).ok()?;
+        let model = self.root.join(value(table(&manifest, METADATA)?, "model")?);
+        model.is_file().then_some(model)
     }
 
     /// Links every generated crate into the team's program. Gives the files that had to be changed.

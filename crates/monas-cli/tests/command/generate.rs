@@ -136,7 +136,18 @@ fn a_program_that_lacks_a_crate_of_its_project_runs_nothing() {
     copy(&root().join("config"), &folder.join("config"));
     let config = folder.join("config/match_generated.xml").display().to_string();
     let run = ["run", config.as_str(), "--for", "1s", "--no-control"];
-    assert_eq!(monas(&run).code, Some(0), "the folder is what the program was built with");
+    let answer = monas(&run);
+    assert_eq!(answer.code, Some(0), "the folder is what the program was built with");
+    assert!(!answer.err.contains("E0928"), "{}", answer.err);
+    let goalie = read(folder, "models/goalie.srm");
+    fs::write(folder.join("models/goalie.srm"), goalie.replace("act_within = ", "act_within = 1"))
+        .expect("it takes files");
+    for command in [run.as_slice(), &["config", "check", config.as_str()]] {
+        let answer = monas(command);
+        let said = "`models/goalie.srm` is not what the statechart `goalie` of this program was made of: ~ constant `act_within`";
+        assert!(answer.code == Some(0) && answer.err.contains(said), "{}", answer.err);
+    }
+    fs::write(folder.join("models/goalie.srm"), goalie).expect("it takes files");
     fs::write(folder.join("models/scout.srm"), "scout = (Vision . Stand)~").expect("it takes files");
     assert_eq!(generate(folder, "models/scout.srm").0, Some(0));
     for command in [run.as_slice(), &["config", "check", config.as_str()]] {

@@ -1,7 +1,5 @@
 //! The thesis's Figures 5.2 to 5.4, letter by letter.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
-
 use aseme::SrmFile;
 
 const FIGURE_5_2: &str = "

@@ -1,7 +1,5 @@
 //! Roles in the XMI form of the method's Eclipse tools.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
-
 use aseme::SrmFile;
 use yase::Source;
 

@@ -1,7 +1,5 @@
 //! The thesis's two roles, transformed: as trees in `tests/golden`. With `MONAS_BLESS=1` the files are written anew.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
-
 use std::path::{Path, PathBuf};
 
 use yase::{NodeKind, Source, Statechart};

@@ -1,7 +1,5 @@
 //! Drawings can be read: nothing lies on a label, nothing leaves the page.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
-
 use roxmltree::{Document, Node};
 use yase::Source;
 

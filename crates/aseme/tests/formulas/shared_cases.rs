@@ -1,7 +1,5 @@
 //! Formulas beside the charts they become, as other tools of the method make them.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
-
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;

@@ -1,7 +1,5 @@
 //! What holds for every text and every formula.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
-
 use std::fmt::Write;
 
 use aseme::liveness::{self, Liveness, Term};

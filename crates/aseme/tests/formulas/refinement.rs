@@ -1,7 +1,5 @@
 //! Refinements stay in force when formulas are edited, as far as they still fit.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
-
 use aseme::{SrmFile, srm::Section};
 use yase::{Diagnostic, Statechart};
 

@@ -1,7 +1,5 @@
 //! Every mistake has its code, its place and a hint.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
-
 use yase::{Diagnostic, Severity, Source};
 
 /// All findings about a text.

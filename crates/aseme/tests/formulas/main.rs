@@ -1,0 +1,12 @@
+//! Roles as formulas: read, refined, made into charts and drawn.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
+
+mod diagnostics;
+mod drawing;
+mod figures;
+mod golden;
+mod properties;
+mod refinement;
+mod shared_cases;
+mod xmi;
