@@ -97,13 +97,17 @@ proptest! {
     }
 }
 
-const TOKENS: [&str; 40] = [
+const TOKENS: [&str; 44] = [
     "Role: r",
     "Protocols:",
     "Liveness:",
     "Constants:",
     "Transitions:",
     "States:",
+    "Layout:",
+    "at = 0 40",
+    ", size = 9 9",
+    "via = 1 2, 3 4",
     "\n",
     "\n",
     "\n",

@@ -50,7 +50,7 @@ proptest! {
     }
 }
 
-const WORDS: [&str; 44] = [
+const WORDS: [&str; 46] = [
     "Goal: g\n",
     "Actor: a\n",
     "Actor: \"a b\"\n",
@@ -86,6 +86,8 @@ const WORDS: [&str; 44] = [
     "  type = a\n",
     "  label = 7\n",
     "  entry = raise(x)\n",
+    "      at = 3 4\n",
+    "    via = 3 4, 5 6\n",
     "# c\n",
     "  # d\n",
     "\"",

@@ -6,7 +6,8 @@ use proptest::prelude::*;
 use serde_json::Value;
 use yase::export::{Exported, to_dot, to_mermaid, to_plantuml, to_svg, to_xstate};
 use yase::expression::{parse_actions, parse_transition};
-use yase::{Node, NodeId, NodeKind, Statechart, Transition};
+use yase::statechart::{Frame, Point};
+use yase::{Node, NodeId, NodeKind, Statechart, Transition, TransitionId};
 
 /// Kind, parent, name, and whether there is an activity and an entry action.
 type Seed = (usize, prop::sample::Index, String, bool, bool);
@@ -19,6 +20,10 @@ fn names() -> impl Strategy<Value = String> {
             .prop_map(String::from),
         "\\PC{1,5}",
     ]
+}
+
+fn points() -> impl Strategy<Value = Point> {
+    prop_oneof![Just((0.0, 0.0)), (0.0..400.0, 0.0..400.0), (0.0..100_000.0, 0.0..100_000.0)]
 }
 
 fn expressions() -> impl Strategy<Value = &'static str> {
@@ -166,6 +171,26 @@ proptest! {
     #[test]
     fn every_chart_is_drawn(chart in charts()) {
         roxmltree::Document::parse(&to_svg(&chart)).expect("well-formed");
+    }
+
+    #[test]
+    fn every_chart_is_drawn_wherever_its_parts_are_put(
+        chart in charts(),
+        frames in prop::collection::btree_map(0..15_u32, (prop::option::of(points()), prop::option::of(points())), 0..8),
+        bends in prop::collection::btree_map(0..20_u32, prop::collection::vec(points(), 0..4), 0..6),
+    ) {
+        let mut placed = chart.clone();
+        let frames = frames.into_iter().map(|(id, (at, size))| (NodeId(id), Frame { at, size }));
+        placed.layout.frames = frames.collect();
+        placed.layout.bends = bends.into_iter().map(|(id, bends)| (TransitionId(id), bends)).collect();
+        let (plain, svg) = (to_svg(&chart), to_svg(&placed));
+        let document = roxmltree::Document::parse(&svg).expect("well-formed");
+        let drawn = |svg: &str| ["<rect", "<circle", "<polyline", "<text"].map(|it| svg.matches(it).count());
+        let ([rects, circles, lines, _], [plain_rects, plain_circles, plain_lines, _]) = (drawn(&svg), drawn(&plain));
+        prop_assert_eq!((rects, circles, lines), (plain_rects, plain_circles, plain_lines), "{}", svg);
+        let page = ["width", "height"].map(|it| document.root_element().attribute(it).and_then(|it| it.parse::<f64>().ok()));
+        prop_assert!(page.iter().all(|side| side.is_some_and(|side| side.is_finite() && side > 0.0)), "{}", svg);
+        prop_assert!(!svg.contains("NaN") && !svg.contains("inf"), "{}", svg);
     }
 }
 

@@ -300,8 +300,10 @@ fn holds(chart: &Statechart, outer: NodeId, inner: NodeId) -> bool {
 
 /// The innermost composite that holds both ends of a transition.
 fn innermost_around(chart: &Statechart, transition: &Transition) -> NodeId {
-    let around: Vec<NodeId> = chart.ancestors(transition.target).collect();
-    chart.ancestors(transition.source).find(|id| around.contains(id)).unwrap_or(Statechart::ROOT)
+    // no way up is longer than there are nodes, even in a chart that is no tree
+    let ancestors = |id: NodeId| chart.ancestors(id).take(chart.nodes().len());
+    let around: Vec<NodeId> = ancestors(transition.target).collect();
+    ancestors(transition.source).find(|id| around.contains(id)).unwrap_or(Statechart::ROOT)
 }
 
 fn without_straight_corners(points: &[Point]) -> Vec<Point> {
