@@ -18,7 +18,7 @@ use crate::tape::arguments::TapeCommand;
 #[cfg(unix)]
 use crate::top::TopArguments;
 #[cfg(unix)]
-use crate::topic::TopicCommand;
+use crate::topic::TopicArguments;
 
 /// The configuration that is read when none is named.
 const DEFAULT_CONFIGURATION: &str = "config/agents.xml";
@@ -54,8 +54,7 @@ pub(crate) enum Command {
     Config(ConfigCommand),
     /// Look at the topics of a run while it runs, and publish on them.
     #[cfg(unix)]
-    #[command(subcommand)]
-    Topic(TopicCommand),
+    Topic(TopicArguments),
     /// Look at the agents of a run while it runs, and change them.
     #[cfg(unix)]
     #[command(subcommand)]

@@ -100,7 +100,7 @@ fn execute(command: Command, console: &mut Console<'_>) -> Result<Exit, Failure>
         Command::Config(command) => config::execute(&command, console),
         Command::Model(command) => model::execute(&command, console),
         #[cfg(unix)]
-        Command::Topic(command) => topic::execute(&command, console),
+        Command::Topic(arguments) => topic::execute(arguments, console),
         #[cfg(unix)]
         Command::Agent(command) => agent::execute(&command, console),
         #[cfg(unix)]

@@ -134,7 +134,7 @@ fn of_run(arguments: &LogArguments, console: &mut Console<'_>) -> Result<Exit, F
         [one] => Some(one.clone()),
         _ => None,
     };
-    let choice = RunChoice { run: arguments.run.clone(), host, format: arguments.format };
+    let choice = RunChoice::of(arguments.run.clone(), host, arguments.format);
     let limits = Limits { count: None, length: arguments.length };
     let mut left = arguments.count.unwrap_or(u64::MAX);
     crate::topic::watch(TOPIC, true, &limits, &choice, console, |seen, console| {

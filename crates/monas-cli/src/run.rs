@@ -25,6 +25,7 @@ use crate::generate::differences;
 use crate::report;
 
 pub(crate) use interrupt::Interrupt;
+pub(crate) use live::not_started;
 pub(crate) use pace::WallClock;
 
 /// What a configuration describes.

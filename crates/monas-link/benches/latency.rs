@@ -7,7 +7,7 @@
 #![allow(clippy::unwrap_used, reason = "a benchmark that cannot go on stops")]
 
 use std::net::TcpListener;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, mpsc};
 use std::thread::{self, Thread};
 use std::time::{Duration, Instant};
 
@@ -32,7 +32,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// nothing if none comes.
 struct Way {
     name: &'static str,
-    send: Box<dyn FnMut(u64)>,
+    send: Box<dyn FnMut(u64) + Send>,
     receive: Box<dyn FnMut() -> Option<u64>>,
     lost: u64,
 }
@@ -45,6 +45,7 @@ fn main() {
     };
     let small = vec![
         Way::bare("zenoh", true, ball, when_ball),
+        Way::bare("zenoh, by a thread of its own", true, ball, when_ball).handed_on(),
         Way::link("link on zenoh", BALL, Pair::on_zenoh(true), ball, when_ball),
         Way::link("link on local sockets", BALL, Pair::over(local), ball, when_ball),
     ];
@@ -137,6 +138,14 @@ impl Way {
             }),
             lost: 0,
         }
+    }
+
+    /// The same, but whoever sends leaves that to a thread, and goes on. So does a publisher with a link: agents do not wait for a network.
+    fn handed_on(self) -> Way {
+        let (hand, given) = mpsc::channel();
+        let mut send = self.send;
+        thread::spawn(move || given.iter().for_each(&mut send));
+        Way { send: Box::new(move |sent| hand.send(sent).unwrap()), ..self }
     }
 
     /// From the hub of one host to a blackboard of another.

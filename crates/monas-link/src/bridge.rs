@@ -6,8 +6,7 @@ use std::sync::Arc;
 use narukom::{AnyPublisher, Arrival, Moment, Narukom, Receiver, Tap};
 
 use crate::error::{Error, ErrorKind};
-use crate::memory::Memory;
-use crate::protocol::{Delivery, Node, Packet, Publication};
+use crate::protocol::{Delivery, MessageBytes, Node, Packet, Publication};
 use crate::settings::{LinkSettings, Place, Plan};
 
 /// So many publishers of other hosts are told apart; messages of more are refused.
@@ -20,7 +19,6 @@ pub struct Bridge {
     /// One for each topic that is sent.
     taps: Vec<Tap>,
     places: Vec<Place>,
-    memory: Memory,
     others: BTreeMap<(Arc<str>, usize, String), Receiver>,
     own: BTreeMap<(usize, String), AnyPublisher>,
 }
@@ -36,9 +34,8 @@ impl Bridge {
         let tap =
             |path: &str| hub.tap(path).map_err(|error| Error::new(ErrorKind::Settings, error.to_string()));
         let taps = node.sends().iter().map(|topic| tap(&topic.path)).collect::<Result<_, _>>()?;
-        let memory = Memory::default();
         let (others, own) = (BTreeMap::new(), BTreeMap::new());
-        Ok(Bridge { hub: hub.clone(), node, taps, places, memory, others, own })
+        Ok(Bridge { hub: hub.clone(), node, taps, places, others, own })
     }
 
     /// What it knows and has counted.
@@ -84,7 +81,7 @@ impl Bridge {
                         publisher: &publisher,
                         sequence: encoded.header.sequence,
                         published: encoded.header.published,
-                        payload: self.memory.copy(encoded.bytes()),
+                        payload: MessageBytes::of(encoded),
                     },
                 );
             }
@@ -94,11 +91,13 @@ impl Bridge {
 
     fn bring_in(&mut self) {
         while let Some(delivery) = self.node.next_delivery() {
-            let is_taken = match self.places[delivery.topic] {
-                Place::Other => self.receive(&delivery),
-                Place::Own => self.publish(&delivery),
-            };
-            if is_taken.is_none() {
+            let is_taken = delivery.payload.is_whole()
+                && match self.places[delivery.topic] {
+                    Place::Other => self.receive(&delivery),
+                    Place::Own => self.publish(&delivery),
+                }
+                .is_some();
+            if !is_taken {
                 self.node.take_back(&delivery);
             }
         }

@@ -89,7 +89,6 @@ mod error;
 pub mod fuzzed;
 mod inbox;
 mod link;
-mod memory;
 mod protocol;
 mod settings;
 mod transport;

@@ -7,6 +7,7 @@ mod counters;
 mod incoming;
 mod node;
 mod outgoing;
+mod payload;
 mod peers;
 mod schema;
 
@@ -14,9 +15,8 @@ pub use access::{AccessError, AccessList};
 pub use budget::{Budget, Spent};
 pub use clock::ClockOffset;
 pub use counters::{Counters, Received, Sent};
-pub use node::{
-    Delivery, LinkTopic, MessageBytes, Mismatch, Node, NodeSettings, Packet, Publication, Reliability,
-};
+pub use node::{Delivery, LinkTopic, Mismatch, Node, NodeSettings, Packet, Publication, Reliability};
+pub use payload::MessageBytes;
 pub use schema::{Schema, differences};
 
 /// The messages of the protocol.

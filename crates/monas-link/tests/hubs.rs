@@ -4,7 +4,8 @@
 use std::time::Duration;
 
 use monas_link::example::{Ball, Command};
-use monas_link::{AccessList, Bridge, ErrorKind, LinkSettings, Packet, Place, ReceiveRule};
+use monas_link::{AccessList, Bridge, ErrorKind, LinkSettings, MessageBytes, Packet, Place, ReceiveRule};
+use narukom::prost::Message as _;
 use narukom::{Data, Moment, Narukom, Signal, State, Topic, TopicDeclaration, topic};
 
 topic! {
@@ -199,23 +200,27 @@ fn a_topic_that_differs_is_not_read_and_both_sides_say_how() {
 }
 
 #[test]
-fn bytes_that_are_no_message_are_refused_and_counted() {
+fn bytes_that_are_no_message_any_more_or_never_were_are_refused_and_counted() {
     let hubs = hubs();
     let settings = LinkSettings { guests: true, ..LinkSettings::default() }.receiving("soccer/ball");
     let mut end = Bridge::new(&hubs[0], settings, 1).unwrap();
-    let packet = |payload: &[u8]| Packet {
+    let packet = |payload: MessageBytes| Packet {
         from: "laptop".into(),
         to: None,
         path: Some("soccer/ball".into()),
         stamp: [].into(),
-        payload: payload.to_vec().into(),
+        payload,
         priority: 4,
         is_reliable: true,
     };
-    end.handle(&packet(&[0xff, 0xff, 0xff]), Moment::ZERO);
-    end.handle(&packet(&[]), Moment::ZERO);
+    end.handle(&packet(vec![0xff, 0xff, 0xff].into()), Moment::ZERO);
+    end.handle(&packet(MessageBytes::default()), Moment::ZERO);
+    // Memory of another process, which has taken it back from the second one.
+    let far = || Ball { distance: 9.0, bearing: 0.0 }.encode_to_vec();
+    end.handle(&packet(MessageBytes::lent(Vec::new(), || true)), Moment::ZERO);
+    end.handle(&packet(MessageBytes::lent(far(), || false)), Moment::ZERO);
     let counted = end.node().counters().received[0].2;
-    assert_eq!((counted.arrived, counted.delivered, counted.refused), (2, 1, 1));
+    assert_eq!((counted.arrived, counted.delivered, counted.refused), (4, 2, 2));
     let mut reader = hubs[0].blackboard("reader");
     reader.process_messages(Moment::ZERO);
     let host = hubs[0].host_id("laptop").unwrap();

@@ -69,6 +69,22 @@ impl Encoded {
     pub fn message(&self) -> &dyn AnyMessage {
         &*self.message
     }
+
+    /// The encoding alone: whoever keeps it keeps the message's own memory from nobody.
+    pub fn into_shared(self) -> SharedEncoding {
+        self.encoding.bytes(&*self.message);
+        SharedEncoding(self.encoding)
+    }
+}
+
+/// The protobuf encoding of a message, shared with all others who look at it. Its memory serves later messages when the last has let go.
+#[derive(Clone, Debug)]
+pub struct SharedEncoding(Arc<Encoding>);
+
+impl AsRef<[u8]> for SharedEncoding {
+    fn as_ref(&self) -> &[u8] {
+        self.0.bytes.get().map_or(&[], Vec::as_slice)
+    }
 }
 
 /// Makes `message` what `bytes` encode.

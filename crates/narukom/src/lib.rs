@@ -34,7 +34,8 @@
 //! message 96. A blackboard takes 24 bytes for each topic of the hub, and for each topic that it reads less than 200 bytes and
 //! 64 for a reference to each message that it was delivered, which are at most as many again. Messages are shared: with N topics of depth
 //! D and M readers there are at most N·D messages in the hub, and readers that stop fetching hold on to at most D more each.
-//! Each writer keeps four messages of a topic that left the hub, to make the next ones of. `tests/memory.rs` holds the crate to this.
+//! Each writer keeps four messages of a topic that left the hub, to make the next ones of. A topic that is tapped holds the encodings of its messages
+//! too, and of four that left. `tests/memory.rs` holds the crate to this.
 //! Hosts, and the names that other hosts give their publishers, are bounded too ([`HOST_LIMIT`], [`REMOTE_PUBLISHER_LIMIT`]).
 //!
 //! # Other hosts, and topics known at run time
@@ -169,7 +170,7 @@ mod writing;
 pub use blackboard::{Blackboard, EVENT_LIMIT, OUTBOX_LIMIT, View};
 pub use cancellation::Cancellation;
 pub use descriptor::{EnumDescriptor, FieldDescriptor, FieldKind, MessageDescriptor};
-pub use encoding::{ENCODED_LIMIT, Encoded};
+pub use encoding::{ENCODED_LIMIT, Encoded, SharedEncoding};
 pub use error::{Error, ErrorKind};
 pub use exchange::{HOST_LIMIT, REMOTE_PUBLISHER_LIMIT};
 pub use history::Neighbours;

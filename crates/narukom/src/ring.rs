@@ -45,9 +45,14 @@ pub(crate) struct Ring {
     /// How many messages of each publisher, sorted by publisher.
     sequences: Vec<(PublisherId, u64)>,
     taps: usize,
-    /// An encoding that left the ring, to be used again.
-    spare: Option<Arc<Encoding>>,
+    /// Encodings that left the ring, to be used again when nobody holds them any more.
+    spares: Vec<Arc<Encoding>>,
+    /// Whose turn it is to go when there are too many.
+    turn: usize,
 }
+
+/// How many encodings wait for whoever keeps them: a link those that it may have to send again.
+const SPARE: usize = 4;
 
 impl Ring {
     pub(crate) fn new(capacity: usize) -> Ring {
@@ -58,7 +63,8 @@ impl Ring {
             begun: 0,
             sequences: Vec::new(),
             taps: 0,
-            spare: None,
+            spares: Vec::new(),
+            turn: 0,
         }
     }
 
@@ -96,7 +102,7 @@ impl Ring {
     /// Where taps share the encoding of the next message, if there are any.
     #[inline]
     pub(crate) fn next_encoding(&mut self) -> Option<Arc<Encoding>> {
-        (self.taps > 0).then(|| self.spare.take().unwrap_or_default())
+        (self.taps > 0).then(|| self.vacant().unwrap_or_default())
     }
 
     /// Appends a message, for which there is room.
@@ -109,13 +115,22 @@ impl Ring {
         self.entries.push_back(entry);
     }
 
-    /// Keeps an encoding that left, if nobody holds it.
+    /// An encoding that nobody holds any more, of no message.
+    fn vacant(&mut self) -> Option<Arc<Encoding>> {
+        let place = self.spares.iter_mut().position(|spare| Arc::get_mut(spare).is_some())?;
+        let mut encoding = self.spares.swap_remove(place);
+        Arc::get_mut(&mut encoding)?.clear();
+        Some(encoding)
+    }
+
+    /// Keeps an encoding that left for when nobody holds it.
     fn reuse(&mut self, encoding: Option<Arc<Encoding>>) {
-        if let Some(mut encoding) = encoding
-            && let Some(place) = Arc::get_mut(&mut encoding)
-        {
-            place.clear();
-            self.spare = Some(encoding);
+        let Some(encoding) = encoding else { return };
+        if self.spares.len() < SPARE {
+            self.spares.push(encoding);
+        } else {
+            self.turn = (self.turn + 1) % SPARE;
+            self.spares[self.turn] = encoding;
         }
     }
 

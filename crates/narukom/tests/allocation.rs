@@ -77,6 +77,24 @@ fn bytes_in_and_out_do_not_allocate() {
 }
 
 #[test]
+fn encodings_that_are_kept_for_a_while_are_made_in_the_memory_of_earlier_ones() {
+    let hub = hub();
+    let mut publisher = hub.publisher(DATA, "body").unwrap();
+    let mut tap = hub.tap("test/data").unwrap();
+    // As a link keeps those that it may have to send again.
+    let mut kept = std::collections::VecDeque::with_capacity(4);
+    check_steady(|number| {
+        publisher.publish(Mark::new(number), at(number));
+        if kept.len() == 4 {
+            kept.pop_front();
+        }
+        let encoding = tap.next_encoded().unwrap().into_shared();
+        assert!(!encoding.as_ref().is_empty());
+        kept.push_back(encoding);
+    });
+}
+
+#[test]
 fn a_large_message_is_built_in_the_memory_of_an_earlier_one() {
     let hub = hub();
     let (mut giver, mut taker) = (hub.publisher(STATE, "giver").unwrap(), hub.blackboard("taker"));

@@ -179,7 +179,7 @@ pub(crate) struct AgentOrChart {
 
 /// The names of the agents of the only run, if there is one.
 pub(crate) fn agents() -> Vec<CompletionCandidate> {
-    let run = RunChoice { run: None, host: None, format: FormatArgument { value: Format::Text } };
+    let run = RunChoice::of(None, None, FormatArgument { value: Format::Text });
     let reply = ask(Inquiry { agents: true, ..Inquiry::default() }, &run);
     let known = reply.ok().and_then(|reply| reply.agents).unwrap_or_default();
     let mut names: Vec<String> = known.agents.into_iter().map(|agent| agent.name).collect();

@@ -71,7 +71,7 @@ pub(crate) enum ModuleCommand {
 
 /// The modules of the only run, if there is one.
 fn modules() -> Vec<CompletionCandidate> {
-    let run = RunChoice { run: None, host: None, format: FormatArgument { value: Format::Text } };
+    let run = RunChoice::of(None, None, FormatArgument { value: Format::Text });
     let mut names: Vec<String> =
         list::loaded(&run).unwrap_or_default().into_iter().map(|one| one.name).collect();
     names.sort_unstable();

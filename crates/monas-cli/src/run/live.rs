@@ -66,7 +66,7 @@ pub(super) fn execute(
 }
 
 /// What a person wrote is told as such; a link that does not come up is nothing to connect to.
-fn not_started(format: Format, error: monas::Error) -> Failure {
+pub(crate) fn not_started(format: Format, error: monas::Error) -> Failure {
     match error.kind() {
         ErrorKind::Invalid => Failure::Invalid(format, error.diagnostics().to_vec()),
         ErrorKind::Link => Failure::Unreachable(format, error.to_string()),

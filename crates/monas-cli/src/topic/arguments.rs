@@ -1,5 +1,6 @@
 //! What may be written after `monas topic`.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Subcommand};
@@ -8,6 +9,15 @@ use clap_complete::engine::{ArgValueCandidates, CompletionCandidate};
 use super::connect;
 use crate::arguments::FormatArgument;
 use crate::duration;
+
+#[derive(Args, Debug)]
+pub(crate) struct TopicArguments {
+    /// Look at what the links of this configuration bring from other processes and computers, instead of a run on this one.
+    #[arg(long, value_name = "CONFIG", global = true)]
+    pub(crate) link: Option<PathBuf>,
+    #[command(subcommand)]
+    pub(crate) command: TopicCommand,
+}
 
 #[derive(Subcommand, Debug)]
 pub(crate) enum TopicCommand {
@@ -98,6 +108,31 @@ pub(crate) struct RunChoice {
     pub(crate) host: Option<String>,
     #[command(flatten)]
     pub(crate) format: FormatArgument,
+    /// The socket that stands for the other ends of links, if it is them that are looked at.
+    #[arg(skip)]
+    pub(crate) reached: Option<PathBuf>,
+}
+
+impl RunChoice {
+    /// A run on this computer.
+    pub(crate) fn of(run: Option<String>, host: Option<String>, format: FormatArgument) -> RunChoice {
+        RunChoice { run, host, format, reached: None }
+    }
+}
+
+impl TopicCommand {
+    /// Which run is meant.
+    pub(super) fn run_mut(&mut self) -> &mut RunChoice {
+        match self {
+            TopicCommand::List { run, .. }
+            | TopicCommand::Info { run, .. }
+            | TopicCommand::Echo { run, .. }
+            | TopicCommand::Hz { run, .. }
+            | TopicCommand::Bw { run, .. }
+            | TopicCommand::Delay { run, .. }
+            | TopicCommand::Pub { run, .. } => run,
+        }
+    }
 }
 
 /// When to stop looking.

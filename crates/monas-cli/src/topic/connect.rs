@@ -19,6 +19,9 @@ pub(crate) fn live_runs() -> Vec<(String, PathBuf)> {
 
 /// The run that is meant.
 pub(crate) fn socket(choice: &RunChoice) -> Result<PathBuf, Failure> {
+    if let Some(socket) = &choice.reached {
+        return Ok(socket.clone());
+    }
     let unreachable = |message: String| Err(Failure::Unreachable(choice.format.value, message));
     let Some(folder) = monas_link::default_folder() else {
         return unreachable(

@@ -37,12 +37,14 @@ fn entries(pattern: &str, choice: &RunChoice) -> Result<Vec<TopicEntry>, Failure
 fn row(topic: &TopicEntry) -> [String; 7] {
     let last = topic.last.as_ref();
     let none = || "-".to_owned();
+    // What has come over a link is by others.
+    let by = || if topic.from.is_empty() { none() } else { format!("from {}", topic.from.join(", ")) };
     [
         topic.host.clone(),
         topic.path.clone(),
         keeping(topic),
         topic.r#type.clone(),
-        last.map_or_else(none, |last| last.publisher.clone()),
+        last.map_or_else(by, |last| last.publisher.clone()),
         last.map_or_else(none, |last| last.sequence.to_string()),
         last.map_or_else(none, |last| format!("{:.3} s", seconds(last.published))),
     ]

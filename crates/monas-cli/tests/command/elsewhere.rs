@@ -85,6 +85,43 @@ fn the_vision_of_a_robot_runs_in_a_second_process() {
     }
 }
 
+#[test]
+fn topics_are_looked_at_and_published_over_a_link() {
+    let folder = tempfile::tempdir().expect("a folder");
+    project(folder.path());
+    let game = folder.path().join("config/elsewhere/match.xml").display().to_string();
+    let looker = folder.path().join("looker.xml");
+    let text =
+        "<agents><link name='looker'><receive topics='body/*'/><send topics='soccer/ball'/></link></agents>";
+    fs::write(&looker, text).expect("the folder takes files");
+    let looker = looker.display().to_string();
+    let game =
+        Running::start(folder.path(), &["run", &game, "--realtime", "--control", "game"], "control socket: ");
+    let over =
+        |arguments: &[&str]| ask(folder.path(), &[&["topic"], arguments, &["--link", &looker]].concat());
+
+    let echo = over(&["echo", "body/sensors", "--count", "2", "--format", "json"]);
+    let heard = objects(&echo.out);
+    assert_eq!((echo.code, heard.len()), (Some(0), 2), "{}", echo.err);
+    assert!(heard.iter().all(|seen| seen["from"] == "blue-2" && seen["message"].is_object()), "{heard:?}");
+    let list = over(&["list", "body/sensors"]);
+    assert!(list.out.contains("from blue-2"), "{list:?}");
+
+    let published = over(&["pub", "soccer/ball", "{\"found\": true}"]);
+    assert_eq!(published.code, Some(0), "{}", published.err);
+    let ball = await_message(folder.path(), "soccer/ball", |ball| ball["found"] == true);
+    assert_eq!(ball["host"], "blue-2", "what the link brings is the robot's own");
+
+    let unsent = over(&["pub", "soccer/pose", "{}"]);
+    assert_eq!(unsent.code, Some(2));
+    assert!(unsent.err.contains("`<send topics=\"soccer/pose\"/>`"), "{}", unsent.err);
+    let both = over(&["list", "--run", "game"]);
+    assert_eq!(both.code, Some(2), "{both:?}");
+    let none = ask(folder.path(), &["topic", "list", "--link", "config/roles/goalie.xml"]);
+    assert!(none.code == Some(2) && none.err.contains("has no `<link>`"), "{none:?}");
+    assert_eq!(game.interrupt().code, Some(130));
+}
+
 /// What a property asks of a message that comes over a link is seen when that comes.
 #[test]
 fn a_property_is_followed_with_what_comes_from_another_process() {

@@ -63,6 +63,14 @@ fn the_vision_of_a_robot_is_reached_over_zenoh_and_comes_back_after_it_was_kille
     let game = start(folder, "game", "match.xml", &["--realtime"]);
     await_message(folder, "soccer/calibration", |_| true);
     assert_eq!(last(folder, "game", "soccer/ball"), None, "nobody sees the ball here");
+    let looker = folder.join("looker.xml");
+    let link = format!("<link name='looker' transport='zenoh'><connect>tcp/127.0.0.1:{port}</connect>");
+    let text = format!("<agents>{link}<receive topics='body/*'/></link></agents>");
+    fs::write(&looker, text).expect("the folder takes files");
+    let looker = looker.display().to_string();
+    let echo = ["topic", "echo", "body/sensors", "--count", "1", "--link", &looker, "--format", "json"];
+    let looked = ask(folder, &echo);
+    assert_eq!(objects(&looked.out)[0]["from"], "blue-2", "{}", looked.err);
     let mut got_what_was_said_before = false;
     for _ in 0..3 {
         let (calibrated, seen) =

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use super::counters::Received;
-use super::node::MessageBytes;
+use super::payload::MessageBytes;
 
 /// So many messages of a topic wait for earlier ones.
 pub(crate) const HELD_MESSAGES: usize = 1024;

@@ -7,7 +7,6 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 use std::time::Duration;
 
-use bytes::Bytes;
 use narukom::{Kind, Moment};
 use prost::Message as _;
 
@@ -16,15 +15,13 @@ use super::budget::{Budget, Spending, Spent};
 use super::clock::ClockOffset;
 use super::counters::{Counters, Received};
 use super::outgoing::Outgoing;
+use super::payload::MessageBytes;
 use super::peers::{OFFER_LIMIT, Peer, ReadingState};
 use super::schema::Schema;
 use super::wire;
 use crate::error::{Error, ErrorKind};
 
 use control::Introductions;
-
-/// The bytes of a message, shared by all who hold them.
-pub type MessageBytes = Bytes;
 
 /// Controls are not longer than this, if no budget says less. Packets that are longer are not looked at.
 const CONTROL_BYTES: usize = 60 << 10;

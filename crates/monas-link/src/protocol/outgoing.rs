@@ -7,7 +7,7 @@ use std::time::Duration;
 use narukom::Moment;
 
 use super::counters::Sent;
-use super::node::MessageBytes;
+use super::payload::MessageBytes;
 
 /// So many bytes of a topic are kept, besides its last message.
 pub(crate) const KEPT_BYTES: usize = 8 << 20;

@@ -11,21 +11,20 @@
 
 mod config;
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt::Display;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use zenoh::bytes::ZBytes;
 use zenoh::pubsub::Publisher;
 use zenoh::qos::{CongestionControl, Priority, Reliability};
 use zenoh::sample::{Locality, Sample, SampleKind};
+use zenoh::shm::ShmBuf as _;
 use zenoh::{Session, Wait};
 
 use crate::error::{Error, ErrorKind};
 use crate::inbox::Inbox;
 use crate::link::Transport;
-use crate::memory::Memory;
 use crate::protocol::{MessageBytes, Node, Packet};
 
 pub use config::{Tls, ZenohSettings};
@@ -75,11 +74,9 @@ impl Zenoh {
     fn subscribe(&self, realm: &str, node: &Node, inbox: &Arc<Inbox>) -> Result<(), Error> {
         let mut keys = vec![format!("{realm}/*/c"), format!("{realm}/*/r/{}/**", node.host())];
         keys.extend(node.receives().iter().map(|topic| format!("{realm}/*/m/{}", topic.path)));
-        let memory = Arc::new(Mutex::new(Memory::default()));
         for key in keys {
-            let (inbox, memory, skipped, largest) =
-                (inbox.clone(), memory.clone(), realm.len() + 1, self.largest);
-            let take = move |sample: Sample| receive(&sample, skipped, largest, &memory, &inbox);
+            let (inbox, skipped, largest) = (inbox.clone(), realm.len() + 1, self.largest);
+            let take = move |sample: Sample| receive(&sample, skipped, largest, &inbox);
             let subscriber =
                 self.session.declare_subscriber(key).allowed_origin(Locality::Remote).callback(take);
             subscriber.background().wait().map_err(refused)?;
@@ -94,7 +91,8 @@ impl Zenoh {
             (Some(path), None) => format!("{}/m/{path}", self.prefix),
             (None, _) => format!("{}/c", self.prefix),
         };
-        let put = self.session.put(key, packet.payload.clone()).congestion_control(CongestionControl::Drop);
+        let put =
+            self.session.put(key, packet.payload.bytes().clone()).congestion_control(CongestionControl::Drop);
         let put = put.priority(priority(packet.priority)).reliability(reliability(packet.is_reliable));
         put.attachment(&packet.stamp[..]).wait().map_err(refused)
     }
@@ -104,9 +102,11 @@ impl Transport for Zenoh {
     fn send(&mut self, packet: &Packet) -> Result<(), Error> {
         let publisher = packet.path.as_ref().filter(|_| packet.to.is_none());
         match publisher.and_then(|path| self.publishers.get(path)) {
-            Some(publisher) => {
-                publisher.put(packet.payload.clone()).attachment(&packet.stamp[..]).wait().map_err(refused)
-            }
+            Some(publisher) => publisher
+                .put(packet.payload.bytes().clone())
+                .attachment(&packet.stamp[..])
+                .wait()
+                .map_err(refused),
             None => self.put(packet),
         }
     }
@@ -154,25 +154,35 @@ fn reliability(is_reliable: bool) -> Reliability {
     if is_reliable { Reliability::Reliable } else { Reliability::BestEffort }
 }
 
-/// The bytes of a sample, whoever else can still write into its memory.
-fn own(bytes: Cow<'_, [u8]>, memory: &Mutex<Memory>) -> MessageBytes {
-    match bytes {
-        Cow::Borrowed(bytes) => memory.lock().unwrap_or_else(PoisonError::into_inner).copy(bytes),
-        Cow::Owned(bytes) => bytes.into(),
+/// The bytes of a sample. Those that lie in shared memory stay there: a message is decoded out of them once, and a decoder is safe whatever
+/// it finds. Who could change them meanwhile are processes of the same user, which could do anything to this one without that.
+fn payload(payload: &ZBytes) -> MessageBytes {
+    if payload.as_shm().is_none() {
+        return payload.to_bytes().into_owned().into();
+    }
+    let (lent, asked) = (Shared(payload.clone()), payload.clone());
+    MessageBytes::lent(lent, move || asked.as_shm().is_some_and(|memory| memory.is_valid()))
+}
+
+/// Bytes in shared memory: one slice.
+struct Shared(ZBytes);
+
+impl AsRef<[u8]> for Shared {
+    fn as_ref(&self) -> &[u8] {
+        self.0.slices().next().unwrap_or_default()
     }
 }
 
-fn receive(sample: &Sample, skipped: usize, largest: usize, memory: &Mutex<Memory>, inbox: &Inbox) {
-    let Some(packet) = packet(sample, skipped, largest, memory) else { return };
+fn receive(sample: &Sample, skipped: usize, largest: usize, inbox: &Inbox) {
+    let Some(packet) = packet(sample, skipped, largest) else { return };
     if sample.payload().as_shm().is_some() {
         inbox.count_shared();
     }
     inbox.put(packet);
 }
 
-/// The packet that a sample is, if its key is one of a link. What lies in shared memory is copied before anybody looks at it: whoever
-/// sent it could still change it. What is too long becomes a packet that nobody understands, and is counted as such.
-fn packet(sample: &Sample, skipped: usize, largest: usize, memory: &Mutex<Memory>) -> Option<Packet> {
+/// The packet that a sample is, if its key is one of a link. What is too long becomes a packet that nobody understands, and is counted as such.
+fn packet(sample: &Sample, skipped: usize, largest: usize) -> Option<Packet> {
     if sample.kind() != SampleKind::Put {
         return None;
     }
@@ -185,14 +195,16 @@ fn packet(sample: &Sample, skipped: usize, largest: usize, memory: &Mutex<Memory
     };
     let stamp = sample.attachment().map(ZBytes::to_bytes).unwrap_or_default();
     let is_taken = stamp.len() + sample.payload().len() <= largest;
-    let (stamp, payload) =
-        if is_taken { (stamp, sample.payload().to_bytes()) } else { ((&[0xff]).into(), Cow::default()) };
+    let (stamp, payload) = match is_taken {
+        true => (stamp, payload(sample.payload())),
+        false => ((&[0xff]).into(), MessageBytes::default()),
+    };
     Some(Packet {
         from: from.into(),
         to: to.map(Arc::from),
         path: path.map(Arc::from),
         stamp: (&*stamp).into(),
-        payload: own(payload, memory),
+        payload,
         priority: sample.priority() as u8,
         is_reliable: sample.reliability() == Reliability::Reliable,
     })

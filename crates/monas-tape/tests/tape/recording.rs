@@ -249,3 +249,47 @@ fn in_real_time_nobody_waits_for_a_slow_disk_and_what_is_left_out_is_counted() {
     drop(hold);
     assert_eq!(tape.finish().unwrap() + dropped, published);
 }
+
+/// Tells what is written, as it is.
+struct Told(std::sync::mpsc::Sender<Vec<u8>>);
+
+impl Write for Told {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        // Nobody listens when the tape ends.
+        let _ = self.0.send(bytes.to_vec());
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Waits until a ball at that distance has been written.
+fn await_ball(written: &std::sync::mpsc::Receiver<Vec<u8>>, distance: f64) {
+    let (mut all, ball) = (Vec::new(), Ball { distance }.encode_to_vec());
+    while !all.windows(ball.len()).any(|part| part == ball) {
+        all.extend(written.recv_timeout(std::time::Duration::from_secs(20)).unwrap());
+    }
+}
+
+#[test]
+fn what_is_a_second_old_is_written_whether_anything_follows_or_not() {
+    // By the time of the run: nothing ends a chunk but what comes a second later.
+    let (told, written) = std::sync::mpsc::channel();
+    let tape = Tape::to_writer(Told(told)).unwrap();
+    let simulated = hub("robot");
+    simulated.observe(Box::new(tape.clone()));
+    let mut publisher = simulated.publisher(SEEN, "vision").unwrap();
+    publisher.publish(Ball { distance: 1.25 }, at(0));
+    publisher.publish(Ball { distance: 2.5 }, at(1000));
+    await_ball(&written, 1.25);
+
+    // In real time nothing need follow.
+    let (told, written) = std::sync::mpsc::channel();
+    let tape = Tape::to_writer_real_time(Told(told)).unwrap();
+    let real = hub("robot");
+    real.observe(Box::new(tape.clone()));
+    real.publisher(SEEN, "vision").unwrap().publish(Ball { distance: 1.25 }, at(0));
+    await_ball(&written, 1.25);
+}

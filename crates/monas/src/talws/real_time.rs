@@ -19,6 +19,7 @@ use super::stopper::Stopper;
 use super::supervisor::{Event, Supervisor, SupervisorLine, ring};
 use super::workforce::{Site, Wake, Workforce, spawn};
 use crate::error::{Error, ErrorKind};
+use crate::link::LinkStatistics;
 use crate::logger::Hosting;
 use crate::statistics::{AgentStatistics, Statistics};
 
@@ -76,6 +77,11 @@ impl Running {
     /// The hub of a host or of the world, for those who look on or take part with a blackboard of their own.
     pub fn hub(&self, host: &str) -> Option<&Narukom> {
         self.hubs.iter().find(|hub| hub.host() == host)
+    }
+
+    /// What its links know and have counted so far.
+    pub fn links(&self) -> Vec<LinkStatistics> {
+        self.links.iter().map(RunningLink::statistics).collect()
     }
 
     /// Whether the run has been stopped, or every agent has ended.

@@ -67,7 +67,7 @@ pub(crate) fn one_to_one(
     percentiles(latencies)
 }
 
-fn small() -> Small {
+pub(crate) fn small() -> Small {
     Small { sent: now(), ..Small::default() }
 }
 
@@ -255,10 +255,6 @@ pub(crate) fn large(selection: &Selection) {
                     (hub.publisher(LARGE, "body").unwrap(), hub.blackboard("reader"));
                 reader.read(LARGE);
                 let (mut last, mut sleeper) = (0, Sleeper::new(&hub));
-                let fill = |large: &mut Large| {
-                    large.sent = now();
-                    large.content.resize(LARGE_SIZE, large.sent as u8);
-                };
                 one_to_one(
                     PACE,
                     || publisher.publish_with(fill, Moment::ZERO),
@@ -303,6 +299,22 @@ pub(crate) fn large(selection: &Selection) {
             }),
         ),
         (
+            // As a state does: so the next one is made in other memory.
+            "std mpsc, the last one stays until the next",
+            Box::new(|| {
+                let (sender, receiver) = mpsc::sync_channel(8);
+                let mut last: Option<Arc<Large>> = None;
+                one_to_one(
+                    PACE,
+                    || assert_sent(sender.send(Arc::new(made()))),
+                    move || {
+                        let large: Arc<Large> = receiver.recv().unwrap();
+                        checked(last.insert(large))
+                    },
+                )
+            }),
+        ),
+        (
             "arc-swap and Condvar",
             Box::new(|| {
                 let latest = Latest::new(Large::default());
@@ -314,13 +326,19 @@ pub(crate) fn large(selection: &Selection) {
     run(selection, "Two threads, blocking, 1 MiB", &COLUMNS, contestants);
 }
 
-fn made() -> Large {
+/// Makes it in the memory of an earlier one.
+pub(crate) fn fill(large: &mut Large) {
+    large.sent = now();
+    large.content.resize(LARGE_SIZE, large.sent as u8);
+}
+
+pub(crate) fn made() -> Large {
     let sent = now();
     Large { sent, content: vec![sent as u8; LARGE_SIZE] }
 }
 
 /// When it was sent, if it is whole.
-fn checked(large: &Large) -> u64 {
+pub(crate) fn checked(large: &Large) -> u64 {
     let mark = large.sent as u8;
     let ends = [large.content.first(), large.content.last()];
     assert!(large.sent == 0 || ends.iter().all(|end| *end == Some(&mark)));

@@ -23,4 +23,5 @@ fn main() {
     latency::blocking(&selection);
     latency::large(&selection);
     fan_out::eight(&selection);
+    fan_out::eight_large(&selection);
 }
