@@ -259,13 +259,13 @@ impl Agent {
         self
     }
 
-    /// For a replay: what each of its threads runs, as an agent of its own. A chart has its place, the list none.
-    pub(crate) fn apart(mut self) -> Vec<(Option<usize>, Agent)> {
+    /// For a replay: what each of its threads runs, as an agent of its own. A chart has its place, the list none; a list may begin later.
+    pub(crate) fn apart(mut self, begins_list: bool) -> Vec<(Option<usize>, Agent)> {
         let activities = std::mem::take(&mut self.activities);
         let mut generated = std::mem::take(&mut self.generated);
         let all = 0..self.charts.len();
         let without = |place: Option<usize>| all.clone().filter(|other| Some(*other) != place).collect();
-        let list = (!activities.is_empty())
+        let list = (begins_list || !activities.is_empty())
             .then(|| (None, Agent { activities, absent: without(None), ..self.without_instances() }));
         let charts = all.clone().map(|place| {
             let generated = generated.remove(&place).map(|chart| (place, chart)).into_iter().collect();

@@ -30,6 +30,8 @@ pub struct Company {
     pub publisher: String,
     /// Whether it was an agent: whether it published records of its cycles.
     pub is_agent: bool,
+    /// The last of the parts that published under that name, see [`Header::part`](narukom::Header::part).
+    pub last_part: u16,
 }
 
 /// What the messages of one publisher on one topic have in common.
@@ -118,7 +120,8 @@ pub struct Input(usize);
 ///
 /// Changes of agents that were made meanwhile are made again: in simulated time when they were asked for, in real time between those turns
 /// of the agent between which it followed them. One that was removed and added anew comes back as it did. Agents that were new then are not
-/// replayed: what they published is given to the others. In real time one that was given its first activity while it ran is refused.
+/// replayed: what they published is given to the others. A list that
+/// began while its agent ran begins where it did.
 ///
 /// What comes from outside and is no message, an event that somebody raised by hand, is not in a recording and so not in a replay. Nor is
 /// what an activity learns in other ways: from a clock, a device or another thread. That shows as a difference.

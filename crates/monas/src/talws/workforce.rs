@@ -335,22 +335,31 @@ impl Team {
 
     /// Each thread of an agent that begins tells who asked for it.
     fn tell_asked(&self, member: &Member, asked: &Asked) -> Result<(), Error> {
-        let charts = member.charts.iter().map(|runner| (runner.part(), runner.place()));
-        let list = member.list.iter().map(|list| (list.blackboard().part(), 0));
-        for (part, chart) in charts.chain(list) {
-            let mut teller = member.teller.of_part(part)?;
-            teller.tell_asked(self.clock.now(), asked, asked.ready_at, chart);
+        for runner in &member.charts {
+            let mut teller = member.teller.of_part(runner.part())?;
+            teller.tell_asked(self.clock.now(), asked, asked.ready_at, runner.place());
         }
+        member.list.iter().try_for_each(|list| self.tell_list_asked(&member.teller, list, asked))
+    }
+
+    /// A list that begins tells who asked for it, and from when on there are signals for it.
+    fn tell_list_asked(&self, teller: &Teller, list: &List, asked: &Asked) -> Result<(), Error> {
+        let blackboard = list.blackboard();
+        let mut teller = teller.of_part(blackboard.part())?;
+        teller.tell_asked(self.clock.now(), asked, blackboard.position(), 0);
         Ok(())
     }
 
     /// An agent that had no list gets one.
-    fn add_list(&mut self, agent: &str, list: List) -> Result<(), String> {
+    fn add_list(&mut self, agent: &str, list: List, asked: Option<&Asked>) -> Result<(), String> {
         let part = Arc::new(Part::new(0));
         let Some(worker) = self.worker(agent) else { return Err(format!("`{agent}` is not there")) };
         let Some(frequency) = worker.frequency else {
             return Err(format!("nothing says how often `{agent}` runs"));
         };
+        if let Some(asked) = asked {
+            self.tell_list_asked(&worker.teller, &list, asked).map_err(|error| error.to_string())?;
+        }
         let (unit, statistics_every) = (worker.unit.clone(), worker.statistics_every);
         let list = Listing { list, frequency, statistics_every, scheduling: worker.scheduling.clone() };
         let thread = self.spawn_list(unit.clone(), part.clone(), list, &worker.teller);
@@ -431,7 +440,7 @@ impl Staff for Team {
 
     fn obey(&mut self, agent: &str, mut orders: Orders) -> Result<Vec<String>, Vec<String>> {
         if let Some(list) = orders.list.take() {
-            self.add_list(agent, *list).map_err(|reason| vec![reason])?;
+            self.add_list(agent, *list, orders.asked.as_ref()).map_err(|reason| vec![reason])?;
         }
         let Some(worker) = self.workers.iter_mut().find(|worker| worker.unit.name == agent) else {
             return Err(vec![format!("`{agent}` is not there")]);

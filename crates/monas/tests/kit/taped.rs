@@ -63,10 +63,17 @@ fn company(messages: &[Kept]) -> Vec<Company> {
         messages.iter().map(|kept| (kept.host.as_str(), kept.publisher.as_str())).collect();
     names.sort_unstable();
     names.dedup();
+    let parts = messages.iter();
     let company = |(host, publisher): (&str, &str)| Company {
         host: host.into(),
         publisher: publisher.into(),
         is_agent: !["monas", "outside"].contains(&publisher),
+        last_part: parts
+            .clone()
+            .filter(|kept| kept.publisher == publisher)
+            .map(|kept| kept.part)
+            .max()
+            .unwrap_or(0),
     };
     names.into_iter().map(company).collect()
 }

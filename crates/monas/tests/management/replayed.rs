@@ -306,6 +306,15 @@ fn in_real_time_pauses_and_ends_are_those_of_the_recorded_turns() {
 /// A run in real time of agents whose activities tell of each call, in which something is changed. Between two changes activities of the
 /// agent that is changed are called, unless it rests.
 fn live_run(talws: impl Fn(Sender<()>) -> Talws, asked: &[Change]) -> Vec<Kept> {
+    live_run_until(talws, asked, &[])
+}
+
+/// The same, which goes on until so many messages of agents on topics have been recorded.
+fn live_run_until(
+    talws: impl Fn(Sender<()>) -> Talws,
+    asked: &[Change],
+    expected: &[(&str, &str, usize)],
+) -> Vec<Kept> {
     let (sender, calls) = channel();
     let tape = Tape::default();
     let mut talws = talws(sender);
@@ -326,8 +335,19 @@ fn live_run(talws: impl Fn(Sender<()>) -> Talws, asked: &[Change]) -> Vec<Kept> 
             more();
         }
     }
+    let is_there =
+        |(agent, topic, least): &(&str, &str, usize)| recorded(&tape.kept(), agent, topic) >= *least;
+    while !expected.iter().all(is_there) {
+        calls.recv_timeout(Duration::from_secs(20)).unwrap();
+    }
     running.stop();
     tape.kept()
+}
+
+/// How many messages of an agent on a topic are compared.
+fn recorded(messages: &[Kept], agent: &str, topic: &str) -> usize {
+    let of_agent = messages.iter().filter(|kept| kept.publisher == agent && kept.topic == topic);
+    of_agent.filter(|kept| is_compared(kept)).count()
 }
 
 /// What activities are made of that tell of each call.
@@ -421,8 +441,7 @@ fn of_chart() -> Vec<Change> {
 /// That so many messages at least were recorded of agents on topics, and that each of them was compared.
 fn assert_compared(messages: &[Kept], outcome: &Outcome, expected: &[(&str, &str, usize)]) {
     for (agent, topic, least) in expected {
-        let of_agent = messages.iter().filter(|kept| kept.publisher == *agent && kept.topic == *topic);
-        let recorded = of_agent.filter(|kept| is_compared(kept)).count();
+        let recorded = recorded(messages, agent, topic);
         assert_eq!(outcome.compared(agent, topic), recorded as u64, "{agent} {topic}");
         assert!(recorded >= *least, "{agent} {topic}: {recorded}");
     }
@@ -589,25 +608,82 @@ fn in_real_time_an_agent_comes_back_thread_by_thread_if_it_has_those_that_it_had
         [change(Action::RemoveAgent, "player"), adding(&text)]
     };
     let same = "<activity>Throw</activity><activity>Say</activity><statechart>F/m.srm</statechart><statechart>F/n.srm</statechart>";
-    let messages = live_run(player, &of(same));
-    let outcome = replay(player(channel().0), &messages).unwrap();
-    assert_eq!(outcome.differences, []);
     let expected = [
         ("player", "test/news", 10),
         ("player", "test/ball", 1),
         ("player", "monas/model", 4),
         ("player", "monas/cycle", 4),
     ];
+    let messages = live_run_until(player, &of(same), &expected);
+    let outcome = replay(player(channel().0), &messages).unwrap();
+    assert_eq!(outcome.differences, []);
     assert_compared(&messages, &outcome, &expected);
     let messages = live_run(player, &of("<statechart>F/n.srm</statechart>"));
     let error = replay(player(channel().0), &messages).err().unwrap().to_string();
     assert!(error.starts_with("agent `player` came back "), "{error}");
 }
 
+/// A chart that gets an activity beside it, and then more of them.
+fn with_a_list() -> [Change; 4] {
+    let add = |activity: &str| Change { activity: activity.into(), ..change(Action::AddActivity, "mind") };
+    [add("Say"), add("Play"), change(Action::PauseAgent, "mind"), change(Action::ResumeAgent, "mind")]
+}
+
 #[test]
-fn in_real_time_an_agent_that_was_given_a_list_is_refused() {
-    let list = Change { activity: "Say".into(), ..change(Action::AddActivity, "mind") };
-    let messages = live_run(mind, &[list]);
+fn in_real_time_a_list_begins_again_where_it_began() {
+    // What plays is in the list alone.
+    let expected = [("mind", "test/news", 20), ("mind", "test/game", 5), ("mind", "monas/cycle", 8)];
+    let messages = live_run_until(mind, &with_a_list(), &expected);
+    let outcome = replay(mind(channel().0), &messages).unwrap();
+    assert_eq!(outcome.differences, []);
+    assert_compared(&messages, &outcome, &expected);
+    // An agent that leaves and comes back without its list, gets one, and comes back with it.
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("m.srm");
+    std::fs::write(&model, "m = Play . Watch").unwrap();
+    let chart = format!("<statechart>{}</statechart>", model.display());
+    let mind_of = |elements: &str| {
+        adding(&format!("<agent frequency='100'><name>mind</name>{elements}{chart}</agent>"))
+    };
+    let [first, second, ..] = with_a_list();
+    let leaves = || change(Action::RemoveAgent, "mind");
+    let asked =
+        [first.clone(), leaves(), mind_of(""), first, second, leaves(), mind_of("<activity>Say</activity>")];
+    let expected = [("mind", "test/news", 30), ("mind", "monas/model", 3), ("mind", "monas/cycle", 8)];
+    let messages = live_run_until(mind, &asked, &expected);
+    let outcome = replay(mind(channel().0), &messages).unwrap();
+    assert_eq!(outcome.differences, []);
+    assert_compared(&messages, &outcome, &expected);
+}
+
+#[test]
+fn in_real_time_a_list_of_which_the_recording_does_not_tell_how_it_began_is_refused() {
+    let [first, ..] = with_a_list();
+    let mut messages = live_run(mind, &[first]);
+    let is_ordered = |kept: &Kept| {
+        kept.topic == CYCLE.path() && Cycle::decode(&kept.bytes[..]).unwrap().turn() == Turn::Ordered
+    };
+    messages.iter_mut().filter(|kept| is_ordered(kept)).for_each(|kept| kept.publisher = "somebody".into());
     let error = replay(mind(channel().0), &messages).err().unwrap().to_string();
-    assert!(error.starts_with("agent `mind` was given its first activity "), "{error}");
+    let reasons = [
+        "agent `mind` was given its first activity ",
+        "the recording does not tell what each turn of `mind` ",
+    ];
+    assert!(reasons.iter().any(|reason| error.starts_with(reason)), "{error}");
+}
+
+#[test]
+fn in_simulated_time_a_list_begins_beside_a_chart() {
+    let tape = Tape::default();
+    let mut talws = agents();
+    talws.observe(Box::new(tape.clone()));
+    let mut simulation = talws.simulate(7).unwrap();
+    for (moment, asked) in [200, 400, 600, 800].into_iter().zip(with_a_list()) {
+        simulation.change_at(at(moment), "local", asked).unwrap();
+    }
+    simulation.run_until(at(1500)).unwrap();
+    let messages = tape.kept();
+    let outcome = replay_simulated(agents(), 7, &messages).unwrap();
+    assert_eq!(outcome.differences, []);
+    assert_compared(&messages, &outcome, &[("mind", "test/news", 10), ("mind", "test/game", 2)]);
 }

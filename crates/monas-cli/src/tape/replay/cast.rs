@@ -202,10 +202,16 @@ pub(super) fn replay(hosts: Vec<HostConfig>, run: &Run, overview: &Overview) -> 
     let mut company: Vec<Company> = Vec::new();
     for counted in overview.channels.iter().filter(|one| one.channel.received_by.is_none()) {
         let (host, publisher) = (&counted.channel.host, &counted.channel.publisher);
-        let is_agent = counted.channel.topic == cycles;
+        let (is_agent, last_part) = (counted.channel.topic == cycles, counted.channel.part);
         match company.iter_mut().find(|one| one.host == *host && one.publisher == *publisher) {
-            Some(known) => known.is_agent |= is_agent,
-            None => company.push(Company { host: host.clone(), publisher: publisher.clone(), is_agent }),
+            Some(known) => {
+                known.is_agent |= is_agent;
+                known.last_part = known.last_part.max(last_part);
+            }
+            None => {
+                let (host, publisher) = (host.clone(), publisher.clone());
+                company.push(Company { host, publisher, is_agent, last_part });
+            }
         }
     }
     let mut talws = Talws::new();

@@ -119,6 +119,11 @@ impl Feed {
         state.own.extend(own);
     }
 
+    /// Nobody reads yet, nor will before a later message: what has come by now is published.
+    pub(super) fn pass(&self, until: u64) {
+        self.state().give(until);
+    }
+
     /// Begins a turn that was not recorded, at a moment: what had come by then can be fetched.
     pub(super) fn begin_unrecorded(&self, now: Moment) {
         self.begin(&[], std::iter::empty());

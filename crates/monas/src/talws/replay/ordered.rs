@@ -33,8 +33,10 @@ pub(super) struct Thread {
     pub(super) place: Option<usize>,
     /// How many charts the agent has,
     pub(super) charts: usize,
-    /// and whether it had a list when the run began.
+    /// whether it has a list,
     pub(super) has_list: bool,
+    /// and whether it has one sooner or later.
+    pub(super) lists: bool,
 }
 
 impl Thread {
@@ -43,10 +45,10 @@ impl Thread {
         part(self.place.unwrap_or(self.charts))
     }
 
-    /// What it runs of an agent that has the same threads; else none.
+    /// What it runs of an agent that has as many charts; else none.
     fn of(self, agent: Member) -> Option<Member> {
         let Member { list, mut charts, .. } = agent;
-        let is_same = (charts.len(), list.is_some()) == (self.charts, self.has_list);
+        let is_same = charts.len() == self.charts;
         let (list, charts) = match self.place.filter(|_| is_same) {
             Some(place) => (None, vec![charts.swap_remove(place)]),
             None => (list, Vec::new()),
@@ -54,8 +56,13 @@ impl Thread {
         is_same.then_some(Member { list, charts, ..agent })
     }
 
+    /// Whether the agent has others sooner or later, with which it counts its cycles: a list that begins counts before anybody is told of it.
+    pub(super) fn counts_with_others(self) -> bool {
+        self.charts + usize::from(self.lists) > 1
+    }
+
     /// Whether the agent has others.
-    pub(super) fn has_siblings(self) -> bool {
+    fn has_siblings(self) -> bool {
         self.charts + usize::from(self.has_list) > 1
     }
 }
@@ -83,15 +90,26 @@ impl Ordered {
         self.asked.push_back(Request { publisher: publisher.to_owned(), sequence, change });
     }
 
-    /// The agent has left.
+    /// The agent has left. What it was asked before was refused.
     pub(super) fn left(&mut self, agent: &str) {
         self.roster.forget(agent);
+        self.asked.retain(|request| request.change.action() == Action::AddAgents);
+    }
+
+    /// Whether nothing was asked of it that it has not followed.
+    pub(super) fn is_idle(&self) -> bool {
+        self.asked.is_empty()
+    }
+
+    /// The change that was answered, if the agent was not told of it.
+    pub(super) fn change_of(&self, changed: &Changed) -> Option<Change> {
+        self.request_of(changed).map(|place| self.asked[place].change.clone())
     }
 
     /// The thread of an agent that had left, as a change adds it anew.
     ///
     /// # Errors
-    /// What is replayed now cannot be added like that, or the agent has other threads than it had.
+    /// What is replayed now cannot be added like that, or the agent has another number of charts than it had.
     pub(super) fn anew(
         &mut self,
         change: &Change,
@@ -103,13 +121,14 @@ impl Ordered {
         let changed = self.roster.bring_back(change, &[agent.to_owned()], &mut staff, now);
         let begun =
             staff.begun.ok_or_else(|| refused(&Changed { agent: agent.to_owned(), ..changed }, now))?;
+        self.thread.has_list = begun.list.is_some();
         self.thread.of(begun).ok_or_else(|| came_back_otherwise(agent, now))
     }
 
     /// A change was made, or refused, at a moment.
     ///
     /// # Errors
-    /// It gave the agent one thread more.
+    /// It gave the agent one thread more, and the recording does not tell what that began with.
     pub(super) fn answered(
         &mut self,
         changed: &Changed,
@@ -117,11 +136,16 @@ impl Ordered {
         at: Moment,
     ) -> Result<(), Error> {
         let adds = matches!(changed.action(), Action::AddActivity | Action::LoadModule);
-        if changed.done && adds && !self.thread.has_list {
+        let begins_list = changed.done && adds && !self.thread.has_list;
+        if begins_list && self.thread.place.is_none() {
             return Err(begun_late(&changed.agent, at));
         }
-        if self.thread.has_siblings() {
+        let waits = matches!(repeated, Repeated::Waiting(_));
+        if begins_list || waits || self.thread.has_siblings() {
             self.note(changed, repeated, at);
+            self.thread.has_list |= begins_list;
+            let refused = self.request_of(changed).filter(|_| waits && !changed.done);
+            refused.and_then(|place| self.asked.remove(place));
             return Ok(());
         }
         let is_list = matches!(repeated, Repeated::List(_));
@@ -190,7 +214,9 @@ impl Ordered {
     ) -> Result<(), Error> {
         let mut staff = Again::of(change, self.thread, repeated, now);
         let changed = self.roster.repeat(change, &mut staff, now);
-        if staff.was_told { Ok(()) } else { Err(refused(&changed, now)) }
+        let was_told = staff.was_told;
+        self.thread.has_list |= matches!(repeated, Repeated::List(_));
+        if was_told { Ok(()) } else { Err(refused(&changed, now)) }
     }
 
     /// What was asked of a module was answered. An agent that was told has followed by now; for any other the module changes what names mean.
@@ -277,8 +303,15 @@ impl Staff for Again<'_> {
         0
     }
 
-    fn obey(&mut self, _: &str, orders: Orders) -> Result<Vec<String>, Vec<String>> {
-        let Thread { place, charts, has_list } = self.thread;
+    fn obey(&mut self, _: &str, mut orders: Orders) -> Result<Vec<String>, Vec<String>> {
+        let Thread { place, charts, has_list, .. } = self.thread;
+        if let (Repeated::Waiting(_), Some(list)) = (&self.repeated, orders.list.take()) {
+            if self.is_bystander {
+                return Err(vec!["the thread follows later".into()]);
+            }
+            self.was_told = true;
+            return self.repeated.begin(*list).map(|()| Vec::new()).map_err(|error| vec![error.to_string()]);
+        }
         let own = orders.shares(has_list, charts).into_iter().find(|share| share.place == place);
         match own {
             Some(_) if self.is_bystander => Err(vec!["the thread follows later".into()]),
@@ -313,8 +346,8 @@ fn lacking(asked: &Asked) -> Error {
 
 fn came_back_otherwise(agent: &str, at: Moment) -> Error {
     let message = format!(
-        "agent `{agent}` came back {:.3} s after the run began, with another number of charts, or with a list that it had not had: what a \
-         thread that begins then is given is not repeated",
+        "agent `{agent}` came back {:.3} s after the run began, with another number of charts: what a thread that begins then is given is \
+         not repeated",
         at.as_secs_f64()
     );
     Error::new(ErrorKind::Invalid, message).with_hint("replay other agents, or the time before")
@@ -322,7 +355,8 @@ fn came_back_otherwise(agent: &str, at: Moment) -> Error {
 
 fn begun_late(agent: &str, at: Moment) -> Error {
     let message = format!(
-        "agent `{agent}` was given its first activity {:.3} s after the run began: what a thread that begins then is given is not repeated",
+        "agent `{agent}` was given its first activity {:.3} s after the run began: the recording, of an earlier version, does not tell what \
+         the list began with",
         at.as_secs_f64()
     );
     Error::new(ErrorKind::Invalid, message).with_hint("replay other agents, or the time before")

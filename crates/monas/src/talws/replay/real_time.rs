@@ -9,6 +9,7 @@ use std::sync::Arc;
 use narukom::prost::Message as _;
 use narukom::{Arrival, Moment, Narukom, TopicSlot};
 
+use super::super::crew::part;
 use super::super::links::Brought;
 use super::super::setup::{Stage, Station};
 use super::super::{HostConfig, REAL_TIME_SEED, Talws};
@@ -102,11 +103,13 @@ impl RealTime {
         for HostConfig { name, team, number, agents, links, modules, .. } in hosts {
             for agent in agents {
                 let (profile, charts) = (Profile::of(&agent), agent.charts.len());
-                let threads = agent.apart();
+                let has_list = !agent.activities.is_empty();
+                let is_it = |one: &&Company| one.host == name && one.publisher == profile.name;
+                let begins_list = company.iter().find(is_it).is_some_and(|one| one.last_part >= part(charts));
+                let (threads, lists) = (agent.apart(begins_list), has_list || begins_list);
                 if threads.is_empty() {
                     return Err(nothing_to_run(&profile.name));
                 }
-                let has_list = threads.iter().any(|(place, _)| place.is_none());
                 for (place, agent) in threads {
                     let (name, links, modules) = (name.clone(), links.clone(), modules.clone());
                     let agents = vec![agent];
@@ -115,7 +118,7 @@ impl RealTime {
                     let links_and_agents =
                         HostConfig { name, team, number, agents, links, modules, ..HostConfig::default() };
                     alone.host(links_and_agents);
-                    parts.push(Part::new(alone, profile.clone(), Thread { place, charts, has_list })?);
+                    parts.push(Part::new(alone, profile.clone(), Thread { place, charts, has_list, lists })?);
                 }
             }
         }
@@ -181,6 +184,9 @@ impl RealTime {
                 Route::Other(inlet) => {
                     let bytes = shared.get_or_insert_with(|| message.bytes.into()).clone();
                     part.feed.add(Foreign { position, inlet, arrival: arrival(&message), bytes });
+                    if part.waits() {
+                        part.feed.pass(position);
+                    }
                 }
             }
         }
@@ -229,6 +235,9 @@ impl RealTime {
                 let changed = Changed::decode(message.bytes).map_err(unread)?;
                 if is_of_module(changed.action()) {
                     return parts.try_for_each(|part| part.equip(&changed, message.received));
+                }
+                if changed.done && changed.action() == Action::AddAgents {
+                    return parts.try_for_each(|part| part.came_back(&changed, message.received));
                 }
                 for part in parts.filter(|part| part.agent == changed.agent) {
                     if changed.done && changed.action() == Action::RemoveAgent {
@@ -359,7 +368,7 @@ impl Part {
                 self.numbers.push(record.number);
                 self.own.push(own);
             }
-            (Repeated::Chart(_), Turn::None) => return Err(self.untold()),
+            (Repeated::Chart(_), Turn::None) | (Repeated::Waiting(_), _) => return Err(self.untold()),
             (Repeated::List(_), Turn::None) if record.seen.is_empty() => return Err(self.untold()),
             (Repeated::List(_), Turn::None) => {
                 self.run_begun(true, ledger, told)?;
@@ -418,6 +427,21 @@ impl Part {
         Ok(())
     }
 
+    /// Agents were added: if this one is among them, and its thread was not told, it has no list.
+    fn came_back(&mut self, changed: &Changed, now: Moment) -> Result<(), Error> {
+        let Some(change) = self.ordered.change_of(changed).filter(|_| self.is_gone) else { return Ok(()) };
+        self.come_back(&change, now)?;
+        match &self.repeated {
+            Repeated::Waiting(_) => Ok(()),
+            _ => Err(came_back_untold(&self.agent)),
+        }
+    }
+
+    /// Whether it is a list that has not begun, and nothing is about to change that.
+    fn waits(&self) -> bool {
+        matches!(self.repeated, Repeated::Waiting(_)) && self.ordered.is_idle()
+    }
+
     /// The agent, which had left, was added anew.
     fn come_back(&mut self, change: &Change, now: Moment) -> Result<(), Error> {
         let member = self.ordered.anew(change, &self.agent, &mut self.repeated, now)?;
@@ -468,11 +492,12 @@ impl Part {
         self.feed.begin(&record.seen, self.own.iter().map(|own| own.position));
         let now = Moment::from_nanos(record.time);
         let numbers = std::mem::take(&mut self.numbers);
-        if self.thread.has_siblings() {
+        if self.thread.counts_with_others() {
             let own = (turn == Turn::None).then_some(record.number);
             self.repeated.number_by(own.into_iter().chain(numbers));
         }
         match &mut self.repeated {
+            Repeated::Waiting(_) => {}
             Repeated::List(list) => list.cycle(now),
             Repeated::Chart(chart) => chart.turn(turn, record, self.has_diverged),
         }

@@ -17,6 +17,8 @@ use crate::talws::turn::due_record;
 
 /// The list or the chart of an agent.
 pub(super) enum Repeated {
+    /// A list that has not begun.
+    Waiting(Box<Waiting>),
     List(Box<RepeatedList>),
     Chart(Box<RepeatedChart>),
 }
@@ -36,8 +38,23 @@ impl Repeated {
                 let chart = RepeatedChart::new(runner, policy, frequency, teller, feed);
                 Some(Repeated::Chart(Box::new(chart)))
             }
+            (None, None) => Some(Repeated::Waiting(Box::new(Waiting { teller, feed: feed.clone() }))),
             _ => None,
         })
+    }
+
+    /// The list begins, if it waits for that.
+    ///
+    /// # Errors
+    /// It cannot tell of its cycles.
+    pub(super) fn begin(&mut self, list: List) -> Result<(), Error> {
+        if let Repeated::Waiting(waiting) = self {
+            let Waiting { teller, feed } = &**waiting;
+            let teller = teller.of_part(list.blackboard().part())?;
+            let list = RepeatedList { list, teller, feed: feed.clone(), is_over: false };
+            *self = Repeated::List(Box::new(list));
+        }
+        Ok(())
     }
 }
 
@@ -45,6 +62,7 @@ impl Repeated {
     /// The next cycles had these numbers.
     pub(super) fn number_by(&mut self, given: impl Iterator<Item = u64>) {
         match self {
+            Repeated::Waiting(_) => {}
             Repeated::List(list) => list.teller.number_by(given),
             Repeated::Chart(chart) => chart.teller.number_by(given),
         }
@@ -56,6 +74,7 @@ impl Repeated {
     /// What stands against it: nothing has changed.
     pub(super) fn obey(&mut self, orders: Orders, now: Moment) -> Result<Vec<String>, Vec<String>> {
         match self {
+            Repeated::Waiting(_) => Ok(Vec::new()),
             Repeated::List(list) => {
                 list.obey(orders);
                 Ok(Vec::new())
@@ -63,6 +82,12 @@ impl Repeated {
             Repeated::Chart(chart) => chart.obey(orders, now),
         }
     }
+}
+
+/// What a list is to begin with.
+pub(super) struct Waiting {
+    teller: Teller,
+    feed: Feed,
 }
 
 /// A list.
