@@ -256,8 +256,8 @@ impl Carrying {
 }
 
 /// All that is written on a transition.
-fn says(it: &Transition) -> (String, i32, Option<u64>, bool) {
-    (it.expression.to_string(), it.priority, it.weight.map(f64::to_bits), it.interrupts)
+fn says(it: &Transition) -> (String, i32, Option<u64>, [bool; 2]) {
+    (it.expression.to_string(), it.priority, it.weight.map(f64::to_bits), [it.interrupts, it.internal])
 }
 
 /// How a composite remembers what was active in it.

@@ -21,7 +21,7 @@
 //! decision: CONDITION -> SearchBall : via = 80 60
 //! ```
 //!
-//! - **Transitions**: `[scope:] source -> target [also] [!priority] [%weight] [interrupts] [: expression]`. Paths are described in
+//! - **Transitions**: `[scope:] source -> target [also] [!priority] [%weight] [interrupts] [internal] [: expression]`. Paths are described in
 //!   [`path`](crate::path); `scope: a -> b` is short for `scope/a -> scope/b`. A line without `->` goes on with the entry above it.
 //!   `also` adds a transition beside the one that is named: another way between the same two, such as an exit that the formulas do not have.
 //! - **States**: `path : key = value, ...` with the keys `activity`, `priority`, `entry`, `exit`, `defer`, `duration` and, for
@@ -96,6 +96,8 @@ pub struct TransitionEntry {
     pub weight: Option<f64>,
     /// Whether it may leave a state whose activity still runs.
     pub interrupts: bool,
+    /// Whether it happens inside its source, without leaving it.
+    pub internal: bool,
     /// Trigger, guard and actions; places count from the beginning of the file.
     pub expression: TransitionExpression,
     /// The entry as it is written, on one line, without comments.
@@ -114,7 +116,7 @@ impl TransitionEntry {
         let transition = chart.transition_mut(id);
         transition.expression = self.expression.clone();
         (transition.priority, transition.weight) = (self.priority, self.weight);
-        transition.interrupts = self.interrupts;
+        (transition.interrupts, transition.internal) = (self.interrupts, self.internal);
     }
 }
 

@@ -32,7 +32,7 @@ impl Reader {
             parse_transition_at(&blanked[expression_start..span.end], expression_start);
         self.diagnostics.extend(findings);
         let Some((source, target, modifiers)) = ends else { return };
-        let Modifiers { also, priority, weight, interrupts } = modifiers;
+        let Modifiers { also, priority, weight, interrupts, internal } = modifiers;
         let text = one_line(text);
         self.srm.transitions.push(TransitionEntry {
             source,
@@ -41,6 +41,7 @@ impl Reader {
             priority,
             weight,
             interrupts,
+            internal,
             expression,
             text,
             span,
@@ -83,7 +84,8 @@ impl Reader {
         for word in spaced.split_whitespace() {
             if modifiers.accept(word).is_none() {
                 let message = format!("`{word}` is not understood after a target");
-                let hint = "a target may be followed by `also`, `!priority`, `%weight` and `interrupts`";
+                let hint =
+                    "a target may be followed by `also`, `!priority`, `%weight`, `interrupts` and `internal`";
                 self.report(
                     Diagnostic::error("E0242", text::trimmed(blanked, span), message).with_hint(hint),
                 );
@@ -99,12 +101,15 @@ struct Modifiers {
     priority: i32,
     weight: Option<f64>,
     interrupts: bool,
+    internal: bool,
 }
 
 impl Modifiers {
     fn accept(&mut self, word: &str) -> Option<()> {
         if word == "interrupts" {
             self.interrupts = true;
+        } else if word == "internal" {
+            self.internal = true;
         } else if word == "also" {
             self.also = true;
         } else if let Some(priority) = word.strip_prefix('!') {
@@ -121,7 +126,7 @@ impl Modifiers {
 /// Where the path of a target ends and its modifiers begin.
 pub(super) fn modifiers_start(head: &str) -> usize {
     let sign = head.find(['!', '%']);
-    let words = ["also", "interrupts"].into_iter().filter_map(|word| {
+    let words = ["also", "interrupts", "internal"].into_iter().filter_map(|word| {
         let mut places = head.match_indices(word).map(|(at, _)| at);
         places.find(|&at| is_word(head, at, word.len()))
     });

@@ -181,6 +181,18 @@ fn a_chart_keeps_what_only_its_file_can_say() {
     );
 }
 
+/// What the engine knows of a transition, a role can say, and a chart's refinements come back as entries.
+#[test]
+fn a_way_that_does_not_leave_its_state_is_said_and_carried() {
+    let role = "Role: r\nLiveness:\nr = a~ . b\nTransitions:\na -> a interrupts internal : more\na~ -> b also !2 %0.5 : stop\n";
+    let own = chart(role);
+    let (_, loop_of_a) = own.transitions().find(|(_, it)| it.internal).unwrap();
+    assert_eq!((loop_of_a.source, loop_of_a.interrupts), (loop_of_a.target, true));
+    let made = carry(&file("Role: r\nLiveness:\nr = a~ . b\n"), &entries_of_chart(&own)).unwrap();
+    assert_eq!(made.lost, []);
+    assert_eq!(chart(&made.text), own, "{}", made.text);
+}
+
 const DRAWN: &str = "\
 Role: r
 Liveness:
