@@ -6,5 +6,6 @@ mod files;
 #[path = "../kit/mod.rs"]
 mod kit;
 mod layers;
+mod links;
 mod toml;
 mod xml;
