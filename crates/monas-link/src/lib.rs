@@ -110,4 +110,7 @@ pub use protocol::{
     differences,
 };
 pub use settings::{LinkSettings, Place, ReceiveRule, SendRule};
-pub use transport::*;
+#[cfg(all(unix, feature = "local"))]
+pub use transport::{Local, default_folder};
+#[cfg(feature = "zenoh")]
+pub use transport::{Tls, Zenoh, ZenohSettings};

@@ -21,6 +21,8 @@ pub use schema::{Schema, differences};
 
 /// The messages of the protocol.
 #[allow(missing_docs)]
+// datagrams are for local sockets
+#[cfg_attr(not(all(unix, feature = "local")), allow(dead_code))]
 pub(crate) mod wire {
     narukom::include_messages!("monas.link");
 }

@@ -96,11 +96,14 @@ mod socket {
 mod socket {
     use super::{Console, Failure, Overview, RunArguments};
 
+    /// A socket that is never there.
+    pub(crate) enum NoSocket {}
+
     pub(crate) fn serve(
         arguments: &RunArguments,
         _: Overview,
         _: &mut Console<'_>,
-    ) -> Result<Option<()>, Failure> {
+    ) -> Result<Option<NoSocket>, Failure> {
         match arguments.control {
             Some(_) => Err(Failure::failed(arguments.format.value, "control sockets are those of Unix")),
             None => Ok(None),

@@ -1,5 +1,6 @@
 //! The links of a host while they run.
 
+#[cfg(unix)]
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -131,6 +132,8 @@ impl Way {
         }
     }
 
+    // where neither is there, there is nothing to connect
+    #[cfg_attr(not(any(unix, feature = "zenoh")), allow(unused_variables))]
     fn connect(self, bridge: &Bridge, inbox: Arc<Inbox>) -> Result<Box<dyn Transport>, monas_link::Error> {
         match self {
             #[cfg(unix)]
