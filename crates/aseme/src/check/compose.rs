@@ -2,7 +2,7 @@
 //!
 //! Each model is a robot of its own. A message passes from one to another if the one's chart writes or publishes it and the other's reads it by that one's name
 //! (`receiver.news.Signal.Ready`). It goes by a channel from the one to the other, which holds a bounded number of messages and loses the oldest when one more comes,
-//! as a link does; a channel may lose any, if that is asked for. Who calls itself by its name hears itself. A chart that has ended, or that TERMINATE has stopped, says
+//! as a link does; a channel may lose any, if that is asked for. What a chart says to itself, and waits for, goes the same way. A chart that has ended, or that TERMINATE has stopped, says
 //! and waits for nothing any more. Everything else that guards ask is free to hold or not, activities return and timers expire in any order.
 //!
 //! What is found: waits that never end, since no robot will say what they are for (E0930); messages that come where nobody takes them (E0931);

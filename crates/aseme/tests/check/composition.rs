@@ -173,10 +173,17 @@ fn who_says_something_to_itself_hears_it_if_it_has_been_said() {
     let found = compose(&of_texts(&[("echo", speaks)]), Channels::default(), &Settings::default()).unwrap();
     assert_eq!(found.passing, [("echo".into(), "echo".into(), "Word".into())]);
     assert!(found.findings.is_empty() && found.is_finished, "{}", text(&found));
+    let plain = speaks.replace("echo.word", "word");
+    let found = compose(&of_texts(&[("echo", &plain)]), Channels::default(), &Settings::default()).unwrap();
+    assert_eq!(found.passing, [("echo".into(), "echo".into(), "Word".into())], "its own needs no name");
+    assert!(found.findings.is_empty() && found.is_finished, "{}", text(&found));
     let waits = "Role: echo\nLiveness:\necho = Listen . Call . Act\nTransitions:\n\
         Listen -> Call : echo.word.Signal.Word\nCall -> Act : / publish.word.Signal.Word\n";
     let found = compose(&of_texts(&[("echo", waits)]), Channels::default(), &Settings::default()).unwrap();
     assert_eq!(codes(&found), ["E0930"], "{}", text(&found));
+    let plain = waits.replace("echo.word", "word");
+    let again = compose(&of_texts(&[("echo", &plain)]), Channels::default(), &Settings::default()).unwrap();
+    assert_eq!(codes(&again), ["E0930"], "{}", text(&again));
     let said = found.findings[0].diagnostic.message.clone();
     assert!(said.contains("waits in `Listen` for `Word` of `echo`"), "{said}");
 }

@@ -90,10 +90,9 @@ impl Robot {
         hosts: &[&str],
         world: Option<&World>,
     ) -> Robot {
-        // itself among them: what it says is heard by itself too, if it calls itself by its name
-        let hosts = || hosts.iter().copied();
-        let hearings = hearings(&subject.chart, &hosts, world);
-        let waits = waits(&subject, &hearings, &hosts, world);
+        let ears = Ears::new(name, hosts, &subject.chart, world);
+        let hearings = hearings(&subject.chart, &ears);
+        let waits = waits(&subject, &hearings, &ears);
         let sayings = sayings(&subject.chart, world);
         Robot { name: name.into(), source: source.clone(), subject, abstraction, hearings, sayings, waits }
     }
@@ -243,17 +242,43 @@ fn literal(value: &Expression, constants: &[Constant]) -> Option<String> {
     }
 }
 
-fn hearings<'h, I: Iterator<Item = &'h str>>(
-    chart: &Statechart,
-    hosts: &impl Fn() -> I,
-    world: Option<&World>,
-) -> Vec<Hearing> {
+/// What a chart's paths may be about: messages of robots, itself among them.
+struct Ears<'a> {
+    own: &'a str,
+    hosts: &'a [&'a str],
+    /// What its actions say.
+    said: Vec<Word>,
+    world: Option<&'a World>,
+}
+
+impl<'a> Ears<'a> {
+    fn new(own: &'a str, hosts: &'a [&'a str], chart: &Statechart, world: Option<&'a World>) -> Ears<'a> {
+        let said = actions(chart).filter_map(|(_, action)| words::said(action, world).map(|(word, _)| word));
+        Ears { own, hosts, said: said.collect(), world }
+    }
+
+    /// The message that a condition reads. Its own are what has been read before, whatever it is.
+    fn read(&self, path: &yase::expression::Path) -> Option<Called> {
+        called(path, self.hosts.iter().copied(), self.world)
+    }
+
+    /// The message that a trigger waits for: also one that the chart says to itself, without a name in front.
+    fn waited(&self, path: &yase::expression::Path) -> Option<Called> {
+        let own = || {
+            let called = words::own(path, self.own, self.world)?;
+            self.said.iter().any(|said| said.means(&called.word)).then_some(called)
+        };
+        self.read(path).or_else(own)
+    }
+}
+
+fn hearings(chart: &Statechart, ears: &Ears<'_>) -> Vec<Hearing> {
     let mut found: Vec<Hearing> = Vec::new();
     for (way, transition) in chart.transitions() {
-        let waited = triggers(transition).iter().map(|path| (path, Some(path.text())));
-        let read = transition.expression.guard.iter().flat_map(paths).map(|path| (path, None));
-        for (path, event) in waited.chain(read) {
-            let Some(called) = called(path, hosts(), world) else { continue };
+        let waited = triggers(transition).iter().map(|path| (ears.waited(path), Some(path.text())));
+        let read = transition.expression.guard.iter().flat_map(paths).map(|path| (ears.read(path), None));
+        for (called, event) in waited.chain(read) {
+            let Some(called) = called else { continue };
             match found.iter_mut().find(|it| it.called.prefix == called.prefix) {
                 Some(known) if known.event.is_none() => (known.event, known.way) = (event, way),
                 Some(_) => {}
@@ -282,16 +307,12 @@ fn sayings(chart: &Statechart, world: Option<&World>) -> Vec<Saying> {
 }
 
 /// The places where a chart rests until something of another comes: states that have nothing else to do, and the end of composites that go on then.
-fn waits<'h, I: Iterator<Item = &'h str>>(
-    subject: &Subject,
-    hearings: &[Hearing],
-    hosts: &impl Fn() -> I,
-    world: Option<&World>,
-) -> Vec<Wait> {
+fn waits(subject: &Subject, hearings: &[Hearing], ears: &Ears<'_>) -> Vec<Wait> {
     let mut found: Vec<Wait> = Vec::new();
     for (way, transition) in subject.chart.transitions() {
-        let read = transition.expression.guard.iter().flat_map(paths);
-        let named = triggers(transition).iter().chain(read).find_map(|path| called(path, hosts(), world));
+        let waited = triggers(transition).iter().filter_map(|path| ears.waited(path));
+        let read = transition.expression.guard.iter().flat_map(paths).filter_map(|path| ears.read(path));
+        let named = waited.chain(read).next();
         let heard = named.and_then(|called| hearings.iter().position(|it| it.called.prefix == called.prefix));
         let Some(hearing) = heard else { continue };
         for node in resting(subject, transition.source) {

@@ -134,6 +134,17 @@ pub(super) fn called<'h>(
     Some(Called { host: host.to_owned(), word: word.completed(world.map(|world| &world.vocabulary)), prefix })
 }
 
+/// A message of a chart's own robot, as a path calls it without that one's name.
+pub(super) fn own(path: &Path, robot: &str, world: Option<&World>) -> Option<Called> {
+    let (word, count) = Word::of(&path.segments)?;
+    let prefix = Path { segments: path.segments.get(..count)?.to_vec(), place: path.place };
+    Some(Called {
+        host: robot.to_owned(),
+        word: word.completed(world.map(|world| &world.vocabulary)),
+        prefix,
+    })
+}
+
 /// The paths that a condition reads.
 pub(super) fn paths(condition: &Expression) -> Vec<&Path> {
     let (mut found, mut open) = (Vec::new(), vec![condition]);
