@@ -20,7 +20,8 @@ use zenoh::{Session, Wait};
 
 topic! {
     BALL: State<Ball> = "bench/ball";
-    PICTURE: State<Picture, 2> = "bench/picture";
+    // The last one alone, as bare zenoh keeps none.
+    PICTURE: State<Picture, 1> = "bench/picture";
 }
 
 const LARGE: usize = 1 << 20;
@@ -32,7 +33,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// nothing if none comes.
 struct Way {
     name: &'static str,
-    send: Box<dyn FnMut(u64) + Send>,
+    send: Box<dyn FnMut(u64)>,
     receive: Box<dyn FnMut() -> Option<u64>>,
     lost: u64,
 }
@@ -44,16 +45,17 @@ fn main() {
         Box::new(Local::new(folder.path(), bridge.node().host(), inbox).unwrap())
     };
     let small = vec![
-        Way::bare("zenoh", true, ball, when_ball),
-        Way::bare("zenoh, by a thread of its own", true, ball, when_ball).handed_on(),
+        Way::bare("zenoh", true, false, ball, when_ball),
+        Way::bare("zenoh, by a thread of its own", true, true, ball, when_ball),
         Way::link("link on zenoh", BALL, Pair::on_zenoh(true), ball, when_ball),
         Way::link("link on local sockets", BALL, Pair::over(local), ball, when_ball),
     ];
     table("A ball, from host to host", rounds, 500, small);
     let large = vec![
-        Way::bare("zenoh", false, picture, when_picture),
+        Way::bare("zenoh", false, false, picture, when_picture),
         Way::link("link on zenoh", PICTURE, Pair::on_zenoh(false), picture, when_picture),
-        Way::bare("zenoh, shared memory", true, picture, when_picture),
+        Way::bare("zenoh, shared memory", true, false, picture, when_picture),
+        Way::bare("zenoh, shared memory, by a thread of its own", true, true, picture, when_picture),
         Way::link("link on zenoh, shared memory", PICTURE, Pair::on_zenoh(true), picture, when_picture),
     ];
     table("A picture of 1 MiB, from host to host", rounds, 60, large);
@@ -112,10 +114,12 @@ impl Way {
         std::iter::from_fn(|| (self.receive)()).any(|said| said == sent)
     }
 
-    /// Two sessions of zenoh, and nothing else.
+    /// Two sessions of zenoh, and nothing else. With a thread of its own whoever sends leaves encoding and sending to that, and goes on: so does
+    /// a publisher with a link, since agents do not wait for a network.
     fn bare<M: Message + Default + 'static>(
         name: &'static str,
         is_shared: bool,
+        has_thread: bool,
         make: fn(u64) -> M,
         when: fn(&M) -> u64,
     ) -> Way {
@@ -128,9 +132,18 @@ impl Way {
         while !publisher.matching_status().wait().unwrap().matching() {
             thread::park_timeout(Duration::from_millis(1));
         }
+        let mut put = move |message: M| publisher.put(message.encode_to_vec()).wait().unwrap();
+        let (hand, given) = mpsc::channel();
+        let send: Box<dyn FnMut(u64)> = match has_thread {
+            true => {
+                thread::spawn(move || given.iter().for_each(&mut put));
+                Box::new(move |sent| hand.send(make(sent)).unwrap())
+            }
+            false => Box::new(move |sent| put(make(sent))),
+        };
         Way {
             name,
-            send: Box::new(move |sent| publisher.put(make(sent).encode_to_vec()).wait().unwrap()),
+            send,
             receive: Box::new(move || {
                 let _open = (&listener, &connector);
                 let sample = subscriber.recv_timeout(PATIENCE).unwrap()?;
@@ -138,14 +151,6 @@ impl Way {
             }),
             lost: 0,
         }
-    }
-
-    /// The same, but whoever sends leaves that to a thread, and goes on. So does a publisher with a link: agents do not wait for a network.
-    fn handed_on(self) -> Way {
-        let (hand, given) = mpsc::channel();
-        let mut send = self.send;
-        thread::spawn(move || given.iter().for_each(&mut send));
-        Way { send: Box::new(move |sent| hand.send(sent).unwrap()), ..self }
     }
 
     /// From the hub of one host to a blackboard of another.
