@@ -69,6 +69,12 @@ fn states_stand_where_they_were_put_and_are_as_large_as_said() {
     let off = boxes(&svg, "basic")[0];
     assert_eq!(off, [origin.0 + 10.0, origin.1 + 60.0, 200.0, 50.0]);
     assert_eq!((on[0], on[1]), (origin.0 + 300.0, origin.1 + 20.0));
+    let document = Document::parse(&svg).unwrap();
+    let name = document.descendants().find(|it| it.text() == Some("off") && it.has_tag_name("text")).unwrap();
+    let middle = (off[0] + off[2] / 2.0, off[1] + off[3] / 2.0);
+    // the line of letters is a little below the middle of what they take
+    let (x, y) = (number(name, "x"), number(name, "y"));
+    assert!(x == middle.0 && (0.0..6.0).contains(&(y - middle.1)), "{x} {y} in {off:?}");
     assert!(root[0] + root[2] >= on[0] + on[2] && root[1] + root[3] >= on[1] + on[3], "it holds all");
     assert_eq!(arrows(&svg).len(), 5, "every transition is drawn");
     let moved = |by: f64| {

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::layout::{Arrow, Layout, MARGIN, Point, Shape};
 use super::lettering::{LABEL_LINE, LABEL_SIZE, NAME_LINE, NAME_SIZE, escaped};
+use super::placed::frame;
 use crate::export::marks::{Mark, Marks};
 use crate::export::notation::depth_first;
 use crate::export::outline::is_region;
@@ -119,7 +120,10 @@ impl Page {
             NodeKind::And => self.composite("and", "and-head", shape),
             NodeKind::Basic => {
                 self.rectangle("basic", shape.at, shape.size, 10.0);
-                self.lettering(shape, "name", 7.5);
+                let lines = NAME_LINE * shape.title.len() as f64 + LABEL_LINE * shape.notes.len() as f64;
+                // in the middle of a box whose size is said; what arrows need is at the bottom
+                let is_sized = frame(chart, id).size.is_some();
+                self.lettering(shape, "name", if is_sized { (shape.size.1 - lines) / 2.0 } else { 7.5 });
             }
             kind => {
                 self.sign(kind, shape);
