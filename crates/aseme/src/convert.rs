@@ -7,6 +7,8 @@
 //! | FT | text |
 //! | EAC, IAC | text, XMI in four dialects, SCXML; Rust, which is only written |
 //!
+//! Where a chart is drawn only text says: the old editors kept that in files of their diagrams beside the models, which are no models.
+//!
 //! What a format cannot say is listed by [`Model::write`], never dropped in silence.
 
 mod chart;
