@@ -40,6 +40,7 @@ pub trait Transport: Send {
 pub struct Link {
     inbox: Arc<Inbox>,
     shared: Arc<Shared>,
+    desk: Arc<Desk>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -95,7 +96,7 @@ impl Link {
             comes_again: Moment::ZERO,
         };
         let desk = Arc::new(Desk(Mutex::new(Some(worker))));
-        let bringer = desk.clone();
+        let (bringer, looker) = (desk.clone(), desk.clone());
         let (waiting, stops) = (inbox.clone(), shared.clone());
         let name = format!("{} link", hub.host());
         let thread = thread::Builder::new()
@@ -103,7 +104,7 @@ impl Link {
             .spawn(move || desk.attend(&waiting, &stops.stops))
             .map_err(|error| Error::new(ErrorKind::Thread, format!("no thread for the link: {error}")))?;
         inbox.set_taker(Box::new(move || bringer.take_in()));
-        Ok(Link { inbox, shared, thread: Some(thread) })
+        Ok(Link { inbox, shared, desk: looker, thread: Some(thread) })
     }
 
     /// Wakes the link when something is published; to be given to [`Narukom::set_waker`].
@@ -117,8 +118,9 @@ impl Link {
         })
     }
 
-    /// What is known of the link, not older than a beat.
+    /// What is known of the link: now, or if it is at work when that was last told, at most 100 ms ago.
     pub fn report(&self) -> Report {
+        self.desk.tell();
         self.shared.report.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
@@ -170,6 +172,13 @@ impl Desk {
         let Some(worker) = place.as_mut() else { return true };
         worker.take_in();
         worker.inbox.is_empty() && worker.bridge.poll_at() >= worker.comes_again
+    }
+
+    /// Tells what is known, if nobody is at work.
+    fn tell(&self) {
+        if let Ok(mut place) = self.0.try_lock() {
+            place.iter_mut().for_each(|worker| worker.tell((worker.clock)()));
+        }
     }
 
     /// The link's thread.

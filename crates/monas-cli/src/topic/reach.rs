@@ -20,6 +20,9 @@ use crate::run::{WallClock, not_started};
 /// Who does not answer for this long is not there.
 const PATIENCE: Duration = Duration::from_secs(5);
 
+/// How often it is looked whether somebody is.
+const LOOK: Duration = Duration::from_millis(5);
+
 /// The other ends of links.
 pub(super) struct Reach {
     server: ControlServer,
@@ -80,7 +83,10 @@ impl Reach {
     }
 
     fn wait_until(&self, is_so: impl Fn(&Reach) -> bool) -> Result<(), Failure> {
-        WallClock::start().wait_until_or(PATIENCE, || is_so(self));
+        let clock = WallClock::start();
+        while !is_so(self) && clock.elapsed() < PATIENCE {
+            clock.wait_until_or(clock.elapsed() + LOOK, || false);
+        }
         match is_so(self) {
             true => Ok(()),
             false => Err(Failure::Unreachable(self.format, "nobody answers over the link".into())),
