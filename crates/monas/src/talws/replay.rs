@@ -120,8 +120,7 @@ pub struct Input(usize);
 ///
 /// Changes of agents that were made meanwhile are made again: in simulated time when they were asked for, in real time between those turns
 /// of the agent between which it followed them. One that was removed and added anew comes back as it did. Agents that were new then are not
-/// replayed: what they published is given to the others. A list that
-/// began while its agent ran begins where it did.
+/// replayed: what they published is given to the others. A list that began while its agent ran begins where it did.
 ///
 /// What comes from outside and is no message, an event that somebody raised by hand, is not in a recording and so not in a replay. Nor is
 /// what an activity learns in other ways: from a clock, a device or another thread. That shows as a difference.
