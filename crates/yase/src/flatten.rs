@@ -8,7 +8,8 @@
 //! A method has one answer for all regions. Where a message has not come that a condition reads, the answer is no; `!Ball.found` is asked for as such, and
 //! `Ball.found` is another question.
 //!
-//! What is not known beforehand keeps a chart from being flat: activities, timers and durations, deferred events, random choice. Such a chart is refused, with the reason, and runs on a
+//! What is not known beforehand keeps a chart from being flat: activities, timers and durations, deferred events, random choice, values that say whether a state
+//! is active. Such a chart is refused, with the reason, and runs on a
 //! [`Machine`](crate::Machine). So is one with very many configurations; three regions of ten states have a thousand.
 //!
 //! ```

@@ -56,15 +56,14 @@ impl Words {
     /// What speaks of states stays, and what joins it with others. A condition that may be neither true nor false, since a message that it reads has not
     /// come, is asked for together with what turns it round: both do not hold then.
     fn condition(&mut self, guard: &mut Expression) {
-        let is_in = |part: &Expression| matches!(part.kind, ExpressionKind::In(_)).then_some(());
-        let speaks_of_states = guard.find_map(&mut |part| is_in(part)).is_some();
+        let speaks_of_states = speaks_of_states(guard);
         match &mut guard.kind {
             ExpressionKind::Bool(_) | ExpressionKind::In(_) => {}
             ExpressionKind::Or(parts) | ExpressionKind::And(parts) if speaks_of_states => {
                 parts.iter_mut().for_each(|part| self.condition(part));
             }
             ExpressionKind::Not(operand) if has_two_values(operand) => self.condition(operand),
-            ExpressionKind::Not(operand) if speaks_of_states => {
+            ExpressionKind::Not(operand) if speaks_of_states && !asks_within(operand) => {
                 guard.kind = negated(operand);
                 self.condition(guard);
             }
@@ -85,6 +84,20 @@ impl Words {
             _ => action.to_string(),
         };
         action.kind = ActionKind::Script(numbered(ACTION, &mut self.actions, text));
+    }
+}
+
+fn speaks_of_states(expression: &Expression) -> bool {
+    expression.find_map(&mut |part| matches!(part.kind, ExpressionKind::In(_)).then_some(())).is_some()
+}
+
+/// Whether a state is asked for within something else than `!`, `&&` and `||`: there it is part of a value.
+fn asks_within(condition: &Expression) -> bool {
+    match &condition.kind {
+        ExpressionKind::In(_) => false,
+        ExpressionKind::Or(parts) | ExpressionKind::And(parts) => parts.iter().any(asks_within),
+        ExpressionKind::Not(operand) => asks_within(operand),
+        _ => speaks_of_states(condition),
     }
 }
 
@@ -155,6 +168,7 @@ pub(super) fn not_known_beforehand(chart: &Statechart) -> Vec<Diagnostic> {
             (node.duration.is_some(), "has a duration"),
             (!node.defer.is_empty(), "defers events"),
             (node.entry.iter().chain(&node.exit).any(starts_timer), "starts a timer"),
+            (node.entry.iter().chain(&node.exit).any(writes_state), "writes whether a state is active"),
         ];
         found.extend(said(&what, || format!("`{}`", chart.path(id))));
     }
@@ -168,6 +182,8 @@ pub(super) fn not_known_beforehand(chart: &Statechart) -> Vec<Diagnostic> {
             (transition.weight.is_some(), "is taken at random"),
             (expression.actions.iter().any(starts_timer), "starts a timer"),
             (guard.is_some(), "looks at a timer"),
+            (expression.actions.iter().any(writes_state), "writes whether a state is active"),
+            (expression.guard.as_ref().is_some_and(asks_within), "reckons with whether a state is active"),
         ];
         found.extend(said(&what, || of_transition(chart, id)));
     }
@@ -193,18 +209,28 @@ fn starts_timer(action: &Action) -> bool {
     matches!(action.kind, ActionKind::StartTimeout { .. })
 }
 
+fn writes_state(action: &Action) -> bool {
+    matches!(&action.kind, ActionKind::Assign { value, .. } if speaks_of_states(value))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::expression::parse_transition;
     use crate::{Node, NodeKind, Transition};
 
-    fn words(guard: &str) -> (String, Vec<String>) {
+    fn chart(text: &str) -> (Statechart, TransitionId) {
         let mut chart = Statechart::new("c");
         let state = chart.add(Statechart::ROOT, Node::new(NodeKind::Basic, "s"));
-        let (expression, wrong) = parse_transition(&format!("e [{guard}]"));
+        let (expression, wrong) = parse_transition(text);
         assert_eq!(wrong, []);
         let way = chart.connect(Transition { expression, ..Transition::new(state, state) });
+        (chart, way)
+    }
+
+    fn words(guard: &str) -> (String, Vec<String>) {
+        let (chart, way) = chart(&format!("e [{guard}]"));
+        assert_eq!(not_known_beforehand(&chart), []);
         let words = Words::of(&chart);
         let guard = words.chart.transition(way).expression.guard.as_ref().map(ToString::to_string);
         (guard.unwrap_or_default(), words.conditions)
@@ -223,6 +249,23 @@ mod tests {
         for (guard, becomes, conditions) in cases {
             let conditions = conditions.iter().map(|it| String::from(*it)).collect();
             assert_eq!(words(guard), (becomes.to_owned(), conditions), "{guard}");
+        }
+    }
+    /// The world does not know which states are active.
+    #[test]
+    fn states_that_are_part_of_a_value_are_refused() {
+        for (text, why) in [
+            ("e [In(s) == true]", "reckons with whether a state is active"),
+            ("e [!(In(s) == Ball.found)]", "reckons with whether a state is active"),
+            ("e [Ball.found && !(In(s) && f(In(s)))]", "reckons with whether a state is active"),
+            ("e / Ball.found = !In(s)", "writes whether a state is active"),
+        ] {
+            let (chart, _) = chart(text);
+            let found = not_known_beforehand(&chart);
+            assert_eq!(found.len(), 1, "{text}: {found:?}");
+            assert!(found[0].message.contains(why), "{text}: {}", found[0].message);
+            // and whatever is made of it, that comes to an end
+            Words::of(&chart);
         }
     }
 }
