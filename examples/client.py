@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads where a robot's ball is, and tells the robot what to do: any zenoh client that knows the messages can.
+"""Reads a robot's ball position and commands the robot, as a plain zenoh client.
 
     pip install eclipse-zenoh protobuf
     cargo run -p monas-link --features zenoh --example player -- robot listen tcp/127.0.0.1:7447
@@ -17,7 +17,7 @@ NAME = "laptop"
 
 
 def messages():
-    """The messages of proto/example.proto. Whoever has protoc compiles the file instead."""
+    """The messages of proto/example.proto, built without protoc."""
     field = descriptor_pb2.FieldDescriptorProto
     file = descriptor_pb2.FileDescriptorProto(
         name="example.proto", package="monas.link.example", syntax="proto3"

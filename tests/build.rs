@@ -1,4 +1,4 @@
-//! Compiles the messages that only the season uses.
+//! Compiles the messages of the season.
 fn main() -> Result<(), narukom_build::Error> {
     narukom_build::compile(&["proto/season.proto"], &["proto"])
 }

@@ -1,17 +1,17 @@
-//! Writes the patrol's chart as a module of Rust.
+//! Generates the patrol's chart as a Rust module.
 
-use aseme::generate::{RustActivity, Words};
+use aseme_codegen::generate::{RustActivity, RustBindings};
 
-fn main() -> Result<(), aseme::build::Error> {
+fn main() -> Result<(), aseme_codegen::build::Error> {
     let activities = [("Walk", "walk"), ("Left", "left"), ("Right", "right")].map(|(name, function)| {
         (name.to_owned(), RustActivity { path: format!("crate::{function}"), is_function: true })
     });
-    let words = Words {
+    let words = RustBindings {
         activities: activities.into(),
         runtime: "monas::generated".into(),
         registers: true,
-        ..Words::default()
+        ..RustBindings::default()
     };
-    aseme::build::generate("../02-formula/patrol.srm").words(words).write()?;
+    aseme_codegen::build::generate("../02-formula/patrol.srm").bindings(words).write()?;
     Ok(())
 }

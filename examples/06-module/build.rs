@@ -1,4 +1,5 @@
-//! Leaves out of the modules what only debuggers read: it is most of the file, which is copied whenever it is loaded.
+//! Strips debug information from the modules: it is most of the file, which is copied on every
+//! load.
 
 fn main() {
     if std::env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "linux") {

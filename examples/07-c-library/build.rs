@@ -1,4 +1,4 @@
-//! Compiles the library with the C compiler of the computer that it is for.
+//! Compiles the library with the C compiler of the target.
 
 fn main() {
     #[cfg(feature = "c")]

@@ -1,8 +1,9 @@
-//! Random input for every parser: whatever a person or a disk may hold, Monas answers with findings, never with a panic.
+//! Fuzz targets for every parser: any input leads to findings, never to a panic.
 //!
-//! Each file in `targets` hands libFuzzer's bytes to one parser, and checks what its page promises: that a finding lies within the
-//! text it speaks of, that what is printed reads back as the same. `seeds` are where the fuzzer begins, `dictionaries` the words that
-//! it tries; what it finds on its way it keeps in `corpus`, which is not part of the project.
+//! Each file in `targets` passes libFuzzer's bytes to one parser and checks its documented
+//! guarantees: findings lie within the text, and printed values parse to the same value. `seeds`
+//! are the initial inputs and `dictionaries` the tokens of the fuzzer; it stores new inputs in
+//! `corpus`, which is not part of the project.
 //!
 //! ```text
 //! cargo install cargo-fuzz          # once; and a nightly toolchain with a C++ compiler
@@ -13,7 +14,7 @@
 
 use yase::Diagnostic;
 
-/// Panics unless every finding lies within the text that it speaks of, and can be shown.
+/// Panics unless every finding lies within its text and can be displayed.
 pub fn assert_findings_fit(text: &str, findings: &[Diagnostic]) {
     for finding in findings {
         let own = finding.source.as_ref().map_or(text, |source| source.text.as_str());

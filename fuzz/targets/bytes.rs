@@ -1,29 +1,30 @@
-//! Bytes from elsewhere: they are published as a message of the topic, or refused with a reason, and nothing is left over.
+//! Encoded messages: they are published on the topic, or rejected with a reason and without effect.
 //!
-//! The first byte chooses the topic. What is accepted is encoded again: the new bytes must be accepted as well, and give themselves.
+//! The first byte selects the topic. Accepted messages are encoded again: the new bytes must be
+//! accepted and encode to themselves.
 #![no_main]
 
 use std::sync::OnceLock;
 
 use libfuzzer_sys::fuzz_target;
 use monas_robot as _;
-use narukom::{Arrival, ErrorKind, Moment, Narukom};
+use narukom::{Arrival, ErrorKind, Timestamp, Hub};
 
-fn hub() -> &'static Narukom {
-    static HUB: OnceLock<Narukom> = OnceLock::new();
-    HUB.get_or_init(|| match Narukom::with_linked_topics("host") {
+fn hub() -> &'static Hub {
+    static HUB: OnceLock<Hub> = OnceLock::new();
+    HUB.get_or_init(|| match Hub::with_linked_topics("host") {
         Ok(hub) => hub,
         Err(error) => panic!("{error}"),
     })
 }
 
-/// The bytes that a message has once it was published, or nothing if it was refused.
+/// The bytes of a message after publication; none if it was rejected.
 fn published(path: &str, bytes: &[u8]) -> Option<Vec<u8>> {
     let (Ok(mut tap), Ok(mut publisher)) = (hub().tap(path), hub().publisher_by_name(path, "stranger")) else {
         panic!("`{path}` is declared");
     };
     while tap.next_encoded().is_some() {}
-    if let Err(error) = publisher.publish_bytes(bytes, Moment::ZERO) {
+    if let Err(error) = publisher.publish_bytes(bytes, Timestamp::ZERO) {
         assert_eq!(error.kind(), ErrorKind::Malformed);
         assert!(error.to_string().contains(path), "{error}");
         assert!(tap.next_encoded().is_none(), "what was refused was published");
@@ -42,6 +43,6 @@ fuzz_target!(|bytes: &[u8]| {
     }
     let Ok(mut receiver) = hub().receiver("elsewhere", "stranger", path) else { panic!("`{path}` is declared") };
     let arrival =
-        Arrival { sequence: 1, published: Moment::MAX, local: Moment::ZERO, received: Moment::ZERO };
+        Arrival { sequence: 1, published: Timestamp::MAX, local: Timestamp::ZERO, received: Timestamp::ZERO };
     assert_eq!(receiver.receive_bytes(bytes, arrival).is_ok(), first.is_some(), "`{path}`");
 });

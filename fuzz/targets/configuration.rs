@@ -1,4 +1,4 @@
-//! Configurations: the XML reader, and the agents that are read from it with nothing registered.
+//! Configurations: the XML reader, and agents read with an empty registry.
 #![no_main]
 
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! What comes through sockets: requests of a tool, answers of a run, and the datagrams of links on one computer. Each is read or refused;
-//! what is read is written and read again as the same.
+//! Data from sockets: requests of tools, replies of runs, and datagrams of local links. Each is
+//! read or rejected; a value that was read is equal after writing and reading it again.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -14,7 +14,7 @@ fuzz_target!(|bytes: &[u8]| {
     }
 });
 
-/// A stream of messages: those before the first that is refused, as they are written again.
+/// Reads a stream of messages up to the first rejected one, and writes them again.
 fn again(bytes: &[u8], read: fn(&[u8]) -> (usize, Vec<u8>)) {
     let (count, written) = read(bytes);
     assert!(count <= bytes.len() / 4, "{count} messages in {} bytes", bytes.len());

@@ -1,4 +1,5 @@
-//! Packets of a link: any bytes, and what two honest links say to each other with some bytes changed, doubled or left out.
+//! Packets of a link: arbitrary bytes, and the packets of two valid links with bytes changed,
+//! duplicated or dropped.
 #![no_main]
 
 use std::sync::LazyLock;
@@ -7,7 +8,7 @@ use std::time::Duration;
 use libfuzzer_sys::fuzz_target;
 use monas_link::example::Ball;
 use monas_link::{Bridge, LinkSettings, Packet};
-use narukom::{Moment, Narukom, Signal, State, topic};
+use narukom::{Timestamp, Hub, Signal, State, topic};
 
 topic! {
     BALL: State<Ball> = "soccer/ball";
@@ -17,9 +18,9 @@ topic! {
 static SAID: LazyLock<Vec<Packet>> = LazyLock::new(conversation);
 
 fuzz_target!(|data: &[u8]| {
-    let hub = Narukom::with_linked_topics("robot_2").expect("the topics fit");
+    let hub = Hub::with_linked_topics("robot_2").expect("the topics fit");
     let mut end = end(&hub, 2);
-    let mut now = Moment::ZERO;
+    let mut now = Timestamp::ZERO;
     for edit in data.chunks(8) {
         now += Duration::from_millis(u64::from(edit[0]));
         end.handle(&packet(edit), now);
@@ -36,12 +37,13 @@ fuzz_target!(|data: &[u8]| {
     }
 });
 
-fn end(hub: &Narukom, incarnation: u64) -> Bridge {
+fn end(hub: &Hub, incarnation: u64) -> Bridge {
     let settings = LinkSettings { guests: true, ..LinkSettings::default() };
     Bridge::new(hub, settings.sending("soccer/*").receiving("soccer/*"), incarnation).expect("the settings fit")
 }
 
-/// A packet of the conversation, changed: the second byte says which, the others what stands where; or bytes as they come.
+/// A modified packet of the conversation: the second byte selects it, the others are edits; or raw
+/// bytes.
 fn packet(edit: &[u8]) -> Packet {
     let said = &SAID[usize::from(edit.get(1).copied().unwrap_or(0)) % SAID.len()];
     let mut packet = said.clone();
@@ -63,15 +65,15 @@ fn packet(edit: &[u8]) -> Packet {
     packet
 }
 
-/// What a link says to another that loses one packet in three.
+/// The packets that a link sends to another that loses one packet in three.
 fn conversation() -> Vec<Packet> {
-    let hubs = ["robot_1", "robot_2"].map(|name| Narukom::with_linked_topics(name).expect("the topics fit"));
+    let hubs = ["robot_1", "robot_2"].map(|name| Hub::with_linked_topics(name).expect("the topics fit"));
     let (mut here, mut there) = (end(&hubs[0], 1), end(&hubs[1], 2));
     let mut touch = hubs[0].publisher(TOUCH, "body").expect("it is declared");
     let mut ball = hubs[0].publisher(BALL, "vision").expect("it is declared");
     let mut said = Vec::new();
     for step in 0..60_u64 {
-        let now = Moment::from_nanos(step * 20_000_000);
+        let now = Timestamp::from_nanos(step * 20_000_000);
         touch.publish(Ball { distance: step as f64, bearing: 0.5 }, now);
         ball.publish(Ball { distance: step as f64, bearing: 0.5 }, now);
         while let Some(packet) = here.poll(now) {

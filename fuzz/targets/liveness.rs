@@ -1,4 +1,5 @@
-//! Formulas: findings fit, what is printed reads back as the same formulas, and every chart can be made.
+//! Formulas: findings are valid, printed formulas parse to the same formulas, and every chart can
+//! be built.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

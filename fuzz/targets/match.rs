@@ -1,4 +1,5 @@
-//! Match files: any text, beside files that are there and files that are not, with nothing registered.
+//! Match files: arbitrary text with references to existing and missing files, with an empty
+//! registry.
 #![no_main]
 
 use std::sync::LazyLock;
@@ -9,7 +10,7 @@ use monas_fuzz::assert_findings_fit;
 use monas_match::Match;
 use tempfile::TempDir;
 
-/// A folder with files that a match can name.
+/// A folder with files that a match can refer to.
 static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
     let folder = tempfile::tempdir().expect("there is room for a folder");
     let role = "<agents><agent name=\"a\"/></agents>";

@@ -1,7 +1,8 @@
-//! Model files of all kinds: findings fit, and what is written in a format that says all of it reads back as the same model.
+//! Model files of all kinds: findings are valid, and a model written in a lossless format reads
+//! back as the same model.
 #![no_main]
 
-use aseme::convert::{self, Format, Model};
+use aseme_models::convert::{self, Format, Model};
 use libfuzzer_sys::fuzz_target;
 use monas_fuzz::assert_findings_fit;
 use yase::Source;
@@ -22,6 +23,6 @@ fuzz_target!(|text: &str| {
             Err(refused) => assert!(!refused.is_empty(), "{format:?}"),
         }
     }
-    let (_, findings) = aseme::statechart_of(&Source::new("model", text));
+    let (_, findings) = aseme_models::statechart_of(&Source::new("model", text));
     assert_findings_fit(text, &findings);
 });

@@ -1,4 +1,5 @@
-//! Files that may be modules: the note in them is read, or refused with a reason, and what was read can be written down and read again.
+//! Module files: the note is read or rejected with a reason, and a note that was read is equal
+//! after writing and reading it again.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

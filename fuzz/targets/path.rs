@@ -1,4 +1,4 @@
-//! Paths of states: what is read prints as a path that reads as the same.
+//! State paths: a parsed path prints as a path that parses to the same.
 #![no_main]
 
 use aseme::path::Path;

@@ -1,9 +1,9 @@
-//! Properties: findings fit, the canonical text reads back as itself, and names are looked up.
+//! Properties: findings are valid, the canonical text parses to itself, and names are resolved.
 #![no_main]
 
 use std::sync::LazyLock;
 
-use aseme::properties::{Monitor, bind, parse};
+use aseme_verify::properties::{Monitor, bind, parse};
 use libfuzzer_sys::fuzz_target;
 use monas_fuzz::assert_findings_fit;
 use yase::{Chart, Source, Vocabulary};
@@ -29,8 +29,8 @@ fuzz_target!(|text: &str| {
     }
 });
 
-/// A chart that has some of the names.
+/// A chart that defines some of the names.
 static CHART: LazyLock<Option<Chart>> = LazyLock::new(|| {
     let text = "Role: r\nLiveness:\nr = a . (b | c)\nTransitions:\na -> (b|c) : go\n";
-    aseme::statechart_of(&Source::new("r.srm", text)).0.compile(&Vocabulary::default()).ok()
+    aseme_models::statechart_of(&Source::new("r.srm", text)).0.compile(&Vocabulary::default()).ok()
 });

@@ -1,9 +1,9 @@
-//! Scenarios: findings fit, and what is understood is taken through a chart's names.
+//! Scenarios: findings are valid, and parsed scenarios are resolved against a chart.
 #![no_main]
 
 use std::sync::LazyLock;
 
-use aseme::scenario::Script;
+use aseme_verify::scenario::Script;
 use libfuzzer_sys::fuzz_target;
 use monas_fuzz::assert_findings_fit;
 use yase::{Chart, Source, Vocabulary};
@@ -23,9 +23,9 @@ fuzz_target!(|text: &str| {
     }
 });
 
-/// A chart that has some of the names.
+/// A chart that defines some of the names.
 static CHART: LazyLock<Option<Chart>> = LazyLock::new(|| {
     let text = "Role: r\nLiveness:\nr = Stand . (SearchBall | Track)\nTransitions:\n\
                 Stand -> (SearchBall|Track) : go / StartTimeout(patience, 100ms)\n";
-    aseme::statechart_of(&Source::new("r.srm", text)).0.compile(&Vocabulary::default()).ok()
+    aseme_models::statechart_of(&Source::new("r.srm", text)).0.compile(&Vocabulary::default()).ok()
 });

@@ -1,13 +1,13 @@
-//! SCXML documents: findings fit, what is written reads back and is written alike, and a session of whatever could be read comes to its end or
-//! says why not.
+//! SCXML documents: findings are valid, written documents read back and are written identically,
+//! and a session of any valid document ends or reports an error.
 #![no_main]
 
 use std::time::Duration;
 
 use libfuzzer_sys::fuzz_target;
 use monas_fuzz::assert_findings_fit;
-use yase::scxml::{self, Event, NoPlatform, Session};
 use yase::{Moment, Source};
+use yase_scxml::{self, Event, NoPlatform, Session};
 
 fuzz_target!(|text: &str| {
     let (document, findings) = scxml::read(&Source::new("document", text));
@@ -24,7 +24,7 @@ fuzz_target!(|text: &str| {
     }
 });
 
-/// Some events, and time: a session that cannot go on says so.
+/// Sends some events and advances time; a session that cannot continue reports an error.
 fn play(mut session: Session<NoPlatform>, text: &str) {
     if session.start(Moment::ZERO).is_err() {
         return;

@@ -1,4 +1,4 @@
-//! Tapes: any bytes, and a real tape of which some bytes have changed or the end is missing.
+//! Tapes: arbitrary bytes, and a valid tape with changed bytes or a missing end.
 #![no_main]
 
 use std::io::{self, Write};
@@ -7,7 +7,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use libfuzzer_sys::fuzz_target;
 use monas_robot::{Announcement, Sensors, topics};
 use monas_tape::{Content, Decoder, Recording, Tape};
-use narukom::{Moment, Narukom};
+use narukom::{Timestamp, Hub};
 
 static WHOLE: LazyLock<Vec<u8>> = LazyLock::new(|| recorded().expect("a tape is recorded in memory"));
 
@@ -17,7 +17,8 @@ fuzz_target!(|data: &[u8]| {
     assert!(!data.is_empty() || messages == 2 * EACH, "{messages} messages of the whole tape");
 });
 
-/// Counts everything, takes apart what can be taken apart, and answers how many messages there were before the first error.
+/// Reads all records, decodes messages where possible, and returns the number of messages before
+/// the first error.
 fn read(bytes: Vec<u8>) -> usize {
     let recording = Recording::from_bytes(bytes);
     let Ok(overview) = recording.overview() else { return 0 };
@@ -33,8 +34,8 @@ fn read(bytes: Vec<u8>) -> usize {
     recording.messages().map_or(0, |messages| messages.map_while(Result::ok).count())
 }
 
-/// The whole tape after some edits: two bytes say where, the third what stands there from now on. Two bytes that remain say
-/// where the tape ends.
+/// The tape after some edits: two bytes are the position, the third is the new value. Two remaining
+/// bytes are the length.
 fn damaged(edits: &[u8]) -> Vec<u8> {
     let mut bytes = WHOLE.clone();
     let length = bytes.len();
@@ -50,19 +51,19 @@ fn damaged(edits: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// So many messages are on each topic.
+/// Number of messages on each topic.
 const EACH: usize = 8;
 
 /// A tape of messages on two topics.
 fn recorded() -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     let memory = Memory::default();
     let tape = Tape::to_writer(memory.clone())?;
-    let hub = Narukom::with_linked_topics("robot")?;
+    let hub = Hub::with_linked_topics("robot")?;
     hub.observe(Box::new(tape.clone()));
     let mut referee = hub.publisher(topics::ANNOUNCEMENT, "referee")?;
     let mut body = hub.publisher(topics::SENSORS, "body")?;
     for number in 0..EACH as u64 {
-        let now = Moment::from_nanos(400_000_000 * number);
+        let now = Timestamp::from_nanos(400_000_000 * number);
         referee.publish(Announcement { team: 3, seconds_left: 600.0, ..Announcement::default() }, now);
         body.publish(Sensors { head_yaw: 0.5, ..Sensors::default() }, now);
     }

@@ -1,5 +1,5 @@
-//! Paths of topics and patterns of subscriptions: each is found, or an error says why not. And access lists, which are made of patterns:
-//! what a line that is understood allows, the list allows.
+//! Topic paths, subscription patterns and access lists: each is accepted or rejected with an error,
+//! and a list allows what its valid lines allow.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,5 @@
-//! Transition expressions: findings fit, the canonical text reads back as itself, and compiling gives an answer.
+//! Transition expressions: findings are valid, the canonical text parses to itself, and compiling
+//! terminates.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -37,7 +38,7 @@ fuzz_target!(|text: &str| {
     }
 });
 
-/// The words of a ball and a game, so that some of what is written can be compiled.
+/// A vocabulary of ball and game, so that some expressions can be compiled.
 fn vocabulary() -> Vocabulary {
     let field = |id, name: &str, kind| FieldEntry { id: FieldId(id), name: name.into(), kind };
     let topic = |id, path: &str, kind, message: &str| TopicEntry {

@@ -1,37 +1,31 @@
-//! Generates random charts as Rust: those of the tests of `yase`, by number. `MONAS_CHARTS=1000..2000` chooses other numbers.
+//! Generates random charts as Rust: those of the tests of `yase`, by number.
+//! `MONAS_CHARTS=1000..2000` selects other numbers.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // what is shared with tests has theirs
-
-#[path = "../../crates/yase/tests/kit/mod.rs"]
-mod kit;
-#[allow(dead_code, unreachable_pub, unused_imports)] // the rest is for other tests
-#[path = "../../crates/yase/tests/reference/oracle"]
-mod oracle {
-    pub(crate) mod chance;
-    pub(crate) mod random;
-}
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // modules shared with tests use them
 
 use std::error::Error;
 use std::fs;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use aseme::generate::{Words, generate};
-use kit::world::TOPICS;
-use oracle::random::Case;
+use aseme_codegen::generate::{RustBindings, generate};
+use yase_reference::random::Case;
+use yase_reference::world::{TOPICS, vocabulary};
 
-/// These, if nothing else is asked for.
+/// The default range.
 const NUMBERS: Range<u64> = 0..200;
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-env-changed=MONAS_CHARTS");
     println!("cargo::rerun-if-changed=build.rs");
-    println!("cargo::rerun-if-changed=../../crates/yase/tests");
     let folder = PathBuf::from(std::env::var_os("OUT_DIR").ok_or("cargo says where generated files go")?);
-    let words = Words {
-        vocabulary: kit::world::vocabulary(),
-        messages: TOPICS.iter().map(|name| ((*name).into(), "crate::kit::world::Number".into())).collect(),
-        ..Words::default()
+    let words = RustBindings {
+        vocabulary: vocabulary(),
+        messages: TOPICS
+            .iter()
+            .map(|name| ((*name).into(), "yase_reference::world::Number".into()))
+            .collect(),
+        ..RustBindings::default()
     };
     let mut modules = String::new();
     let mut table = String::new();
@@ -47,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         modules += &format!("#[path = {path:?}]\nmod chart_{number};\n");
         table += &format!("    ({number}, chart_{number}::chart),\n");
     }
-    let all = format!("{modules}\npub(crate) const CHARTS: &[(u64, Make)] = &[\n{table}];\n");
+    let all = format!("{modules}\npub(crate) const CHARTS: &[(u64, ChartConstructor)] = &[\n{table}];\n");
     fs::write(folder.join("charts.rs"), all)?;
     Ok(())
 }

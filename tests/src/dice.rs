@@ -1,4 +1,4 @@
-//! Decisions by chance, for comparison with decisions.
+//! Random decisions as a baseline.
 
 use monas::{Activity, Blackboard, BoxError, Progress};
 use rand_core::Rng;
@@ -6,7 +6,7 @@ use rand_core::Rng;
 narukom::include_messages!("monas.season");
 
 narukom::topic! {
-    /// The dice as they lie.
+    /// The current values of the dice.
     pub DICE: narukom::State<Dice> = "season/dice";
 }
 
@@ -17,7 +17,7 @@ struct Throw;
 impl Activity for Throw {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let number = blackboard.random().next_u32();
-        // The upper bits of one number: plenty for a die of two, three and four faces.
+        // Bits of one random number for dice of two, three and four faces.
         let (two, three, four) = ((number >> 4) % 2, (number >> 8) % 3, (number >> 28) % 4);
         blackboard.publish(DICE, Dice { two, three, four })?;
         Ok(Progress::Done)

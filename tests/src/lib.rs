@@ -1,8 +1,9 @@
-//! Whole matches in simulated time: what they come to is written in golden files.
+//! Whole matches in simulated time, compared with golden files.
 //!
-//! A [`Variant`] is a match file with a name; [`play`] plays it with a seed and answers with a [`Row`] of figures. [`season`]
-//! plays many of them and draws up the [`Table`] that stands in `golden/season.txt`: `cargo xtask season` writes it anew,
-//! `cargo xtask season --check` compares it. Since a match depends on nothing but its files and its seed, equality is exact.
+//! A [`Variant`] is a match file with a name; [`play`] plays it with a seed and returns a
+//! [`MatchRow`] of figures. [`season`] plays many of them and returns the [`SeasonTable`] of
+//! `golden/season.txt`: `cargo xtask season` updates it, `cargo xtask season --check` compares it.
+//! Since a match depends only on its files and its seed, equality is exact.
 //!
 //! ```no_run
 //! let row = monas_tests::play(&monas_tests::MATCH, 7, std::time::Duration::from_secs(120))?;
@@ -14,8 +15,8 @@ pub mod dice;
 mod row;
 mod season;
 
-pub use row::{Row, play};
-pub use season::{SEASON_LENGTH, SEASON_SEEDS, SHORT_LENGTH, SHORT_SEEDS, Table, season, short_rows};
+pub use row::{MatchRow, play};
+pub use season::{SEASON_LENGTH, SEASON_SEEDS, SHORT_LENGTH, SHORT_SEEDS, SeasonTable, season, short_rows};
 
 /// A match file of the season.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

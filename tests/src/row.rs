@@ -1,22 +1,22 @@
-//! One match, and the figures of it that a season looks at.
+//! The figures of one match in a season.
 
 use std::fmt;
 use std::time::Duration;
 
-use monas_match::{Match, Options, Summary, TeamSummary};
+use monas_match::{MatchOptions, MatchSource, MatchSummary, TeamSummary};
 
 use crate::{Variant, root};
 
-/// What a match came to, of both teams: blue first.
+/// The results of a match for both teams: blue first.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Row {
+pub struct MatchRow {
     /// The match's variant.
     pub variant: &'static str,
     /// Its seed.
     pub seed: u64,
     /// Goals.
     pub goals: [u32; 2],
-    /// Kicks that met the ball.
+    /// Kicks that hit the ball.
     pub kicks: [u32; 2],
     /// Kicks on the goal.
     pub shots: [u32; 2],
@@ -26,9 +26,9 @@ pub struct Row {
     pub falls: [u32; 2],
     /// Penalties.
     pub penalties: [u32; 2],
-    /// Dives and falls of goalies on purpose, both teams, and how many went to the ball's side.
+    /// Intentional dives and falls of both goalies, and how many went to the ball's side.
     pub actions: [u32; 2],
-    /// How often a goalie was back between its posts after that, and the seconds it took in all.
+    /// How often a goalie returned between its posts afterwards, and the total time in seconds.
     pub returns: (u32, f64),
     /// Seconds of play before a robot touched the ball.
     pub first_touch: Option<f64>,
@@ -36,25 +36,25 @@ pub struct Row {
     pub hash: String,
 }
 
-/// Plays a match for so long.
+/// Plays a match for a duration.
 ///
 /// # Errors
-/// What is wrong with its files, or what failed.
-pub fn play(variant: &Variant, seed: u64, length: Duration) -> Result<Row, String> {
+/// The diagnostics of its files, or the failure.
+pub fn play(variant: &Variant, seed: u64, length: Duration) -> Result<MatchRow, String> {
     let path = root().join(variant.file);
-    let plan = Match::load(path, &monas::Registry::linked())
+    let plan = MatchSource::load(path, &monas::Registry::linked())
         .map_err(|found| found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))?;
-    let mut running = plan.start(Options { seed, record: None }).map_err(|error| error.to_string())?;
+    let mut running = plan.start(MatchOptions { seed, record: None }).map_err(|error| error.to_string())?;
     running.advance(length).map_err(|error| error.to_string())?;
     let summary = running.finish().map_err(|error| error.to_string())?;
-    Ok(Row::new(variant, seed, &summary))
+    Ok(MatchRow::new(variant, seed, &summary))
 }
 
-impl Row {
-    fn new(variant: &Variant, seed: u64, summary: &Summary) -> Row {
+impl MatchRow {
+    fn new(variant: &Variant, seed: u64, summary: &MatchSummary) -> MatchRow {
         let both = |figure: fn(&TeamSummary) -> u32| [figure(&summary.teams[0]), figure(&summary.teams[1])];
         let sum = |figure: fn(&TeamSummary) -> u32| summary.teams.iter().map(figure).sum();
-        Row {
+        MatchRow {
             variant: variant.name,
             seed,
             goals: both(|team| team.goals),
@@ -70,11 +70,11 @@ impl Row {
         }
     }
 
-    /// The names over the columns.
+    /// The names of the columns.
     pub const HEADER: &'static str = "variant    seed  goals  kicks    shots    saves    falls    penalties  to ball  returns        touch  hash";
 }
 
-impl fmt::Display for Row {
+impl fmt::Display for MatchRow {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let pair = |[blue, red]: [u32; 2]| format!("{blue}:{red}");
         let returns = format!("{} in {:.1} s", self.returns.0, self.returns.1);

@@ -1,32 +1,32 @@
-//! A season: every variant with many seeds, and what the figures must come to.
+//! A season: every variant with many seeds, and bounds on the figures.
 
 use std::fmt::Write as _;
 use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::time::Duration;
 
-use crate::{DICE, MATCH, NO_GOALIE, Row, STANDING, VARIANTS, Variant, play};
+use crate::{DICE, MATCH, MatchRow, NO_GOALIE, STANDING, VARIANTS, Variant, play};
 
-/// How long a match of the season is.
+/// The length of a match of the season.
 pub const SEASON_LENGTH: Duration = Duration::from_secs(600);
 /// The seeds of the season's matches.
 pub const SEASON_SEEDS: std::ops::RangeInclusive<u64> = 1..=20;
-/// How long a match is that every run of the tests replays.
+/// The length of the short matches in the tests.
 pub const SHORT_LENGTH: Duration = Duration::from_secs(120);
-/// The seeds of those.
+/// The seeds of the short matches.
 pub const SHORT_SEEDS: std::ops::RangeInclusive<u64> = 1..=2;
 
 /// The rows of a season.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Table {
-    rows: Vec<Row>,
+pub struct SeasonTable {
+    rows: Vec<MatchRow>,
 }
 
 /// Plays every variant with every seed, two at a time.
 ///
 /// # Errors
-/// What is wrong with the files of the season, or what failed.
-pub fn season(told: impl Fn(&Row) + Sync) -> Result<Table, String> {
+/// The diagnostics of the files of the season, or the failure.
+pub fn season(report: impl Fn(&MatchRow) + Sync) -> Result<SeasonTable, String> {
     let games: Vec<(Variant, u64)> =
         VARIANTS.iter().flat_map(|variant| SEASON_SEEDS.map(move |seed| (*variant, seed))).collect();
     let next = Mutex::new(games.iter().enumerate());
@@ -35,71 +35,71 @@ pub fn season(told: impl Fn(&Row) + Sync) -> Result<Table, String> {
         let game = next.lock().unwrap_or_else(PoisonError::into_inner).next();
         let Some((index, (variant, seed))) = game else { return };
         let row = play(variant, *seed, SEASON_LENGTH);
-        row.iter().for_each(&told);
+        row.iter().for_each(&report);
         results.lock().unwrap_or_else(PoisonError::into_inner)[index] = row;
     };
     std::thread::scope(|scope| {
         let other = scope.spawn(play_on);
         play_on();
-        // A panic of the other player shows as games that were not played.
+        // A panic of the other thread shows as matches that were not played.
         let _ = other.join();
     });
     let results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
-    Ok(Table { rows: results.into_iter().collect::<Result<_, _>>()? })
+    Ok(SeasonTable { rows: results.into_iter().collect::<Result<_, _>>()? })
 }
 
-/// The rows that every run of the tests replays, as text.
+/// The rows of the short matches, as text.
 ///
 /// # Errors
-/// What is wrong with the files of the match, or what failed.
+/// The diagnostics of the files of the match, or the failure.
 pub fn short_rows() -> Result<String, String> {
-    let mut text = format!("{}\n", Row::HEADER);
+    let mut text = format!("{}\n", MatchRow::HEADER);
     for seed in SHORT_SEEDS {
         let _ = writeln!(text, "{}", play(&MATCH, seed, SHORT_LENGTH)?);
     }
     Ok(text)
 }
 
-/// A figure of a season and what it must come to.
-struct Verdict {
+/// A figure of a season and its bound.
+struct FigureCheck {
     what: &'static str,
     value: f64,
     bound: f64,
-    /// Whether the value may not be below the bound, else not above it.
+    /// Whether the bound is a minimum, else a maximum.
     at_least: bool,
 }
 
-impl Verdict {
+impl FigureCheck {
     fn holds(&self) -> bool {
         if self.at_least { self.value >= self.bound } else { self.value <= self.bound }
     }
 }
 
-impl Table {
+impl SeasonTable {
     /// The rows and the verdicts as text.
     pub fn text(&self) -> String {
         let mut text = String::from("# What every seed comes to: 600 s a match, blue first.\n");
-        let _ = writeln!(text, "{}", Row::HEADER);
+        let _ = writeln!(text, "{}", MatchRow::HEADER);
         self.rows.iter().for_each(|row| {
             let _ = writeln!(text, "{row}");
         });
         let _ = writeln!(text, "\n# Means over the seeds, and what they must come to.");
-        for Verdict { what, value, bound, at_least } in self.verdicts() {
+        for FigureCheck { what, value, bound, at_least } in self.verdicts() {
             let relation = if at_least { ">=" } else { "<=" };
             let _ = writeln!(text, "{what:<66} {value:>7.2} {relation} {bound:.2}");
         }
         text
     }
 
-    /// What does not come to what it must.
+    /// The figures that violate their bounds.
     pub fn failures(&self) -> Vec<String> {
-        let broken = |verdict: &Verdict| !verdict.holds();
+        let broken = |verdict: &FigureCheck| !verdict.holds();
         self.verdicts().iter().filter(|v| broken(v)).map(|v| format!("{}: {:.2}", v.what, v.value)).collect()
     }
 
-    fn verdicts(&self) -> Vec<Verdict> {
-        let at_least = |what, value, bound| Verdict { what, value, bound, at_least: true };
-        let at_most = |what, value, bound| Verdict { what, value, bound, at_least: false };
+    fn verdicts(&self) -> Vec<FigureCheck> {
+        let at_least = |what, value, bound| FigureCheck { what, value, bound, at_least: true };
+        let at_most = |what, value, bound| FigureCheck { what, value, bound, at_least: false };
         let standing = self.mean(&STANDING, |row| row.goals[0].into());
         let conceded = self.mean(&MATCH, |row| row.goals[1].into());
         let unguarded = self.mean(&NO_GOALIE, |row| row.goals[1].into());
@@ -139,16 +139,16 @@ impl Table {
         ]
     }
 
-    fn of(&self, variant: &Variant) -> impl Iterator<Item = &Row> {
+    fn of(&self, variant: &Variant) -> impl Iterator<Item = &MatchRow> {
         let name = variant.name;
         self.rows.iter().filter(move |row| row.variant == name)
     }
 
-    fn sum(&self, variant: &Variant, figure: impl Fn(&Row) -> f64) -> f64 {
+    fn sum(&self, variant: &Variant, figure: impl Fn(&MatchRow) -> f64) -> f64 {
         self.of(variant).map(figure).sum()
     }
 
-    fn mean(&self, variant: &Variant, figure: impl Fn(&Row) -> f64) -> f64 {
+    fn mean(&self, variant: &Variant, figure: impl Fn(&MatchRow) -> f64) -> f64 {
         self.sum(variant, figure) / (self.of(variant).count().max(1) as f64)
     }
 }

@@ -1,6 +1,6 @@
-//! The chart decides, and nobody else: what it forbids does not happen, what it allows all happens.
+//! Tests that only the chart decides: forbidden transitions do not happen, and allowed ones do.
 
-#![allow(clippy::unwrap_used)] // a test fails by panicking
+#![allow(clippy::unwrap_used)] // tests may panic
 
 #[path = "decisions/attack.rs"]
 mod attack;
@@ -15,10 +15,10 @@ use std::path::Path;
 use std::time::Duration;
 
 use monas::ChartCoverage;
-use monas_match::{Match, Options, Summary};
+use monas_match::{MatchOptions, MatchSource, MatchSummary};
 use monas_tests::{MATCH, root};
 
-/// A copy of the project's configuration and models in a folder of its own, with one text replaced.
+/// A copy of the project's configuration and models in its own folder, with one text replaced.
 fn changed(folder: &Path, file: &str, from: &str, to: &str) -> std::path::PathBuf {
     for part in ["models", "config", "config/fields", "config/roles"] {
         fs::create_dir_all(folder.join(part)).unwrap();
@@ -35,16 +35,16 @@ fn changed(folder: &Path, file: &str, from: &str, to: &str) -> std::path::PathBu
     folder.join(MATCH.file)
 }
 
-fn played(path: &Path, seed: u64, seconds: u64) -> (Summary, monas::Statistics) {
-    let plan = Match::load(path, &monas::Registry::linked()).unwrap();
-    let mut running = plan.start(Options { seed, record: None }).unwrap();
+fn played(path: &Path, seed: u64, seconds: u64) -> (MatchSummary, monas::Statistics) {
+    let plan = MatchSource::load(path, &monas::Registry::linked()).unwrap();
+    let mut running = plan.start(MatchOptions { seed, record: None }).unwrap();
     running.advance(Duration::from_secs(seconds)).unwrap();
     let statistics = running.simulation().statistics();
     (running.finish().unwrap(), statistics)
 }
 
 #[test]
-fn nobody_kicks_when_the_chart_never_takes_that_branch() {
+fn no_robot_kicks_when_the_chart_never_takes_that_branch() {
     let folder = tempfile::tempdir().unwrap();
     let branch = "CONDITION -> kickBall : [Ball.distance <= near\n        \
                   && abs(Ball.x - kick_x) <= tolerance && abs(abs(Ball.y) - kick_y) <= tolerance]";
@@ -62,7 +62,7 @@ fn nobody_kicks_when_the_chart_never_takes_that_branch() {
 }
 
 #[test]
-fn nobody_looks_before_the_game_is_on() {
+fn no_robot_looks_before_the_game_is_on() {
     let folder = tempfile::tempdir().unwrap();
     let before = "<initial_duration>1</initial_duration>";
     let path =

@@ -1,21 +1,22 @@
-//! The same files and the same seed give the same bytes: again, on one core, in another order. Anything else gives others.
+//! The same files and the same seed give the same bytes: in repeated runs, on one core, in another
+//! order. Any other input gives different ones.
 
-#![allow(clippy::unwrap_used)] // a test fails by panicking
+#![allow(clippy::unwrap_used)] // tests may panic
 
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-use monas_match::{Match, Options};
+use monas_match::{MatchOptions, MatchSource};
 use monas_tests::{MATCH, play, root};
 
 const LENGTH: Duration = Duration::from_secs(30);
 
-/// Plays a match file and answers with the hash and the count of messages.
+/// Plays a match file and returns the hash and the number of messages.
 fn hash_of(path: &Path, seed: u64) -> (String, u64) {
-    let plan = Match::load(path, &monas::Registry::linked()).unwrap();
-    let mut running = plan.start(Options { seed, record: None }).unwrap();
+    let plan = MatchSource::load(path, &monas::Registry::linked()).unwrap();
+    let mut running = plan.start(MatchOptions { seed, record: None }).unwrap();
     running.advance(LENGTH).unwrap();
     let summary = running.finish().unwrap();
     (summary.hash, summary.messages)
@@ -49,8 +50,8 @@ fn one_core_or_two_make_no_difference() {
     assert!(one.contains(&hash[..16]), "{one} has not {hash}");
 }
 
-/// Writes the project's configuration and models to a folder of its own, with everything listed as `teams`, `robots` and
-/// `agents` say, and answers with the match file.
+/// Writes the project's configuration and models to a separate folder, in the order of `teams`,
+/// `robots` and `agents`, and returns the match file.
 fn written(folder: &Path, teams: [usize; 2], robots: [usize; 3], agents: [usize; 3]) -> std::path::PathBuf {
     for (from, to) in [("models", "models"), ("config/fields", "config/fields")] {
         copy(&root().join(from), &folder.join(to));
@@ -72,7 +73,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// A role with two agents beside the one that plays.
+/// A role with two agents in addition to the playing one.
 fn role_text(role: &str, order: [usize; 3]) -> String {
     let agents = [
         format!("<agent><name>Player</name><statechart>models/{role}.srm</statechart></agent>\n"),

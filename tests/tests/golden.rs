@@ -1,6 +1,6 @@
-//! Two short matches come to exactly what their golden rows say. `MONAS_BLESS=1` writes the rows anew.
+//! Two short matches equal their golden rows exactly. `MONAS_BLESS=1` updates the rows.
 
-#![allow(clippy::unwrap_used)] // a test fails by panicking
+#![allow(clippy::unwrap_used)] // tests may panic
 
 use monas_tests::{root, short_rows};
 

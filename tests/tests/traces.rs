@@ -1,25 +1,25 @@
-//! What the charts of both roles do in the first simulated second, and in the first second of play, is written in golden files.
-//! `MONAS_BLESS=1` writes them anew.
+//! The traces of the charts of both roles in the first simulated second and in the first second of
+//! play equal golden files. `MONAS_BLESS=1` updates them.
 
-#![allow(clippy::unwrap_used)] // a test fails by panicking
+#![allow(clippy::unwrap_used)] // tests may panic
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use aseme::path::shortest_path;
 use monas::MicroStep;
-use monas_match::{Match, Options};
+use monas_match::{MatchOptions, MatchSource};
 use monas_tests::{MATCH, root};
 
-/// When the first kick-off is.
+/// Time of the first kick-off.
 const KICK_OFF: Duration = Duration::from_secs(6);
 const SECOND: Duration = Duration::from_secs(1);
 
-/// The trace of the chart on a host in the second of a match that begins at `from`.
+/// The trace of a host's chart during one second of a match, starting at `from`.
 fn trace_of(host: &'static str, from: Duration) -> String {
     let lines = Arc::new(Mutex::new(String::new()));
     let written = lines.clone();
-    let plan = Match::load(root().join(MATCH.file), &monas::Registry::linked()).unwrap();
+    let plan = MatchSource::load(root().join(MATCH.file), &monas::Registry::linked()).unwrap();
     let plan = plan.listen(Box::new(move |step: MicroStep<'_>| {
         if step.host == host && Duration::from_nanos(step.record.time.as_nanos()) >= from {
             let name = |node| shortest_path(step.chart.statechart(), node);
@@ -28,7 +28,7 @@ fn trace_of(host: &'static str, from: Duration) -> String {
             lines.push('\n');
         }
     }));
-    let mut running = plan.start(Options { seed: 7, record: None }).unwrap();
+    let mut running = plan.start(MatchOptions { seed: 7, record: None }).unwrap();
     running.advance(from + SECOND).unwrap();
     drop(running);
     std::mem::take(&mut *lines.lock().unwrap())

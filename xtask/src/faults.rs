@@ -1,8 +1,9 @@
-//! `cargo xtask faults`: the tests catch the classic faults of such engines.
+//! `cargo xtask faults`: mutation tests of the engine with classic faults.
 //!
-//! Each fault is a patch in `crates/yase/tests/faults` whose header says what it breaks, which rule that is, and which tests see it.
-//! The sources are copied, without the fault those tests pass in the copy, and with it each of them fails. A fault that does not compile
-//! is not caught, and a patch that does not fit the sources any more is an error: it is to be brought up to date.
+//! Each fault is a patch in `charts/yase/tests/faults` whose header states the fault, the violated
+//! rule and the tests that detect it. In a copy of the sources these tests must pass without the
+//! fault, and each must fail with it. A fault that does not compile is not detected, and a patch
+//! that no longer applies to the sources is an error: it must be updated.
 
 mod copy;
 mod patch;
@@ -12,19 +13,19 @@ use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
 
-use copy::{Copy, Verdicts};
-use patch::{Fault, Test};
+use copy::{TestResults, WorkspaceCopy};
+use patch::{Fault, FaultTest};
 
-/// Where the patches are, relative to the workspace.
-const FOLDER: &str = "crates/yase/tests/faults";
+/// The folder of the patches, relative to the workspace.
+const FOLDER: &str = "charts/yase/tests/faults";
 
-/// Puts in one fault after the other, prints a table, and fails unless all are caught.
+/// Injects one fault after the other, prints a table, and fails unless all are detected.
 pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     let faults = patch::read(&root.join(FOLDER))?;
-    let copy = Copy::make(root)?;
-    let all: BTreeSet<&Test> = faults.iter().flat_map(|fault| &fault.tests).collect();
+    let copy = WorkspaceCopy::make(root)?;
+    let all: BTreeSet<&FaultTest> = faults.iter().flat_map(|fault| &fault.tests).collect();
     let sound = run_tests(&copy, all.iter().copied())?;
-    let broken: Vec<&Test> = all.into_iter().filter(|test| sound.get(*test) != Some(&true)).collect();
+    let broken: Vec<&FaultTest> = all.into_iter().filter(|test| sound.get(*test) != Some(&true)).collect();
     if !broken.is_empty() {
         return Err(format!("these do not pass without a fault: {broken:#?}").into());
     }
@@ -38,8 +39,8 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     Ok(if missed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// How a fault is caught, or why it is not. The copy is sound again afterwards.
-fn judge(copy: &Copy, fault: &Fault) -> Result<Result<String, String>, Box<dyn Error>> {
+/// How a fault is detected, or why it is not. Afterwards the copy is restored.
+fn judge(copy: &WorkspaceCopy, fault: &Fault) -> Result<Result<String, String>, Box<dyn Error>> {
     let broken = patch::apply(fault, |file| copy.read(file))?;
     let sound: Vec<_> =
         broken.keys().map(|file| Ok((file, copy.read(file)?))).collect::<Result<_, Box<dyn Error>>>()?;
@@ -51,30 +52,33 @@ fn judge(copy: &Copy, fault: &Fault) -> Result<Result<String, String>, Box<dyn E
         copy.write(file, &text)?;
     }
     Ok(match verdicts {
-        Ok(verdicts) => weigh(fault, &verdicts),
+        Ok(verdicts) => evaluate(fault, &verdicts),
         Err(error) => Err(format!("NOT CAUGHT: {error}")),
     })
 }
 
-fn weigh(fault: &Fault, verdicts: &Verdicts) -> Result<String, String> {
-    let is_blind = |test: &&Test| verdicts.get(*test) != Some(&false);
+fn evaluate(fault: &Fault, verdicts: &TestResults) -> Result<String, String> {
+    let is_blind = |test: &&FaultTest| verdicts.get(*test) != Some(&false);
     match fault.tests.iter().find(is_blind) {
         Some(test) => Err(format!("NOT CAUGHT by {}", test.name)),
         None => Ok(format!("caught by {}", names(&fault.tests))),
     }
 }
 
-fn names(tests: &[Test]) -> String {
+fn names(tests: &[FaultTest]) -> String {
     tests.iter().map(|test| test.name.as_str()).collect::<Vec<_>>().join(", ")
 }
 
-/// Runs tests, those of one program together.
-fn run_tests<'t>(copy: &Copy, tests: impl IntoIterator<Item = &'t Test>) -> Result<Verdicts, Box<dyn Error>> {
-    let mut programs: BTreeMap<&str, Vec<&Test>> = BTreeMap::new();
+/// Runs tests, grouped by program.
+fn run_tests<'t>(
+    copy: &WorkspaceCopy,
+    tests: impl IntoIterator<Item = &'t FaultTest>,
+) -> Result<TestResults, Box<dyn Error>> {
+    let mut programs: BTreeMap<&str, Vec<&FaultTest>> = BTreeMap::new();
     for test in tests {
         programs.entry(&test.program).or_default().push(test);
     }
-    let mut verdicts = Verdicts::new();
+    let mut verdicts = TestResults::new();
     for (program, tests) in programs {
         verdicts.extend(copy.run_tests(program, &tests)?);
     }
@@ -99,16 +103,16 @@ mod tests {
 
     #[test]
     fn a_fault_is_caught_only_when_all_its_tests_fail() {
-        let test = |name: &str| Test { program: "-p yase".into(), name: name.into() };
+        let test = |name: &str| FaultTest { program: "-p yase".into(), name: name.into() };
         let fault = Fault {
             name: "f".into(),
             rule: "R1".into(),
             tests: vec![test("a"), test("b")],
             diffs: Vec::new(),
         };
-        let verdicts = |a, b| Verdicts::from([(test("a"), a), (test("b"), b)]);
-        assert!(weigh(&fault, &verdicts(false, false)).is_ok());
-        assert!(weigh(&fault, &verdicts(false, true)).is_err());
-        assert!(weigh(&fault, &Verdicts::new()).is_err(), "a test that did not run sees nothing");
+        let verdicts = |a, b| TestResults::from([(test("a"), a), (test("b"), b)]);
+        assert!(evaluate(&fault, &verdicts(false, false)).is_ok());
+        assert!(evaluate(&fault, &verdicts(false, true)).is_err());
+        assert!(evaluate(&fault, &TestResults::new()).is_err(), "a test that did not run sees nothing");
     }
 }

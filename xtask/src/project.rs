@@ -1,16 +1,18 @@
-//! `cargo xtask project`: what `monas new` makes builds, runs and passes its tests, and what is put into it is found.
+//! `cargo xtask project`: a project created by `monas new` builds, runs and passes its tests, and
+//! added files are found.
 //!
-//! Nothing of the project is edited after it was made; files are only added: an activity by `monas new activity`, a message, a
-//! functionality, a model and a configuration by hand. Then the model becomes a generated crate, and what that names is taken away: an activity,
-//! a field of a message, a state. Each time the compiler has to say so. Last an activity becomes a module: it is built, loaded by the program that is there, changed, and
-//! built again.
+//! The project is not edited after its creation; files are only added: an activity by `monas new
+//! activity`; a message, a functionality, a model and a configuration by hand. Then a crate is
+//! generated from the model, and items that it refers to are removed: an activity, a field of a
+//! message, a state. Each time the compiler must report it. Finally an activity becomes a module:
+//! it is built, loaded by the existing program, changed, and built again.
 
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// What a person drops into the folders.
+/// Files that a user adds to the folders.
 const DROPPED: [(&str, &str); 5] = [
     (
         "messages/pins.proto",
@@ -36,17 +38,19 @@ const DROPPED: [(&str, &str); 5] = [
     ),
 ];
 
-/// What names the generated crate. It comes after that: the project's own test looks whether everything is there that configurations name.
+/// The configuration that refers to the generated crate. It is added later, because the project's
+/// test checks that everything named in configurations exists.
 const GENERATED: (&str, &str) =
     ("config/generated.xml", "<agent><name>Juggler</name><statechart>juggler</statechart></agent>\n");
 
-/// What names a state of it.
+/// The file that refers to a state of the generated crate.
 const NAMING: (&str, &str) = (
     "tests/states.rs",
     "//! States by name.\n\n#[test]\nfn it_throws() {\n    assert_ne!(juggler::State::Throw, juggler::State::Juggle);\n}\n",
 );
 
-/// What is taken away from what a generated crate names: the file, what is in it, what is there instead, and what the compiler says.
+/// Removed items that a generated crate refers to: the file, the original text, its replacement,
+/// and the errors of the compiler.
 const TAKEN: [(&str, &str, &str, &[&str]); 2] = [
     (
         "activities/throw.rs",
@@ -65,17 +69,18 @@ const TAKEN: [(&str, &str, &str, &[&str]); 2] = [
     ),
 ];
 
-/// A configuration with a module, whose file is filled in. It lies beside the project's own, whose test needs no module.
+/// A configuration with a module, whose file is filled in. It is separate from the project's
+/// configuration, whose test needs no module.
 const WITH_MODULE: &str =
     "<module>{file}</module>\n<agent frequency=\"10\"><name>Winker</name><activity>Wink</activity></agent>\n";
 
-/// What stands in the module in the place of nothing.
+/// The body of the module's activity before the change.
 const IDLE: &str = "        Ok(Progress::Done)\n";
 
-/// The model with another name for a state.
+/// The model with a renamed state.
 const RENAMED: &str = "Role: juggler\nLiveness:\njuggler = (Juggle . Fling)~\nTransitions:\nJuggle -> Fling : [pause] / StartTimeout(pause, 100ms)\nStates:\nFling : activity = Throw\n";
 
-/// Makes a project and goes through it.
+/// Creates a project and checks all steps.
 pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
     let folder = target.join("projects");
@@ -84,13 +89,13 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     }
     fs::create_dir_all(&folder)?;
     let team = folder.join("my-team");
-    // The project's dependencies are those of this workspace, and need not be built again.
+    // Shares the target folder, because the project's dependencies are those of this workspace.
     let cargo = |folder: &Path, arguments: &[&str]| {
         let mut command = Command::new("cargo");
         command.args(arguments).current_dir(folder).env("CARGO_TARGET_DIR", &target);
         command
     };
-    // as the tests have built it, so that nothing is built twice for another choice of features
+    // with the features of the tests, so that nothing is built twice
     done(
         cargo(root, &["test", "--quiet", "--workspace", "--no-run"]).stderr(std::process::Stdio::inherit()),
     )?;
@@ -121,7 +126,7 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     expect(&done(&mut cargo(&team, &generated))?, "pins: 6")?;
     let build = ["test", "--offline", "--workspace", "--no-run"];
     for taken in TAKEN {
-        take_away(&team, taken, &mut cargo(&team, &build))?;
+        expect_refusal_after_edit(&team, taken, &mut cargo(&team, &build))?;
     }
     fs::write(team.join("models/juggler.srm"), RENAMED)?;
     done(&mut cargo(&team, &generate))?;
@@ -135,7 +140,7 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Has an activity made as a module, and changes it: the program that is there loads what was built last.
+/// Creates an activity as a module and changes it: the existing program loads the last build.
 fn module(
     team: &Path,
     monas: &dyn Fn(&Path, &[&str]) -> Command,
@@ -156,8 +161,8 @@ fn module(
     Ok(())
 }
 
-/// Changes a file for one build, which has to fail and say why.
-fn take_away(
+/// Changes a file for one build, which has to fail with the expected errors.
+fn expect_refusal_after_edit(
     team: &Path,
     (file, there, instead, said): (&str, &str, &str, &[&str]),
     build: &mut Command,
@@ -174,7 +179,7 @@ fn take_away(
     said.iter().try_for_each(|part| expect(&error, part))
 }
 
-/// What the compiler says; it has to say something.
+/// The output of a build, which has to fail.
 fn refused(build: &mut Command) -> Result<String, Box<dyn Error>> {
     let output = build.output()?;
     match output.status.success() {
@@ -183,7 +188,7 @@ fn refused(build: &mut Command) -> Result<String, Box<dyn Error>> {
     }
 }
 
-/// What a command prints; it has to end well.
+/// The output of a command, which has to succeed.
 fn done(command: &mut Command) -> Result<String, Box<dyn Error>> {
     let output = command.output()?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();

@@ -1,11 +1,20 @@
-//! `cargo xtask tidy`: the house is as its documents say, or the place where it is not is named as `file:line`.
+//! `cargo xtask tidy`: checks that the workspace is as its documents say, and reports what is not
+//! as `file:line`.
 
+mod absences;
+mod allowances;
+mod circles;
+mod columns;
 mod documents;
-mod knowledge;
 mod layers;
 mod manifests;
+mod prose;
+mod road;
+mod size;
 mod source;
 mod texts;
+mod visibility;
+mod words;
 mod workspace;
 
 use std::error::Error;
@@ -15,27 +24,27 @@ use std::process::ExitCode;
 
 use workspace::Workspace;
 
-/// Something that is not as it should be.
+/// A violation of the project's rules.
 #[derive(PartialEq, Eq, PartialOrd, Ord, Debug)]
-struct Finding {
+struct TidyFinding {
     file: PathBuf,
     line: usize,
     message: String,
 }
 
-impl Finding {
-    fn new(file: impl Into<PathBuf>, line: usize, message: impl Into<String>) -> Finding {
-        Finding { file: file.into(), line, message: message.into() }
+impl TidyFinding {
+    fn new(file: impl Into<PathBuf>, line: usize, message: impl Into<String>) -> TidyFinding {
+        TidyFinding { file: file.into(), line, message: message.into() }
     }
 }
 
-impl fmt::Display for Finding {
+impl fmt::Display for TidyFinding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}: {}", self.file.display(), self.line, self.message)
     }
 }
 
-/// Runs every check on the workspace at `root`, prints what they find, and fails if there is anything.
+/// Runs every check on the workspace at `root`, prints the findings, and fails if there are any.
 pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     let workspace = Workspace::read(root)?;
     let findings = check(&workspace);
@@ -51,13 +60,23 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     Ok(if findings.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-fn check(workspace: &Workspace) -> Vec<Finding> {
+/// Prints the table of allowances that today's workspace needs.
+pub(crate) fn allowances(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
+    for row in allowances::rows(&Workspace::read(root)?) {
+        println!("{row}");
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     let mut findings = Vec::new();
     findings.extend(layers::check(workspace));
-    findings.extend(knowledge::check(workspace));
+    findings.extend(absences::check(workspace));
     findings.extend(manifests::check(workspace));
     findings.extend(texts::check(workspace));
     findings.extend(documents::check(workspace));
+    findings.extend(road::check(workspace));
+    findings.extend(allowances::check(workspace));
     findings.sort();
     findings.dedup();
     findings

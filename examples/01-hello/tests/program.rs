@@ -1,10 +1,10 @@
-//! The program as it is run: in real time.
+//! Tests of the program in real time.
 
 use std::error::Error;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-/// The moments of the first greetings, in seconds.
+/// The times of the first greetings, in seconds.
 fn greetings(count: usize) -> Result<Vec<f64>, Box<dyn Error>> {
     let mut program = Command::new(env!("CARGO_BIN_EXE_example-hello")).stdout(Stdio::piped()).spawn()?;
     let output = program.stdout.take().ok_or("the program has no output")?;
@@ -18,7 +18,7 @@ fn greetings(count: usize) -> Result<Vec<f64>, Box<dyn Error>> {
         .collect()
 }
 
-/// The moment that a greeting tells: 0.1 of `hello at 0.100000000 s`.
+/// The time in a greeting: 0.1 for `hello at 0.100000000 s`.
 fn second_of(line: &str) -> Option<f64> {
     line.strip_prefix("hello at ")?.strip_suffix(" s")?.parse().ok()
 }
@@ -27,7 +27,7 @@ fn second_of(line: &str) -> Option<f64> {
 fn it_greets_ten_times_a_second() -> Result<(), Box<dyn Error>> {
     let seconds = greetings(4)?;
     assert_eq!(seconds.len(), 4, "{seconds:?}");
-    // No greeting comes before it is due; how much later it comes is the machine's affair.
+    // No greeting comes before it is due; the delay depends on the machine.
     for (number, second) in seconds.iter().enumerate() {
         assert!(*second >= number as f64 / 10.0, "{seconds:?}");
     }

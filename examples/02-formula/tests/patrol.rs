@@ -1,29 +1,29 @@
-//! What the patrol does, from the program's output and after edits of its model.
+//! Tests of the patrol: the program's output, and the effects of edits to its model.
 
 use std::error::Error;
 use std::process::Command;
 
-use monas::{Agent, Blackboard, Moment, Registry, Statistics, Talws};
+use monas::{Agent, Blackboard, Registry, Statistics, Talws, Timestamp};
 use yase::{Diagnostic, Source, Statechart};
 
 const MODEL: &str = include_str!("../patrol.srm");
 
 fn nothing(_: &mut Blackboard) {}
 
-/// The chart of the model with one text replaced, and what is said about it.
+/// The chart of the model with one text replaced, and its diagnostics.
 fn edited(from: &str, to: &str) -> (Statechart, Vec<Diagnostic>) {
     assert!(MODEL.contains(from), "the model has no `{from}`");
-    aseme::statechart_of(&Source::new("patrol.srm", MODEL.replace(from, to)))
+    aseme::statechart_of_role(&Source::new("patrol.srm", MODEL.replace(from, to)))
 }
 
-/// What a chart's activities have done after ten simulated seconds.
+/// The statistics of a chart's activities after ten simulated seconds.
 fn ten_seconds_of(chart: Statechart) -> Result<Statistics, Box<dyn Error>> {
     let names = ["Walk", "Left", "Right", "Rest"];
     let registry =
         names.into_iter().fold(Registry::empty(), |registry, name| registry.with(name, || nothing));
     let talws = Talws::new().registry(registry).agent(Agent::statechart("guard", chart));
     let mut simulation = talws.simulate(7)?;
-    simulation.run_until(Moment::from_secs_f64(10.0))?;
+    simulation.run_until(Timestamp::from_secs_f64(10.0))?;
     Ok(simulation.statistics())
 }
 
@@ -41,7 +41,8 @@ fn a_branch_that_the_chart_forbids_is_never_taken() -> Result<(), Box<dyn Error>
     assert_eq!(findings, []);
     let statistics = ten_seconds_of(chart)?;
     let calls = |name| statistics.calls(Talws::LOCAL, name);
-    // The timer is never started, so it is over, and the way to the right is closed as well: the patrol has walked once and waits.
+    // The timer is never started, so it has expired, and the transition to the right is disabled as
+    // well: the patrol has walked once and waits.
     assert_eq!((calls("Walk"), calls("Left"), calls("Right")), (1, 0, 0));
     Ok(())
 }
@@ -52,7 +53,7 @@ fn an_edit_of_the_formula_keeps_the_refinements() -> Result<(), Box<dyn Error>> 
     assert_eq!(findings, []);
     let statistics = ten_seconds_of(chart)?;
     let calls = |name| statistics.calls(Talws::LOCAL, name);
-    // 14 walks of 700 ms are over after 9.8 s; every third look is to the left.
+    // 14 walks of 700 ms take 9.8 s; every third look is to the left.
     assert_eq!((calls("Left"), calls("Right"), calls("Rest")), (5, 9, 14));
     Ok(())
 }

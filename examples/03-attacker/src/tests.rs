@@ -1,8 +1,8 @@
-//! The decision: one message in, one activity out.
+//! Tests of the decision: one message in, one activity out.
 
 use super::*;
 
-/// The one activity that is chosen for a ball while the game is on.
+/// The activity chosen for a ball during play.
 fn choice(ball: Ball) -> &'static str {
     let chosen = choices(GamePhase::Playing, ball).unwrap();
     let [activity] = chosen.as_slice() else { panic!("{chosen:?} for {ball:?}") };

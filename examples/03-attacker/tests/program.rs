@@ -1,4 +1,4 @@
-//! The program as it is run.
+//! Tests of the program.
 
 use std::error::Error;
 use std::process::Command;

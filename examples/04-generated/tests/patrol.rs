@@ -1,4 +1,4 @@
-//! The generated patrol does what the interpreted one does.
+//! Tests that the generated patrol behaves like the interpreted one.
 
 use std::error::Error;
 use std::process::Command;

@@ -1,15 +1,17 @@
-//! A thermostat, for two programs that are in charge themselves and have Monas inside:
+//! A thermostat for two programs that embed Monas in their own control flow:
 //!
-//! - `cargo run -p example-embedded --bin step-by-step` simulates two rooms and lets each room's agents live for as long as a step of its
-//!   own takes, two runs in one program;
-//! - `cargo run -p example-embedded --bin own-loop` answers what is typed, while the agents run on threads of their own.
+//! - `cargo run -p example-embedded --bin step-by-step` simulates two rooms and advances each
+//!   room's agents by the step of the simulation, two runs in one program;
+//! - `cargo run -p example-embedded --bin own-loop` responds to standard input while the agents run
+//!   on their own threads.
 //!
-//! Neither asks Monas for anything but a hub: a program takes part through a blackboard of its own, as agents do, whose cycle it closes
-//! by hand with [`process_messages`](Blackboard::process_messages) and [`publish_all`](Blackboard::publish_all).
+//! Both need only a hub from Monas: like an agent, a program participates through its own
+//! blackboard, whose cycle it closes explicitly with
+//! [`process_messages`](Blackboard::process_messages) and [`publish_all`](Blackboard::publish_all).
 
 use monas::{Agent, Blackboard, BoxError, Hz, Talws};
 
-/// What a room and its thermostat tell each other.
+/// Messages between a room and its thermostat.
 pub mod messages {
     narukom::include_messages!("example.heating");
 }
@@ -17,13 +19,13 @@ pub mod messages {
 use messages::{Heater, Temperature};
 
 narukom::topic! {
-    /// What the thermometer shows.
+    /// Readings of the thermometer.
     pub TEMPERATURE: narukom::State<Temperature> = "room/temperature";
-    /// What the heater is to do.
+    /// Commands to the heater.
     pub HEATER: narukom::State<Heater> = "room/heater";
 }
 
-/// It heats below this many degrees Celsius until the next are reached.
+/// Heating starts below this temperature, degrees Celsius.
 const COLD: f64 = 19.0;
 const WARM: f64 = 21.0;
 
@@ -32,7 +34,7 @@ pub fn talws() -> Talws {
     Talws::new().agent(Agent::new("thermostat", Hz(10)).activity(thermostat))
 }
 
-/// Between cold and warm it goes on with what it does.
+/// Between the two limits the heater keeps its state.
 fn thermostat(board: &mut Blackboard) -> Result<(), BoxError> {
     let Some(&Temperature { celsius }) = board.read(TEMPERATURE) else { return Ok(()) };
     let was_on = board.read(HEATER).is_some_and(|heater| heater.is_on);

@@ -1,4 +1,4 @@
-//! The programs as they are run.
+//! Tests of the programs.
 
 use std::error::Error;
 use std::io::Write;

@@ -1,7 +1,7 @@
-//! Eyes that see a ball two metres ahead, for a robot that was built without any.
+//! A module that detects a ball two metres ahead, for a robot that was built without vision.
 //!
-//! This crate is a **module**: `monas::module!` in its root, and the crate type `cdylib`. Built together with the program that is to load
-//! it, it fits:
+//! This crate is a **module**: `monas::module!` in its root, and the crate type `cdylib`. It must
+//! be built together with the program that loads it:
 //!
 //! ```sh
 //! cargo build -p monas-cli -p example-module       # target/debug/monas, and target/debug/libeyes.so
@@ -16,8 +16,9 @@
 //! target/debug/monas topic echo soccer/ball --count 1
 //! ```
 //!
-//! Now change `DISTANCE`, then `target/debug/monas module build eyes` and `target/debug/monas module reload eyes`: the robot goes on with
-//! the new eyes. If they are no good it goes on with the old ones, and the answer says why.
+//! Now change `DISTANCE`, then `target/debug/monas module build eyes` and `target/debug/monas
+//! module reload eyes`: the robot continues with the new module. If it is rejected, the robot
+//! continues with the old one, and the reply states the reason.
 
 use monas::{Activity, Blackboard, BoxError, Parameters, Progress};
 use monas_soccer::Ball;
@@ -25,12 +26,12 @@ use monas_soccer::topics::BALL;
 
 monas::module!();
 
-/// Where the ball is, m.
+/// Distance of the ball, m.
 const DISTANCE: f64 = 2.0;
 
-/// Sees the ball, if it is not too far away.
+/// Detects the ball within a range.
 struct Eyes {
-    /// How far they see, m.
+    /// Range, m.
     range: f64,
 }
 

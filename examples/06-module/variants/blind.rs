@@ -1,4 +1,4 @@
-//! The module `eyes` after a change that was none for the better: they cannot be made.
+//! The module `eyes` after a faulty change: its constructor fails.
 
 use monas::{Activity, Blackboard, BoxError, Progress};
 

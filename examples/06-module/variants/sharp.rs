@@ -1,4 +1,4 @@
-//! The module `eyes` as it is after a change: they see the ball one metre ahead.
+//! The module `eyes` after a change: it detects the ball one metre ahead.
 
 use monas::{Activity, Blackboard, BoxError, Parameters, Progress};
 use monas_soccer::Ball;

@@ -1,4 +1,4 @@
-/* A filter as robots' old code bases have many: C, with a state of its own that the caller keeps. */
+/* A median filter in C, typical of legacy robot code; the caller owns its state. */
 #ifndef MEDIAN_H
 #define MEDIAN_H
 
@@ -9,7 +9,7 @@ struct median {
     unsigned count;
 };
 
-/* Takes a value, and answers the median of the last MEDIAN_WINDOW ones. */
+/* Adds a value and returns the median of the last MEDIAN_WINDOW values. */
 double median_next(struct median *filter, double value);
 
 #endif

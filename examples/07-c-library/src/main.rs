@@ -1,21 +1,22 @@
 //! An activity that calls a library written in C.
 //!
-//! Run it with `cargo run -p example-c-library --features c`: `build.rs` compiles `c/median.c` with the crate `cc`, for whatever the program is compiled for, so that
-//! `monas deploy` brings it to a robot like anything else. `median.rs` wraps its one function. The activity filters a distance that is noisy and now and then absurd; what
-//! it keeps between its calls, the filter's state, is its own.
+//! Run it with `cargo run -p example-c-library --features c`: `build.rs` compiles `c/median.c` with
+//! the crate `cc` for the target of the program, so that `monas deploy` works as usual. `median.rs`
+//! wraps its one function. The activity filters a noisy distance with outliers; it owns the
+//! filter's state.
 
 mod median;
 
 use median::Median;
 use monas::{Activity, Agent, Blackboard, BoxError, Hz, Progress, Talws};
 
-/// Filters a distance.
+/// Filters a distance measurement.
 #[derive(Default)]
 struct Filter {
     median: Median,
 }
 
-/// A sensor that sees nothing each seventh time.
+/// A sensor that fails at every seventh reading.
 fn measured(cycle: u64) -> f64 {
     if cycle % 7 == 3 { 99.0 } else { 1.0 + cycle as f64 / 100.0 }
 }
@@ -30,7 +31,7 @@ impl Activity for Filter {
 
 fn main() -> Result<(), monas::Error> {
     let agent = Agent::new("distance", Hz(10)).activity(Filter::default());
-    Talws::new().agent(agent).simulate(1)?.run_until(monas::Moment::from_nanos(1_400_000_000))
+    Talws::new().agent(agent).simulate(1)?.run_until(monas::Timestamp::from_nanos(1_400_000_000))
 }
 
 #[cfg(test)]

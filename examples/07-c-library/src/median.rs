@@ -1,11 +1,11 @@
-//! The library as Rust sees it: the only place with `unsafe` in it, and nothing outside can use it wrongly.
+//! A safe wrapper of the library: the only module with `unsafe` code.
 
 #![allow(unsafe_code, reason = "calls of C are")]
 
-/// As `MEDIAN_WINDOW` in `c/median.h`.
+/// Equals `MEDIAN_WINDOW` in `c/median.h`.
 const WINDOW: usize = 5;
 
-/// As `struct median` in `c/median.h`.
+/// Layout of `struct median` in `c/median.h`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Median {
@@ -18,9 +18,10 @@ unsafe extern "C" {
 }
 
 impl Median {
-    /// Takes a value, and answers the median of the last five.
+    /// Adds a value and returns the median of the last five.
     pub(crate) fn next(&mut self, value: f64) -> f64 {
-        // SAFETY: the pointer is to a filter as C has it, which nobody else uses during the call, and C keeps no copy of it.
+        // SAFETY: `self` is a valid, exclusively borrowed `struct median` with the layout of C, and
+        // C does not keep the pointer after the call.
         unsafe { median_next(self, value) }
     }
 }

@@ -1,6 +1,6 @@
 //! The structure of the chart.
 
-use monas::generated::{Diagnostic, Draft, NodeKind, Reads, TypedChart};
+use monas::generated::{Diagnostic, NodeKind, SourceDeclaration, TypedChart, TypedChartBuilder};
 
 use super::states::State;
 use super::transitions::transitions;
@@ -11,7 +11,7 @@ use super::words::{constants, functions, messages, timers, values};
 /// # Errors
 /// Only if it was changed by hand and no longer fits together.
 pub fn chart() -> Result<TypedChart, Vec<Diagnostic>> {
-    let mut chart = Draft::new("player");
+    let mut chart = TypedChartBuilder::new("player");
     words(&mut chart);
     states(&mut chart);
     transitions(&mut chart);
@@ -19,9 +19,9 @@ pub fn chart() -> Result<TypedChart, Vec<Diagnostic>> {
 }
 
 /// The words of the guards and actions.
-fn words(chart: &mut Draft) {
-    chart.reads(messages::GAME_STATE, Reads::own("soccer/game_state", "GameState"));
-    chart.reads(messages::BALL, Reads::own("soccer/ball", "Ball"));
+fn words(chart: &mut TypedChartBuilder) {
+    chart.reads(messages::GAME_STATE, SourceDeclaration::own("soccer/game_state", "GameState"));
+    chart.reads(messages::BALL, SourceDeclaration::own("soccer/ball", "Ball"));
     chart.starts(timers::robot_timeout, "robot_timeout");
     chart.starts(timers::led_timeout, "led_timeout");
     chart.starts(timers::motion_timeout, "motion_timeout");
@@ -37,7 +37,7 @@ fn words(chart: &mut Draft) {
 }
 
 /// The states and connectors, in the order of the document.
-fn states(chart: &mut Draft) {
+fn states(chart: &mut TypedChartBuilder) {
     chart.add(State::START__of__player, State::player, NodeKind::Start, "");
     chart.add(
         State::RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,

@@ -2,32 +2,34 @@
 
 #![allow(non_snake_case)] // the names are those of states
 
-use monas::generated::{Truth, World, all, any, at_least, at_most, equal, given, holds, less, minus, more};
+use monas::generated::{
+    GuardResult, World, all, any, at_least, at_most, equal, given, holds, less, minus, more,
+};
 
 use super::words::{constants, functions, messages, timers, values};
 
 /// From `RobotController` to `RobotController`: `[robot_timeout]`
-pub(super) fn from_RobotController_to_RobotController(world: &World<'_>) -> Truth {
+pub(crate) fn from_RobotController_to_RobotController(world: &World<'_>) -> GuardResult {
     Ok(world.is_over(timers::robot_timeout))
 }
 
 /// From `LedHandler` to `LedHandler`: `[led_timeout]`
-pub(super) fn from_LedHandler_to_LedHandler(world: &World<'_>) -> Truth {
+pub(crate) fn from_LedHandler_to_LedHandler(world: &World<'_>) -> GuardResult {
     Ok(world.is_over(timers::led_timeout))
 }
 
 /// From `MotionController` to `MotionController`: `[motion_timeout]`
-pub(super) fn from_MotionController_to_MotionController(world: &World<'_>) -> Truth {
+pub(crate) fn from_MotionController_to_MotionController(world: &World<'_>) -> GuardResult {
     Ok(world.is_over(timers::motion_timeout))
 }
 
 /// From `START` in `Sensors~` to `Sensors`: `[GameState.player_state == PLAYING]`
-pub(super) fn from_START_to_Sensors(world: &World<'_>) -> Truth {
+pub(crate) fn from_START_to_Sensors(world: &World<'_>) -> GuardResult {
     equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
 }
 
 /// From `Sensors` to `Sensors`: `[sensors_timeout && GameState.player_state == PLAYING]`
-pub(super) fn from_Sensors_to_Sensors(world: &World<'_>) -> Truth {
+pub(crate) fn from_Sensors_to_Sensors(world: &World<'_>) -> GuardResult {
     all!(
         world.is_over(timers::sensors_timeout),
         equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
@@ -35,12 +37,12 @@ pub(super) fn from_Sensors_to_Sensors(world: &World<'_>) -> Truth {
 }
 
 /// From `START` in `Vision~` to `Vision`: `[GameState.player_state == PLAYING]`
-pub(super) fn from_START_to_Vision(world: &World<'_>) -> Truth {
+pub(crate) fn from_START_to_Vision(world: &World<'_>) -> GuardResult {
     equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
 }
 
 /// From `Vision` to `Vision`: `[vision_timeout && GameState.player_state == PLAYING]`
-pub(super) fn from_Vision_to_Vision(world: &World<'_>) -> Truth {
+pub(crate) fn from_Vision_to_Vision(world: &World<'_>) -> GuardResult {
     all!(
         world.is_over(timers::vision_timeout),
         equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
@@ -48,22 +50,22 @@ pub(super) fn from_Vision_to_Vision(world: &World<'_>) -> Truth {
 }
 
 /// From `CONDITION` in `(SearchBall|takeAction)` to `SearchBall`: `[!Ball.found]`
-pub(super) fn from_CONDITION_to_SearchBall(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_SearchBall(world: &World<'_>) -> GuardResult {
     Ok(!holds(world.latest(messages::BALL)?.found)?)
 }
 
 /// From `CONDITION` in `(SearchBall|takeAction)` to `takeAction`: `[Ball.found]`
-pub(super) fn from_CONDITION_to_takeAction(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_takeAction(world: &World<'_>) -> GuardResult {
     holds(world.latest(messages::BALL)?.found)
 }
 
 /// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall)` to `WalkTowardsBall`: `[Ball.distance > near]`
-pub(super) fn from_CONDITION_to_WalkTowardsBall(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_WalkTowardsBall(world: &World<'_>) -> GuardResult {
     more(world.latest(messages::BALL)?.distance, constants::near)
 }
 
 /// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall)` to `AlignWithBall`: `[Ball.distance <= near && (abs(Ball.x - kick_x) > tolerance || abs(abs(Ball.y) - kick_y) > tolerance)]`
-pub(super) fn from_CONDITION_to_AlignWithBall(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_AlignWithBall(world: &World<'_>) -> GuardResult {
     all!(
         at_most(world.latest(messages::BALL)?.distance, constants::near)?,
         any!(
@@ -86,7 +88,7 @@ pub(super) fn from_CONDITION_to_AlignWithBall(world: &World<'_>) -> Truth {
 }
 
 /// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall)` to `kickBall`: `[Ball.distance <= near && abs(Ball.x - kick_x) <= tolerance && abs(abs(Ball.y) - kick_y) <= tolerance]`
-pub(super) fn from_CONDITION_to_kickBall(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_kickBall(world: &World<'_>) -> GuardResult {
     all!(
         at_most(world.latest(messages::BALL)?.distance, constants::near)?,
         at_most(
@@ -107,22 +109,22 @@ pub(super) fn from_CONDITION_to_kickBall(world: &World<'_>) -> Truth {
 }
 
 /// From `CONDITION` in `kickBall` to `LeftKick`: `[Ball.y >= 0]`
-pub(super) fn from_CONDITION_to_LeftKick(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_LeftKick(world: &World<'_>) -> GuardResult {
     at_least(world.latest(messages::BALL)?.y, 0)
 }
 
 /// From `CONDITION` in `kickBall` to `RightKick`: `[Ball.y < 0]`
-pub(super) fn from_CONDITION_to_RightKick(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_RightKick(world: &World<'_>) -> GuardResult {
     less(world.latest(messages::BALL)?.y, 0)
 }
 
 /// From `START` in `decision~` to `decision`: `[GameState.player_state == PLAYING]`
-pub(super) fn from_START_to_decision(world: &World<'_>) -> Truth {
+pub(crate) fn from_START_to_decision(world: &World<'_>) -> GuardResult {
     equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
 }
 
 /// From `decision` to `decision`: `[decision_timeout && GameState.player_state == PLAYING]`
-pub(super) fn from_decision_to_decision(world: &World<'_>) -> Truth {
+pub(crate) fn from_decision_to_decision(world: &World<'_>) -> GuardResult {
     all!(
         world.is_over(timers::decision_timeout),
         equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,

@@ -9,7 +9,7 @@ use monas_soccer::activities::{
 use super::states::State;
 
 /// A new instance for each state that has an activity.
-pub(super) fn instances() -> Vec<Instance> {
+pub(crate) fn instances() -> Vec<Instance> {
     vec![
         Instance::of::<RobotController>(State::RobotController),
         Instance::of::<LedHandler>(State::LedHandler),

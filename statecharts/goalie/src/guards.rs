@@ -2,32 +2,32 @@
 
 #![allow(non_snake_case)] // the names are those of states
 
-use monas::generated::{Truth, World, all, at_least, at_most, equal, given, holds, less, more};
+use monas::generated::{GuardResult, World, all, at_least, at_most, equal, given, holds, less, more};
 
 use super::words::{constants, functions, messages, timers, values};
 
 /// From `RobotController` to `RobotController`: `[robot_timeout]`
-pub(super) fn from_RobotController_to_RobotController(world: &World<'_>) -> Truth {
+pub(crate) fn from_RobotController_to_RobotController(world: &World<'_>) -> GuardResult {
     Ok(world.is_over(timers::robot_timeout))
 }
 
 /// From `LedHandler` to `LedHandler`: `[led_timeout]`
-pub(super) fn from_LedHandler_to_LedHandler(world: &World<'_>) -> Truth {
+pub(crate) fn from_LedHandler_to_LedHandler(world: &World<'_>) -> GuardResult {
     Ok(world.is_over(timers::led_timeout))
 }
 
 /// From `MotionController` to `MotionController`: `[motion_timeout]`
-pub(super) fn from_MotionController_to_MotionController(world: &World<'_>) -> Truth {
+pub(crate) fn from_MotionController_to_MotionController(world: &World<'_>) -> GuardResult {
     Ok(world.is_over(timers::motion_timeout))
 }
 
 /// From `START` in `Sensors~` to `Sensors`: `[GameState.player_state == PLAYING]`
-pub(super) fn from_START_to_Sensors(world: &World<'_>) -> Truth {
+pub(crate) fn from_START_to_Sensors(world: &World<'_>) -> GuardResult {
     equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
 }
 
 /// From `Sensors` to `Sensors`: `[sensors_timeout && GameState.player_state == PLAYING]`
-pub(super) fn from_Sensors_to_Sensors(world: &World<'_>) -> Truth {
+pub(crate) fn from_Sensors_to_Sensors(world: &World<'_>) -> GuardResult {
     all!(
         world.is_over(timers::sensors_timeout),
         equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
@@ -35,12 +35,12 @@ pub(super) fn from_Sensors_to_Sensors(world: &World<'_>) -> Truth {
 }
 
 /// From `START` in `Vision~` to `Vision`: `[GameState.player_state == PLAYING]`
-pub(super) fn from_START_to_Vision(world: &World<'_>) -> Truth {
+pub(crate) fn from_START_to_Vision(world: &World<'_>) -> GuardResult {
     equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
 }
 
 /// From `Vision` to `Vision`: `[vision_timeout && GameState.player_state == PLAYING]`
-pub(super) fn from_Vision_to_Vision(world: &World<'_>) -> Truth {
+pub(crate) fn from_Vision_to_Vision(world: &World<'_>) -> GuardResult {
     all!(
         world.is_over(timers::vision_timeout),
         equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
@@ -48,17 +48,17 @@ pub(super) fn from_Vision_to_Vision(world: &World<'_>) -> Truth {
 }
 
 /// From `CONDITION` in `(SearchBall|takeAction)` to `SearchBall`: `[!Ball.found]`
-pub(super) fn from_CONDITION_to_SearchBall(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_SearchBall(world: &World<'_>) -> GuardResult {
     Ok(!holds(world.latest(messages::BALL)?.found)?)
 }
 
 /// From `CONDITION` in `(SearchBall|takeAction)` to `takeAction`: `[Ball.found]`
-pub(super) fn from_CONDITION_to_takeAction(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_takeAction(world: &World<'_>) -> GuardResult {
     holds(world.latest(messages::BALL)?.found)
 }
 
 /// From `CONDITION` in `takeAction` to `TrackBall`: `[!(Ball.approaching && Ball.time_to_cross <= act_within && abs(Ball.crossing_bearing) >= fall_from)]`
-pub(super) fn from_CONDITION_to_TrackBall(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_TrackBall(world: &World<'_>) -> GuardResult {
     Ok(!all!(
         holds(world.latest(messages::BALL)?.approaching)?,
         at_most(world.latest(messages::BALL)?.time_to_cross, constants::act_within)?,
@@ -70,7 +70,7 @@ pub(super) fn from_CONDITION_to_TrackBall(world: &World<'_>) -> Truth {
 }
 
 /// From `CONDITION` in `takeAction` to `action`: `[Ball.approaching && Ball.time_to_cross <= act_within && abs(Ball.crossing_bearing) >= fall_from]`
-pub(super) fn from_CONDITION_to_action(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_action(world: &World<'_>) -> GuardResult {
     all!(
         holds(world.latest(messages::BALL)?.approaching)?,
         at_most(world.latest(messages::BALL)?.time_to_cross, constants::act_within)?,
@@ -82,7 +82,7 @@ pub(super) fn from_CONDITION_to_action(world: &World<'_>) -> Truth {
 }
 
 /// From `CONDITION` in `action` to `RightFall`: `[Ball.crossing_bearing < 0 && Ball.crossing_bearing >= -dive_from]`
-pub(super) fn from_CONDITION_to_RightFall(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_RightFall(world: &World<'_>) -> GuardResult {
     all!(
         less(world.latest(messages::BALL)?.crossing_bearing, 0)?,
         at_least(world.latest(messages::BALL)?.crossing_bearing, -constants::dive_from)?,
@@ -90,7 +90,7 @@ pub(super) fn from_CONDITION_to_RightFall(world: &World<'_>) -> Truth {
 }
 
 /// From `CONDITION` in `action` to `LeftFall`: `[Ball.crossing_bearing >= 0 && Ball.crossing_bearing <= dive_from]`
-pub(super) fn from_CONDITION_to_LeftFall(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_LeftFall(world: &World<'_>) -> GuardResult {
     all!(
         at_least(world.latest(messages::BALL)?.crossing_bearing, 0)?,
         at_most(world.latest(messages::BALL)?.crossing_bearing, constants::dive_from)?,
@@ -98,22 +98,22 @@ pub(super) fn from_CONDITION_to_LeftFall(world: &World<'_>) -> Truth {
 }
 
 /// From `CONDITION` in `action` to `RightDive`: `[Ball.crossing_bearing < -dive_from]`
-pub(super) fn from_CONDITION_to_RightDive(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_RightDive(world: &World<'_>) -> GuardResult {
     less(world.latest(messages::BALL)?.crossing_bearing, -constants::dive_from)
 }
 
 /// From `CONDITION` in `action` to `LeftDive`: `[Ball.crossing_bearing > dive_from]`
-pub(super) fn from_CONDITION_to_LeftDive(world: &World<'_>) -> Truth {
+pub(crate) fn from_CONDITION_to_LeftDive(world: &World<'_>) -> GuardResult {
     more(world.latest(messages::BALL)?.crossing_bearing, constants::dive_from)
 }
 
 /// From `START` in `decision~` to `decision`: `[GameState.player_state == PLAYING]`
-pub(super) fn from_START_to_decision(world: &World<'_>) -> Truth {
+pub(crate) fn from_START_to_decision(world: &World<'_>) -> GuardResult {
     equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
 }
 
 /// From `decision` to `decision`: `[decision_timeout && GameState.player_state == PLAYING]`
-pub(super) fn from_decision_to_decision(world: &World<'_>) -> Truth {
+pub(crate) fn from_decision_to_decision(world: &World<'_>) -> GuardResult {
     all!(
         world.is_over(timers::decision_timeout),
         equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,

@@ -1,12 +1,12 @@
 //! How one comes from one state of the chart to another.
 
-use monas::generated::Draft;
+use monas::generated::TypedChartBuilder;
 
 use super::guards;
 use super::states::State;
 
 /// The transitions, in the order of the document, each with its guard.
-pub(super) fn transitions(chart: &mut Draft) {
+pub(crate) fn transitions(chart: &mut TypedChartBuilder) {
     chart.connect(
         State::START__of__goalie,
         State::RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,

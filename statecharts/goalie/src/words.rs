@@ -2,7 +2,7 @@
 
 /// The constants of the model.
 #[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
-pub(super) mod constants {
+pub(crate) mod constants {
     /// `act_within`
     pub(crate) const act_within: f64 = 1.0;
     /// `fall_from`
@@ -13,7 +13,7 @@ pub(super) mod constants {
 
 /// The functions that expressions call.
 #[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
-pub(super) mod functions {
+pub(crate) mod functions {
     use monas::generated::Function;
 
     /// `abs`
@@ -22,7 +22,7 @@ pub(super) mod functions {
 
 /// The messages that are read and written.
 #[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
-pub(super) mod messages {
+pub(crate) mod messages {
     use monas::generated::Source;
 
     /// `soccer/game_state`
@@ -33,7 +33,7 @@ pub(super) mod messages {
 
 /// The timers.
 #[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
-pub(super) mod timers {
+pub(crate) mod timers {
     use monas::generated::Timer;
 
     /// `robot_timeout`
@@ -52,7 +52,7 @@ pub(super) mod timers {
 
 /// The values of enumerations.
 #[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
-pub(super) mod values {
+pub(crate) mod values {
     /// `PlayerState.PLAYING`
     pub(crate) const PLAYING: i32 = 3;
 }

@@ -1,41 +1,34 @@
-//! Random charts, generated as Rust and interpreted: both must leave the same traces.
+//! Random charts, generated as Rust and interpreted: both must produce the same traces.
 //!
-//! The charts are those with which the tests of `yase` compare the machine with its reference, and so are their scripts and semantics.
-//! `build.rs` generates 200 of them; `MONAS_CHARTS=0..5000 cargo test -p chart-tests` compares 5,000.
+//! Charts, scripts and semantics are those with which the tests of `yase` compare the machine with
+//! its reference. `build.rs` generates 200 of them; `MONAS_CHARTS=0..5000 cargo test -p
+//! chart-tests` compares 5,000.
 
 #![cfg(test)]
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // all of it is test
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // test code
 
-#[path = "../../../crates/yase/tests/kit/mod.rs"]
-mod kit;
-#[allow(dead_code, unreachable_pub, unused_imports)] // the rest is for other tests
-#[path = "../../../crates/yase/tests/reference/oracle"]
-mod oracle {
-    pub(crate) mod chance;
-    pub(crate) mod random;
-}
-#[allow(unreachable_pub, unused_imports)] // crates of their own elsewhere
+#[allow(unreachable_pub, unused_imports)] // separate crates elsewhere
 mod generated {
     use yase::Diagnostic;
-    use yase::typed::TypedChart;
+    use yase_codegen::typed::TypedChart;
 
-    /// What makes a chart.
-    pub(crate) type Make = fn() -> Result<TypedChart, Vec<Diagnostic>>;
+    /// Constructor of a chart.
+    pub(crate) type ChartConstructor = fn() -> Result<TypedChart, Vec<Diagnostic>>;
 
     include!(concat!(env!("OUT_DIR"), "/charts.rs"));
 }
 
 use std::sync::Arc;
 
-use yase::{Chart, Chooser, Machine};
+use yase::{Chooser, CompiledChart, Machine};
 
-use kit::script;
-use kit::world::{World, vocabulary};
-use oracle::chance::Freedom;
-use oracle::random::Case;
+use yase_reference::chance::Freedom;
+use yase_reference::random::Case;
+use yase_reference::script;
+use yase_reference::world::{World, vocabulary};
 
-/// All that the world is asked to do and told.
-fn played(case: &Case, chart: Chart) -> Vec<String> {
+/// The trace of all calls to the host.
+fn played(case: &Case, chart: CompiledChart) -> Vec<String> {
     let mut world = World { verbose: true, reads: true, ..World::new(&case.chart) };
     let mut machine = Machine::new(Arc::new(chart));
     machine.set_chooser(match &case.freedom {

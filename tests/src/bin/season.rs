@@ -1,12 +1,13 @@
 //! Plays a season and writes or checks its golden table: see `cargo xtask season`.
 //!
-//! `season row VARIANT SEED SECONDS` plays one match of it and prints its row; `season picture FILE` draws a moment of a match.
+//! `season row VARIANT SEED SECONDS` plays one match and prints its row; `season picture FILE`
+//! draws a scene of a match.
 
 use std::process::ExitCode;
 use std::time::Duration;
 
-use monas_match::{Match, Options};
-use monas_tests::{MATCH, Row, VARIANTS, play, root, season, short_rows};
+use monas_match::{MatchOptions, MatchSource};
+use monas_tests::{MATCH, MatchRow, VARIANTS, play, root, season, short_rows};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -31,19 +32,19 @@ fn row(variant: &str, seed: &str, seconds: &str) -> Result<(), String> {
     let variant = known.ok_or_else(|| format!("no variant `{variant}`"))?;
     let seed = seed.parse().map_err(|_| format!("`{seed}` is no seed"))?;
     let seconds = seconds.parse().map_err(|_| format!("`{seconds}` is no number of seconds"))?;
-    println!("{}\n{}", Row::HEADER, play(variant, seed, Duration::from_secs(seconds))?);
+    println!("{}\n{}", MatchRow::HEADER, play(variant, seed, Duration::from_secs(seconds))?);
     Ok(())
 }
 
-/// A match with a goal in the first half, so that blue is blue in its picture.
+/// A match with a goal in the first half, in which teams have not changed colours.
 const PICTURE_SEED: u64 = 3;
 
 /// Draws the match of the quick start two seconds before its first goal.
 fn picture(file: &str) -> Result<(), String> {
     let start = || {
-        let plan = Match::load(root().join(MATCH.file), &monas::Registry::linked())
+        let plan = MatchSource::load(root().join(MATCH.file), &monas::Registry::linked())
             .map_err(|found| found[0].to_string())?;
-        plan.start(Options { seed: PICTURE_SEED, record: None }).map_err(|error| error.to_string())
+        plan.start(MatchOptions { seed: PICTURE_SEED, record: None }).map_err(|error| error.to_string())
     };
     let mut running = start()?;
     let second = Duration::from_secs(1);

@@ -1,29 +1,31 @@
-//! The attack protocol in matches: two field players of a team engage in it by its rules, and leave it by each of its outcomes.
+//! Tests of the attack protocol in matches: two field players of a team engage in it according to
+//! its rules, and leave it by each of its outcomes.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use monas::MicroStep;
-use monas_match::{Match, Options};
+use monas_match::{MatchOptions, MatchSource};
 use monas_tests::root;
-use yase::{Chart, Moment, NodeKind, TransitionId};
+use yase::{CompiledChart, Moment, NodeKind, TransitionId};
 
-/// The parts of the protocol, as the chart names them.
+/// The names of the protocol's parts in the chart.
 const PARTS: [&str; 2] = ["center", "center_for"];
 
-/// A robot takes a part, or leaves it.
+/// A robot enters or leaves a part.
 #[derive(Clone, PartialEq, Eq, Debug)]
 struct Turn {
     at: Moment,
     host: String,
     part: &'static str,
-    /// The guard by which the part is left, empty when all of it is done; none when it is taken.
+    /// The guard by which the part is left, empty if it is completed; none if the part is entered.
     left_by: Option<String>,
 }
 
-/// What a segment means for the protocol: a way from a CONDITION into a part, or from a part to an END.
-fn turn(chart: &Chart, segment: TransitionId) -> Option<(&'static str, Option<String>)> {
+/// The meaning of a segment in the protocol: from a CONDITION into a part, or from a part to an
+/// END.
+fn turn(chart: &CompiledChart, segment: TransitionId) -> Option<(&'static str, Option<String>)> {
     let statechart = chart.statechart();
     let transition = statechart.transition(segment);
     let (source, target) = (statechart.node(transition.source), statechart.node(transition.target));
@@ -35,11 +37,11 @@ fn turn(chart: &Chart, segment: TransitionId) -> Option<(&'static str, Option<St
     }
 }
 
-/// All that blue's field players do about the protocol in a match.
+/// All turns of blue's field players in a match.
 fn played(file: &str, seed: u64, seconds: u64) -> Vec<Turn> {
     let turns = Arc::new(Mutex::new(Vec::new()));
     let noted = turns.clone();
-    let plan = Match::load(root().join(file), &monas::Registry::linked()).unwrap();
+    let plan = MatchSource::load(root().join(file), &monas::Registry::linked()).unwrap();
     let plan = plan.listen(Box::new(move |step: MicroStep<'_>| {
         let selected = step.record.selected.iter().flat_map(|&compound| step.chart.segments(compound));
         for (part, left_by) in selected.filter_map(|segment| turn(step.chart, *segment)) {
@@ -51,7 +53,7 @@ fn played(file: &str, seed: u64, seconds: u64) -> Vec<Turn> {
             });
         }
     }));
-    let mut running = plan.start(Options { seed, record: None }).unwrap();
+    let mut running = plan.start(MatchOptions { seed, record: None }).unwrap();
     running.advance(Duration::from_secs(seconds)).unwrap();
     drop(running);
     std::mem::take(&mut *turns.lock().unwrap())
@@ -65,7 +67,7 @@ fn two_players_engage_in_the_protocol_and_leave_it_by_each_outcome() {
         for part in PARTS {
             assert!(
                 turns.iter().any(|turn| turn.part == part && turn.left_by.is_none()),
-                "{seed}: nobody is {part}"
+                "{seed}: no robot is {part}"
             );
         }
         for by in turns.iter().filter_map(|turn| turn.left_by.clone()) {
@@ -73,7 +75,7 @@ fn two_players_engage_in_the_protocol_and_leave_it_by_each_outcome() {
         }
     }
     for outcome in ["[Attack.shot_at_goal]", "[Attack.opponent_has_ball]", "[Attack.ball_is_out]"] {
-        assert!(left.contains_key(outcome), "nobody leaves by {outcome}: {left:?}");
+        assert!(left.contains_key(outcome), "no robot leaves by {outcome}: {left:?}");
     }
     println!("{left:?}");
 }

@@ -1,10 +1,11 @@
-//! Properties of the goalie, followed through a match.
+//! Properties of the goalie, monitored during a match.
 
 use std::fs;
 
 use super::{changed, played};
 
-/// Why blue's goalie has stopped after some seconds, if it has, with the properties of that text followed.
+/// The reason why blue's goalie has stopped after some seconds, if any, while the given properties
+/// are monitored.
 fn stopped(properties: Option<&str>) -> Option<String> {
     let folder = tempfile::tempdir().unwrap();
     let monitored = "<statechart>models/goalie.srm</statechart>\n    <monitor on_violation=\"policy\">models/goalie.properties</monitor>";

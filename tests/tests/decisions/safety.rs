@@ -1,15 +1,15 @@
-//! A robot whose agent fails comes to rest, and the match goes on.
+//! A robot whose agent fails comes to rest, and the match continues.
 
 use std::fs;
 use std::time::Duration;
 
-use monas_match::{Match, Options};
+use monas_match::{MatchOptions, MatchSource};
 use monas_robot::topics::SENSORS;
 use monas_robot::{Posture, Sensors};
 
 use super::changed;
 
-/// What a robot feels after so many seconds.
+/// The sensor readings of a robot after some seconds.
 fn felt(running: &mut monas_match::RunningMatch, host: &str, seconds: u64) -> Sensors {
     running.advance(Duration::from_secs(seconds)).unwrap();
     let now = running.simulation().now();
@@ -29,8 +29,8 @@ fn a_robot_in_the_safe_state_sits_down_and_takes_its_stiffness_off() {
     fs::write(&role, text.replacen("<agent ", "<agent on_failure=\"safe-state\" ", 1)).unwrap();
     let strict = "property \"it does not track\": always not entering TrackBall\n";
     fs::write(folder.path().join("models/goalie.properties"), strict).unwrap();
-    let plan = Match::load(&path, &monas::Registry::linked()).unwrap();
-    let mut running = plan.start(Options { seed: 7, record: None }).unwrap();
+    let plan = MatchSource::load(&path, &monas::Registry::linked()).unwrap();
+    let mut running = plan.start(MatchOptions { seed: 7, record: None }).unwrap();
     let before = felt(&mut running, "blue-1", 1);
     assert!(!before.relaxed, "{before:?}");
     let after = felt(&mut running, "blue-1", 24);

@@ -1,4 +1,4 @@
-//! A copy of the workspace, with a target folder of its own.
+//! A copy of the workspace with its own target folder.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
@@ -6,23 +6,24 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use super::patch::Test;
+use super::patch::FaultTest;
 
-/// Which tests passed, of those that ran.
-pub(super) type Verdicts = BTreeMap<Test, bool>;
+/// For each test that ran, whether it passed.
+pub(crate) type TestResults = BTreeMap<FaultTest, bool>;
 
 /// A copy of the workspace.
-pub(super) struct Copy {
+pub(crate) struct WorkspaceCopy {
     sources: PathBuf,
     target: PathBuf,
 }
 
-impl Copy {
-    /// Copies all that is under version control. What is there already and has not changed stays untouched, so that it is not built again.
-    pub(super) fn make(root: &Path) -> Result<Copy, Box<dyn Error>> {
+impl WorkspaceCopy {
+    /// Copies all files under version control. Unchanged files are not touched, so that they are
+    /// not rebuilt.
+    pub(crate) fn make(root: &Path) -> Result<WorkspaceCopy, Box<dyn Error>> {
         let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
         let folder = root.join(target).join("faults");
-        let copy = Copy { sources: folder.join("sources"), target: folder.join("build") };
+        let copy = WorkspaceCopy { sources: folder.join("sources"), target: folder.join("build") };
         let listed = Command::new("git").current_dir(root).args(["ls-files", "-z"]).output()?;
         if !listed.status.success() {
             return Err(format!("git ls-files: {}", String::from_utf8_lossy(&listed.stderr)).into());
@@ -30,13 +31,13 @@ impl Copy {
         let files: BTreeSet<PathBuf> =
             String::from_utf8(listed.stdout)?.split_terminator('\0').map(PathBuf::from).collect();
         for file in files.iter().filter(|file| root.join(file).is_file()) {
-            copy.bring(root, file)?;
+            copy.sync_file(root, file)?;
         }
         remove_others(&copy.sources, &copy.sources, &files)?;
         Ok(copy)
     }
 
-    fn bring(&self, root: &Path, file: &Path) -> Result<(), Box<dyn Error>> {
+    fn sync_file(&self, root: &Path, file: &Path) -> Result<(), Box<dyn Error>> {
         let (bytes, path) = (fs::read(root.join(file))?, self.sources.join(file));
         if fs::read(&path).is_ok_and(|before| before == bytes) {
             return Ok(());
@@ -45,16 +46,20 @@ impl Copy {
         Ok(fs::write(path, bytes)?)
     }
 
-    pub(super) fn read(&self, file: &str) -> Result<String, Box<dyn Error>> {
+    pub(crate) fn read(&self, file: &str) -> Result<String, Box<dyn Error>> {
         Ok(fs::read_to_string(self.sources.join(file))?)
     }
 
-    pub(super) fn write(&self, file: &str, text: &str) -> Result<(), Box<dyn Error>> {
+    pub(crate) fn write(&self, file: &str, text: &str) -> Result<(), Box<dyn Error>> {
         Ok(fs::write(self.sources.join(file), text)?)
     }
 
     /// Builds a program and runs some of its tests.
-    pub(super) fn run_tests(&self, program: &str, tests: &[&Test]) -> Result<Verdicts, Box<dyn Error>> {
+    pub(crate) fn run_tests(
+        &self,
+        program: &str,
+        tests: &[&FaultTest],
+    ) -> Result<TestResults, Box<dyn Error>> {
         let built = self.cargo(program, &["--no-run"])?;
         if !built.status.success() {
             let errors = String::from_utf8_lossy(&built.stderr);
@@ -66,7 +71,7 @@ impl Copy {
         Ok(tests.iter().filter_map(|&test| Some((test.clone(), passed(&output, &test.name)?))).collect())
     }
 
-    /// What is built here is small and runs for seconds: it is not worth the time of being optimised.
+    /// Runs cargo without optimisation: the programs are small and run for seconds.
     fn cargo(&self, program: &str, arguments: &[&str]) -> Result<Output, Box<dyn Error>> {
         let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
         command.current_dir(&self.sources).args(["test", "--locked"]).args(program.split(' '));
@@ -76,7 +81,7 @@ impl Copy {
     }
 }
 
-/// Whether a test passed, by what the program printed of it.
+/// Whether a test passed, according to the output of its program.
 fn passed(output: &str, name: &str) -> Option<bool> {
     let line =
         output.lines().find_map(|line| line.strip_prefix("test ")?.strip_prefix(name)?.strip_prefix(" "))?;

@@ -5,28 +5,28 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-/// A fault that can be put into the sources.
-pub(super) struct Fault {
-    pub(super) name: String,
-    /// The rule that it breaks.
-    pub(super) rule: String,
-    /// The tests that see it.
-    pub(super) tests: Vec<Test>,
+/// A fault that can be injected into the sources.
+pub(crate) struct Fault {
+    pub(crate) name: String,
+    /// The rule that it violates.
+    pub(crate) rule: String,
+    /// The tests that detect it.
+    pub(crate) tests: Vec<FaultTest>,
     /// The file of each diff, and the diff.
-    pub(super) diffs: Vec<(String, String)>,
+    pub(crate) diffs: Vec<(String, String)>,
 }
 
-/// A test that sees a fault.
+/// A test that detects a fault.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
-pub(super) struct Test {
-    /// What cargo is told to find the program that it is in, as in `-p yase --test rules`.
-    pub(super) program: String,
-    /// Its whole name there.
-    pub(super) name: String,
+pub(crate) struct FaultTest {
+    /// The arguments of cargo that select its program, such as `-p yase --test rules`.
+    pub(crate) program: String,
+    /// Its full name in the program.
+    pub(crate) name: String,
 }
 
-/// All faults of a folder, by name.
-pub(super) fn read(folder: &Path) -> Result<Vec<Fault>, Box<dyn Error>> {
+/// All faults of a folder, sorted by name.
+pub(crate) fn read(folder: &Path) -> Result<Vec<Fault>, Box<dyn Error>> {
     let mut faults = Vec::new();
     for entry in fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))? {
         let path = entry?.path();
@@ -52,7 +52,7 @@ fn parse(name: String, text: &str) -> Result<Fault, String> {
             let test = test.trim().rsplit_once(' ');
             let (program, name) =
                 test.ok_or_else(|| format!("{}: a test is its program and its name", fault.name))?;
-            fault.tests.push(Test { program: program.to_owned(), name: name.to_owned() });
+            fault.tests.push(FaultTest { program: program.to_owned(), name: name.to_owned() });
         }
     }
     let missing = [
@@ -66,8 +66,8 @@ fn parse(name: String, text: &str) -> Result<Fault, String> {
     }
 }
 
-/// The files that a fault changes, with the fault in them.
-pub(super) fn apply(
+/// The files that a fault changes, with the fault applied.
+pub(crate) fn apply(
     fault: &Fault,
     read: impl Fn(&str) -> Result<String, Box<dyn Error>>,
 ) -> Result<BTreeMap<String, String>, Box<dyn Error>> {

@@ -1,12 +1,13 @@
-//! Documents say what is there: each crate opens with prose, ARCHITECTURE.md names each crate, and what documents
-//! point to exists.
+//! Checks documents: each crate opens with prose, ARCHITECTURE.md names each crate, and links and
+//! paths in documents exist.
 
 use std::path::{Component, Path, PathBuf};
 
-use super::Finding;
+use super::TidyFinding;
+use super::layers::is_product;
 use super::workspace::{Crate, TextFile, Workspace};
 
-/// The documents that a visitor expects.
+/// The documents that must exist.
 const EXPECTED: [&str; 7] = [
     "README.md",
     "ARCHITECTURE.md",
@@ -17,17 +18,32 @@ const EXPECTED: [&str; 7] = [
     "LICENSE-APACHE",
 ];
 
-/// A library opens with at least as many lines of prose, an example among them.
+/// A library opens with at least this many lines of prose, including an example.
 const PROSE: usize = 12;
 
-/// A path in a document that starts like this names something of the project.
-const FOLDERS: [&str; 9] =
-    ["crates/", "models/", "config/", "docs/", "examples/", "robots/", "tests/", "xtask/", ".ci/"];
+/// Prefixes of paths of the project in documents.
+const FOLDERS: [&str; 15] = [
+    "charts/",
+    "methodology/",
+    "messages/",
+    "runtime/",
+    "soccer/monas-",
+    "cli/monas-",
+    "statecharts/",
+    "models/",
+    "config/",
+    "docs/",
+    "examples/",
+    "robots/",
+    "tests/",
+    "xtask/",
+    ".ci/",
+];
 
-pub(super) fn check(workspace: &Workspace) -> Vec<Finding> {
+pub(crate) fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     let mut findings = Vec::new();
     findings.extend(missing_documents(workspace));
-    let crates = workspace.crates.iter().filter(|member| member.folder.starts_with("crates"));
+    let crates = workspace.crates.iter().filter(|member| is_product(member));
     findings.extend(crates.filter_map(|member| opening(workspace, member)));
     findings.extend(unnamed_crates(workspace));
     let documents =
@@ -36,13 +52,13 @@ pub(super) fn check(workspace: &Workspace) -> Vec<Finding> {
     findings
 }
 
-fn missing_documents(workspace: &Workspace) -> impl Iterator<Item = Finding> {
+fn missing_documents(workspace: &Workspace) -> impl Iterator<Item = TidyFinding> {
     let missing = EXPECTED.iter().filter(|name| !workspace.root.join(name).is_file());
-    missing.map(|name| Finding::new(name, 1, "this document is missing"))
+    missing.map(|name| TidyFinding::new(name, 1, "this document is missing"))
 }
 
-/// What is missing at the head of a library, if anything.
-fn opening(workspace: &Workspace, member: &Crate) -> Option<Finding> {
+/// A finding if the opening of a library is incomplete.
+fn opening(workspace: &Workspace, member: &Crate) -> Option<TidyFinding> {
     let library = workspace.file(member.library.as_ref()?)?;
     let prose: Vec<&str> = library.text.lines().take_while(|line| line.starts_with("//!")).collect();
     let fault = if prose.len() < PROSE {
@@ -56,14 +72,16 @@ fn opening(workspace: &Workspace, member: &Crate) -> Option<Finding> {
     } else {
         return None;
     };
-    Some(Finding::new(&library.path, 1, fault))
+    Some(TidyFinding::new(&library.path, 1, fault))
 }
 
-fn unnamed_crates(workspace: &Workspace) -> Vec<Finding> {
+fn unnamed_crates(workspace: &Workspace) -> Vec<TidyFinding> {
     let Some(map) = workspace.file(Path::new("ARCHITECTURE.md")) else { return Vec::new() };
-    let crates = workspace.crates.iter().filter(|member| member.folder.starts_with("crates"));
+    let crates = workspace.crates.iter().filter(|member| is_product(member));
     let unnamed = crates.filter(|member| !names(&map.text, &member.name));
-    unnamed.map(|member| Finding::new(&map.path, 1, format!("`{}` is not on the map", member.name))).collect()
+    unnamed
+        .map(|member| TidyFinding::new(&map.path, 1, format!("`{}` is not on the map", member.name)))
+        .collect()
 }
 
 /// Whether a text names a crate as a whole word (`monas` is not named by `monas-cli`).
@@ -74,8 +92,8 @@ fn names(text: &str, name: &str) -> bool {
     })
 }
 
-/// Links and paths of a document that lead nowhere.
-fn dead_ends(workspace: &Workspace, document: &TextFile) -> Vec<Finding> {
+/// Links and paths in a document that do not exist.
+fn dead_ends(workspace: &Workspace, document: &TextFile) -> Vec<TidyFinding> {
     let mut findings = Vec::new();
     for (index, line) in document.text.lines().enumerate() {
         let from_here = document.path.parent().unwrap_or(Path::new(""));
@@ -83,26 +101,26 @@ fn dead_ends(workspace: &Workspace, document: &TextFile) -> Vec<Finding> {
         let paths = paths(line).map(PathBuf::from);
         let dead = links.chain(paths).filter(|path| !workspace.root.join(normal(path)).exists());
         let message = |path: PathBuf| format!("`{}` does not exist", path.display());
-        findings.extend(dead.map(|path| Finding::new(&document.path, index + 1, message(path))));
+        findings.extend(dead.map(|path| TidyFinding::new(&document.path, index + 1, message(path))));
     }
     findings
 }
 
-/// What the links of a line point to within the project.
+/// Targets of the links in a line within the project.
 fn links(line: &str) -> impl Iterator<Item = &str> {
     let targets = line.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     let targets = targets.filter(|target| !target.contains("://") && !target.starts_with('#'));
     targets.filter_map(|target| target.split('#').next())
 }
 
-/// The words of a line that are paths of the project.
+/// Words of a line that are paths of the project.
 fn paths(line: &str) -> impl Iterator<Item = &str> {
     let words = line.split(|c: char| !(c.is_ascii_alphanumeric() || "._-/*".contains(c)));
     let words = words.map(|word| word.trim_end_matches(['.', '/']));
     words.filter(|word| FOLDERS.iter().any(|folder| word.starts_with(folder)) && !word.contains('*'))
 }
 
-/// The path with `..` worked out.
+/// The path with `..` resolved.
 fn normal(path: &Path) -> PathBuf {
     let mut normal = PathBuf::new();
     for component in path.components() {

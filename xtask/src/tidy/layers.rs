@@ -1,44 +1,64 @@
-//! The table of layers. An arrow goes only from a higher number to a lower one.
+//! The table of layers. Dependencies go only from a higher number to a lower one.
 
 use std::path::Path;
 
-use super::Finding;
+use super::TidyFinding;
 use super::workspace::{Crate, Dependency, Workspace};
 
-/// Every crate under `crates/` and its layer.
-const LAYERS: [(&str, u8); 13] = [
+/// Every crate of the product and its layer.
+const LAYERS: [(&str, u8); 30] = [
     ("narukom", 0),
     ("narukom-build", 0),
-    ("yase", 0),
-    ("aseme", 1),
+    ("yase-expression", 0),
+    ("yase", 1),
     ("monas-link", 1),
     ("monas-robot", 1),
     ("monas-tape", 1),
-    ("monas", 2),
-    ("monas-sim", 2),
-    ("monas-soccer", 3),
-    ("monas-match", 4),
-    ("monas-studio", 5),
-    ("monas-cli", 6),
+    ("yase-codegen", 3),
+    ("yase-explore", 2),
+    ("yase-export", 2),
+    ("yase-reference", 2),
+    ("yase-scxml", 2),
+    ("aseme", 4),
+    ("aseme-models", 5),
+    ("aseme-verify", 6),
+    ("aseme-codegen", 6),
+    ("monas-core", 7),
+    ("monas-config", 8),
+    ("monas-log", 8),
+    ("monas-module", 8),
+    ("monas-runtime", 9),
+    ("monas-replay", 10),
+    ("monas", 11),
+    ("monas-sim", 11),
+    ("monas-soccer", 12),
+    ("monas-match", 13),
+    ("monas-studio", 14),
+    ("monas-project", 14),
+    ("monas-deploy", 15),
+    ("monas-cli", 16),
 ];
 
-/// Bodies: known to the binary only.
-const ROBOTS: u8 = 5;
+/// The folders of the product's crates.
+const FOLDERS: [&str; 7] = ["charts", "methodology", "messages", "runtime", "robots", "soccer", "cli"];
 
-/// Generated statecharts: they name activities and messages, and programs link them.
-const STATECHARTS: u8 = 4;
+/// Bodies: only the binary depends on them.
+const ROBOTS: u8 = 14;
 
-/// Examples, benches, whole-match tests and chores: nothing depends on them.
-const TOP: u8 = 7;
+/// Generated statecharts: they depend on activities and messages, and programs link them.
+const STATECHARTS: u8 = 13;
 
-pub(super) fn check(workspace: &Workspace) -> Vec<Finding> {
+/// Examples, benches, whole-match tests and xtask: nothing depends on them.
+const TOP: u8 = 17;
+
+pub(crate) fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     workspace.crates.iter().flat_map(|member| check_crate(workspace, member)).collect()
 }
 
-fn check_crate(workspace: &Workspace, member: &Crate) -> Vec<Finding> {
+fn check_crate(workspace: &Workspace, member: &Crate) -> Vec<TidyFinding> {
     let manifest = member.folder.join("Cargo.toml");
     let Some(layer) = layer_of(member) else {
-        return vec![Finding::new(
+        return vec![TidyFinding::new(
             manifest,
             1,
             format!("`{}` has no place in the table of layers", member.name),
@@ -47,15 +67,16 @@ fn check_crate(workspace: &Workspace, member: &Crate) -> Vec<Finding> {
     let forbidden = member.dependencies.iter().filter_map(|dependency| {
         let target = workspace.crates.iter().find(|other| other.name == dependency.name)?;
         let message = arrow(member, layer, target, dependency)?;
-        Some(Finding::new(&manifest, line_of(workspace, &manifest, &dependency.name), message))
+        Some(TidyFinding::new(&manifest, line_of(workspace, &manifest, &dependency.name), message))
     });
     forbidden.collect()
 }
 
-/// What is wrong with an arrow, if anything. Tests may look sideways, never up.
+/// A violation by a dependency, if any. Tests may depend on crates of the same layer, never of a
+/// higher one.
 fn arrow(member: &Crate, layer: u8, target: &Crate, dependency: &Dependency) -> Option<String> {
     let target_layer = layer_of(target)?;
-    if target.folder.starts_with("robots") && layer < TOP && member.name != "monas-cli" {
+    if is_body(target) && layer < TOP && member.name != "monas-cli" {
         return Some(format!("`{}` knows the body `{}`: only the binary may", member.name, target.name));
     }
     let allowed = target_layer < layer || (dependency.is_dev && target_layer == layer);
@@ -67,14 +88,26 @@ fn arrow(member: &Crate, layer: u8, target: &Crate, dependency: &Dependency) -> 
     })
 }
 
+/// Whether a crate is part of the product.
+pub(crate) fn is_product(member: &Crate) -> bool {
+    FOLDERS.iter().any(|folder| member.folder.starts_with(folder))
+}
+
+fn is_body(member: &Crate) -> bool {
+    member.folder.starts_with("robots") && member.name != "monas-robot"
+}
+
 fn layer_of(member: &Crate) -> Option<u8> {
+    if let Some(&(_, layer)) = LAYERS.iter().find(|(name, _)| *name == member.name) {
+        return Some(layer);
+    }
     if member.folder.starts_with("statecharts") {
         return Some(STATECHARTS);
     }
-    if !member.folder.starts_with("crates") {
-        return Some(if member.folder.starts_with("robots") { ROBOTS } else { TOP });
+    if member.folder.starts_with("robots") {
+        return Some(ROBOTS);
     }
-    LAYERS.iter().find(|(name, _)| *name == member.name).map(|&(_, layer)| layer)
+    (!is_product(member)).then_some(TOP)
 }
 
 fn line_of(workspace: &Workspace, manifest: &Path, dependency: &str) -> usize {
@@ -103,7 +136,7 @@ mod tests {
 
     fn findings(crates: Vec<Crate>) -> Vec<String> {
         let manifest = TextFile {
-            path: "crates/yase/Cargo.toml".into(),
+            path: "charts/yase/Cargo.toml".into(),
             text: "[dependencies]\nnarukom.workspace = true\nmonas.workspace = true\n".into(),
         };
         let workspace = Workspace { root: PathBuf::new(), crates, files: vec![manifest] };
@@ -113,55 +146,60 @@ mod tests {
     #[test]
     fn down_is_allowed() {
         assert!(
-            findings(vec![member("crates/yase", &[]), member("crates/aseme", &[("yase", false)])]).is_empty()
+            findings(vec![member("charts/yase", &[]), member("methodology/aseme", &[("yase", false)])])
+                .is_empty()
         );
     }
 
     #[test]
     fn up_and_sideways_are_named_with_their_line() {
         let crates = vec![
-            member("crates/monas", &[]),
-            member("crates/narukom", &[]),
-            member("crates/yase", &[("monas", true), ("narukom", false)]),
+            member("runtime/monas", &[]),
+            member("messages/monas-link", &[]),
+            member("charts/yase", &[("monas", true), ("monas-link", false)]),
         ];
         let found = findings(crates);
         assert_eq!(found.len(), 2);
         assert!(
-            found[0].starts_with("crates/yase/Cargo.toml:3: `yase` (layer 0) depends on `monas` (layer 2)")
+            found[0].starts_with("charts/yase/Cargo.toml:3: `yase` (layer 1) depends on `monas` (layer 11)")
         );
         assert!(
-            found[1].starts_with("crates/yase/Cargo.toml:2: `yase` (layer 0) depends on `narukom` (layer 0)")
+            found[1]
+                .starts_with("charts/yase/Cargo.toml:1: `yase` (layer 1) depends on `monas-link` (layer 1)")
         );
     }
 
     #[test]
     fn tests_may_look_sideways() {
         assert!(
-            findings(vec![member("crates/narukom", &[]), member("crates/yase", &[("narukom", true)])])
-                .is_empty()
+            findings(vec![
+                member("messages/monas-link", &[]),
+                member("charts/yase", &[("monas-link", true)])
+            ])
+            .is_empty()
         );
     }
 
     #[test]
     fn a_new_crate_needs_a_place() {
-        assert!(findings(vec![member("crates/novelty", &[])])[0].contains("no place in the table"));
+        assert!(findings(vec![member("runtime/novelty", &[])])[0].contains("no place in the table"));
     }
 
     #[test]
     fn statecharts_know_the_team_and_only_programs_know_them() {
         let charts = || member("statecharts/goalie", &[("monas-soccer", false)]);
-        let soccer = || member("crates/monas-soccer", &[]);
-        let program = member("crates/monas-cli", &[("goalie", false)]);
+        let soccer = || member("soccer/monas-soccer", &[]);
+        let program = member("cli/monas-cli", &[("goalie", false)]);
         assert!(findings(vec![charts(), soccer(), program]).is_empty());
-        let engine = member("crates/monas", &[("goalie", false)]);
+        let engine = member("runtime/monas", &[("goalie", false)]);
         assert_eq!(findings(vec![charts(), soccer(), engine]).len(), 1);
     }
 
     #[test]
     fn bodies_are_known_to_the_binary_only() {
         let nao = || member("robots/nao", &[]);
-        assert!(findings(vec![nao(), member("crates/monas-cli", &[("nao", false)])]).is_empty());
-        assert_eq!(findings(vec![nao(), member("crates/monas-studio", &[("nao", false)])]).len(), 1);
+        assert!(findings(vec![nao(), member("cli/monas-cli", &[("nao", false)])]).is_empty());
+        assert_eq!(findings(vec![nao(), member("runtime/monas-studio", &[("nao", false)])]).len(), 1);
     }
 
     #[test]

@@ -1,11 +1,12 @@
-//! Cargo.toml: every dependency is named once, in the workspace, and used; every crate takes the shared settings.
+//! Checks `Cargo.toml`: every dependency is declared once, in the workspace, and used; every crate
+//! inherits the shared settings.
 
 use std::path::Path;
 
-use super::Finding;
+use super::TidyFinding;
 use super::workspace::{TextFile, Workspace};
 
-/// Lines that every member's manifest has.
+/// Lines that every manifest must contain.
 const SHARED: [&str; 6] = [
     "version.workspace = true",
     "edition.workspace = true",
@@ -15,7 +16,7 @@ const SHARED: [&str; 6] = [
     "[lints]",
 ];
 
-pub(super) fn check(workspace: &Workspace) -> Vec<Finding> {
+pub(crate) fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     let mut findings = Vec::new();
     let members =
         workspace.crates.iter().filter_map(|member| workspace.file(&member.folder.join("Cargo.toml")));
@@ -29,20 +30,20 @@ pub(super) fn check(workspace: &Workspace) -> Vec<Finding> {
     findings
 }
 
-/// A dependency that a member gives a version of its own.
-fn own_versions(manifest: &TextFile) -> Vec<Finding> {
+/// Dependencies for which a member specifies its own version.
+fn own_versions(manifest: &TextFile) -> Vec<TidyFinding> {
     let own = entries(&manifest.text, is_dependency_table).into_iter().filter(|(_, entry)| !is_shared(entry));
     let message = |entry: &str| format!("`{}` is not taken from [workspace.dependencies]", name(entry));
-    own.map(|(line, entry)| Finding::new(&manifest.path, line, message(entry))).collect()
+    own.map(|(line, entry)| TidyFinding::new(&manifest.path, line, message(entry))).collect()
 }
 
-fn missing_settings(manifest: &TextFile) -> Vec<Finding> {
+fn missing_settings(manifest: &TextFile) -> Vec<TidyFinding> {
     let missing = SHARED.iter().filter(|setting| !manifest.text.lines().any(|line| line == **setting));
-    missing.map(|setting| Finding::new(&manifest.path, 1, format!("`{setting}` is missing"))).collect()
+    missing.map(|setting| TidyFinding::new(&manifest.path, 1, format!("`{setting}` is missing"))).collect()
 }
 
-/// A dependency of the workspace that no member takes; the project's own crates are there for whoever comes.
-fn unused(workspace: &Workspace, root: &TextFile) -> Vec<Finding> {
+/// Dependencies of the workspace that no member uses.
+fn unused(workspace: &Workspace, root: &TextFile) -> Vec<TidyFinding> {
     let is_taken = |wanted: &str| {
         workspace.crates.iter().any(|member| {
             member.name == wanted || member.dependencies.iter().any(|dependency| dependency.name == wanted)
@@ -51,7 +52,7 @@ fn unused(workspace: &Workspace, root: &TextFile) -> Vec<Finding> {
     let entries = entries(&root.text, |table| table == "[workspace.dependencies]");
     let unused = entries.into_iter().filter(|(_, entry)| !is_taken(name(entry)));
     unused
-        .map(|(line, entry)| Finding::new(&root.path, line, format!("no crate takes `{}`", name(entry))))
+        .map(|(line, entry)| TidyFinding::new(&root.path, line, format!("no crate takes `{}`", name(entry))))
         .collect()
 }
 

@@ -1,16 +1,28 @@
-//! Rust text with what is not code blanked out, so that searching it finds code only.
+//! Separates the code of a Rust file from its comments and literals, so that a search finds one
+//! only.
 
-/// Replaces comments, and what stands between the quotes of literals, by blanks. Lines and columns stay.
-pub(super) fn code(text: &str) -> String {
-    let mut blanker = Blanker { rest: text, code: String::with_capacity(text.len()) };
+/// Replaces comments and the contents of literals by blanks. Lines and columns stay.
+pub(crate) fn code(text: &str) -> String {
+    split(text).0
+}
+
+/// Replaces everything but comments by blanks. Lines and columns stay.
+pub(crate) fn comments(text: &str) -> String {
+    split(text).1
+}
+
+/// The code and the comments of a text, each with the other blanked out.
+fn split(text: &str) -> (String, String) {
+    let with_capacity = || String::with_capacity(text.len());
+    let mut blanker = Blanker { rest: text, code: with_capacity(), comments: with_capacity() };
     while !blanker.rest.is_empty() {
         blanker.item();
     }
-    blanker.code
+    (blanker.code, blanker.comments)
 }
 
-/// Blanks out the items under `#[cfg(test)]`, and whatever else stands in their line.
-pub(super) fn without_tests(code: &str) -> String {
+/// Blanks out the items under `#[cfg(test)]`, and anything else on their lines.
+pub(crate) fn without_tests(code: &str) -> String {
     let mut kept = String::with_capacity(code.len());
     let mut rest = code;
     while let Some(start) = rest.find("#[cfg(test)]") {
@@ -45,18 +57,19 @@ const fn blank(c: char) -> char {
 struct Blanker<'a> {
     rest: &'a str,
     code: String,
+    comments: String,
 }
 
 impl Blanker<'_> {
     /// Takes one comment, literal, word, or other character.
     fn item(&mut self) {
         match self.rest.as_bytes() {
-            [b'/', b'/', ..] => self.blank(self.rest.find('\n').unwrap_or(self.rest.len())),
-            [b'/', b'*', ..] => self.blank(block_comment(self.rest)),
+            [b'/', b'/', ..] => self.comment(self.rest.find('\n').unwrap_or(self.rest.len())),
+            [b'/', b'*', ..] => self.comment(block_comment(self.rest)),
             [b'"', ..] => self.literal(0, quoted(self.rest)),
             [b'\'', ..] => match character(self.rest) {
                 Some(length) => self.literal(0, length),
-                None => self.keep(1),
+                None => self.copy_through(1),
             },
             _ => self.word(),
         }
@@ -72,33 +85,43 @@ impl Blanker<'_> {
             "r" | "br" | "cr" if after[hashes..].starts_with('"') => {
                 self.literal(length, length + raw(after, hashes))
             }
-            "" => self.keep(self.rest.chars().next().map_or(0, char::len_utf8)),
-            _ => self.keep(length),
+            "" => self.copy_through(self.rest.chars().next().map_or(0, char::len_utf8)),
+            _ => self.copy_through(length),
         }
     }
 
-    fn keep(&mut self, length: usize) {
+    fn copy_through(&mut self, length: usize) {
         let (kept, rest) = self.rest.split_at(length);
         self.code.push_str(kept);
+        self.comments.extend(kept.chars().map(blank));
+        self.rest = rest;
+    }
+
+    fn comment(&mut self, length: usize) {
+        let (comment, rest) = self.rest.split_at(length);
+        self.code.extend(comment.chars().map(blank));
+        self.comments.push_str(comment);
         self.rest = rest;
     }
 
     fn blank(&mut self, length: usize) {
         let (blanked, rest) = self.rest.split_at(length);
         self.code.extend(blanked.chars().map(blank));
+        self.comments.extend(blanked.chars().map(blank));
         self.rest = rest;
     }
 
-    /// Takes a literal of `length` whose first `prefix` bytes are a word; quotes stay, so that it remains a literal.
+    /// Takes a literal of `length` bytes whose first `prefix` bytes are a word. The quotes stay, so
+    /// that it remains a literal.
     fn literal(&mut self, prefix: usize, length: usize) {
-        self.keep(prefix);
+        self.copy_through(prefix);
         let inner = length - prefix;
         if inner < 2 {
-            return self.keep(inner);
+            return self.copy_through(inner);
         }
-        self.keep(1);
+        self.copy_through(1);
         self.blank(inner - 2);
-        self.keep(1);
+        self.copy_through(1);
     }
 }
 
@@ -163,6 +186,12 @@ mod tests {
         for (text, expected) in cases {
             assert_eq!(code(text), expected, "{text}");
         }
+    }
+
+    #[test]
+    fn comments_stay_without_code() {
+        let text = "a(\"// b\"); // c\n/* d */ e\n";
+        assert_eq!(comments(text), "           // c\n/* d */  \n");
     }
 
     #[test]

@@ -1,6 +1,7 @@
-//! What no file of the project holds: unfinished code, tests that are passed over, this machine's paths, stray blanks.
+//! Text that no file may contain: unfinished code, ignored tests, paths of one machine, stray
+//! blanks.
 
-use super::Finding;
+use super::TidyFinding;
 use super::source::code;
 use super::workspace::{TextFile, Workspace};
 
@@ -15,9 +16,9 @@ const CODE: [(&str, &str); 6] = [
 ];
 
 /// The files that may wait for the wall clock.
-const MAY_SLEEP: [&str; 2] = ["crates/monas/src/talws", "crates/monas-cli/src/run"];
+const MAY_SLEEP: [&str; 2] = ["runtime/monas/src/talws", "cli/monas-cli/src/terminal"];
 
-/// Never in any file. In two halves each, so that this file holds none of them.
+/// Never in any file. Split in two, so that this file does not contain them.
 const ANYWHERE: [((&str, &str), &str); 5] = [
     (("/wor", "k/"), "a path of one machine"),
     (("/hom", "e/"), "a path of one machine"),
@@ -26,20 +27,20 @@ const ANYWHERE: [((&str, &str), &str); 5] = [
     (("TO", "DO"), "do it or leave it out"),
 ];
 
-/// The longest a file of code may be, in lines that hold code.
+/// Greatest length of a file, in lines of code.
 const LONGEST: usize = 700;
 
-pub(super) fn check(workspace: &Workspace) -> Vec<Finding> {
+pub(crate) fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     workspace.files.iter().flat_map(check_file).collect()
 }
 
-fn check_file(file: &TextFile) -> Vec<Finding> {
+fn check_file(file: &TextFile) -> Vec<TidyFinding> {
     let mut findings = Vec::new();
     for (index, line) in file.text.lines().enumerate() {
-        findings.extend(line_faults(line).map(|fault| Finding::new(&file.path, index + 1, fault)));
+        findings.extend(line_faults(line).map(|fault| TidyFinding::new(&file.path, index + 1, fault)));
     }
     if !file.text.is_empty() && !file.text.ends_with('\n') {
-        findings.push(Finding::new(&file.path, file.text.lines().count(), "the last line does not end"));
+        findings.push(TidyFinding::new(&file.path, file.text.lines().count(), "the last line does not end"));
     }
     if file.is_rust() {
         findings.extend(code_faults(file));
@@ -58,19 +59,19 @@ fn line_faults(line: &str) -> impl Iterator<Item = String> {
     blanks.chain(named.filter(|(text, _)| line.contains(text)).map(|(text, why)| format!("`{text}`: {why}")))
 }
 
-fn code_faults(file: &TextFile) -> Vec<Finding> {
+fn code_faults(file: &TextFile) -> Vec<TidyFinding> {
     let code = code(&file.text);
     let mut findings = Vec::new();
     for (index, line) in code.lines().enumerate() {
         let faults = CODE.iter().filter(|(text, _)| line.contains(text) && !may(file, text));
         findings.extend(
-            faults.map(|(text, why)| Finding::new(&file.path, index + 1, format!("`{text}`: {why}"))),
+            faults.map(|(text, why)| TidyFinding::new(&file.path, index + 1, format!("`{text}`: {why}"))),
         );
     }
     let length = code.lines().filter(|line| !line.trim().is_empty()).count();
     if length > LONGEST {
         let message = format!("{length} lines of code: at {LONGEST} a file holds more than one idea");
-        findings.push(Finding::new(&file.path, 1, message));
+        findings.push(TidyFinding::new(&file.path, 1, message));
     }
     findings
 }
@@ -130,8 +131,8 @@ mod tests {
     #[test]
     fn sleeping_is_for_the_clock_only() {
         let text = "fn a() { std::thread::sleep(b) }\n";
-        assert_eq!(findings("crates/yase/tests/a.rs", text).len(), 1);
-        assert!(findings("crates/monas/src/talws/clock.rs", text).is_empty());
+        assert_eq!(findings("charts/yase/tests/a.rs", text).len(), 1);
+        assert!(findings("runtime/monas/src/talws/clock.rs", text).is_empty());
     }
 
     #[test]

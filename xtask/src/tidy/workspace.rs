@@ -1,4 +1,4 @@
-//! What there is to check: the workspace's crates, as cargo sees them, and its text files.
+//! The input of the checks: the crates of the workspace, from cargo, and its text files.
 
 use std::error::Error;
 use std::fs;
@@ -7,58 +7,58 @@ use std::process::Command;
 
 use serde_json::Value;
 
-/// Folders that hold nothing of the project's own.
+/// Folders without sources of the project.
 const SKIPPED: [&str; 4] = ["target", ".git", "node_modules", "corpus"];
 
-/// What a text file's name ends with.
+/// Extensions of text files.
 const TEXT: [&str; 13] =
     ["rs", "toml", "md", "xml", "srm", "proto", "txt", "json", "svg", "snap", "sh", "yml", "run"];
 
 /// The crates and the text files under one root.
-pub(super) struct Workspace {
-    /// The folder all paths are relative to.
-    pub(super) root: PathBuf,
+pub(crate) struct Workspace {
+    /// The folder to which all paths are relative.
+    pub(crate) root: PathBuf,
     /// The members, sorted by name.
-    pub(super) crates: Vec<Crate>,
+    pub(crate) crates: Vec<Crate>,
     /// The text files, sorted by path.
-    pub(super) files: Vec<TextFile>,
+    pub(crate) files: Vec<TextFile>,
 }
 
 /// A member of the workspace.
-pub(super) struct Crate {
+pub(crate) struct Crate {
     /// Its name, with dashes.
-    pub(super) name: String,
+    pub(crate) name: String,
     /// Its folder, relative to the root.
-    pub(super) folder: PathBuf,
-    /// The root file of its library, relative to the root, if it has one.
-    pub(super) library: Option<PathBuf>,
-    /// What it depends on.
-    pub(super) dependencies: Vec<Dependency>,
+    pub(crate) folder: PathBuf,
+    /// The root file of its library, if any, relative to the workspace.
+    pub(crate) library: Option<PathBuf>,
+    /// Its dependencies.
+    pub(crate) dependencies: Vec<Dependency>,
 }
 
 /// One entry of a crate's dependency tables.
-pub(super) struct Dependency {
+pub(crate) struct Dependency {
     /// The name of the package.
-    pub(super) name: String,
+    pub(crate) name: String,
     /// Whether only tests, examples and benches need it.
-    pub(super) is_dev: bool,
+    pub(crate) is_dev: bool,
 }
 
 /// A file and its text.
-pub(super) struct TextFile {
+pub(crate) struct TextFile {
     /// Relative to the root.
-    pub(super) path: PathBuf,
-    /// All of it.
-    pub(super) text: String,
+    pub(crate) path: PathBuf,
+    /// The content.
+    pub(crate) text: String,
 }
 
 impl TextFile {
     /// Whether it is Rust.
-    pub(super) fn is_rust(&self) -> bool {
+    pub(crate) fn is_rust(&self) -> bool {
         self.path.extension().is_some_and(|extension| extension == "rs")
     }
 
-    /// Whether it holds nothing but tests.
+    /// Whether it contains only tests.
     fn is_test(&self) -> bool {
         self.path.iter().any(|part| part == "tests" || part == "tests.rs")
     }
@@ -66,7 +66,7 @@ impl TextFile {
 
 impl Workspace {
     /// Asks cargo for the crates and reads the files.
-    pub(super) fn read(root: &Path) -> Result<Workspace, Box<dyn Error>> {
+    pub(crate) fn read(root: &Path) -> Result<Workspace, Box<dyn Error>> {
         let mut files = Vec::new();
         read_folder(root, root, &mut files)?;
         files.sort_by(|a, b| a.path.cmp(&b.path));
@@ -74,16 +74,45 @@ impl Workspace {
     }
 
     /// The file at a path relative to the root.
-    pub(super) fn file(&self, path: &Path) -> Option<&TextFile> {
+    pub(crate) fn file(&self, path: &Path) -> Option<&TextFile> {
         self.files.iter().find(|file| file.path == path)
     }
 
+    /// The crate that a file belongs to.
+    pub(crate) fn crate_of(&self, file: &TextFile) -> Option<&Crate> {
+        let owners = self.crates.iter().filter(|member| file.path.starts_with(&member.folder));
+        owners.max_by_key(|member| member.folder.components().count())
+    }
+
     /// The Rust files of a crate's `src` that are not tests.
-    pub(super) fn sources<'a>(&'a self, of: &Crate) -> impl Iterator<Item = &'a TextFile> {
+    pub(crate) fn sources<'a>(&'a self, of: &Crate) -> impl Iterator<Item = &'a TextFile> {
         let folder = of.folder.join("src");
         let is_source =
             move |file: &&TextFile| file.is_rust() && file.path.starts_with(&folder) && !file.is_test();
         self.files.iter().filter(is_source)
+    }
+}
+
+#[cfg(test)]
+impl Workspace {
+    /// The files of an example. A folder with a `src` is a crate that is named after it.
+    pub(crate) fn example(files: &[(&str, &str)]) -> Workspace {
+        let folders = files.iter().filter_map(|(path, _)| path.split_once("/src/").map(|(folder, _)| folder));
+        let folders: std::collections::BTreeSet<&str> = folders.collect();
+        let member = |folder: &str| Crate {
+            name: folder.into(),
+            folder: folder.into(),
+            library: None,
+            dependencies: Vec::new(),
+        };
+        Workspace {
+            root: PathBuf::new(),
+            crates: folders.into_iter().map(member).collect(),
+            files: files
+                .iter()
+                .map(|(path, text)| TextFile { path: path.into(), text: (*text).into() })
+                .collect(),
+        }
     }
 }
 
@@ -165,15 +194,15 @@ mod tests {
     fn test_modules_are_no_sources() {
         let file = |path: &str| TextFile { path: path.into(), text: String::new() };
         let files = ["src/lib.rs", "src/a/tests.rs", "src/tests/b.rs", "tests/c.rs", "src/d.txt"]
-            .map(|path| file(&format!("crates/yase/{path}")));
+            .map(|path| file(&format!("charts/yase/{path}")));
         let member = Crate {
             name: "yase".into(),
-            folder: "crates/yase".into(),
+            folder: "charts/yase".into(),
             library: None,
             dependencies: Vec::new(),
         };
         let workspace = Workspace { root: PathBuf::new(), crates: Vec::new(), files: files.into() };
         let sources: Vec<&Path> = workspace.sources(&member).map(|file| file.path.as_path()).collect();
-        assert_eq!(sources, [Path::new("crates/yase/src/lib.rs")]);
+        assert_eq!(sources, [Path::new("charts/yase/src/lib.rs")]);
     }
 }

@@ -1,5 +1,5 @@
-//! A program with a main loop of its own: it waits for temperatures to be typed and says what the thermostat makes of them. Monas runs on threads beside it
-//! and is stopped when the input ends.
+//! A program with its own main loop: it reads temperatures from standard input and prints the
+//! thermostat's decisions. Monas runs on other threads and is stopped when the input ends.
 
 use std::error::Error;
 use std::io::{self, BufRead};
@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use example_embedded::messages::Temperature;
 use example_embedded::{HEATER, TEMPERATURE, talws};
-use monas::{Running, Talws};
-use narukom::Narukom;
+use monas::{RealTimeRun, Talws};
+use narukom::Hub;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let running = talws().start()?;
@@ -27,9 +27,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Tells the thermostat and waits for what it decides: for a cycle of its, a tenth of a second at most.
-fn answer(running: &Running, hub: &Narukom, celsius: f64) -> Result<&'static str, Box<dyn Error>> {
-    let now = || running.overview().now();
+/// Sends a temperature to the thermostat and waits for its decision: at most one cycle, a tenth of
+/// a second.
+fn answer(running: &RealTimeRun, hub: &Hub, celsius: f64) -> Result<&'static str, Box<dyn Error>> {
+    let now = || running.run_handle().now();
     let mut board = hub.blackboard("window");
     board.publish(TEMPERATURE, Temperature { celsius })?;
     board.publish_all(now());

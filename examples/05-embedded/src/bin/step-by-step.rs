@@ -1,5 +1,5 @@
-//! Two rooms on a winter's evening, in steps of a minute. Each has a run of its own, which goes on when the room says so: nothing happens in between,
-//! and no thread is started.
+//! Two rooms on a winter's evening, in steps of a minute. Each has its own run, advanced by the
+//! room; no thread is started.
 
 use std::error::Error;
 use std::time::Duration;
@@ -8,11 +8,11 @@ use example_embedded::messages::Temperature;
 use example_embedded::{HEATER, TEMPERATURE, talws};
 use monas::{Blackboard, Simulation, Talws};
 
-/// A step of the rooms.
+/// The length of a step of the rooms.
 const STEP: Duration = Duration::from_secs(60);
 /// Degrees that the heater adds in a step.
 const HEAT: f64 = 0.8;
-/// The part of its warmth that a room loses in a step.
+/// Fraction of its temperature that a room loses in a step.
 const LOSS: f64 = 0.01;
 
 struct Room {
@@ -29,7 +29,8 @@ impl Room {
         Ok(Room { celsius, agents, board })
     }
 
-    /// A minute goes by: in the room, then for its agents, who learn what the thermometer shows. Tells whether it was heated.
+    /// Advances the room by a minute, then its agents with the new temperature. Returns whether the
+    /// room was heated.
     fn step(&mut self) -> Result<bool, Box<dyn Error>> {
         let now = self.agents.now();
         self.board.process_messages(now);

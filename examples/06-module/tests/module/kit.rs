@@ -1,21 +1,21 @@
-//! The robot's program, started as a person would.
+//! Starts the robot's program like a user.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// The workspace.
+/// The root of the workspace.
 pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the workspace is there")
 }
 
-/// The program with arguments, ready to be started.
+/// The program with arguments.
 pub(crate) fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_robot"));
     command.args(arguments).env_remove("MONAS_LOG").env_remove("NO_COLOR");
     command
 }
 
-/// What it printed and how it ended.
+/// The output and exit status of a program.
 #[derive(Debug)]
 pub(crate) struct Answer {
     pub(crate) code: Option<i32>,

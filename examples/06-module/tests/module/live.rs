@@ -1,4 +1,4 @@
-//! Modules of a run in real time, by the commands.
+//! Tests of modules in a run in real time, using the commands.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use crate::kit::{Answer, root};
 use crate::reading::read_in;
 use crate::running::{Running, ask, objects};
 
-/// A robot that runs, with sockets and the file of its module in a folder.
+/// A running robot, with sockets and its module's file in a folder.
 struct Robot {
     folder: tempfile::TempDir,
     run: Running,
@@ -32,10 +32,10 @@ impl Robot {
         Robot { folder, run }
     }
 
-    /// Puts a module where the robot's is.
+    /// Replaces the robot's module.
     fn put(&self, module: &Path) -> String {
         let file = self.folder.path().join("eyes.so");
-        // as cargo does: a new file, in the place of the one before
+        // like cargo: a new file replaces the previous one
         let new = self.folder.path().join("eyes.new");
         fs::copy(module, &new).and_then(|_| fs::rename(&new, &file)).expect("the folder takes files");
         file.display().to_string()
@@ -57,7 +57,7 @@ impl Robot {
         assert!(answer.err.contains(part), "{arguments:?}: `{part}` is not in {}", answer.err);
     }
 
-    /// How far the ball is by messages to come; the first may be from before.
+    /// The distance of the ball in future messages; the first may be from before.
     fn distance(&self) -> f64 {
         let said =
             self.done(&["topic", "echo", "soccer/ball", "--count", "3", "--for", "30s", "--format", "json"]);
@@ -70,7 +70,7 @@ impl Robot {
     }
 }
 
-/// The distance in a message, wherever its fields are.
+/// The distance in a message, independent of the nesting of its fields.
 fn distance_in(said: &Value) -> Option<f64> {
     match said {
         Value::Object(fields) => {
@@ -99,7 +99,7 @@ fn the_session_with_a_match() {
     read_in(folder, "session.md", 14);
 }
 
-/// What runs is saved with its modules, and can be run again.
+/// A run is saved with its modules and can be run again.
 #[test]
 fn the_set_up_is_saved_with_its_modules() {
     let robot = Robot::start();
@@ -144,7 +144,7 @@ fn a_module_comes_changes_and_goes_while_the_robot_runs() {
     assert_eq!((&module["activities"], &module["agents"]), (&["Eyes"].into(), &["Head"].into()));
 
     robot.put(&sharp_eyes());
-    assert_eq!(robot.done(&["module", "reload", "eyes"]), "module `eyes` is exchanged\n");
+    assert_eq!(robot.done(&["module", "reload", "eyes"]), "module `eyes` is reloaded\n");
     assert_eq!(robot.distance(), 1.0);
 
     robot.put(&blind_eyes());
@@ -164,7 +164,7 @@ fn a_module_comes_changes_and_goes_while_the_robot_runs() {
     assert!(log.contains("WARN") && log.contains("sharp"), "{log}");
 }
 
-/// What modules did is on the tape, and a replay does it again.
+/// The tape contains changes of modules, and a replay repeats them.
 #[test]
 fn a_run_with_modules_is_replayed() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -194,7 +194,7 @@ fn a_run_with_modules_is_replayed() {
     let replayed = ask(folder.path(), &["tape", "replay", &tape]);
     assert_eq!(replayed.code, Some(0), "{}{}", replayed.out, replayed.err);
     assert!(replayed.out.contains(" messages compared, 0 differences"), "{}", replayed.out);
-    // The module that was loaded then is another file by now.
+    // The file of the recorded module has changed since.
     fs::copy(&sharp, &eyes).expect("the folder takes files");
     let other = ask(folder.path(), &["tape", "replay", &tape]);
     assert_ne!(other.code, Some(0), "{}", other.out);

@@ -1,16 +1,16 @@
-//! The module as it is used: loaded into agents in simulated time, and into the program while it runs.
+//! Tests of the module: loaded into agents in simulated time, and into the running program.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot be prepared fails")]
 
 mod built;
-#[path = "../../../../crates/monas-cli/tests/command/copying.rs"]
+#[path = "../../../../cli/monas-cli/tests/command/copying.rs"]
 mod copying;
 mod kit;
 mod live;
-#[path = "../../../../crates/monas-cli/tests/command/reading.rs"]
+#[path = "../../../../cli/monas-cli/tests/command/reading.rs"]
 #[allow(dead_code, reason = "the chapters of the command use more of it")]
 mod reading;
-#[path = "../../../../crates/monas-cli/tests/command/running.rs"]
+#[path = "../../../../cli/monas-cli/tests/command/running.rs"]
 #[allow(dead_code, reason = "the tests of the command use more of it")]
 mod running;
 mod simulated;

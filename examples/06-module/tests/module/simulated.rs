@@ -1,4 +1,4 @@
-//! Modules in simulated time: the test is the program that loads them.
+//! Tests of modules in simulated time; the test program loads them.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use monas_soccer::topics::BALL;
 
 use crate::built::{blind_eyes, eyes, sharp_eyes};
 
-/// What is known of the ball, and by whom it was said last.
+/// The latest message about the ball.
 fn ball(simulation: &Simulation) -> Ball {
     let mut board = simulation.hub(Talws::LOCAL).expect("the host").blackboard("test");
     board.process_messages(simulation.now());
@@ -31,13 +31,13 @@ fn of_file(file: &Path) -> Change {
     Change { file: file.display().to_string(), module: "eyes".into(), ..Change::default() }
 }
 
-/// What a refused change is refused for.
+/// The reasons for a rejected change.
 fn reasons(changed: &Changed) -> String {
     assert!(!changed.done, "{changed:?}");
     changed.findings.iter().map(|one| format!("{}: {} ({})\n", one.code, one.message, one.hint)).collect()
 }
 
-/// An agent without eyes.
+/// An agent without the module.
 fn blind_robot() -> Simulation {
     let agent = Agent::new("Head", Hz(10)).activity(|_: &mut monas::Blackboard| {});
     Talws::new().agent(agent).simulate(7).expect("it starts")
@@ -56,7 +56,7 @@ fn what_a_module_publishes_is_read_as_what_it_is() {
 }
 
 #[test]
-fn a_constructor_that_panics_is_told_and_harms_nobody() {
+fn a_constructor_that_panics_is_reported_without_effect() {
     let module = Module::load(blind_eyes()).expect("it fits");
     let registry = Registry::linked().with_module(module).expect("no name is taken");
     let error = registry.activity("Eyes").err().expect("it cannot be made");
@@ -67,7 +67,7 @@ fn a_constructor_that_panics_is_told_and_harms_nobody() {
 fn a_file_that_was_built_otherwise_is_refused_before_it_runs() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut bytes = fs::read(eyes()).expect("it was built");
-    // The fields of the note, where they stand.
+    // Corrupts the fields of the note in place.
     for (there, instead) in [("opt-level", "opt-lavel"), ("\nlock ", "\nl0ck ")] {
         let at = note_at(&bytes, there);
         bytes[at..at + instead.len()].copy_from_slice(instead.as_bytes());
@@ -91,7 +91,7 @@ fn a_file_that_was_built_otherwise_is_refused_before_it_runs() {
     assert!(reasons(&change(&mut simulation, Action::LoadModule, gone)).contains("gone.so: No such file"));
 }
 
-/// Where a text stands in the note of a file.
+/// The position of a text in the note of a file.
 fn note_at(bytes: &[u8], text: &str) -> usize {
     let begin = b"format 1\ncompiler rustc";
     let notes = (0..bytes.len() - begin.len()).filter(|at| bytes[*at..].starts_with(begin));
@@ -166,7 +166,7 @@ fn the_file_that_is_loaded_is_the_one_that_was_meant() {
     assert!(change(&mut simulation, Action::LoadModule, Change { digest, ..of_file(&eyes()) }).done);
 }
 
-/// A configuration in a folder of its own.
+/// A configuration in its own folder.
 fn configured(name: &str, text: &str) -> (tempfile::TempDir, std::path::PathBuf) {
     let folder = tempfile::tempdir().expect("a folder");
     fs::copy(eyes(), folder.path().join("eyes.so")).expect("it was built");
@@ -187,7 +187,7 @@ fn a_configuration_names_modules_beside_itself() {
             talws.unwrap_or_else(|error| panic!("{name}: {error}")).simulate(7).expect("it starts");
         run_for(&mut simulation, 1.0);
         assert_eq!((ball(&simulation).found, ball(&simulation).distance), (false, 2.0), "{name}");
-        // The run knows it by its name.
+        // The run identifies it by its name.
         assert!(change(&mut simulation, Action::ReloadModule, of_file(&sharp_eyes())).done, "{name}");
         run_for(&mut simulation, 1.0);
         assert_eq!((ball(&simulation).found, ball(&simulation).distance), (true, 1.0), "{name}");

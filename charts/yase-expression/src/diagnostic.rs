@@ -1,0 +1,209 @@
+//! Diagnostics about texts that users write.
+//!
+//! Parsing never fails: it returns the part that could be parsed and a list of [`Diagnostic`]s. A
+//! diagnostic has a position as a byte [`Span`] and, once [attached](Diagnostic::in_source), the
+//! text and the name of the file, from which line, column and the underlined text are derived.
+
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A range of a text: bytes `start..end`.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
+pub struct Span {
+    /// First byte.
+    pub start: usize,
+    /// One past the last byte.
+    pub end: usize,
+}
+
+impl Span {
+    /// The bytes from `start` to before `end`.
+    pub const fn new(start: usize, end: usize) -> Span {
+        Span { start, end }
+    }
+
+    /// The same range in a text with `offset` more bytes in front.
+    pub const fn shifted(self, offset: usize) -> Span {
+        Span::new(self.start + offset, self.end + offset)
+    }
+
+    /// The smallest span that covers both.
+    pub fn to(self, other: Span) -> Span {
+        Span::new(self.start.min(other.start), self.end.max(other.end))
+    }
+}
+
+impl From<Range<usize>> for Span {
+    fn from(range: Range<usize>) -> Span {
+        Span::new(range.start, range.end)
+    }
+}
+
+/// A text with its file name, shared by the diagnostics about it.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Source {
+    /// The path as given by the user, or a word such as `formula`.
+    pub name: String,
+    /// The whole text.
+    pub text: String,
+}
+
+impl Source {
+    /// A text and its name, ready to be shared.
+    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Arc<Source> {
+        Arc::new(Source { name: name.into(), text: text.into() })
+    }
+
+    /// Line and column of a byte, both from 1; columns count characters.
+    pub fn position(&self, byte: usize) -> (usize, usize) {
+        let mut end = byte.min(self.text.len());
+        while !self.text.is_char_boundary(end) {
+            end -= 1;
+        }
+        let before = &self.text[..end];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+    }
+}
+
+/// Severity of a diagnostic.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum Severity {
+    /// Additional information.
+    Information,
+    /// Probably a mistake.
+    Warning,
+    /// The text cannot be used.
+    Error,
+}
+
+/// A finding about a text: what is wrong, where, and how to correct it.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Diagnostic {
+    /// A stable code such as `E0123`, for documentation and tests.
+    pub code: &'static str,
+    /// Its severity.
+    pub severity: Severity,
+    /// One sentence in lower case without a full stop that names the cause.
+    pub message: String,
+    /// The position, in bytes of [`source`](Diagnostic::source) (before it is attached, of the
+    /// parsed text).
+    pub span: Span,
+    /// A correction, if one is known.
+    pub hint: Option<String>,
+    /// The text that contains the span.
+    pub source: Option<Arc<Source>>,
+}
+
+impl Diagnostic {
+    /// An error at a position.
+    pub fn error(code: &'static str, span: impl Into<Span>, message: impl Into<String>) -> Diagnostic {
+        let (span, message) = (span.into(), message.into());
+        Diagnostic { code, severity: Severity::Error, message, span, hint: None, source: None }
+    }
+
+    /// A warning at a position.
+    pub fn warning(code: &'static str, span: impl Into<Span>, message: impl Into<String>) -> Diagnostic {
+        Diagnostic { severity: Severity::Warning, ..Diagnostic::error(code, span, message) }
+    }
+
+    /// Adds a hint with a correction.
+    pub fn with_hint(mut self, hint: impl Into<String>) -> Diagnostic {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    /// Adds "did you mean" if a candidate is similar to the unknown name.
+    pub fn with_nearest<'a>(self, wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> Diagnostic {
+        match nearest(wrong, candidates) {
+            Some(name) => self.with_hint(format!("did you mean `{name}`?")),
+            None => self,
+        }
+    }
+
+    /// Attaches the text that contains the span; the first attached source is kept.
+    pub fn in_source(mut self, source: &Arc<Source>) -> Diagnostic {
+        self.source.get_or_insert_with(|| source.clone());
+        self
+    }
+
+    /// The same finding for a text that begins at byte `offset` of a larger one.
+    pub fn shifted(mut self, offset: usize) -> Diagnostic {
+        self.span = self.span.shifted(offset);
+        self
+    }
+
+    /// Line and column (from 1) of the position, if the source is attached.
+    pub fn position(&self) -> Option<(usize, usize)> {
+        self.source.as_ref().map(|source| source.position(self.span.start))
+    }
+
+    /// Whether it is an error.
+    pub fn is_error(&self) -> bool {
+        self.severity == Severity::Error
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    /// `file:line:column: error[E0123]: message (hint)`
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let (Some(source), Some((line, column))) = (&self.source, self.position()) {
+            write!(f, "{}:{line}:{column}: ", source.name)?;
+        }
+        let severity = match self.severity {
+            Severity::Information => "information",
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+        };
+        write!(f, "{severity}[{}]: {}", self.code, self.message)?;
+        match &self.hint {
+            Some(hint) => write!(f, " ({hint})"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The candidate most similar to `wrong`, if at most a third of its letters differ, ignoring case.
+pub fn nearest<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = wrong.to_lowercase();
+    let limit = (wrong.chars().count() / 3).max(1);
+    candidates
+        .into_iter()
+        .map(|name| (strsim::damerau_levenshtein(&lower, &name.to_lowercase()), name))
+        .filter(|(distance, _)| *distance <= limit)
+        .min()
+        .map(|(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn position_counts_lines_and_characters_from_one() {
+        let source = Source::new("a.srm", "goalie = aω\nb = c");
+        assert_eq!(source.position(0), (1, 1));
+        assert_eq!(source.position("goalie = aω".len()), (1, 12));
+        assert_eq!(source.position("goalie = aω\nb".len()), (2, 2));
+        assert_eq!(source.position(1000), (2, 6));
+    }
+
+    #[test]
+    fn display_names_file_line_column_code_and_hint() {
+        let source = Source::new("a.xml", "<agent>\n<actvity/>");
+        let diagnostic = Diagnostic::error("E0001", 9..16, "unknown element `actvity`")
+            .with_nearest("actvity", ["name", "activity"])
+            .in_source(&source);
+        assert_eq!(
+            diagnostic.to_string(),
+            "a.xml:2:2: error[E0001]: unknown element `actvity` (did you mean `activity`?)"
+        );
+    }
+
+    #[test]
+    fn nearest_is_silent_when_nothing_is_near() {
+        assert_eq!(nearest("Vsion", ["Vision", "Sensors"]), Some("Vision"));
+        assert_eq!(nearest("Elephant", ["Vision", "Sensors"]), None);
+    }
+}

@@ -1,0 +1,262 @@
+//! Evaluation of compiled expressions.
+
+use super::world::{ABS, BALL, COLOUR, DISTANCE, FOUND, GAME, NEAR, World, guard};
+use crate::vocabulary::{FieldId, Value};
+use crate::{CallError, GuardError, TimerState};
+
+/// `Ball.found` is the first operand, `GameState.score > 0` the second; `None` is unknown.
+fn world(first: Option<bool>, second: Option<bool>) -> World {
+    let mut world = World::new();
+    if let Some(first) = first {
+        world = world.with(BALL, &[FOUND], Value::Bool(first));
+    }
+    if let Some(second) = second {
+        world = world.with(GAME, &[FieldId(2)], Value::Int(second.into()));
+    }
+    world
+}
+
+/// The truth value of a condition: unknown if neither it nor its negation holds.
+fn truth(world: &World, condition: &str) -> Option<bool> {
+    let holds = world.holds(condition).unwrap();
+    let fails = world.holds(&format!("!({condition})")).unwrap();
+    assert!(!(holds && fails), "{condition}");
+    (holds || fails).then_some(holds)
+}
+
+#[test]
+fn conjunction_disjunction_and_negation_are_kleenes() {
+    const T: Option<bool> = Some(true);
+    const F: Option<bool> = Some(false);
+    const U: Option<bool> = None;
+    for (a, b, and, or) in [
+        (T, T, T, T),
+        (T, F, F, T),
+        (T, U, U, T),
+        (F, T, F, T),
+        (F, F, F, F),
+        (F, U, F, U),
+        (U, T, U, T),
+        (U, F, F, U),
+        (U, U, U, U),
+    ] {
+        let world = world(a, b);
+        assert_eq!(truth(&world, "Ball.found && GameState.score > 0"), and, "{a:?} and {b:?}");
+        assert_eq!(truth(&world, "Ball.found || GameState.score > 0"), or, "{a:?} or {b:?}");
+        assert_eq!(truth(&world, "Ball.found"), a);
+        assert_eq!(truth(&world, "!Ball.found"), a.map(|a| !a));
+    }
+}
+
+#[test]
+fn whatever_reads_a_missing_message_is_unknown() {
+    let world = World::new();
+    for condition in [
+        "Ball.distance > 0",
+        "Ball.distance == Ball.distance",
+        "0 != Ball.distance",
+        "Ball.distance * 0 == 0",
+        "1 / Ball.distance > 0",
+        "-Ball.distance < 1",
+        "abs(Ball.distance) >= 0",
+        "near(Ball, 1)",
+        "(Ball.found && true) == true",
+        "Ball.colour == \"\"",
+    ] {
+        assert_eq!(truth(&world, condition), None, "{condition}");
+    }
+    assert!(world.calls.borrow().is_empty());
+}
+
+#[test]
+fn absence_is_never_unknown() {
+    let (with, without) = (world(Some(false), None), world(None, None));
+    for (condition, present, absent) in [
+        ("Ball == NULL", false, true),
+        ("ball.State.Ball != NULL", true, false),
+        ("Ball == NULL || Ball.found", false, true),
+    ] {
+        assert_eq!(truth(&with, condition), Some(present), "{condition}");
+        assert_eq!(truth(&without, condition), Some(absent), "{condition}");
+    }
+    assert_eq!(truth(&with, "striker.ball.State.Ball == NULL"), Some(true));
+}
+
+/// Only the form decides the value of a timer that was never started.
+#[test]
+fn timers_in_both_forms() {
+    for (state, bare, checked) in [
+        (TimerState::Unset, true, false),
+        (TimerState::Running, false, false),
+        (TimerState::Over, true, true),
+    ] {
+        let world = World::new().with_timer(1, state).with_timer(0, TimerState::Running);
+        assert_eq!(truth(&world, "robot.period"), Some(bare), "{state:?}");
+        assert_eq!(truth(&world, "TimeoutCheck(robot.period)"), Some(checked), "{state:?}");
+        assert_eq!(truth(&world, "motion_timeout"), Some(false), "{state:?}");
+    }
+    assert_eq!(truth(&World::new(), "TimeoutCheck(never_started)"), Some(false));
+}
+
+#[test]
+fn states_are_active_or_not() {
+    let world = World::new().with_active(7);
+    assert_eq!(truth(&world, "In( play / (a|b)ω )"), Some(true));
+    assert_eq!(truth(&world, "In(stand)"), Some(false));
+}
+
+#[test]
+fn numbers_compare_by_value_whatever_their_width() {
+    for (left, comparison, right, expected) in [
+        (Value::Int(2), "==", "2", true),
+        (Value::Uint(2), "==", "2.0", true),
+        (Value::Float(2.0), "==", "2", true),
+        (Value::Float(2.5), ">", "2", true),
+        (Value::Float(-2.5), "<", "-2", true),
+        (Value::Float(-2.5), ">", "-3", true),
+        (Value::Int(-1), "<", "18446744073709551615", true),
+        (Value::Uint(u64::MAX), "==", "18446744073709551615", true),
+        (Value::Uint(u64::MAX), "<", "18446744073709551616.0", true),
+        (Value::Int(9_007_199_254_740_993), "==", "9007199254740992.0", false),
+        (Value::Int(i64::MIN), "==", "-9223372036854775808", true),
+        (Value::Float(f64::INFINITY), ">", "18446744073709551615", true),
+        (Value::Float(f64::NEG_INFINITY), "<", "0", true),
+        (Value::Float(-0.0), "==", "0", true),
+        (Value::Int(1), "!=", "1.5", true),
+        (Value::Int(1), "<=", "1", true),
+        (Value::Int(1), ">=", "1.5", false),
+    ] {
+        let world = World::new().with(BALL, &[DISTANCE], left);
+        let condition = format!("Ball.distance {comparison} {right}");
+        assert_eq!(world.holds(&condition), Ok(expected), "{left:?} {comparison} {right}");
+        let mirrored = match comparison.strip_prefix('<') {
+            Some(rest) => format!(">{rest}"),
+            None => comparison.replace('>', "<"),
+        };
+        let condition = format!("{right} {mirrored} Ball.distance");
+        assert_eq!(world.holds(&condition), Ok(expected), "{condition} of {left:?}");
+        let condition = format!("Ball.distance {comparison} {right} * Ball.distance / Ball.distance");
+        if matches!(left, Value::Float(float) if float.is_finite() && float != 0.0) {
+            assert_eq!(world.holds(&condition), Ok(expected), "{condition} of {left:?}");
+        }
+    }
+}
+
+#[test]
+fn arithmetic_is_whole_as_long_as_it_is_exact() {
+    for condition in [
+        "1 + 2 * 3 - 4 == 3",
+        "2 - 3 - 4 == -5",
+        "5 / 2 == 2.5",
+        "8 / 2 / 2 == 2",
+        "-(1 + 1) == -2",
+        "- -1 == 1",
+        "0.5 + 1 == 1.5",
+        "18446744073709551615 - 1 == 18446744073709551614",
+        "9007199254740993 + 0 == 9007199254740993",
+        "-9223372036854775808 < -9223372036854775807",
+    ] {
+        assert_eq!(World::new().holds(condition), Ok(true), "{condition}");
+    }
+}
+
+#[test]
+fn what_has_no_result_is_an_error() {
+    let with = |value| World::new().with(BALL, &[DISTANCE], value);
+    for (world, condition, error) in [
+        (with(Value::Int(0)), "1 / Ball.distance > 0", GuardError::DivisionByZero),
+        (with(Value::Float(-0.0)), "1 / Ball.distance > 0", GuardError::DivisionByZero),
+        (with(Value::Float(f64::NAN)), "Ball.distance > 0", GuardError::NotANumber),
+        (with(Value::Float(f64::NAN)), "Ball.distance != 0.5", GuardError::NotANumber),
+        (with(Value::Uint(u64::MAX)), "Ball.distance + 1 > 0", GuardError::OutOfRange),
+        (with(Value::Uint(u64::MAX)), "Ball.distance * Ball.distance > 0", GuardError::OutOfRange),
+        (with(Value::Uint(u64::MAX)), "-Ball.distance < 0", GuardError::OutOfRange),
+        (with(Value::Text("3")), "Ball.distance > 2", GuardError::WrongType),
+        (with(Value::Text("3")), "Ball.distance + 1 > 2", GuardError::WrongType),
+        (with(Value::Enum(3)), "Ball.distance == 3", GuardError::WrongType),
+        (World::new().with(BALL, &[FOUND], Value::Int(1)), "Ball.found", GuardError::WrongType),
+        (World::new().with(BALL, &[COLOUR], Value::Int(1)), "Ball.colour == \"1\"", GuardError::WrongType),
+        (
+            with(Value::Float(-1.0)),
+            "soccer::root(Ball.distance) > 0",
+            GuardError::Call(CallError::new("no root of a negative number")),
+        ),
+    ] {
+        assert_eq!(world.holds(condition), Err(error.clone()), "{condition}");
+        assert_eq!(world.holds(&format!("!({condition})")), Err(error), "{condition}");
+    }
+    let failed = GuardError::Call(CallError::new("no root of a negative number"));
+    assert_eq!(failed.to_string(), "the function failed: no root of a negative number");
+}
+
+#[test]
+fn what_is_decided_is_not_looked_at_further() {
+    let world = World::new();
+    assert_eq!(world.holds("false && 1 / 0 > 1"), Ok(false));
+    assert_eq!(world.holds("true || 1 / 0 > 1"), Ok(true));
+    assert_eq!(world.holds("Ball.found && 1 / 0 > 1"), Err(GuardError::DivisionByZero));
+    assert_eq!(world.holds("1 / 0 > 1 || true"), Err(GuardError::DivisionByZero));
+}
+
+#[test]
+fn functions_get_their_arguments_in_order() {
+    let world = World::new().with(BALL, &[DISTANCE], Value::Float(-0.75));
+    assert_eq!(world.holds("near(Ball, abs(Ball.distance))"), Ok(true));
+    assert_eq!(world.holds("near(ball.State.Ball, 0.5)"), Ok(false));
+    assert_eq!(world.holds("soccer::root(4.0) == 2"), Ok(true));
+    let calls = world.calls.borrow();
+    assert_eq!(calls[0], (ABS, "[Float(-0.75)]".to_owned()));
+    assert_eq!(calls[1], (NEAR, "[Message(..), Float(0.75)]".to_owned()));
+}
+
+#[test]
+fn texts_and_truths_compare_for_sameness() {
+    let world =
+        World::new().with(BALL, &[COLOUR], Value::Text("blue")).with(BALL, &[FOUND], Value::Bool(true));
+    assert_eq!(world.holds("Ball.colour == \"blue\" && Ball.colour != \"Blue\""), Ok(true));
+    assert_eq!(world.holds("Ball.found == true && Ball.found != debug"), Ok(true));
+    assert_eq!(world.holds("(1 < 2) == Ball.found"), Ok(true));
+}
+
+/// A comparison of a field with a constant reads the field once.
+#[test]
+fn what_does_not_hold_is_a_value_too() {
+    for (found, is_so, is_not_so) in
+        [(Some(true), Some(true), Some(false)), (Some(false), Some(false), Some(true)), (None, None, None)]
+    {
+        let world = world(found, None);
+        assert_eq!(truth(&world, "(Ball.found && true) == true"), is_so);
+        assert_eq!(truth(&world, "(Ball.found && true) == false"), is_not_so);
+    }
+}
+
+#[test]
+fn a_guard_knows_what_it_reads_wherever_that_stands() {
+    let topics = |condition: &str| guard(condition).reads().to_vec();
+    let both = [BALL, GAME];
+    for condition in [
+        "Ball.distance < GameState.score",
+        "GameState.score < Ball.distance",
+        "abs(Ball.distance) + GameState.score > 1",
+        "1 + Ball.distance - GameState.score > 1",
+        "Ball.distance * GameState.score > 1",
+        "2 * Ball.distance / GameState.score > 1",
+        "-Ball.distance < -GameState.score",
+        "(Ball.found && true) == (GameState.score > 0)",
+        "!(Ball.found || GameState == NULL)",
+    ] {
+        assert_eq!(topics(condition), both, "{condition}");
+        let guard = guard(condition);
+        let sources: Vec<_> = guard.sources().iter().map(|source| source.topic).collect();
+        assert_eq!(sources, both, "{condition}");
+    }
+}
+
+#[test]
+fn a_guard_is_evaluated_again_and_again() {
+    let guard = guard("Ball.distance <= limit");
+    for (distance, expected) in [(0.2, true), (0.25, true), (0.3, false)] {
+        let world = World::new().with(BALL, &[DISTANCE], Value::Float(distance));
+        assert_eq!(guard.evaluate(&world), Ok(expected));
+    }
+}

@@ -1,0 +1,290 @@
+//! Timed inputs of a world, and an interpreter that plays them.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use yase::{
+    Activation, CompiledChart, Machine, MicroStep, Moment, Outcome, ScopeId, Semantics, Statechart, TopicId,
+};
+
+use super::world::{TOPICS, World, vocabulary};
+
+/// An interpreter of charts: the machine, or the reference.
+pub trait Interpreter {
+    /// Starts the chart.
+    fn start(&mut self, now: Moment, world: &mut World);
+    /// An event comes.
+    fn event(&mut self, name: &str);
+    /// A message has arrived on a topic.
+    fn message(&mut self, topic: TopicId);
+    /// Reports the return of an activity; false if its activation is outdated.
+    fn returned(&mut self, activation: Activation, outcome: Outcome) -> bool;
+    /// Reports a repeated call of an activity; false if its activation is outdated.
+    fn resumed(&mut self, activation: Activation) -> bool;
+    /// Executes a step; `Err` with a text if the chart fails.
+    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String>;
+    /// Whether a step is due.
+    fn needs_step(&self, now: Moment) -> bool;
+    /// When the next timer expires.
+    fn next_deadline(&self) -> Option<Moment>;
+    /// The number of blackboards.
+    fn regions(&self) -> usize;
+}
+
+impl Interpreter for Machine {
+    fn start(&mut self, now: Moment, world: &mut World) {
+        Machine::start(self, now, world);
+    }
+
+    fn event(&mut self, name: &str) {
+        self.dispatch_name(name);
+    }
+
+    fn message(&mut self, topic: TopicId) {
+        self.message_arrived(topic, 1);
+    }
+
+    fn returned(&mut self, activation: Activation, outcome: Outcome) -> bool {
+        self.activity_returned(activation, outcome)
+    }
+
+    fn resumed(&mut self, activation: Activation) -> bool {
+        self.activity_resumed(activation)
+    }
+
+    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+        self.run_to_completion(now, world).map(|_| ()).map_err(|error| error.to_string())
+    }
+
+    fn needs_step(&self, now: Moment) -> bool {
+        Machine::needs_step(self, now)
+    }
+
+    fn next_deadline(&self) -> Option<Moment> {
+        Machine::next_deadline(self)
+    }
+
+    fn regions(&self) -> usize {
+        self.chart().regions().len()
+    }
+}
+
+/// A machine that executes single micro-steps, which must be equivalent to complete steps.
+pub struct ByMicroSteps(pub Machine);
+
+impl Interpreter for ByMicroSteps {
+    fn start(&mut self, now: Moment, world: &mut World) {
+        self.0.start(now, world);
+    }
+
+    fn event(&mut self, name: &str) {
+        self.0.dispatch_name(name);
+    }
+
+    fn message(&mut self, topic: TopicId) {
+        self.0.message_arrived(topic, 1);
+    }
+
+    fn returned(&mut self, activation: Activation, outcome: Outcome) -> bool {
+        self.0.activity_returned(activation, outcome)
+    }
+
+    fn resumed(&mut self, activation: Activation) -> bool {
+        self.0.activity_resumed(activation)
+    }
+
+    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+        loop {
+            match self.0.micro_step(now, world) {
+                Ok(MicroStep::Progressed) => {}
+                Ok(MicroStep::Stable(_)) => return Ok(()),
+                Err(error) => return Err(error.to_string()),
+            }
+        }
+    }
+
+    fn needs_step(&self, now: Moment) -> bool {
+        self.0.needs_step(now)
+    }
+
+    fn next_deadline(&self) -> Option<Moment> {
+        self.0.next_deadline()
+    }
+
+    fn regions(&self) -> usize {
+        self.0.chart().regions().len()
+    }
+}
+
+/// An input.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Input {
+    /// An event comes.
+    Event(String),
+    /// A message with a number arrives on a topic.
+    Message(TopicId, i64),
+}
+
+/// Inputs in order of time, in milliseconds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Script {
+    /// The inputs with their times in milliseconds.
+    pub inputs: Vec<(u64, Input)>,
+    /// The end of the script in milliseconds.
+    pub until: u64,
+}
+
+impl Script {
+    /// `10 e; 20 f; 30 A=3; 50`: events, messages, and the end.
+    pub fn parse(text: &str) -> Script {
+        let mut script = Script::default();
+        for item in text.split(';').map(str::trim).filter(|item| !item.is_empty()) {
+            let (time, what) = item.split_once(' ').unwrap_or((item, ""));
+            let time = time.parse().unwrap();
+            script.until = time;
+            match what.split_once('=') {
+                Some((message, value)) => {
+                    let topic = TOPICS.iter().position(|name| *name == message).unwrap();
+                    script.inputs.push((time, Input::Message(TopicId(topic as u32), value.parse().unwrap())));
+                }
+                None if what.is_empty() => {}
+                None => script.inputs.push((time, Input::Event(what.to_owned()))),
+            }
+        }
+        script
+    }
+}
+
+/// Compiles a chart against the type environment of the tests.
+pub fn compile(chart: &Statechart) -> Arc<CompiledChart> {
+    compile_with(chart, Semantics::yase())
+}
+
+/// Compiles a chart against the type environment of the tests, for a semantics.
+pub fn compile_with(chart: &Statechart, semantics: Semantics) -> Arc<CompiledChart> {
+    match chart.compile_with(&vocabulary(), semantics) {
+        Ok(chart) => Arc::new(chart),
+        Err(found) => panic!("{}", found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")),
+    }
+}
+
+/// Plays a script on a machine and returns the log of the world.
+pub fn play(chart: &Statechart, script: &str) -> Vec<String> {
+    play_with(chart, script, Semantics::yase())
+}
+
+/// The same for a semantics.
+pub fn play_with(chart: &Statechart, script: &str, semantics: Semantics) -> Vec<String> {
+    let (mut world, script) = (World::new(chart), Script::parse(script));
+    let chart = compile_with(chart, semantics);
+    let mut machine = Machine::new(chart.clone());
+    let (silent, mut again) = (World { silent: true, ..world.clone() }, world.clone());
+    run(&mut machine, &script, &mut world);
+    let mut by_micro_steps = ByMicroSteps(Machine::new(chart.clone()));
+    run(&mut by_micro_steps, &script, &mut again);
+    assert_eq!(world.log, again.log, "one micro-step at a time");
+    assert_eq!(machine.configuration(), by_micro_steps.0.configuration());
+    assert_silent_alike(&machine, &world, silent, chart, &script);
+    world.log
+}
+
+/// Plays a script again on a machine without an observer, and asserts that everything else is
+/// equal.
+pub fn assert_silent_alike(
+    traced: &Machine,
+    seen: &World,
+    mut silent: World,
+    chart: Arc<CompiledChart>,
+    script: &Script,
+) {
+    let told: Vec<&String> =
+        seen.log.iter().filter(|line| line.starts_with("  ") || line.starts_with("error")).collect();
+    let alike = |machine: &Machine, log: &[String]| {
+        assert_eq!(told, log.iter().collect::<Vec<_>>());
+        assert_eq!(traced.configuration(), machine.configuration());
+        assert_eq!((traced.status(), traced.next_deadline()), (machine.status(), machine.next_deadline()));
+    };
+    let mut machine = Machine::new(chart);
+    run(&mut machine, script, &mut silent);
+    alike(&machine, &silent.log);
+}
+
+/// Plays a script from time 0 in simulated time: at each time inputs come first, then activities,
+/// then the step.
+pub fn run(interpreter: &mut impl Interpreter, script: &Script, world: &mut World) {
+    let mut inputs = script.inputs.iter().peekable();
+    interpreter.start(Moment::ZERO, world);
+    let mut now = Moment::ZERO;
+    loop {
+        world.now = now;
+        while let Some((_, input)) = inputs.next_if(|(time, _)| Moment::from_millis(*time) <= now) {
+            apply(interpreter, world, input);
+        }
+        if !settle(interpreter, now, world) {
+            return;
+        }
+        let next = [
+            inputs.peek().map(|(time, _)| Moment::from_millis(*time)),
+            world.jobs.iter().map(|job| job.due).min(),
+            interpreter.next_deadline(),
+        ];
+        let Some(next) = next.into_iter().flatten().min() else { return };
+        if next > Moment::from_millis(script.until) {
+            return;
+        }
+        now = next.max(now);
+    }
+}
+
+fn apply(interpreter: &mut impl Interpreter, world: &mut World, input: &Input) {
+    match input {
+        Input::Event(name) => interpreter.event(name),
+        Input::Message(topic, value) => {
+            world.send(*topic, *value, (0..interpreter.regions() as u32).map(ScopeId));
+            tell_arrivals(interpreter, world);
+        }
+    }
+}
+
+fn tell_arrivals(interpreter: &mut impl Interpreter, world: &mut World) {
+    for topic in std::mem::take(&mut world.arrivals) {
+        interpreter.message(topic);
+    }
+}
+
+/// Processes activities and steps until nothing is due; false if the interpreter failed.
+fn settle(interpreter: &mut impl Interpreter, now: Moment, world: &mut World) -> bool {
+    loop {
+        while let Some(index) = (0..world.jobs.len()).find(|&index| world.jobs[index].due <= now) {
+            advance(interpreter, now, world, index);
+        }
+        if !interpreter.needs_step(now) {
+            return true;
+        }
+        if let Err(error) = interpreter.step(now, world) {
+            world.say(format!("error: {error}"));
+            return false;
+        }
+        tell_arrivals(interpreter, world);
+    }
+}
+
+/// An activity returns or, if it waits, is called again.
+fn advance(interpreter: &mut impl Interpreter, now: Moment, world: &mut World, index: usize) {
+    let job = &mut world.jobs[index];
+    let activation = job.activation;
+    if job.waits {
+        match interpreter.resumed(activation) {
+            true => (job.waits, job.due, job.calls) = (false, now + job.duration, job.calls + 1),
+            false => job.due = Moment::from_nanos(u64::MAX), // its state is about to be left
+        }
+        return;
+    }
+    let outcome = World::outcome(job);
+    let text = format!("  {} returns {outcome:?}", job.name);
+    (job.waits, job.due) = (true, now + Duration::from_millis(10));
+    world.say(text);
+    if !interpreter.returned(activation, outcome) || outcome != Outcome::Ongoing {
+        world.jobs.remove(index);
+    }
+}

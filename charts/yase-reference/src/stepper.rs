@@ -1,0 +1,302 @@
+//! A naive interpreter of statecharts that follows the rules directly: sets of nodes, recursion and
+//! clones. Derived data is recomputed whenever it is needed.
+
+mod act;
+mod enter;
+mod fire;
+mod lines;
+mod select;
+mod step;
+mod transitions;
+mod tree;
+mod truth;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use yase::statechart::{NodeId, Statechart, TransitionId};
+use yase::{Activation, Moment, Outcome, ScopeId, Semantics, TopicId};
+
+use crate::chance::Chance;
+use crate::script::Interpreter;
+use crate::world::{TOPICS, World};
+use transitions::Way;
+use tree::Tree;
+
+/// A failure that stops the chart.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Failure {
+    /// No branch of that CHOICE is open.
+    NoBranch(NodeId),
+    /// Too many micro-steps, or steps at one moment.
+    Endless,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Occurrence {
+    event: String,
+    number: u32,
+    raised: bool,
+    expiry: Option<(ScopeId, String)>,
+}
+
+/// An event held for running activities: the transitions it would take, and whether it is offered
+/// again.
+#[derive(Clone, Debug)]
+struct Held {
+    occurrence: Occurrence,
+    ways: Vec<Way>,
+    offer: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Phase {
+    Queued,
+    Running,
+    Ongoing,
+    Failed,
+    Done,
+}
+
+#[derive(Clone, Debug)]
+struct Job {
+    phase: Phase,
+    number: u64,
+    cancelled: bool,
+}
+
+#[derive(Clone, Debug)]
+struct Deadline {
+    moment: Moment,
+    announced: bool,
+    /// The state it is bound to.
+    bound: Option<NodeId>,
+}
+
+/// What happens in a micro-step, for its line.
+#[derive(Clone, Debug, Default)]
+struct Line {
+    exits: Vec<NodeId>,
+    effects: Vec<String>,
+    taken: Vec<TransitionId>,
+    entries: Vec<NodeId>,
+    reads: Vec<(TransitionId, Option<bool>)>,
+}
+
+pub(crate) struct Stepper<'c> {
+    chart: &'c Statechart,
+    tree: Tree,
+    semantics: Semantics,
+    pub(crate) chance: Chance,
+    running_chart: bool,
+    now: Moment,
+    due: bool,
+    active: BTreeSet<NodeId>,
+    jobs: BTreeMap<NodeId, Job>,
+    job_count: u64,
+    timers: BTreeMap<(ScopeId, String), Deadline>,
+    timer_numbers: Vec<(ScopeId, String)>,
+    /// Timers started by the effects of the current compound transition, to be bound to its target.
+    unbound: Vec<(ScopeId, String)>,
+    records: BTreeMap<NodeId, Vec<NodeId>>,
+    arrivals: BTreeSet<TransitionId>,
+    /// Composites whose active children were exited, which count as complete.
+    vacated: BTreeSet<NodeId>,
+    completions: Vec<NodeId>,
+    count: u32,
+    raised: Vec<Occurrence>,
+    arrived: Vec<Occurrence>,
+    deferred: Vec<Occurrence>,
+    held: Vec<Held>,
+    pending: Vec<(Way, Option<String>)>,
+    erred: BTreeSet<(TransitionId, ScopeId)>,
+    stale: BTreeSet<(TransitionId, ScopeId)>,
+    written: BTreeSet<ScopeId>,
+    waiting: BTreeSet<NodeId>,
+    /// Candidates of this micro-step: transitions, and the state at which each was found.
+    found: Vec<(NodeId, Way)>,
+    /// The active leaves from which a candidate was found, outward.
+    closed: BTreeSet<NodeId>,
+    /// The active leaves at its beginning.
+    leaves: Vec<NodeId>,
+    /// The segments whose guards have failed in this micro-step, each reported once.
+    told: BTreeSet<TransitionId>,
+    /// The segments with weights that were drawn in this micro-step.
+    drawn: Vec<TransitionId>,
+    line: Line,
+    micro_steps: u32,
+    did_something: bool,
+    instant: Moment,
+    steps_at_instant: u32,
+    /// The root has reached its END, and active states have still to be exited.
+    ended: bool,
+    /// TERMINATE was reached in this micro-step.
+    terminates: bool,
+    /// The failure during the start, which the first step reports.
+    failure: Option<Failure>,
+    before: BTreeSet<NodeId>,
+}
+
+impl<'c> Stepper<'c> {
+    /// `timer_numbers` are the timers in the order of their indices, which the rules leave open.
+    pub(crate) fn new(
+        chart: &'c Statechart,
+        semantics: Semantics,
+        chance: Chance,
+        timer_numbers: Vec<(ScopeId, String)>,
+    ) -> Stepper<'c> {
+        Stepper {
+            chart,
+            tree: Tree::new(chart, semantics.order),
+            semantics,
+            chance,
+            running_chart: false,
+            now: Moment::ZERO,
+            due: false,
+            active: BTreeSet::new(),
+            jobs: BTreeMap::new(),
+            job_count: 0,
+            timers: BTreeMap::new(),
+            timer_numbers,
+            unbound: vec![],
+            records: BTreeMap::new(),
+            arrivals: BTreeSet::new(),
+            vacated: BTreeSet::new(),
+            completions: vec![],
+            count: 0,
+            raised: vec![],
+            arrived: vec![],
+            deferred: vec![],
+            held: vec![],
+            pending: vec![],
+            erred: BTreeSet::new(),
+            stale: BTreeSet::new(),
+            written: BTreeSet::new(),
+            waiting: BTreeSet::new(),
+            found: vec![],
+            closed: BTreeSet::new(),
+            leaves: vec![],
+            told: BTreeSet::new(),
+            drawn: vec![],
+            line: Line::default(),
+            micro_steps: 0,
+            did_something: false,
+            instant: Moment::ZERO,
+            steps_at_instant: 0,
+            ended: false,
+            terminates: false,
+            failure: None,
+            before: BTreeSet::new(),
+        }
+    }
+
+    pub(crate) fn is_active(&self, node: NodeId) -> bool {
+        self.active.contains(&node)
+    }
+}
+
+fn topic(name: &str) -> Option<TopicId> {
+    TOPICS.iter().position(|other| *other == name).map(|index| TopicId(index as u32))
+}
+
+impl Interpreter for Stepper<'_> {
+    fn start(&mut self, now: Moment, world: &mut World) {
+        self.now = now;
+        self.instant = now;
+        self.running_chart = true;
+        self.due = true;
+        self.begin_chart(world);
+    }
+
+    fn event(&mut self, name: &str) {
+        if self.running_chart {
+            self.arrive(name, None);
+        }
+    }
+
+    fn message(&mut self, topic: TopicId) {
+        let name = TOPICS[topic.0 as usize];
+        let readers = self.guards_that_read(name);
+        let awaited = self.is_named(name, true);
+        if !self.running_chart || readers.is_empty() && !awaited {
+            return;
+        }
+        self.due = true;
+        for key in &self.erred {
+            if readers.contains(&key.0) {
+                self.stale.insert(*key);
+            }
+        }
+        if awaited {
+            self.arrive(name, None);
+        }
+    }
+
+    fn returned(&mut self, activation: Activation, outcome: Outcome) -> bool {
+        let Some(job) = self.jobs.get_mut(&activation.node) else { return false };
+        if !self.running_chart || job.number != activation.number {
+            return false;
+        }
+        assert_eq!(job.phase, Phase::Running);
+        job.phase = match outcome {
+            Outcome::Done => Phase::Done,
+            Outcome::Ongoing => Phase::Ongoing,
+            Outcome::Failed => Phase::Failed,
+        };
+        let mut held = std::mem::take(&mut self.held);
+        for Held { ways, offer, .. } in &mut held {
+            let in_the_way = |way: &Way| {
+                self.exit_set(way).contains(&activation.node)
+                    || way.sources.iter().any(|&source| self.region(source) == activation.region)
+            };
+            *offer |= ways.iter().any(in_the_way);
+        }
+        self.held = held;
+        match outcome {
+            Outcome::Failed => self.arrive("error.activity", None),
+            Outcome::Done => self.completed(activation.node),
+            Outcome::Ongoing => {}
+        }
+        self.due = true;
+        true
+    }
+
+    fn resumed(&mut self, activation: Activation) -> bool {
+        let about_to_be_left = self.pending.iter().any(|(way, _)| self.would_leave(way, activation.node));
+        let Some(job) = self.jobs.get_mut(&activation.node) else { return false };
+        assert_eq!((job.number, job.phase), (activation.number, Phase::Ongoing));
+        if about_to_be_left {
+            return false;
+        }
+        job.phase = Phase::Running;
+        true
+    }
+
+    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+        self.now = now;
+        match self.whole_step(world) {
+            Ok(()) => Ok(()),
+            Err(failure) => {
+                self.halt(world);
+                Err(self.describe(&failure))
+            }
+        }
+    }
+
+    fn needs_step(&self, now: Moment) -> bool {
+        let waiting =
+            !self.raised.is_empty() || !self.arrived.is_empty() || self.held.iter().any(|held| held.offer);
+        self.running_chart
+            && (self.due || waiting || self.next_deadline().is_some_and(|deadline| deadline <= now))
+    }
+
+    fn next_deadline(&self) -> Option<Moment> {
+        if !self.running_chart {
+            return None;
+        }
+        self.timers.values().filter(|deadline| !deadline.announced).map(|deadline| deadline.moment).min()
+    }
+
+    fn regions(&self) -> usize {
+        self.tree.regions.len()
+    }
+}

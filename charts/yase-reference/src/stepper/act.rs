@@ -1,0 +1,137 @@
+//! Execution of actions: R19, R21.
+
+use std::collections::BTreeSet;
+use std::time::Duration;
+
+use yase::expression::{Action, ActionKind};
+use yase::statechart::{NodeId, NodeKind, TransitionId};
+use yase::{Activation, FieldId, Host, ScopeId, TimerScope, Value, WriteVisibility};
+
+use super::{Deadline, Stepper, topic};
+use crate::world::World;
+
+impl Stepper<'_> {
+    pub(crate) fn act(&mut self, actions: &[Action], region: ScopeId, place: &str, world: &mut World) {
+        if actions.is_empty() {
+            return;
+        }
+        let texts: Vec<String> = actions.iter().map(ToString::to_string).collect();
+        self.line.effects.push(format!("{} ({place})", texts.join(", ")));
+        for action in actions {
+            if let Err(error) = self.perform(action, region, world) {
+                self.raise(self.error_event("error.action"));
+                world.say(format!("  action failed: {error}"));
+            }
+        }
+    }
+
+    fn perform(&mut self, action: &Action, region: ScopeId, world: &mut World) -> Result<(), String> {
+        match &action.kind {
+            ActionKind::Raise(event) => self.raise(&event.text()),
+            ActionKind::ProcessMessages => self.deliver(region, world),
+            ActionKind::PublishAll => {
+                world.publish_all(region);
+                self.written.remove(&region);
+            }
+            ActionKind::Publish(path) => {
+                world.publish(region, topic(&path.text()).unwrap());
+                self.wrote(region, world);
+            }
+            ActionKind::StartTimeout { timer, delay, .. } => self.start_timer(&timer.text(), *delay, region),
+            ActionKind::Assign { target, value } => {
+                let name = &target.segments[0].text;
+                let value = self
+                    .number(value, region, world)?
+                    .ok_or("the value depends on a message that has not arrived")?;
+                world
+                    .assign(region, topic(name).unwrap(), &[FieldId(0)], Value::Int(value))
+                    .map_err(|error| format!("the value cannot be assigned: {error}"))?;
+                self.forgive(name, region);
+                self.wrote(region, world);
+            }
+            other => panic!("the generator makes no {other:?}"),
+        }
+        Ok(())
+    }
+
+    /// Clears failures of guards that read changed data.
+    fn forgive(&mut self, name: &str, region: ScopeId) {
+        let reads = self.guards_that_read(name);
+        self.erred.retain(|(id, other)| *other != region || !reads.contains(id));
+    }
+
+    /// Written data is published with the step, or visible to all others at once.
+    fn wrote(&mut self, region: ScopeId, world: &mut World) {
+        self.written.insert(region);
+        if self.semantics.sharing == WriteVisibility::NextStep {
+            return;
+        }
+        world.publish_all(region);
+        self.written.remove(&region);
+        for (index, node) in self.tree.regions.clone().into_iter().enumerate() {
+            let other = ScopeId(index as u32);
+            if other != region && self.active.contains(&node) && !self.region_runs(other) {
+                self.deliver(other, world);
+            }
+        }
+    }
+
+    pub(crate) fn deliver(&mut self, region: ScopeId, world: &mut World) {
+        world.deliver(region);
+        let stale = self.stale.clone();
+        self.erred.retain(|key| key.1 != region || !stale.contains(key));
+        self.stale.retain(|key| key.1 != region);
+    }
+
+    fn start_timer(&mut self, name: &str, delay: Duration, region: ScopeId) {
+        let key = (region, name.to_owned());
+        self.withdraw(&key);
+        self.timers.insert(key.clone(), Deadline { moment: self.now + delay, announced: false, bound: None });
+        self.forgive(name, region);
+        self.unbound.retain(|other| *other != key);
+        self.unbound.push(key);
+    }
+
+    fn withdraw(&mut self, key: &(ScopeId, String)) {
+        for queue in [&mut self.raised, &mut self.arrived, &mut self.deferred] {
+            queue.retain(|occurrence| occurrence.expiry.as_ref() != Some(key));
+        }
+        self.held.retain(|held| held.occurrence.expiry.as_ref() != Some(key));
+    }
+
+    /// Binds the timers just started to a state.
+    pub(crate) fn bind_timers(&mut self, target: Option<NodeId>) {
+        let target = target.and_then(|node| match self.kind(node) {
+            NodeKind::ShallowHistory | NodeKind::DeepHistory => Some(self.parent(node)),
+            NodeKind::Terminate | NodeKind::Join => None,
+            _ => Some(node),
+        });
+        for key in std::mem::take(&mut self.unbound) {
+            if let Some(deadline) = self.timers.get_mut(&key) {
+                deadline.bound = target;
+            }
+        }
+    }
+
+    pub(crate) fn unset_timers_of(&mut self, node: NodeId) {
+        if self.semantics.timers != TimerScope::State {
+            return;
+        }
+        let bound = self.timers.iter().filter(|(_, deadline)| deadline.bound == Some(node));
+        for key in bound.map(|(key, _)| key.clone()).collect::<Vec<_>>() {
+            self.withdraw(&key);
+            self.timers.remove(&key);
+            self.forgive(&key.1, key.0);
+        }
+    }
+
+    /// The segments whose guard contains a word.
+    pub(crate) fn guards_that_read(&self, word: &str) -> BTreeSet<TransitionId> {
+        let all = self.chart.transitions().map(|(id, _)| id);
+        all.filter(|id| self.tree.words[id.0 as usize].iter().any(|other| other == word)).collect()
+    }
+
+    pub(crate) fn activation(&self, node: NodeId, number: u64) -> Activation {
+        Activation { node, region: self.region(node), number }
+    }
+}

@@ -1,0 +1,228 @@
+//! Entering: R10, R11, R14, and histories.
+
+use yase::statechart::{NodeId, NodeKind, TransitionId};
+use yase::{CompletionTrigger, Host, InitialState, RootCompletion, Statechart};
+
+use super::{Failure, Job, Phase, Stepper, Way};
+use crate::world::World;
+
+impl Stepper<'_> {
+    /// Enters the descendants of an active composite that lead to targets, and those entered with
+    /// them.
+    pub(crate) fn enter_below(
+        &mut self,
+        composite: NodeId,
+        targets: &[NodeId],
+        world: &mut World,
+    ) -> Result<(), Failure> {
+        self.enter_below_from(composite, targets, None, world)
+    }
+
+    fn enter_below_from(
+        &mut self,
+        composite: NodeId,
+        targets: &[NodeId],
+        start: Option<NodeId>,
+        world: &mut World,
+    ) -> Result<(), Failure> {
+        let remembered = targets.iter().copied().find(|&target| {
+            let history = matches!(self.kind(target), NodeKind::ShallowHistory | NodeKind::DeepHistory);
+            history && self.parent(target) == composite
+        });
+        if let Some(history) = remembered {
+            return self.enter_remembered(history, start, world);
+        }
+        let inner: Vec<NodeId> =
+            targets.iter().copied().filter(|&target| self.is_inside(target, composite)).collect();
+        match (self.kind(composite), inner.first()) {
+            (NodeKind::And, _) => self.enter_regions(composite, &inner, world),
+            (NodeKind::Or, None) => self.enter_start(composite, world),
+            (NodeKind::Or, Some(&target)) => {
+                let child = self.child_towards(composite, target);
+                self.enter_whole(child, &inner, world)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn enter_whole(&mut self, node: NodeId, targets: &[NodeId], world: &mut World) -> Result<(), Failure> {
+        if self.is_ended() {
+            return Ok(());
+        }
+        self.enter(node, world);
+        self.enter_below(node, targets, world)
+    }
+
+    fn enter_regions(&mut self, and: NodeId, targets: &[NodeId], world: &mut World) -> Result<(), Failure> {
+        for &child in self.chart.children(and) {
+            if self.is_region(child) {
+                self.enter_whole(child, targets, world)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Entering stops at START, or goes on at once.
+    fn enter_start(&mut self, composite: NodeId, world: &mut World) -> Result<(), Failure> {
+        let mut children = self.chart.children(composite).iter().copied();
+        let Some(start) = children.find(|&child| self.kind(child) == NodeKind::Start) else { return Ok(()) };
+        if self.semantics.start == InitialState::SameStep
+            && let Some(way) = self.open_way(start, world)
+        {
+            return self.go_on(&way, composite, Some(start), world);
+        }
+        self.enter(start, world);
+        Ok(())
+    }
+
+    /// The way out of START or HISTORY that is open now.
+    fn open_way(&mut self, connector: NodeId, world: &mut World) -> Option<Way> {
+        let out = self.outgoing(connector);
+        // the blackboard of the composite, also where its way leads from an AND's HISTORY into a
+        // region
+        let region = self.region(self.parent(connector));
+        self.first_way(connector, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, world))
+    }
+
+    /// `start` is the START of the current path: a HISTORY without transitions leads back to it,
+    /// where entering ends.
+    fn go_on(
+        &mut self,
+        way: &Way,
+        composite: NodeId,
+        start: Option<NodeId>,
+        world: &mut World,
+    ) -> Result<(), Failure> {
+        let outer = std::mem::take(&mut self.unbound);
+        self.line.taken.extend(&way.segments);
+        let region = self.region(composite);
+        self.effects(&way.segments, region, world);
+        let targets = self.choose(&way.ends, region, world)?;
+        self.bind_timers(targets.first().copied());
+        self.unbound = outer;
+        if self.terminates {
+            return Ok(());
+        }
+        self.enter_below_from(composite, &targets, start, world)
+    }
+
+    fn enter_remembered(
+        &mut self,
+        history: NodeId,
+        start: Option<NodeId>,
+        world: &mut World,
+    ) -> Result<(), Failure> {
+        let owner = self.parent(history);
+        let Some(record) = self.records.get(&history).cloned() else {
+            return match self.open_way(history, world) {
+                Some(way) => self.go_on(&way, owner, start, world),
+                None if start.is_some() => {
+                    start.into_iter().for_each(|start| self.enter(start, world));
+                    Ok(())
+                }
+                None => self.enter_below(owner, &[], world),
+            };
+        };
+        match (self.kind(history), self.kind(owner)) {
+            (NodeKind::DeepHistory, _) => self.enter_below(owner, &record, world),
+            (_, NodeKind::And) => self.enter_regions(owner, &[], world),
+            _ => match record[..] {
+                [child] => self.enter_whole(child, &[], world), // START too, to rest there
+                _ => Ok(()),
+            },
+        }
+    }
+
+    pub(crate) fn enter(&mut self, node: NodeId, world: &mut World) {
+        self.occupy(node);
+        self.active.insert(node);
+        self.line.entries.push(node);
+        if self.is_region(node) {
+            world.inherit(self.region(node), self.region(self.parent(node)));
+        }
+        let actions = self.chart.node(node).entry.clone();
+        let before = std::mem::take(&mut self.unbound);
+        self.act(&actions, self.region(node), &format!("entry {}", self.name(node)), world);
+        self.bind_timers(Some(node));
+        self.unbound = before;
+        match self.kind(node) {
+            NodeKind::Basic if self.chart.node(node).activity.is_some() => {
+                self.job_count += 1;
+                let job = Job { phase: Phase::Queued, number: self.job_count, cancelled: false };
+                self.jobs.insert(node, job);
+            }
+            NodeKind::Basic => self.completed(node),
+            NodeKind::End => self.reached(node, world),
+            _ => {}
+        }
+    }
+
+    /// A region that was vacated is active again: an arrival at a JOIN from it has to be repeated.
+    fn occupy(&mut self, node: NodeId) {
+        let Some(around) = self.chart.node(node).parent else { return };
+        let chart = self.chart;
+        if self.vacated.remove(&around) && self.is_region(around) {
+            let from = |id: &TransitionId| chart.transition(*id).source;
+            let inside = |node: NodeId| node == around || chart.ancestors(node).any(|above| above == around);
+            self.arrivals.retain(|id| !inside(from(id)));
+        }
+    }
+
+    fn reached(&mut self, end: NodeId, world: &mut World) {
+        let composite = self.parent(end);
+        if composite == Statechart::ROOT {
+            match self.semantics.root_end {
+                RootCompletion::ExitsAll => self.ended = true,
+                _ => self.halt(world),
+            }
+            return;
+        }
+        self.completed(composite);
+        if self.semantics.completion_events {
+            self.raise_done(composite);
+            let mut around = self.parent(composite);
+            while self.kind(around) == NodeKind::And && self.has_ended(around) {
+                self.raise_done(around);
+                around = self.parent(around);
+            }
+        }
+    }
+
+    /// As `isInFinalState` of SCXML: a BASIC state has not ended, though it may have completed.
+    fn has_ended(&self, node: NodeId) -> bool {
+        match self.kind(node) {
+            NodeKind::And => {
+                let mut regions = self.chart.children(node).iter().filter(|&&child| self.is_region(child));
+                regions.all(|&region| self.has_ended(region))
+            }
+            NodeKind::Or => self.is_complete(node),
+            _ => false,
+        }
+    }
+
+    fn raise_done(&mut self, node: NodeId) {
+        self.raise(&format!("done.state.{}", self.chart.node(node).name));
+    }
+
+    /// A state has completed, and the ANDs around it that complete with it.
+    pub(crate) fn completed(&mut self, node: NodeId) {
+        if self.semantics.eventless != CompletionTrigger::Once || node == Statechart::ROOT {
+            return;
+        }
+        if !self.completions.contains(&node) {
+            self.completions.push(node);
+        }
+        self.complete_around(node);
+    }
+
+    /// The AND around a region, if it has completed.
+    pub(crate) fn complete_around(&mut self, region: NodeId) {
+        let around = self.parent(region);
+        if self.semantics.eventless == CompletionTrigger::Once
+            && self.kind(around) == NodeKind::And
+            && self.is_complete(around)
+        {
+            self.completed(around);
+        }
+    }
+}

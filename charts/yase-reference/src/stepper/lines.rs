@@ -1,0 +1,109 @@
+//! The line of a micro-step: R23.
+
+use yase::statechart::{NodeId, TransitionId};
+
+use super::{Failure, Line, Stepper, Way, topic};
+use crate::world::World;
+
+/// The static content of a line.
+#[derive(Default)]
+pub(crate) struct Heading<'a> {
+    pub event: Option<&'a str>,
+    pub fired: &'a [Way],
+    pub losers: &'a [Way],
+    pub held: &'a [Way],
+    pub deferring: Option<NodeId>,
+}
+
+impl Stepper<'_> {
+    fn names(&self, nodes: &[NodeId]) -> String {
+        nodes.iter().map(|&node| self.name(node)).collect::<Vec<_>>().join(", ")
+    }
+
+    fn way_names(&self, ways: &[Way]) -> String {
+        ways.iter().map(|way| self.chain(&way.segments)).collect::<Vec<_>>().join(", ")
+    }
+
+    /// `a -> CONDITION -> b`, and ` + ` where a segment does not go on from the one before.
+    fn chain(&self, segments: &[TransitionId]) -> String {
+        let mut text = String::new();
+        let mut at = None;
+        for &id in segments {
+            let transition = self.chart.transition(id);
+            if at != Some(transition.source) {
+                let plus = if text.is_empty() { "" } else { " + " };
+                text += &format!("{plus}{}", self.name(transition.source));
+            }
+            text += &format!(" -> {}", self.name(transition.target));
+            at = Some(transition.target);
+        }
+        text
+    }
+
+    fn event_name(&self, event: &str) -> String {
+        match topic(event) {
+            Some(_) => event.to_lowercase(), // messages are known by their topic
+            None => self.known_name(event).unwrap_or_else(|| "?".to_owned()),
+        }
+    }
+
+    pub(crate) fn print(&mut self, heading: &Heading<'_>, world: &mut World) {
+        let idle = heading.held.is_empty() && heading.deferring.is_none();
+        let selected = match (heading.fired.is_empty(), heading.event.is_some() && idle) {
+            (false, _) => self.way_names(heading.fired),
+            (true, true) => "dropped".to_owned(),
+            (true, false) => "nothing".to_owned(),
+        };
+        let event = heading.event.map_or("-".to_owned(), |event| self.event_name(event));
+        let mut text = format!("{} {event}: {selected}", self.now);
+        let parts = [
+            ("preempt", self.way_names(heading.losers)),
+            ("hold", self.way_names(heading.held)),
+            ("defer in", heading.deferring.map(|node| self.name(node)).unwrap_or_default()),
+        ];
+        for (title, part) in parts {
+            add(&mut text, title, &part);
+        }
+        self.finish_line(text, world);
+    }
+
+    pub(crate) fn print_start(&mut self, world: &mut World) {
+        self.finish_line(format!("{} start", self.now), world);
+    }
+
+    pub(crate) fn print_finish(&mut self, world: &mut World) {
+        self.finish_line(format!("{} finish", self.now), world);
+    }
+
+    fn finish_line(&mut self, mut text: String, world: &mut World) {
+        let line = std::mem::take(&mut self.line);
+        add(&mut text, "exit", &self.names(&line.exits));
+        add(&mut text, "then", &self.chain(&line.taken));
+        add(&mut text, "do", &line.effects.join(", "));
+        add(&mut text, "enter", &self.names(&line.entries));
+        add(&mut text, "read", &self.reads(&line));
+        world.say(text);
+    }
+
+    fn reads(&self, line: &Line) -> String {
+        let one = |&(id, value): &(TransitionId, Option<bool>)| {
+            let value = value.map_or("error".to_owned(), |value| value.to_string());
+            let transition = self.chart.transition(id);
+            format!("{} -> {} = {value}", self.name(transition.source), self.name(transition.target))
+        };
+        line.reads.iter().map(one).collect::<Vec<_>>().join(", ")
+    }
+
+    pub(crate) fn describe(&self, failure: &Failure) -> String {
+        match failure {
+            Failure::NoBranch(choice) => format!("no way out of CHOICE `{}` is open", self.name(*choice)),
+            Failure::Endless => "endless".to_owned(),
+        }
+    }
+}
+
+fn add(text: &mut String, title: &str, part: &str) {
+    if !part.is_empty() {
+        *text += &format!("; {title} {part}");
+    }
+}

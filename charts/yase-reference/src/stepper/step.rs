@@ -1,0 +1,342 @@
+//! Steps, and the order of events: R16 to R20.
+
+use yase::expression::{Action, ActionKind, Trigger};
+use yase::statechart::{NodeId, NodeKind, Statechart};
+use yase::{Deferral, Delivery, EventMatching, EventPool, FailureEvents, Firing, Host, Moment, ScopeId};
+
+use super::lines::Heading;
+use super::select::Offer;
+use super::{Failure, Held, Line, Occurrence, Phase, Stepper, Way};
+use crate::world::World;
+
+impl Stepper<'_> {
+    pub(crate) fn raise(&mut self, event: &str) {
+        self.queue(event, true, None);
+    }
+
+    pub(crate) fn arrive(&mut self, event: &str, expiry: Option<(ScopeId, String)>) {
+        self.queue(event, false, expiry);
+    }
+
+    fn queue(&mut self, event: &str, raised: bool, expiry: Option<(ScopeId, String)>) {
+        self.count += 1;
+        let occurrence = Occurrence { event: event.to_owned(), number: self.count, raised, expiry };
+        self.queue_of(&occurrence).push(occurrence);
+    }
+
+    fn queue_of(&mut self, occurrence: &Occurrence) -> &mut Vec<Occurrence> {
+        match occurrence.raised && self.semantics.pool == EventPool::RaisedFirst {
+            true => &mut self.raised,
+            false => &mut self.arrived,
+        }
+    }
+
+    /// Under `scxml`, errors are one event, raised every time.
+    pub(crate) fn raises_every_error(&self) -> bool {
+        self.semantics.failures == FailureEvents::EveryTime
+    }
+
+    pub(crate) fn error_event<'a>(&self, otherwise: &'a str) -> &'a str {
+        if self.raises_every_error() { "error.execution" } else { otherwise }
+    }
+
+    pub(crate) fn whole_step(&mut self, world: &mut World) -> Result<(), Failure> {
+        self.begin(world);
+        loop {
+            self.before = self.active.clone();
+            match self.micro_step(world) {
+                Ok(true) => {}
+                Ok(false) => break,
+                Err(failure) => {
+                    self.active = self.before.clone();
+                    return Err(failure);
+                }
+            }
+        }
+        self.finish(world);
+        Ok(())
+    }
+
+    fn begin(&mut self, world: &mut World) {
+        self.due = false;
+        self.micro_steps = 0;
+        self.did_something = false;
+        if self.instant != self.now {
+            (self.instant, self.steps_at_instant) = (self.now, 0);
+        }
+        while let Some(key) = self.next_expiry() {
+            self.timers.get_mut(&key).unwrap().announced = true;
+            let reads = self.guards_that_read(&key.1);
+            self.erred.retain(|(id, other)| *other != key.0 || !reads.contains(id));
+            if self.is_named(&key.1, false) {
+                self.arrive(&key.1.clone(), Some(key));
+            }
+        }
+        if self.semantics.delivery == Delivery::Explicit {
+            return;
+        }
+        for (index, node) in self.tree.regions.clone().into_iter().enumerate() {
+            let region = ScopeId(index as u32);
+            if self.active.contains(&node) && !self.region_runs(region) {
+                self.deliver(region, world);
+            }
+        }
+    }
+
+    /// The earliest expired timer that has not been processed; the chooser decides between equal
+    /// ones.
+    fn next_expiry(&mut self) -> Option<(ScopeId, String)> {
+        let over: Vec<(Moment, (ScopeId, String))> = self
+            .timers
+            .iter()
+            .filter(|(_, deadline)| !deadline.announced && deadline.moment <= self.now)
+            .map(|(key, deadline)| (deadline.moment, key.clone()))
+            .collect();
+        let first = over.iter().map(|(moment, _)| *moment).min()?;
+        let mut together: Vec<(ScopeId, String)> =
+            over.into_iter().filter(|(moment, _)| *moment == first).map(|(_, key)| key).collect();
+        together.sort_by_key(|key| self.timer_numbers.iter().position(|other| other == key));
+        let index = self.chance.pick(together.len());
+        Some(together.remove(index))
+    }
+
+    /// Whether a trigger names an event or a state defers it; `anywhere`: also `raise` and `not`.
+    pub(crate) fn is_named(&self, event: &str, anywhere: bool) -> bool {
+        let raised = |actions: &[Action]| {
+            actions
+                .iter()
+                .any(|action| matches!(&action.kind, ActionKind::Raise(name) if name.text() == event))
+        };
+        let triggered =
+            self.chart.transitions().any(|(_, transition)| match &transition.expression.trigger {
+                Some(Trigger::OneOf(names)) => names.iter().any(|name| name.text() == event),
+                Some(Trigger::Not(name)) => anywhere && name.text() == event,
+                _ => false,
+            });
+        let raises = self.chart.transitions().any(|(_, transition)| raised(&transition.expression.actions))
+            || self.chart.nodes().any(|(_, node)| raised(&node.entry) || raised(&node.exit));
+        let defers = self.chart.nodes().any(|(_, node)| node.defer.iter().any(|name| name == event));
+        triggered || defers || anywhere && raises
+    }
+
+    /// The name an event is known by: its own, or the longest of its token prefixes that the chart
+    /// names.
+    pub(crate) fn known_name(&self, event: &str) -> Option<String> {
+        let mut name = event;
+        loop {
+            if self.is_named(name, true) || name.starts_with("error.") || name.starts_with("done.state.") {
+                return Some(name.to_owned());
+            }
+            name = match self.semantics.matching {
+                EventMatching::TokenPrefix => name.rsplit_once('.')?.0,
+                _ => return None,
+            };
+        }
+    }
+
+    fn micro_step(&mut self, world: &mut World) -> Result<bool, Failure> {
+        if let Some(failure) = self.failure.take() {
+            return Err(failure);
+        }
+        if !self.running_chart || self.ended {
+            return Ok(false);
+        }
+        if self.interrupt_something(world)? {
+            return Ok(true);
+        }
+        if let Some(index) = self.held.iter().position(|held| held.offer) {
+            let occurrence = self.held.remove(index).occurrence;
+            return self.offer(occurrence, world);
+        }
+        if self.complete_something(world)? {
+            return Ok(true);
+        }
+        let (candidates, _) = self.candidates(Offer::Nothing, world);
+        if !candidates.is_empty() {
+            self.admit()?;
+            self.take(candidates, None, world)?;
+            return Ok(true);
+        }
+        self.recall();
+        let next = match self.raised.is_empty() {
+            false => self.raised.remove(0),
+            true if self.arrived.is_empty() => return Ok(false),
+            true => self.arrived.remove(0),
+        };
+        self.offer(next, world)
+    }
+
+    /// R15, `once`: completions before what is new; one that finds nothing open is consumed.
+    fn complete_something(&mut self, world: &mut World) -> Result<bool, Failure> {
+        while !self.completions.is_empty() {
+            let node = self.completions.remove(0);
+            self.begin_micro_step(); // what one that is consumed has read is not told
+            if let Some(way) = self.judge_ways(node, Offer::Completion, world).found {
+                self.admit()?;
+                self.take(vec![way], None, world)?;
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Resets the record of the micro-step; each selection begins one.
+    pub(crate) fn begin_micro_step(&mut self) {
+        self.line = Line::default();
+        self.leaves = self.active_leaves();
+        self.found.clear();
+        self.closed.clear();
+        self.told.clear();
+        self.drawn.clear();
+    }
+
+    /// An interruption whose activities have returned.
+    fn interrupt_something(&mut self, world: &mut World) -> Result<bool, Failure> {
+        let Some(index) = self.pending.iter().position(|(way, _)| !self.leaves_running(way)) else {
+            return Ok(false);
+        };
+        self.admit()?;
+        let (way, event) = self.pending.remove(index);
+        self.begin_micro_step();
+        self.fire(&way, world)?;
+        let pending = std::mem::take(&mut self.pending);
+        self.pending = pending.into_iter().filter(|(way, _)| self.may_fire(way)).collect();
+        for held in &mut self.held {
+            held.offer = true;
+        }
+        self.print(&Heading { event: event.as_deref(), fired: &[way], ..Heading::default() }, world);
+        Ok(true)
+    }
+
+    /// Deferred events come back before newer ones.
+    fn recall(&mut self) {
+        let (kept, recalled): (Vec<Occurrence>, Vec<Occurrence>) = std::mem::take(&mut self.deferred)
+            .into_iter()
+            .partition(|occurrence| self.deferring(&occurrence.event).is_some());
+        self.deferred = kept;
+        for occurrence in recalled {
+            self.queue_of(&occurrence).push(occurrence);
+        }
+        self.raised.sort_by_key(|occurrence| occurrence.number);
+        self.arrived.sort_by_key(|occurrence| occurrence.number);
+    }
+
+    /// R17
+    fn admit(&mut self) -> Result<(), Failure> {
+        let limit = self.semantics.limit.get();
+        if self.micro_steps == limit {
+            return Err(Failure::Endless);
+        }
+        if !self.did_something {
+            self.did_something = true;
+            self.steps_at_instant += 1;
+            if self.steps_at_instant > limit {
+                return Err(Failure::Endless);
+            }
+        }
+        self.micro_steps += 1;
+        Ok(())
+    }
+
+    fn offer(&mut self, occurrence: Occurrence, world: &mut World) -> Result<bool, Failure> {
+        self.admit()?;
+        let (candidates, waiting) = self.candidates(Offer::Event(&occurrence), world);
+        let event = occurrence.event.clone();
+        let heading = Heading { event: Some(&event), ..Heading::default() };
+        if !candidates.is_empty() {
+            self.take(candidates, Some(&event), world)?;
+        } else if !waiting.is_empty() {
+            self.held.push(Held { occurrence, ways: waiting.clone(), offer: false });
+            self.held.sort_by_key(|held| held.occurrence.number);
+            self.print(&Heading { held: &waiting, ..heading }, world);
+        } else {
+            let deferring = self.deferring(&event);
+            if deferring.is_some() {
+                self.deferred.push(occurrence);
+                self.deferred.sort_by_key(|occurrence| occurrence.number);
+            }
+            self.print(&Heading { deferring, ..heading }, world);
+        }
+        Ok(true)
+    }
+
+    /// The innermost active state that defers an event; of several, the first of the document.
+    fn deferring(&self, event: &str) -> Option<NodeId> {
+        fn visit(stepper: &Stepper<'_>, node: NodeId, event: &str) -> Option<NodeId> {
+            let inside = stepper.chart.children(node).iter().find_map(|&child| visit(stepper, child, event));
+            let itself = || {
+                let defers = stepper.chart.node(node).defer.iter().any(|name| stepper.matches(name, event));
+                (stepper.active.contains(&node) && defers).then_some(node)
+            };
+            inside.or_else(itself)
+        }
+        match self.semantics.deferral {
+            Deferral::On => visit(self, Statechart::ROOT, event),
+            _ => None,
+        }
+    }
+
+    fn take(&mut self, candidates: Vec<Way>, event: Option<&str>, world: &mut World) -> Result<(), Failure> {
+        let (winners, losers) = self.resolve(candidates);
+        let (mut now, mut later) = (vec![], vec![]);
+        for way in winners {
+            if self.leaves_running(&way) {
+                for node in self.active_in_document_order() {
+                    if self.would_leave(&way, node) {
+                        self.cancel(node, world);
+                    }
+                }
+                self.pending.push((way.clone(), event.map(str::to_owned)));
+                later.push(way);
+            } else {
+                now.push(way);
+            }
+        }
+        let fired = match self.semantics.firing {
+            Firing::Phases => self.fire_phases(now, world)?,
+            _ => self.fire_each(now, world)?,
+        };
+        self.print(&Heading { event, fired: &fired, losers: &losers, held: &later, deferring: None }, world);
+        Ok(())
+    }
+
+    fn cancel(&mut self, node: NodeId, world: &mut World) {
+        if !self.runs(node) {
+            return;
+        }
+        let job = self.jobs.get_mut(&node).unwrap();
+        let (is_new, phase, number) = (!job.cancelled, job.phase, job.number);
+        job.cancelled = true;
+        if is_new && phase == Phase::Running {
+            world.cancel(self.activation(node, number));
+        }
+    }
+
+    fn finish(&mut self, world: &mut World) {
+        self.end(world);
+        for region in std::mem::take(&mut self.written) {
+            world.publish_all(region);
+        }
+        for node in self.tree.document.clone() {
+            let Some(job) = self.jobs.get_mut(&node) else { continue };
+            if job.phase == Phase::Queued {
+                job.phase = Phase::Running;
+                let (number, cancelled) = (job.number, job.cancelled);
+                world.start(self.activation(node, number));
+                if cancelled {
+                    world.cancel(self.activation(node, number));
+                }
+            }
+        }
+        if !self.running_chart {
+            return;
+        }
+        for node in self.active_in_document_order() {
+            let is_new = !self.waiting.contains(&node) && !self.is_frozen(node, false);
+            if self.kind(node) == NodeKind::Start && is_new {
+                self.waiting.insert(node);
+                world.say(format!("  waits at {}", self.name(node)));
+            }
+        }
+    }
+}

@@ -1,0 +1,344 @@
+//! Compound transitions: R2, R6, and what a compound would leave.
+
+use std::collections::BTreeSet;
+
+use yase::statechart::{NodeId, NodeKind, Transition, TransitionId};
+use yase::{CompletionTrigger, ExitOrder, JoinMode, TransitionToAncestor};
+
+use super::Stepper;
+
+/// The static part of a compound transition: everything up to the first CHOICE, HISTORY or state on
+/// each of its paths.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub(crate) struct Way {
+    pub sources: Vec<NodeId>,
+    /// In the order of their effects.
+    pub segments: Vec<TransitionId>,
+    pub ends: Vec<NodeId>,
+}
+
+/// Role of a node in a compound transition.
+enum Role {
+    /// One of its outgoing segments is taken.
+    Branch,
+    /// All of its outgoing segments are taken.
+    Fork,
+    /// Its other incoming segments belong to the compound transition.
+    Join,
+    /// The static part ends.
+    End,
+}
+
+/// Accepts a complete path or, given a number of segments, an incomplete one.
+pub(crate) type Accept<'a, 'c> = &'a mut dyn FnMut(&mut Stepper<'c>, &Way, Option<usize>) -> bool;
+
+impl<'c> Stepper<'c> {
+    pub(crate) fn transition(&self, id: TransitionId) -> &'c Transition {
+        self.chart.transition(id)
+    }
+
+    fn role(&self, node: NodeId) -> Role {
+        match self.kind(node) {
+            NodeKind::Condition | NodeKind::Junction | NodeKind::ExitPoint => Role::Branch,
+            NodeKind::EntryPoint if self.is_fork(node) => Role::Fork,
+            NodeKind::EntryPoint => Role::Branch,
+            NodeKind::Fork => Role::Fork,
+            NodeKind::Join if self.semantics.join == JoinMode::Together => Role::Join,
+            _ => Role::End,
+        }
+    }
+
+    /// An ENTRY point of an AND with several ways without guards into different regions.
+    fn is_fork(&self, point: NodeId) -> bool {
+        let around = self.parent(point);
+        let out = self.outgoing(point);
+        let plain = out.iter().all(|&id| self.transition(id).expression.guard.is_none());
+        let holding = |&id: &TransitionId| {
+            let target = self.transition(id).target;
+            self.outward(target).into_iter().find(|&node| self.chart.node(node).parent == Some(around))
+        };
+        let regions: BTreeSet<Option<NodeId>> = out.iter().map(holding).collect();
+        self.kind(around) == NodeKind::And && out.len() > 1 && plain && regions.len() == out.len()
+    }
+
+    /// Tries segments in their order. Those with weights are drawn, at the place of the first of
+    /// them, if there is a draw.
+    pub(crate) fn try_each(
+        &mut self,
+        list: &[TransitionId],
+        attempt: &mut dyn FnMut(&mut Stepper<'c>, TransitionId) -> bool,
+    ) -> bool {
+        let mut drawn = false;
+        for &id in list {
+            let taken = match self.transition(id).weight {
+                None => attempt(self, id),
+                Some(_) if !self.chance.draws() => attempt(self, id),
+                Some(_) if drawn => false,
+                Some(_) => {
+                    drawn = true;
+                    let weighted = list.iter().copied().filter(|&id| self.transition(id).weight.is_some());
+                    self.draw(weighted.collect(), attempt)
+                }
+            };
+            if taken {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn draw(
+        &mut self,
+        mut rest: Vec<TransitionId>,
+        attempt: &mut dyn FnMut(&mut Stepper<'c>, TransitionId) -> bool,
+    ) -> bool {
+        while !rest.is_empty() {
+            let id = match self.drawn.iter().position(|id| rest.contains(id)) {
+                Some(index) => self.drawn[index],
+                None => self.draw_one(&rest),
+            };
+            rest.retain(|&other| other != id);
+            if attempt(self, id) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// A draw is kept for the rest of the micro-step.
+    fn draw_one(&mut self, rest: &[TransitionId]) -> TransitionId {
+        let weights: Vec<f64> = rest.iter().filter_map(|&id| self.transition(id).weight).collect();
+        let id = rest[self.chance.weighted(&weights)];
+        self.drawn.push(id);
+        id
+    }
+
+    /// Follows segments depth-first to the first complete path that is accepted; `open` are those
+    /// still to be followed.
+    pub(crate) fn follow(&mut self, way: &Way, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+        let Some((&segment, rest)) = open.split_first() else { return accept(self, way, None) };
+        let mut way = way.clone();
+        way.segments.push(segment);
+        let target = self.transition(segment).target;
+        match self.role(target) {
+            Role::Branch => self.branch(&way, target, rest, accept),
+            Role::Fork => {
+                let mut all = self.outgoing(target);
+                all.sort();
+                all.extend(rest);
+                self.follow(&way, &all, accept)
+            }
+            Role::Join if !self.is_offered(target, way.sources[0]) => false,
+            Role::Join => {
+                way.segments = self.incoming(target);
+                way.sources = way.segments.iter().map(|&id| self.transition(id).source).collect();
+                self.branch(&way, target, rest, accept)
+            }
+            Role::End => {
+                way.ends.push(target);
+                self.follow(&way, rest, accept)
+            }
+        }
+    }
+
+    /// Whether any complete path is accepted, regardless of choices.
+    pub(crate) fn any_way(&mut self, way: &Way, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+        self.without_chance(|me| me.follow(way, open, accept))
+    }
+
+    fn without_chance(&mut self, look: impl FnOnce(&mut Stepper<'c>) -> bool) -> bool {
+        let (chance, declared) = (self.chance.clone(), crate::chance::Freedom::Declared);
+        self.chance = crate::chance::Chance::new(declared);
+        let found = look(self);
+        self.chance = chance;
+        found
+    }
+
+    fn branch(&mut self, way: &Way, node: NodeId, rest: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+        let out = self.outgoing(node);
+        let drawn = self.chance.draws() && out.iter().any(|&id| self.transition(id).weight.is_some());
+        if drawn && !self.is_come_by(way, node, rest, accept) {
+            return false;
+        }
+        self.try_each(&out, &mut |me, id| {
+            let open = [&[id], rest].concat();
+            me.follow(way, &open, accept)
+        })
+    }
+
+    /// Nothing is drawn at a connector that no open segments reach, on the blackboard of any path
+    /// through it.
+    fn is_come_by(&mut self, way: &Way, node: NodeId, rest: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+        let so_far = way.segments.len();
+        self.without_chance(|me| {
+            me.branch(way, node, rest, &mut |me, whole, _| accept(me, whole, Some(so_far)))
+        })
+    }
+
+    /// The first way out of a node that is accepted.
+    pub(crate) fn first_way(
+        &mut self,
+        node: NodeId,
+        list: &[TransitionId],
+        accept: Accept<'_, 'c>,
+    ) -> Option<Way> {
+        let start = Way { sources: vec![node], ..Way::default() };
+        let mut found = None;
+        self.try_each(list, &mut |me, id| {
+            me.follow(&start, &[id], &mut |me, way, so_far| {
+                let yes = accept(me, way, so_far);
+                if yes && so_far.is_none() {
+                    found = Some(way.clone());
+                }
+                yes
+            })
+        });
+        found
+    }
+
+    /// The path through a JOIN belongs to its first source; evaluated once, to the source that
+    /// completes.
+    fn is_offered(&self, join: NodeId, source: NodeId) -> bool {
+        let sources = self.incoming(join).into_iter().map(|id| self.transition(id).source);
+        self.semantics.eventless == CompletionTrigger::Once
+            || sources.min_by_key(|&node| self.position(node)) == Some(source)
+    }
+
+    /// Whether it is the way out of a JOIN at which all have arrived; its source is their AND.
+    pub(crate) fn begins_at_join(&self, way: &Way) -> bool {
+        self.kind(self.transition(way.segments[0]).source) == NodeKind::Join
+    }
+
+    /// The AND that JOINs' sources lie in.
+    pub(crate) fn joined_and(&self, join: NodeId) -> Option<NodeId> {
+        let sources: Vec<NodeId> = self.incoming(join).iter().map(|&id| self.transition(id).source).collect();
+        let together = self.semantics.join == JoinMode::Together;
+        (!together && !sources.is_empty()).then(|| self.lowest_around(&sources, |kind| kind == NodeKind::And))
+    }
+
+    pub(crate) fn incoming(&self, node: NodeId) -> Vec<TransitionId> {
+        let into = self.chart.transitions().filter(|(_, transition)| transition.target == node);
+        into.map(|(id, _)| id).collect()
+    }
+
+    pub(crate) fn is_internal(&self, way: &Way) -> bool {
+        way.segments.iter().any(|&id| self.transition(id).internal)
+    }
+
+    pub(crate) fn is_targetless(&self, way: &Way) -> bool {
+        self.is_internal(way) && way.ends == way.sources
+    }
+
+    pub(crate) fn interrupts(&self, way: &Way) -> bool {
+        way.segments.iter().any(|&id| self.transition(id).interrupts)
+    }
+
+    /// Where a path may lead to in the end, whatever its CHOICEs say.
+    fn final_targets(&self, node: NodeId) -> Vec<NodeId> {
+        match self.kind(node) {
+            NodeKind::Choice
+            | NodeKind::Condition
+            | NodeKind::Junction
+            | NodeKind::Fork
+            | NodeKind::EntryPoint
+            | NodeKind::ExitPoint => {
+                let out = self.outgoing(node);
+                out.into_iter().flat_map(|id| self.final_targets(self.transition(id).target)).collect()
+            }
+            _ => vec![node],
+        }
+    }
+
+    /// R2
+    pub(crate) fn scope(&self, way: &Way) -> NodeId {
+        if self.is_internal(way) {
+            return way.sources[0];
+        }
+        if let [vacated] = self.vacates(way)[..] {
+            return vacated;
+        }
+        let targets: Vec<NodeId> = way.ends.iter().flat_map(|&end| self.final_targets(end)).collect();
+        let ending = self.only_terminates(way);
+        let counts = |target: &NodeId| ending || self.kind(*target) != NodeKind::Terminate;
+        let all: Vec<NodeId> =
+            way.sources.iter().copied().chain(targets.into_iter().filter(counts)).collect();
+        self.lowest_around(&all, |kind| kind == NodeKind::Or)
+    }
+
+    /// R13: a way all of whose possible ends are TERMINATE leaves and enters nothing; where it may
+    /// also lead elsewhere, its scope is that of the other ends.
+    pub(crate) fn only_terminates(&self, way: &Way) -> bool {
+        let mut targets = way.ends.iter().flat_map(|&end| self.final_targets(end));
+        targets.all(|target| self.kind(target) == NodeKind::Terminate)
+    }
+
+    fn lowest_around(&self, nodes: &[NodeId], wanted: impl Fn(NodeKind) -> bool) -> NodeId {
+        let around = |outer: &NodeId| nodes.iter().all(|&node| self.is_inside(node, *outer));
+        self.chart.ancestors(nodes[0]).find(|outer| wanted(self.kind(*outer)) && around(outer)).unwrap()
+    }
+
+    /// The composites that stay but lose what is active in them: `uml`'s arrival at a JOIN, and its
+    /// way to an active ancestor.
+    pub(crate) fn vacates(&self, way: &Way) -> Vec<NodeId> {
+        let [end] = way.ends[..] else { return vec![] };
+        let around = if self.kind(end) == NodeKind::Join {
+            self.joined_and(end).unwrap()
+        } else if self.completes_ancestor(way, end) {
+            end
+        } else {
+            return vec![];
+        };
+        match self.kind(around) {
+            NodeKind::And => way.sources.iter().map(|&source| self.child_towards(around, source)).collect(),
+            _ => vec![around],
+        }
+    }
+
+    fn completes_ancestor(&self, way: &Way, end: NodeId) -> bool {
+        self.semantics.ancestor == TransitionToAncestor::Completed
+            && !self.is_internal(way)
+            && matches!(self.kind(end), NodeKind::Or | NodeKind::And)
+            && way.sources.len() == 1
+            && self.is_inside(way.sources[0], end)
+    }
+
+    pub(crate) fn child_towards(&self, outer: NodeId, inner: NodeId) -> NodeId {
+        self.outward(inner).into_iter().find(|&node| self.chart.node(node).parent == Some(outer)).unwrap()
+    }
+
+    /// The active states a way would leave.
+    pub(crate) fn exit_set(&self, way: &Way) -> BTreeSet<NodeId> {
+        if self.is_targetless(way) || self.only_terminates(way) {
+            return BTreeSet::new();
+        }
+        let mut vacated = self.vacates(way);
+        if vacated.is_empty() {
+            vacated.push(self.scope(way));
+        }
+        vacated.into_iter().flat_map(|outer| self.active_inside(outer)).collect()
+    }
+
+    /// States in the order they are left.
+    pub(crate) fn in_order_of_exit(&self, set: &BTreeSet<NodeId>) -> Vec<NodeId> {
+        fn visit(stepper: &Stepper<'_>, node: NodeId, set: &BTreeSet<NodeId>, out: &mut Vec<NodeId>) {
+            for &child in stepper.chart.children(node) {
+                visit(stepper, child, set, out);
+            }
+            if set.contains(&node) {
+                out.push(node);
+            }
+        }
+        match self.semantics.exits {
+            ExitOrder::Forward => {
+                let mut out = vec![];
+                visit(self, yase::Statechart::ROOT, set, &mut out);
+                out
+            }
+            _ => self.tree.document.iter().rev().copied().filter(|node| set.contains(node)).collect(),
+        }
+    }
+
+    pub(crate) fn would_leave(&self, way: &Way, node: NodeId) -> bool {
+        self.exit_set(way).contains(&node)
+    }
+}

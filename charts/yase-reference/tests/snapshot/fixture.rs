@@ -1,0 +1,66 @@
+//! A machine in the reference's world.
+
+use yase::snapshot::{RestoreError, Snapshot};
+use yase::{Machine, Moment, Outcome, Semantics};
+
+use yase_reference::world::World;
+
+pub(crate) struct Stage {
+    pub(crate) machine: Machine,
+    pub(crate) world: World,
+}
+
+impl Stage {
+    /// Starts a chart and lets events happen to it at time 0.
+    pub(crate) fn new(chart: &str, events: &[&str]) -> Stage {
+        Stage::with(Semantics::yase(), chart, events)
+    }
+
+    pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> Stage {
+        let chart = yase_reference::chart(chart);
+        let mut world = World::new(&chart);
+        let mut machine = Machine::new(yase_reference::script::compile_with(&chart, semantics));
+        machine.start(Moment::ZERO, &mut world);
+        let mut stage = Stage { machine, world };
+        stage.step(0);
+        for event in events {
+            stage.event(event);
+        }
+        stage
+    }
+
+    pub(crate) fn step(&mut self, millis: u64) {
+        self.world.now = Moment::from_millis(millis);
+        self.machine.run_to_completion(self.world.now, &mut self.world).unwrap();
+    }
+
+    pub(crate) fn event(&mut self, name: &str) {
+        self.machine.dispatch_name(name);
+        self.step(0);
+    }
+
+    /// The only activity that runs returns.
+    pub(crate) fn returns(&mut self) {
+        let job = self.world.jobs.remove(0);
+        assert!(self.machine.activity_returned(job.activation, Outcome::Done));
+        self.step(0);
+    }
+
+    pub(crate) fn restore(&self, snapshot: &Snapshot) -> Result<Machine, RestoreError> {
+        Machine::restore(self.machine.chart().clone(), snapshot)
+    }
+
+    /// Goes on with a snapshot of it that was changed.
+    pub(crate) fn edit(&mut self, change: impl FnOnce(&mut Snapshot)) {
+        let mut snapshot = self.machine.snapshot();
+        change(&mut snapshot);
+        self.machine = self.restore(&snapshot).unwrap();
+    }
+
+    /// The active nodes without the root.
+    pub(crate) fn active(&self) -> String {
+        let chart = self.machine.chart();
+        let nodes = self.machine.configuration();
+        nodes.iter().skip(1).map(|&node| chart.short_path(node)).collect::<Vec<_>>().join(" ")
+    }
+}

@@ -1,0 +1,600 @@
+//! Enumerates the compound transitions: all complete paths out of each state, and out of each
+//! connector that is decided dynamically, in the order in which they are tried.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use smallvec::{SmallVec, smallvec};
+
+use crate::compile::node_roles::{NodeRole, NodeRoles};
+use crate::compile::node_span::{self, NodeSpan};
+use crate::compile::{EnablingCondition, NodeOrder};
+use crate::diagnostic::{Diagnostic, Span};
+use crate::ids::ScopeId;
+use crate::semantics::{CompletionTrigger, JoinMode, SegmentOrder, Semantics, TransitionToAncestor};
+use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
+
+/// The maximum number of compound transitions of a chart: connectors that fan out and in again
+/// multiply.
+const MAX_WAYS: usize = 1_000_000;
+
+/// Most paths have one segment: such lists need no allocation.
+pub(crate) type PathVec<T> = SmallVec<[T; 2]>;
+
+/// One compound transition, or the part of one that is decided dynamically.
+#[derive(Clone, Debug)]
+pub(crate) struct CompoundPath {
+    pub(crate) segments: PathVec<TransitionId>,
+    pub(crate) source: NodeId,
+    /// The further sources of a JOIN.
+    pub(crate) others: Vec<NodeId>,
+    /// The node inside which states are left and entered.
+    pub(crate) scope: NodeId,
+    pub(crate) leaves: PathVec<PathEnd>,
+    /// The scope of that node.
+    pub(crate) region: ScopeId,
+    /// Without a trigger: when it may be taken. Triggers are numbered later.
+    pub(crate) condition: Option<EnablingCondition>,
+    /// Its effect on the configuration.
+    pub(crate) change: ConfigurationChange,
+}
+
+/// Where a path ends, or continues after its actions.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum PathEnd {
+    /// A state, or a HISTORY.
+    Node(NodeId),
+    /// A CHOICE, by its index among the CHOICEs.
+    Choice(usize),
+    Terminate,
+}
+
+/// The effect of a path on the configuration.
+///
+/// A path whose possible ends are all TERMINATE leaves and enters nothing. A path that may also
+/// lead elsewhere has the scope of its other ends, and leaves the states in it before its end is
+/// known.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum ConfigurationChange {
+    /// None: it is internal and without target, or terminates the chart, or is the dynamic part of
+    /// another path.
+    None,
+    /// Its scope is left and entered.
+    Scope,
+    /// The states in its scope are left; the scope itself remains, without an active child. For a
+    /// JOIN, the segment into it that this path represents.
+    Vacates(Option<usize>),
+}
+
+/// The paths of a chart.
+pub(crate) struct CompoundPaths {
+    /// The paths out of each state, by [`NodeId`].
+    pub(crate) of: Vec<Vec<CompoundPath>>,
+    pub(crate) choices: Vec<DynamicBranches>,
+    pub(crate) histories: Vec<DynamicBranches>,
+    pub(crate) joins: Vec<JoinSources>,
+}
+
+/// The paths out of a CHOICE or a HISTORY, in one scope.
+#[derive(Clone, Debug)]
+pub(crate) struct DynamicBranches {
+    pub(crate) node: NodeId,
+    pub(crate) ways: Vec<CompoundPath>,
+}
+
+/// A JOIN and its sources, in the order of the segments into it.
+#[derive(Clone, Debug)]
+pub(crate) struct JoinSources {
+    pub(crate) around: NodeId,
+    pub(crate) sources: Vec<NodeId>,
+}
+
+impl CompoundPaths {
+    /// All paths.
+    pub(crate) fn all(&self) -> impl Iterator<Item = &CompoundPath> {
+        let late = self.choices.iter().chain(&self.histories).map(|late| &late.ways);
+        self.of.iter().chain(late).flatten()
+    }
+}
+
+/// Enumerates the paths of a chart whose structure has been checked.
+pub(crate) fn find(
+    chart: &Statechart,
+    layout: &NodeOrder,
+    roles: &NodeRoles,
+    regions: &[ScopeId],
+    semantics: &Semantics,
+) -> Result<CompoundPaths, Vec<Diagnostic>> {
+    let mut search = CompoundPathSearch {
+        chart,
+        layout,
+        roles,
+        regions,
+        semantics,
+        outgoing: outgoing(chart, roles, semantics.order),
+        numbers: BTreeMap::new(),
+        choices: Vec::new(),
+        joins: Vec::new(),
+        join_numbers: BTreeMap::new(),
+        hulls: BTreeMap::new(),
+        count: 0,
+        errors: Vec::new(),
+    };
+    search.number_joins();
+    let mut of = vec![Vec::new(); chart.nodes().len()];
+    for (id, _) in chart.nodes().filter(|(id, _)| roles.of(*id) == NodeRole::State) {
+        search.out_of_state(id, &mut of[id.0 as usize]);
+    }
+    let histories = search.histories();
+    let choices = search.dynamic_branches();
+    let joins = search.joins;
+    if search.errors.is_empty() {
+        Ok(CompoundPaths { of, choices, histories, joins })
+    } else {
+        Err(search.errors)
+    }
+}
+
+/// The segments that leave each node, in the order in which they are tried. All segments out of a
+/// FORK are taken, in the order of the model.
+fn outgoing(chart: &Statechart, roles: &NodeRoles, order: SegmentOrder) -> Vec<Vec<TransitionId>> {
+    let mut outgoing = roles.outgoing.clone();
+    for (segments, (node, _)) in outgoing.iter_mut().zip(chart.nodes()) {
+        if roles.of(node) == NodeRole::Fork {
+            continue;
+        }
+        segments.sort_by_key(|&id| {
+            let transition = chart.transition(id);
+            let later = order == SegmentOrder::GuardedFirst && transition.expression.guard.is_none();
+            (std::cmp::Reverse(transition.priority), later, id)
+        });
+    }
+    outgoing
+}
+
+struct CompoundPathSearch<'a> {
+    chart: &'a Statechart,
+    layout: &'a NodeOrder,
+    roles: &'a NodeRoles,
+    regions: &'a [ScopeId],
+    semantics: &'a Semantics,
+    outgoing: Vec<Vec<TransitionId>>,
+    /// The index of each CHOICE in each scope.
+    numbers: BTreeMap<(NodeId, ScopeId), usize>,
+    choices: Vec<(NodeId, ScopeId)>,
+    joins: Vec<JoinSources>,
+    join_numbers: BTreeMap<NodeId, usize>,
+    /// The span of all nodes to which a CHOICE may lead; none if it leads to TERMINATE only.
+    hulls: BTreeMap<NodeId, Option<NodeSpan>>,
+    count: usize,
+    errors: Vec<Diagnostic>,
+}
+
+/// An item still to be followed.
+#[derive(Clone, Copy)]
+enum Frontier {
+    /// One of the segments that leave it.
+    Node(NodeId),
+    Segment(TransitionId),
+}
+
+/// A path as far as it has been followed.
+#[derive(Default)]
+struct PartialPath {
+    segments: PathVec<TransitionId>,
+    ends: PathVec<NodeId>,
+    /// The items still to be followed, the next one last.
+    open: PathVec<Frontier>,
+}
+
+/// The start of a path.
+#[derive(Clone, Copy)]
+enum PathStart<'s> {
+    /// A state, or the states whose segments a JOIN takes together.
+    States(NodeId, &'s [NodeId], Option<EnablingCondition>),
+    /// A connector that is decided dynamically, in a scope.
+    Late(NodeId, ScopeId),
+}
+
+impl CompoundPathSearch<'_> {
+    fn number_joins(&mut self) {
+        for (id, _) in self.chart.nodes().filter(|(id, _)| self.roles.of(*id) == NodeRole::Join) {
+            let incoming = &self.roles.incoming[id.0 as usize];
+            let sources: Vec<NodeId> = incoming.iter().map(|&id| self.chart.transition(id).source).collect();
+            let hull =
+                sources.iter().map(|&node| NodeSpan::of(self.layout.place_of(node))).reduce(NodeSpan::with);
+            let Some(hull) = hull else { continue };
+            self.join_numbers.insert(id, self.joins.len());
+            self.joins
+                .push(JoinSources { around: node_span::lowest_node(self.chart, self.layout, hull), sources });
+        }
+    }
+
+    fn out_of_state(&mut self, state: NodeId, ways: &mut Vec<CompoundPath>) {
+        if self.semantics.join == JoinMode::Each {
+            self.out_of_joins(state, ways);
+        }
+        for index in 0..self.outgoing[state.0 as usize].len() {
+            let id = self.outgoing[state.0 as usize][index];
+            let target = self.chart.transition(id).target;
+            match self.join_numbers.get(&target) {
+                Some(&join) if self.semantics.join == JoinMode::Each => {
+                    self.path_into_join(state, id, join, ways)
+                }
+                Some(&join) => self.path_through_join(state, target, join, ways),
+                None => {
+                    let mut trail =
+                        PartialPath { open: smallvec![Frontier::Segment(id)], ..PartialPath::default() };
+                    self.follow(PathStart::States(state, &[], None), &mut trail, ways);
+                }
+            }
+        }
+    }
+
+    /// The path through a JOIN as one transition: it belongs to its first source in document order.
+    /// Where completion is examined once, it is examined when the last of the sources completes,
+    /// whichever that is.
+    fn path_through_join(&mut self, state: NodeId, node: NodeId, join: usize, ways: &mut Vec<CompoundPath>) {
+        let mut sources = self.joins[join].sources.clone();
+        sources.sort_by_key(|&source| self.layout.rank(self.layout.place_of(source)));
+        let Some((&first, others)) = sources.split_first() else { return };
+        if first != state && self.semantics.eventless != CompletionTrigger::Once {
+            return;
+        }
+        let segments = PathVec::from_slice(&self.roles.incoming[node.0 as usize]);
+        let mut trail =
+            PartialPath { segments, open: smallvec![Frontier::Node(node)], ..PartialPath::default() };
+        let begin = PathStart::States(first, others, Some(EnablingCondition::AllCompleted(join)));
+        self.follow(begin, &mut trail, ways);
+    }
+
+    /// A segment into a JOIN that is taken individually.
+    fn path_into_join(
+        &mut self,
+        state: NodeId,
+        segment: TransitionId,
+        join: usize,
+        ways: &mut Vec<CompoundPath>,
+    ) {
+        let JoinSources { around, sources } = &self.joins[join];
+        let slot = sources.iter().position(|&source| source == state);
+        let (Some(region), Some(slot)) = (node_span::child_towards(self.chart, *around, state), slot) else {
+            return;
+        };
+        let slot = self.joins[..join].iter().map(|join| join.sources.len()).sum::<usize>() + slot;
+        self.count += 1;
+        ways.push(CompoundPath {
+            segments: smallvec![segment],
+            source: state,
+            others: Vec::new(),
+            scope: region,
+            leaves: PathVec::new(),
+            region: self.regions[region.0 as usize],
+            condition: Some(EnablingCondition::Arrives(slot)),
+            change: ConfigurationChange::Vacates(Some(slot)),
+        });
+    }
+
+    /// The paths out of the JOINs of an AND, which are taken when all sources have arrived.
+    fn out_of_joins(&mut self, and: NodeId, ways: &mut Vec<CompoundPath>) {
+        let joins: Vec<(NodeId, usize)> = match self.chart.node(and).kind {
+            NodeKind::And => {
+                let joins = self.join_numbers.iter().map(|(&node, &join)| (node, join));
+                joins.filter(|&(_, join)| self.joins[join].around == and).collect()
+            }
+            _ => return,
+        };
+        for (node, join) in joins {
+            let mut trail = PartialPath { open: smallvec![Frontier::Node(node)], ..PartialPath::default() };
+            self.follow(
+                PathStart::States(and, &[], Some(EnablingCondition::AllArrived(join))),
+                &mut trail,
+                ways,
+            );
+        }
+    }
+
+    /// The paths out of each HISTORY, used when there is no record.
+    fn histories(&mut self) -> Vec<DynamicBranches> {
+        let mut histories = Vec::new();
+        for (id, node) in self.chart.nodes().filter(|(id, _)| self.roles.of(*id) == NodeRole::History) {
+            let owner = node.parent.unwrap_or(Statechart::ROOT);
+            let ways = self.paths_out_of_dynamic(id, self.regions[owner.0 as usize]);
+            histories.push(DynamicBranches { node: id, ways });
+        }
+        histories
+    }
+
+    /// The paths out of each CHOICE that some path leads to; these may lead to further ones.
+    fn dynamic_branches(&mut self) -> Vec<DynamicBranches> {
+        let mut late = Vec::new();
+        while let Some(&(node, region)) = self.choices.get(late.len()) {
+            let ways = self.paths_out_of_dynamic(node, region);
+            late.push(DynamicBranches { node, ways });
+        }
+        late
+    }
+
+    fn paths_out_of_dynamic(&mut self, node: NodeId, region: ScopeId) -> Vec<CompoundPath> {
+        let mut ways = Vec::new();
+        let mut trail = PartialPath { open: smallvec![Frontier::Node(node)], ..PartialPath::default() };
+        self.follow(PathStart::Late(node, region), &mut trail, &mut ways);
+        ways
+    }
+
+    /// Follows paths depth first; chains of connectors are short and acyclic, which has been
+    /// checked. The trail is restored.
+    fn follow(&mut self, begin: PathStart<'_>, trail: &mut PartialPath, ways: &mut Vec<CompoundPath>) {
+        if self.count > MAX_WAYS {
+            return;
+        }
+        let Some(open) = trail.open.pop() else {
+            self.complete(begin, trail, ways);
+            return;
+        };
+        match open {
+            Frontier::Node(node) => {
+                for index in 0..self.outgoing[node.0 as usize].len() {
+                    trail.open.push(Frontier::Segment(self.outgoing[node.0 as usize][index]));
+                    self.follow(begin, trail, ways);
+                    trail.open.pop();
+                }
+            }
+            Frontier::Segment(id) => self.take(begin, id, trail, ways),
+        }
+        trail.open.push(open);
+    }
+
+    fn take(
+        &mut self,
+        begin: PathStart<'_>,
+        id: TransitionId,
+        trail: &mut PartialPath,
+        ways: &mut Vec<CompoundPath>,
+    ) {
+        let target = self.chart.transition(id).target;
+        let (open, ends) = (trail.open.len(), trail.ends.len());
+        trail.segments.push(id);
+        match self.roles.of(target) {
+            NodeRole::Branch => trail.open.push(Frontier::Node(target)),
+            NodeRole::Fork => {
+                let segments = self.outgoing[target.0 as usize].iter().rev();
+                trail.open.extend(segments.map(|&id| Frontier::Segment(id)));
+            }
+            _ => trail.ends.push(target),
+        }
+        self.follow(begin, trail, ways);
+        trail.segments.pop();
+        trail.open.truncate(open);
+        trail.ends.truncate(ends);
+    }
+
+    fn complete(&mut self, begin: PathStart<'_>, trail: &PartialPath, ways: &mut Vec<CompoundPath>) {
+        self.count += 1;
+        let source = match begin {
+            PathStart::States(source, ..) | PathStart::Late(source, _) => source,
+        };
+        if self.count > MAX_WAYS {
+            let path = self.chart.path(source);
+            let message = format!("more than {MAX_WAYS} compound transitions, up to those out of `{path}`");
+            self.errors.push(Diagnostic::error("M06", Span::default(), message));
+        } else if trail.ends.len() > 1 && trail.ends.iter().any(|&end| self.ends_in_terminate(end)) {
+            self.refuse_fork_that_stops(trail);
+        } else if trail.ends.len() > 1 && !self.are_orthogonal(&trail.ends) {
+            self.refuse_fork(trail);
+        } else {
+            ways.extend(match begin {
+                PathStart::Late(source, region) => Some(self.dynamic_path(source, region, trail)),
+                PathStart::States(source, others, condition) => {
+                    self.compound_path(source, others, condition, trail)
+                }
+            });
+        }
+    }
+
+    /// A path that is the dynamic part of others, which determine its scope.
+    fn dynamic_path(&mut self, source: NodeId, region: ScopeId, trail: &PartialPath) -> CompoundPath {
+        CompoundPath {
+            segments: trail.segments.clone(),
+            source,
+            others: Vec::new(),
+            scope: source,
+            leaves: self.leaves(&trail.ends, region),
+            region,
+            condition: None,
+            change: ConfigurationChange::None,
+        }
+    }
+
+    fn compound_path(
+        &mut self,
+        source: NodeId,
+        others: &[NodeId],
+        condition: Option<EnablingCondition>,
+        trail: &PartialPath,
+    ) -> Option<CompoundPath> {
+        let is_internal = trail.segments.iter().any(|&id| self.chart.transition(id).internal);
+        let Some((scope, change)) = self.scope(source, others, trail, is_internal) else {
+            self.refuse(source, trail);
+            return None;
+        };
+        let region = self.regions[scope.0 as usize];
+        Some(CompoundPath {
+            segments: trail.segments.clone(),
+            source,
+            others: others.to_vec(),
+            scope,
+            leaves: self.leaves(&trail.ends, region),
+            region,
+            condition: condition.or_else(|| self.condition(source, trail)),
+            change,
+        })
+    }
+
+    fn leaves(&mut self, ends: &[NodeId], region: ScopeId) -> PathVec<PathEnd> {
+        let leaf = |&end: &NodeId| match self.roles.of(end) {
+            NodeRole::Choice => {
+                let (numbers, choices) = (&mut self.numbers, &mut self.choices);
+                PathEnd::Choice(*numbers.entry((end, region)).or_insert_with(|| {
+                    choices.push((end, region));
+                    choices.len() - 1
+                }))
+            }
+            NodeRole::Terminate => PathEnd::Terminate,
+            _ => PathEnd::Node(end),
+        };
+        ends.iter().map(leaf).collect()
+    }
+
+    /// The node inside which states are left and entered.
+    fn scope(
+        &mut self,
+        source: NodeId,
+        others: &[NodeId],
+        trail: &PartialPath,
+        is_internal: bool,
+    ) -> Option<(NodeId, ConfigurationChange)> {
+        let stops = trail.ends.iter().all(|&end| self.ends_in_terminate(end));
+        let mut hull = NodeSpan::of(self.layout.place_of(source));
+        for &node in others {
+            hull = hull.with(NodeSpan::of(self.layout.place_of(node)));
+        }
+        for &end in &trail.ends {
+            // only if there is no other end: this search can be long
+            hull = hull.with(self.target_span(end).unwrap_or_else(|| self.terminate_span(end)));
+        }
+        if is_internal {
+            let inside = node_span::lowest_node(self.chart, self.layout, hull) == source;
+            let still = stops || trail.ends[..] == [source];
+            return inside.then_some((
+                source,
+                if still { ConfigurationChange::None } else { ConfigurationChange::Scope },
+            ));
+        }
+        if let Some(vacated) = self.completes_ancestor(source, others, trail) {
+            return Some((vacated, ConfigurationChange::Vacates(None)));
+        }
+        let scope = node_span::lowest_or(self.chart, self.layout, source, hull)?;
+        Some((scope, if stops { ConfigurationChange::None } else { ConfigurationChange::Scope }))
+    }
+
+    /// The composite that remains without an active child when the target is an ancestor of the
+    /// source that then counts as complete.
+    fn completes_ancestor(&self, source: NodeId, others: &[NodeId], trail: &PartialPath) -> Option<NodeId> {
+        let (&[target], TransitionToAncestor::Completed) = (trail.ends.as_slice(), self.semantics.ancestor)
+        else {
+            return None;
+        };
+        if !others.is_empty() || !self.chart.ancestors(source).any(|ancestor| ancestor == target) {
+            return None;
+        }
+        match self.chart.node(target).kind {
+            NodeKind::And => node_span::child_towards(self.chart, target, source),
+            _ => Some(target),
+        }
+    }
+
+    /// The span of all possible ends of a path behind a node, except TERMINATE.
+    fn target_span(&mut self, end: NodeId) -> Option<NodeSpan> {
+        match self.roles.of(end) {
+            NodeRole::Terminate => None,
+            NodeRole::State | NodeRole::History => Some(NodeSpan::of(self.layout.place_of(end))),
+            _ => {
+                if let Some(&hull) = self.hulls.get(&end) {
+                    return hull;
+                }
+                let mut hull: Option<NodeSpan> = None;
+                for index in 0..self.roles.outgoing[end.0 as usize].len() {
+                    let target = self.chart.transition(self.roles.outgoing[end.0 as usize][index]).target;
+                    let behind = self.target_span(target);
+                    hull = hull.into_iter().chain(behind).reduce(NodeSpan::with);
+                }
+                self.hulls.insert(end, hull);
+                hull
+            }
+        }
+    }
+
+    /// The span of all TERMINATEs behind a node that leads to nothing else: its targets, as there
+    /// are no others.
+    fn terminate_span(&self, end: NodeId) -> NodeSpan {
+        let mut hull: Option<NodeSpan> = None;
+        let (mut open, mut seen) = (vec![end], BTreeSet::new());
+        while let Some(node) = open.pop() {
+            if self.roles.of(node) == NodeRole::Terminate {
+                hull =
+                    hull.into_iter().chain([NodeSpan::of(self.layout.place_of(node))]).reduce(NodeSpan::with);
+            } else if seen.insert(node) {
+                let outgoing = &self.roles.outgoing[node.0 as usize];
+                open.extend(outgoing.iter().map(|&id| self.chart.transition(id).target));
+            }
+        }
+        hull.unwrap_or(NodeSpan::of(self.layout.place_of(end)))
+    }
+
+    fn ends_in_terminate(&mut self, end: NodeId) -> bool {
+        self.target_span(end).is_none()
+    }
+
+    /// Whether the ends of the branches of a FORK lie in different regions, for every outcome of
+    /// CHOICEs.
+    fn are_orthogonal(&mut self, ends: &[NodeId]) -> bool {
+        let mut nodes = Vec::new();
+        for &end in ends {
+            let Some(hull) = self.target_span(end) else { return false };
+            nodes.push(match self.roles.of(end) {
+                NodeRole::History => self.chart.node(end).parent.unwrap_or(end),
+                _ => node_span::lowest_node(self.chart, self.layout, hull),
+            });
+        }
+        node_span::are_orthogonal(self.chart, self.layout, &nodes)
+    }
+
+    fn refuse_fork_that_stops(&mut self, trail: &PartialPath) {
+        let stops = trail.ends.iter().copied().find(|&end| self.ends_in_terminate(end));
+        let message = format!(
+            "a FORK leads to `{}`, which stops the chart",
+            self.chart.path(stops.unwrap_or(Statechart::ROOT))
+        );
+        let hint = "the branches of a FORK lead to states; TERMINATE may stand behind a CHOICE that leads to others too";
+        self.errors.push(Diagnostic::error("M04", Span::default(), message).with_hint(hint));
+    }
+
+    fn refuse_fork(&mut self, trail: &PartialPath) {
+        let ends: Vec<String> = trail.ends.iter().map(|&end| self.chart.path(end)).collect();
+        let message = format!("a FORK leads to `{}`, which cannot be active together", ends.join("` and `"));
+        let hint = "the branches of a FORK lead to different regions of one AND";
+        self.errors.push(Diagnostic::error("M04", Span::default(), message).with_hint(hint));
+    }
+
+    fn refuse(&mut self, source: NodeId, trail: &PartialPath) {
+        let ends: Vec<String> = trail.ends.iter().map(|&end| self.chart.path(end)).collect();
+        let (source, target) = (self.chart.path(source), ends.join("` and `"));
+        let message = format!("no transition can lead from `{source}` to `{target}`");
+        let hint = "what is internal stays inside its source";
+        self.errors.push(Diagnostic::error("M03", Span::default(), message).with_hint(hint));
+    }
+
+    /// When a path without a trigger may be taken, which depends on the guard of its first segment.
+    /// A completion that is examined once is discarded if the state is no longer complete by then.
+    fn condition(&self, source: NodeId, trail: &PartialPath) -> Option<EnablingCondition> {
+        let first = &self.chart.transition(*trail.segments.first()?).expression;
+        if first.trigger.is_some() {
+            return None;
+        }
+        let kind = self.chart.node(source).kind;
+        let interrupts = trail.segments.iter().any(|&id| self.chart.transition(id).interrupts);
+        let waits = matches!(kind, NodeKind::Or | NodeKind::And)
+            && first.guard.is_some()
+            && trail.ends[..] != [source];
+        Some(match self.semantics.eventless {
+            _ if kind == NodeKind::Start => EnablingCondition::Always,
+            CompletionTrigger::Always => EnablingCondition::Always,
+            CompletionTrigger::Once => EnablingCondition::Completed,
+            CompletionTrigger::AsWritten if !waits => EnablingCondition::Completed,
+            CompletionTrigger::AsWritten | CompletionTrigger::Quiescent if interrupts && waits => {
+                EnablingCondition::NoStepInside
+            }
+            CompletionTrigger::AsWritten | CompletionTrigger::Quiescent => EnablingCondition::Quiescent,
+        })
+    }
+}

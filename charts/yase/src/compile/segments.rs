@@ -1,0 +1,251 @@
+//! Compiles segments for the scopes in which they are taken, and builds branch trees.
+
+use crate::compile::build::ChartCompiler;
+use crate::compile::compound_transitions::{CompoundPath, ConfigurationChange, PathEnd as End};
+use crate::compile::{
+    BranchRange, BranchWeight, CandidatePath, CompoundTransition, EnablingCondition, EntryPlan, LateDrawTree,
+    NodeIndex, Owner, ScopedGuard, SegmentNode, TransitionTarget, entries,
+};
+use crate::diagnostic::Diagnostic;
+use crate::expression::{CompiledTransition, Effect, NameScope};
+use crate::ids::{ActionLocation, CompoundTransitionId, ScopeId};
+use crate::semantics::InitialState;
+use crate::statechart::{NodeId, NodeKind, TransitionId};
+
+/// A segment compiled for one scope.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CompiledSegment {
+    trigger: Option<usize>,
+    guard: Option<usize>,
+    pub(crate) effects: Box<[Effect]>,
+}
+
+impl ChartCompiler<'_> {
+    /// Stores the paths of one node, with or without a trigger, as a branch tree.
+    pub(crate) fn tree(&mut self, ways: &[CompoundPath], eventless: bool) -> BranchRange {
+        let ways: Vec<&CompoundPath> =
+            ways.iter().filter(|way| way.condition.is_some() == eventless).collect();
+        let first = self.compounds.len();
+        let branches = self.grow(&ways, 0);
+        if ways.iter().any(|way| self.is_drawn_late(way)) {
+            self.write_rows(&ways, branches.start, first);
+        }
+        branches
+    }
+
+    /// Whether there is a random choice behind a connector.
+    fn is_drawn_late(&self, way: &CompoundPath) -> bool {
+        way.segments.iter().skip(1).any(|&id| self.chart.transition(id).weight.is_some())
+    }
+
+    /// Stores the paths one by one: their compound transitions were created in this order, from
+    /// `first` on.
+    fn write_rows(&mut self, ways: &[&CompoundPath], first_branch: usize, first: usize) {
+        let start = self.rows.len();
+        for (index, way) in ways.iter().enumerate() {
+            let segments: Vec<CompiledSegment> =
+                way.segments.iter().map(|&id| self.segment(id, way.region)).collect();
+            let trigger =
+                segments.first().and_then(|segment| segment.trigger).map(EnablingCondition::Trigger);
+            self.rows.push(CandidatePath {
+                compound: CompoundTransitionId((first + index) as u32),
+                condition: way.condition.or(trigger).unwrap_or(EnablingCondition::None),
+                guards: segments.iter().map(|segment| segment.guard).collect(),
+            });
+        }
+        self.deep.push(LateDrawTree { first_branch, rows: start..self.rows.len() });
+    }
+
+    /// Adjacent paths in one scope with equal first segments share branches.
+    fn grow(&mut self, ways: &[&CompoundPath], depth: usize) -> BranchRange {
+        let alike = |a: &&CompoundPath, b: &&CompoundPath| {
+            (a.segments[depth], a.region, a.condition) == (b.segments[depth], b.region, b.condition)
+        };
+        let start = self.branches.len();
+        let mut weighted = Vec::new();
+        for group in ways.chunk_by(alike) {
+            let Some(&first) = group.first() else { continue };
+            let branch = self.branch(first, depth);
+            let index = self.branches.len();
+            weighted.extend(branch.weight);
+            self.branches.push(branch);
+            if first.segments.len() > depth + 1 {
+                self.grow(group, depth + 1);
+            }
+            self.branches[index].skip = self.branches.len();
+        }
+        let beside = BranchRange { start, end: self.branches.len() };
+        weighted.into_iter().for_each(|weight| self.weights[weight].beside = beside);
+        beside
+    }
+
+    fn branch(&mut self, way: &CompoundPath, depth: usize) -> SegmentNode {
+        let id = way.segments[depth];
+        let segment = self.segment(id, way.region);
+        let condition = match (depth, way.condition, segment.trigger) {
+            (0, Some(condition), _) => condition,
+            (0, None, Some(trigger)) => EnablingCondition::Trigger(trigger),
+            _ => EnablingCondition::None,
+        };
+        let weight = self.chart.transition(id).weight.map(|value| {
+            let weight = BranchWeight { value, segment: id, beside: BranchRange::default() };
+            number(&mut self.weights, weight)
+        });
+        let is_last = way.segments.len() == depth + 1;
+        let compound = is_last.then(|| self.compound(way));
+        SegmentNode { condition, guard: segment.guard, weight, compound, skip: 0 }
+    }
+
+    /// A segment in a scope, compiled on first use.
+    pub(crate) fn segment(&mut self, id: TransitionId, region: ScopeId) -> CompiledSegment {
+        if let Some(segment) = self.segments.get(&(id, region)) {
+            return segment.clone();
+        }
+        let chart = self.chart;
+        let transition = chart.transition(id);
+        let what =
+            || format!("from `{}` to `{}`", chart.path(transition.source), chart.path(transition.target));
+        let mut compiled: CompiledTransition =
+            self.actions(region, |names| transition.expression.compile(names), what);
+        self.bind_functions(&mut compiled.effects, ActionLocation::Transition(id), region);
+        if let (Some(wiring), Some(guard)) = (&mut self.wiring, &mut compiled.guard) {
+            wiring.guard(guard, id, region, &self.timer_names[region.index()]);
+        }
+        let segment = CompiledSegment {
+            trigger: compiled.trigger.map(|trigger| number(&mut self.triggers, trigger)),
+            guard: compiled
+                .guard
+                .map(|guard| number(&mut self.guards, ScopedGuard { transition: id, region, guard })),
+            effects: compiled.effects,
+        };
+        self.segments.insert((id, region), segment.clone());
+        segment
+    }
+
+    /// Compiles with the names of a scope; on errors, reports them with their location and returns
+    /// the default value.
+    pub(crate) fn actions<T: Default>(
+        &mut self,
+        region: ScopeId,
+        compile: impl FnOnce(&mut NameScope<'_>) -> Result<T, Vec<Diagnostic>>,
+        what: impl FnOnce() -> String,
+    ) -> T {
+        let mut names = NameScope {
+            vocabulary: self.vocabulary,
+            constants: &self.chart.constants,
+            timers: &self.timer_names[region.index()],
+            events: &mut self.events,
+            scripts: &mut self.scripts,
+            states: &|path| self.index.find(self.chart, path),
+        };
+        compile(&mut names).unwrap_or_else(|found| {
+            let what = what();
+            self.found.extend(found.into_iter().map(|mut diagnostic| {
+                diagnostic.message = format!("{} ({what})", diagnostic.message);
+                diagnostic
+            }));
+            T::default()
+        })
+    }
+
+    fn compound(&mut self, way: &CompoundPath) -> CompoundTransitionId {
+        let mut effects = Vec::new();
+        for &id in &way.segments {
+            let segment = self.segment(id, way.region);
+            if !segment.effects.is_empty() {
+                effects.push((id, segment.effects));
+            }
+        }
+        let (source, scope) = (self.layout.place_of(way.source), self.layout.place_of(way.scope));
+        let first = self.layout.first(scope);
+        let transitions = || way.segments.iter().map(|&id| self.chart.transition(id));
+        let is_internal = transitions().any(|transition| transition.internal);
+        let compound = CompoundTransition {
+            source,
+            others: way.others.iter().map(|&node| self.layout.place_of(node)).collect(),
+            region: way.region,
+            scope,
+            exits: (way.change != ConfigurationChange::None && first < scope)
+                .then(|| (first, NodeIndex(scope.0 - 1))),
+            vacates: match way.change {
+                ConfigurationChange::Vacates(_) if self.chart.node(way.scope).kind != NodeKind::Basic => {
+                    Some(scope)
+                }
+                _ => None,
+            },
+            arrives: match way.change {
+                ConfigurationChange::Vacates(slot) => slot,
+                _ => None,
+            },
+            leaves: self.leaves(way),
+            entries: self.entries(way),
+            owner: self.owner(way),
+            effects: effects.into(),
+            interrupts: transitions().any(|transition| transition.interrupts),
+            key: u64::from(!is_internal) << 32 | u64::from(self.layout.rank(source)),
+            segments: way.segments.iter().copied().collect(),
+        };
+        CompoundTransitionId(number(&mut self.compounds, compound) as u32)
+    }
+
+    /// The nodes to be entered; empty if the target is not entered.
+    fn leaves(&self, way: &CompoundPath) -> Box<[TransitionTarget]> {
+        let stays = match way.change {
+            ConfigurationChange::None => way.leaves[..] == [End::Node(way.source)],
+            ConfigurationChange::Vacates(_) => true,
+            ConfigurationChange::Scope => false,
+        };
+        if stays { Box::default() } else { way.leaves.iter().map(|&leaf| self.leaf(leaf)).collect() }
+    }
+
+    fn leaf(&self, leaf: End) -> TransitionTarget {
+        match leaf {
+            End::Node(node) => TransitionTarget::Node(self.layout.place_of(node)),
+            End::Choice(number) => TransitionTarget::Choice(number),
+            End::Terminate => TransitionTarget::Terminate,
+        }
+    }
+
+    /// The entered nodes are known in advance if there is one target, which is a state, and no
+    /// START is left in the same step.
+    fn entries(&self, way: &CompoundPath) -> EntryPlan {
+        if way.change != ConfigurationChange::Scope {
+            return EntryPlan::None;
+        }
+        let [End::Node(target)] = way.leaves[..] else { return EntryPlan::Found };
+        if self.is_history(target) {
+            return EntryPlan::Found;
+        }
+        let listed = entries::between(self.chart, &self.layout, &self.starts, way.scope, target);
+        let goes_on = |list: &entries::InlineVec<NodeIndex>| {
+            self.semantics.start == InitialState::SameStep
+                && list.iter().any(|&place| self.chart.node(self.layout.node(place)).kind == NodeKind::Start)
+        };
+        listed
+            .filter(|list| !goes_on(list))
+            .map_or(EntryPlan::Found, |list| EntryPlan::Listed(list.into_iter().collect()))
+    }
+
+    fn owner(&self, way: &CompoundPath) -> Owner {
+        match way.leaves.first() {
+            Some(End::Choice(_)) => Owner::Dynamic,
+            Some(&End::Node(node)) => Owner::State(self.layout.place_of(self.owner_of(node))),
+            Some(End::Terminate) | None => Owner::None,
+        }
+    }
+
+    /// A HISTORY owns nothing; its composite does.
+    fn owner_of(&self, node: NodeId) -> NodeId {
+        if self.is_history(node) { self.chart.node(node).parent.unwrap_or(node) } else { node }
+    }
+
+    fn is_history(&self, node: NodeId) -> bool {
+        matches!(self.chart.node(node).kind, NodeKind::ShallowHistory | NodeKind::DeepHistory)
+    }
+}
+
+/// Appends an item, and returns its index.
+fn number<T>(list: &mut Vec<T>, item: T) -> usize {
+    list.push(item);
+    list.len() - 1
+}

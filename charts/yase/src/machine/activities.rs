@@ -1,0 +1,177 @@
+//! The activities of BASIC states: their phases, and the scopes they lock.
+
+use crate::compile::{CompiledChart, NodeIndex};
+use crate::host::Outcome;
+use crate::ids::Activation;
+use crate::machine::Status;
+use crate::machine::machine_state::MachineState;
+
+/// The activities of a chart, by their index in it.
+#[derive(Clone, Debug)]
+pub(crate) struct ActivityTable {
+    slots: Box<[ActivityState]>,
+    pub(crate) count: u64,
+    /// Whether one has been queued since the last query.
+    pub(crate) queued: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ActivityState {
+    pub(crate) phase: InvocationPhase,
+    pub(crate) number: u64,
+    /// Whether it has been requested to return.
+    pub(crate) cancelled: bool,
+}
+
+/// The phase of an activity.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum InvocationPhase {
+    /// Its state is not active.
+    Idle,
+    /// Its state was entered; it starts at the end of the step.
+    Queued,
+    /// It is running.
+    Running,
+    /// It waits for the next call.
+    Ongoing,
+    /// It has failed.
+    Failed,
+    /// It has finished.
+    Done,
+}
+
+impl ActivityTable {
+    pub(crate) fn new(count: usize) -> ActivityTable {
+        let slot = ActivityState { phase: InvocationPhase::Idle, number: 0, cancelled: false };
+        ActivityTable { slots: vec![slot; count].into(), count: 0, queued: false }
+    }
+
+    /// Copies the activities of another machine of the same chart.
+    pub(crate) fn copy_from(&mut self, other: &ActivityTable) {
+        self.slots.copy_from_slice(&other.slots);
+        (self.count, self.queued) = (other.count, other.queued);
+    }
+
+    pub(crate) fn reset(&mut self) {
+        for slot in &mut self.slots {
+            slot.phase = InvocationPhase::Idle;
+        }
+    }
+
+    /// Whether activities may wait to be started, as of the last query.
+    #[inline]
+    pub(crate) fn take_queued(&mut self) -> bool {
+        std::mem::take(&mut self.queued)
+    }
+
+    pub(crate) fn slots(&self) -> &[ActivityState] {
+        &self.slots
+    }
+
+    #[inline]
+    pub(crate) fn slot(&self, activity: usize) -> ActivityState {
+        self.slots[activity]
+    }
+
+    #[inline]
+    pub(crate) fn slot_mut(&mut self, activity: usize) -> &mut ActivityState {
+        &mut self.slots[activity]
+    }
+}
+
+impl MachineState {
+    /// The state of an activity was entered: from now on its scope is locked.
+    #[inline]
+    pub(crate) fn enqueue_activity(&mut self, chart: &CompiledChart, place: NodeIndex, activity: usize) {
+        self.activities.count += 1;
+        self.activities.queued = true;
+        let number = self.activities.count;
+        *self.activities.slot_mut(activity) =
+            ActivityState { phase: InvocationPhase::Queued, number, cancelled: false };
+        self.lock(chart, place);
+    }
+
+    #[inline]
+    pub(crate) fn lock(&mut self, chart: &CompiledChart, place: NodeIndex) {
+        self.running.insert(place.index());
+        self.running_regions.insert(chart.states[place.index()].region.index());
+    }
+
+    #[inline]
+    pub(crate) fn unlock(&mut self, chart: &CompiledChart, place: NodeIndex) {
+        self.running.remove(place.index());
+        self.running_regions.remove(chart.states[place.index()].region.index());
+    }
+
+    #[inline]
+    pub(crate) fn activation(
+        &self,
+        chart: &CompiledChart,
+        place: NodeIndex,
+        slot: ActivityState,
+    ) -> Activation {
+        let region = chart.states[place.index()].region;
+        Activation { node: chart.layout.node(place), region, number: slot.number }
+    }
+
+    /// The indices of the node and the activity of an activation, if it is the current one.
+    #[inline]
+    fn current(&self, chart: &CompiledChart, activation: Activation) -> Option<(NodeIndex, usize)> {
+        let place = chart.layout.place(activation.node)?;
+        let activity = chart.states[place.index()].activity?;
+        let is_current =
+            self.status == Status::Running && self.activities.slot(activity).number == activation.number;
+        is_current.then_some((place, activity))
+    }
+
+    pub(crate) fn activity_returned(
+        &mut self,
+        chart: &CompiledChart,
+        activation: Activation,
+        outcome: Outcome,
+    ) -> bool {
+        let Some((place, activity)) = self.current(chart, activation) else { return false };
+        let slot = self.activities.slot_mut(activity);
+        if slot.phase != InvocationPhase::Running {
+            return false;
+        }
+        slot.phase = match outcome {
+            Outcome::Done => InvocationPhase::Done,
+            Outcome::Ongoing => InvocationPhase::Ongoing,
+            Outcome::Failed => InvocationPhase::Failed,
+        };
+        self.unlock(chart, place);
+        self.release_held(chart, place);
+        if outcome == Outcome::Failed {
+            self.queues.arrive(chart.errors.activity.into());
+        }
+        if outcome == Outcome::Done {
+            self.completed(chart, place);
+        }
+        self.needs_step = true;
+        true
+    }
+
+    /// Offers the events again that were held because of this activity.
+    fn release_held(&mut self, chart: &CompiledChart, place: NodeIndex) {
+        let region = chart.states[place.index()].region;
+        self.queues.release(|compound| {
+            let compound = &chart.compounds[compound.0 as usize];
+            let mut sources = compound.sources();
+            compound.leaves(place) || sources.any(|source| chart.states[source.index()].region == region)
+        });
+    }
+
+    pub(crate) fn activity_resumed(&mut self, chart: &CompiledChart, activation: Activation) -> bool {
+        let Some((place, activity)) = self.current(chart, activation) else { return false };
+        let slot = self.activities.slot(activity);
+        if !matches!(slot.phase, InvocationPhase::Ongoing | InvocationPhase::Failed)
+            || self.has_pending_exit(chart, place)
+        {
+            return false;
+        }
+        self.activities.slot_mut(activity).phase = InvocationPhase::Running;
+        self.lock(chart, place);
+        true
+    }
+}

@@ -1,0 +1,144 @@
+//! The completion of states, and its consequences.
+
+use crate::compile::{CompiledChart, CompoundTransition, NodeIndex};
+use crate::machine::activities::InvocationPhase;
+use crate::machine::machine_state::MachineState;
+use crate::semantics::CompletionTrigger;
+use crate::statechart::NodeKind;
+
+impl MachineState {
+    /// Whether an active state has completed.
+    #[inline]
+    pub(crate) fn is_complete(&self, chart: &CompiledChart, place: NodeIndex) -> bool {
+        let state = &chart.states[place.index()];
+        if self.vacated.contains(place.index()) {
+            return true;
+        }
+        match state.kind {
+            NodeKind::And => {
+                state.parts.iter().all(|&region| self.is_active(region) && self.is_complete(chart, region))
+            }
+            NodeKind::Or => state.parts.iter().any(|&end| self.is_active(end)),
+            _ => state
+                .activity
+                .is_none_or(|activity| self.activities.slot(activity).phase == InvocationPhase::Done),
+        }
+    }
+
+    /// Whether all enclosing composites have reached an END, as the completion event of an AND
+    /// requires.
+    fn has_ended(&self, chart: &CompiledChart, place: NodeIndex) -> bool {
+        let state = &chart.states[place.index()];
+        match state.kind {
+            NodeKind::And => state.parts.iter().all(|&region| self.has_ended(chart, region)),
+            _ => self.vacated.contains(place.index()) || state.parts.iter().any(|&end| self.is_active(end)),
+        }
+    }
+
+    /// Processes the entry of an END other than the root's.
+    pub(crate) fn end_reached(&mut self, chart: &CompiledChart, place: NodeIndex) {
+        let Some(composite) = chart.states[place.index()].parent else { return };
+        if chart.semantics_ref().completion_events {
+            self.raise_done(chart, composite);
+        }
+        self.completed(chart, composite);
+    }
+
+    /// Raises the completion event of a composite, and those of the ANDs that are complete with it.
+    fn raise_done(&mut self, chart: &CompiledChart, composite: NodeIndex) {
+        let mut next = Some(composite);
+        while let Some(place) = next {
+            if let Some(event) = chart.states[place.index()].done {
+                self.raise(chart, event, true, 0);
+            }
+            next = chart.states[place.index()].parent.filter(|&parent| {
+                chart.states[parent.index()].kind == NodeKind::And && self.has_ended(chart, parent)
+            });
+        }
+    }
+
+    /// Records that a state has completed: where completion is examined once, it is examined next,
+    /// with the ANDs that are complete with it.
+    #[inline]
+    pub(crate) fn completed(&mut self, chart: &CompiledChart, place: NodeIndex) {
+        self.completed_from(chart, Some(place));
+    }
+
+    #[inline]
+    fn completed_from(&mut self, chart: &CompiledChart, first: Option<NodeIndex>) {
+        if chart.semantics_ref().eventless != CompletionTrigger::Once {
+            return;
+        }
+        let mut next = first;
+        while let Some(place) = next {
+            if !self.completions.contains(&place) {
+                self.completions.push_back(place);
+            }
+            next = self.complete_and(chart, place);
+        }
+    }
+
+    /// The AND that contains a region, if it has completed.
+    fn complete_and(&self, chart: &CompiledChart, region: NodeIndex) -> Option<NodeIndex> {
+        let parent = chart.states[region.index()].parent?;
+        let is_and = chart.states[parent.index()].kind == NodeKind::And;
+        (is_and && self.is_complete(chart, parent)).then_some(parent)
+    }
+
+    /// Discards the pending completion of a state that was left.
+    #[inline]
+    pub(crate) fn forget_completion(&mut self, chart: &CompiledChart, place: NodeIndex) {
+        self.vacated.remove(place.index());
+        if !self.completions.is_empty() {
+            self.completions.retain(|&completed| completed != place);
+        }
+        if !chart.joins.is_empty() {
+            self.forget_arrivals_of(chart, place);
+        }
+    }
+
+    /// Records that a composite remains without an active child, and counts as complete. For a
+    /// region that has arrived at a JOIN this is already known: only the AND around it may become
+    /// complete.
+    pub(crate) fn mark_vacated(&mut self, chart: &CompiledChart, place: NodeIndex, has_arrived: bool) {
+        self.vacated.insert(place.index());
+        self.active_leaves.insert(place.index());
+        self.completed_from(chart, if has_arrived { self.complete_and(chart, place) } else { Some(place) });
+    }
+
+    /// A child of a composite is entered.
+    #[inline]
+    pub(crate) fn mark_occupied(&mut self, chart: &CompiledChart, composite: Option<NodeIndex>) {
+        let Some(place) = composite.filter(|place| self.vacated.contains(place.index())) else { return };
+        self.vacated.remove(place.index());
+        self.active_leaves.remove(place.index());
+        self.forget_arrivals_of(chart, place);
+    }
+
+    /// A region that is left, by itself or with its AND, or gets a child again, no longer counts as
+    /// arrived at a JOIN.
+    fn forget_arrivals_of(&mut self, chart: &CompiledChart, region: NodeIndex) {
+        for join in &chart.joins {
+            for (slot, _) in join.slots().zip(&join.regions).filter(|(_, other)| **other == region) {
+                self.arrived.remove(slot);
+            }
+        }
+    }
+
+    /// Records that a segment into a JOIN has been taken individually. When all have, the path out
+    /// of the JOIN is examined.
+    #[inline]
+    pub(crate) fn arrive_at_join(&mut self, chart: &CompiledChart, compound: &CompoundTransition) {
+        let Some(slot) = compound.arrives else { return };
+        let joined = chart.joins.iter().find(|join| join.slots().contains(&slot));
+        // in phases another transition may have left the AND before
+        let Some(join) = joined.filter(|join| self.is_active(join.around)) else { return };
+        self.arrived.insert(slot);
+        if join.slots().all(|slot| self.arrived.contains(slot))
+            && chart.semantics_ref().eventless == CompletionTrigger::Once
+            && !self.completions.contains(&join.around)
+        {
+            self.completions.push_back(join.around);
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Entering states.
+//!
+//! Where a transition has one target and passes no START, the list of entered nodes is precomputed.
+//! Otherwise the targets are marked with all their ancestors up to the scope, and entry follows the
+//! marks down from the scope.
+
+use crate::compile::{BranchRange, NodeIndex, Owner, TransitionTarget};
+use crate::host::Host;
+use crate::ids::ActionLocation;
+use crate::machine::Status;
+use crate::machine::actions::ActionContext;
+use crate::machine::errors::StepError;
+use crate::machine::step::Macrostep;
+use crate::semantics::{InitialState, RootCompletion};
+use crate::statechart::NodeKind;
+
+impl<H: Host> Macrostep<'_, H> {
+    /// Enters the root and its default state.
+    pub(crate) fn enter_root(&mut self) -> Result<(), StepError> {
+        let root = self.chart.layout.root();
+        self.enter(root);
+        self.enter_inside(root)
+    }
+
+    /// Marks a target and its ancestors up to the scope.
+    pub(crate) fn mark_for_entry(&mut self, target: NodeIndex, scope: NodeIndex) {
+        let mut next = Some(target).filter(|&place| place != scope);
+        while let Some(place) = next {
+            if self.run.marked.contains(place.index()) {
+                return;
+            }
+            self.run.marked.insert(place.index());
+            next = self.chart.states[place.index()].parent.filter(|&parent| parent != scope);
+        }
+    }
+
+    /// Enters the marked nodes inside a scope, and those entered with them.
+    pub(crate) fn enter_inside(&mut self, scope: NodeIndex) -> Result<(), StepError> {
+        self.expand_targets(scope)?;
+        while let Some(place) = self.run.entering.pop() {
+            if self.run.status != Status::Running || self.run.terminates {
+                self.run.entering.clear();
+                break;
+            }
+            self.run.marked.remove(place.index());
+            self.enter(place);
+            self.expand_targets(place)?;
+        }
+        Ok(())
+    }
+
+    /// Determines the nodes entered with a composite: the regions of an AND; the marked child of an
+    /// OR, or the target of its HISTORY or its START.
+    fn expand_targets(&mut self, place: NodeIndex) -> Result<(), StepError> {
+        let state = &self.chart.states[place.index()];
+        match state.kind {
+            NodeKind::And => {
+                self.resolve_histories(place)?;
+                self.run.entering.extend(state.parts.iter().rev());
+            }
+            NodeKind::Or => {
+                self.resolve_histories(place)?;
+                let child = match self.marked_child(place) {
+                    None if !self.run.terminates => self.enter_start(place)?,
+                    child => child,
+                };
+                self.run.entering.extend(child);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The marked child of an OR: the last marked node inside it, since marks extend up to the
+    /// child.
+    pub(crate) fn marked_child(&self, place: NodeIndex) -> Option<NodeIndex> {
+        let first = self.chart.layout.first(place).index();
+        let last = place.index().checked_sub(1)?;
+        self.run.marked.last(first, last).map(|index| NodeIndex(index as u32))
+    }
+
+    /// Returns START, or its target if it is left in the same step.
+    fn enter_start(&mut self, place: NodeIndex) -> Result<Option<NodeIndex>, StepError> {
+        let start = self.chart.states[place.index()].start;
+        let Some(begin) = start.filter(|_| self.semantics().start == InitialState::SameStep) else {
+            return Ok(start);
+        };
+        if !self.follow(self.chart.states[begin.index()].eventless, place)? {
+            return Ok(start);
+        }
+        self.resolve_histories(place)?;
+        // the composite remains in START if a HISTORY leads nowhere
+        Ok(self.marked_child(place).or(start))
+    }
+
+    /// Continues, behind executed actions, on a path that is selected now. Returns false if none is
+    /// enabled.
+    pub(crate) fn follow(&mut self, branches: BranchRange, scope: NodeIndex) -> Result<bool, StepError> {
+        let Some(id) = self.first_open_path(branches) else { return Ok(false) };
+        let way = &self.chart.compounds[id.0 as usize];
+        if self.run.log.wanted {
+            self.run.log.taken.extend_from_slice(&way.segments);
+        }
+        self.do_actions(way);
+        self.mark_leaves(&way.leaves, scope)?;
+        Ok(true)
+    }
+
+    /// Marks the end of a path; at a CHOICE, continues. Nothing happens behind TERMINATE.
+    pub(crate) fn mark_leaves(
+        &mut self,
+        leaves: &[TransitionTarget],
+        scope: NodeIndex,
+    ) -> Result<(), StepError> {
+        for &leaf in leaves {
+            match leaf {
+                TransitionTarget::Node(place) => {
+                    self.mark_for_entry(place, scope);
+                    self.bind_timers(place);
+                }
+                TransitionTarget::Choice(number) => {
+                    let choice = &self.chart.choices[number];
+                    if !self.follow(choice.branches, scope)? {
+                        return Err(StepError::NoBranch(choice.node));
+                    }
+                }
+                TransitionTarget::Terminate => {
+                    self.run.terminates = true;
+                    self.run.unbound_timers.clear();
+                }
+            }
+            if self.run.terminates {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Binds timers that were started before the first target was known to that target.
+    fn bind_timers(&mut self, target: NodeIndex) {
+        if self.run.unbound_timers.is_empty() {
+            return;
+        }
+        let is_history = self.chart.histories.iter().find(|history| history.place == target);
+        let owner = is_history.map_or(target, |history| history.owner);
+        while let Some(timer) = self.run.unbound_timers.pop() {
+            self.run.timers.bind(timer, owner);
+        }
+    }
+
+    #[inline(never)]
+    pub(crate) fn enter(&mut self, place: NodeIndex) {
+        let state = &self.chart.states[place.index()];
+        let node = self.chart.layout.node(place);
+        self.run.activate(self.chart, place);
+        self.run.mark_occupied(self.chart, state.parent);
+        if self.run.log.wanted {
+            self.run.log.entries.push(node);
+        }
+        if state.is_region
+            && let Some(around) = self.chart.regions[state.region.index()].parent
+        {
+            self.host.inherit(state.region, around);
+        }
+        let scene = ActionContext {
+            place: ActionLocation::Entry(node),
+            region: state.region,
+            owner: Owner::State(place),
+        };
+        self.perform(&state.entry, scene);
+        if let Some(activity) = state.activity {
+            self.run.enqueue_activity(self.chart, place, activity);
+        }
+        match state.kind {
+            NodeKind::End if state.finishes => self.finish_root(),
+            NodeKind::End => self.run.end_reached(self.chart, place),
+            NodeKind::Basic if state.activity.is_none() => self.run.completed(self.chart, place),
+            _ => {}
+        }
+    }
+
+    fn finish_root(&mut self) {
+        match self.semantics().root_end {
+            RootCompletion::Idle => self.halt(Status::Finished),
+            RootCompletion::ExitsAll => self.run.root_is_final = true,
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! The commands, one module each, with its arguments and its work.
+
+#[cfg(unix)]
+pub(crate) mod agent;
+#[cfg(unix)]
+pub(crate) mod chart;
+pub(crate) mod config;
+pub(crate) mod deploy;
+pub(crate) mod doctor;
+pub(crate) mod generate;
+pub(crate) mod log;
+pub(crate) mod model;
+#[cfg(unix)]
+pub(crate) mod module;
+pub(crate) mod new;
+pub(crate) mod run;
+pub(crate) mod tape;
+#[cfg(unix)]
+pub(crate) mod top;
+#[cfg(unix)]
+pub(crate) mod topic;

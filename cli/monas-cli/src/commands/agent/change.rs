@@ -1,0 +1,117 @@
+//! `monas agent` subcommands that change an agent.
+
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+
+use monas::records::{Action, Change, Changed, Setting};
+
+use super::arguments::{AgentCommand, AgentOrChart, OneAgent};
+use crate::remote::{RunSelector, print_outcome, request_change};
+use crate::terminal::{CommandFailure, CommandOutput, Exit};
+
+pub(crate) fn execute(
+    command: &AgentCommand,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let Some((change, run)) = requested_change(command)? else { return Ok(Exit::Success) };
+    let chart = change.chart.clone();
+    let changed = request_change(change, run)?;
+    print_outcome(&changed, &sentence(&changed, &chart), run.format.value, console)
+}
+
+/// The change that a command requests, and the run; none for commands that only inspect.
+fn requested_change(command: &AgentCommand) -> Result<Option<(Change, &RunSelector)>, CommandFailure> {
+    Ok(Some(match command {
+        AgentCommand::List { .. } | AgentCommand::Save { .. } => return Ok(None),
+        AgentCommand::Start(target) => agent_or_chart(Action::StartAgent, target),
+        AgentCommand::Stop(target) => agent_or_chart(Action::StopAgent, target),
+        AgentCommand::Pause(one) => one_agent(Action::PauseAgent, one),
+        AgentCommand::Resume(one) => one_agent(Action::ResumeAgent, one),
+        AgentCommand::Step(one) => one_agent(Action::StepAgent, one),
+        AgentCommand::Remove(one) => one_agent(Action::RemoveAgent, one),
+        AgentCommand::Add { file, run } => {
+            let (text, file) = text_of(file, run)?;
+            (Change { text, file, ..change_of(Action::AddAgents, "") }, run)
+        }
+        AgentCommand::AddActivity { agent, activity, parameters, at, run } => {
+            let (activity, place) = (activity.clone(), at.unwrap_or_default());
+            let settings = settings(parameters)?;
+            (Change { activity, place, settings, ..change_of(Action::AddActivity, agent) }, run)
+        }
+        AgentCommand::RemoveActivity { agent, activity, run } => {
+            (Change { activity: activity.clone(), ..change_of(Action::RemoveActivity, agent) }, run)
+        }
+        AgentCommand::MoveActivity { agent, activity, place, run } => {
+            let (activity, place) = (activity.clone(), *place);
+            (Change { activity, place, ..change_of(Action::MoveActivity, agent) }, run)
+        }
+        AgentCommand::ReplaceActivity { agent, activity, replacement, parameters, run } => {
+            let (activity, replacement) = (activity.clone(), replacement.clone());
+            let settings = settings(parameters)?;
+            (Change { activity, replacement, settings, ..change_of(Action::ReplaceActivity, agent) }, run)
+        }
+        AgentCommand::Set { agent, settings: given, chart, run } => {
+            let chart = chart.clone().unwrap_or_default();
+            (Change { settings: settings(given)?, chart, ..change_of(Action::Set, agent) }, run)
+        }
+        AgentCommand::Swap { agent, model, chart, states, lossy, run } => {
+            let (states, accept_losses) = (settings(states)?, *lossy);
+            let chart = chart.clone().unwrap_or_default();
+            // A name that is not a file may be that of a generated chart.
+            let (text, file) = match Path::new(model).exists() {
+                true => text_of(Path::new(model), run)?,
+                false => (String::new(), model.clone()),
+            };
+            (Change { chart, file, text, states, accept_losses, ..change_of(Action::SwapModel, agent) }, run)
+        }
+    }))
+}
+
+fn change_of(action: Action, agent: &str) -> Change {
+    Change { action: action.into(), agent: agent.to_owned(), ..Change::default() }
+}
+
+fn one_agent(action: Action, OneAgent { agent, run }: &OneAgent) -> (Change, &RunSelector) {
+    (change_of(action, agent), run)
+}
+
+fn agent_or_chart(action: Action, AgentOrChart { one, chart }: &AgentOrChart) -> (Change, &RunSelector) {
+    let (change, run) = one_agent(action, one);
+    (Change { chart: chart.clone().unwrap_or_default(), ..change }, run)
+}
+
+/// Parses `KEY=VALUE` arguments.
+fn settings(given: &[String]) -> Result<Vec<Setting>, CommandFailure> {
+    let setting = |text: &String| match text.split_once('=') {
+        Some((key, value)) if !key.is_empty() => Ok(Setting { key: key.into(), value: value.into() }),
+        _ => Err(CommandFailure::Usage(format!("`{text}` is not KEY=VALUE"))),
+    };
+    given.iter().map(setting).collect()
+}
+
+/// The text of a file, or of standard input for `-`, and the file's name.
+fn text_of(file: &Path, run: &RunSelector) -> Result<(String, String), CommandFailure> {
+    let mut text = String::new();
+    let read = match file == Path::new("-") {
+        true => std::io::stdin().read_to_string(&mut text).map(|_| text),
+        false => fs::read_to_string(file),
+    };
+    let failed = |error| CommandFailure::failed(run.format.value, format!("{}: {error}", file.display()));
+    Ok((read.map_err(failed)?, file.display().to_string()))
+}
+
+fn sentence(changed: &Changed, chart: &str) -> String {
+    let Changed { agent, cycle, .. } = changed;
+    let its = if chart.is_empty() { String::new() } else { format!("statechart `{chart}` of ") };
+    match changed.action() {
+        Action::AddAgents => "the agents are added".into(),
+        Action::RemoveAgent => format!("`{agent}` is removed"),
+        Action::StartAgent => format!("{its}`{agent}` starts after its cycle {cycle}"),
+        Action::StopAgent => format!("{its}`{agent}` has stopped after its cycle {cycle}"),
+        Action::PauseAgent => format!("`{agent}` pauses after its cycle {cycle}"),
+        Action::ResumeAgent => format!("`{agent}` resumes after its cycle {cycle}"),
+        Action::StepAgent => format!("`{agent}` has completed its cycle {cycle}"),
+        _ => format!("{its}`{agent}` is changed after its cycle {cycle}"),
+    }
+}

@@ -1,0 +1,40 @@
+//! `monas agent save`: the current configuration of a host.
+
+use std::fs;
+use std::path::Path;
+
+use monas::records::Inquiry;
+use serde_json::json;
+
+use crate::remote::{RunSelector, request, unexpected_reply};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Format};
+
+pub(crate) fn execute(
+    file: Option<&Path>,
+    run: &RunSelector,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let format = run.format.value;
+    let reply = request(Inquiry { configuration: true, ..Inquiry::default() }, run)?;
+    let configuration = reply.configuration.ok_or_else(|| unexpected_reply(run))?;
+    let Some(file) = file else {
+        write!(console.out, "{}", configuration.text)?;
+        return Ok(Exit::Success);
+    };
+    if file.extension().is_some_and(|ending| ending == "toml") {
+        return Err(CommandFailure::Usage(
+            "the configuration is saved as XML: the file must end with .xml".into(),
+        ));
+    }
+    // Write a new file and rename it, so that no reader sees a partial one.
+    let mut name = file.file_name().unwrap_or_default().to_os_string();
+    name.push(".new");
+    let new = file.with_file_name(name);
+    let written = fs::write(&new, &configuration.text).and_then(|()| fs::rename(&new, file));
+    written.map_err(|error| CommandFailure::failed(format, format!("{}: {error}", file.display())))?;
+    match format {
+        Format::Json => writeln!(console.out, "{}", json!({"file": file, "from": configuration.file}))?,
+        Format::Text => writeln!(console.out, "saved to {}", file.display())?,
+    }
+    Ok(Exit::Success)
+}

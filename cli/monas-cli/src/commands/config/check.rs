@@ -1,0 +1,21 @@
+//! `monas config check`: everything that `run` would read, without running it.
+
+use std::path::Path;
+
+use super::ConfigArguments;
+use crate::input::{checked_with, layers};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, report};
+
+pub(crate) fn execute(
+    arguments: &ConfigArguments,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let (config, format) = (&arguments.config, arguments.format.value);
+    let layers = |config: &Path| layers::of(config, &arguments.layers);
+    let diagnostics = checked_with(config, format, &layers)?;
+    report::write(console, format, &diagnostics)?;
+    if format == Format::Text {
+        writeln!(console.out, "{}: no errors", config.display())?;
+    }
+    Ok(Exit::Success)
+}

@@ -1,0 +1,144 @@
+//! `monas doctor`: checks whether this computer and this folder can run agents, and suggests
+//! repairs.
+
+mod clock;
+mod permissions;
+mod ports;
+mod toolchain;
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueHint};
+use monas::config::Layers;
+use serde_json::json;
+use yase::Diagnostic;
+
+use crate::input::{ConfigurationKind, DEFAULT_CONFIGURATION, kind_of};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report};
+
+/// Arguments of `monas doctor`.
+#[derive(Args, Debug)]
+pub(crate) struct DoctorArguments {
+    /// The configuration to check: a match or a file of agents, in XML or TOML.
+    #[arg(default_value = DEFAULT_CONFIGURATION, value_hint = ValueHint::FilePath)]
+    pub(crate) config: PathBuf,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
+}
+
+/// The result of a check, best first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+enum CheckStatus {
+    /// Nothing to repair.
+    Ok,
+    /// Agents run, but not as well as they could.
+    Warning,
+    /// Something does not run.
+    Error,
+}
+
+impl CheckStatus {
+    const fn name(self) -> &'static str {
+        match self {
+            CheckStatus::Ok => "ok",
+            CheckStatus::Warning => "warning",
+            CheckStatus::Error => "error",
+        }
+    }
+}
+
+/// One check with its result.
+#[derive(Clone, PartialEq, Eq, Debug)]
+struct CheckResult {
+    area: &'static str,
+    state: CheckStatus,
+    what: String,
+    hint: Option<String>,
+}
+
+impl CheckResult {
+    fn ok(area: &'static str, what: impl Into<String>) -> CheckResult {
+        CheckResult { area, state: CheckStatus::Ok, what: what.into(), hint: None }
+    }
+
+    fn warning(area: &'static str, what: impl Into<String>, hint: impl Into<String>) -> CheckResult {
+        CheckResult { area, state: CheckStatus::Warning, what: what.into(), hint: Some(hint.into()) }
+    }
+
+    fn error(area: &'static str, what: impl Into<String>, hint: impl Into<String>) -> CheckResult {
+        CheckResult { area, state: CheckStatus::Error, what: what.into(), hint: Some(hint.into()) }
+    }
+}
+
+pub(crate) fn execute(
+    arguments: &DoctorArguments,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let format = arguments.format.value;
+    let (configuration, diagnostics) = configuration(arguments);
+    let findings: Vec<CheckResult> = [toolchain::findings(), permissions::findings(), clock::findings()]
+        .into_iter()
+        .flatten()
+        .chain(ports::findings(arguments))
+        .chain([configuration])
+        .collect();
+    for finding in &findings {
+        write(finding, format, console)?;
+    }
+    report::write(console, format, &diagnostics)?;
+    let is_wrong =
+        |area: &str| findings.iter().any(|one| one.state == CheckStatus::Error && one.area == area);
+    Ok(match findings.iter().map(|finding| finding.state).max() {
+        Some(CheckStatus::Error) if is_wrong(CONFIGURATION) => Exit::Invalid,
+        Some(CheckStatus::Error) => Exit::Failure,
+        _ => Exit::Success,
+    })
+}
+
+const CONFIGURATION: &str = "configuration";
+
+/// Checks the configuration as `config check` does.
+fn configuration(arguments: &DoctorArguments) -> (CheckResult, Vec<Diagnostic>) {
+    let path = &arguments.config;
+    let name = path.display();
+    if !path.exists() {
+        let hint = "give one: `monas doctor FILE`, or create a project: `monas new my-team`";
+        return (CheckResult::warning(CONFIGURATION, format!("there is no {name}"), hint), Vec::new());
+    }
+    let registry = monas::Registry::linked();
+    let diagnostics = match kind_of(path) {
+        Ok(ConfigurationKind::Match) => match monas_match::MatchSource::load(path, &registry) {
+            Ok(plan) => plan.warnings().to_vec(),
+            Err(diagnostics) => diagnostics,
+        },
+        Ok(ConfigurationKind::Agents) => monas::config::load_with(path, &registry, &Layers::new()).1,
+        Err(unread) => vec![*unread],
+    };
+    let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();
+    let finding = match errors {
+        0 => CheckResult::ok(CONFIGURATION, format!("{name} is valid")),
+        _ => CheckResult::error(CONFIGURATION, format!("{name}: {errors} errors"), "listed below"),
+    };
+    (finding, diagnostics)
+}
+
+fn write(
+    finding: &CheckResult,
+    format: Format,
+    console: &mut CommandOutput<'_>,
+) -> Result<(), CommandFailure> {
+    let CheckResult { area, state, what, hint } = finding;
+    match format {
+        Format::Text => {
+            writeln!(console.out, "{:7}  {area:13}  {what}", state.name())?;
+            if let Some(hint) = hint {
+                writeln!(console.out, "{:7}  {:13}  {hint}", "", "")?;
+            }
+        }
+        Format::Json => {
+            let object = json!({ "area": area, "state": state.name(), "message": what, "hint": hint });
+            writeln!(console.out, "{object}")?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,75 @@
+//! Checks of the user's permissions.
+
+use std::path::Path;
+
+use super::CheckResult;
+
+const AREA: &str = "permissions";
+
+pub(crate) fn findings() -> Vec<CheckResult> {
+    vec![real_time(), sockets(std::env::var_os("XDG_RUNTIME_DIR").as_deref().map(Path::new))]
+}
+
+/// Whether threads may use real-time scheduling.
+fn real_time() -> CheckResult {
+    match std::fs::read_to_string("/proc/self/limits").ok().as_deref().and_then(priority) {
+        Some(0) => CheckResult::warning(
+            AREA,
+            "real-time scheduling is not permitted: agents with is_real_time run as ordinary threads",
+            "as root write `@realtime - rtprio 99` into /etc/security/limits.conf and join that group",
+        ),
+        Some(most) => CheckResult::ok(AREA, format!("real-time scheduling up to priority {most}")),
+        None => CheckResult::warning(
+            AREA,
+            "permission for real-time scheduling is unknown",
+            "it can be read on Linux only",
+        ),
+    }
+}
+
+/// The highest real-time priority that the limits of a process allow.
+fn priority(limits: &str) -> Option<u64> {
+    let line = limits.lines().find_map(|line| line.strip_prefix("Max realtime priority"))?;
+    match line.split_whitespace().next()? {
+        "unlimited" => Some(99),
+        number => number.parse().ok(),
+    }
+}
+
+/// Whether a run can create a control socket.
+fn sockets(folder: Option<&Path>) -> CheckResult {
+    let hint = "set XDG_RUNTIME_DIR to a private folder; without it `monas topic` finds no run";
+    let Some(folder) = folder else {
+        return CheckResult::warning(AREA, "no control sockets: XDG_RUNTIME_DIR is not set", hint);
+    };
+    match tempfile::Builder::new().prefix("monas-doctor").tempfile_in(folder) {
+        Ok(_) => CheckResult::ok(AREA, format!("control sockets in {}", folder.join("monas").display())),
+        Err(error) => {
+            CheckResult::warning(AREA, format!("no control sockets: {}: {error}", folder.display()), hint)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::commands::doctor::CheckStatus;
+
+    #[test]
+    fn limits_are_read() {
+        let limits = "Limit                     Soft Limit           Hard Limit           Units\n\
+                      Max realtime priority     95                   95\n";
+        assert_eq!(priority(limits), Some(95));
+        assert_eq!(priority(&limits.replace("95", "unlimited")), Some(99));
+        assert_eq!(priority(""), None);
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_written_is_told() {
+        assert_eq!(sockets(None).state, CheckStatus::Warning);
+        assert_eq!(sockets(Some(Path::new("/nowhere"))).state, CheckStatus::Warning);
+        let folder = tempfile::tempdir().unwrap();
+        assert_eq!(sockets(Some(folder.path())).state, CheckStatus::Ok);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is left behind");
+    }
+}

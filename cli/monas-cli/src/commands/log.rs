@@ -1,0 +1,176 @@
+//! `monas log`: the log of a run or of a tape.
+
+mod line;
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use clap::{Args, ValueEnum, ValueHint};
+use clap_complete::engine::{ArgValueCandidates, CompletionCandidate};
+use monas::records::foxglove::Log;
+use monas::records::foxglove::log::Level;
+use monas_tape::Recording;
+use prost::Message;
+
+#[cfg(unix)]
+use crate::remote::{RunSelector, WatchLimits, hosts, watch};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, duration, failed};
+use line::LogLine;
+
+/// The topic of log lines.
+const TOPIC: &str = "monas/log";
+
+#[derive(Args, Debug)]
+pub(crate) struct LogArguments {
+    /// Read this tape; without it, follow a run from now on.
+    #[arg(value_hint = ValueHint::FilePath)]
+    tape: Option<PathBuf>,
+    /// Only lines of this robot. May be given several times.
+    #[arg(long = "robot", value_name = "NAME", add = ArgValueCandidates::new(robots))]
+    robots: Vec<String>,
+    /// Only lines of this agent. May be given several times.
+    #[arg(long = "agent", value_name = "NAME")]
+    agents: Vec<String>,
+    /// Only lines of this activity. May be given several times.
+    #[arg(long = "activity", value_name = "NAME")]
+    activities: Vec<String>,
+    /// Only lines of at least this severity.
+    #[arg(long, value_name = "LEVEL", default_value = "debug")]
+    level: Severity,
+    /// The run, by the name of its control socket; not needed if there is only one.
+    #[arg(long, value_name = "NAME", conflicts_with = "tape")]
+    run: Option<String>,
+    /// Stop after this many lines.
+    #[arg(long, value_name = "NUMBER")]
+    count: Option<u64>,
+    /// Follow a run for this time, for example 10s; until Ctrl-C if not given.
+    #[arg(long = "for", value_name = "TIME", value_parser = duration::parse, conflicts_with = "tape")]
+    length: Option<Duration>,
+    #[command(flatten)]
+    format: FormatArgument,
+}
+
+/// The severity of a line, lowest first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, ValueEnum)]
+enum Severity {
+    Debug,
+    Info,
+    Warning,
+    Error,
+    Fatal,
+}
+
+impl Severity {
+    const fn of(level: Level) -> Severity {
+        match level {
+            Level::Unknown | Level::Debug => Severity::Debug,
+            Level::Info => Severity::Info,
+            Level::Warning => Severity::Warning,
+            Level::Error => Severity::Error,
+            Level::Fatal => Severity::Fatal,
+        }
+    }
+
+    const fn word(self) -> &'static str {
+        match self {
+            Severity::Debug => "debug",
+            Severity::Info => "info",
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+            Severity::Fatal => "fatal",
+        }
+    }
+}
+
+#[cfg(unix)]
+fn robots() -> Vec<CompletionCandidate> {
+    hosts()
+}
+
+#[cfg(not(unix))]
+fn robots() -> Vec<CompletionCandidate> {
+    Vec::new()
+}
+
+pub(crate) fn execute(
+    arguments: &LogArguments,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    match &arguments.tape {
+        Some(tape) => of_tape(tape, arguments, console),
+        None => of_run(arguments, console),
+    }
+}
+
+fn of_tape(
+    tape: &Path,
+    arguments: &LogArguments,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let format = arguments.format.value;
+    let recording = Recording::open(tape).map_err(failed(format))?;
+    let mut left = arguments.count.unwrap_or(u64::MAX);
+    for message in recording.messages().map_err(failed(format))? {
+        if left == 0 {
+            break;
+        }
+        let message = message.map_err(failed(format))?;
+        if message.channel.topic != TOPIC {
+            continue;
+        }
+        let log = read(message.bytes, format)?;
+        let line = LogLine::new(&message.channel.host, message.published, &log);
+        if arguments.wants(&line) {
+            line.write(format, console)?;
+            left -= 1;
+        }
+    }
+    Ok(Exit::Success)
+}
+
+/// Follows a run.
+#[cfg(unix)]
+fn of_run(arguments: &LogArguments, console: &mut CommandOutput<'_>) -> Result<Exit, CommandFailure> {
+    let format = arguments.format.value;
+    let host = match &arguments.robots[..] {
+        [one] => Some(one.clone()),
+        _ => None,
+    };
+    let choice = RunSelector::of(arguments.run.clone(), host, arguments.format);
+    let limits = WatchLimits { count: None, length: arguments.length };
+    let mut left = arguments.count.unwrap_or(u64::MAX);
+    watch(TOPIC, true, &limits, &choice, console, |seen, console| {
+        if let Some(seen) = seen {
+            let log = read(&seen.payload, format)?;
+            let line = LogLine::new(&seen.host, monas::Timestamp::from_nanos(seen.local), &log);
+            if left > 0 && arguments.wants(&line) {
+                line.write(format, console)?;
+                left -= 1;
+            }
+        }
+        Ok(left > 0)
+    })
+}
+
+#[cfg(not(unix))]
+fn of_run(arguments: &LogArguments, _: &mut CommandOutput<'_>) -> Result<Exit, CommandFailure> {
+    let message = "following a run needs Unix sockets: give a tape".to_owned();
+    Err(CommandFailure::Unreachable(arguments.format.value, message))
+}
+
+fn read(bytes: &[u8], format: Format) -> Result<Log, CommandFailure> {
+    Log::decode(bytes).map_err(|error| {
+        CommandFailure::failed(format, format!("a line on `{TOPIC}` cannot be read: {error}"))
+    })
+}
+
+impl LogArguments {
+    fn wants(&self, line: &LogLine<'_>) -> bool {
+        let is_one_of =
+            |wanted: &[String], name: &str| wanted.is_empty() || wanted.iter().any(|one| one == name);
+        line.severity >= self.level
+            && is_one_of(&self.robots, line.robot)
+            && is_one_of(&self.agents, line.agent)
+            && is_one_of(&self.activities, line.activity)
+    }
+}

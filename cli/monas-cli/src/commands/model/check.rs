@@ -1,0 +1,155 @@
+//! `monas model check`: errors in models.
+
+mod properties;
+mod sarif;
+
+use std::path::{Path, PathBuf};
+
+use aseme_verify::{CheckSettings, check::CheckReport};
+use clap::{Args, ValueEnum, ValueHint};
+use monas::config;
+use yase::Severity;
+
+use super::{finding, program};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, report};
+use properties::CheckedProperty;
+
+/// Formats of findings about models.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub(crate) enum CheckFormat {
+    /// For people.
+    Text,
+    /// For programs: one JSON object per line.
+    Json,
+    /// For editors and code hosts: SARIF 2.1.0.
+    Sarif,
+}
+
+/// Arguments of `monas model check`.
+#[derive(Args, Debug)]
+pub(crate) struct CheckArguments {
+    /// The model files.
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) files: Vec<PathBuf>,
+    /// An external event, raised by an activity, another agent or a person.
+    #[arg(long = "event", value_name = "NAME")]
+    pub(crate) events: Vec<String>,
+    /// The largest number of states of a chart to explore; 0 for none.
+    #[arg(long, value_name = "NUMBER", default_value_t = 100_000)]
+    pub(crate) states: usize,
+    /// The number of activities that the agent's pool runs at once; 12 if not given.
+    #[arg(long, value_name = "NUMBER")]
+    pub(crate) pool: Option<usize>,
+    /// Also check names against the messages, functions and activities of this program.
+    #[arg(long)]
+    pub(crate) linked: bool,
+    /// Also report what this recording covered of the charts (with --all).
+    #[arg(long = "tape", value_name = "TAPE", value_hint = ValueHint::FilePath, requires = "all")]
+    pub(crate) tapes: Vec<PathBuf>,
+    /// Check only the properties in this file, on all behaviours of the charts.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) properties: Vec<PathBuf>,
+    /// Write the trace to each finding as a file into this folder, for `model run`.
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) traces: Option<PathBuf>,
+    /// Also report findings of severity information.
+    #[arg(long)]
+    pub(crate) all: bool,
+    /// For people, or for programs: one JSON object per line, or one SARIF 2.1.0 document on
+    /// standard output.
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    pub(crate) format: CheckFormat,
+}
+
+pub(crate) fn execute(
+    arguments: &CheckArguments,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let mut settings = CheckSettings::default();
+    settings.events.extend(arguments.events.iter().cloned());
+    (settings.states, settings.pool) = (arguments.states, arguments.pool);
+    settings.world = arguments.linked.then(program::linked).transpose()?;
+    settings.recorded = super::coverage::recorded(&arguments.tapes)?;
+    let (mut reports, mut judged): (Vec<(&Path, CheckReport)>, Vec<CheckedProperty>) =
+        (Vec::new(), Vec::new());
+    for path in &arguments.files {
+        let report = match arguments.properties.as_slice() {
+            [] => checked(path, &settings, arguments.all),
+            files => properties::checked(path, files, &settings, &mut judged),
+        };
+        reports.push((path, report));
+    }
+    if let Some(folder) = &arguments.traces {
+        finding::write_traces(folder, &reports)?;
+    }
+    match arguments.format {
+        CheckFormat::Text => {
+            text(&reports, arguments.properties.is_empty(), console)?;
+            properties::text(&judged, console)?;
+        }
+        CheckFormat::Json => {
+            json(&reports, console)?;
+            properties::json(&judged, console)?;
+        }
+        CheckFormat::Sarif => {
+            let findings = reports.iter().flat_map(|(_, report)| &report.findings);
+            writeln!(console.out, "{:#}", sarif::document(findings))?;
+        }
+    }
+    Ok(verdict(&reports))
+}
+
+/// An unreadable model outweighs one with errors.
+fn verdict(reports: &[(&Path, CheckReport)]) -> Exit {
+    let any = |is_so: fn(&CheckReport) -> bool| reports.iter().any(|(_, report)| is_so(report));
+    match (any(CheckReport::is_unreadable), any(CheckReport::has_errors)) {
+        (true, _) => Exit::Invalid,
+        (false, true) => Exit::Diverged,
+        (false, false) => Exit::Success,
+    }
+}
+
+fn checked(path: &Path, settings: &CheckSettings, all: bool) -> CheckReport {
+    let mut report = match config::read_file(path) {
+        Ok(source) => aseme_verify::check::check(&source, settings),
+        Err(diagnostic) => CheckReport::of_unreadable(*diagnostic),
+    };
+    report.findings.retain(|finding| all || finding.diagnostic.severity > Severity::Information);
+    report
+}
+
+/// Prints the findings of all files, and, without properties, one line for each file without
+/// errors.
+fn text(
+    reports: &[(&Path, CheckReport)],
+    is_told: bool,
+    console: &mut CommandOutput<'_>,
+) -> Result<(), CommandFailure> {
+    for (path, report) in reports {
+        for finding in &report.findings {
+            report::write(console, Format::Text, std::slice::from_ref(&finding.diagnostic))?;
+            finding::way_there(finding, console)?;
+        }
+        if let Some(what) = report.what.as_ref().filter(|_| is_told && !report.has_errors()) {
+            writeln!(console.out, "{}: {what}{}, no errors", path.display(), extent(report))?;
+        }
+    }
+    Ok(())
+}
+
+/// The size of an exploration.
+fn extent(report: &CheckReport) -> String {
+    match report.explored {
+        Some(explored) if explored.is_finished => format!(", {} states explored", explored.states),
+        Some(explored) => format!(", exploration not finished: {} states", explored.states),
+        None => String::new(),
+    }
+}
+
+/// One object per line; a finding with a trace has it as `trace`.
+fn json(reports: &[(&Path, CheckReport)], console: &mut CommandOutput<'_>) -> Result<(), CommandFailure> {
+    for finding in reports.iter().flat_map(|(_, report)| &report.findings) {
+        writeln!(console.err, "{}", finding::object(finding))?;
+    }
+    Ok(())
+}

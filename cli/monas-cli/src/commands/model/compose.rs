@@ -1,0 +1,188 @@
+//! `monas model compose`: explores the composition of several robots for deadlocks.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use aseme_models::Iac;
+use aseme_models::convert::Model;
+use aseme_models::iac::ChartKind;
+use aseme_verify::composition::{Channels, Composition, compose};
+use aseme_verify::{CheckSettings, protocol::parts_taken};
+use clap::{Args, ValueHint};
+use serde_json::json;
+use yase::Source;
+
+use super::robot_file::{name_of, named};
+use super::{conform, finding, program};
+use crate::input::{valid_chart, valid_model};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report};
+
+/// Arguments of `monas model compose`.
+#[derive(Args, Debug)]
+pub(crate) struct ComposeArguments {
+    /// The model of each robot, as `NAME=FILE` if the robot is not named after its file; and the
+    /// models of a protocol.
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) files: Vec<PathBuf>,
+    /// The capacity of the channel from one robot to another, in messages; when it is full the
+    /// oldest is lost.
+    #[arg(long, value_name = "NUMBER", default_value_t = 2, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=64))]
+    pub(crate) channel: usize,
+    /// Allow the loss of any message.
+    #[arg(long)]
+    pub(crate) lose: bool,
+    /// An external event, raised by an activity or a person.
+    #[arg(long = "event", value_name = "NAME")]
+    pub(crate) events: Vec<String>,
+    /// The largest number of states to explore, of each robot and of the composition.
+    #[arg(long, value_name = "NUMBER", default_value_t = 100_000)]
+    pub(crate) states: usize,
+    /// Use the topics that the activities of this program declare; they are assumed to publish when
+    /// they return.
+    #[arg(long)]
+    pub(crate) linked: bool,
+    /// Write the trace to each finding as a file into this folder, for `model run`.
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) traces: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
+}
+
+pub(crate) fn execute(
+    arguments: &ComposeArguments,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let format = arguments.format.value;
+    let cast = Participants::read(&arguments.files, format, console)?;
+    let conforms = cast.conforms(format, console)?;
+    let mut settings = CheckSettings::default();
+    settings.events.extend(arguments.events.iter().cloned());
+    settings.states = arguments.states;
+    settings.world = arguments.linked.then(program::linked).transpose()?;
+    let mut channels = Channels::default();
+    (channels.capacity, channels.may_lose) = (arguments.channel, arguments.lose);
+    let found =
+        compose(&cast.robots, channels, &settings).map_err(|wrong| CommandFailure::Invalid(format, wrong))?;
+    if let Some(folder) = &arguments.traces {
+        let named = found.findings.iter().map(|finding| (String::from("composed"), finding));
+        finding::write_named_traces(folder, named)?;
+    }
+    match format {
+        Format::Text => text(&found, console)?,
+        Format::Json => objects(&found, console)?,
+    }
+    Ok(if conforms && !found.has_errors() { Exit::Success } else { Exit::Diverged })
+}
+
+/// The robots, and the files of their protocol.
+struct Participants {
+    robots: Vec<(String, Arc<Source>)>,
+    files: Vec<PathBuf>,
+    protocol: Vec<PathBuf>,
+}
+
+impl Participants {
+    fn read(
+        files: &[PathBuf],
+        format: Format,
+        console: &mut CommandOutput<'_>,
+    ) -> Result<Participants, CommandFailure> {
+        let (mut robots, mut protocol) = (Vec::new(), Vec::new());
+        for file in files {
+            let path = name_of(file).1;
+            let (source, model, ..) = valid_model(&path, format, console)?;
+            match model {
+                Model::Aip(_) => protocol.push(path),
+                Model::Chart(chart) if chart.kind == ChartKind::Inter => protocol.push(path),
+                Model::Chart(_) | Model::Role(_) => robots.push((file.clone(), source)),
+                other => {
+                    let (path, kind) = (path.display(), other.kind());
+                    return Err(CommandFailure::Usage(format!(
+                        "`{path}` is a model of the kind {kind}: expected robots (roles or charts) or a protocol (AIP, EAC)"
+                    )));
+                }
+            }
+        }
+        if robots.is_empty() {
+            return Err(CommandFailure::Usage("no file is the model of a robot (a role or a chart)".into()));
+        }
+        let files: Vec<PathBuf> = robots.iter().map(|(file, _)| file.clone()).collect();
+        let names = named(&files)?;
+        let robots =
+            names.iter().zip(robots).map(|((name, _), (_, source))| (name.clone(), source)).collect();
+        Ok(Participants { robots, files: names.into_iter().map(|(_, file)| file).collect(), protocol })
+    }
+
+    /// Whether the participants conform to the protocol and every part is taken; true without a
+    /// protocol.
+    fn conforms(&self, format: Format, console: &mut CommandOutput<'_>) -> Result<bool, CommandFailure> {
+        if self.protocol.is_empty() {
+            return Ok(true);
+        }
+        let protocol = conform::LoadedModels::read(&self.protocol, format, console)?;
+        let charts = protocol.charts(format)?;
+        let mut taken: Vec<(String, bool)> = Vec::new();
+        let mut files = self.protocol.clone();
+        for file in &self.files {
+            let player = player(file, format, console)?;
+            let parts: Vec<(String, bool)> =
+                charts.iter().flat_map(|(_, _, chart)| parts_taken(&player, chart)).collect();
+            if parts.iter().any(|(_, is_taken)| *is_taken) && !files.contains(file) {
+                files.push(file.clone());
+            }
+            taken.extend(parts);
+        }
+        let is_given = conform::conform(&files, format, console)? == Exit::Success;
+        let mut missing: Vec<&str> = taken.iter().map(|(name, _)| name.as_str()).collect();
+        missing.sort_unstable();
+        missing.dedup();
+        missing.retain(|name| !taken.iter().any(|(other, is_taken)| other == name && *is_taken));
+        let found: Vec<yase::Diagnostic> = missing.iter().map(|name| unplayed_role(name)).collect();
+        report::write(console, format, &found)?;
+        Ok(is_given && found.is_empty())
+    }
+}
+
+fn unplayed_role(name: &str) -> yase::Diagnostic {
+    let message = format!("no robot takes the part `{name}` in the protocol");
+    let found = yase::Diagnostic::error("E0936", yase::Span::default(), message);
+    found.with_hint("compose it with a role that has a composite of that name")
+}
+
+fn player(path: &Path, format: Format, console: &mut CommandOutput<'_>) -> Result<Iac, CommandFailure> {
+    Ok(Iac::from_statechart(&valid_chart(path, format, console)?, ChartKind::Intra))
+}
+
+fn text(found: &Composition, console: &mut CommandOutput<'_>) -> Result<(), CommandFailure> {
+    for finding in &found.findings {
+        report::write(console, Format::Text, std::slice::from_ref(&finding.diagnostic))?;
+        finding::way_there(finding, console)?;
+    }
+    for (from, to, message) in &found.passing {
+        writeln!(console.out, "`{message}` passes from {from} to {to}")?;
+    }
+    if found.passing.is_empty() {
+        writeln!(console.out, "no message passes between robots: no chart reads one by the name of a robot")?;
+    }
+    for (name, states) in &found.robots {
+        writeln!(console.out, "{name}: {states} states explored")?;
+    }
+    if !found.has_errors() {
+        writeln!(console.out, "no deadlock; all {} states of the composition were explored", found.states)?;
+    }
+    Ok(())
+}
+
+fn objects(found: &Composition, console: &mut CommandOutput<'_>) -> Result<(), CommandFailure> {
+    for finding in &found.findings {
+        writeln!(console.err, "{}", finding::object(finding))?;
+    }
+    for (from, to, message) in &found.passing {
+        writeln!(console.out, "{}", json!({"message": message, "from": from, "to": to}))?;
+    }
+    for (name, states) in &found.robots {
+        writeln!(console.out, "{}", json!({"robot": name, "states": states}))?;
+    }
+    writeln!(console.out, "{}", json!({"states": found.states, "finished": found.is_finished}))?;
+    Ok(())
+}

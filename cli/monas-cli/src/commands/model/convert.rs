@@ -1,0 +1,68 @@
+//! `monas model convert`: a model in another format of its kind.
+
+use std::path::{Path, PathBuf};
+
+use aseme_models::convert::{Format as ModelFormat, Model};
+use clap::{Args, ValueHint};
+
+use super::model_format::{named, text_of};
+use crate::input::valid_model;
+use crate::terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, write_text};
+
+/// Arguments of `monas model convert`.
+#[derive(Args, Debug)]
+pub(crate) struct ConvertArguments {
+    /// The model file.
+    #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
+    pub(crate) input: PathBuf,
+    /// The output file; `-` is standard output.
+    #[arg(value_name = "OUT", value_hint = ValueHint::FilePath)]
+    pub(crate) output: PathBuf,
+    /// The format: text, role, xmi, xmi-2010, xmi-flat, xmi-2012, xmi-2018, scxml or rust. If not
+    /// given, it follows from the extension of OUT (.model, .stct, .xmi, .scxml, .rs, .txt); any
+    /// other extension means XMI for textual input, and text for XMI.
+    #[arg(long = "as", value_name = "FORMAT")]
+    pub(crate) written: Option<String>,
+    /// Write the file even if the format cannot represent all of the model.
+    #[arg(long)]
+    pub(crate) lossy: bool,
+    #[command(flatten)]
+    pub(crate) format: FormatArgument,
+}
+
+pub(crate) fn execute(
+    arguments: &ConvertArguments,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let format = arguments.format.value;
+    let (source, model, read_as, findings) = valid_model(&arguments.input, format, console)?;
+    let wanted = match &arguments.written {
+        Some(word) => named(word)?,
+        None => by_ending(&arguments.output, &model, read_as)?,
+    };
+    // Losses in reading were reported with the other findings.
+    let lost = findings.iter().filter(|finding| finding.code == "E0850").count();
+    let text = text_of(&model, wanted, &source, lost, arguments.lossy, format, console)?;
+    let output = Some(arguments.output.as_path()).filter(|path| *path != Path::new("-"));
+    write_text(output, &text, format, console)
+}
+
+fn by_ending(output: &Path, model: &Model, read_as: ModelFormat) -> Result<ModelFormat, CommandFailure> {
+    let ending = output.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    if let Some(format) = ModelFormat::of_ending(ending) {
+        return Ok(format);
+    }
+    match (ending, read_as, model) {
+        ("iac" | "eac", ModelFormat::Text | ModelFormat::Scxml, Model::Chart(_)) => {
+            Ok(ModelFormat::Statechart(aseme_models::iac::Dialect::Flat))
+        }
+        ("iac" | "eac" | "sag" | "suc" | "aip" | "srm" | "ft", ModelFormat::Text | ModelFormat::Role, _) => {
+            Ok(ModelFormat::Xmi)
+        }
+        ("iac" | "eac" | "sag" | "suc" | "aip" | "srm", _, _) => Ok(ModelFormat::Text),
+        _ => Err(CommandFailure::Usage(format!(
+            "`{}` does not determine the format; give it with --as",
+            output.display()
+        ))),
+    }
+}

@@ -1,0 +1,247 @@
+//! Coverage counters of one chart.
+
+use std::cmp::Reverse;
+use std::fmt;
+
+use aseme::path::{shortest_path, shortest_transition};
+use monas::records;
+use yase::{NodeId, NodeKind, Statechart, Transition, TransitionId};
+
+pub(crate) const NEVER_ACTIVE: &str = "never active";
+pub(crate) const NEVER_FIRED: &str = "never fired";
+pub(crate) const ALWAYS_HELD: &str = "never false";
+
+/// A chart, and how often each of its parts was covered by all agents that run it.
+pub(crate) struct ChartCounts {
+    pub(crate) chart: Statechart,
+    /// The agents that run it: `blue-1 Goalie`.
+    pub(crate) players: Vec<String>,
+    /// How often each node was entered.
+    pub(crate) entered: Vec<u64>,
+    /// How often each transition fired.
+    pub(crate) fired: Vec<u64>,
+    /// How often each guard was false.
+    refused: Vec<u64>,
+    /// For each transition, the guards that are tried before it and are false if it fires.
+    earlier: Vec<Vec<TransitionId>>,
+}
+
+/// A share of a total.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct Fraction {
+    pub(crate) met: usize,
+    pub(crate) all: usize,
+}
+
+impl fmt::Display for Fraction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} of {}", self.met, self.all)
+    }
+}
+
+/// An element that was not covered.
+pub(crate) struct UncoveredElement {
+    pub(crate) what: &'static str,
+    pub(crate) name: String,
+    /// The transition; has no meaning for a state.
+    pub(crate) transition: TransitionId,
+}
+
+impl ChartCounts {
+    fn new(chart: &Statechart) -> ChartCounts {
+        let (nodes, transitions) = (chart.nodes().len(), chart.transitions().len());
+        ChartCounts {
+            chart: chart.clone(),
+            players: Vec::new(),
+            entered: vec![0; nodes],
+            fired: vec![0; transitions],
+            refused: vec![0; transitions],
+            earlier: earlier(chart),
+        }
+    }
+
+    /// The index of a chart among the known ones; equal charts share one entry.
+    pub(crate) fn place_of(chart: &Statechart, known: &mut Vec<ChartCounts>) -> usize {
+        known.iter().position(|covered| covered.chart == *chart).unwrap_or_else(|| {
+            known.push(ChartCounts::new(chart));
+            known.len() - 1
+        })
+    }
+
+    pub(crate) fn play(&mut self, host: &str, agent: &str) {
+        let player = format!("{host} {agent}");
+        if !self.players.contains(&player) {
+            self.players.push(player);
+        }
+    }
+
+    /// Counts a micro-step. Returns false if it is not one of this chart.
+    pub(crate) fn count(&mut self, record: &records::Chart) -> bool {
+        let mut is_known = true;
+        for &node in &record.entries {
+            match self.entered.get_mut(node as usize) {
+                Some(entered) => *entered += 1,
+                None => is_known = false,
+            }
+        }
+        for &transition in record.selected.iter().chain(&record.taken) {
+            match self.fired.get_mut(transition as usize) {
+                Some(fired) => {
+                    *fired += 1;
+                    let earlier = &self.earlier[transition as usize];
+                    earlier.iter().for_each(|guard| self.refused[guard.0 as usize] += 1);
+                }
+                None => is_known = false,
+            }
+        }
+        is_known
+    }
+
+    fn basics(&self) -> impl Iterator<Item = NodeId> + '_ {
+        self.chart.nodes().filter(|(_, node)| node.kind == NodeKind::Basic).map(|(id, _)| id)
+    }
+
+    /// The transitions that are not marked as never firing.
+    fn meant(&self) -> impl Iterator<Item = (TransitionId, &Transition)> + '_ {
+        self.chart.transitions().filter(|(_, transition)| !transition.expression.is_never())
+    }
+
+    fn guarded(&self) -> impl Iterator<Item = TransitionId> + '_ {
+        self.meant().filter(|(_, transition)| transition.expression.guard.is_some()).map(|(id, _)| id)
+    }
+
+    /// The guards with an alternative that is tried after them.
+    fn refusable(&self) -> impl Iterator<Item = TransitionId> + '_ {
+        self.guarded().filter(|guard| self.earlier.iter().any(|earlier| earlier.contains(guard)))
+    }
+
+    pub(crate) fn states(&self) -> Fraction {
+        share(self.basics().map(|id| self.entered[id.0 as usize]))
+    }
+
+    pub(crate) fn transitions(&self) -> Fraction {
+        share(self.meant().map(|(id, _)| self.fired[id.0 as usize]))
+    }
+
+    pub(crate) fn guards_held(&self) -> Fraction {
+        share(self.guarded().map(|id| self.fired[id.0 as usize]))
+    }
+
+    pub(crate) fn guards_refused(&self) -> Fraction {
+        share(self.refusable().map(|id| self.refused[id.0 as usize]))
+    }
+
+    /// All elements that were not covered: states, transitions, guards.
+    pub(crate) fn missed(&self) -> Vec<UncoveredElement> {
+        let states = self.basics().filter(|id| self.entered[id.0 as usize] == 0).map(|id| UncoveredElement {
+            what: NEVER_ACTIVE,
+            name: shortest_path(&self.chart, id),
+            transition: TransitionId(u32::MAX),
+        });
+        let missed = |what, transition| {
+            let expression = &self.chart.transition(transition).expression;
+            let colon = if expression.is_empty() { String::new() } else { format!(" : {expression}") };
+            UncoveredElement { what, name: shortest_transition(&self.chart, transition) + &colon, transition }
+        };
+        let unfired = self.meant().map(|(id, _)| id).filter(|id| self.fired[id.0 as usize] == 0);
+        let unrefused = self.refusable().filter(|id| self.refused[id.0 as usize] == 0);
+        let transitions = unfired.map(|id| missed(NEVER_FIRED, id));
+        states.chain(transitions).chain(unrefused.map(|id| missed(ALWAYS_HELD, id))).collect()
+    }
+}
+
+fn share(counts: impl Iterator<Item = u64>) -> Fraction {
+    counts.fold(Fraction { met: 0, all: 0 }, |share, count| Fraction {
+        met: share.met + usize::from(count > 0),
+        all: share.all + 1,
+    })
+}
+
+/// For each transition, the guards that are tried before it under the same conditions: same source,
+/// no trigger, no weights.
+fn earlier(chart: &Statechart) -> Vec<Vec<TransitionId>> {
+    let rank = |id: TransitionId| {
+        let transition = chart.transition(id);
+        (Reverse(transition.priority), transition.expression.guard.is_none(), id)
+    };
+    let before = |(id, later): (TransitionId, &Transition)| {
+        let is_tried = |(other, transition): &(TransitionId, &Transition)| {
+            transition.source == later.source
+                && transition.expression.guard.is_some()
+                && transition.weight.is_none()
+                && later.weight.is_none()
+                && transition.expression.trigger.is_none()
+                && later.expression.trigger.is_none()
+                && rank(*other) < rank(id)
+        };
+        chart.transitions().filter(is_tried).map(|(other, _)| other).collect()
+    };
+    chart.transitions().map(before).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chart() -> Statechart {
+        let text = "Role: r\nLiveness:\nr = a . (b | c | d)\nTransitions:\nCONDITION -> b : [B.x]\nCONDITION -> c !1 : [B.y]\n";
+        let (chart, found) = aseme_models::statechart_of(&yase::Source::new("r.srm", text));
+        assert_eq!(found, []);
+        chart
+    }
+
+    fn fired(chart: &Statechart, target: &str) -> records::Chart {
+        let node = chart.find(target).unwrap();
+        let transition = chart.transitions().find(|(_, transition)| transition.target == node).unwrap().0;
+        records::Chart { taken: vec![transition.0], entries: vec![node.0], ..records::Chart::default() }
+    }
+
+    #[test]
+    fn a_guard_is_refused_by_whatever_is_tried_after_it() {
+        let chart = chart();
+        let mut known = Vec::new();
+        let place = ChartCounts::place_of(&chart, &mut known);
+        assert_eq!(ChartCounts::place_of(&chart, &mut known), place, "equal charts are one");
+        let covered = &mut known[place];
+        assert!(covered.count(&fired(&chart, "c")));
+        assert_eq!(covered.guards_held(), Fraction { met: 1, all: 2 });
+        assert_eq!(
+            covered.guards_refused(),
+            Fraction { met: 0, all: 2 },
+            "nothing is tried before the first"
+        );
+        assert!(covered.count(&fired(&chart, "b")));
+        assert_eq!(
+            covered.guards_refused(),
+            Fraction { met: 1, all: 2 },
+            "the guard of higher priority has failed"
+        );
+        assert_eq!(covered.states(), Fraction { met: 2, all: 4 });
+        let missed: Vec<String> =
+            covered.missed().iter().map(|missed| format!("{}: {}", missed.what, missed.name)).collect();
+        let expected = [
+            "never active: a",
+            "never active: d",
+            "never fired: START -> a",
+            "never fired: a -> (b|c|d)",
+            "never fired: (b|c|d) -> END",
+            "never fired: START -> CONDITION",
+            "never fired: CONDITION -> d",
+            "never fired: d -> END",
+            "never fired: c -> END",
+            "never fired: b -> END",
+            "never false: CONDITION -> b : [B.x]",
+        ];
+        assert_eq!(missed, expected);
+        assert!(covered.count(&fired(&chart, "d")));
+        assert_eq!(covered.guards_refused(), Fraction { met: 2, all: 2 });
+    }
+
+    #[test]
+    fn a_step_of_another_chart_is_told() {
+        let mut known = Vec::new();
+        let place = ChartCounts::place_of(&chart(), &mut known);
+        assert!(!known[place].count(&records::Chart { entries: vec![99], ..records::Chart::default() }));
+        assert!(!known[place].count(&records::Chart { selected: vec![99], ..records::Chart::default() }));
+    }
+}

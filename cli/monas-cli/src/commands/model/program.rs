@@ -1,0 +1,30 @@
+//! The symbols of this program: messages, functions and activities.
+
+use aseme_verify::ProgramSymbols;
+use monas::Registry;
+
+use crate::terminal::{CommandFailure, Format};
+
+/// Prefixes of the topics that the runtime, bodies and the simulator publish and read.
+const ELSEWHERE: [&str; 3] = ["monas/", "body/", "sim/"];
+
+/// The messages and functions of this program, and its activities with their declared topics.
+pub(crate) fn linked() -> Result<ProgramSymbols, CommandFailure> {
+    let registry = Registry::linked();
+    let vocabulary = registry.vocabulary().map_err(|error| CommandFailure::failed(Format::Text, error))?;
+    let mut world = ProgramSymbols { vocabulary, ..ProgramSymbols::default() };
+    for name in registry.activity_names() {
+        let activity =
+            registry.activity(name).map_err(|error| CommandFailure::failed(Format::Text, error))?;
+        let topics = activity.topics();
+        let named = |paths: &[&str]| {
+            topics.is_declared().then(|| paths.iter().map(|&path| path.to_owned()).collect())
+        };
+        world.activities.insert(name.to_owned(), named(topics.published_paths()));
+        world.readers.insert(name.to_owned(), named(topics.read_paths()));
+    }
+    let paths = world.vocabulary.topics.iter().map(|topic| topic.path.clone());
+    let is_elsewhere = |path: &String| ELSEWHERE.iter().any(|begin| path.starts_with(begin));
+    world.elsewhere = paths.filter(is_elsewhere).collect();
+    Ok(world)
+}

@@ -1,0 +1,71 @@
+//! Runs a match in simulated time and shows its progress.
+
+use std::time::Duration;
+
+use monas::config::Layers;
+use monas_match::{MatchOptions, MatchPlan, MatchSource, RunningMatch};
+
+use super::{RunArguments, control, scoreboard, summary};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Interrupt, WallClock, report};
+
+/// Simulated time between two updates of the scoreboard.
+const LOOK: Duration = Duration::from_millis(100);
+/// The same with --realtime, so that watchers see continuous progress.
+const PACED_LOOK: Duration = Duration::from_millis(10);
+
+pub(crate) fn execute(
+    arguments: &RunArguments,
+    layers: &Layers,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let format = arguments.format.value;
+    let plan = MatchSource::load_with(&arguments.config, &monas::Registry::linked(), layers)
+        .map_err(|diagnostics| CommandFailure::Invalid(format, diagnostics))?;
+    report::write(console, format, plan.warnings())?;
+    let plan = match plan.has_links() {
+        true if !arguments.realtime => {
+            let message = "robots of this match have links to other processes, which do not wait for simulated time: add \
+                           --realtime";
+            return Err(CommandFailure::Usage(message.into()));
+        }
+        true => plan.linked(),
+        false => plan,
+    };
+    let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
+    let clock = WallClock::start();
+    let running = play(plan, arguments, &interrupt, clock, console)?;
+    let wall = clock.elapsed();
+    let results = running.finish().map_err(|error| CommandFailure::failed(format, error))?;
+    summary::write(console.out, format, &results, wall)?;
+    Ok(if interrupt.is_requested() { Exit::Interrupted } else { Exit::Success })
+}
+
+/// Plays until the match is over, the requested time has passed, or an interrupt.
+fn play(
+    plan: MatchPlan,
+    arguments: &RunArguments,
+    interrupt: &Interrupt,
+    clock: WallClock,
+    console: &mut CommandOutput<'_>,
+) -> Result<RunningMatch, CommandFailure> {
+    let failed = |error: monas_match::Error| CommandFailure::failed(arguments.format.value, error);
+    let length = arguments.length.unwrap_or_else(|| plan.length());
+    let options = MatchOptions { seed: arguments.seed.unwrap_or_default(), record: arguments.record.clone() };
+    let mut running = plan.start(options).map_err(|error| match error.diagnostics() {
+        [] => failed(error),
+        wrong => CommandFailure::Invalid(arguments.format.value, wrong.to_vec()),
+    })?;
+    // The socket closes with this function, since nothing advances the match afterwards.
+    let _control = control::serve(arguments, running.simulation().run_handle(), console)?;
+    let look = if arguments.realtime { PACED_LOOK } else { LOOK };
+    let mut scoreboard = scoreboard::for_console(console, length);
+    scoreboard.show(&running)?;
+    while running.now() < length && !running.is_over() && !interrupt.is_requested() {
+        running.advance((running.now() + look).min(length)).map_err(failed)?;
+        scoreboard.show(&running)?;
+        if arguments.realtime {
+            clock.wait_until(running.now(), interrupt);
+        }
+    }
+    Ok(running)
+}

@@ -1,0 +1,135 @@
+//! Runs the agents of one host in real time, until an interrupt or the requested time has passed.
+
+use std::io::Write;
+use std::time::Duration;
+
+use monas::config::Layers;
+use monas::{AgentStatistics, ConfigurationBundle, Registry, Statistics, Talws};
+use monas_tape::Tape;
+use serde_json::{Value, json};
+use yase::Diagnostic;
+
+use super::{RunArguments, control, links};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, report, table};
+
+pub(crate) fn execute(
+    arguments: &RunArguments,
+    layers: &Layers,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let format = arguments.format.value;
+    if arguments.seed.is_some() {
+        return Err(CommandFailure::Usage(
+            "--seed is for simulated time; these agents run in real time".into(),
+        ));
+    }
+    let mut talws = talws(arguments, layers, console)?;
+    let tape = arguments.record.as_ref().map(Tape::create_real_time).transpose();
+    let tape = tape.map_err(|error| CommandFailure::failed(format, error))?;
+    if let Some(tape) = &tape {
+        let files = ConfigurationBundle::of(&arguments.config);
+        let settings = layers.settings().collect::<Vec<_>>().join("\n");
+        monas_match::label_real_time(tape, &files, &settings, &[Talws::LOCAL.to_owned()])
+            .map_err(|error| CommandFailure::failed(format, error))?;
+        talws.observe(Box::new(tape.clone()));
+    }
+    let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
+    let running = talws.start().map_err(|error| CommandFailure::not_started(format, error))?;
+    let control = control::serve(arguments, running.run_handle(), console)?;
+    writeln!(console.err, "running, Ctrl-C stops")?;
+    let length = arguments.length.unwrap_or(Duration::MAX);
+    WallClock::start().wait_until_or(length, || interrupt.is_requested() || running.has_ended());
+    drop(control);
+    let overview = running.run_handle();
+    let Statistics { agents, links } = running.stop();
+    tape.iter()
+        .try_for_each(|tape| monas_match::ended(tape, overview.now()))
+        .map_err(|error| CommandFailure::failed(format, error))?;
+    let recorded = tape.map(|tape| Ok((tape.finish()?, tape.dropped()))).transpose();
+    let recorded = recorded.map_err(|error: monas_tape::Error| CommandFailure::failed(format, error))?;
+    write(console.out, format, &agents, recorded)?;
+    match format {
+        Format::Text => links::write(console.out, &links)?,
+        Format::Json => {
+            links::objects(&links).iter().try_for_each(|object| writeln!(console.out, "{object}"))?;
+        }
+    }
+    Ok(match interrupt.is_requested() {
+        true => Exit::Interrupted,
+        false if agents.iter().any(|agent| agent.stopped.is_some()) => Exit::Failure,
+        false => Exit::Success,
+    })
+}
+
+/// The agents and links of the configuration, ready to run.
+fn talws(
+    arguments: &RunArguments,
+    layers: &Layers,
+    console: &mut CommandOutput<'_>,
+) -> Result<Talws, CommandFailure> {
+    let format = arguments.format.value;
+    let (setup, diagnostics) = monas::config::load_with(&arguments.config, &Registry::linked(), layers);
+    if diagnostics.iter().any(Diagnostic::is_error) {
+        return Err(CommandFailure::Invalid(format, diagnostics));
+    }
+    report::write(console, format, &diagnostics)?;
+    Ok(Talws::new().setup(setup))
+}
+
+fn write(
+    out: &mut dyn Write,
+    format: Format,
+    agents: &[AgentStatistics],
+    recorded: Option<(u64, u64)>,
+) -> Result<(), CommandFailure> {
+    if format == Format::Json {
+        agents.iter().try_for_each(|agent| writeln!(out, "{}", object(agent)))?;
+        return Ok(());
+    }
+    let header =
+        ["agent", "cycles", "overruns", "micro-steps", "activity calls", "mean cycle", "longest cycle"];
+    writeln!(out, "{}", table::of_numbers(header, 1, agents.iter().map(row)))?;
+    for agent in agents {
+        if let Some(reason) = &agent.stopped {
+            writeln!(out, "{} has stopped: {reason}", agent.agent)?;
+        }
+    }
+    if let Some((messages, dropped)) = recorded {
+        writeln!(out, "messages recorded: {messages}, dropped because the disk was too slow: {dropped}")?;
+    }
+    Ok(())
+}
+
+fn row(agent: &AgentStatistics) -> [String; 7] {
+    let time = |time: Option<Duration>| {
+        time.map_or_else(|| "-".into(), |time| format!("{:.3} ms", time.as_secs_f64() * 1e3))
+    };
+    [
+        agent.agent.clone(),
+        agent.cycles.to_string(),
+        agent.overruns.to_string(),
+        agent.micro_steps.to_string(),
+        calls(agent).to_string(),
+        time(agent.cycle_time.map(|average| average.mean())),
+        time(agent.cycle_time.map(|average| average.longest())),
+    ]
+}
+
+fn calls(agent: &AgentStatistics) -> u64 {
+    agent.activities.iter().map(|activity| activity.calls).sum()
+}
+
+fn object(agent: &AgentStatistics) -> Value {
+    json!({
+        "kind": "agent",
+        "host": agent.host,
+        "agent": agent.agent,
+        "cycles": agent.cycles,
+        "overruns": agent.overruns,
+        "micro_steps": agent.micro_steps,
+        "activity_calls": calls(agent),
+        "mean_cycle_seconds": agent.cycle_time.map(|average| average.mean().as_secs_f64()),
+        "longest_cycle_seconds": agent.cycle_time.map(|average| average.longest().as_secs_f64()),
+        "stopped": agent.stopped,
+    })
+}

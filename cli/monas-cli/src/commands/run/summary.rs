@@ -1,0 +1,141 @@
+//! The results of a match: tables for people, one JSON object per line for programs.
+
+use std::io::{self, Write};
+use std::time::Duration;
+
+use comfy_table::Table;
+use monas_match::{AgentSummary, MatchSummary, TeamSummary};
+use serde_json::{Value, json};
+
+use super::{coverage, links};
+use crate::terminal::{Format, table};
+
+/// Writes the results; `wall` is the wall-clock time of the match.
+pub(crate) fn write(
+    out: &mut dyn Write,
+    format: Format,
+    summary: &MatchSummary,
+    wall: Duration,
+) -> io::Result<()> {
+    match format {
+        Format::Text => write_text(out, summary, wall),
+        Format::Json => objects(summary, wall).iter().try_for_each(|object| writeln!(out, "{object}")),
+    }
+}
+
+fn write_text(out: &mut dyn Write, summary: &MatchSummary, wall: Duration) -> io::Result<()> {
+    writeln!(out, "{}\n", teams(&summary.teams))?;
+    writeln!(out, "{}\n", agents(&summary.agents))?;
+    links::write(out, &summary.links)?;
+    coverage::by_role(&summary.coverage).iter().try_for_each(|role| coverage::write(out, role))?;
+    if let Some(time) = summary.time_to_first_touch {
+        writeln!(out, "from kick-off to the first touch: {:.1} s on average", time.as_secs_f64())?;
+    }
+    let (simulated, taken) = (summary.simulated.as_secs_f64(), wall.as_secs_f64());
+    writeln!(
+        out,
+        "{simulated:.1} s of play in {taken:.1} s: {:.1} simulated seconds per wall second",
+        speed(summary, wall)
+    )?;
+    writeln!(out, "messages: {}", summary.messages)?;
+    writeln!(out, "hash: {}", summary.hash)
+}
+
+/// The cell of a team in one row.
+type TableColumn = fn(&TeamSummary) -> String;
+
+/// A row for each quantity, a column for each team.
+fn teams(teams: &[TeamSummary]) -> Table {
+    let figures: [(&str, TableColumn); 10] = [
+        ("goals", |team| team.goals.to_string()),
+        ("kicks", |team| team.kicks.to_string()),
+        ("shots", |team| team.shots.to_string()),
+        ("saves", |team| team.saves.to_string()),
+        ("falls", |team| team.falls.to_string()),
+        ("penalties", |team| team.penalties.to_string()),
+        ("possession", |team| percentage(team.possession)),
+        ("dives and falls to a side", |team| team.actions.to_string()),
+        ("of these to the ball's side", |team| {
+            share(team.actions_to_ball, team.actions).map_or_else(none, percentage)
+        }),
+        ("back between the posts after", |team| {
+            return_time(team).map_or_else(none, |seconds| format!("{seconds:.1} s"))
+        }),
+    ];
+    let header = std::iter::once(String::new()).chain(teams.iter().map(|team| team.name.clone()));
+    let row = |(name, figure): (&str, TableColumn)| {
+        std::iter::once(name.to_string()).chain(teams.iter().map(figure))
+    };
+    table::of_numbers(header, 1, figures.into_iter().map(row))
+}
+
+fn percentage(share: f64) -> String {
+    format!("{:.0} %", share * 100.0)
+}
+
+/// The cell of a quantity that was not measured.
+fn none() -> String {
+    "-".into()
+}
+
+fn share(part: u32, whole: u32) -> Option<f64> {
+    (whole > 0).then(|| f64::from(part) / f64::from(whole))
+}
+
+/// The goalie's mean time from an action until it stands between its posts again, s.
+fn return_time(team: &TeamSummary) -> Option<f64> {
+    (team.returns > 0).then(|| team.return_seconds / f64::from(team.returns))
+}
+
+fn agents(agents: &[AgentSummary]) -> Table {
+    let row = |agent: &AgentSummary| {
+        let counts = [agent.cycles, agent.overruns, agent.micro_steps, agent.activity_calls];
+        [agent.host.clone(), agent.agent.clone()].into_iter().chain(counts.map(|count| count.to_string()))
+    };
+    let header = ["host", "agent", "cycles", "overruns", "micro-steps", "activity calls"];
+    table::of_numbers(header, 2, agents.iter().map(row))
+}
+
+/// One object for each event, team, agent and link, and one for the run.
+fn objects(summary: &MatchSummary, wall: Duration) -> Vec<Value> {
+    let events = summary
+        .events
+        .iter()
+        .map(|event| json!({"kind": "event", "seconds": event.time.as_secs_f64(), "text": event.text}));
+    let teams = summary.teams.iter().map(team_object);
+    let agents = summary.agents.iter().map(agent_object);
+    let roles = coverage::by_role(&summary.coverage);
+    let run = json!({
+        "kind": "run",
+        "simulated_seconds": summary.simulated.as_secs_f64(),
+        "wall_seconds": wall.as_secs_f64(),
+        "simulated_seconds_per_wall_second": speed(summary, wall),
+        "seconds_to_first_touch": summary.time_to_first_touch.map(|time| time.as_secs_f64()),
+        "messages": summary.messages,
+        "hash": summary.hash,
+    });
+    events
+        .chain(teams)
+        .chain(agents)
+        .chain(roles.iter().map(coverage::object))
+        .chain(links::objects(&summary.links))
+        .chain(std::iter::once(run))
+        .collect()
+}
+
+fn team_object(team: &TeamSummary) -> Value {
+    json!({"kind": "team", "name": team.name, "colour": team.colour, "goals": team.goals, "shots": team.shots,
+        "saves": team.saves, "falls": team.falls, "penalties": team.penalties, "possession": team.possession,
+        "kicks": team.kicks, "actions": team.actions, "actions_to_ball": team.actions_to_ball,
+        "return_seconds": return_time(team)})
+}
+
+fn agent_object(agent: &AgentSummary) -> Value {
+    json!({"kind": "agent", "host": agent.host, "agent": agent.agent, "cycles": agent.cycles,
+        "overruns": agent.overruns, "micro_steps": agent.micro_steps, "activity_calls": agent.activity_calls})
+}
+
+/// Simulated seconds per wall-clock second; the wall time is at least 1 ns.
+fn speed(summary: &MatchSummary, wall: Duration) -> f64 {
+    summary.simulated.as_secs_f64() / wall.as_secs_f64().max(1e-9)
+}

@@ -1,0 +1,35 @@
+//! `monas tape`: inspects, recovers, cuts, merges, exports and replays recordings.
+
+mod arguments;
+mod edit;
+mod export;
+mod info;
+mod replay;
+mod select;
+mod value_text;
+
+use crate::terminal::{CommandFailure, CommandOutput, Exit};
+use arguments::ReplayArguments;
+
+pub(crate) use arguments::TapeCommand;
+
+pub(crate) fn execute(
+    command: &TapeCommand,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    match command {
+        TapeCommand::Info { file, format } => info::execute(file, format.value, console),
+        TapeCommand::Export(arguments) => export::execute(arguments, console),
+        TapeCommand::Recover { file, output, format } => {
+            edit::recover(file, output.as_deref(), format.value, console)
+        }
+        TapeCommand::Replay(arguments) => replay::execute(arguments, console),
+        TapeCommand::Verify { file, format } => {
+            let (agents, config) = (Vec::new(), None);
+            let (file, format) = (file.clone(), *format);
+            replay::execute(&ReplayArguments { file, agents, verify: true, config, format }, console)
+        }
+        TapeCommand::Cut(arguments) => edit::cut(arguments, console),
+        TapeCommand::Merge { files, output, format } => edit::merge(files, output, format.value, console),
+    }
+}

@@ -1,0 +1,223 @@
+//! Metrics on the whole terminal.
+
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::text::{Line, Span};
+use ratatui::widgets::{Block, Cell, Row, Table, TableState};
+
+use super::metrics::{ActivityFigures, ActivityRemark, AgentFigures, Metrics};
+use super::sample;
+use super::sample::{ACTIVITY_HEADER, AGENT_HEADER};
+
+const QUIET: Style = Style::new().fg(Color::DarkGray);
+const HEADER: Style = Style::new().add_modifier(Modifier::BOLD);
+const GOOD: Style = Style::new().fg(Color::Green);
+const WORTH_A_LOOK: Style = Style::new().fg(Color::Yellow);
+const WRONG: Style = Style::new().fg(Color::Red).add_modifier(Modifier::BOLD);
+
+/// The metrics shown, and the selected agent.
+pub(crate) struct Screen {
+    figures: Metrics,
+    /// Host and name, so that the selection survives a new order.
+    selected: Option<(String, String)>,
+}
+
+impl Screen {
+    pub(crate) fn new(figures: Metrics) -> Screen {
+        Screen { figures, selected: None }
+    }
+
+    /// Replaces the metrics.
+    pub(crate) fn show(&mut self, figures: Metrics) {
+        self.figures = figures;
+    }
+
+    pub(crate) fn select_next(&mut self) {
+        self.select(self.place() + 1);
+    }
+
+    pub(crate) fn select_previous(&mut self) {
+        self.select(self.place().saturating_sub(1));
+    }
+
+    fn select(&mut self, place: usize) {
+        let agents = &self.figures.agents;
+        let agent = agents.get(place.min(agents.len().saturating_sub(1)));
+        self.selected = agent.map(|agent| (agent.entry.host.clone(), agent.entry.name.clone()));
+    }
+
+    /// The index of the selected agent; 0 if none is selected or it is gone.
+    fn place(&self) -> usize {
+        let is_it = |agent: &AgentFigures| {
+            self.selected
+                .as_ref()
+                .is_some_and(|(host, name)| (host, name) == (&agent.entry.host, &agent.entry.name))
+        };
+        self.figures.agents.iter().position(is_it).unwrap_or(0)
+    }
+
+    pub(crate) fn draw(&self, frame: &mut Frame<'_>) {
+        let agents = u16::try_from(self.figures.agents.len()).unwrap_or(u16::MAX).saturating_add(1);
+        let rows = Layout::vertical([
+            Constraint::Length(1),
+            Constraint::Length(agents.min(frame.area().height / 2)),
+            Constraint::Fill(2),
+            Constraint::Fill(1),
+            Constraint::Length(1),
+        ]);
+        let [head, agents, activities, topics, keys] = rows.areas(frame.area());
+        frame.render_widget(self.head(), head);
+        self.draw_agents(frame, agents);
+        self.draw_activities(frame, activities);
+        self.draw_topics(frame, topics);
+        frame.render_widget(Line::styled("up, down: choose an agent   q: quit", QUIET), keys);
+    }
+
+    fn head(&self) -> Line<'_> {
+        let Metrics { run, now, agents, .. } = &self.figures;
+        let load = agents.iter().filter_map(|agent| agent.load).reduce(|sum, load| sum + load);
+        let figures = format!(
+            "  {:.1} s  {} agents  {} of a core",
+            now.as_secs_f64(),
+            agents.len(),
+            sample::share(load)
+        );
+        Line::from(vec![Span::styled(run.as_str(), HEADER), Span::raw(figures)])
+    }
+
+    fn draw_agents(&self, frame: &mut Frame<'_>, area: Rect) {
+        let rows = self.figures.agents.iter().map(|agent| row(sample::agent(agent), 3, style_of(agent)));
+        let table = table(AGENT_HEADER, [12, 22, 9], rows)
+            .row_highlight_style(Style::new().add_modifier(Modifier::REVERSED));
+        let mut state = TableState::default().with_selected(Some(self.place()));
+        frame.render_stateful_widget(table, area, &mut state);
+    }
+
+    fn draw_activities(&self, frame: &mut Frame<'_>, area: Rect) {
+        let Some(agent) = self.figures.agents.get(self.place()) else { return };
+        let rows = agent.activities.iter().map(|one| row(sample::activity(one), 3, style_of_activity(one)));
+        let reason = match agent.entry.reason.as_str() {
+            "" => String::new(),
+            reason => format!(": {reason}"),
+        };
+        let block =
+            Block::bordered().title(format!(" {} on {}{reason} ", agent.entry.name, agent.entry.host));
+        frame.render_widget(table(ACTIVITY_HEADER, [28, 24, 14], rows).block(block), area);
+    }
+
+    fn draw_topics(&self, frame: &mut Frame<'_>, area: Rect) {
+        let rows = self.figures.topics.iter().map(|topic| {
+            let cells =
+                [topic.path.clone(), topic.host.clone(), topic.publisher.clone(), sample::number(topic.hz)];
+            row(cells, 3, Style::new())
+        });
+        let block = Block::bordered().title(" topics ");
+        frame.render_widget(table(["topic", "host", "by", "Hz"], [28, 24, 24], rows).block(block), area);
+    }
+}
+
+/// A table whose first columns are texts of these widths; the others are numbers.
+fn table<'a, const N: usize>(
+    header: [&'a str; N],
+    texts: [u16; 3],
+    rows: impl Iterator<Item = Row<'a>>,
+) -> Table<'a> {
+    let numbers = std::iter::repeat_n(Constraint::Length(14), N.saturating_sub(texts.len()));
+    let widths = texts.into_iter().map(Constraint::Length).chain(numbers);
+    let header = row(header.map(str::to_owned), texts.len(), HEADER);
+    Table::new(rows, widths).header(header)
+}
+
+/// A row with numbers from a column on.
+fn row<'a, const N: usize>(cells: [String; N], numbers_from: usize, style: Style) -> Row<'a> {
+    let cells = cells.into_iter().enumerate().map(|(column, text)| {
+        let line = Line::from(text);
+        Cell::from(if column < numbers_from { line } else { line.right_aligned() })
+    });
+    Row::new(cells).style(style)
+}
+
+fn style_of(agent: &AgentFigures) -> Style {
+    let is_remarked = agent.activities.iter().any(|one| one.remark.is_some());
+    match agent.entry.state.as_str() {
+        "stuck" | "stopped" => WRONG,
+        _ if agent.overruns > 0 || is_remarked => WORTH_A_LOOK,
+        "runs" => GOOD,
+        _ => QUIET,
+    }
+}
+
+fn style_of_activity(activity: &ActivityFigures) -> Style {
+    match activity.remark {
+        Some(ActivityRemark::Stuck | ActivityRemark::Fails) => WRONG,
+        Some(ActivityRemark::Burns | ActivityRemark::Blocks | ActivityRemark::Leaks) => WORTH_A_LOOK,
+        None => Style::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use monas::records::{ActivityEntry, AgentEntry};
+    use ratatui::Terminal;
+    use ratatui::backend::TestBackend;
+
+    use super::*;
+
+    fn figures(names: &[&str]) -> Metrics {
+        let agents = names.iter().map(|name| {
+            let activity = ActivityEntry { name: format!("{name}s"), ..ActivityEntry::default() };
+            let remark = (*name == "Vision").then_some(ActivityRemark::Burns);
+            let entry = AgentEntry {
+                host: "blue-2".into(),
+                name: (*name).into(),
+                state: "runs".into(),
+                ..AgentEntry::default()
+            };
+            let activities = vec![ActivityFigures { entry: activity, hz: 30.0, load: Some(0.91), remark }];
+            AgentFigures { entry, hz: 30.0, load: Some(0.5), overruns: 0, activities }
+        });
+        Metrics {
+            run: "match".into(),
+            now: Duration::from_secs(12),
+            agents: agents.collect(),
+            topics: Vec::new(),
+        }
+    }
+
+    fn shown(screen: &Screen) -> Vec<String> {
+        let mut terminal = Terminal::new(TestBackend::new(150, 16)).expect("a terminal");
+        terminal.draw(|frame| screen.draw(frame)).expect("it is drawn");
+        let buffer = terminal.backend().buffer();
+        let lines = buffer.content().chunks(usize::from(buffer.area.width));
+        lines
+            .map(|line| line.iter().map(|cell| cell.symbol()).collect::<String>().trim_end().to_owned())
+            .collect()
+    }
+
+    #[test]
+    fn agents_are_shown_and_the_activities_of_the_one_that_is_looked_at() {
+        let mut screen = Screen::new(figures(&["Vision", "Motion"]));
+        let lines = shown(&screen);
+        assert_eq!(lines[0], "match  12.0 s  2 agents  100.0 % of a core");
+        assert!(lines[2].starts_with("blue-2       Vision                 runs"), "{lines:#?}");
+        assert!(lines[4].contains(" Vision on blue-2 "), "{lines:#?}");
+        for word in ["Visions", "burns a core", "91.0 %"] {
+            assert!(lines[6].contains(word), "{lines:#?}");
+        }
+        screen.select_next();
+        assert!(shown(&screen)[4].contains(" Motion on blue-2 "));
+        screen.show(figures(&["Motion", "Vision"]));
+        assert!(shown(&screen)[4].contains(" Motion on blue-2 "), "the one that was chosen");
+        screen.select_next();
+        screen.select_next();
+        assert!(shown(&screen)[4].contains(" Vision on blue-2 "), "there is none behind the last");
+        screen.show(figures(&["Motion"]));
+        assert!(shown(&screen)[3].contains(" Motion on blue-2 "));
+        screen.select_previous();
+        screen.show(figures(&[]));
+        assert!(shown(&screen)[0].contains("0 agents"));
+    }
+}

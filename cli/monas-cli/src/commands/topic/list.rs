@@ -1,0 +1,113 @@
+//! `monas topic list` and `info`.
+
+use monas_link::control::messages::TopicEntry;
+use prost_reflect::{Cardinality, FieldDescriptor};
+use serde_json::{Value, json};
+
+use super::schemas::Schemas;
+use crate::remote::{RunSelector, connection, failure};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, seconds, table};
+
+pub(crate) fn list(
+    pattern: Option<&str>,
+    choice: &RunSelector,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let topics = entries(pattern.unwrap_or_default(), choice)?;
+    match choice.format.value {
+        Format::Json => topics.iter().try_for_each(|topic| writeln!(console.out, "{}", object(topic)))?,
+        Format::Text => {
+            let header = ["host", "topic", "keeps", "message", "by", "count", "at"];
+            writeln!(console.out, "{}", table::of_numbers(header, 5, topics.iter().map(row)))?;
+        }
+    }
+    Ok(Exit::Success)
+}
+
+fn entries(pattern: &str, choice: &RunSelector) -> Result<Vec<TopicEntry>, CommandFailure> {
+    let host = choice.host.as_deref().unwrap_or_default();
+    connection::client(choice)?.topics(host, pattern).map_err(failure(choice.format.value))
+}
+
+fn row(topic: &TopicEntry) -> [String; 7] {
+    let last = topic.last.as_ref();
+    let none = || "-".to_owned();
+    // Messages received over a link have no local publisher.
+    let by = || if topic.from.is_empty() { none() } else { format!("from {}", topic.from.join(", ")) };
+    [
+        topic.host.clone(),
+        topic.path.clone(),
+        keeping(topic),
+        topic.r#type.clone(),
+        last.map_or_else(by, |last| last.publisher.clone()),
+        last.map_or_else(none, |last| last.sequence.to_string()),
+        last.map_or_else(none, |last| format!("{:.3} s", seconds(last.published))),
+    ]
+}
+
+fn keeping(topic: &TopicEntry) -> String {
+    match topic.kind.as_str() {
+        "data" => format!("data {}", topic.depth),
+        kind => kind.to_owned(),
+    }
+}
+
+fn object(topic: &TopicEntry) -> Value {
+    let last = topic.last.as_ref().map(|last| {
+        json!({"publisher": last.publisher, "sequence": last.sequence, "seconds": seconds(last.published)})
+    });
+    json!({"host": topic.host, "topic": topic.path, "keeps": topic.kind, "depth": topic.depth, "type": topic.r#type,
+        "last": last, "from": topic.from})
+}
+
+pub(crate) fn info(
+    topic: &str,
+    choice: &RunSelector,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let format = choice.format.value;
+    let entries = entries(topic, choice)?;
+    let mut schemas = Schemas::new(connection::socket(choice)?, format);
+    let message = schemas.of(topic)?;
+    if format == Format::Json {
+        let fields: Vec<Value> = message.fields().map(|field| field_object(&field)).collect();
+        for entry in &entries {
+            let mut object = object(entry);
+            object["fields"] = fields.clone().into();
+            writeln!(console.out, "{object}")?;
+        }
+        return Ok(Exit::Success);
+    }
+    for entry in &entries {
+        writeln!(console.out, "{} on {}: {} of {}", entry.path, entry.host, keeping(entry), entry.r#type)?;
+        match &entry.last {
+            Some(last) => writeln!(
+                console.out,
+                "  last by {} at {:.3} s, sequence number {}",
+                last.publisher,
+                seconds(last.published),
+                last.sequence
+            )?,
+            None => writeln!(console.out, "  nothing was published on it")?,
+        }
+        if !entry.from.is_empty() {
+            writeln!(console.out, "  from other hosts: {}", entry.from.join(", "))?;
+        }
+    }
+    for field in message.fields() {
+        writeln!(console.out, "  {} {}", type_name(&field), field.name())?;
+    }
+    Ok(Exit::Success)
+}
+
+fn field_object(field: &FieldDescriptor) -> Value {
+    json!({"name": field.name(), "type": type_name(field), "number": field.number()})
+}
+
+/// The type of a field as in a `.proto` file.
+fn type_name(field: &FieldDescriptor) -> String {
+    match field.cardinality() {
+        Cardinality::Repeated => format!("repeated {:?}", field.kind()),
+        _ => format!("{:?}", field.kind()),
+    }
+}

@@ -1,0 +1,88 @@
+//! Delegation to a project's own program, which has the project's activities linked in: `monas`
+//! builds it and replaces itself by it.
+
+use std::env;
+use std::ffi::OsString;
+use std::path::Path;
+use std::process::Command;
+
+use monas_project::project_program;
+
+/// Commands that need no activities and are executed directly.
+const OWN: [&str; 7] = ["new", "completions", "help", "--help", "-h", "--version", "-V"];
+
+/// The command to run instead of this one, if the folder is in a project and this is not the
+/// project's program.
+fn project_command(arguments: &[OsString], here: &Path, program: &Path) -> Option<Command> {
+    let first = arguments.first()?.to_string_lossy().into_owned();
+    if OWN.contains(&first.as_str()) {
+        return None;
+    }
+    let (project, own) = project_program(here)?;
+    if program.file_stem().is_some_and(|stem| stem == own.as_str()) {
+        return None;
+    }
+    let mut command = Command::new("cargo");
+    command.args(["run", "--quiet", "--package", &own, "--manifest-path"]).arg(project.join("Cargo.toml"));
+    command.arg("--").args(arguments);
+    Some(command)
+}
+
+/// Runs the project's own program with the arguments of this process. Returns if there is none.
+pub(crate) fn delegate() {
+    let arguments: Vec<OsString> = env::args_os().skip(1).collect();
+    let (Ok(here), Ok(program)) = (env::current_dir(), env::current_exe()) else { return };
+    if let Some(command) = project_command(&arguments, &here, &program) {
+        exec_program(command);
+    }
+}
+
+/// Replaces this process, so that signals reach the program.
+#[cfg(unix)]
+fn exec_program(mut command: Command) {
+    use std::os::unix::process::CommandExt;
+    let error = command.exec();
+    tracing::warn!("cannot start this project's program, its activities are unknown: cargo: {error}");
+}
+
+#[cfg(not(unix))]
+fn exec_program(mut command: Command) {
+    match command.status() {
+        Ok(status) => std::process::exit(status.code().unwrap_or(1)),
+        Err(error) => {
+            tracing::warn!("cannot start this project's program, its activities are unknown: cargo: {error}");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arguments(command: Command) -> Vec<String> {
+        command.get_args().map(|one| one.to_string_lossy().into_owned()).collect()
+    }
+
+    #[test]
+    fn only_another_program_in_a_project_hands_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let monas = Path::new("/usr/bin/monas");
+        let run = ["run".into(), "--for".into(), "1s".into()];
+        assert!(project_command(&run, folder.path(), monas).is_none(), "no project");
+        std::fs::create_dir(folder.path().join("activities")).unwrap();
+        std::fs::write(folder.path().join("activities/lib.rs"), "").unwrap();
+        let manifest =
+            "[workspace]\n[workspace.metadata.monas]\nteam = \".\"\nprogram = \"my-team\"\n\n[package]\n";
+        std::fs::write(folder.path().join("Cargo.toml"), manifest).unwrap();
+        let below = folder.path().join("activities");
+        let handed = arguments(project_command(&run, &below, monas).unwrap());
+        assert_eq!(handed[..4], ["run", "--quiet", "--package", "my-team"]);
+        assert_eq!(handed[handed.len() - 4..], ["--", "run", "--for", "1s"]);
+        assert!(
+            project_command(&run, &below, Path::new("/x/target/debug/my-team")).is_none(),
+            "it is the project's"
+        );
+        assert!(project_command(&["new".into(), "activity".into()], &below, monas).is_none());
+        assert!(project_command(&[], &below, monas).is_none());
+    }
+}

@@ -1,0 +1,77 @@
+//! Maps arguments to a command, and the command's result to an exit status.
+
+use std::ffi::OsString;
+use std::io;
+
+use clap::{CommandFactory, Parser};
+use clap_complete::env::Shells;
+
+use crate::arguments::{Arguments, Command};
+use crate::commands;
+use crate::terminal::{CommandFailure, CommandOutput, Exit};
+
+/// Parses the arguments, of which the first is the program's name, and executes the command.
+pub(crate) fn dispatch<Argument: Into<OsString> + Clone>(
+    arguments: impl IntoIterator<Item = Argument>,
+    console: &mut CommandOutput<'_>,
+) -> Exit {
+    let done = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => execute(arguments.command, console),
+        Err(error) => answer(&error, console).map_err(CommandFailure::from),
+    };
+    done.unwrap_or_else(|failure| failure.report(console))
+}
+
+fn execute(command: Command, console: &mut CommandOutput<'_>) -> Result<Exit, CommandFailure> {
+    match command {
+        Command::Run(arguments) => commands::run::execute(&arguments, console),
+        Command::Generate(arguments) => commands::generate::execute(&arguments, console),
+        Command::Config(command) => commands::config::execute(&command, console),
+        Command::Model(command) => commands::model::execute(&command, console),
+        #[cfg(unix)]
+        Command::Topic(arguments) => commands::topic::execute(arguments, console),
+        #[cfg(unix)]
+        Command::Agent(command) => commands::agent::execute(&command, console),
+        #[cfg(unix)]
+        Command::Chart(command) => commands::chart::execute(&command, console),
+        #[cfg(unix)]
+        Command::Module(command) => commands::module::execute(&command, console),
+        #[cfg(unix)]
+        Command::Top(arguments) => commands::top::execute(&arguments, console),
+        Command::Log(arguments) => commands::log::execute(&arguments, console),
+        Command::Tape(command) => commands::tape::execute(&command, console),
+        Command::New(arguments) => commands::new::execute(&arguments, console),
+        Command::Deploy(arguments) => commands::deploy::execute(&arguments, console),
+        Command::Doctor(arguments) => commands::doctor::execute(&arguments, console),
+        Command::Completions { shell } => completions(shell, console).map_err(CommandFailure::from),
+    }
+}
+
+/// Writes clap's answer: help and version were requested, anything else is an error.
+fn answer(error: &clap::Error, console: &mut CommandOutput<'_>) -> io::Result<Exit> {
+    let text = error.render();
+    let (target, colour) = match error.use_stderr() {
+        true => (&mut *console.err, console.colour_err),
+        false => (&mut *console.out, console.colour_out),
+    };
+    match colour {
+        true => write!(target, "{}", text.ansi())?,
+        false => write!(target, "{text}")?,
+    }
+    Ok(if error.exit_code() == 0 { Exit::Success } else { Exit::Usage })
+}
+
+fn completions(shell: clap_complete::Shell, console: &mut CommandOutput<'_>) -> io::Result<Exit> {
+    let mut script = Vec::new();
+    let name = shell.to_string();
+    let shells = Shells::builtins();
+    match shells.completer(&name) {
+        // The shell asks this program for candidates, so that names known to a run are completed.
+        Some(completer) => {
+            completer.write_registration("COMPLETE", "monas", "monas", "monas", &mut script)?
+        }
+        None => clap_complete::generate(shell, &mut Arguments::command(), "monas", &mut script),
+    }
+    console.out.write_all(&script)?;
+    Ok(Exit::Success)
+}

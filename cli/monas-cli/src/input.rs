@@ -1,0 +1,11 @@
+//! Files that several commands read: configurations, models and recordings.
+
+mod configuration;
+pub(crate) mod layers;
+mod model;
+mod recorded_run;
+
+pub(crate) use configuration::{ConfigurationKind, DEFAULT_CONFIGURATION, checked, checked_with, kind_of};
+pub(crate) use layers::LayerArguments;
+pub(crate) use model::{valid_chart, valid_model};
+pub(crate) use recorded_run::{chosen_hosts, recorded_hosts, replay, run_of};

@@ -1,0 +1,38 @@
+//! Global state of the process: streams, log and panic hook.
+
+use std::io::{self, IsTerminal};
+use std::panic;
+
+use clap::CommandFactory;
+use clap_complete::CompleteEnv;
+use indicatif::MultiProgress;
+
+use crate::arguments::Arguments;
+use crate::delegate;
+use crate::dispatch::dispatch;
+use crate::terminal::{CommandOutput, Exit, ProcessLog};
+
+/// Executes the command as this process.
+pub(crate) fn main() -> Exit {
+    // Answers a shell's request for completions and exits.
+    CompleteEnv::with_factory(Arguments::command).complete();
+    let bars = MultiProgress::new();
+    let log = ProcessLog::begin(&bars);
+    delegate::delegate();
+    // The caller decides how to handle a panic; the log has its location.
+    panic::set_hook(Box::new(|panic| tracing::error!("{panic}")));
+    let (mut out, mut err) = (io::stdout(), io::stderr());
+    let colours_are_welcome = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+    let mut console = CommandOutput {
+        colour_out: colours_are_welcome && out.is_terminal(),
+        colour_err: colours_are_welcome && err.is_terminal(),
+        bars: err.is_terminal().then_some(bars),
+        catches_signals: true,
+        log: log.clone(),
+        out: &mut out,
+        err: &mut err,
+    };
+    let exit = dispatch(std::env::args_os(), &mut console);
+    log.iter().for_each(|log| log.end());
+    exit
+}

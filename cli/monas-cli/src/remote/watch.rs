@@ -1,0 +1,57 @@
+//! Watches messages of a run as they are published.
+
+use std::time::Duration;
+
+use clap::Args;
+use monas_link::control::WatchStream;
+use monas_link::control::messages::Seen;
+
+use super::connection::{self, failure};
+use super::run_selector::RunSelector;
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Interrupt, WallClock, duration};
+
+/// The longest wait before the limits are checked.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// When to stop watching.
+#[derive(Args, Debug)]
+pub(crate) struct WatchLimits {
+    /// Stop after this many messages.
+    #[arg(long, value_name = "MESSAGES")]
+    pub(crate) count: Option<u64>,
+    /// Stop after this much time, for example 5s.
+    #[arg(long = "for", value_name = "DURATION", value_parser = duration::parse)]
+    pub(crate) length: Option<Duration>,
+}
+
+/// Passes each published message to `take`, and none at intervals, until a limit is reached, an
+/// interrupt, or `take` returns false.
+pub(crate) fn watch(
+    pattern: &str,
+    payload: bool,
+    limits: &WatchLimits,
+    choice: &RunSelector,
+    console: &mut CommandOutput<'_>,
+    mut take: impl FnMut(Option<Seen>, &mut CommandOutput<'_>) -> Result<bool, CommandFailure>,
+) -> Result<Exit, CommandFailure> {
+    let format = choice.format.value;
+    let host = choice.host.as_deref().unwrap_or_default();
+    let client = connection::client(choice)?;
+    let mut watching: WatchStream = client.watch(host, pattern, payload).map_err(failure(format))?;
+    let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
+    let clock = WallClock::start();
+    let mut count = 0;
+    while !interrupt.is_requested() {
+        let left = limits.length.map(|length| length.saturating_sub(clock.elapsed()));
+        if left == Some(Duration::ZERO) || limits.count == Some(count) {
+            break;
+        }
+        let seen = watching.wait(left.unwrap_or(LOOK).min(LOOK)).map_err(failure(format))?;
+        count += u64::from(seen.is_some());
+        if !take(seen, console)? {
+            break;
+        }
+    }
+    // An interrupt is the usual way to stop watching, not a failure.
+    Ok(Exit::Success)
+}

@@ -1,0 +1,81 @@
+//! The log of this process: on standard error, and in the files that `--log` configures.
+
+use std::io::{self, Write};
+
+use indicatif::MultiProgress;
+use monas::logger::{self, LogSettings, Logger, Severity};
+use tracing_subscriber::prelude::*;
+use tracing_subscriber::{EnvFilter, Registry, reload};
+
+/// The filter without MONAS_LOG. Warnings of zenoh do not concern a run, and failures are reported
+/// as errors of the link.
+const USUAL: &str = "warn,zenoh=error";
+
+/// The log of this process: filtered lines on standard error, and the log that `--log` configures.
+#[derive(Clone)]
+pub(crate) struct ProcessLog {
+    logger: Logger,
+    usual: reload::Handle<EnvFilter, Registry>,
+    bars: MultiProgress,
+}
+
+impl ProcessLog {
+    /// Starts the log on standard error, above progress bars.
+    pub(crate) fn begin(bars: &MultiProgress) -> Option<ProcessLog> {
+        let asked = std::env::var("MONAS_LOG").unwrap_or_else(|_| USUAL.into());
+        let (filter, mistake) = match EnvFilter::try_new(asked) {
+            Ok(filter) => (filter, None),
+            Err(mistake) => (EnvFilter::new("warn"), Some(mistake)),
+        };
+        let (filter, usual) = reload::Layer::new(filter);
+        let above = bars.clone();
+        let writer = move || ProgressAwareStderr(above.clone());
+        let lines = tracing_subscriber::fmt::layer().with_writer(writer).with_ansi(false).without_time();
+        let (layer, logger) = logger::layer();
+        // This fails only if a program that calls this library has installed its own log, which
+        // stays.
+        let is_ours =
+            tracing_subscriber::registry().with(lines.with_filter(filter)).with(layer).try_init().is_ok();
+        if let Some(mistake) = mistake {
+            tracing::warn!("MONAS_LOG is invalid, warnings and errors are logged: {mistake}");
+        }
+        is_ours.then(|| ProcessLog { logger, usual, bars: bars.clone() })
+    }
+
+    /// Flushes and ends the log.
+    pub(crate) fn end(&self) {
+        self.logger.end();
+    }
+
+    /// From now on, publishes lines of at least this severity on the hosts of the run.
+    pub(crate) fn publish(&self, least_grave: Severity) {
+        self.logger.publish(least_grave);
+    }
+
+    /// Starts the configured log. It replaces the lines on standard error unless MONAS_LOG is set.
+    pub(crate) fn write(&self, settings: LogSettings) -> io::Result<()> {
+        let bars = self.bars.clone();
+        self.logger.begin_with(settings, move |lines| {
+            // If standard error is closed there is nowhere to report that.
+            let _ = ProgressAwareStderr(bars.clone()).write_all(lines);
+        })?;
+        if std::env::var_os("MONAS_LOG").is_none() {
+            // This fails only after the log has ended.
+            let _ = self.usual.reload(EnvFilter::new("off"));
+        }
+        Ok(())
+    }
+}
+
+/// Standard error; progress bars are hidden during writes.
+struct ProgressAwareStderr(MultiProgress);
+
+impl Write for ProgressAwareStderr {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.suspend(|| io::stderr().write_all(bytes).map(|()| bytes.len()))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        io::stderr().flush()
+    }
+}

@@ -1,0 +1,139 @@
+//! `monas agent` on a run.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::kit::{monas, root};
+use crate::running::{Running, ask, objects};
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a folder")
+}
+
+/// Agents in real time, which run until an interrupt.
+const AGENTS: &str = "<!-- kept -->\n<agent frequency=\"50\">\n  <name>Lights</name>\n  <activity>LedHandler</activity>\n</agent>\n\
+    <agent><name>Mind</name><statechart>models/goalie.srm</statechart></agent>\n";
+
+fn start(folder: &Path) -> Running {
+    let file = folder.join("agents.xml");
+    fs::write(&file, AGENTS.replace("models", &root().join("models").display().to_string())).expect("a file");
+    let file = file.display().to_string();
+    Running::start(folder, &["run", &file, "--control", "lab"], "control socket: ")
+}
+
+#[test]
+fn a_session_with_a_run_in_real_time() {
+    let folder = folder();
+    let run = start(folder.path());
+    let ask = |arguments: &[&str]| ask(folder.path(), &[&["agent"], arguments].concat());
+    let done = |arguments: &[&str]| {
+        let answer = ask(arguments);
+        assert_eq!(answer.code, Some(0), "{arguments:?}: {}{}", answer.out, answer.err);
+        answer.out
+    };
+    let list = done(&["list"]);
+    for word in ["Lights", "Mind", "runs", "50"] {
+        assert!(list.contains(word), "{list}");
+    }
+    assert!(done(&["pause", "Lights"]).starts_with("`Lights` pauses after its cycle "));
+    assert!(done(&["step", "Lights"]).starts_with("`Lights` has completed its cycle "));
+    assert!(done(&["resume", "Lights"]).starts_with("`Lights` resumes after its cycle "));
+    done(&["add-activity", "Lights", "MotionController", "--at", "1"]);
+    done(&["set", "Lights", "frequency=100", "on_failure=skip"]);
+    done(&["stop", "Mind"]);
+    done(&["start", "Mind"]);
+    let model = root().join("models/goalie.srm").display().to_string();
+    assert!(done(&["swap", "Mind", &model]).contains("changed"));
+
+    let lights = objects(&done(&["list", "Lights", "--format", "json"]));
+    let names: Vec<&Value> =
+        lights[0]["activities"].as_array().expect("a list").iter().map(|one| &one["name"]).collect();
+    assert_eq!(names, ["MotionController", "LedHandler"]);
+    assert_eq!((&lights[0]["frequency"], &lights[0]["on_failure"]), (&100.0.into(), &"skip".into()));
+
+    let saved = folder.path().join("saved.xml").display().to_string();
+    assert_eq!(done(&["save", &saved]), format!("saved to {saved}\n"));
+    let text = fs::read_to_string(&saved).expect("it was written");
+    let begin = "<!-- kept -->\n<agent frequency=\"100\" on_failure=\"skip\">\n  <name>Lights</name>\n  \
+        <activity>MotionController</activity>\n  <activity>LedHandler</activity>\n</agent>\n";
+    assert!(text.starts_with(begin), "{text}");
+    assert_eq!(monas(&["config", "check", &saved]).code, Some(0));
+    assert_eq!(run.interrupt().code, Some(130));
+}
+
+#[test]
+fn mistakes_are_answered_with_what_would_be_right() {
+    let folder = folder();
+    let _run = start(folder.path());
+    let snippet = folder.path().join("extra.xml").display().to_string();
+    fs::write(&snippet, "<agent frequency=\"10\">\n<name>x</name><activity>LedHandlr</activity></agent>")
+        .expect("a file");
+    let ask = |arguments: &[&str]| ask(folder.path(), &[&["agent"], arguments].concat());
+    let cases: [(&[&str], i32, &str); 8] = [
+        (&["stop", "Light"], 1, "no agent of `local` is named `Light`\n  help: did you mean `Lights`?"),
+        (&["start", "Lights"], 1, "`Lights` has not stopped"),
+        (&["set", "Lights", "frequency=fast"], 1, "`frequency` is `fast`, expected a number from"),
+        (&["set", "Lights", "frequency"], 2, "`frequency` is not KEY=VALUE"),
+        (
+            &["add", &snippet],
+            3,
+            "extra.xml:2:25: error[E0312]: unknown activity `LedHandlr`\n  help: did you mean `LedHandler`?",
+        ),
+        (&["swap", "Mind", "nowhere.srm"], 1, "no generated statechart `nowhere.srm` is registered"),
+        (&["list", "Mnd"], 1, "no agent is named `Mnd`; did you mean `Mind`?"),
+        (&["save", "there.toml"], 2, "the file must end with .xml"),
+    ];
+    for (arguments, code, part) in cases {
+        let answer = ask(arguments);
+        assert_eq!((answer.code, answer.out.as_str()), (Some(code), ""), "{arguments:?}: {}", answer.err);
+        assert!(answer.err.contains(part), "{arguments:?}: {}", answer.err);
+    }
+}
+
+#[test]
+fn a_match_in_simulated_time_is_changed_by_host_and_looking_on_changes_nothing() {
+    let folder = folder();
+    let arguments = ["run", "config/match.xml", "--realtime", "--control", "game"];
+    let run = Running::start(folder.path(), &arguments, "control socket: ");
+    let ask = |arguments: &[&str]| ask(folder.path(), &[&["agent"], arguments].concat());
+    let agents = objects(&ask(&["list", "--format", "json"]).out);
+    assert!(agents.len() >= 6, "{agents:?}");
+    let (host, agent) =
+        (agents[0]["host"].as_str().expect("a name"), agents[0]["agent"].as_str().expect("a name"));
+    let which = ask(&["pause", agent]);
+    assert_eq!(which.code, Some(1));
+    assert!(which.err.contains("there are several hosts: say which of "), "{}", which.err);
+    assert_eq!(ask(&["pause", agent, "--host", host]).code, Some(0));
+    let paused = objects(&ask(&["list", agent, "--host", host, "--format", "json"]).out);
+    assert_eq!(paused[0]["state"], "pauses");
+    let saved = ask(&["save", "--host", host]);
+    let role = fs::read_to_string(root().join("config/roles/goalie.xml")).expect("it is there");
+    assert!(saved.out == role || saved.out.contains("<statechart"), "{}", saved.out);
+    assert_eq!(run.interrupt().code, Some(130));
+}
+
+#[test]
+fn each_command_shows_an_example() {
+    for command in [
+        "list",
+        "start",
+        "stop",
+        "pause",
+        "resume",
+        "step",
+        "add",
+        "remove",
+        "add-activity",
+        "remove-activity",
+        "move-activity",
+        "replace-activity",
+        "set",
+        "swap",
+        "save",
+    ] {
+        let help = monas(&["agent", command, "--help"]);
+        assert!(help.out.contains(&format!("Example: monas agent {command}")), "{}", help.out);
+    }
+}

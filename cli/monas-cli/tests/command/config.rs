@@ -1,0 +1,226 @@
+//! `monas config`: values with their origin, layers of `run`, and the equivalence of TOML and XML.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::kit::{Answer, changed, monas, root};
+
+fn show(arguments: &[&str]) -> Answer {
+    monas(&[&["config", "show"], arguments].concat())
+}
+
+/// The lines of a configuration as objects.
+fn objects(arguments: &[&str]) -> Vec<Value> {
+    let answer = show(&[arguments, &["--format", "json"]].concat());
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    answer.out.lines().map(|line| serde_json::from_str(line).expect("a line is an object")).collect()
+}
+
+fn find<'a>(objects: &'a [Value], path: &str) -> &'a Value {
+    objects.iter().find(|object| object["path"] == path).unwrap_or_else(|| panic!("{path} in {objects:#?}"))
+}
+
+fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("the folder takes folders");
+        fs::write(path, text).expect("the folder takes files");
+    }
+    folder
+}
+
+fn at(folder: &Path, name: &str) -> String {
+    folder.join(name).display().to_string()
+}
+
+const AGENTS: &str = "<agent thread_frequency=10 priority=1>\n  <name>Motion</name>\n  <activity gait=quick>NobodyKnowsIt</activity>\n</agent>\n";
+
+#[test]
+fn every_value_is_shown_with_where_it_comes_from() {
+    let robot = "[[agent]]\nname = \"Motion\"\npriority = 4\n";
+    let folder = folder(&[("config/agents.xml", AGENTS), ("config/robots/one.toml", robot)]);
+    let file = at(folder.path(), "config/agents.xml");
+    let answer = show(&[&file, "--robot", "one", "--set", "agent.Motion.frequency=50"]);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""), "names of activities are not looked up");
+    let lines: Vec<String> =
+        answer.out.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+    for expected in [
+        "agent.Motion.thread_frequency = 50 --set agent.Motion.frequency=50".to_owned(),
+        format!("agent.Motion.priority = 4 {}:3:12 (robot)", at(folder.path(), "config/robots/one.toml")),
+        "agent.Motion.enable = 1 default".to_owned(),
+        format!("agent.Motion.activity.NobodyKnowsIt.gait = quick {file}:3:18"),
+    ] {
+        assert!(lines.contains(&expected), "{expected} is not in\n{}", answer.out);
+    }
+    let check = monas(&["config", "check", &file]);
+    assert_eq!(check.code, Some(3));
+    assert!(check.err.contains("unknown activity `NobodyKnowsIt`"), "{}", check.err);
+}
+
+#[test]
+fn as_json_each_value_has_its_layer_and_place() {
+    let folder = folder(&[("agents.xml", AGENTS)]);
+    let file = at(folder.path(), "agents.xml");
+    let all = objects(&[&file, "--set", "agent.Motion.priority=7"]);
+    let priority = find(&all, "agent.Motion.priority");
+    assert_eq!((&priority["value"], &priority["layer"]), (&Value::from("7"), &Value::from("command line")));
+    let frequency = find(&all, "agent.Motion.thread_frequency");
+    assert_eq!((&frequency["layer"], &frequency["file"]), (&Value::from("file"), &Value::from(file)));
+    assert_eq!((frequency["line"].as_u64(), frequency["column"].as_u64()), (Some(1), Some(25)));
+    assert_eq!(find(&all, "agent.Motion.on_failure")["layer"], "default");
+}
+
+#[test]
+fn a_match_is_shown_with_its_robots_field_and_simulator() {
+    let all = objects(&["config/match.xml", "--set", "agent.Goalie.priority=5", "--set", "field.length=9"]);
+    let goalie = find(&all, "match.team.2.robot.1.agent.Goalie.priority");
+    assert_eq!((&goalie["value"], &goalie["layer"]), (&Value::from("5"), &Value::from("command line")));
+    assert_eq!(find(&all, "match.team.1.robot.2.agent.Attacker.priority")["value"], "1");
+    assert_eq!(find(&all, "match.half")["file"], "config/match.xml");
+    assert_eq!(find(&all, "field.length")["layer"], "command line");
+    assert_eq!(find(&all, "field.width")["file"], "config/fields/thesis.xml");
+    assert_eq!(find(&all, "simulator.physics.ball_radius")["value"], "0.0325");
+}
+
+#[test]
+fn what_is_said_in_a_robot_goes_over_its_role() {
+    let robot = "<robot number=\"2\" role=\"config/roles/attacker.xml\"/>";
+    let own = "<robot number=\"2\" role=\"config/roles/attacker.xml\"><agent priority='9'><name>Attacker</name></agent></robot>";
+    let (folder, line) = changed("config/match.xml", robot, own);
+    let file = at(folder.path(), "config/match.xml");
+    let all = objects(&[&file]);
+    let priority =
+        |robot: &str| find(&all, &format!("match.team.1.robot.{robot}.agent.Attacker.priority")).clone();
+    assert_eq!(
+        (&priority("2")["value"], &priority("2")["layer"]),
+        (&Value::from("9"), &Value::from("robot"))
+    );
+    assert_eq!(priority("2")["line"].as_u64(), Some(line as u64));
+    assert_eq!(priority("3")["value"], "1");
+    assert_eq!(monas(&["config", "check", &file]).code, Some(0));
+}
+
+#[test]
+fn mistakes_end_with_3_and_say_what_would_be_right() {
+    for (arguments, expected) in [
+        (&["config/match.xml", "--set", "agent.Golie.priority=5"][..], "did you mean `Goalie`?"),
+        (
+            &["config/match.xml", "--set", "match.team.1.robot.9.agent.Goalie.priority=5"],
+            "there is no `robot` `9`",
+        ),
+        (&["config/match.xml", "--set", "match.haf=3s"], "did you mean `half`?"),
+        (&["config/match.xml", "--set", "agent"], "a path, `=` and a value"),
+        (&["config/roles/goalie.xml", "--robot", "nobody"], "robots/nobody.toml"),
+        (&["config/mach.xml"], "did you mean `config/match.xml`?"),
+    ] {
+        for command in ["show", "check"] {
+            let answer = monas(&[&["config", command], arguments].concat());
+            assert_eq!(answer.code, Some(3), "{command} {arguments:?}\n{}", answer.out);
+            assert!(answer.err.contains(expected), "{command} {arguments:?}\n{}", answer.err);
+        }
+    }
+    let run = monas(&["run", "config/match.xml", "--robot", "one"]);
+    assert_eq!(run.code, Some(2), "{}", run.err);
+}
+
+fn hash(answer: &Answer) -> String {
+    let line = answer.out.lines().find(|line| line.starts_with("hash: "));
+    line.unwrap_or_else(|| panic!("no hash in {answer:?}")).to_owned()
+}
+
+#[test]
+fn a_run_goes_by_its_settings_and_its_tape_knows_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tape = at(folder.path(), "t.mcap");
+    let run = |more: &[&str]| {
+        let all = [&["run", "config/match.xml", "--for", "4s", "--no-control"], more].concat();
+        let answer = monas(&all);
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        hash(&answer)
+    };
+    let slow = ["--set", "simulator.rules.ready_duration=1"];
+    let plain = run(&[]);
+    assert_ne!(run(&[&slow[..], &["--record", &tape]].concat()), plain);
+    assert_eq!(run(&["--set", "simulator.rules.ready_duration=3"]), plain, "the value that holds anyway");
+    let replay = monas(&["tape", "replay", &tape, "--verify"]);
+    assert_eq!(replay.code, Some(0), "{}{}", replay.out, replay.err);
+    let info = monas(&["tape", "info", &tape]);
+    assert!(info.out.contains("simulator.rules.ready_duration=1"), "{}", info.out);
+}
+
+/// config/match.xml and the files that it names.
+const MATCH: [(&str, &str); 4] = [
+    (
+        "config/match.toml",
+        "[match]\nfield = \"config/fields/thesis.toml\"\nsimulator = \"config/simulator.toml\"\nhalf = \"300s\"\n\n\
+         [[match.team]]\nnumber = 1\nname = \"Blue\"\ncolour = \"blue\"\nside = \"left\"\nrobot = [\n\
+         { number = 1, role = \"config/roles/goalie.toml\" },\n{ number = 2, role = \"config/roles/attacker.xml\" },\n\
+         { number = 3, role = \"config/roles/attacker.xml\" },\n]\n\n\
+         [[match.team]]\nnumber = 2\nname = \"Red\"\ncolour = \"red\"\nside = \"right\"\n\n\
+         [[match.team.robot]]\nnumber = 1\nrole = \"config/roles/goalie.toml\"\n[[match.team.robot]]\nnumber = 2\nrole = \"config/roles/attacker.xml\"\n\
+         [[match.team.robot]]\nnumber = 3\nrole = \"config/roles/attacker.xml\"\n",
+    ),
+    (
+        "config/fields/thesis.toml",
+        "[field]\nlength = 6.0\nwidth = 4.0\nborder = 0.7\ngoal_width = 1.4\ngoal_height = 0.8\npost_radius = 0.05\n\
+         goal_area_depth = 0.6\ngoal_area_width = 2.2\ncentre_circle_radius = 0.6\nmark_distance = 1.2\n",
+    ),
+    (
+        "config/simulator.toml",
+        "[simulator.physics]\nrobot_radius = 0.13\n[simulator.rules]\nhalf_duration = 300\n",
+    ),
+    (
+        "config/roles/goalie.toml",
+        "[[agent]]\nis_real_time = false\npriority = 1\nname = \"Goalie\"\nstatechart = \"models/goalie.srm\"\n",
+    ),
+];
+
+#[test]
+fn a_match_in_toml_is_the_match_in_xml() {
+    let (folder, _) = changed("config/match.xml", "Blue", "Blue");
+    for (name, text) in MATCH {
+        fs::write(folder.path().join(name), text).expect("the folder takes files");
+    }
+    let play = |name: &str| {
+        let answer = monas(&["run", &at(folder.path(), name), "--for", "3s", "--no-control", "--seed", "7"]);
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        hash(&answer)
+    };
+    assert_eq!(play("config/match.toml"), play("config/match.xml"));
+    let values = |name: &str| {
+        let mut values: Vec<(String, String)> = objects(&[&at(folder.path(), name)])
+            .into_iter()
+            .map(|object| {
+                (
+                    object["path"].to_string(),
+                    object["value"].to_string().replace("false", "0").replace(".0\"", "\""),
+                )
+            })
+            .filter(|(path, _)| {
+                !path.contains("role") && !path.contains("match.field") && !path.contains("match.simulator")
+            })
+            .collect();
+        values.sort();
+        values
+    };
+    assert_eq!(values("config/match.toml"), values("config/match.xml"));
+}
+
+#[test]
+fn what_is_shown_of_the_shipped_configurations_is_in_order() {
+    for name in [
+        "config/match.xml",
+        "config/match_generated.xml",
+        "config/elsewhere/match.xml",
+        "config/elsewhere/vision.xml",
+        "config/simulator.xml",
+    ] {
+        let answer = show(&[name]);
+        assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""), "{name}");
+        assert!(answer.out.lines().count() > 5, "{name}: {}", answer.out);
+    }
+    assert!(root().join("config/simulator.xml").is_file());
+}

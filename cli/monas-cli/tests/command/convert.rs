@@ -1,0 +1,161 @@
+//! `monas model convert` and `monas model transform --to`, from file to file.
+
+use std::fs;
+use std::path::Path;
+
+use crate::kit::monas;
+
+const CHART: &str = "IAC: tiny\n\nStates:\n  r OR\n    START\n    Scan BASIC\n\nTransitions:\n  START -> Scan\n  Scan -> Scan : [x]\n";
+
+fn file(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    fs::write(&path, text).expect("the folder takes files");
+    path.display().to_string()
+}
+
+fn golden(name: &str) -> String {
+    format!("methodology/aseme-models/tests/golden/{name}")
+}
+
+#[test]
+fn a_chart_goes_through_every_format_and_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let mut last = file(folder.path(), "0.txt", CHART);
+    for name in ["1.model", "2.iac", "3.stct", "4.xmi", "5.txt"] {
+        let word = if name == "2.iac" { vec!["--as", "xmi-flat"] } else { Vec::new() };
+        let next = path(name);
+        let answer = monas(&[&["model", "convert", &last, &next], word.as_slice()].concat());
+        assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""), "{name}");
+        last = next;
+    }
+    assert_eq!(fs::read_to_string(last).expect("written"), CHART);
+}
+
+#[test]
+fn what_would_get_lost_is_listed_and_needs_a_word() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let input =
+        file(folder.path(), "a.txt", &CHART.replace("Scan BASIC\n", "Scan BASIC\n      priority = 5\n"));
+    let output = folder.path().join("a.stct").display().to_string();
+    let refused = monas(&["model", "convert", &input, &output]);
+    assert_eq!(refused.code, Some(1));
+    assert!(
+        refused.err.contains("the priority of `Scan`") && refused.err.contains("--lossy"),
+        "{}",
+        refused.err
+    );
+    assert!(!Path::new(&output).exists());
+    let written = monas(&["model", "convert", &input, &output, "--lossy"]);
+    assert_eq!(written.code, Some(0));
+    assert!(written.err.contains("the priority of `Scan`"), "{}", written.err);
+    assert!(fs::read_to_string(output).expect("written").contains("statechart:Model"));
+}
+
+const DOOR: &str = r#"<scxml xmlns="http://www.w3.org/2005/07/scxml" version="1.0" name="door" initial="shut">
+  <state id="shut"><transition event="push" target="open"/></state>
+  <state id="open"><onentry><raise event="creak"/></onentry><transition event="creak" target="broken"/></state>
+  <final id="broken"/>
+</scxml>
+"#;
+
+#[test]
+fn a_chart_of_events_goes_to_rust_and_others_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let input = file(folder.path(), "door.scxml", DOOR);
+    let output = folder.path().join("door.rs").display().to_string();
+    let answer = monas(&["model", "convert", &input, &output]);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    let code = fs::read_to_string(output).expect("written");
+    assert!(
+        code.contains("(State::Shut, Event::Push) => *self = State::Over,"),
+        "it creaks and breaks at once: {code}"
+    );
+
+    let input = file(folder.path(), "a.txt", CHART);
+    let output = folder.path().join("a.rs").display().to_string();
+    let refused = monas(&["model", "convert", &input, &output]);
+    assert_eq!(refused.code, Some(3));
+    let why = "`r/Scan` has an activity: a flat chart knows events and conditions only";
+    assert!(refused.err.contains("E0160") && refused.err.contains(why), "{}", refused.err);
+    assert!(!Path::new(&output).exists());
+}
+
+#[test]
+fn charts_go_to_scxml_and_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = "IAC: door\n\nStates:\n  door OR\n    START\n    closed BASIC\n      activity = \"\"\n    open BASIC\n      activity = \"\"\n\nTransitions:\n  START -> closed\n  closed -> open : push\n  open -> closed : pull\n";
+    let input = file(folder.path(), "door.txt", text);
+    let (scxml, back) = (folder.path().join("door.scxml"), folder.path().join("back.txt"));
+    for (from, to) in [(input.as_str(), &scxml), (&scxml.display().to_string(), &back)] {
+        let answer = monas(&["model", "convert", from, &to.display().to_string()]);
+        assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    }
+    assert_eq!(fs::read_to_string(back).expect("written"), text);
+    let tiny = file(folder.path(), "tiny.txt", CHART);
+    let answer = monas(&["model", "convert", &tiny, &scxml.display().to_string()]);
+    assert_eq!(answer.code, Some(1), "an activity cannot be said");
+    let answer = monas(&["model", "convert", &tiny, &scxml.display().to_string(), "--lossy"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+}
+
+#[test]
+fn formats_and_endings_that_are_not_known_are_answered() {
+    let answer = monas(&["model", "convert", &golden("goals/in.sag"), "-", "--as", "yaml"]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.err.contains("there is no format `yaml`; formats are text, role"), "{}", answer.err);
+    let answer = monas(&["model", "convert", &golden("goals/in.sag"), "goals.doc"]);
+    assert_eq!(answer.code, Some(2), "{}", answer.err);
+    let answer = monas(&["model", "convert", &golden("goals/in.sag"), "-", "--as", "scxml"]);
+    assert_eq!(answer.code, Some(3));
+    assert!(answer.err.contains("E0851"), "{}", answer.err);
+}
+
+#[test]
+fn models_are_transformed_along_the_method() {
+    for (input, kind, more, output) in [
+        ("goals/in.sag", "suc", vec![], "goals/out.suc"),
+        ("protocols/in.suc", "aip", vec![], "protocols/out.aip"),
+        ("roles/in.suc", "srm", vec![], "roles/out.srm"),
+        ("protocol_chart/in.aip", "eac", vec![], "protocol_chart/out.eac"),
+        ("role_charts/in.srm", "iac", vec!["--name", "watcher"], "role_charts/watcher.iac"),
+        ("table/in.srm", "ft", vec![], "table/out.txt"),
+        ("table/in.srm", "ft", vec!["--as", "html"], "table/out.html"),
+        ("table/in.srm", "ft", vec!["--as", "text"], "table/out.ft"),
+    ] {
+        let input = golden(input);
+        let answer = monas(&[&["model", "transform", &input, "--to", kind], more.as_slice()].concat());
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        let expected = fs::read_to_string(crate::kit::root().join(golden(output))).expect("a golden file");
+        assert_eq!(answer.out, expected, "{input} to {kind}");
+    }
+    let (role, protocol) = (golden("merged/in.srm"), golden("merged/in.eac"));
+    let answer = monas(&["model", "transform", &role, "--to", "iac", "--with", &protocol]);
+    let expected =
+        fs::read_to_string(crate::kit::root().join(golden("merged/out.iac"))).expect("a golden file");
+    assert_eq!((answer.code, answer.out), (Some(0), expected), "{}", answer.err);
+}
+
+#[test]
+fn a_way_that_there_is_not_is_answered() {
+    let answer = monas(&["model", "transform", &golden("goals/in.sag"), "--to", "iac"]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.err.contains("it can be transformed to suc"), "{}", answer.err);
+    let answer = monas(&["model", "transform", &golden("role_charts/in.srm"), "--to", "iac", "-o", "x.iac"]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.err.contains("`player`, `watcher`"), "{}", answer.err);
+}
+
+#[test]
+fn every_kind_of_model_is_checked() {
+    let answer = monas(&[
+        "model",
+        "check",
+        &golden("goals/in.sag"),
+        &golden("merged/in.eac"),
+        &golden("merged/in.srm"),
+    ]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert!(answer.out.contains("in.sag: a model of the kind SAG, no errors"), "{}", answer.out);
+    assert!(answer.out.contains("in.eac: 36 nodes"), "{}", answer.out);
+}

@@ -1,0 +1,52 @@
+//! Starts the built command as a user would, in the folder of the workspace.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use crate::copying::copy;
+
+/// The workspace.
+pub(crate) fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the workspace is there")
+}
+
+/// The command with arguments, ready to be started.
+pub(crate) fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_monas"));
+    command.args(arguments).current_dir(root()).env_remove("MONAS_LOG").env_remove("NO_COLOR");
+    command
+}
+
+/// The output and exit code of a command.
+#[derive(Debug)]
+pub(crate) struct Answer {
+    pub(crate) code: Option<i32>,
+    pub(crate) out: String,
+    pub(crate) err: String,
+}
+
+impl From<Output> for Answer {
+    fn from(output: Output) -> Answer {
+        let text = |bytes| String::from_utf8(bytes).expect("the command prints UTF-8");
+        Answer { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+    }
+}
+
+/// Runs the command to its end.
+pub(crate) fn monas(arguments: &[&str]) -> Answer {
+    command(arguments).output().expect("the command starts").into()
+}
+
+/// A copy of the project's configuration and models with one text replaced, and the line of it.
+pub(crate) fn changed(file: &str, text: &str, replacement: &str) -> (tempfile::TempDir, usize) {
+    let folder = tempfile::tempdir().expect("a folder");
+    for part in ["config", "models"] {
+        copy(&root().join(part), &folder.path().join(part));
+    }
+    let path = folder.path().join(file);
+    let original = fs::read_to_string(&path).expect("the file is there");
+    let line = original.lines().position(|line| line.contains(text)).expect("the file holds the text");
+    fs::write(&path, original.replacen(text, replacement, 1)).expect("the folder takes files");
+    (folder, line + 1)
+}

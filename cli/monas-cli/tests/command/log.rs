@@ -1,0 +1,112 @@
+//! `monas run --log`.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::kit::{Answer, command, monas, root};
+
+/// Plays a second with these log settings, in a folder.
+fn run(folder: &Path, settings: &str) -> Answer {
+    let file = folder.join("logger.xml");
+    fs::write(&file, settings).expect("a file");
+    let config = root().join("config/match.xml").display().to_string();
+    let mut command = command(&["run", &config, "--for", "1s", "--log", &file.display().to_string()]);
+    command.current_dir(folder).output().expect("the command starts").into()
+}
+
+#[test]
+fn a_run_is_logged_as_the_file_says() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let settings = "<MessageLogFile>a.log</MessageLogFile><LogFileVerbosityLevel>4</LogFileVerbosityLevel>";
+    let answer = run(folder.path(), settings);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let log = || fs::read_to_string(folder.path().join("a.log")).expect("a log");
+    let first = log();
+    for line in [
+        "    0.000000 s DEBUG [blue-1 Goalie] no way out",
+        "    1.000000 s INFO  [red-1 Goalie] stopped: the run has ended",
+    ] {
+        assert!(first.contains(line), "{first}");
+    }
+    assert_eq!(run(folder.path(), settings).code, Some(0));
+    let simulated =
+        |log: &str| log.lines().filter(|line| line.contains(" s ")).map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(simulated(&log()), simulated(&first), "the same run has the same lines");
+    let answer =
+        run(folder.path(), "<MessageLogCerr>1</MessageLogCerr><MessageLogFormat>json</MessageLogFormat>");
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+}
+
+/// The log lines on a tape: level, name and message of each.
+fn on_tape(tape: &str) -> Vec<(Value, String, String)> {
+    let exported = monas(&["tape", "export", tape, "--topic", "monas/log", "--format", "jsonl"]);
+    assert_eq!(exported.code, Some(0), "{exported:?}");
+    let lines = exported.out.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
+    let texts = |line: &Value, field: &str| line["message"][field].as_str().unwrap_or_default().to_owned();
+    lines
+        .map(|line| (line["message"]["level"].clone(), texts(&line, "name"), texts(&line, "message")))
+        .collect()
+}
+
+#[test]
+fn lines_are_on_the_tape_between_the_messages_of_their_moment_and_what_is_replayed_is_the_same() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let settings = at("logger.toml");
+    fs::write(&settings, "log_file_verbosity_level = 4\n").expect("a file");
+    let played = |tape: &str| {
+        let answer = monas(&["run", "config/match.xml", "--for", "2s", "--log", &settings, "--record", tape]);
+        assert_eq!(answer.code, Some(0), "{answer:?}");
+        answer.out
+    };
+    let hash = |out: &str| out.lines().find(|line| line.starts_with("hash: ")).map(str::to_owned);
+    let (one, two) = (at("one.mcap"), at("two.mcap"));
+    let (first, second) = (played(&one), played(&two));
+    assert!(fs::read(&one).expect("a tape") == fs::read(&two).expect("a tape"), "each time the same bytes");
+    let quiet = monas(&["run", "config/match.xml", "--for", "2s"]);
+    assert!(hash(&first).is_some() && hash(&first) == hash(&second));
+    assert_eq!(hash(&quiet.out), hash(&first), "the run is the same whatever is logged");
+    let lines = on_tape(&one);
+    assert!(
+        lines.iter().any(|(_, name, words)| name == "Goalie" && words.starts_with("no way out")),
+        "{lines:?}"
+    );
+    let replayed = monas(&["tape", "replay", &one, "--verify"]);
+    assert_eq!(replayed.code, Some(0), "{replayed:?}");
+
+    let (live, config) = (at("live.mcap"), at("live.xml"));
+    let agent = "<agent ThreadFrequency=\"100\" StatsCycle=\"5\"><name>Eyes</name><activity>Vision</activity></agent>";
+    fs::write(&config, agent).expect("a file");
+    let answer = monas(&["run", &config, "--for", "300ms", "--record", &live]);
+    assert_eq!(answer.code, Some(0), "{answer:?}");
+    let lines = on_tape(&live);
+    assert!(
+        lines.iter().any(|(_, name, words)| name == "Eyes" && words.starts_with("a cycle takes")),
+        "{lines:?}"
+    );
+    let replayed = monas(&["tape", "replay", &live, "--verify"]);
+    assert_eq!(replayed.code, Some(0), "{replayed:?}");
+}
+
+#[test]
+fn the_settings_that_are_shipped_are_understood() {
+    let (settings, wrong) = monas::logger::LogSettings::load(root().join("config/logger.xml"));
+    assert!(wrong.is_empty(), "{wrong:?}");
+    assert_eq!(settings.file.as_deref(), Some(Path::new("MonasLog.txt")));
+    assert!(settings.console && settings.colour && settings.filter.is_none());
+}
+
+#[test]
+fn what_the_file_says_wrongly_is_told_before_anything_runs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let answer =
+        run(folder.path(), "<MessageLogFilter>all</MessageLogFilter>\n<MessageLogFyle>a</MessageLogFyle>");
+    assert_eq!((answer.code, answer.out.as_str()), (Some(3), ""));
+    assert!(answer.err.contains("logger.xml:2:2"), "{}", answer.err);
+    assert!(answer.err.contains("did you mean `message_log_file`?"), "{}", answer.err);
+    let answer = run(folder.path(), "<MessageLogFile>no/folder/a.log</MessageLogFile>");
+    assert_eq!(answer.code, Some(1));
+    assert!(answer.err.contains("logger.xml: "), "{}", answer.err);
+}

@@ -1,0 +1,42 @@
+//! The built command, as used by people and programs.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot be prepared fails")]
+
+#[cfg(unix)]
+mod agent;
+mod chapter;
+#[cfg(unix)]
+mod chart;
+mod compose;
+mod config;
+mod convert;
+mod copying;
+#[cfg(unix)]
+mod deploy;
+mod doctor;
+#[cfg(unix)]
+mod elsewhere;
+mod generate;
+mod kit;
+mod linked_topics;
+mod log;
+mod model;
+mod mutate;
+mod new;
+mod protocol;
+mod reading;
+mod reference;
+mod refinement;
+mod run;
+#[cfg(unix)]
+mod running;
+mod scenario;
+mod schema;
+mod tape;
+#[cfg(unix)]
+mod top;
+#[cfg(unix)]
+mod topic;
+mod usage;
+#[cfg(all(unix, feature = "zenoh"))]
+mod zenoh;

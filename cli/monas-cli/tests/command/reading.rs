@@ -1,0 +1,105 @@
+//! Runs the commands of a chapter of `docs` and checks what the chapter says they print.
+//!
+//! The lines of a block of the language `sh` are executed one after the other, in a separate
+//! folder. A line that ends with ` &` runs in the background until the end of the chapter, and `#
+//! ends with 3` gives the exit code of a command that fails. The lines of a following `text` block
+//! must occur in the output. A block with the name of a file (`xml robot.xml`) is written to that
+//! file first.
+
+use std::fs;
+use std::process::Command;
+
+use crate::kit::{Answer, root};
+use crate::running::{Running, in_folder};
+
+/// The blocks of a chapter.
+enum Block {
+    File { name: String, text: String },
+    Commands(Vec<String>),
+    Shown(Vec<String>),
+}
+
+fn blocks(chapter: &str) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    let mut lines = chapter.lines();
+    while let Some(line) = lines.next() {
+        let Some(fence) = line.strip_prefix("```") else { continue };
+        let inside: Vec<String> =
+            lines.by_ref().take_while(|line| *line != "```").map(str::to_owned).collect();
+        match fence.split_once(' ') {
+            Some((_, name)) => blocks.push(Block::File { name: name.into(), text: inside.join("\n") + "\n" }),
+            None if fence == "sh" => blocks.push(Block::Commands(inside)),
+            None if fence == "text" => blocks.push(Block::Shown(inside)),
+            None => {}
+        }
+    }
+    blocks
+}
+
+/// A chapter that is being run.
+pub(crate) struct Reading {
+    pub(crate) folder: tempfile::TempDir,
+    background: Vec<Running>,
+    /// The output of the last block.
+    said: String,
+    /// The hashes of all runs so far.
+    pub(crate) hashes: Vec<String>,
+    commands: usize,
+}
+
+impl Reading {
+    fn run(&mut self, line: &str) {
+        self.commands += 1;
+        let typed = line.strip_prefix("monas ").expect("a command of this program");
+        if let Some(typed) = typed.strip_suffix(" &") {
+            let words: Vec<&str> = typed.split(' ').collect();
+            // A run with a control socket can be inspected from then on.
+            let begin = if words.contains(&"--control") { "control socket: " } else { "running, " };
+            return self.background.push(Running::of(&mut self.command(&words), begin));
+        }
+        let (typed, code) = typed.split_once(" # ends with ").unwrap_or((typed, "0"));
+        let words: Vec<&str> = typed.split(' ').map(|word| word.trim_matches('\'')).collect();
+        let answer = self.command(&words).output().expect("the command starts");
+        let Answer { code: ended, out, err } = answer.into();
+        assert_eq!(ended, code.parse().ok(), "{words:?}: {out}{err}");
+        self.hashes.extend(out.lines().filter(|line| line.starts_with("hash: ")).map(str::to_owned));
+        self.said += &(out + &err);
+    }
+
+    fn command(&self, words: &[&str]) -> Command {
+        let mut command = in_folder(self.folder.path(), words);
+        command.current_dir(self.folder.path());
+        command
+    }
+
+    fn read(&mut self, block: Block) {
+        match block {
+            Block::File { name, text } => {
+                fs::write(self.folder.path().join(name), text).expect("the folder takes files");
+            }
+            Block::Commands(lines) => {
+                self.said.clear();
+                lines.iter().for_each(|line| self.run(line));
+            }
+            Block::Shown(_) if self.commands == 0 => {}
+            Block::Shown(lines) => {
+                for line in lines {
+                    assert!(self.said.contains(line.trim()), "`{line}` is not in\n{}", self.said);
+                }
+            }
+        }
+    }
+}
+
+/// Runs a chapter with at least this many commands in a folder.
+pub(crate) fn read_in(folder: tempfile::TempDir, name: &str, least: usize) -> Reading {
+    let chapter = fs::read_to_string(root().join("docs").join(name)).expect("the chapter");
+    let mut reading =
+        Reading { folder, background: Vec::new(), said: String::new(), hashes: Vec::new(), commands: 0 };
+    blocks(&chapter).into_iter().for_each(|block| reading.read(block));
+    assert!(reading.commands >= least, "{name} has its commands");
+    for running in reading.background.drain(..) {
+        assert_eq!(running.interrupt().code, Some(130));
+    }
+    reading
+}

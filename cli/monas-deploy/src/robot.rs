@@ -1,0 +1,143 @@
+//! The file of robots.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use monas::config::{self, AttributeRule, Element, ElementRule, Grammar, Identity, Kind, Layers, resolve};
+use yase::Diagnostic;
+use yase::diagnostic::nearest;
+
+/// How long a release must keep running to be accepted, if the file does not say.
+const SETTLE: &str = "3s";
+
+/// A robot in the file of robots.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Robot {
+    /// Its name in the file of robots.
+    pub name: String,
+    /// As `ssh` takes it: `nao@10.0.2.2`.
+    pub address: String,
+    /// The command that connects, with its first arguments.
+    pub(crate) ssh: Vec<String>,
+    /// The target triple of its programs, if not that of this computer.
+    pub target: Option<String>,
+    /// The configuration that it runs.
+    pub config: PathBuf,
+    /// Further files of its releases.
+    pub files: Vec<PathBuf>,
+    /// Further arguments of `run`.
+    pub(crate) arguments: Vec<String>,
+    /// The folder of releases on the robot, relative to the home folder.
+    pub(crate) folder: String,
+    pub(crate) service: String,
+    pub(crate) settle: Duration,
+}
+
+/// The grammar of a file of robots.
+pub fn robots_grammar() -> Grammar {
+    let services = Kind::Word(vec!["auto", "systemd", "script", "none"]);
+    let seconds = Kind::Duration { least: Duration::from_secs(1) };
+    let robot = ElementRule::new("robot", "a robot to deploy to")
+        .attribute(AttributeRule::new("name", Kind::Name, "its name").required())
+        .attribute(AttributeRule::new("address", Kind::Text, "its address for ssh: user@host").required())
+        .attribute(AttributeRule::new("port", Kind::whole_in(1, 65_535), "the port of its ssh server"))
+        .attribute(AttributeRule::new("identity", Kind::Text, "the file of the private key for ssh"))
+        .attribute(
+            AttributeRule::new("ssh", Kind::Text, "the ssh command, with its first arguments").or("ssh"),
+        )
+        .attribute(AttributeRule::new(
+            "target",
+            Kind::Text,
+            "the target triple of its programs; this computer's if not given",
+        ))
+        .attribute(AttributeRule::new("config", Kind::File, "the configuration that it runs").required())
+        .attribute(AttributeRule::new("arguments", Kind::Text, "further arguments of `run`"))
+        .attribute(
+            AttributeRule::new(
+                "folder",
+                Kind::Text,
+                "the folder of releases on the robot, relative to the home folder",
+            )
+            .or("monas"),
+        )
+        .attribute(
+            AttributeRule::new("service", services, "the service that keeps the program running").or("auto"),
+        )
+        .attribute(
+            AttributeRule::new("settle", seconds, "how long a release must keep running to be accepted")
+                .or(SETTLE),
+        )
+        .children("file")
+        .identified_by(Identity::Attribute("name"));
+    let file = ElementRule::new("file", "a further file of the release").text("path", Kind::File);
+    Grammar::default().root(robot).with(file)
+}
+
+/// The robot of a name in a file.
+///
+/// # Errors
+/// The file is missing or invalid, or has no such robot.
+pub fn find_robot(path: &Path, name: &str) -> Result<Robot, Vec<Diagnostic>> {
+    if !path.exists() {
+        let wrong =
+            Diagnostic::error("E0740", yase::Span::default(), format!("there is no file {}", path.display()));
+        let example = format!(
+            "write it: `<robot name=\"{name}\" address=\"nao@10.0.2.2\" config=\"config/agents.xml\"/>`; `--robots` names another file"
+        );
+        return Err(vec![wrong.with_hint(example)]);
+    }
+    let resolved = resolve(path, &robots_grammar(), &Layers::new());
+    let robots: Vec<Element> = resolved.elements.clone();
+    let diagnostics = resolved.into_diagnostics();
+    if diagnostics.iter().any(Diagnostic::is_error) {
+        return Err(diagnostics);
+    }
+    let named = |robot: &&Element| value(robot, "name") == Some(name);
+    match robots.iter().find(named) {
+        Some(robot) => entry(path, robot).map_err(|wrong| vec![*wrong]),
+        None => Err(vec![unknown(path, name, &robots)]),
+    }
+}
+
+fn unknown(path: &Path, name: &str, robots: &[Element]) -> Diagnostic {
+    let names: Vec<&str> = robots.iter().filter_map(|robot| value(robot, "name")).collect();
+    let message = format!("{} has no robot `{name}`", path.display());
+    let wrong = Diagnostic::error("E0740", yase::Span::default(), message);
+    match nearest(name, names.iter().copied()) {
+        Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
+        None => wrong.with_hint(format!("it has {}", names.join(", "))),
+    }
+}
+
+fn value<'e>(robot: &'e Element, key: &str) -> Option<&'e str> {
+    robot.attribute(key).map(|attribute| attribute.value.trim()).filter(|value| !value.is_empty())
+}
+
+fn entry(path: &Path, robot: &Element) -> Result<Robot, Box<Diagnostic>> {
+    let text = |key: &str, default: &str| value(robot, key).unwrap_or(default).to_owned();
+    let address = text("address", "");
+    if address.starts_with('-') || address.contains(char::is_whitespace) {
+        let message = format!("`{address}` is not an address");
+        let wrong = robot.attribute("address").map(|it| it.error("E0741", message.clone()));
+        let wrong = wrong.unwrap_or_else(|| robot.error("E0741", robot.span(), message));
+        return Err(Box::new(wrong.with_hint("write it as ssh takes it: `nao@10.0.2.2`")));
+    }
+    let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<String>>();
+    let mut ssh = words(&text("ssh", "ssh"));
+    for (key, flag) in [("port", "-p"), ("identity", "-i")] {
+        ssh.extend(value(robot, key).into_iter().flat_map(|value| [flag.to_owned(), value.to_owned()]));
+    }
+    let located = |named: &str| config::locate(path, named).unwrap_or_else(|_| PathBuf::from(named));
+    Ok(Robot {
+        name: text("name", ""),
+        address,
+        ssh,
+        target: value(robot, "target").map(str::to_owned),
+        config: located(&text("config", "")),
+        files: robot.children_named("file").map(|file| located(file.text().trim())).collect(),
+        arguments: words(&text("arguments", "")),
+        folder: text("folder", "monas"),
+        service: text("service", "auto"),
+        settle: config::duration(&text("settle", SETTLE)).unwrap_or(Duration::from_secs(3)),
+    })
+}

@@ -1,0 +1,177 @@
+//! Generates the statechart of a model as a crate of the workspace, linked into the team's program.
+//!
+//! The crate goes to `statecharts/NAME`. The program links it by a block of its Cargo.toml and a
+//! file of `use` lines, both derived from the content of that folder. `aseme_codegen::generate`
+//! writes the code; this module places it.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use aseme_codegen::generate::{self, CrateFiles, RustBindings, SKELETONS};
+use aseme_models::convert::{self, Model};
+use aseme_models::ontology;
+use monas::{Registry, config, generated};
+use yase::{Diagnostic, Statechart};
+
+use crate::error::{Error, ErrorKind};
+use crate::project::Project;
+
+/// A generated crate.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct GeneratedCrate {
+    /// The files that were written, changed or removed.
+    pub changed: Vec<PathBuf>,
+    /// Whether rustfmt has formatted the sources.
+    pub is_formatted: bool,
+}
+
+/// Writes the statechart of a model as a crate of the project, and links it into the project's
+/// program. `folder` is that of the crate; without it, the crate is named after the model.
+///
+/// # Errors
+/// The folder is not in `statecharts`, its name cannot be that of a crate, the chart cannot be
+/// generated, or a file cannot be read or written.
+pub fn generate_crate(
+    model: &Path,
+    chart: &Statechart,
+    folder: Option<&Path>,
+    project: &Project,
+) -> Result<GeneratedCrate, Error> {
+    let folder = crate_folder(model, folder, project)?;
+    let name = crate_name(&folder)?;
+    let mut words = generated::words(&Registry::linked())
+        .map_err(|error| Error::new(ErrorKind::Program, error.to_string()))?;
+    words.origin = project.relative(model);
+    words.name.clone_from(&name);
+    let source = config::read_file(model).map_err(|unread| Error::invalid(vec![*unread]))?;
+    if let (Some((Model::Chart(chart), _)), _) = convert::read(&source) {
+        words.subjects = ontology::subjects(&chart);
+    }
+    remove_own_entries(&mut words, &name);
+    let files = generate::generate(chart, &words).map_err(Error::invalid)?;
+    let (files, is_formatted) =
+        formatted(files, project).map_err(|error| Error::new(ErrorKind::File, error.to_string()))?;
+    let manifest = project.manifest_of(&name, model, &crates(&files, &words))?;
+    let mut writer = FileWriter { folder: &folder, changed: Vec::new() };
+    writer.write("Cargo.toml", &manifest)?;
+    for (path, text) in &files {
+        writer.write(path, text)?;
+    }
+    writer.remove_leftovers(&files)?;
+    let mut changed = writer.changed;
+    changed.extend(project.link()?);
+    Ok(GeneratedCrate { changed, is_formatted })
+}
+
+/// The folder of the crate.
+fn crate_folder(model: &Path, folder: Option<&Path>, project: &Project) -> Result<PathBuf, Error> {
+    let stem = || {
+        let stem = model.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        project.statecharts().join(stem.unwrap_or_default())
+    };
+    let folder = folder.map_or_else(stem, Path::to_path_buf);
+    let folder =
+        std::path::absolute(&folder).map_err(|error| Error::new(ErrorKind::File, error.to_string()))?;
+    match folder.parent() == Some(project.statecharts().as_path()) {
+        true => Ok(folder),
+        false => {
+            let message =
+                format!("the crate must be in {}, whose crates are linked", project.statecharts().display());
+            Err(Error::new(ErrorKind::Argument, message))
+        }
+    }
+}
+
+/// The name of the crate is that of its folder.
+fn crate_name(folder: &Path) -> Result<String, Error> {
+    let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let is_plain = name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+        && name.starts_with(|first: char| first.is_ascii_lowercase())
+        && generate::identifier(&[&name]) == name;
+    match is_plain {
+        true => Ok(name),
+        false => {
+            let message = format!("`{name}` cannot be the name of a crate");
+            let hint =
+                "name the folder with lower-case letters, digits and underscores: --to statecharts/NAME";
+            let found = Diagnostic::error("E0925", 0..0, message).with_hint(hint);
+            Err(Error::invalid(vec![found]))
+        }
+    }
+}
+
+/// Removes activities of the crate itself: those are its skeletons.
+fn remove_own_entries(words: &mut RustBindings, name: &str) {
+    let own = format!("{name}::");
+    words.activities.retain(|_, activity| !activity.path.starts_with(&own));
+}
+
+/// The crates of messages and activities that the code refers to.
+fn crates(files: &CrateFiles, words: &RustBindings) -> BTreeSet<String> {
+    let activities = words.activities.values().map(|activity| &activity.path);
+    let paths = words.messages.values().chain(words.topics.values()).chain(activities);
+    let known: BTreeSet<&str> = paths.filter_map(|path| path.split("::").next()).collect();
+    let is_named = |name: &str| {
+        let path = format!("{name}::");
+        let begins = |text: &str, at: usize| {
+            text[..at].chars().next_back().is_none_or(|c| !c.is_alphanumeric() && !matches!(c, '_' | ':'))
+        };
+        files.values().any(|text| text.match_indices(&path).any(|(at, _)| begins(text, at)))
+    };
+    let named = known.into_iter().filter(|name| is_named(name)).map(str::to_owned);
+    named.chain(["monas".to_owned()]).collect()
+}
+
+/// Writes files whose content has changed.
+struct FileWriter<'a> {
+    folder: &'a Path,
+    changed: Vec<PathBuf>,
+}
+
+impl FileWriter<'_> {
+    /// Writes a file; existing skeletons are left alone, since they are edited by hand.
+    fn write(&mut self, path: &str, text: &str) -> Result<(), Error> {
+        let is_skeleton = path.starts_with(SKELETONS);
+        let path = self.folder.join(path);
+        let there = fs::read_to_string(&path).ok();
+        if there.as_deref() == Some(text) || (is_skeleton && path.exists()) {
+            return Ok(());
+        }
+        let written = path.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::write(&path, text));
+        written.map_err(|error| Error::file("write", &path, &error))?;
+        self.changed.push(path);
+        Ok(())
+    }
+
+    /// Removes sources of earlier versions of the generator; skeletons stay.
+    fn remove_leftovers(&mut self, files: &CrateFiles) -> Result<(), Error> {
+        let folder = self.folder.join("src");
+        let entries = fs::read_dir(&folder).map_err(|error| Error::file("read", &folder, &error))?;
+        for entry in entries.flatten().map(|entry| entry.path()).filter(|path| path.is_file()) {
+            let name = entry.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+            if !files.contains_key(&format!("src/{name}")) {
+                fs::remove_file(&entry).map_err(|error| Error::file("remove", &entry, &error))?;
+                self.changed.push(entry);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Formats the sources with the project's rustfmt, if installed.
+fn formatted(files: CrateFiles, project: &Project) -> std::io::Result<(CrateFiles, bool)> {
+    let folder = tempfile::tempdir()?;
+    for (path, text) in &files {
+        let path = folder.path().join(path);
+        path.parent().map_or(Ok(()), fs::create_dir_all)?;
+        fs::write(path, text)?;
+    }
+    let mut command = Command::new("rustfmt");
+    command.args(["--quiet", "--edition", "2024", "--config-path"]).arg(project.root());
+    let output = command.arg(folder.path().join("src/lib.rs")).output();
+    let is_formatted = output.is_ok_and(|output| output.status.success());
+    let read = |path: String| fs::read_to_string(folder.path().join(&path)).map(|text| (path, text));
+    Ok((files.into_keys().map(read).collect::<Result<_, _>>()?, is_formatted))
+}

@@ -1,0 +1,179 @@
+//! Transport between processes of one computer: each link has a datagram socket in a folder that
+//! only its owner can access.
+
+use std::env;
+use std::fs::{self, DirBuilder, Permissions};
+use std::io;
+use std::os::unix::fs::{DirBuilderExt, PermissionsExt};
+use std::os::unix::net::UnixDatagram;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use prost::Message as _;
+
+use crate::error::{Error, ErrorKind};
+use crate::inbox::PacketInbox;
+use crate::link::Transport;
+use crate::protocol::{Packet, wire};
+
+/// Longest packet, in bytes, with its names. Longer ones need another transport.
+const LARGEST: usize = 128 << 10;
+
+/// The part of it for names and framing.
+const FRAME: usize = 1 << 10;
+
+/// File extension of link sockets.
+const ENDING: &str = "link";
+
+/// Interval at which the receiving thread checks whether it should stop.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+/// Sockets in a folder, one per link; a broadcast packet is sent to each of them.
+#[derive(Debug)]
+pub struct LocalTransport {
+    folder: PathBuf,
+    path: PathBuf,
+    socket: UnixDatagram,
+    buffer: Vec<u8>,
+    stops: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// The folder of a user's link sockets: `$XDG_RUNTIME_DIR/monas`; `None` if the system defines no
+/// such folder.
+pub fn default_folder() -> Option<PathBuf> {
+    env::var_os("XDG_RUNTIME_DIR").map(|folder| Path::new(&folder).join("monas"))
+}
+
+impl LocalTransport {
+    /// Creates the socket of the link called `name`. The folder is created if necessary.
+    ///
+    /// # Errors
+    /// The name is invalid, another process uses it, or the system refuses.
+    pub fn new(folder: &Path, name: &str, inbox: Arc<PacketInbox>) -> Result<LocalTransport, Error> {
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        if name.is_empty() || !name.chars().all(is_plain) {
+            let text = format!("`{name}` is no name of a socket: letters, digits, `_` and `-`");
+            return Err(Error::new(ErrorKind::Settings, text));
+        }
+        let path = folder.join(format!("{name}.{ENDING}"));
+        let failed =
+            |error: io::Error| Error::new(ErrorKind::Connection, format!("{}: {error}", path.display()));
+        DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(failed)?;
+        remove_dead(&path)?;
+        let socket = UnixDatagram::bind(&path).map_err(failed)?;
+        fs::set_permissions(&path, Permissions::from_mode(0o600)).map_err(failed)?;
+        let listener = socket.try_clone().map_err(failed)?;
+        listener.set_read_timeout(Some(PATIENCE)).map_err(failed)?;
+        // Sending uses a separate socket, since blocking mode is a property of the file and not of
+        // the handle.
+        let socket = UnixDatagram::unbound().map_err(failed)?;
+        socket.set_nonblocking(true).map_err(failed)?;
+        let stops = Arc::new(AtomicBool::new(false));
+        let has_ended = stops.clone();
+        let thread = thread::Builder::new()
+            .name(format!("{name} socket"))
+            .spawn(move || listen(&listener, &inbox, &has_ended))
+            .map_err(failed)?;
+        let folder = folder.to_owned();
+        Ok(LocalTransport { folder, path, socket, buffer: Vec::new(), stops, thread: Some(thread) })
+    }
+
+    fn send_to(&self, path: &Path) -> Result<(), Error> {
+        let sent = self.socket.send_to(&self.buffer, path);
+        match sent {
+            Ok(_) => Ok(()),
+            // A process that has exited need not receive it.
+            Err(error) if is_gone(&error) => Ok(()),
+            Err(error) => Err(Error::new(ErrorKind::Connection, format!("{}: {error}", path.display()))),
+        }
+    }
+
+    /// The sockets of the other links.
+    fn others(&self) -> Vec<PathBuf> {
+        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        let sockets = entries.map(|entry| entry.path());
+        sockets
+            .filter(|path| path.extension().is_some_and(|end| end == ENDING) && *path != self.path)
+            .collect()
+    }
+}
+
+impl Transport for LocalTransport {
+    fn send(&mut self, packet: &Packet) -> Result<(), Error> {
+        self.buffer.clear();
+        let datagram = wire::Datagram {
+            from: packet.from.to_string(),
+            path: packet.path.as_deref().unwrap_or_default().to_owned(),
+            stamp: packet.stamp.to_vec(),
+            payload: packet.payload.to_vec(),
+            priority: packet.priority.into(),
+        };
+        if datagram.encoded_len() > LARGEST {
+            let text = format!("{} bytes do not fit into a packet of {LARGEST}", datagram.encoded_len());
+            return Err(Error::new(ErrorKind::TooLarge, text));
+        }
+        datagram.encode_raw(&mut self.buffer);
+        match &packet.to {
+            Some(name) => self.send_to(&self.folder.join(format!("{name}.{ENDING}"))),
+            None => self.others().iter().map(|path| self.send_to(path)).fold(Ok(()), Result::and),
+        }
+    }
+
+    fn largest(&self) -> usize {
+        LARGEST - FRAME
+    }
+}
+
+impl Drop for LocalTransport {
+    fn drop(&mut self) {
+        self.stops.store(true, Ordering::SeqCst);
+        let _ = self.thread.take().map(JoinHandle::join);
+        // A process that finds the socket later gets an error on connecting.
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+/// Removes the socket of a process that was killed; fails if the process is alive.
+fn remove_dead(path: &Path) -> Result<(), Error> {
+    let failed = |error: io::Error| Error::new(ErrorKind::Connection, format!("{}: {error}", path.display()));
+    match UnixDatagram::unbound().map_err(failed)?.connect(path) {
+        Ok(()) => {
+            let text = format!("{}: another process has a link of this name", path.display());
+            Err(Error::new(ErrorKind::Connection, text))
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(error) if is_gone(&error) => fs::remove_file(path).map_err(failed),
+        Err(error) => Err(failed(error)),
+    }
+}
+
+fn is_gone(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::ConnectionRefused | io::ErrorKind::NotFound)
+}
+
+fn listen(socket: &UnixDatagram, inbox: &PacketInbox, stops: &AtomicBool) {
+    let mut buffer = vec![0; LARGEST + 1];
+    while !stops.load(Ordering::SeqCst) {
+        let Ok(length) = socket.recv(&mut buffer) else { continue };
+        inbox.put(read(&buffer[..length]));
+    }
+}
+
+/// The packet in a datagram. An invalid one becomes a packet that cannot be parsed, and is counted
+/// as such.
+pub(crate) fn read(bytes: &[u8]) -> Packet {
+    let datagram = wire::Datagram::decode(bytes).unwrap_or_default();
+    Packet {
+        from: datagram.from.into(),
+        to: None,
+        path: (!datagram.path.is_empty()).then(|| datagram.path.into()),
+        stamp: datagram.stamp.into(),
+        payload: datagram.payload.into(),
+        priority: datagram.priority.clamp(1, 7) as u8,
+        is_reliable: true,
+    }
+}

@@ -1,0 +1,103 @@
+//! Writes the MCAP file of a tape: schemas, channels, chunks.
+
+use std::io::Write;
+
+use mcap::records::{MessageHeader, Metadata};
+use mcap::write::NoSeek;
+use mcap::{McapError, McapResult, WriteOptions, Writer};
+
+use crate::recording::{Attachment, Channel, MetadataEntry, RecordedSample, Schema};
+
+/// A chunk is closed when its messages span this many nanoseconds: the most that a killed process
+/// loses.
+const CHUNK_SPAN: u64 = 1_000_000_000;
+
+/// The output of a recorder.
+type Output = NoSeek<Box<dyn Write + Send>>;
+
+/// Writes one MCAP file.
+pub(crate) struct Recorder {
+    writer: Writer<Output>,
+    /// The time of the first message of the current chunk.
+    chunk_begins: Option<u64>,
+    messages: u64,
+}
+
+impl Recorder {
+    pub(crate) fn new(output: Box<dyn Write + Send>) -> McapResult<Recorder> {
+        let library = concat!("monas-tape/", env!("CARGO_PKG_VERSION"));
+        let options = WriteOptions::new().compression(None).disable_seeking(true).library(library);
+        let writer = options.create(NoSeek::new(output))?;
+        Ok(Recorder { writer, chunk_begins: None, messages: 0 })
+    }
+
+    /// The number of a channel in the file.
+    pub(crate) fn channel(&mut self, channel: &Channel) -> McapResult<u16> {
+        let Channel { name, schema, encoding, facts, .. } = channel;
+        // MCAP numbers schemas from 1; 0 means no schema.
+        let schema = match **schema == Schema::default() {
+            true => 0,
+            false => self.writer.add_schema(&schema.name, &schema.encoding, &schema.data)?,
+        };
+        self.writer.add_channel(schema, name, encoding, facts)
+    }
+
+    /// Appends a message to a channel.
+    pub(crate) fn write(&mut self, channel: u16, message: &RecordedSample<'_>) -> McapResult<()> {
+        let time = message.received.as_nanos();
+        self.begin(time)?;
+        let header = MessageHeader {
+            channel_id: channel,
+            sequence: message.sequence,
+            log_time: time,
+            publish_time: message.published.as_nanos(),
+        };
+        self.writer.write_to_known_channel(&header, message.bytes)?;
+        self.messages += 1;
+        Ok(())
+    }
+
+    /// Closes the chunk if the message at `time` is too late for it.
+    fn begin(&mut self, time: u64) -> McapResult<()> {
+        let begins = *self.chunk_begins.get_or_insert(time);
+        if time.saturating_sub(begins) >= CHUNK_SPAN {
+            self.flush()?;
+            self.chunk_begins = Some(time);
+        }
+        Ok(())
+    }
+
+    /// Closes the chunk: everything written so far survives this process.
+    pub(crate) fn flush(&mut self) -> McapResult<()> {
+        self.chunk_begins = None;
+        self.writer.flush()
+    }
+
+    pub(crate) fn describe(&mut self, facts: &MetadataEntry) -> McapResult<()> {
+        self.chunk_begins = None;
+        self.writer.write_metadata(&Metadata { name: facts.name.clone(), metadata: facts.entries.clone() })
+    }
+
+    pub(crate) fn attach(&mut self, file: &Attachment<'_>) -> McapResult<()> {
+        self.chunk_begins = None;
+        self.writer.attach(&mcap::Attachment {
+            log_time: 0,
+            create_time: 0,
+            name: file.name.to_owned(),
+            media_type: file.media_type.to_owned(),
+            data: file.bytes.into(),
+        })
+    }
+
+    /// The number of messages written.
+    pub(crate) fn messages(&self) -> u64 {
+        self.messages
+    }
+
+    /// Writes the summary; returns the number of messages written.
+    pub(crate) fn finish(mut self) -> McapResult<u64> {
+        self.writer.finish()?;
+        self.writer.into_inner().into_inner().flush().map_err(McapError::Io)?;
+        Ok(self.messages)
+    }
+}

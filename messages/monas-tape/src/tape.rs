@@ -1,0 +1,220 @@
+//! Recording.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use mcap::McapResult;
+use narukom::{HostId, Observer, Publication};
+
+use crate::error::Error;
+use crate::queue::{OverflowPolicy, QueueEntry, QueuedMessage, SizeHint, WriteQueue};
+use crate::recorder::Recorder;
+use crate::recording::{Channel, MetadataEntry};
+use crate::writer::{self, WriterThread};
+
+/// Records all messages that are published on one or more hubs, and those that the hubs receive
+/// from other hosts, into one MCAP file.
+///
+/// Cloning it gives another handle to the same file. Each hub gets a handle as its observer; at the
+/// end [`finish`](Tape::finish) returns whether everything was written. Dropping the last handle
+/// finishes the tape too.
+///
+/// A publisher enqueues its message and continues; a thread of the tape encodes and writes it. If
+/// that thread falls behind, by 65,536 messages or about 64 MiB, a tape created with
+/// [`create`](Tape::create) blocks publishers, and one created with
+/// [`create_real_time`](Tape::create_real_time) drops messages and [counts](Tape::dropped) them.
+pub struct Tape {
+    shared: Arc<TapeShared>,
+    channels: ChannelCache,
+}
+
+/// The state shared by the handles.
+struct TapeShared {
+    queue: Arc<WriteQueue>,
+    when_full: OverflowPolicy,
+    /// `None` once it was joined.
+    thread: Mutex<Option<WriterThread>>,
+}
+
+/// The channels that this handle has used, hub by hub.
+#[derive(Default)]
+struct ChannelCache {
+    hubs: Vec<(String, ChannelTable)>,
+    /// The hub of the last message.
+    last: usize,
+}
+
+/// By host, then by topic, then by publisher, then by part.
+type ChannelTable = Vec<Vec<Vec<Vec<Option<(u32, SizeHint)>>>>>;
+
+impl Tape {
+    /// Creates a tape in a file at `path`; an existing file is replaced. For simulated time: no
+    /// message is dropped, and the same run gives the same bytes.
+    pub fn create(path: impl AsRef<Path>) -> Result<Tape, Error> {
+        Tape::new(Box::new(file(path.as_ref())?), OverflowPolicy::Wait)
+    }
+
+    /// Like [`create`](Tape::create), for real time: publishers never wait for the disk, and
+    /// messages are passed to the operating system within two seconds, whether others follow or
+    /// not.
+    pub fn create_real_time(path: impl AsRef<Path>) -> Result<Tape, Error> {
+        Tape::new(Box::new(file(path.as_ref())?), OverflowPolicy::Drop)
+    }
+
+    /// Creates a tape that is written to `output`, otherwise like [`create`](Tape::create).
+    pub fn to_writer(output: impl Write + Send + 'static) -> Result<Tape, Error> {
+        Tape::new(Box::new(output), OverflowPolicy::Wait)
+    }
+
+    /// Creates a tape that is written to `output`, otherwise like
+    /// [`create_real_time`](Tape::create_real_time).
+    pub fn to_writer_real_time(output: impl Write + Send + 'static) -> Result<Tape, Error> {
+        Tape::new(Box::new(output), OverflowPolicy::Drop)
+    }
+
+    fn new(output: Box<dyn Write + Send>, when_full: OverflowPolicy) -> Result<Tape, Error> {
+        let recorder = Recorder::new(output).map_err(Error::writing)?;
+        let queue = Arc::new(WriteQueue::new(when_full));
+        let thread = writer::start(queue.clone(), recorder, when_full).map_err(Error::no_thread)?;
+        let shared = TapeShared { queue, when_full, thread: Mutex::new(Some(thread)) };
+        Ok(Tape { shared: Arc::new(shared), channels: ChannelCache::default() })
+    }
+
+    /// Writes a named metadata entry about the run: version, seed, hash of the configuration.
+    pub fn describe(&self, name: &str, entries: &BTreeMap<String, String>) -> Result<(), Error> {
+        self.add(QueueEntry::Facts(MetadataEntry { name: name.to_owned(), entries: entries.clone() }))
+    }
+
+    /// Attaches a file: a configuration, a model.
+    pub fn attach(&self, name: &str, media_type: &str, content: &[u8]) -> Result<(), Error> {
+        self.add(QueueEntry::Attachment(name.to_owned(), media_type.to_owned(), content.to_vec()))
+    }
+
+    /// Waits until everything published so far is passed to the operating system, where it survives
+    /// this process.
+    pub fn flush(&self) -> Result<(), Error> {
+        if self.shared.queue.flush() { Ok(()) } else { Err(Error::finished()) }
+    }
+
+    /// The number of messages dropped because the disk was too slow.
+    pub fn dropped(&self) -> u64 {
+        self.shared.queue.dropped()
+    }
+
+    /// Ends the recording and returns its number of messages. Fails if anything could not be
+    /// written, now or before, or if the tape is finished already; later publications are not
+    /// recorded.
+    pub fn finish(&self) -> Result<u64, Error> {
+        let written = self.shared.finish().ok_or_else(Error::finished)?;
+        written.map_err(Error::writing)
+    }
+
+    /// Enqueues an entry; write errors are reported by `finish`.
+    fn add(&self, entry: QueueEntry) -> Result<(), Error> {
+        if self.shared.queue.add(entry) { Ok(()) } else { Err(Error::finished()) }
+    }
+
+    fn record(&mut self, publication: &Publication<'_>) {
+        let Tape { shared, channels } = self;
+        let known = channels.place(publication);
+        if known.is_none() {
+            let received_by = (publication.sample.header.host != HostId::LOCAL).then_some(publication.hub);
+            let size = SizeHint::default();
+            let number = shared.queue.open(Channel::of(publication, received_by), size.clone());
+            *known = number.map(|number| (number, size));
+        }
+        let Some((number, size)) = known else { return };
+        let header = &publication.sample.header;
+        let waiting = QueuedMessage {
+            channel: *number,
+            // MCAP has 32 bits for it, which is enough for 49 days at 1000 Hz; the lower half is
+            // kept.
+            sequence: header.sequence as u32,
+            published: header.local,
+            received: header.received,
+            message: publication.sample.message.clone(),
+        };
+        shared.queue.push(waiting, size);
+    }
+}
+
+fn file(path: &Path) -> Result<BufWriter<File>, Error> {
+    File::create(path).map(BufWriter::new).map_err(|error| Error::file(path, error))
+}
+
+impl TapeShared {
+    /// Ends the recording; `None` if it has ended before.
+    fn finish(&self) -> Option<McapResult<u64>> {
+        let dropped = self.queue.dropped();
+        if self.when_full == OverflowPolicy::Drop {
+            let entries = BTreeMap::from([("dropped".to_owned(), dropped.to_string())]);
+            self.queue.add(QueueEntry::Facts(MetadataEntry { name: "recording".to_owned(), entries }));
+        }
+        if !self.queue.close() {
+            return None;
+        }
+        let thread = self.thread.lock().unwrap_or_else(PoisonError::into_inner).take()?;
+        Some(thread.join())
+    }
+}
+
+impl Drop for TapeShared {
+    fn drop(&mut self) {
+        // To learn of errors, call `finish`.
+        let _ = self.finish();
+    }
+}
+
+/// Another handle to the same file, to observe another hub.
+impl Clone for Tape {
+    fn clone(&self) -> Tape {
+        Tape { shared: self.shared.clone(), channels: ChannelCache::default() }
+    }
+}
+
+/// Enqueues each message for the writer. An error ends the recording; [`Tape::finish`] reports it.
+impl Observer for Tape {
+    fn observe(&mut self, publication: Publication<'_>) {
+        self.record(&publication);
+    }
+
+    fn observe_received(&mut self, publication: Publication<'_>) {
+        self.record(&publication);
+    }
+}
+
+impl fmt::Debug for Tape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Tape").field("when_full", &self.shared.when_full).finish_non_exhaustive()
+    }
+}
+
+impl ChannelCache {
+    /// The cache entry for the channel of a publication.
+    fn place(&mut self, publication: &Publication<'_>) -> &mut Option<(u32, SizeHint)> {
+        let is_last = self.hubs.get(self.last).is_some_and(|(name, _)| name == publication.hub);
+        if !is_last {
+            let known = self.hubs.iter().position(|(name, _)| name == publication.hub);
+            self.last = known.unwrap_or_else(|| {
+                self.hubs.push((publication.hub.to_owned(), ChannelTable::new()));
+                self.hubs.len() - 1
+            });
+        }
+        let header = &publication.sample.header;
+        let by_topic = entry(&mut self.hubs[self.last].1, header.host.index());
+        let by_publisher = entry(by_topic, header.topic.number() as usize);
+        entry(entry(by_publisher, header.publisher.index()), header.part.into())
+    }
+}
+
+/// The element at `index` of a list that grows as needed.
+fn entry<T: Default>(list: &mut Vec<T>, index: usize) -> &mut T {
+    if list.len() <= index {
+        list.resize_with(index + 1, T::default);
+    }
+    &mut list[index]
+}

@@ -1,0 +1,91 @@
+//! Copies items of tapes to a new tape.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::error::Error;
+use crate::recorder::Recorder;
+use crate::recording::{Attachment, Channel, MetadataEntry, RecordedSample, RecordingItem};
+
+/// A tape copied from others.
+pub(crate) struct TapeCopy {
+    recorder: Recorder,
+    /// The numbers of the channels, by the address of the shared channel; the reference is kept, so
+    /// that the address remains unique.
+    numbers: BTreeMap<*const Channel, (u16, Arc<Channel>)>,
+}
+
+impl TapeCopy {
+    /// Writes a new file at `path`, or none on failure: an existing file stays until the new one is
+    /// complete.
+    pub(crate) fn write<T>(
+        path: &Path,
+        fill: impl FnOnce(&mut TapeCopy) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let draft = TemporaryFile::beside(path);
+        let file = File::create(&draft.path).map_err(|error| Error::unwritable(path, error))?;
+        let recorder = Recorder::new(Box::new(BufWriter::new(file))).map_err(Error::writing)?;
+        let mut copy = TapeCopy { recorder, numbers: BTreeMap::new() };
+        let value = fill(&mut copy)?;
+        copy.recorder.finish().map_err(Error::writing)?;
+        fs::rename(&draft.path, path).map_err(|error| Error::unwritable(path, error))?;
+        Ok(value)
+    }
+
+    pub(crate) fn add(&mut self, content: &RecordingItem<'_>) -> Result<(), Error> {
+        match content {
+            RecordingItem::Message(message) => self.message(message),
+            RecordingItem::Facts(facts) => self.facts(facts),
+            RecordingItem::Attachment(file) => self.attachment(file),
+        }
+    }
+
+    pub(crate) fn message(&mut self, message: &RecordedSample<'_>) -> Result<(), Error> {
+        let address = Arc::as_ptr(&message.channel);
+        let number = match self.numbers.get(&address) {
+            Some((number, _)) => *number,
+            None => {
+                let number = self.recorder.channel(&message.channel).map_err(Error::writing)?;
+                self.numbers.insert(address, (number, message.channel.clone()));
+                number
+            }
+        };
+        self.recorder.write(number, message).map_err(Error::writing)
+    }
+
+    pub(crate) fn facts(&mut self, facts: &MetadataEntry) -> Result<(), Error> {
+        self.recorder.describe(facts).map_err(Error::writing)
+    }
+
+    pub(crate) fn attachment(&mut self, file: &Attachment<'_>) -> Result<(), Error> {
+        self.recorder.attach(file).map_err(Error::writing)
+    }
+
+    /// The number of messages.
+    pub(crate) fn messages(&self) -> u64 {
+        self.recorder.messages()
+    }
+}
+
+/// A file that is deleted unless it is renamed.
+struct TemporaryFile {
+    path: PathBuf,
+}
+
+impl TemporaryFile {
+    fn beside(path: &Path) -> TemporaryFile {
+        let mut name = path.file_name().unwrap_or_default().to_owned();
+        name.push(".part");
+        TemporaryFile { path: path.with_file_name(name) }
+    }
+}
+
+impl Drop for TemporaryFile {
+    fn drop(&mut self) {
+        // After success it has been renamed.
+        let _ = fs::remove_file(&self.path);
+    }
+}

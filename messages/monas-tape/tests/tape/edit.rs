@@ -1,0 +1,150 @@
+//! Recovering, cutting and merging tapes.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use crate::ball::*;
+use monas_tape::{Channel, ErrorKind, Recording, RecordingItem, Tape, TapeFilter, cut, merge, recover};
+
+/// Host, publisher, topic, sequence number and milliseconds of each message.
+fn lines(recording: &Recording) -> Vec<String> {
+    let line = |message: monas_tape::RecordedSample<'_>| {
+        let Channel { host, publisher, topic, .. } = &*message.channel;
+        format!("{host} {publisher} {topic} {} {}", message.sequence, message.received.as_nanos() / 1_000_000)
+    };
+    recording.messages().unwrap().map(|message| line(message.unwrap())).collect()
+}
+
+/// All items but messages.
+fn others(recording: &Recording) -> Vec<String> {
+    let named = |content| match content {
+        RecordingItem::Message(_) => None,
+        RecordingItem::Facts(facts) => Some(format!("facts {} {:?}", facts.name, facts.entries)),
+        RecordingItem::Attachment(file) => {
+            Some(format!("file {} {} {}", file.name, file.media_type, file.bytes.len()))
+        }
+    };
+    recording.contents().unwrap().filter_map(|content| named(content.unwrap())).collect()
+}
+
+/// A tape with metadata and an attachment, of `count` rounds on some hosts.
+fn tape(path: &Path, hosts: &[&str], count: u64) -> Recording {
+    let tape = Tape::create(path).unwrap();
+    tape.describe("run", &BTreeMap::from([("seed".to_owned(), "7".to_owned())])).unwrap();
+    tape.attach("match.xml", "text/xml", b"<match/>").unwrap();
+    let hubs: Vec<_> = hosts.iter().map(|host| hub(host)).collect();
+    hubs.iter().for_each(|hub| hub.observe(Box::new(tape.clone())));
+    play(&hubs, count);
+    tape.finish().unwrap();
+    Recording::open(path).unwrap()
+}
+
+fn folder() -> (tempfile::TempDir, impl Fn(&str) -> PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_owned();
+    (folder, move |name: &str| path.join(name))
+}
+
+#[test]
+fn a_whole_tape_copied_is_equal() {
+    let (_folder, path) = folder();
+    tape(&path("a.mcap"), &["one", "two"], 30);
+    let recovery = recover(path("a.mcap"), path("b.mcap")).unwrap();
+    assert!(recovery.was_whole());
+    assert_eq!(recovery.messages, 180);
+    assert!(std::fs::read(path("a.mcap")).unwrap() == std::fs::read(path("b.mcap")).unwrap());
+}
+
+#[test]
+fn what_follows_damage_is_kept() {
+    let (_folder, path) = folder();
+    let whole = tape(&path("a.mcap"), &["one"], 60);
+    let mut bytes = std::fs::read(path("a.mcap")).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0xff;
+    std::fs::write(path("a.mcap"), bytes).unwrap();
+    let recovery = recover(path("a.mcap"), path("a.mcap")).unwrap();
+    assert_eq!(recovery.damages, ["the tape is damaged: the checksum of a chunk is wrong"]);
+    let kept = lines(&Recording::open(path("a.mcap")).unwrap());
+    let all = lines(&whole);
+    assert!(kept.len() < all.len() && kept.first() == all.first() && kept.last() == all.last());
+    assert!(kept.iter().all(|line| all.contains(line)));
+}
+
+#[test]
+fn a_part_begins_with_the_states_that_hold() {
+    let (_folder, path) = folder();
+    let whole = tape(&path("a.mcap"), &["one"], 5);
+    let part = TapeFilter { from: Some(at(300)), to: Some(at(400)), ..TapeFilter::default() };
+    assert_eq!(cut(&whole, &part, path("b.mcap")).unwrap(), 4);
+    let part = Recording::open(path("b.mcap")).unwrap();
+    let expected = [
+        // The state as it was last published before; the history is not a state.
+        "one body soccer/ball 2 250",
+        "one vision soccer/ball 3 300",
+        "one vision soccer/sighting 3 300",
+        "one body soccer/ball 3 350",
+    ];
+    assert_eq!(lines(&part), expected);
+    assert_eq!(others(&part), others(&whole));
+}
+
+#[test]
+fn channels_are_chosen_and_what_is_always_wanted_stays() {
+    let (_folder, path) = folder();
+    let whole = tape(&path("a.mcap"), &["one", "two"], 3);
+    let host = |channel: &Channel| channel.host == "two";
+    let history = |channel: &Channel| channel.kind == "data";
+    let part = TapeFilter {
+        from: Some(at(300)),
+        channels: Some(&host),
+        always: Some(&history),
+        ..TapeFilter::default()
+    };
+    cut(&whole, &part, path("b.mcap")).unwrap();
+    let expected = [
+        "two vision soccer/sighting 1 100",
+        "two vision soccer/sighting 2 200",
+        "two body soccer/ball 2 250",
+        "two vision soccer/ball 3 300",
+        "two vision soccer/sighting 3 300",
+        "two body soccer/ball 3 350",
+    ];
+    assert_eq!(lines(&Recording::open(path("b.mcap")).unwrap()), expected);
+}
+
+#[test]
+fn tapes_are_merged_by_time_and_what_they_share_is_there_once() {
+    let (_folder, path) = folder();
+    let both = [tape(&path("a.mcap"), &["one"], 2), tape(&path("b.mcap"), &["two"], 2)];
+    assert_eq!(merge(&both, path("c.mcap")).unwrap(), 12);
+    let merged = Recording::open(path("c.mcap")).unwrap();
+    let mut expected = Vec::new();
+    for number in 1..=2 {
+        for (publisher, topics, millis) in [("vision", &["ball", "sighting"][..], 0), ("body", &["ball"], 50)]
+        {
+            for host in ["one", "two"] {
+                let time = 100 * number + millis;
+                expected.extend(
+                    topics.iter().map(|topic| format!("{host} {publisher} soccer/{topic} {number} {time}")),
+                );
+            }
+        }
+    }
+    assert_eq!(lines(&merged), expected);
+    assert_eq!(others(&merged), others(&both[0]));
+}
+
+#[test]
+fn what_cannot_be_written_leaves_what_was_there() {
+    let (_folder, path) = folder();
+    tape(&path("a.mcap"), &["one"], 2);
+    let error = recover(path("a.mcap"), path("nowhere/b.mcap")).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::File);
+    std::fs::write(path("text"), "no tape").unwrap();
+    assert_eq!(recover(path("text"), path("text")).unwrap_err().kind(), ErrorKind::Damaged);
+    assert_eq!(std::fs::read(path("text")).unwrap(), b"no tape");
+    let names: Vec<_> =
+        std::fs::read_dir(path("")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(names.len(), 2, "{names:?}");
+}

@@ -1,0 +1,18 @@
+//! The activities of the states. One that is not there is an error here.
+
+mod pass_ball;
+
+use monas::generated::Instance;
+use pass_ball::PassBall;
+use team::{Kick, look};
+
+use super::states::State;
+
+/// A new instance for each state that has an activity.
+pub(crate) fn instances() -> Vec<Instance> {
+    vec![
+        Instance::new(State::look, look),
+        Instance::of::<Kick>(State::kick),
+        Instance::of::<PassBall>(State::passBall),
+    ]
+}

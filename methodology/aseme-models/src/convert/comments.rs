@@ -1,0 +1,78 @@
+//! Preservation of comments when a text is rewritten.
+
+use std::collections::BTreeMap;
+
+use crate::document::{Comments, Item, ItemDocument, Line};
+
+/// Gives a text the comments of an older one: each goes to the item of the same header, there to
+/// the line that says the same thing; what finds no such place goes to the item, and else to the
+/// end.
+pub(crate) fn transfer_comments(old: &ItemDocument, new: &mut ItemDocument) {
+    let mut places: BTreeMap<(String, String, usize), usize> = BTreeMap::new();
+    let mut seen = BTreeMap::new();
+    for (index, item) in new.items.iter().enumerate() {
+        places.insert(key(item, &mut seen), index);
+    }
+    let mut seen = BTreeMap::new();
+    for item in &old.items {
+        match places.get(&key(item, &mut seen)) {
+            Some(&index) => transfer_item_comments(item, &mut new.items[index]),
+            None => new.tail.extend(all(item)),
+        }
+    }
+    new.tail.extend(old.tail.iter().cloned());
+}
+
+/// The header of an item, and the how manieth of its like it is.
+fn key(item: &Item, seen: &mut BTreeMap<(String, String), usize>) -> (String, String, usize) {
+    let header = (item.word.text.clone(), item.name.text.clone());
+    let count = seen.entry(header.clone()).or_default();
+    *count += 1;
+    (header.0, header.1, *count)
+}
+
+fn transfer_item_comments(old: &Item, new: &mut Item) {
+    add(&old.comments, &mut new.comments);
+    let mut places: BTreeMap<(String, usize), usize> = BTreeMap::new();
+    let mut seen = BTreeMap::new();
+    for (index, line) in new.lines.iter().enumerate() {
+        places.insert(line_key(line, &mut seen), index);
+    }
+    let mut seen = BTreeMap::new();
+    let mut homeless = Vec::new();
+    for line in &old.lines {
+        match places.get(&line_key(line, &mut seen)) {
+            Some(&index) => add(&line.comments, &mut new.lines[index].comments),
+            None => homeless.extend(texts(&line.comments)),
+        }
+    }
+    new.comments.above.extend(homeless);
+}
+
+/// What a line is about: its key, or the ends of its transition, or all of it, without blanks.
+fn line_key(line: &Line, seen: &mut BTreeMap<String, usize>) -> (String, usize) {
+    let text = &line.content.text;
+    let end = match text.find("->") {
+        Some(_) => text.find(" : "),
+        None => text.find('='),
+    };
+    let about: String = text[..end.unwrap_or(text.len())].split_whitespace().collect();
+    let count = seen.entry(about.clone()).or_default();
+    *count += 1;
+    (about, *count)
+}
+
+fn add(from: &Comments, to: &mut Comments) {
+    to.above.extend(from.above.iter().cloned());
+    to.beside.clone_from(&from.beside);
+}
+
+fn texts(comments: &Comments) -> impl Iterator<Item = String> {
+    let beside = Some(comments.beside.clone()).filter(|beside| !beside.is_empty());
+    comments.above.iter().cloned().chain(beside).collect::<Vec<_>>().into_iter()
+}
+
+fn all(item: &Item) -> Vec<String> {
+    let lines = item.lines.iter().flat_map(|line| texts(&line.comments));
+    texts(&item.comments).chain(lines).collect()
+}

@@ -1,0 +1,55 @@
+//! Two charts in one drawing.
+
+use std::collections::BTreeMap;
+
+use yase::{Element, NodeId, Statechart, Transition};
+use yase_export::{Highlights, Mark};
+
+use super::{ChangeKind, ChartDifference};
+
+/// The later chart with removed parts reinserted, and the parts to highlight
+/// ([`yase_export::to_svg_marked`]).
+#[derive(Clone, PartialEq, Debug)]
+pub struct DiffDrawing {
+    /// The chart, for drawing only.
+    pub chart: Statechart,
+    /// What was added, removed or changed.
+    pub marks: Highlights,
+}
+
+/// Draws two charts and their difference in one chart.
+pub fn picture(before: &Statechart, after: &Statechart, difference: &ChartDifference) -> DiffDrawing {
+    let mut picture = DiffDrawing { chart: after.clone(), marks: Highlights::default() };
+    let mut places: BTreeMap<NodeId, NodeId> = BTreeMap::new();
+    for (id, node) in before.nodes() {
+        if let Some(later) = difference.pairs.later(id) {
+            places.insert(id, later);
+            continue;
+        }
+        // a parent stands before its children, so it has its place
+        let parent = node.parent.and_then(|parent| places.get(&parent)).copied().unwrap_or(Statechart::ROOT);
+        places.insert(id, picture.chart.add(parent, node.clone()));
+    }
+    for change in &difference.changes {
+        let Some(element) = change.element else { continue };
+        let mark = match change.kind {
+            ChangeKind::Added => Mark::Added,
+            ChangeKind::Removed => Mark::Removed,
+            ChangeKind::Moved | ChangeKind::Changed => Mark::Changed,
+        };
+        let element = match (mark, element) {
+            (Mark::Removed, Element::Node(id)) => Element::Node(places[&id]),
+            (Mark::Removed, Element::Transition(id)) => {
+                let gone = before.transition(id).clone();
+                let (source, target) = (places[&gone.source], places[&gone.target]);
+                Element::Transition(picture.chart.connect(Transition { source, target, ..gone }))
+            }
+            (_, element) => element,
+        };
+        // what is new stays so, whatever else is said of it
+        if !matches!(element, Element::Node(id) if picture.marks.has(id)) {
+            picture.marks.set(&picture.chart, element, mark);
+        }
+    }
+    picture
+}

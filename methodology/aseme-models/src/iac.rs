@@ -1,0 +1,281 @@
+//! Statecharts as in model files: the Intra-Agent Control model of a role (IAC) and the Inter-Agent
+//! Control model of a protocol (EAC).
+//!
+//! An [`Iac`] keeps the file as written: names as the tools encode them, types and transition
+//! expressions as text, faults included. A [`Statechart`](yase::Statechart) is its meaning.
+//! [`Iac::to_statechart`] parses the expressions and reports those it does not understand;
+//! [`Iac::from_statechart`] writes them.
+//!
+//! Files come in four dialects ([`Dialect`]), which differ in how nodes nest and refer to each
+//! other, and in the text form of this project, which represents every chart completely:
+//!
+//! ```text
+//! IAC: tiny
+//!
+//! Variable: gsm
+//!   type = worldstate.State.GameStateMessage
+//!
+//! States:
+//!   r OR
+//!     START
+//!     a BASIC
+//!       functionality = motion
+//!       variables = gsm
+//!
+//! Transitions:
+//!   START -> a
+//!   a -> a : [TimeoutCheck(t)]/TimeoutAction.t.100
+//! ```
+//!
+//! In text a node is referred to by the shortest unique end of its path, written as in a formula,
+//! `(play|wait)~`; a node without a name is referred to by its type or its number. `at = 40 120`
+//! and `size = 160 60` below a node and `via = 40 80, 120 80` below a transition are its layout.
+//! Labels and names of transitions are written only where they differ from the default.
+
+mod chart;
+mod from_text;
+mod from_xmi;
+mod lint;
+mod multi_root;
+mod path;
+mod to_text;
+mod to_xmi;
+
+use std::time::Duration;
+
+use yase::expression::TextPosition;
+use yase::statechart::{Constant, Frame, Point};
+
+use aseme::names::decode;
+
+pub(crate) use from_text::from_text;
+pub(crate) use from_xmi::from_xmi;
+pub(crate) use to_text::to_text;
+
+/// A statechart as written in a model file.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Iac {
+    /// The kind of the chart.
+    pub kind: ChartKind,
+    /// The model's name.
+    pub name: String,
+    /// Its description.
+    pub description: String,
+    /// Metadata of a tool.
+    pub metadata: String,
+    /// The nodes: a parent before its children, children in order.
+    pub nodes: Vec<IacNode>,
+    /// The transitions, in order.
+    pub transitions: Vec<IacTransition>,
+    /// Messages that expressions use.
+    pub variables: Vec<Variable>,
+    /// Named constants.
+    pub constants: Vec<Constant>,
+}
+
+/// Whose chart it is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum ChartKind {
+    /// An agent's.
+    #[default]
+    Intra,
+    /// A protocol's.
+    Inter,
+}
+
+/// A node as written in a model file.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct IacNode {
+    /// Its name, encoded.
+    pub name: String,
+    /// Its label.
+    pub label: String,
+    /// Its type: OR, AND, BASIC, START, END, CONDITION and others.
+    pub kind: String,
+    /// What the file calls its activity: the description of a functionality, or where its source
+    /// lies.
+    pub functionality: String,
+    /// The variables it uses, by their indices in [`Iac::variables`].
+    pub variables: Vec<usize>,
+    /// The node it lies in, by its index in [`Iac::nodes`].
+    pub parent: Option<usize>,
+    /// Its actions in the dialect of 2018.
+    pub actions: String,
+    /// Metadata of a tool.
+    pub metadata: String,
+    /// Settings that only the text form represents.
+    pub refinement: StateRefinement,
+    /// Its layout, which only the text form represents.
+    pub frame: Frame,
+    /// Its position in the source.
+    pub place: TextPosition,
+}
+
+/// Settings of a state, as in the section `States:` of a role.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct StateRefinement {
+    /// The activity it runs; none for the one of its name, empty for nothing at all.
+    pub activity: Option<String>,
+    /// The priority of its activity.
+    pub priority: i32,
+    /// Its entry actions.
+    pub entry: String,
+    /// Its exit actions.
+    pub exit: String,
+    /// Events that are deferred while it is active.
+    pub defer: String,
+    /// How long its activity takes in simulated time.
+    pub duration: Option<Duration>,
+}
+
+/// A transition as written in a model file.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct IacTransition {
+    /// Its name, usually `sourceTOtarget`.
+    pub name: String,
+    /// Its transition expression.
+    pub te: String,
+    /// The node it leaves, by its index in [`Iac::nodes`].
+    pub source: usize,
+    /// The node it leads to.
+    pub target: usize,
+    /// Metadata of a tool.
+    pub metadata: String,
+    /// What only text can say.
+    pub refinement: TransitionRefinement,
+    /// The corners it is drawn with.
+    pub bends: Vec<Point>,
+    /// Its position in the source.
+    pub place: TextPosition,
+    /// The position of its expression in the source.
+    pub te_place: TextPosition,
+}
+
+/// Settings of a transition, as in the section `Transitions:` of a role.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct TransitionRefinement {
+    /// Higher is tried first.
+    pub priority: i32,
+    /// The weight of a probabilistic branch.
+    pub weight: Option<f64>,
+    /// Whether it may leave a state whose activity still runs.
+    pub interrupts: bool,
+    /// Whether it happens inside its source, without leaving it.
+    pub internal: bool,
+}
+
+/// A variable that expressions use, with a type of the ontology.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Variable {
+    /// Its name.
+    pub name: String,
+    /// Its type: `topic.Kind.Message` in files since 2012.
+    pub kind: String,
+    /// Its position in the source.
+    pub place: TextPosition,
+}
+
+/// The dialects of XMI in which statecharts are kept.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Dialect {
+    /// 2010: `xmi:XMI` with nodes, transitions and the model as roots of their own.
+    MultiRoot,
+    /// 2011: `IAC:Model` with all nodes side by side, each naming the node it lies in.
+    Flat,
+    /// 2012: `statechart:Model` with nodes in nodes.
+    Nested2012,
+    /// 2018: the same, with descriptions, actions and metadata.
+    Nested2018,
+}
+
+/// The nodes may nest this deep.
+pub(crate) const MAX_LEVELS: usize = aseme::liveness::MAX_LEVELS;
+
+impl Iac {
+    /// The label that each node has by its place.
+    pub(crate) fn labels(&self) -> Vec<String> {
+        let mut labels: Vec<String> = Vec::with_capacity(self.nodes.len());
+        let mut children = vec![0_usize; self.nodes.len()];
+        let mut roots = 0;
+        for node in &self.nodes {
+            let label = match node.parent.filter(|&parent| parent < labels.len()) {
+                Some(parent) => {
+                    children[parent] += 1;
+                    format!("{}.{}", labels[parent], children[parent])
+                }
+                None => {
+                    roots += 1;
+                    (roots - 1).to_string()
+                }
+            };
+            labels.push(label);
+        }
+        labels
+    }
+
+    /// The place of a variable like this one, which is added if there is none.
+    pub(crate) fn variable(&mut self, wanted: &Variable) -> usize {
+        let same = |own: &Variable| (&own.name, &own.kind) == (&wanted.name, &wanted.kind);
+        self.variables.iter().position(same).unwrap_or_else(|| {
+            self.variables.push(wanted.clone());
+            self.variables.len() - 1
+        })
+    }
+
+    /// The children of each node, in order.
+    pub(crate) fn children(&self) -> Vec<Vec<usize>> {
+        let mut children = vec![Vec::new(); self.nodes.len()];
+        for (index, parent) in
+            self.nodes.iter().enumerate().filter_map(|(index, node)| Some((index, node.parent?)))
+        {
+            if let Some(children) = children.get_mut(parent) {
+                children.push(index);
+            }
+        }
+        children
+    }
+
+    /// The same chart with every node before its children and these together, as a file that nests
+    /// them has them.
+    pub(crate) fn in_order(mut self) -> Iac {
+        let children = self.children();
+        let roots = (0..self.nodes.len()).filter(|&index| self.nodes[index].parent.is_none());
+        let mut open: Vec<usize> = roots.collect();
+        open.reverse();
+        let mut order = Vec::with_capacity(self.nodes.len());
+        while let Some(index) = open.pop() {
+            order.push(index);
+            open.extend(children[index].iter().rev());
+        }
+        let mut places = vec![usize::MAX; self.nodes.len()];
+        order.iter().enumerate().for_each(|(new, &old)| places[old] = new);
+        self.nodes = order.iter().map(|&old| self.nodes[old].clone()).collect();
+        for node in &mut self.nodes {
+            node.parent = node.parent.map(|parent| places[parent]);
+        }
+        self.transitions.retain(|it| places[it.source] != usize::MAX && places[it.target] != usize::MAX);
+        for transition in &mut self.transitions {
+            (transition.source, transition.target) = (places[transition.source], places[transition.target]);
+        }
+        self
+    }
+
+    /// The name that a transition between two nodes usually has.
+    pub(crate) fn usual_name(&self, source: usize, target: usize) -> String {
+        format!("{}TO{}", self.nodes[source].name, self.nodes[target].name)
+    }
+}
+
+impl IacNode {
+    /// Its name in the notation of formulas, decoded if it is an encoded term.
+    pub fn written(&self) -> String {
+        let is_composite = matches!(self.kind.as_str(), "OR" | "AND");
+        let term = if is_composite { decode(&self.name) } else { None };
+        term.unwrap_or_else(|| self.name.clone())
+    }
+}
+
+/// `null`, which files of 2010 write for nothing.
+pub(crate) fn without_null(text: &str) -> String {
+    if text == "null" { String::new() } else { text.into() }
+}

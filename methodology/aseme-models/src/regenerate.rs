@@ -1,0 +1,286 @@
+//! Preservation of refinements when formulas are edited.
+//!
+//! Entries of a role refer to states by paths. [`comment_out_refinements`] processes a role whose
+//! formulas were edited: entries that still match stay unchanged; each other entry becomes a
+//! comment in its place, with the reason and likely candidates. [`apply_refinements`] applies the
+//! entries of another model (an older role, a chart that was refined in an editor) to a role;
+//! [`transfer_refinements`] copies what only a model file can represent (functionalities,
+//! variables, metadata) from an older chart to a newer one.
+
+mod charts;
+mod entries;
+
+use yase::statechart::Layout;
+use yase::{Diagnostic, NodeId, NodeKind, Statechart, Transition, TransitionId};
+
+use aseme::path;
+use aseme::refine::{self, UnmatchedEntry};
+use aseme::srm::{LayoutEntry, Section, SrmEntry, SrmFile, StateEntry, TransitionEntry};
+use aseme::{liveness_to_statechart, role_to_statechart};
+
+pub use charts::transfer_refinements;
+pub use entries::{entries_of_chart, entries_of_role};
+
+/// A regenerated role: its text, and the entries that were lost.
+#[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
+pub struct RegeneratedRole {
+    /// The text. Lost entries are comments in it.
+    pub text: String,
+    /// The number of entries that were kept or applied.
+    pub kept: usize,
+    /// The entries that no longer match, in order.
+    pub lost: Vec<UnmatchedEntry>,
+}
+
+/// The role with every entry that no longer fits as a comment in its place.
+///
+/// # Errors
+/// The formulas themselves cannot be expanded, or the file is XMI, which has no comments.
+pub fn comment_out_refinements(file: &SrmFile) -> Result<RegeneratedRole, Vec<Diagnostic>> {
+    let (mut chart, found) = liveness_to_statechart(&file.srm().liveness);
+    if found.iter().any(Diagnostic::is_error) {
+        return Err(found);
+    }
+    let srm = file.srm();
+    let mut lost = refine::refine(&mut chart, &srm.transitions);
+    lost.extend(refine::refine_layout(&mut chart, &srm.layout));
+    lost.extend(refine::refine_states(&mut chart, &srm.states));
+    let entries: Vec<SrmEntry> = file.entries().iter().copied().filter(is_refinement).collect();
+    let mut text = file.text().to_owned();
+    let mut count = 0;
+    // from the end, so that places before stay true
+    for entry in entries.iter().rev() {
+        if let Some(unmatched) = lost.iter().find(|it| it.diagnostic.span == entry.span) {
+            comment_out(&mut text, entry, unmatched);
+            count += 1;
+        }
+    }
+    Ok(RegeneratedRole { text, kept: entries.len() - count, lost })
+}
+
+fn is_refinement(entry: &SrmEntry) -> bool {
+    matches!(entry.section, Section::Transitions | Section::States | Section::Layout)
+}
+
+/// Puts `# ` before each line of an entry, and the reason above it.
+fn comment_out(text: &mut String, entry: &SrmEntry, unmatched: &UnmatchedEntry) {
+    let (start, end) = (entry.span.start, entry.span.end);
+    let comment = comment(&text[start..end], &unmatched.diagnostic);
+    text.replace_range(start..end, &comment);
+}
+
+/// An old text as comments, with the reason above.
+fn comment(old: &str, reason: &Diagnostic) -> String {
+    let hint = reason.hint.as_ref().map_or(String::new(), |hint| format!("; {hint}"));
+    let what = reason.message.rsplit("` ").next().unwrap_or_default();
+    let what = if reason.code == "E0250" || reason.code == "E0251" { what } else { reason.message.as_str() };
+    let lines: Vec<String> = old.lines().map(|line| format!("# {}", line.trim_end())).collect();
+    format!("# lost: this {what}{hint}\n{}", lines.join("\n"))
+}
+
+/// A role with the entries of another model besides its own. Its own hold: an entry that says
+/// another thing of the same state or transition is lost, as is one that fits nowhere, and stands
+/// as a comment at the end.
+///
+/// # Errors
+/// The formulas of the role cannot be expanded, or entries of its own do not fit: these are to be
+/// put aside first.
+pub fn apply_refinements(
+    file: &SrmFile,
+    entries: &[(Section, String)],
+) -> Result<RegeneratedRole, Vec<Diagnostic>> {
+    let (chart, found) = role_to_statechart(file.srm());
+    if found.iter().any(Diagnostic::is_error) {
+        return Err(found);
+    }
+    let (plain, _) = liveness_to_statechart(&file.srm().liveness);
+    let mut placed = plain.clone();
+    refine::refine(&mut placed, &file.srm().transitions);
+    refine::refine_layout(&mut placed, &file.srm().layout);
+    let mut carrying =
+        RefinementTransfer { plain, placed, chart, added: Vec::new(), kept: 0, lost: Vec::new() };
+    for (section, text) in entries {
+        carrying.entry(*section, text);
+    }
+    let RefinementTransfer { added, kept, lost, .. } = carrying;
+    let mut text = file.text().to_owned();
+    for section in entries::CARRIED {
+        let lines: Vec<&str> =
+            added.iter().filter(|(of, _)| *of == section).map(|(_, line)| line.as_str()).collect();
+        text = entries::inserted(&text, section, &lines);
+    }
+    for unmatched in &lost {
+        let gap = if text.ends_with('\n') { "" } else { "\n" };
+        text = format!("{text}{gap}{}\n", comment(&unmatched.text, &unmatched.diagnostic));
+    }
+    Ok(RegeneratedRole { text, kept, lost })
+}
+
+struct RefinementTransfer {
+    /// The chart of the formulas alone, in which paths are looked up.
+    plain: Statechart,
+    /// The same with the transitions that stand beside those, and with the places of all: what a
+    /// layout is about.
+    placed: Statechart,
+    /// The chart as it is refined so far.
+    chart: Statechart,
+    added: Vec<(Section, String)>,
+    kept: usize,
+    lost: Vec<UnmatchedEntry>,
+}
+
+impl RefinementTransfer {
+    fn entry(&mut self, section: Section, text: &str) {
+        let (file, found) =
+            SrmFile::parse(format!("Role: r\nLiveness:\nr = a\n{}:\n{text}\n", section.word()));
+        let srm = file.srm();
+        let errors = found.into_iter().find(Diagnostic::is_error);
+        let outcome = match (errors, srm.transitions.first(), srm.states.first(), srm.layout.first()) {
+            (Some(error), ..) => {
+                Err(Box::new(UnmatchedEntry { text: text.into(), candidates: Vec::new(), diagnostic: error }))
+            }
+            (None, Some(entry), ..) => self.transition(entry),
+            (None, _, Some(entry), _) => self.state(entry),
+            (None, _, _, Some(entry)) => self.layout(entry),
+            (None, None, None, None) => self.constants(&srm.constants, text),
+        };
+        match outcome {
+            Ok(is_new) => {
+                self.kept += 1;
+                self.added.extend(is_new.then(|| (section, text.to_owned())));
+            }
+            Err(unmatched) => self.lost.push(*unmatched),
+        }
+    }
+
+    /// Whether the entry is to be added, or said already.
+    fn transition(&mut self, entry: &TransitionEntry) -> Result<bool, Box<UnmatchedEntry>> {
+        let mut scratch = self.plain.clone();
+        if let Some(unmatched) = refine::refine(&mut scratch, std::slice::from_ref(entry)).pop() {
+            return Err(Box::new(unmatched));
+        }
+        if entry.also {
+            return Ok(self.beside(entry, &scratch));
+        }
+        let named: Vec<TransitionId> = path::transitions(&self.plain, &entry.source, &entry.target).collect();
+        let (mut is_new, mut taken) = (false, None);
+        for id in named {
+            let (own, wished) = (self.chart.transition(id), scratch.transition(id));
+            if transition_content(own) == transition_content(self.plain.transition(id)) {
+                is_new = is_new || transition_content(wished) != transition_content(own);
+            } else if transition_content(own) != transition_content(wished) && !entry.has_wildcard() {
+                taken = Some(path::shortest_transition(&self.plain, id));
+            }
+        }
+        if let Some(taken) = taken {
+            return Err(conflict(&entry.text, &taken));
+        }
+        if is_new {
+            refine::refine(&mut self.chart, std::slice::from_ref(entry));
+        }
+        Ok(is_new)
+    }
+
+    /// Whether another transition beside one of the formulas' is to be added: `scratch` has it
+    /// already.
+    fn beside(&mut self, entry: &TransitionEntry, scratch: &Statechart) -> bool {
+        let is_there = |wished: &Transition| {
+            let same = |own: &Transition| (own.source, own.target) == (wished.source, wished.target);
+            // in the chart itself what enters a composite may lead to what remembers inside
+            self.placed
+                .transitions()
+                .any(|(_, own)| same(own) && transition_content(own) == transition_content(wished))
+        };
+        let added = scratch.transitions().skip(self.plain.transitions().len());
+        let is_new = !added.map(|(_, wished)| wished).all(is_there);
+        if is_new {
+            refine::refine(&mut self.chart, std::slice::from_ref(entry));
+            refine::refine(&mut self.placed, std::slice::from_ref(entry));
+        }
+        is_new
+    }
+
+    /// Whether the places are to be added, or are said already.
+    fn layout(&mut self, entry: &LayoutEntry) -> Result<bool, Box<UnmatchedEntry>> {
+        let mut scratch = self.placed.clone();
+        scratch.layout = Layout::default();
+        if let Some(unmatched) = refine::refine_layout(&mut scratch, std::slice::from_ref(entry)).pop() {
+            return Err(Box::new(unmatched));
+        }
+        let own = &mut self.placed.layout;
+        let nodes = scratch.layout.frames.iter();
+        let taken = nodes.clone().find(|(id, frame)| own.frames.get(id).is_some_and(|own| own != *frame));
+        let ways = scratch.layout.bends.iter();
+        let way = ways.clone().find(|(id, bends)| own.bends.get(id).is_some_and(|own| own != *bends));
+        let taken = taken.map(|(&id, _)| path::shortest_path(&self.plain, id));
+        let taken = taken.or(way.map(|(&id, _)| path::shortest_transition(&scratch, id)));
+        if let Some(taken) = taken {
+            return Err(conflict(&entry.text, &taken));
+        }
+        let is_new = nodes.clone().any(|(id, _)| !own.frames.contains_key(id))
+            || ways.clone().any(|(id, _)| !own.bends.contains_key(id));
+        own.frames.extend(scratch.layout.frames);
+        own.bends.extend(scratch.layout.bends);
+        Ok(is_new)
+    }
+
+    fn state(&mut self, entry: &StateEntry) -> Result<bool, Box<UnmatchedEntry>> {
+        let mut scratch = self.plain.clone();
+        if let Some(unmatched) = refine::refine_states(&mut scratch, std::slice::from_ref(entry)).pop() {
+            return Err(Box::new(unmatched));
+        }
+        let ids: Vec<_> =
+            self.plain.nodes().map(|(id, _)| id).filter(|&id| entry.path.matches(&self.plain, id)).collect();
+        let mut is_new = false;
+        for id in ids {
+            let (plain, own, wished) = (self.plain.node(id), self.chart.node(id), scratch.node(id));
+            if own != wished && own != plain {
+                return Err(conflict(&entry.text, &path::shortest_path(&self.plain, id)));
+            }
+            let (own_history, wished_history) = (history(&self.chart, id), history(&scratch, id));
+            if wished_history.is_some() && own_history.is_some() && own_history != wished_history {
+                return Err(conflict(&entry.text, &path::shortest_path(&self.plain, id)));
+            }
+            is_new = is_new || own != wished || own_history != wished_history;
+        }
+        if is_new {
+            refine::refine_states(&mut self.chart, std::slice::from_ref(entry));
+        }
+        Ok(is_new)
+    }
+
+    fn constants(
+        &mut self,
+        constants: &[yase::statechart::Constant],
+        text: &str,
+    ) -> Result<bool, Box<UnmatchedEntry>> {
+        let Some(constant) = constants.first() else { return Ok(false) };
+        match self.chart.constants.iter().find(|own| own.name == constant.name) {
+            Some(own) if own.value == constant.value => Ok(false),
+            Some(_) => Err(conflict(text, &constant.name)),
+            None => {
+                self.chart.constants.push(constant.clone());
+                Ok(true)
+            }
+        }
+    }
+}
+
+/// All that is written on a transition.
+fn transition_content(it: &Transition) -> (String, i32, Option<u64>, [bool; 2]) {
+    (it.expression.to_string(), it.priority, it.weight.map(f64::to_bits), [it.interrupts, it.internal])
+}
+
+/// How a composite remembers what was active in it.
+fn history(chart: &Statechart, id: NodeId) -> Option<NodeKind> {
+    let kinds = chart.children(id).iter().map(|&child| chart.node(child).kind);
+    kinds.into_iter().find(|kind| matches!(kind, NodeKind::ShallowHistory | NodeKind::DeepHistory))
+}
+
+fn conflict(text: &str, named: &str) -> Box<UnmatchedEntry> {
+    let message = format!("`{text}`: the role says another thing of `{named}` itself");
+    let diagnostic =
+        Diagnostic::error("E0255", yase::Span::default(), message).with_hint("keep one of the two");
+    Box::new(UnmatchedEntry { text: text.into(), candidates: vec![named.into()], diagnostic })
+}

@@ -1,0 +1,203 @@
+//! SUC to SRM: use cases to activities and capabilities of roles.
+
+use yase::Diagnostic;
+use yase::expression::TextPosition;
+
+use super::{activity_names, joined, participant_formula, system_participants};
+use crate::aip::{Aip, Participant};
+use crate::roles::{Capability, Functionality, Role, RoleActivity, SystemRoles};
+use crate::suc::{RoleKind, Suc, UseCase};
+use aseme::liveness;
+
+/// The roles of the system, with their capabilities and activities; parts in protocols are taken
+/// from an AIP if there is one.
+///
+/// A use case that consists of others becomes a capability of each role that takes part, called
+/// `usecase_role` if there are several such roles of the system; its formula has what it includes
+/// and the role begins (is the first participant of). Any other use case becomes an activity, done
+/// by the functionality that `specified_by` describes. The first formula of a role has its
+/// capabilities, and then the activities that belong to none of them.
+///
+/// In an AIP the participant `role`, or one whose name has `_role` in it, says the formula of that
+/// name; one that is no role's becomes a capability with its formulas as description. Findings are
+/// about capabilities in which a role begins nothing (E0832).
+pub fn suc_to_srm(suc: &Suc, aip: Option<&Aip>) -> (SystemRoles, Vec<Diagnostic>) {
+    let mut making = SrmBuilder { suc, srm: SystemRoles::default(), diagnostics: Vec::new() };
+    let system = suc.roles.iter().enumerate().filter(|(_, role)| role.kind == RoleKind::System);
+    let roles: Vec<usize> = system.map(|(index, _)| index).collect();
+    for role in roles {
+        making.role(role);
+    }
+    for participant in aip.iter().flat_map(|aip| &aip.participants) {
+        making.participant(participant);
+    }
+    (making.srm, making.diagnostics)
+}
+
+struct SrmBuilder<'a> {
+    suc: &'a Suc,
+    srm: SystemRoles,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl<'a> SrmBuilder<'a> {
+    fn role(&mut self, role: usize) {
+        let suc = self.suc;
+        let own: Vec<(usize, &UseCase)> = suc
+            .usecases
+            .iter()
+            .enumerate()
+            .filter(|(_, usecase)| usecase.participants.contains(&role))
+            .collect();
+        let name = suc.roles[role].name.as_str();
+        let mut made = Role { name: name.into(), ..Role::default() };
+        for (_, usecase) in own.iter().filter(|(_, usecase)| usecase.includes.is_empty()) {
+            let activity = self.activity(&usecase.name, Some(&usecase.specified_by));
+            made.activities.push(activity);
+        }
+        made.activities.dedup();
+        let mut lines = Vec::new();
+        for (_, usecase) in own.iter().filter(|(_, usecase)| !usecase.includes.is_empty()) {
+            let capability = self.capability(role, usecase);
+            made.capabilities.push(capability);
+            lines.extend(self.capability_formula(role, usecase));
+        }
+        let included = |index: &usize| own.iter().any(|(_, usecase)| usecase.includes.contains(index));
+        let top = own.iter().filter(|(index, _)| !included(index));
+        let (composed, plain): (Vec<_>, Vec<_>) = top.partition(|(_, usecase)| !usecase.includes.is_empty());
+        let names: Vec<String> =
+            composed.into_iter().chain(plain).map(|(_, usecase)| self.name_for(role, usecase)).collect();
+        made.liveness = format!("{name}={}\n{}", joined(names.iter().map(String::as_str)), lines.concat());
+        self.srm.roles.push(made);
+    }
+
+    /// What a use case is called among what a role can do.
+    fn name_for(&self, role: usize, usecase: &UseCase) -> String {
+        let is_capability = !usecase.includes.is_empty() && usecase.participants.contains(&role);
+        match is_capability && system_participants(self.suc, usecase).count() > 1 {
+            true => format!("{}_{}", usecase.name, self.suc.roles[role].name),
+            false => usecase.name.clone(),
+        }
+    }
+
+    fn capability(&mut self, role: usize, usecase: &UseCase) -> usize {
+        let name = self.name_for(role, usecase);
+        let included = usecase.includes.iter().filter_map(|&index| self.suc.usecases.get(index));
+        let own: Vec<&UseCase> = included
+            .filter(|included| included.includes.is_empty() && included.participants.contains(&role))
+            .collect();
+        let activities: Vec<usize> =
+            own.iter().map(|included| self.activity(&included.name, Some(&included.specified_by))).collect();
+        let known = self.srm.capabilities.iter().position(|capability| capability.name == name);
+        let index = known.unwrap_or_else(|| {
+            self.srm.capabilities.push(Capability { name, ..Capability::default() });
+            self.srm.capabilities.len() - 1
+        });
+        let capability = &mut self.srm.capabilities[index];
+        for activity in activities {
+            if !capability.activities.contains(&activity) {
+                capability.activities.push(activity);
+            }
+        }
+        index
+    }
+
+    fn capability_formula(&mut self, role: usize, usecase: &UseCase) -> Option<String> {
+        let suc = self.suc;
+        let included = || usecase.includes.iter().filter_map(|&index| suc.usecases.get(index));
+        let role_name = suc.roles[role].name.to_lowercase();
+        let begins = |it: &&UseCase| {
+            let first = it.participants.first().and_then(|&first| suc.roles.get(first));
+            first.is_some_and(|first| first.name.to_lowercase() == role_name)
+        };
+        let names: Vec<String> =
+            included().filter(begins).map(|included| self.name_for(role, included)).collect();
+        let capability = self.name_for(role, usecase);
+        if names.is_empty() {
+            let message = format!(
+                "`{}` begins nothing of what `{}` includes, so `{capability}` has no formula",
+                suc.roles[role].name, usecase.name
+            );
+            let hint = "the first participant of a use case is the role that begins it";
+            self.diagnostics.push(Diagnostic::warning("E0832", usecase.place.0, message).with_hint(hint));
+            return None;
+        }
+        Some(format!("{capability}={}\n", joined(names.iter().map(String::as_str))))
+    }
+
+    /// The activity of a name, case aside; a new one is done by the functionality that is described
+    /// so, or by a new one if nothing is said.
+    fn activity(&mut self, name: &str, described: Option<&str>) -> usize {
+        let known = self.srm.activities.iter().position(|activity| activity.name.eq_ignore_ascii_case(name));
+        known.unwrap_or_else(|| {
+            let functionality = Some(self.functionality(described.unwrap_or_default()));
+            self.srm.activities.push(RoleActivity {
+                name: name.into(),
+                functionality,
+                place: TextPosition::default(),
+            });
+            self.srm.activities.len() - 1
+        })
+    }
+
+    fn functionality(&mut self, description: &str) -> usize {
+        let same =
+            |it: &Functionality| !description.is_empty() && it.description.eq_ignore_ascii_case(description);
+        self.srm.functionalities.iter().position(same).unwrap_or_else(|| {
+            self.srm
+                .functionalities
+                .push(Functionality { description: description.into(), ..Functionality::default() });
+            self.srm.functionalities.len() - 1
+        })
+    }
+
+    fn participant(&mut self, participant: &Participant) {
+        let plays = |role: &Role| {
+            participant.name == role.name || participant.name.contains(&format!("_{}", role.name))
+        };
+        match self.srm.roles.iter().position(plays) {
+            Some(_) if participant.liveness.trim().is_empty() => {}
+            Some(role) => {
+                let activities = self.activities_of(participant);
+                let liveness = &mut self.srm.roles[role].liveness;
+                *liveness = with_formula(liveness, &participant.name, &participant.liveness);
+                let capability = self.srm.capabilities.iter_mut().find(|it| it.name == participant.name);
+                let place = capability
+                    .map_or(&mut self.srm.roles[role].activities, |capability| &mut capability.activities);
+                place.extend(
+                    activities.into_iter().filter(|activity| !place.contains(activity)).collect::<Vec<_>>(),
+                );
+            }
+            None => self.free_participant(participant),
+        }
+    }
+
+    /// The activities that the formulas of a participant name.
+    fn activities_of(&mut self, participant: &Participant) -> Vec<usize> {
+        let (formulas, _) = liveness::parse(&participant_formula(&participant.name, &participant.liveness));
+        let names: Vec<String> = activity_names(&formulas).into_iter().map(String::from).collect();
+        names.iter().map(|name| self.activity(name, None)).collect()
+    }
+
+    /// A part that no role of the use cases plays is there for roles that are written later.
+    fn free_participant(&mut self, participant: &Participant) {
+        let activities = self.activities_of(participant);
+        let (name, description) = (participant.name.clone(), participant.liveness.clone());
+        self.srm.capabilities.push(Capability { name, activities, description, ..Capability::default() });
+    }
+}
+
+/// Formulas in which that of a name says something else; it is added if there was none.
+fn with_formula(liveness: &str, name: &str, expression: &str) -> String {
+    let formula = format!("{name}={}\n", expression.trim_end());
+    let is_it =
+        |line: &str| line.split('=').next().is_some_and(|side| side.trim().eq_ignore_ascii_case(name));
+    let mut lines: Vec<String> = liveness
+        .lines()
+        .map(|line| if is_it(line) { formula.clone() } else { format!("{line}\n") })
+        .collect();
+    if !liveness.lines().any(is_it) {
+        lines.push(formula);
+    }
+    lines.concat()
+}

@@ -1,0 +1,89 @@
+//! Writer of XMI in the layout of the Eclipse tools.
+
+/// A document in the making.
+pub(crate) struct XmiWriter {
+    text: String,
+    open: Vec<String>,
+    /// Whether the tag of the innermost element is not closed yet.
+    in_tag: bool,
+}
+
+impl XmiWriter {
+    /// An empty document.
+    pub(crate) fn new() -> XmiWriter {
+        let text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+        XmiWriter { text, open: Vec::new(), in_tag: false }
+    }
+
+    /// Begins an element.
+    pub(crate) fn open(&mut self, name: &str) {
+        self.end_tag();
+        self.text.push_str(&"  ".repeat(self.open.len()));
+        self.text.extend(["<", name]);
+        self.open.push(name.into());
+        self.in_tag = true;
+    }
+
+    /// Begins the root element, with the attributes that each document has.
+    pub(crate) fn root(&mut self, prefix: &str, name: &str, namespace: &str) {
+        self.open(&format!("{prefix}:{name}"));
+        self.attribute("xmi:version", "2.0");
+        self.attribute("xmlns:xmi", super::XMI);
+        self.attribute(&format!("xmlns:{prefix}"), namespace);
+    }
+
+    /// Adds an attribute to the element that was begun last.
+    pub(crate) fn attribute(&mut self, name: &str, value: &str) {
+        self.text.extend([" ", name, "=\""]);
+        for letter in value.chars() {
+            match letter {
+                '&' => self.text.push_str("&amp;"),
+                '<' => self.text.push_str("&lt;"),
+                '"' => self.text.push_str("&quot;"),
+                '\n' => self.text.push_str("&#xA;"),
+                '\r' => self.text.push_str("&#xD;"),
+                '\t' => self.text.push_str("&#x9;"),
+                other => self.text.push(other),
+            }
+        }
+        self.text.push('"');
+    }
+
+    /// Adds an attribute unless it is empty.
+    pub(crate) fn attribute_if_any(&mut self, name: &str, value: &str) {
+        if !value.is_empty() {
+            self.attribute(name, value);
+        }
+    }
+
+    /// Ends the element that was begun last.
+    pub(crate) fn close(&mut self) {
+        let Some(name) = self.open.pop() else { return };
+        if std::mem::take(&mut self.in_tag) {
+            self.text.push_str("/>\n");
+        } else {
+            self.text.push_str(&"  ".repeat(self.open.len()));
+            self.text.extend(["</", &name, ">\n"]);
+        }
+    }
+
+    /// The text, every element ended.
+    pub(crate) fn into_text(mut self) -> String {
+        while !self.open.is_empty() {
+            self.close();
+        }
+        self.text
+    }
+
+    fn end_tag(&mut self) {
+        if std::mem::take(&mut self.in_tag) {
+            self.text.push_str(">\n");
+        }
+    }
+}
+
+/// Whether a text can stand in XML at all.
+pub(crate) fn fits_xml(text: &str) -> bool {
+    let control = |letter: char| u32::from(letter) < 0x20 && !"\t\n\r".contains(letter);
+    !text.contains(|letter| control(letter) || matches!(letter, '\u{fffe}' | '\u{ffff}'))
+}

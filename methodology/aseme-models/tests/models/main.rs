@@ -1,0 +1,19 @@
+//! Models of all kinds: read, written, converted there and back.
+
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "the functions around tests are tests too"
+)]
+
+mod diff;
+mod faults;
+mod generators;
+mod kit;
+mod regenerate;
+mod round_trip;
+mod shared;
+mod text;
+mod transformations;
+mod xmi;

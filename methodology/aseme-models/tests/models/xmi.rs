@@ -1,0 +1,149 @@
+//! XMI as it may be written: any order of attributes, all ways of referring, older metamodels.
+
+use aseme_models::convert::{Format, Model};
+use aseme_models::iac::Dialect;
+use aseme_models::suc::RoleKind;
+
+use crate::kit::{clean, read};
+
+#[test]
+fn attributes_come_in_any_order_and_references_in_any_form() {
+    let plain = r#"<statechart:Model xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:statechart="http://statechart/1.0" name="m">
+  <nodes name="r" label="0" type="OR"><Children name="0.1" label="0.1" type="START"/><Children name="a" label="0.2" type="BASIC"/></nodes>
+  <transitions TE="[x &amp;&amp; y &lt; 2]" name="0.1TOa" source="//@nodes.0/@Children.0" target="//@nodes.0/@Children.1"/>
+</statechart:Model>"#;
+    let varied = r##"<?xml version="1.0"?><!DOCTYPE m [<!ENTITY both "&#38;&#38;">]>
+<!-- a comment --><x:Model xmlns:x="http://statechart/1.0" xmlns:xmi="http://www.omg.org/XMI" name="m" xmi:version="2.0">
+  <transitions target="#b" source="#//@nodes/@Children.0" name="0.1TOa"
+    TE="[x &both; y &#60; 2]"/>
+  <nodes type="OR" label="0" name="r"><Children type="START" label="0.1" name="0.1" activity="null"/><Children xmi:id="b" type="BASIC" label="0.2" name="a" activity=""/></nodes>
+</x:Model>"##;
+    assert_eq!(clean(varied), clean(plain));
+}
+
+#[test]
+fn a_file_of_2010_nests_by_labels_in_any_order() {
+    let file = r##"<xmi:XMI xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:IAC="http://mi.parisdescartes.fr/ASEME/metamodels/IAC">
+  <IAC:Node name="a" type="BASIC" label="0.10" activity="null"/>
+  <IAC:Transition TE="null" source="#/3" target="#/2" name="0.1TO0.2"/>
+  <IAC:Node name="b" type="BASIC" label="0.2" activity="Printer(&quot;x&quot;)"/>
+  <IAC:Node name="0.1" type="START" label="0.1" activity="null"/>
+  <IAC:Node name="r" type="OR" label="0" activity="null"/>
+  <IAC:Model nodes="#/0 #/2 #/3 #/4" transitions="#/1" name="m"/>
+</xmi:XMI>"##;
+    let (model, format, findings) = read(file);
+    assert_eq!(format, Format::Statechart(Dialect::MultiRoot));
+    assert_eq!(
+        findings.iter().map(|it| it.code).collect::<Vec<_>>(),
+        ["E0813"],
+        "0.10 stands where 0.3 would be"
+    );
+    let Model::Chart(chart) = model else { panic!("a chart") };
+    let names: Vec<&str> = chart.nodes.iter().map(|node| node.name.as_str()).collect();
+    assert_eq!(names, ["r", "0.1", "b", "a"]);
+    assert_eq!((chart.transitions[0].te.as_str(), chart.transitions[0].target), ("", 2));
+    assert_eq!(chart.nodes[2].functionality, "Printer(\"x\")");
+}
+
+#[test]
+fn older_metamodels_are_understood() {
+    let suc = r#"<SUC:SUCmodel xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:SUC="http://www.amcl.tuc.gr/aseme/metamodels/SUC">
+  <roles xsi:type="SUC:HumanRole" name="fan" participates_in="//@usecases.0"/><roles xsi:type="SUC:SystemRole" name="player" participates_in="//@usecases.0"/>
+  <usecases name="Cheer" participant="//@roles.0 //@roles.1"/></SUC:SUCmodel>"#;
+    let Model::Suc(suc) = clean(suc) else { panic!("use cases") };
+    assert_eq!([suc.roles[0].kind, suc.roles[1].kind], [RoleKind::Human, RoleKind::System]);
+
+    let srm = r#"<SRM:SRMmodel xmlns:SRM="http://www.amcl.tuc.gr/aseme/metamodels/SRM">
+  <activities name="Stand" functionality="motion control"/><activities name="Scan" functionality="motion control"/>
+  <capabilities name="search" activities="//@activities.1"/>
+  <roles activities="//@activities.0" liveness="p=Stand.Scan" name="p" capabilities="//@capabilities.0"/></SRM:SRMmodel>"#;
+    let Model::Srm(srm) = clean(srm) else { panic!("roles") };
+    assert_eq!(srm.functionalities.len(), 1);
+    assert_eq!(srm.functionalities[0].description, "motion control");
+    assert_eq!((srm.activities[1].functionality, &srm.roles[0].activities), (Some(0), &vec![0]));
+}
+
+#[test]
+fn the_namespace_of_protocols_is_misspelt_as_the_tools_have_it() {
+    let Model::Aip(aip) = clean("AIP:\nParticipant: a\nParticipant: b\nProtocol: p\n  participants = a, b\n")
+    else {
+        panic!()
+    };
+    let text = Model::Aip(aip).write(Format::Xmi, "<").unwrap().text;
+    assert!(text.contains("http://www.acml.tuc.gr/aseme/metamodels/AIP"), "{text}");
+    clean(&text.replace("acml", "amcl"));
+}
+
+/// All that only text can say.
+const SAID: &str = "\
+IAC: m
+
+Constants:
+  near = 0.5
+
+States:
+  r OR
+    START
+    a BASIC
+      activity = Walk
+      priority = 5
+      entry = raise(on)
+      exit = raise(off)
+      defer = stop
+      duration = 250ms
+      at = 10 20
+      size = 90 30
+    END
+
+Transitions:
+  START -> a !2 %0.5 interrupts
+  a -> a internal : stop
+  a -> END
+    via = 10 20
+";
+
+#[test]
+fn what_no_dialect_can_say_is_listed_thing_by_thing() {
+    let model = clean(SAID);
+    for (_, format) in Format::WORDS {
+        let Format::Statechart(dialect) = format else { continue };
+        let lost = model.write(format, SAID).unwrap().lost;
+        assert!(lost.iter().all(|it| it.code == "E0850" && !it.is_error()), "{lost:?}");
+        let lost: Vec<String> = lost.iter().map(|it| it.message.clone()).collect();
+        for what in [
+            "the constant `near = 0.5`",
+            "the activity of `a`, `Walk`",
+            "the priority of `a`, `5`",
+            "the entry action of `a`, `raise(on)`",
+            "the exit action of `a`, `raise(off)`",
+            "the deferred events of `a`, `stop`",
+            "the duration of `a`, `250ms`",
+            "where `a` is drawn, `at = 10 20`",
+            "where `a` is drawn, `size = 90 30`",
+            "the priority of `0.1 -> a`",
+            "the weight of `0.1 -> a`",
+            "the word `interrupts` of `0.1 -> a`",
+            "the word `internal` of `a -> a`",
+            "the way in a drawing of `a -> 0.3`",
+        ] {
+            let whole = format!("{what}: {} cannot say that", dialect.name());
+            assert!(lost.contains(&whole), "{whole}\nis not in\n{}", lost.join("\n"));
+        }
+        assert_eq!(lost.len(), 14, "{}", lost.join("\n"));
+    }
+    let lost = model.write(Format::Scxml, SAID).unwrap().lost;
+    let lost: Vec<&str> = lost.iter().map(|it| it.message.as_str()).collect();
+    for what in [
+        "`near`",
+        "`r/a` has an activity",
+        "a priority",
+        "deferred events",
+        "interrupts",
+        "duration",
+        "is drawn",
+        "the way of",
+        "a weight",
+    ] {
+        assert!(lost.iter().any(|it| it.contains(what)), "{what} is not in\n{}", lost.join("\n"));
+    }
+}

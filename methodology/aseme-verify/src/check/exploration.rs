@@ -1,0 +1,450 @@
+//! Checks by exploration ([`yase_explore`]): M04 for JOIN, M12 to M15, M21, M22 and M26.
+//!
+//! Guards on data are free inputs as far as they are satisfiable together; activities return,
+//! events arrive and timers expire at any time. What is found unreachable is therefore unreachable
+//! in every environment. This holds only for a complete exploration; an incomplete one reports only
+//! what it found.
+
+mod completion;
+mod dead_by_design;
+
+use std::collections::BTreeSet;
+
+use yase::{
+    Diagnostic, MachineErrorKind, NodeId, NodeKind, Severity, Span, Statechart, Status, TransitionId,
+};
+use yase_explore::{Exploration, FailedStep, Trace, explore};
+
+use super::messages;
+use crate::abstraction::Abstraction;
+use crate::check_settings::CheckSettings;
+use crate::checked_model::CheckedModel;
+use crate::conformance;
+use crate::conformance::{ConformanceDifference, DifferenceKind};
+use crate::exploration_extent::ExplorationExtent;
+use crate::finding::Finding;
+use dead_by_design::DeadByDesign;
+
+/// The default number of activities that an agent's pool runs at once.
+const POOL: usize = 12;
+
+/// What exploration finds, what the findings before it being known, and how far it came; nothing if
+/// the chart cannot be explored.
+pub(crate) fn check(
+    subject: &CheckedModel,
+    settings: &CheckSettings,
+    known: &[Diagnostic],
+) -> (Vec<Finding>, Option<ExplorationExtent>) {
+    let abstraction = match Abstraction::new(subject) {
+        Ok(abstraction) => abstraction,
+        Err(reasons) => {
+            return (reasons.into_iter().map(|reason| not_explored(subject, reason)).collect(), None);
+        }
+    };
+    let mut surroundings = abstraction.surroundings();
+    let found = explore(&abstraction.chart, &mut surroundings, settings.states);
+    drop(surroundings);
+    let checks = ExplorationCheck {
+        subject,
+        abstraction: &abstraction,
+        found: &found,
+        intended: DeadByDesign::new(subject),
+        blamed: known.iter().map(|diagnostic| diagnostic.span).collect(),
+        is_whole: known.iter().all(|diagnostic| diagnostic.severity == Severity::Information),
+    };
+    let explored = ExplorationExtent {
+        states: found.states().len(),
+        configurations: found.configurations(),
+        is_finished: found.is_finished(),
+    };
+    (checks.all(settings, &explored), Some(explored))
+}
+
+/// Reports why a chart is not explored: silence would look like a chart without faults.
+fn not_explored(subject: &CheckedModel, reason: Diagnostic) -> Finding {
+    if reason.code.starts_with('M') {
+        // a fault of the structure that only shows when ways through connectors are put together
+        let span =
+            if reason.span == Span::default() { subject.places.node(Statechart::ROOT) } else { reason.span };
+        return Diagnostic { span, ..reason }.into();
+    }
+    let message = format!("not explored: {}", reason.message);
+    Diagnostic { severity: Severity::Warning, message, ..reason }.into()
+}
+
+struct ExplorationCheck<'a> {
+    subject: &'a CheckedModel,
+    abstraction: &'a Abstraction,
+    found: &'a Exploration,
+    intended: DeadByDesign,
+    /// The places of what other checks have found already: what follows from that is not said
+    /// again.
+    blamed: BTreeSet<Span>,
+    /// Whether no other check has found anything that matters.
+    is_whole: bool,
+}
+
+impl ExplorationCheck<'_> {
+    fn all(&self, settings: &CheckSettings, explored: &ExplorationExtent) -> Vec<Finding> {
+        let mut findings = self.livelocks();
+        let waiting = completion::check(self.subject);
+        let uncompleted: BTreeSet<TransitionId> = waiting.iter().map(|(id, _)| *id).collect();
+        findings.extend(waiting.into_iter().map(|(_, diagnostic)| diagnostic.into()));
+        if self.found.is_finished() {
+            findings.extend(self.joins());
+            findings.extend(self.unreachable_nodes());
+            let (held, stuck) = (self.held(), self.stuck_states());
+            let mut accounted: BTreeSet<TransitionId> = uncompleted;
+            accounted.extend(held.iter().map(|(id, _)| *id));
+            accounted.extend(stuck.iter().flat_map(|&node| self.subject.outgoing(node)));
+            findings.extend(self.unreachable_transitions(&accounted));
+            findings.extend(held.into_iter().map(|(_, finding)| finding));
+            findings.extend(self.dead_ends(&stuck));
+        }
+        if let Some(world) = settings.world.as_ref().filter(|_| self.found.is_finished()) {
+            findings.extend(messages::undelivered(self.subject, world, self.found));
+        }
+        if let Some(world) = &settings.world {
+            findings.extend(messages::concurrent_publishers(self.subject, world, self.found));
+        }
+        if findings.is_empty() && self.is_whole {
+            findings.extend(self.differences());
+        }
+        findings.extend(self.pool(settings));
+        findings.push(self.metrics(explored, settings).into());
+        findings
+    }
+
+    fn with_trace(diagnostic: Diagnostic, trace: &Trace) -> Finding {
+        Finding { diagnostic, trace: Some(trace.to_string()) }
+    }
+
+    /// M13: a step that never comes to rest. It is proven if what it asks of data can be.
+    fn livelocks(&self) -> Vec<Finding> {
+        let failures = self.found.failures().iter().filter(|it| it.kind == MachineErrorKind::NeverRests);
+        failures
+            .map(|failure| Self::with_trace(self.livelock(failure), &self.found.trace_of(failure)))
+            .collect()
+    }
+
+    fn livelock(&self, failure: &FailedStep) -> Diagnostic {
+        let is_proven =
+            failure.step.decisions.is_empty() || self.abstraction.can_be(&failure.step.decisions).is_yes();
+        let mut cycle: Vec<TransitionId> = failure.cycle.clone();
+        cycle.dedup();
+        let arrows: Vec<String> = cycle.iter().map(|&id| format!("`{}`", self.subject.arrow(id))).collect();
+        let message =
+            format!("the chart never comes to rest: it takes {} again and again", arrows.join(", "));
+        let span = cycle.first().map_or(Span::default(), |&id| self.subject.places.transition(id));
+        let severity = if is_proven { Severity::Error } else { Severity::Warning };
+        let found = Diagnostic { severity, ..Diagnostic::warning("M13", span, message) };
+        found.with_hint("let a transition of the circle wait: for an event, a timer, or an activity")
+    }
+
+    /// M04: a JOIN whose sources are never active together.
+    fn joins(&self) -> Vec<Finding> {
+        let joins = self.subject.chart.nodes().filter(|(_, node)| node.kind == NodeKind::Join);
+        let never = joins.filter(|(id, _)| {
+            let sources: Vec<NodeId> =
+                self.subject.incoming(*id).iter().map(|&way| self.subject.transition(way).source).collect();
+            sources.iter().all(|&source| self.found.was_entered(source))
+                && self.found.first(|state| sources.iter().all(|&source| state.is_active(source))).is_none()
+        });
+        never
+            .map(|(id, _)| {
+                let message = format!("the sources of `{}` are never active together", self.subject.path(id));
+                let found = Diagnostic::error("M04", self.subject.places.node(id), message);
+                found.with_hint("each of its sources waits until the others have come").into()
+            })
+            .collect()
+    }
+
+    /// M12 of states: the outermost of those that nothing leads to.
+    fn unreachable_nodes(&self) -> Vec<Finding> {
+        let is_place = |id: NodeId| self.subject.is_state(id) || self.subject.kind(id) == NodeKind::End;
+        let nodes = self.subject.chart.nodes().map(|(id, _)| id);
+        let unreached = nodes.filter(|&id| is_place(id) && !self.found.was_entered(id));
+        let outermost = unreached.filter(|&id| {
+            let parent = self.subject.chart.node(id).parent;
+            parent.is_some_and(|parent| self.found.was_entered(parent)) && !self.intended.is_cut_off(id)
+        });
+        outermost
+            .filter(|&id| self.is_first_of_unreached(id))
+            .map(|id| {
+                let message = format!("`{}` is never reached, whatever happens", self.subject.path(id));
+                let hint = match self.subject.incoming(id).is_empty() {
+                    true => "no transition leads there: add one, or take it away",
+                    false => "only what is never reached itself leads there",
+                };
+                self.subject.warn("M12", id, message).with_hint(hint).into()
+            })
+            .collect()
+    }
+
+    /// Whether no other finding explains why a node is unreachable: neither a transition to it from
+    /// a reached node nor an unreached node before it.
+    fn is_first_of_unreached(&self, id: NodeId) -> bool {
+        self.subject.incoming(id).iter().all(|&way| {
+            let source = self.subject.transition(way).source;
+            !self.was_possible(way) && (source >= id || self.subject.contains(id, source))
+        })
+    }
+
+    /// Whether a transition was where it could have been taken.
+    fn was_possible(&self, id: TransitionId) -> bool {
+        let source = self.subject.transition(id).source;
+        match self.subject.kind(source) {
+            NodeKind::Or | NodeKind::And | NodeKind::Basic | NodeKind::Start => {
+                self.found.was_entered(source)
+            }
+            _ => self.subject.incoming(source).iter().any(|&way| self.found.was_taken(way)),
+        }
+    }
+
+    /// M12 of transitions: those that are never taken though their source is reached.
+    fn unreachable_transitions(&self, accounted: &BTreeSet<TransitionId>) -> Vec<Finding> {
+        let ids = self.subject.chart.transitions().map(|(id, _)| id);
+        let never = ids.filter(|&id| {
+            let places = &self.subject.places;
+            let (guard, whole) = (places.guard(id), places.transition(id));
+            let is_told =
+                guard != Span::default() && (self.blamed.contains(&guard) || self.blamed.contains(&whole));
+            !self.found.was_taken(id)
+                && self.was_possible(id)
+                && !self.intended.is_never(id)
+                && !accounted.contains(&id)
+                && !is_told
+        });
+        never
+            .map(|id| {
+                let message = format!("`{}` is never taken, whatever happens", self.subject.arrow(id));
+                let hint =
+                    "another transition always comes before it, or what it waits for never is so there";
+                self.subject.warn_of("M12", id, message).with_hint(hint).into()
+            })
+            .collect()
+    }
+
+    /// M22: what would be taken but for activities that always run where it could be.
+    fn held(&self) -> Vec<(TransitionId, Finding)> {
+        let ids = self.subject.chart.transitions().map(|(id, _)| id);
+        let never = ids.filter(|&id| !self.found.was_taken(id) && !self.intended.is_never(id));
+        let held = never.filter(|&id| self.found.was_held(id) || self.never_becomes_quiescent(id));
+        held.map(|id| {
+            let message = format!(
+                "`{}` can only be taken while an activity that it would leave runs: it never is",
+                self.subject.arrow(id)
+            );
+            let hint = "write `interrupts` behind its target, or let what runs inside come to rest";
+            (id, self.subject.warn_of("M22", id, message).with_hint(hint).into())
+        })
+        .collect()
+    }
+
+    /// Whether a transition waits for a composite to be quiet in which something always runs.
+    fn never_becomes_quiescent(&self, id: TransitionId) -> bool {
+        let transition = self.subject.transition(id);
+        let is_composite = matches!(self.subject.kind(transition.source), NodeKind::Or | NodeKind::And);
+        let by_guard = transition.expression.trigger.is_none() && transition.expression.guard.is_some();
+        let runs_inside = |node: &NodeId| self.subject.contains(transition.source, *node);
+        is_composite
+            && by_guard
+            && !transition.interrupts
+            && self.found.was_entered(transition.source)
+            && self
+                .found
+                .states()
+                .iter()
+                .filter(|state| state.is_active(transition.source))
+                .all(|state| state.running.iter().any(runs_inside))
+    }
+
+    /// The states that are reached, meant to be left, and never are.
+    fn stuck_states(&self) -> Vec<NodeId> {
+        let leaves = self
+            .subject
+            .chart
+            .nodes()
+            .filter(|(_, node)| matches!(node.kind, NodeKind::Basic | NodeKind::Start));
+        let stuck = leaves.map(|(id, _)| id).filter(|&id| {
+            self.found.was_entered(id)
+                && !self.found.was_left(id)
+                && self.intended.must_be_exited(self.subject, id)
+        });
+        stuck.collect()
+    }
+
+    /// M14: a state that is never left, and no END.
+    fn dead_ends(&self, stuck: &[NodeId]) -> Vec<Finding> {
+        let mut findings: Vec<Finding> = stuck
+            .iter()
+            .filter_map(|&id| {
+                let state = self.found.first(|state| state.is_active(id))?;
+                let message =
+                    format!("`{}` is reached and never left, though it is no END", self.subject.path(id));
+                let found = self.subject.warn("M14", id, message).with_hint("the trace shows a way there");
+                Some(Self::with_trace(found, &self.found.trace_to(state)))
+            })
+            .collect();
+        findings.extend(self.standstill(stuck));
+        findings
+    }
+
+    /// M14 of the whole chart: a state of affairs that nothing changes any more, though its parts
+    /// are left at other times.
+    fn standstill(&self, stuck: &[NodeId]) -> Option<Finding> {
+        let states = self.found.states();
+        let mut moves = vec![false; states.len()];
+        for edge in self.found.edges() {
+            if (edge.from != edge.to || edge.does_something)
+                && let Some(moves) = moves.get_mut(edge.from)
+            {
+                *moves = true;
+            }
+        }
+        let is_dead = |index: &usize| {
+            let state = &states[*index];
+            let leaves =
+                || state.configuration.iter().filter(|&&node| self.subject.chart.children(node).is_empty());
+            state.status == Status::Running
+                && !moves[*index]
+                && !leaves().any(|node| stuck.contains(node))
+                && leaves().any(|&node| self.intended.must_be_exited(self.subject, node))
+        };
+        let index = (0..states.len()).find(is_dead)?;
+        let to_be_left = |node: &&NodeId| self.intended.must_be_exited(self.subject, **node);
+        let &node = states[index].configuration.iter().find(to_be_left)?;
+        let message =
+            format!("with `{}` active, the chart can come to a standstill", self.subject.path(node));
+        let found = self.subject.warn("M14", node, message).with_hint("the trace shows a way there");
+        Some(Self::with_trace(found, &self.found.trace_to(index)))
+    }
+
+    /// M24. Where something else is wrong, what follows from it is not said again.
+    fn differences(&self) -> Vec<Finding> {
+        let Some(liveness) = &self.subject.liveness else { return Vec::new() };
+        let chart = &self.subject.chart;
+        let (differences, is_whole) = conformance::differences(chart, self.found, liveness);
+        let undecided = !is_whole && self.found.is_finished() && differences.is_empty();
+        let cut = self.cut_short();
+        let found = differences.into_iter().map(|difference| {
+            let does_more = difference.kind.is_of_what_is_done();
+            // what leaves a composite early cuts traces short, as it is meant to; what cannot come
+            // of that is told instead
+            let beyond = match does_more && !cut.is_empty() {
+                true => conformance::difference_beyond(chart, self.found, liveness, cut.clone()),
+                false => None,
+            };
+            let is_meant = does_more && !cut.is_empty() && beyond.is_none();
+            self.difference(beyond.unwrap_or(difference), is_meant)
+        });
+        found.chain(undecided.then(|| self.undecided().into())).collect()
+    }
+
+    /// What is too large to be compared is not said to hold.
+    fn undecided(&self) -> Diagnostic {
+        let message =
+            "not decided: whether the chart does what its formulas say, which is too large to be compared";
+        let found = self.subject.warn("M24", Statechart::ROOT, message.into());
+        found.with_hint("check the parts of it that matter as roles of their own")
+    }
+
+    fn difference(&self, difference: ConformanceDifference, is_meant: bool) -> Finding {
+        let before = match difference.before.as_slice() {
+            [] => String::from("at the beginning"),
+            names => format!("after `{}`", names.join(" ")),
+        };
+        let (node, says) = match &difference.kind {
+            DifferenceKind::NotAllowed(node) => {
+                (*node, format!("`{}` is done, which the formulas do not allow", self.subject.path(*node)))
+            }
+            DifferenceKind::EndsEarly => {
+                (Statechart::ROOT, String::from("the chart ends, and the formulas go on"))
+            }
+            DifferenceKind::NeverDone(name) => {
+                (Statechart::ROOT, format!("the formulas allow `{name}`, and the chart never does it"))
+            }
+            DifferenceKind::NeverEnds => {
+                (Statechart::ROOT, String::from("the formulas may end, and the chart never does"))
+            }
+            DifferenceKind::Starves(names) if names.is_empty() => (
+                Statechart::ROOT,
+                String::from("what the formulas go on with can never come, whatever happens"),
+            ),
+            DifferenceKind::Starves(names) => {
+                let said = format!("`{}` is never done again, whatever happens", names.join("` and `"));
+                (Statechart::ROOT, said)
+            }
+        };
+        let found = self.subject.warn("M24", node, format!("{before} {says}"));
+        let does_more = difference.kind.is_of_what_is_done();
+        // what ceases has been as the formulas say for as long as it went on
+        let ceases = matches!(difference.kind, DifferenceKind::Starves(_));
+        let severity = if is_meant || ceases { Severity::Warning } else { Severity::Error };
+        let hint = match (does_more, is_meant) {
+            _ if ceases => "some way back is closed once this has happened, or the state is never left",
+            (true, true) => {
+                "a composite is left before it has completed: leave it by `[false]` or without a guard to have it do all"
+            }
+            (true, false) => "some transition leads where the formulas do not",
+            (false, _) => "some guard or transition stands in the way",
+        };
+        let trace = difference.trace.map(|trace| trace.to_string());
+        Finding { diagnostic: Diagnostic { severity, ..found }.with_hint(hint), trace }
+    }
+
+    /// The names of the composites that the chart leaves by a guard or an event.
+    fn cut_short(&self) -> BTreeSet<String> {
+        let left = self.subject.chart.transitions().filter(|(id, transition)| {
+            let is_composite = matches!(self.subject.kind(transition.source), NodeKind::Or | NodeKind::And);
+            is_composite && !completion::waits(self.subject, *id) && self.found.was_taken(*id)
+        });
+        left.map(|(_, transition)| self.subject.chart.node(transition.source).name.clone()).collect()
+    }
+
+    /// M21: more activities at once than the pool runs.
+    fn pool(&self, settings: &CheckSettings) -> Option<Finding> {
+        let size = settings.pool.unwrap_or(POOL);
+        let state = self.found.first(|state| state.running.len() > size)?;
+        let most = self.found.states().iter().map(|state| state.running.len()).max()?;
+        let message = format!("up to {most} activities run at once, and the pool runs {size}");
+        let found = self.subject.warn("M21", Statechart::ROOT, message);
+        let found = found.with_hint(
+            "those that find no place wait: give the pool more threads, or the activities priorities",
+        );
+        Some(Self::with_trace(found, &self.found.trace_to(state)))
+    }
+
+    /// M26.
+    fn metrics(&self, explored: &ExplorationExtent, settings: &CheckSettings) -> Diagnostic {
+        let depth = self.subject.chart.nodes().map(|(id, _)| self.subject.chart.ancestors(id).count()).max();
+        let bound = if explored.is_finished { "" } else { " found before the end of the search" };
+        let message = format!(
+            "states nest {} levels deep; {} configurations, {} states of the machine{bound}{}",
+            depth.unwrap_or(0),
+            explored.configurations,
+            explored.states,
+            self.recorded(settings)
+        );
+        let found = self.subject.warn("M26", Statechart::ROOT, message);
+        Diagnostic { severity: Severity::Information, ..found }
+    }
+
+    /// What of the chart recordings have been through, if there are any of it.
+    fn recorded(&self, settings: &CheckSettings) -> String {
+        let Some(recorded) = settings.recorded.iter().find(|it| it.chart == self.subject.chart) else {
+            return String::new();
+        };
+        let is_basic = |id: &NodeId| self.subject.kind(*id) == NodeKind::Basic;
+        let states: Vec<NodeId> = self.subject.chart.nodes().map(|(id, _)| id).filter(is_basic).collect();
+        let ways = self.subject.chart.transitions().filter(|(_, it)| !it.expression.is_never());
+        let ways: Vec<TransitionId> = ways.map(|(id, _)| id).collect();
+        format!(
+            "; recordings have been through {} of {} basic states and {} of {} transitions",
+            states.iter().filter(|&id| recorded.entered.contains(id)).count(),
+            states.len(),
+            ways.iter().filter(|&id| recorded.fired.contains(id)).count(),
+            ways.len()
+        )
+    }
+}

@@ -1,0 +1,106 @@
+//! M15: transitions that wait for the completion of a composite that never completes.
+
+use yase::{Diagnostic, NodeId, NodeKind, TransitionId};
+
+use crate::checked_model::CheckedModel;
+
+/// Transitions whose source never completes, and their findings.
+pub(crate) fn check(subject: &CheckedModel) -> Vec<(TransitionId, Diagnostic)> {
+    let completes = completes(subject);
+    let in_vain = |&id: &TransitionId| {
+        let source = subject.transition(id).source;
+        waits(subject, id) && !completes[source.0 as usize] && !is_forever(subject, source)
+    };
+    let waiting = subject.chart.transitions().map(|(id, _)| id).filter(in_vain);
+    waiting
+        .map(|id| {
+            let source = subject.path(subject.transition(id).source);
+            let message =
+                format!("`{}` waits until `{source}` has completed, which it never can", subject.arrow(id));
+            let hint =
+                "write `[false]` if it is meant to go on forever, or a guard or an event on which it is left";
+            (id, subject.warn_of("M15", id, message).with_hint(hint))
+        })
+        .collect()
+}
+
+/// Whether a transition leaves a composite that has completed, and no other.
+pub(crate) fn waits(subject: &CheckedModel, id: TransitionId) -> bool {
+    let transition = subject.transition(id);
+    let expression = &transition.expression;
+    let is_composite = matches!(subject.kind(transition.source), NodeKind::Or | NodeKind::And);
+    let for_completion = expression.guard.is_none() || transition.source == transition.target;
+    is_composite && expression.trigger.is_none() && !expression.is_never() && for_completion
+}
+
+/// Whether a composite is what `x~` makes: it goes on forever, and its exit is only there since the
+/// rest of the formula has one.
+pub(crate) fn is_forever(subject: &CheckedModel, node: NodeId) -> bool {
+    let children = subject.chart.children(node);
+    let has_end = children.iter().any(|&child| subject.kind(child) == NodeKind::End);
+    subject.kind(node) == NodeKind::Or && !has_end && subject.chart.node(node).name.ends_with('~')
+}
+
+/// Whether each node can complete, by what its transitions lead to, whatever their guards say.
+fn completes(subject: &CheckedModel) -> Vec<bool> {
+    let mut completes: Vec<bool> =
+        subject.chart.nodes().map(|(_, node)| node.kind == NodeKind::Basic).collect();
+    loop {
+        let open = subject.chart.nodes().map(|(id, _)| id).filter(|id| !completes[id.0 as usize]);
+        let new: Vec<NodeId> = open.filter(|&id| can_now(subject, &completes, id)).collect();
+        if new.is_empty() {
+            return completes;
+        }
+        new.into_iter().for_each(|id| completes[id.0 as usize] = true);
+    }
+}
+
+/// Whether a composite can complete, if so much else can.
+fn can_now(subject: &CheckedModel, completes: &[bool], node: NodeId) -> bool {
+    let children = subject.chart.children(node);
+    match subject.kind(node) {
+        NodeKind::And => {
+            children.iter().all(|&child| !subject.is_state(child) || completes[child.0 as usize])
+        }
+        NodeKind::Or => reaches_end(subject, completes, node),
+        _ => false,
+    }
+}
+
+fn reaches_end(subject: &CheckedModel, completes: &[bool], composite: NodeId) -> bool {
+    let starts =
+        subject.chart.children(composite).iter().filter(|&&child| subject.kind(child) == NodeKind::Start);
+    let mut open: Vec<NodeId> = starts.copied().collect();
+    let mut seen = vec![false; completes.len()];
+    while let Some(node) = open.pop() {
+        if std::mem::replace(&mut seen[node.0 as usize], true) {
+            continue;
+        }
+        let inside = subject.contains(composite, node) && node != composite;
+        if inside && subject.kind(node) == NodeKind::End && subject.chart.node(node).parent == Some(composite)
+        {
+            return true;
+        }
+        // whatever is active inside may leave too: its own transitions may lead anywhere
+        open.extend(subject.chart.children(node));
+        // and so may what lies around a node that a transition from outside leads to, such as a
+        // HISTORY
+        let around = subject.chart.node(node).parent.filter(|&parent| inside && parent != composite);
+        open.extend(around);
+        let ways = subject.outgoing(node).iter().filter(|&&id| can_leave(subject, completes, id));
+        open.extend(
+            ways.map(|&id| subject.transition(id).target)
+                .filter(|&target| subject.contains(composite, target)),
+        );
+    }
+    false
+}
+
+fn can_leave(subject: &CheckedModel, completes: &[bool], id: TransitionId) -> bool {
+    let transition = subject.transition(id);
+    let expression = &transition.expression;
+    let waits = expression.trigger.is_none()
+        && (expression.guard.is_none() || transition.source == transition.target);
+    let is_ready = !subject.is_state(transition.source) || completes[transition.source.0 as usize];
+    !expression.is_never() && (!waits || is_ready)
+}

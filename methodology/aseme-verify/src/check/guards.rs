@@ -1,0 +1,55 @@
+//! Checks of guards by [`logic`](crate::logic): M01 for a START that may be blocked, M05 to M10.
+
+mod alternatives;
+mod connectors;
+
+use yase::expression::Expression;
+use yase::{Diagnostic, TransitionId};
+
+use crate::checked_model::CheckedModel;
+use crate::logic::GuardSolver;
+
+pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
+    let guards = GuardCheck { subject, logic: GuardSolver::new(&subject.chart.constants) };
+    let mut found = Vec::new();
+    for (id, _) in subject.chart.transitions() {
+        found.extend(guards.never_or_always(id));
+    }
+    for (id, _) in subject.chart.nodes() {
+        found.extend(guards.cases_left_open(id));
+        found.extend(guards.dead_ways(id));
+        found.extend(guards.alternatives(id));
+    }
+    found.extend(guards.conflicting_regions());
+    found
+}
+
+/// The guards of a chart, and how they are judged.
+struct GuardCheck<'a> {
+    subject: &'a CheckedModel,
+    logic: GuardSolver<'a>,
+}
+
+impl<'a> GuardCheck<'a> {
+    fn guard(&self, id: TransitionId) -> Option<&'a Expression> {
+        self.subject.transition(id).expression.guard.as_ref()
+    }
+
+    /// M09. What is written as `true` or `false` is meant so.
+    fn never_or_always(&self, id: TransitionId) -> Option<Diagnostic> {
+        use crate::logic::Claim::{Holds, IsFalse};
+        let guard = self.guard(id)?;
+        if matches!(guard.kind, yase::expression::ExpressionKind::Bool(_)) {
+            return None;
+        }
+        let (says, hint) = if self.logic.together(&[Holds(guard)]).is_no() {
+            ("can never hold", "write `[false]` if the transition is meant never to be taken")
+        } else if self.logic.together(&[IsFalse(guard)]).is_no() {
+            ("holds whenever the messages it reads are there", "leave it out, or mend it")
+        } else {
+            return None;
+        };
+        let message = format!("the guard of `{}` {says}", self.subject.arrow(id));
+        Some(Diagnostic::warning("M09", self.subject.places.guard(id), message).with_hint(hint))
+    }
+}

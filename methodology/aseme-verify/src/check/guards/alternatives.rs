@@ -1,0 +1,201 @@
+//! Overlap of the guards of transitions from one node: M07, M08 and, across regions, M10.
+
+use std::collections::BTreeSet;
+
+use yase::expression::Trigger;
+use yase::{Diagnostic, NodeId, NodeKind, TransitionId};
+
+use super::GuardCheck;
+use crate::logic::Claim;
+
+/// Of more ways than this out of one node, only neighbours are compared.
+const MOST: usize = 64;
+
+impl GuardCheck<'_> {
+    /// M07 and M08.
+    pub(crate) fn alternatives(&self, node: NodeId) -> Vec<Diagnostic> {
+        if matches!(self.subject.kind(node), NodeKind::Fork | NodeKind::Join) {
+            return Vec::new();
+        }
+        let never = |id: &TransitionId| self.subject.transition(*id).expression.is_never();
+        let ways = self.subject.outgoing(node).iter().copied().filter(|id| !never(id));
+        let ways: Vec<TransitionId> = ways.collect();
+        let mut found = Vec::new();
+        for (index, &later) in ways.iter().enumerate() {
+            let earlier = &ways[index.saturating_sub(MOST)..index];
+            match self.shadowed_transition(earlier, later) {
+                Some(shadowed) => found.push(shadowed),
+                None => found.extend(earlier.iter().filter_map(|&first| self.overlap(first, later))),
+            }
+        }
+        found
+    }
+
+    /// M07: whenever the later one could be taken, an earlier one is.
+    fn shadowed_transition(&self, earlier: &[TransitionId], later: TransitionId) -> Option<Diagnostic> {
+        if self.subject.transition(later).weight.is_some() || self.is_dead(later) {
+            return None;
+        }
+        let before: Vec<TransitionId> =
+            earlier.iter().copied().filter(|&first| self.comes_before(first, later)).collect();
+        let alone = before.iter().copied().find(|&first| self.is_covered(&[first], later));
+        let (who, hint) = match alone {
+            Some(first) if self.guard(first).is_none() => {
+                let hint = "give the first a guard, or one of the two an event or a priority";
+                (format!("`{}`, which has no guard,", self.subject.arrow(first)), hint)
+            }
+            Some(first) => {
+                (format!("`{}`", self.subject.arrow(first)), "its guard holds whenever this one's does")
+            }
+            None if before.len() > 1 && self.is_covered(&before, later) => (
+                String::from("one of the transitions before it"),
+                "their guards together hold whenever this one's does",
+            ),
+            None => return None,
+        };
+        let message = format!("`{}` is never taken: {who} always wins", self.subject.arrow(later));
+        Some(Diagnostic::warning("M07", self.subject.places.guard(later), message).with_hint(hint))
+    }
+
+    fn is_dead(&self, id: TransitionId) -> bool {
+        self.guard(id).is_some_and(|guard| self.logic.together(&[Claim::Holds(guard)]).is_no())
+    }
+
+    /// Whether a transition is tried before another on every occasion on which that is, and goes on
+    /// to a state.
+    fn comes_before(&self, first: TransitionId, later: TransitionId) -> bool {
+        let (one, other) = (self.subject.transition(first), self.subject.transition(later));
+        let interrupts = one.interrupts || !other.interrupts;
+        let occasion = subsumes(one.expression.trigger.as_ref(), other.expression.trigger.as_ref());
+        one.weight.is_none()
+            && interrupts
+            && occasion
+            && (one.expression.trigger.is_some()
+                || self.source_requirement(first) <= self.source_requirement(later))
+            && self.goes_on(one.target)
+    }
+
+    /// What a transition without a trigger asks of its source: 0 nothing, 1 that nothing inside can
+    /// step, 2 that it has completed.
+    fn source_requirement(&self, id: TransitionId) -> u8 {
+        let transition = self.subject.transition(id);
+        match self.subject.kind(transition.source) {
+            NodeKind::Or | NodeKind::And => {
+                let leaves = transition.expression.guard.is_some() && transition.source != transition.target;
+                if leaves { 1 } else { 2 }
+            }
+            _ => 0,
+        }
+    }
+
+    /// Whether one of the earlier guards holds whenever the later one does.
+    fn is_covered(&self, earlier: &[TransitionId], later: TransitionId) -> bool {
+        let claims =
+            earlier.iter().map(|&id| self.guard(id).map(Claim::DoesNotHold)).collect::<Option<Vec<_>>>();
+        // one without a guard is always open
+        let Some(mut claims) = claims else { return true };
+        claims.extend(self.guard(later).map(Claim::Holds));
+        self.logic.together(&claims).is_no()
+    }
+
+    /// M08: both can be enabled at once, and nothing says which is meant.
+    fn overlap(&self, first: TransitionId, later: TransitionId) -> Option<Diagnostic> {
+        let (one, other) = (self.subject.transition(first), self.subject.transition(later));
+        let is_decided = one.priority != other.priority || one.weight.is_some() || other.weight.is_some();
+        let alike = self.source_requirement(first) == self.source_requirement(later);
+        // whichever is taken, it comes to the same
+        let is_same = (one.target, one.interrupts, one.internal, &one.expression.actions)
+            == (other.target, other.interrupts, other.internal, &other.expression.actions);
+        if is_same
+            || is_decided
+            || !alike
+            || !triggers_overlap(one.expression.trigger.as_ref(), other.expression.trigger.as_ref())
+        {
+            return None;
+        }
+        let claims = [Claim::Holds(self.guard(first)?), Claim::Holds(self.guard(later)?)];
+        let crate::logic::Satisfiability::Yes(example) = self.logic.together(&claims) else {
+            return None;
+        };
+        let (one, other) = (self.subject.arrow(first), self.subject.arrow(later));
+        let message = format!("`{one}` and `{other}` may both be enabled: where {example}");
+        let hint = "the first is taken; give them priorities, or guards that exclude each other";
+        Some(Diagnostic::warning("M08", self.subject.places.guard(later), message).with_hint(hint))
+    }
+
+    /// M10: an event on which one region leaves the AND while another would stay.
+    pub(crate) fn conflicting_regions(&self) -> Vec<Diagnostic> {
+        let with_trigger = |id: &TransitionId| self.subject.trigger(*id).is_some();
+        let waiting: Vec<TransitionId> =
+            self.subject.chart.transitions().map(|(id, _)| id).filter(with_trigger).collect();
+        let mut found = Vec::new();
+        for &leaving in &waiting {
+            let others = waiting.iter().filter(|&&other| other != leaving);
+            found.extend(others.filter_map(|&staying| self.conflicting_pair(leaving, staying)));
+        }
+        found
+    }
+
+    fn conflicting_pair(&self, leaving: TransitionId, staying: TransitionId) -> Option<Diagnostic> {
+        let (one, other) = (self.subject.transition(leaving), self.subject.transition(staying));
+        let (and, _, region) = self.subject.apart(one.source, other.source)?;
+        let leaves = !self.subject.contains(and, one.target) && !one.internal;
+        let stays = self.subject.contains(region, other.target) && !other.internal;
+        let meets = triggers_overlap(one.expression.trigger.as_ref(), other.expression.trigger.as_ref());
+        let guards: Vec<Claim<'_>> =
+            [leaving, staying].into_iter().filter_map(|id| self.guard(id)).map(Claim::Holds).collect();
+        if !(leaves && stays && meets && self.logic.together(&guards).is_yes()) {
+            return None;
+        }
+        let winner = if one.source < other.source { leaving } else { staying };
+        let message = format!(
+            "on the same event `{}` leaves `{}` and `{}` stays in it: `{}` wins",
+            self.subject.arrow(leaving),
+            self.subject.path(and),
+            self.subject.arrow(staying),
+            self.subject.arrow(winner)
+        );
+        let hint = "the one whose source comes first in the model is taken, the other is not; use different events, or guards";
+        Some(Diagnostic::warning("M10", self.subject.places.transition(leaving), message).with_hint(hint))
+    }
+}
+
+fn names(trigger: &Trigger) -> Option<BTreeSet<String>> {
+    match trigger {
+        Trigger::OneOf(events) => Some(events.iter().map(yase::expression::Path::text).collect()),
+        _ => None,
+    }
+}
+
+/// Whether a trigger matches every occasion that another does.
+fn subsumes(first: Option<&Trigger>, later: Option<&Trigger>) -> bool {
+    match (first, later) {
+        (None, None) | (Some(Trigger::Any), Some(_)) => true,
+        (Some(Trigger::Not(event)), Some(Trigger::Not(other))) => event == other,
+        (Some(Trigger::Not(event)), Some(later)) => {
+            names(later).is_some_and(|names| !names.contains(&event.text()))
+        }
+        (Some(first), Some(later)) => {
+            matches!((names(first), names(later)), (Some(first), Some(later)) if later.is_subset(&first))
+        }
+        _ => false,
+    }
+}
+
+/// Whether there is an occasion that both match.
+fn triggers_overlap(one: Option<&Trigger>, other: Option<&Trigger>) -> bool {
+    match (one, other) {
+        (None, None) => true,
+        (None, _) | (_, None) => false,
+        (Some(one), Some(other)) => match (one, other) {
+            (Trigger::OneOf(_), Trigger::OneOf(_)) => {
+                matches!((names(one), names(other)), (Some(one), Some(other)) if !one.is_disjoint(&other))
+            }
+            (Trigger::Not(event), several @ Trigger::OneOf(_))
+            | (several @ Trigger::OneOf(_), Trigger::Not(event)) => {
+                names(several).is_some_and(|names| names.iter().any(|name| *name != event.text()))
+            }
+            _ => true,
+        },
+    }
+}

@@ -1,0 +1,130 @@
+//! Guards on paths through connectors: uncovered cases (M01, M05), and paths that are never enabled
+//! (M06).
+
+use yase::expression::Expression;
+use yase::{Diagnostic, NodeId, NodeKind, Severity, TransitionId};
+
+use super::GuardCheck;
+use crate::logic::{Claim, Satisfiability};
+
+/// Ways through connectors are looked at up to this number of segments, and so many of them.
+const LONGEST: usize = 16;
+const MOST: usize = 256;
+
+impl GuardCheck<'_> {
+    /// M05 of a branch, M01 of a START: the guards of the ways out leave cases open.
+    ///
+    /// A START with one way out and a guard on it waits there on purpose.
+    pub(crate) fn cases_left_open(&self, node: NodeId) -> Option<Diagnostic> {
+        let kind = self.subject.kind(node);
+        let code = match kind {
+            NodeKind::Condition | NodeKind::Junction | NodeKind::Choice => "M05",
+            NodeKind::Start if self.subject.outgoing(node).len() > 1 => "M01",
+            _ => return None,
+        };
+        let example = match self.open_cases(node)? {
+            Some(example) => format!(": there {example}"),
+            None => String::new(),
+        };
+        let name = self.subject.path(node);
+        let message = format!("the ways out of `{name}` leave cases open{example}");
+        let found = self.subject.warn(code, node, message);
+        let severity = if kind == NodeKind::Choice { Severity::Error } else { found.severity };
+        let found = Diagnostic { severity, ..found };
+        Some(found.with_hint("let one of them be without a guard: it is taken when no other is"))
+    }
+
+    /// An example of what no way out of a node is for, if there is one: nothing in it if the ways
+    /// are closed whatever comes.
+    fn open_cases(&self, node: NodeId) -> Option<Option<String>> {
+        let ways = self.subject.outgoing(node);
+        let guards: Vec<&Expression> = ways.iter().filter_map(|&id| self.guard(id)).collect();
+        let is_drawn = ways.iter().any(|&id| self.subject.transition(id).weight.is_some());
+        if ways.is_empty() || guards.len() < ways.len() || is_drawn {
+            return None;
+        }
+        let claims: Vec<Claim<'_>> = guards.into_iter().map(Claim::IsFalse).collect();
+        match self.logic.together(&claims) {
+            Satisfiability::Yes(example) if example.values.is_empty() => Some(None),
+            Satisfiability::Yes(example) => Some(Some(example.to_string())),
+            _ => None,
+        }
+    }
+
+    /// M06: a way through connectors whose guards contradict each other.
+    pub(crate) fn dead_ways(&self, node: NodeId) -> Vec<Diagnostic> {
+        let (mut found, mut looked) = (Vec::new(), 0);
+        if self.is_static(node) {
+            // a way that goes on from here is looked at where it begins
+            return found;
+        }
+        let mut open: Vec<Vec<TransitionId>> =
+            self.subject.outgoing(node).iter().map(|&id| vec![id]).collect();
+        while let Some(way) = open.pop() {
+            looked += 1;
+            let Some(&last) = way.last() else { continue };
+            let target = self.subject.transition(last).target;
+            if way.len() > 1 && self.contradict(&way) {
+                found.push(self.dead_way(&way));
+                continue;
+            }
+            if self.is_static(target) && way.len() < LONGEST && looked < MOST {
+                let longer = self.subject.outgoing(target).iter().map(|&id| [way.as_slice(), &[id]].concat());
+                open.extend(longer);
+            }
+        }
+        found
+    }
+
+    fn is_static(&self, node: NodeId) -> bool {
+        matches!(
+            self.subject.kind(node),
+            NodeKind::Condition | NodeKind::Junction | NodeKind::EntryPoint | NodeKind::ExitPoint
+        )
+    }
+
+    /// Whether the guards of several segments cannot hold together, though each of the parts can.
+    fn contradict(&self, way: &[TransitionId]) -> bool {
+        let guards: Vec<&Expression> = way.iter().filter_map(|&id| self.guard(id)).collect();
+        let alone = |guard: &&Expression| self.logic.together(&[Claim::Holds(guard)]).is_no();
+        let claims: Vec<Claim<'_>> = guards.iter().map(|guard| Claim::Holds(guard)).collect();
+        guards.len() > 1 && !guards.iter().any(alone) && self.logic.together(&claims).is_no()
+    }
+
+    fn dead_way(&self, way: &[TransitionId]) -> Diagnostic {
+        let first =
+            way.first().map_or_else(String::new, |&id| self.subject.path(self.subject.transition(id).source));
+        let last = way[way.len() - 1];
+        let targets = way.iter().map(|&id| self.subject.path(self.subject.transition(id).target));
+        let path = std::iter::once(first).chain(targets).collect::<Vec<_>>().join("` -> `");
+        let message = format!("the way `{path}` is never open: its guards contradict each other");
+        let hint = "all guards up to a CHOICE are read at once; make the connector a CHOICE if an action comes between";
+        Diagnostic::error("M06", self.subject.places.guard(last), message).with_hint(hint)
+    }
+
+    /// Whether a way that has come to a node surely goes on from it.
+    pub(crate) fn goes_on(&self, node: NodeId) -> bool {
+        let mut open = vec![node];
+        let mut looked = 0;
+        while let Some(node) = open.pop() {
+            looked += 1;
+            if self.subject.kind(node) == NodeKind::Join || looked > MOST {
+                return false;
+            }
+            if !self.is_static(node) {
+                continue;
+            }
+            let unguarded = self.subject.outgoing(node).iter().find(|&&id| self.guard(id).is_none());
+            let Some(&sure) = unguarded else { return self.cases_are_covered(node) };
+            open.push(self.subject.transition(sure).target);
+        }
+        true
+    }
+
+    fn cases_are_covered(&self, node: NodeId) -> bool {
+        let guards = self.subject.outgoing(node).iter().filter_map(|&id| self.guard(id));
+        let claims: Vec<Claim<'_>> = guards.map(Claim::DoesNotHold).collect();
+        let to_states = |&id: &TransitionId| !self.is_static(self.subject.transition(id).target);
+        self.logic.together(&claims).is_no() && self.subject.outgoing(node).iter().all(to_states)
+    }
+}

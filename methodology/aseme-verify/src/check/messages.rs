@@ -1,0 +1,300 @@
+//! Checks of messages: names that the program does not have (M17, M21), regions that write and read
+//! in one step (M11), guards on messages that may not have arrived (M18).
+//!
+//! [`ProgramSymbols`] lists the messages, functions and activities of the program, and the topics
+//! that each activity publishes. For activities that declare no topics nothing is reported.
+
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+use yase::diagnostic::nearest;
+use yase::expression::{ActionKind, Path};
+use yase::{Diagnostic, NodeId, NodeKind, TransitionId};
+use yase_explore::Exploration;
+
+use crate::checked_model::CheckedModel;
+use crate::checked_model::timers;
+use crate::finding::Finding;
+use crate::logic;
+use crate::program_symbols::ProgramSymbols;
+
+/// M17 and M21: names that the world does not have.
+pub(crate) fn names(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagnostic> {
+    let mut found = activities(subject, world);
+    if let Err(wrong) = subject.chart.compile_with(&world.vocabulary, subject.semantics) {
+        found.extend(
+            wrong.into_iter().filter(Diagnostic::is_error).map(|diagnostic| unknown(subject, diagnostic)),
+        );
+    }
+    found
+}
+
+/// An invalid expression as a finding, positioned in the file only where the file contains it
+/// verbatim.
+fn unknown(subject: &CheckedModel, diagnostic: Diagnostic) -> Diagnostic {
+    let inside = |id: TransitionId| {
+        let whole = subject.places.transition(id);
+        whole.start <= diagnostic.span.start && diagnostic.span.end <= whole.end && whole.end > whole.start
+    };
+    let is_placed = subject.chart.transitions().any(|(id, _)| inside(id));
+    let span = if is_placed { diagnostic.span } else { yase::Span::default() };
+    let hint = diagnostic
+        .hint
+        .clone()
+        .or_else(|| Some("say what the program has, or link the crate that has it".into()));
+    Diagnostic { code: "M17", span, hint, ..diagnostic }
+}
+
+fn activities(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for (id, node) in subject.chart.nodes() {
+        let Some(name) = node.activity.as_ref().filter(|name| !world.activities.contains_key(*name)) else {
+            continue;
+        };
+        let message = format!("there is no activity `{name}`");
+        let hint = match nearest(name, world.activities.keys().map(String::as_str)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "write it, or link the crate that has it".into(),
+        };
+        found.push(Diagnostic::error("M21", subject.places.node(id), message).with_hint(hint));
+    }
+    found
+}
+
+/// M11: a transition of one region writes what one of another region may read in the same step, and
+/// does not see yet.
+pub(crate) fn same_step(subject: &CheckedModel) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for (writing, transition) in subject.chart.transitions() {
+        let written = transition.expression.actions.iter().filter_map(|action| match &action.kind {
+            ActionKind::Assign { target, .. } => message_of(target),
+            _ => None,
+        });
+        for message in written.collect::<BTreeSet<String>>() {
+            let readers = subject
+                .chart
+                .transitions()
+                .map(|(id, _)| id)
+                .filter(|&id| may_fire_together(subject, writing, id));
+            let reader = readers.into_iter().find(|&id| reads(subject, id, &message));
+            found.extend(reader.map(|reading| written_in_same_step(subject, writing, reading, &message)));
+        }
+    }
+    found
+}
+
+/// Whether two transitions live in different regions of one AND and may be taken in one step.
+fn may_fire_together(subject: &CheckedModel, one: TransitionId, other: TransitionId) -> bool {
+    let (first, second) = (subject.transition(one), subject.transition(other));
+    let apart = subject.apart(first.source, second.source).is_some();
+    let on_one_occasion = match (&first.expression.trigger, &second.expression.trigger) {
+        (None, None) => true,
+        (Some(one), Some(other)) => one == other,
+        _ => false,
+    };
+    apart && on_one_occasion && timers::blackboard(subject, one) != timers::blackboard(subject, other)
+}
+
+fn reads(subject: &CheckedModel, id: TransitionId, message: &str) -> bool {
+    let guard = subject.transition(id).expression.guard.as_ref();
+    guard.is_some_and(|guard| logic::messages(guard).iter().any(|it| it == message))
+}
+
+fn message_of(field: &Path) -> Option<String> {
+    field.text().rsplit_once('.').map(|(message, _)| message.to_owned())
+}
+
+fn written_in_same_step(
+    subject: &CheckedModel,
+    writing: TransitionId,
+    reading: TransitionId,
+    message: &str,
+) -> Diagnostic {
+    let says = format!(
+        "`{}` reads `{message}`, which `{}` of another region may write in the same step: it sees it at the next one",
+        subject.arrow(reading),
+        subject.arrow(writing)
+    );
+    let found = Diagnostic::warning("M11", subject.places.guard(reading), says);
+    found.with_hint("raise an event in the one and wait for it in the other, or keep both in one region")
+}
+
+/// M18: a guard that waits for a message that is published only after it has held.
+pub(crate) fn undelivered(
+    subject: &CheckedModel,
+    world: &ProgramSymbols,
+    found: &Exploration,
+) -> Vec<Finding> {
+    let guarded = subject
+        .chart
+        .transitions()
+        .map(|(id, _)| id)
+        .filter(|&id| subject.transition(id).expression.guard.is_some());
+    guarded.filter_map(|id| undelivered_at(subject, world, found, id)).collect()
+}
+
+fn undelivered_at(
+    subject: &CheckedModel,
+    world: &ProgramSymbols,
+    found: &Exploration,
+    id: TransitionId,
+) -> Option<Finding> {
+    let transition = subject.transition(id);
+    let guard = transition.expression.guard.as_ref()?;
+    for message in logic::messages(guard) {
+        let Some(publishers) = publishers(subject, world, &message) else { continue };
+        let outgoing = outgoing(found);
+        let is_in_vain = |number: usize| {
+            let (source, state) = (transition.source, &found.states()[number]);
+            let is_ready = matches!(subject.kind(source), NodeKind::Basic | NodeKind::Start);
+            let is_read = is_ready && state.is_active(source) && !state.running.contains(&source);
+            is_read
+                && !publishers.contains(&source)
+                && !may_return_while(found, &outgoing, number, source, &publishers)
+        };
+        if let Some(way) = path_without(found, &outgoing, &publishers, is_in_vain) {
+            let names: Vec<String> =
+                publishers.iter().map(|&node| format!("`{}`", subject.path(node))).collect();
+            let says = format!(
+                "the guard of `{}` waits for a `{message}` that need not have come, and does not come while it waits: it is published by {}",
+                subject.arrow(id),
+                names.join(", ")
+            );
+            let diagnostic = Diagnostic::warning("M18", subject.places.guard(id), says);
+            let hint =
+                format!("do what publishes it first, or say what is to be done when `{message} == NULL`");
+            return Some(Finding { diagnostic: diagnostic.with_hint(hint), trace: Some(way) });
+        }
+    }
+    None
+}
+
+/// M21: two states whose activity is the same run at once, and both publish: what the one says the
+/// other overwrites.
+pub(crate) fn concurrent_publishers(
+    subject: &CheckedModel,
+    world: &ProgramSymbols,
+    found: &Exploration,
+) -> Vec<Finding> {
+    let publishing = |node: NodeId| -> Option<(&str, &str)> {
+        let name = subject.chart.node(node).activity.as_deref()?;
+        let topic = world.activities.get(name)?.as_ref()?.first()?;
+        Some((name, topic))
+    };
+    let (mut told, mut findings) = (BTreeSet::new(), Vec::new());
+    for (number, state) in found.states().iter().enumerate() {
+        for (index, &node) in state.running.iter().enumerate() {
+            let Some((name, topic)) = publishing(node) else { continue };
+            let same = |&&other: &&NodeId| publishing(other).is_some_and(|(it, _)| it == name);
+            let Some(&other) = state.running[..index].iter().find(same) else { continue };
+            if !told.insert(name) {
+                continue;
+            }
+            let (one, other) = (subject.path(other), subject.path(node));
+            let message =
+                format!("`{name}` may run in `{one}` and in `{other}` at once, and both publish `{topic}`");
+            let diagnostic = subject.warn("M21", node, message).with_hint(
+                "each state has an instance of its own: let one of them do it, or give the two topics of their own",
+            );
+            findings.push(Finding { diagnostic, trace: Some(found.trace_to(number).to_string()) });
+        }
+    }
+    findings
+}
+
+/// The states whose activities publish a message, if these are all who do; none if that is not
+/// known.
+fn publishers(subject: &CheckedModel, world: &ProgramSymbols, message: &str) -> Option<BTreeSet<NodeId>> {
+    let mut topics = world.vocabulary.topics.iter().filter(|topic| topic.message == message);
+    let topic = topics.next().filter(|_| topics.next().is_none())?;
+    let publishes =
+        |name: &str| -> Option<bool> { Some(world.activities.get(name)?.as_ref()?.contains(&topic.path)) };
+    let own: BTreeSet<&str> =
+        subject.chart.nodes().filter_map(|(_, node)| node.activity.as_deref()).collect();
+    // whoever says nothing may publish it, and so may whoever is not part of this chart
+    for name in world.activities.keys() {
+        let is_own = own.contains(name.as_str());
+        if publishes(name)? && !is_own {
+            return None;
+        }
+    }
+    let is_publisher = |node: &yase::Node| node.activity.as_deref().and_then(publishes).unwrap_or(false);
+    let states: BTreeSet<NodeId> =
+        subject.chart.nodes().filter(|(_, node)| is_publisher(node)).map(|(id, _)| id).collect();
+    let writes = is_written(subject, message);
+    (!states.is_empty() && !writes).then_some(states)
+}
+
+/// Whether the chart itself writes a message.
+fn is_written(subject: &CheckedModel, message: &str) -> bool {
+    super::events::actions(subject).any(|(action, _)| match &action.kind {
+        ActionKind::Assign { target, .. } => message_of(target).as_deref() == Some(message),
+        ActionKind::Publish(path) => path.text() == message,
+        _ => false,
+    })
+}
+
+/// The edges out of each state.
+fn outgoing(found: &Exploration) -> BTreeMap<usize, Vec<usize>> {
+    let mut outgoing: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (index, edge) in found.edges().iter().enumerate() {
+        outgoing.entry(edge.from).or_default().push(index);
+    }
+    outgoing
+}
+
+/// Whether one of some activities may return while a state stays active: then a guard there only
+/// waits for it.
+fn may_return_while(
+    found: &Exploration,
+    outgoing: &BTreeMap<usize, Vec<usize>>,
+    from: usize,
+    source: NodeId,
+    publishers: &BTreeSet<NodeId>,
+) -> bool {
+    let (mut seen, mut open) = (BTreeSet::from([from]), vec![from]);
+    while let Some(state) = open.pop() {
+        for &edge in outgoing.get(&state).into_iter().flatten() {
+            let edge = &found.edges()[edge];
+            if edge.returned.is_some_and(|node| publishers.contains(&node)) {
+                return true;
+            }
+            if found.states()[edge.to].is_active(source) && seen.insert(edge.to) {
+                open.push(edge.to);
+            }
+        }
+    }
+    false
+}
+
+/// A way to a state of which something is true, on which none of some activities has returned.
+fn path_without(
+    found: &Exploration,
+    outgoing: &BTreeMap<usize, Vec<usize>>,
+    avoided: &BTreeSet<NodeId>,
+    is_meant: impl Fn(usize) -> bool,
+) -> Option<String> {
+    let mut came: BTreeMap<usize, Option<(usize, usize)>> =
+        found.initial().map(|state| (state, None)).collect();
+    let mut open: VecDeque<usize> = came.keys().copied().collect();
+    while let Some(state) = open.pop_front() {
+        if is_meant(state) {
+            let (mut at, mut edges) = (state, Vec::new());
+            while let Some(Some((before, edge))) = came.get(&at) {
+                edges.push(*edge);
+                at = *before;
+            }
+            edges.reverse();
+            return Some(found.trace_along(at, &edges).to_string());
+        }
+        for &index in outgoing.get(&state).into_iter().flatten() {
+            let edge = &found.edges()[index];
+            let is_avoided = edge.returned.is_some_and(|node| avoided.contains(&node));
+            if let (false, Entry::Vacant(entry)) = (is_avoided, came.entry(edge.to)) {
+                entry.insert(Some((state, index)));
+                open.push_back(edge.to);
+            }
+        }
+    }
+    None
+}

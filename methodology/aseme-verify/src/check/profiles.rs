@@ -1,0 +1,111 @@
+//! M25: constructs that UML or SCXML interpret differently from the thesis. Each is reported once,
+//! at its first occurrence.
+
+use yase::{Diagnostic, NodeId, NodeKind, Semantics, Severity, Span};
+
+use crate::checked_model::CheckedModel;
+
+pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
+    if subject.semantics != Semantics::yase() {
+        // it is read as its own standard says
+        return Vec::new();
+    }
+    let constructs: [(&str, Vec<Span>); 6] = [
+        (
+            "a composite is left by a guard, complete or not: in UML only when it has just completed, in SCXML at any time",
+            left_by_guard(subject),
+        ),
+        (
+            "a START has a guard: in UML and SCXML the guard is read before the actions that lead into the composite",
+            guarded_starts(subject),
+        ),
+        (
+            "a transition without a guard stands before one with a guard and is tried after it: in UML and SCXML the order of the model counts",
+            unguarded_first(subject),
+        ),
+        (
+            "a transition leads to a state around its source, which is left and entered again: in UML that state completes",
+            to_ancestor(subject),
+        ),
+        (
+            "a JOIN waits for all its sources: in UML each of them is left when it arrives",
+            of_kind(subject, NodeKind::Join),
+        ),
+        ("a state defers events: SCXML has no deferral", deferring(subject)),
+    ];
+    let constructs = constructs.into_iter().filter_map(|(says, places)| {
+        let first = *places.first()?;
+        let found = Diagnostic::warning("M25", first, says);
+        let found = Diagnostic { severity: Severity::Information, ..found };
+        Some(match places.len() {
+            1 => found,
+            count => found.with_hint(format!("{count} places are like that")),
+        })
+    });
+    constructs.collect()
+}
+
+fn ways(subject: &CheckedModel, is_meant: impl Fn(yase::TransitionId) -> bool) -> Vec<Span> {
+    let ways = subject.chart.transitions().map(|(id, _)| id).filter(|&id| is_meant(id));
+    ways.map(|id| subject.places.transition(id)).collect()
+}
+
+fn nodes(subject: &CheckedModel, is_meant: impl Fn(NodeId) -> bool) -> Vec<Span> {
+    subject
+        .chart
+        .nodes()
+        .map(|(id, _)| id)
+        .filter(|&id| is_meant(id))
+        .map(|id| subject.places.node(id))
+        .collect()
+}
+
+fn left_by_guard(subject: &CheckedModel) -> Vec<Span> {
+    ways(subject, |id| {
+        let transition = subject.transition(id);
+        let expression = &transition.expression;
+        let is_composite = matches!(subject.kind(transition.source), NodeKind::Or | NodeKind::And);
+        let is_guarded = expression.trigger.is_none() && expression.guard.is_some() && !expression.is_never();
+        is_composite && is_guarded && transition.source != transition.target
+    })
+}
+
+fn guarded_starts(subject: &CheckedModel) -> Vec<Span> {
+    ways(subject, |id| {
+        let transition = subject.transition(id);
+        subject.kind(transition.source) == NodeKind::Start && transition.expression.guard.is_some()
+    })
+}
+
+fn unguarded_first(subject: &CheckedModel) -> Vec<Span> {
+    ways(subject, |id| {
+        let transition = subject.transition(id);
+        let is_overtaken_by = |other: yase::TransitionId| {
+            let later = subject.transition(other);
+            let expression = &later.expression;
+            other > id
+                && expression.guard.is_some()
+                && !expression.is_never()
+                && later.priority == transition.priority
+                && expression.trigger == transition.expression.trigger
+        };
+        let beside = subject.outgoing(transition.source);
+        transition.expression.guard.is_none() && beside.iter().any(|&other| is_overtaken_by(other))
+    })
+}
+
+fn to_ancestor(subject: &CheckedModel) -> Vec<Span> {
+    ways(subject, |id| {
+        let transition = subject.transition(id);
+        let is_inner = transition.source != transition.target && !transition.internal;
+        is_inner && subject.contains(transition.target, transition.source)
+    })
+}
+
+fn of_kind(subject: &CheckedModel, kind: NodeKind) -> Vec<Span> {
+    nodes(subject, |id| subject.kind(id) == kind)
+}
+
+fn deferring(subject: &CheckedModel) -> Vec<Span> {
+    nodes(subject, |id| !subject.chart.node(id).defer.is_empty())
+}

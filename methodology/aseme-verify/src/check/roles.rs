@@ -1,0 +1,103 @@
+//! Checks of models of roles (S01 to S03, S05) and of protocols (S04).
+
+use std::collections::BTreeSet;
+
+use yase::{Diagnostic, Span};
+
+use aseme::liveness;
+use aseme_models::aip::Aip;
+use aseme_models::convert::Model;
+use aseme_models::roles::{Role, SystemRoles};
+
+/// The findings about a model that is not a chart.
+pub(crate) fn check(model: &Model) -> Vec<Diagnostic> {
+    match model {
+        Model::Srm(system) => system_roles(system),
+        Model::Aip(protocols) => participants(protocols),
+        _ => Vec::new(),
+    }
+}
+
+fn system_roles(system: &SystemRoles) -> Vec<Diagnostic> {
+    let mut found = without_functionality(system);
+    found.extend(unused_functionalities(system));
+    found.extend(in_no_formula(system));
+    found.extend(system.roles.iter().flat_map(|role| unknown_names(system, role)));
+    found
+}
+
+fn warning(code: &'static str, span: Span, message: String, hint: &str) -> Diagnostic {
+    Diagnostic::warning(code, span, message).with_hint(hint)
+}
+
+fn without_functionality(system: &SystemRoles) -> Vec<Diagnostic> {
+    let without = system.activities.iter().filter(|activity| activity.functionality.is_none());
+    without
+        .map(|activity| {
+            let message = format!("the activity `{}` has no functionality", activity.name);
+            warning("S01", activity.place.0, message, "name the functionality by which it is done")
+        })
+        .collect()
+}
+
+fn unused_functionalities(system: &SystemRoles) -> Vec<Diagnostic> {
+    let used: BTreeSet<usize> =
+        system.activities.iter().filter_map(|activity| activity.functionality).collect();
+    let unused = system.functionalities.iter().enumerate().filter(|(index, _)| !used.contains(index));
+    unused
+        .map(|(_, functionality)| {
+            let message = format!("no activity uses the functionality `{}`", functionality.description);
+            warning(
+                "S02",
+                functionality.place.0,
+                message,
+                "name it in the activities that it serves, or take it away",
+            )
+        })
+        .collect()
+}
+
+/// The names that formulas are over, those of formulas themselves left out.
+fn names(role: &Role) -> BTreeSet<String> {
+    let (liveness, _) = liveness::parse(&role.liveness);
+    let formulas: BTreeSet<&str> = liveness.formulas().iter().map(|formula| formula.name.as_str()).collect();
+    let names = liveness.formulas().iter().flat_map(|formula| liveness.names(formula)).map(|(name, _)| name);
+    names.filter(|name| !formulas.contains(name)).map(String::from).collect()
+}
+
+fn in_no_formula(system: &SystemRoles) -> Vec<Diagnostic> {
+    let named: BTreeSet<String> = system.roles.iter().flat_map(names).collect();
+    let unnamed = system.activities.iter().filter(|activity| !named.contains(&activity.name));
+    unnamed
+        .map(|activity| {
+            let message = format!("the activity `{}` stands in no formula", activity.name);
+            let found =
+                warning("S03", activity.place.0, message, "put it into the formula of the role that does it");
+            found.with_nearest(&activity.name, named.iter().map(String::as_str))
+        })
+        .collect()
+}
+
+fn unknown_names(system: &SystemRoles, role: &Role) -> Vec<Diagnostic> {
+    let known = || system.activities.iter().map(|activity| activity.name.as_str());
+    let unknown = names(role).into_iter().filter(|name| !known().any(|it| it == name));
+    unknown
+        .map(|name| {
+            let message = format!("`{name}` in the formulas of `{}` is no activity of the model", role.name);
+            let found = warning("S05", role.liveness_place.0, message, "add an activity of that name");
+            found.with_nearest(&name, known())
+        })
+        .collect()
+}
+
+fn participants(aip: &Aip) -> Vec<Diagnostic> {
+    let taking_part: BTreeSet<usize> =
+        aip.protocols.iter().flat_map(|protocol| protocol.participants.iter().copied()).collect();
+    let alone = aip.participants.iter().enumerate().filter(|(index, _)| !taking_part.contains(index));
+    alone
+        .map(|(_, participant)| {
+            let message = format!("`{}` takes part in no protocol", participant.name);
+            warning("S04", participant.place.0, message, "name it among the participants of a protocol")
+        })
+        .collect()
+}

@@ -1,0 +1,172 @@
+//! M19: timers that are read but never started, started but never read, or restarted before they
+//! can expire.
+//!
+//! A timer belongs to the blackboard of the region whose transition starts it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
+
+use yase::diagnostic::nearest;
+use yase::expression::{Expression, ExpressionKind, Trigger};
+use yase::{Diagnostic, NodeId, Span, TransitionId};
+
+use super::events;
+use crate::checked_model::CheckedModel;
+use crate::checked_model::timers::{self, TimerKey, blackboard, starts};
+
+pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
+    let timers = TimerCheck::new(subject);
+    let mut found = timers.never_started();
+    found.extend(timers.never_read());
+    found.extend(subject.chart.transitions().filter_map(|(id, _)| overtaken(subject, id)));
+    found.extend(subject.chart.transitions().flat_map(|(id, _)| twice(subject, id)));
+    found
+}
+
+struct TimerCheck<'a> {
+    subject: &'a CheckedModel,
+    started: BTreeMap<TimerKey, Span>,
+    /// Names that are read, whether in the form that is a timer without doubt, and where.
+    read: BTreeMap<TimerKey, (bool, Span)>,
+    /// Names of events that are waited for or put off: an expiry is an event.
+    events: BTreeSet<String>,
+}
+
+impl<'a> TimerCheck<'a> {
+    fn new(subject: &'a CheckedModel) -> TimerCheck<'a> {
+        let (started, mut read) = (timers::started(subject), BTreeMap::new());
+        for (id, transition) in subject.chart.transitions() {
+            let board = blackboard(subject, id);
+            for (name, is_sure) in transition.expression.guard.iter().flat_map(timers_read) {
+                let entry = read.entry((board, name)).or_insert((false, subject.places.guard(id)));
+                entry.0 |= is_sure;
+            }
+        }
+        let mut events: BTreeSet<String> = events::waited(subject).into_keys().collect();
+        events.extend(subject.chart.transitions().filter_map(|(_, it)| match &it.expression.trigger {
+            Some(Trigger::Not(event)) => Some(event.text()),
+            _ => None,
+        }));
+        events.extend(subject.chart.nodes().flat_map(|(_, node)| node.defer.iter().cloned()));
+        TimerCheck { subject, started, read, events }
+    }
+
+    fn never_started(&self) -> Vec<Diagnostic> {
+        let unset = self.read.iter().filter(|(timer, _)| !self.started.contains_key(*timer));
+        unset
+            .filter_map(|((board, name), &(is_sure, span))| self.not_started(*board, name, is_sure, span))
+            .collect()
+    }
+
+    /// A bare name may be a constant or a function too: then nothing is known of it.
+    fn not_started(&self, board: NodeId, name: &str, is_sure: bool, span: Span) -> Option<Diagnostic> {
+        let elsewhere = self.started.keys().find(|(_, other)| other == name);
+        if let Some((other, _)) = elsewhere {
+            let message = format!(
+                "the timer `{name}` is read on the blackboard of `{}`, but started on that of `{}`",
+                self.subject.path(board),
+                self.subject.path(*other)
+            );
+            let hint = "regions have timers of their own: start it by a transition of the same region";
+            return Some(Diagnostic::warning("M19", span, message).with_hint(hint));
+        }
+        let near = nearest(
+            name,
+            self.started.keys().filter(|(it, _)| *it == board).map(|(_, other)| other.as_str()),
+        );
+        let is_constant = self.subject.chart.constants.iter().any(|constant| constant.name == name);
+        let found =
+            Diagnostic::warning("M19", span, format!("the timer `{name}` is read, but never started"));
+        match near {
+            _ if is_constant => None,
+            Some(near) => Some(found.with_hint(format!("did you mean `{near}`?"))),
+            None if is_sure => Some(found.with_hint(format!("start it with `StartTimeout({name}, 100ms)`"))),
+            None => None,
+        }
+    }
+
+    fn never_read(&self) -> Vec<Diagnostic> {
+        let read = |(board, name): &TimerKey| {
+            self.read.contains_key(&(*board, name.clone())) || self.events.contains(name)
+        };
+        let unread = self.started.iter().filter(|(timer, _)| !read(timer));
+        unread
+            .filter(|((_, name), _)| !self.read.keys().any(|(_, other)| other == name))
+            .map(|((_, name), &span)| {
+                let message = format!(
+                    "the timer `{name}` is started, but no guard reads it and no trigger waits for it"
+                );
+                let read = self.read.keys().map(|(_, other)| other.as_str());
+                let hint = format!("read it with `[TimeoutCheck({name})]`, or do not start it");
+                Diagnostic::warning("M19", span, message).with_hint(hint).with_nearest(name, read)
+            })
+            .collect()
+    }
+}
+
+/// The bare names in a condition that may be timers, and whether they are without doubt.
+fn timers_read(guard: &Expression) -> Vec<(String, bool)> {
+    let (mut found, mut open) = (Vec::new(), vec![guard]);
+    while let Some(expression) = open.pop() {
+        match &expression.kind {
+            ExpressionKind::TimeoutCheck(path) => found.push((path.text(), true)),
+            ExpressionKind::Variable(path) => found.extend(path.bare().map(|name| (name.to_owned(), false))),
+            ExpressionKind::Or(parts) | ExpressionKind::And(parts) => open.extend(parts),
+            ExpressionKind::Not(inner) => open.push(inner),
+            _ => {}
+        }
+    }
+    found
+}
+
+/// A loop that waits for one timer and starts a longer one again each time.
+fn overtaken(subject: &CheckedModel, id: TransitionId) -> Option<Diagnostic> {
+    let transition = subject.transition(id);
+    let guard = transition.expression.guard.as_ref()?;
+    if transition.source != transition.target || transition.expression.trigger.is_some() {
+        return None;
+    }
+    let needed = required(guard);
+    let started: Vec<(String, Duration)> = starts(&transition.expression.actions).collect();
+    let (waited, short) = started.iter().find(|(name, _)| needed.contains(name))?;
+    let (other, long) = started.iter().find(|(name, delay)| !needed.contains(name) && delay > short)?;
+    // another way out of the same state may leave the loop before
+    let leaves = subject
+        .outgoing(transition.source)
+        .iter()
+        .any(|&way| way != id && !subject.transition(way).expression.is_never());
+    (!leaves).then(|| {
+        let (long, short) = (long.as_millis(), short.as_millis());
+        let message = format!("`{other}` is started again before it can expire: {long} ms each time that `{waited}` is over, every {short} ms");
+        subject.warn_of("M19", id, message).with_hint("start the longer one where the loop is entered")
+    })
+}
+
+/// The names that must be true for a condition to be.
+fn required(guard: &Expression) -> BTreeSet<String> {
+    let (mut names, mut open) = (BTreeSet::new(), vec![guard]);
+    while let Some(expression) = open.pop() {
+        match &expression.kind {
+            ExpressionKind::And(parts) => open.extend(parts),
+            ExpressionKind::TimeoutCheck(path) | ExpressionKind::Variable(path) => {
+                names.insert(path.text());
+            }
+            _ => {}
+        }
+    }
+    names
+}
+
+/// A timer that one transition starts twice.
+fn twice(subject: &CheckedModel, id: TransitionId) -> Vec<Diagnostic> {
+    let started: Vec<String> =
+        starts(&subject.transition(id).expression.actions).map(|(name, _)| name).collect();
+    let again = started.iter().enumerate().filter(|(index, name)| started[..*index].contains(name));
+    again
+        .map(|(_, name)| {
+            let message =
+                format!("`{}` starts the timer `{name}` twice: the second time counts", subject.arrow(id));
+            subject.warn_of("M19", id, message).with_hint("keep one of the two")
+        })
+        .collect()
+}

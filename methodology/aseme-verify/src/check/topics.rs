@@ -1,0 +1,93 @@
+//! M17 for topics: read but never published, or written but never read.
+//!
+//! Publishers and readers are known only if every activity declares its topics. For activities that
+//! declare none, and for messages of other hosts, nothing is reported.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use yase::expression::{Effect, Origin};
+use yase::vocabulary::TopicEntry;
+use yase::{ActionLocation, CompiledChart, Diagnostic, Span, TopicId};
+
+use crate::checked_model::CheckedModel;
+use crate::program_symbols::ProgramSymbols;
+
+/// Topics of the chart without a publisher or reader.
+pub(crate) fn unmet(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagnostic> {
+    let Ok(chart) = subject.chart.compile_with(&world.vocabulary, subject.semantics) else {
+        return Vec::new();
+    };
+    let (read, written) = (read(subject, &chart), written(subject, &chart));
+    let (published, taken) = (all_of(&world.activities), all_of(&world.readers));
+    let mut found = Vec::new();
+    for topic in world.vocabulary.topics.iter().filter(|topic| !world.elsewhere.contains(&topic.path)) {
+        let meets = |others: &Option<BTreeSet<&str>>| {
+            others.as_ref().is_none_or(|others| others.contains(topic.path.as_str()))
+        };
+        match (read.get(&topic.id), written.get(&topic.id)) {
+            (Some(&place), None) if !meets(&published) => found.push(never_published(topic, place)),
+            (None, Some(&place)) if !meets(&taken) => found.push(never_read(topic, place)),
+            _ => {}
+        }
+    }
+    found
+}
+
+/// All topics that activities name; none if one of them says nothing, or there are none.
+fn all_of(activities: &BTreeMap<String, Option<BTreeSet<String>>>) -> Option<BTreeSet<&str>> {
+    let mut all = BTreeSet::new();
+    for topics in activities.values() {
+        all.extend(topics.as_ref()?.iter().map(String::as_str));
+    }
+    (!activities.is_empty()).then_some(all)
+}
+
+/// The topics of the own host that guards read and triggers wait for, and where.
+fn read(subject: &CheckedModel, chart: &CompiledChart) -> BTreeMap<TopicId, Span> {
+    let mut read = BTreeMap::new();
+    for (transition, _, guard) in chart.guards() {
+        for &topic in guard.reads() {
+            read.entry(topic).or_insert(subject.places.guard(transition));
+        }
+    }
+    let (events, waited) = (chart.events(), super::events::waited(subject));
+    for event in events.ids().filter(|&event| events.host(event).is_none()) {
+        let place = waited.get(events.name(event)).copied().unwrap_or_default();
+        events.topic(event).map(|topic| read.entry(topic).or_insert(place));
+    }
+    let is_foreign =
+        |topic: &TopicId| chart.sources().any(|it| it.topic == *topic && it.origin != Origin::Own);
+    read.retain(|topic, _| !is_foreign(topic));
+    read
+}
+
+/// The topics that actions write or publish, and where.
+fn written(subject: &CheckedModel, chart: &CompiledChart) -> BTreeMap<TopicId, Span> {
+    let mut written = BTreeMap::new();
+    for (place, _, effects) in chart.effects() {
+        let place = match place {
+            ActionLocation::Transition(id) => subject.places.transition(id),
+            ActionLocation::Entry(node) | ActionLocation::Exit(node) => subject.places.node(node),
+        };
+        for effect in effects {
+            if let Effect::Assign { topic, .. } | Effect::Publish { topic } = effect {
+                written.entry(*topic).or_insert(place);
+            }
+        }
+    }
+    written
+}
+
+fn never_published(topic: &TopicEntry, place: Span) -> Diagnostic {
+    let message = format!("`{}` is read here, and no activity publishes it", topic.path);
+    let found = Diagnostic::warning("M17", place, message);
+    found.with_hint(
+        "write the activity that publishes it, or let the one that does say so (`Activity::topics`)",
+    )
+}
+
+fn never_read(topic: &TopicEntry, place: Span) -> Diagnostic {
+    let message = format!("`{}` is written here, and neither the chart nor an activity reads it", topic.path);
+    let found = Diagnostic::warning("M17", place, message);
+    found.with_hint("let an activity read it, or write nothing there")
+}

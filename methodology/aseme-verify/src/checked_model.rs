@@ -1,0 +1,245 @@
+//! A chart that is checked, with its formulas, its positions in the source and indexed transitions.
+
+mod source_spans;
+pub(crate) mod timers;
+
+use std::cmp::Reverse;
+use std::sync::Arc;
+
+use yase::expression::{TextPosition, Trigger};
+use yase::{Diagnostic, NodeId, NodeKind, Semantics, Source, Span, Statechart, Transition, TransitionId};
+use yase_export::notation::kind_word;
+
+use aseme::liveness::Liveness;
+use aseme::srm::Srm;
+use aseme::{path, transform};
+use aseme_models::convert::{self, Model};
+use aseme_models::iac::Iac;
+use source_spans::SourceSpans;
+
+/// Charts up to this size have their parts named as briefly as can be; to find the shortest name
+/// takes long in larger ones.
+const BRIEF: usize = 400;
+
+/// A chart that is checked.
+pub(crate) struct CheckedModel {
+    pub(crate) chart: Statechart,
+    pub(crate) places: SourceSpans,
+    /// How it is read.
+    pub(crate) semantics: Semantics,
+    /// The formulas that it was made from.
+    pub(crate) liveness: Option<Liveness>,
+    /// The transitions out of each node, in the order in which they are tried.
+    pub(crate) outgoing: Vec<Vec<TransitionId>>,
+    /// The transitions into each node.
+    pub(crate) incoming: Vec<Vec<TransitionId>>,
+}
+
+/// The chart of a role, as far as it can be made, and what does not fit.
+pub(crate) fn of_role(role: &Srm) -> (CheckedModel, Vec<Diagnostic>) {
+    let (mut chart, mut nodes, mut found) = transform::expanded(&role.liveness);
+    if found.iter().any(Diagnostic::is_error) {
+        return (CheckedModel::new(chart, SourceSpans::default(), Semantics::yase()), found);
+    }
+    chart.constants.clone_from(&role.constants);
+    let (chosen, mut unmatched) = aseme::refine::refine_placed(&mut chart, &role.transitions);
+    unmatched.extend(aseme::refine::refine_states(&mut chart, &role.states));
+    found.extend(unmatched.into_iter().map(|unmatched| unmatched.diagnostic));
+    // what `history` has added stands where its composite does
+    for (_, node) in chart.nodes().skip(nodes.len()) {
+        let owner = node.parent.and_then(|parent| nodes.get(parent.0 as usize)).copied();
+        nodes.push(owner.unwrap_or_default());
+    }
+    let place = |id: TransitionId, transition: &Transition| match chosen.get(&id) {
+        Some(&entry) => role.transitions[entry].span,
+        None => begin(&chart, &nodes, transition),
+    };
+    let transitions = chart.transitions().map(|(id, transition)| place(id, transition)).collect();
+    let guards =
+        chart.transitions().map(|(_, transition)| Some(transition.expression.guard.as_ref()?.span()));
+    let places = SourceSpans { guards: guards.collect(), transitions, nodes };
+    let subject = CheckedModel::new(chart, places, Semantics::yase());
+    (CheckedModel { liveness: Some(role.liveness.clone()), ..subject }, found)
+}
+
+/// A transition that no entry refines stands where the formula names its source, or what it leads
+/// to if that is known by its place alone.
+fn begin(chart: &Statechart, nodes: &[Span], transition: &Transition) -> Span {
+    let named = |node: &NodeId| !chart.node(*node).name.is_empty();
+    let node = [transition.source, transition.target].into_iter().find(named).unwrap_or(transition.source);
+    nodes.get(node.0 as usize).copied().unwrap_or_default()
+}
+
+/// The chart of a file of its own.
+pub(crate) fn of_chart(iac: &Iac) -> (CheckedModel, Vec<Diagnostic>) {
+    let (chart, found) = iac.to_statechart();
+    let count = iac.nodes.len();
+    let transitions = || iac.transitions.iter().filter(|it| it.source < count && it.target < count);
+    let literal = |place: TextPosition, text: &str| place.0.end - place.0.start == text.len();
+    let guards = transitions().zip(chart.transitions()).map(|(it, (_, transition))| {
+        let guard = transition.expression.guard.as_ref()?.span();
+        literal(it.te_place, &it.te).then_some(guard)
+    });
+    let places = SourceSpans {
+        nodes: iac.nodes.iter().map(|node| node.place.0).collect(),
+        guards: guards.collect(),
+        transitions: transitions().map(|transition| transition.place.0).collect(),
+    };
+    (CheckedModel::new(chart, places, Semantics::yase()), found)
+}
+
+/// The chart of an SCXML document, which does not say where its parts stand.
+pub(crate) fn of_scxml(document: &yase_scxml::Document) -> CheckedModel {
+    CheckedModel::new(document.statechart().clone(), SourceSpans::default(), Semantics::scxml())
+}
+
+/// The chart of a model, and the position of each of its transitions in the text.
+///
+/// # Errors
+/// The errors that prevent reading the model.
+pub(crate) fn chart_and_places(source: &Arc<Source>) -> Result<(Statechart, Vec<Span>), Vec<Diagnostic>> {
+    let CheckedModel { chart, places, .. } = subject_of(source)?;
+    Ok((chart, places.transitions))
+}
+
+/// The chart of a model, prepared for checks.
+pub(crate) fn subject_of(source: &Arc<Source>) -> Result<CheckedModel, Vec<Diagnostic>> {
+    let (found, mut read) = convert::read(source);
+    let (subject, made) = match found {
+        Some((Model::Role(file), _)) => of_role(file.srm()),
+        Some((Model::Chart(chart), _)) => of_chart(&chart),
+        Some((model, _)) => {
+            let message = format!("a model of the kind {} has no statechart", model.kind());
+            return Err(placed(source, vec![Diagnostic::error("E0230", Span::default(), message)]));
+        }
+        None => return Err(read),
+    };
+    read.extend(made);
+    if read.iter().any(Diagnostic::is_error) {
+        return Err(placed(source, read));
+    }
+    Ok(subject)
+}
+
+pub(crate) fn placed(source: &Arc<Source>, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    found.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect()
+}
+
+impl CheckedModel {
+    fn new(chart: Statechart, places: SourceSpans, semantics: Semantics) -> CheckedModel {
+        let count = chart.nodes().len();
+        let (mut outgoing, mut incoming) = (vec![Vec::new(); count], vec![Vec::new(); count]);
+        let exists = |node: NodeId| (node.0 as usize) < count;
+        for (id, transition) in chart.transitions() {
+            if exists(transition.source) && exists(transition.target) {
+                outgoing[transition.source.0 as usize].push(id);
+                incoming[transition.target.0 as usize].push(id);
+            }
+        }
+        let guarded_first = semantics.order == yase::SegmentOrder::GuardedFirst;
+        for ways in &mut outgoing {
+            ways.sort_by_key(|&id: &TransitionId| {
+                let transition = chart.transition(id);
+                let is_unguarded = guarded_first && transition.expression.guard.is_none();
+                (Reverse(transition.priority), is_unguarded)
+            });
+        }
+        CheckedModel { chart, places, semantics, liveness: None, outgoing, incoming }
+    }
+
+    pub(crate) fn kind(&self, node: NodeId) -> NodeKind {
+        self.chart.node(node).kind
+    }
+
+    pub(crate) fn outgoing(&self, node: NodeId) -> &[TransitionId] {
+        &self.outgoing[node.0 as usize]
+    }
+
+    pub(crate) fn incoming(&self, node: NodeId) -> &[TransitionId] {
+        &self.incoming[node.0 as usize]
+    }
+
+    pub(crate) fn transition(&self, id: TransitionId) -> &Transition {
+        self.chart.transition(id)
+    }
+
+    pub(crate) fn is_state(&self, node: NodeId) -> bool {
+        matches!(self.kind(node), NodeKind::Or | NodeKind::And | NodeKind::Basic)
+    }
+
+    /// Whether a node lies in another or is it.
+    pub(crate) fn contains(&self, outer: NodeId, inner: NodeId) -> bool {
+        outer == inner || self.chart.ancestors(inner).any(|ancestor| ancestor == outer)
+    }
+
+    /// Whether a node is a region of an AND.
+    pub(crate) fn is_region(&self, node: NodeId) -> bool {
+        self.chart.node(node).parent.is_some_and(|parent| self.kind(parent) == NodeKind::And)
+    }
+
+    /// The AND in two different regions of which two nodes lie, and these regions.
+    pub(crate) fn apart(&self, one: NodeId, other: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
+        let way = |node: NodeId| -> Vec<NodeId> {
+            let mut way: Vec<NodeId> = std::iter::once(node).chain(self.chart.ancestors(node)).collect();
+            way.reverse();
+            way
+        };
+        let (one, other) = (way(one), way(other));
+        let fork = one.iter().zip(&other).position(|(one, other)| one != other)?;
+        let around = *one.get(fork.checked_sub(1)?)?;
+        (self.kind(around) == NodeKind::And).then_some((around, one[fork], other[fork]))
+    }
+
+    /// What a node is called.
+    pub(crate) fn path(&self, node: NodeId) -> String {
+        match self.chart.nodes().len() <= BRIEF {
+            true if !self.chart.node(node).name.is_empty() || node == Statechart::ROOT => {
+                path::shortest_path(&self.chart, node)
+            }
+            true => self.place_in_parent(node),
+            false => self.chart.path(node),
+        }
+    }
+
+    /// A node without a name, by its kind and the composite around it.
+    fn place_in_parent(&self, node: NodeId) -> String {
+        let kind = self.kind(node);
+        let Some(parent) = self.chart.node(node).parent else { return String::new() };
+        let siblings = self.chart.children(parent);
+        let alike: Vec<NodeId> = siblings
+            .iter()
+            .copied()
+            .filter(|&it| self.kind(it) == kind && self.chart.node(it).name.is_empty())
+            .collect();
+        let number = alike.iter().position(|&it| it == node).unwrap_or(0) + 1;
+        let word = match alike.len() {
+            1 => kind_word(kind).to_owned(),
+            _ if self.is_region(node) => number.to_string(),
+            _ => format!("{}[{number}]", kind_word(kind)),
+        };
+        let is_alone =
+            self.chart.nodes().filter(|(_, it)| it.kind == kind && it.name.is_empty()).count() == 1;
+        if is_alone { word } else { format!("{}/{word}", self.path(parent)) }
+    }
+
+    /// `a -> b`
+    pub(crate) fn arrow(&self, id: TransitionId) -> String {
+        let transition = self.transition(id);
+        format!("{} -> {}", self.path(transition.source), self.path(transition.target))
+    }
+
+    /// The events that a node of the chart waits for in a trigger, written out.
+    pub(crate) fn trigger(&self, id: TransitionId) -> Option<&Trigger> {
+        self.transition(id).expression.trigger.as_ref()
+    }
+
+    /// A warning about a node.
+    pub(crate) fn warn(&self, code: &'static str, node: NodeId, message: String) -> Diagnostic {
+        Diagnostic::warning(code, self.places.node(node), message)
+    }
+
+    /// A warning about a transition.
+    pub(crate) fn warn_of(&self, code: &'static str, id: TransitionId, message: String) -> Diagnostic {
+        Diagnostic::warning(code, self.places.transition(id), message)
+    }
+}

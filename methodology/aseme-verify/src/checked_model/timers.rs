@@ -1,0 +1,50 @@
+//! Timers of a chart, and the blackboards they belong to.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use yase::expression::{Action, ActionKind};
+use yase::{NodeId, NodeKind, Span, Statechart, TransitionId};
+
+use super::CheckedModel;
+
+/// A name on a blackboard, which is known by the node it belongs to.
+pub(crate) type TimerKey = (NodeId, String);
+
+/// The timers that actions start, each with the position of the first such action.
+pub(crate) fn started(model: &CheckedModel) -> BTreeMap<TimerKey, Span> {
+    let mut started = BTreeMap::new();
+    for (id, transition) in model.chart.transitions() {
+        for (name, _) in starts(&transition.expression.actions) {
+            started.entry((blackboard(model, id), name)).or_insert(model.places.transition(id));
+        }
+    }
+    for (id, node) in model.chart.nodes() {
+        for (name, _) in starts(&node.entry).chain(starts(&node.exit)) {
+            started.entry((region_of(model, id), name)).or_insert(model.places.node(id));
+        }
+    }
+    started
+}
+
+/// The blackboard that a transition works on: that of its scope.
+pub(crate) fn blackboard(subject: &CheckedModel, id: TransitionId) -> NodeId {
+    let transition = subject.transition(id);
+    let holds = |&node: &NodeId| node != transition.target && subject.contains(node, transition.target);
+    let around = subject.chart.ancestors(transition.source).filter(holds);
+    let scope = around.into_iter().find(|&node| subject.kind(node) == NodeKind::Or);
+    region_of(subject, scope.unwrap_or(Statechart::ROOT))
+}
+
+/// The region that a node lies in or is; the root if in none.
+pub(crate) fn region_of(subject: &CheckedModel, node: NodeId) -> NodeId {
+    let way = std::iter::once(node).chain(subject.chart.ancestors(node));
+    way.into_iter().find(|&it| subject.is_region(it)).unwrap_or(Statechart::ROOT)
+}
+
+pub(crate) fn starts(actions: &[Action]) -> impl Iterator<Item = (String, Duration)> {
+    actions.iter().filter_map(|action| match &action.kind {
+        ActionKind::StartTimeout { timer, delay, .. } => Some((timer.text(), *delay)),
+        _ => None,
+    })
+}

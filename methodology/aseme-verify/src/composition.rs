@@ -1,0 +1,288 @@
+//! Exploration of several robots together: deadlocks and lost messages.
+//!
+//! Each model is one robot. A message passes from one robot to another if the sender's chart writes
+//! or publishes it and the receiver's chart reads it by the sender's name
+//! (`receiver.news.Signal.Ready`). It passes through a channel, which holds a bounded number of
+//! messages and drops the oldest when it is full, as a link does; a channel may lose any message,
+//! if requested. Messages from a chart to itself pass the same way. A chart that has ended, or that
+//! TERMINATE has stopped, neither sends nor waits. All other conditions are free inputs, activities
+//! return and timers expire in any order.
+//!
+//! The findings are deadlocks (E0930), messages that arrive where no state reads them (E0931) and
+//! channels that are too small (E0932). Each has a trace, which [`TeamTrace`] replays. If the
+//! search reaches its limit, the result is undecided and reported so (E0933).
+//!
+//! Messages that an activity publishes are known from [`ProgramSymbols`](crate::ProgramSymbols);
+//! they are published when the activity returns.
+
+mod composed_robot;
+mod content_table;
+mod deadlock;
+mod message_names;
+mod product;
+mod team_trace;
+
+use std::sync::Arc;
+
+use yase::{Diagnostic, Source, Span};
+
+use crate::abstraction::Abstraction;
+use crate::check_settings::CheckSettings;
+use crate::finding::Finding;
+use composed_robot::{Behaviour, ComposedRobot, ReceivedMessage};
+use deadlock::Deadlock;
+use message_names::MessageUse;
+use product::{GlobalProduct, MessageRoute};
+
+pub use team_trace::{PlayedStep, TeamTrace};
+
+/// How messages go from robot to robot.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub struct Channels {
+    /// How many messages are on their way at once from one robot to another; one more, and the
+    /// oldest is lost.
+    pub capacity: usize,
+    /// Whether any message may be lost.
+    pub may_lose: bool,
+}
+
+impl Default for Channels {
+    fn default() -> Channels {
+        Channels { capacity: 2, may_lose: false }
+    }
+}
+
+/// The result of a composition.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+#[non_exhaustive]
+pub struct Composition {
+    /// The findings, by robot.
+    pub findings: Vec<Finding>,
+    /// Each robot, and how many states of its own were looked at.
+    pub robots: Vec<(String, usize)>,
+    /// What passes: from whom, to whom, and the message's name.
+    pub passing: Vec<(String, String, String)>,
+    /// How many states of all together were found.
+    pub states: usize,
+    /// Whether these are all.
+    pub is_finished: bool,
+}
+
+impl Composition {
+    /// Whether something is wrong that is an error.
+    pub fn has_errors(&self) -> bool {
+        self.findings.iter().any(|finding| finding.diagnostic.is_error())
+    }
+}
+
+/// Looks at all that robots can do together: names, each once, and their models.
+///
+/// # Errors
+/// What keeps a model from being explored.
+pub fn compose(
+    models: &[(String, Arc<Source>)],
+    channels: Channels,
+    settings: &CheckSettings,
+) -> Result<Composition, Vec<Diagnostic>> {
+    let robots = robots(models, settings)?;
+    let passages = product::passages(&robots);
+    let mut found = Composition {
+        passing: passages.iter().map(|passage| route_names(&robots, passage)).collect(),
+        ..Composition::default()
+    };
+    found.findings.extend(robots.iter().filter_map(unexplorable).map(Finding::from));
+    found.findings.extend(unsent_messages(&robots, &passages).map(Finding::from));
+    if found.has_errors() {
+        return Ok(found);
+    }
+    let behaviours = behaviours(&robots, &passages, settings);
+    let counts = behaviours.iter().map(|it| it.found.states().len());
+    found.robots = robots.iter().map(|robot| robot.name.clone()).zip(counts).collect();
+    let product = product::product(&robots, &behaviours, &passages, channels, settings.states);
+    (found.states, found.is_finished) = (product.states.len(), product.is_finished());
+    found.findings.extend(deadlock::deadlocks(&product).iter().map(|it| deadlock_finding(&product, it)));
+    found.findings.extend(product.dropped.iter().map(|(&passage, &edge)| dropped(&product, passage, edge)));
+    found.findings.extend(
+        product.overflows.iter().map(|(&passage, &edge)| channel_overflow(&product, passage, edge, channels)),
+    );
+    found.findings.extend((!found.is_finished).then(|| not_decided(&robots, &behaviours, &product)));
+    Ok(found)
+}
+
+fn robots(
+    models: &[(String, Arc<Source>)],
+    settings: &CheckSettings,
+) -> Result<Vec<ComposedRobot>, Vec<Diagnostic>> {
+    let hosts: Vec<&str> = models.iter().map(|(name, _)| name.as_str()).collect();
+    let mut wrong = Vec::new();
+    let mut robots = Vec::new();
+    for (name, source) in models {
+        match prepare(source, settings) {
+            Ok(chart) => {
+                robots.push(ComposedRobot::new(name, source, chart, &hosts, settings.world.as_ref()))
+            }
+            Err(found) => wrong.extend(found),
+        }
+    }
+    if wrong.is_empty() { Ok(robots) } else { Err(wrong) }
+}
+
+fn prepare(
+    source: &Arc<Source>,
+    settings: &CheckSettings,
+) -> Result<(crate::checked_model::CheckedModel, Abstraction), Vec<Diagnostic>> {
+    let subject = crate::checked_model::subject_of(source)?;
+    let abstraction =
+        Abstraction::new(&subject).map_err(|found| crate::checked_model::placed(source, found))?;
+    Ok((subject, abstraction.with_events(&settings.events)))
+}
+
+/// What each robot does, explored alone.
+fn behaviours(
+    robots: &[ComposedRobot],
+    passages: &[MessageRoute],
+    settings: &CheckSettings,
+) -> Vec<Behaviour> {
+    let is_heard = |number: usize, saying: usize| {
+        passages.iter().any(|passage| passage.from == number && passage.sent_message == saying)
+    };
+    let explored = |(number, robot): (usize, &ComposedRobot)| {
+        let heard: Vec<bool> = (0..robot.sent.len()).map(|saying| is_heard(number, saying)).collect();
+        robot.explored(settings, &heard)
+    };
+    robots.iter().enumerate().map(explored).collect()
+}
+
+fn route_names(robots: &[ComposedRobot], passage: &MessageRoute) -> (String, String, String) {
+    let from = &robots[passage.from];
+    let name = from.sent[passage.sent_message].word.name().to_owned();
+    (from.name.clone(), robots[passage.to].name.clone(), name)
+}
+
+/// The error if messages of a robot cannot be distinguished.
+fn unexplorable(robot: &ComposedRobot) -> Option<Diagnostic> {
+    robot.ambiguous().or_else(|| {
+        let way = composed_robot::wildcard_trigger(&robot.subject.chart)?;
+        let message =
+            format!("`{}` takes whatever event comes: it is not known which messages those are", robot.name);
+        let found = Diagnostic::error("E0935", robot.subject.places.transition(way), message);
+        Some(found.with_hint("name the events").in_source(&robot.source))
+    })
+}
+
+/// Messages that are waited for, and that no model says.
+fn unsent_messages<'a>(
+    robots: &'a [ComposedRobot],
+    passages: &'a [MessageRoute],
+) -> impl Iterator<Item = Diagnostic> + 'a {
+    robots.iter().enumerate().flat_map(move |(to, robot)| {
+        let is_said = move |hearing: usize| {
+            passages.iter().any(|it| it.to == to && it.received_messages.contains(&hearing))
+        };
+        let unsaid = robot.received.iter().enumerate().filter(move |(hearing, _)| !is_said(*hearing));
+        unsaid.map(|(_, hearing)| no_sender(robot, hearing))
+    })
+}
+
+fn no_sender(robot: &ComposedRobot, hearing: &ReceivedMessage) -> Diagnostic {
+    let (host, name) = (&hearing.called.host, hearing.called.word.name());
+    let message = format!(
+        "the chart of `{host}` does not say `{name}`, which `{}` waits for: it may come at any time",
+        robot.name
+    );
+    let found = Diagnostic::warning("E0934", robot.subject.places.transition(hearing.way), message);
+    found.with_hint("with `--linked` the program says what activities publish").in_source(&robot.source)
+}
+
+fn deadlock_finding(product: &GlobalProduct<'_>, found: &Deadlock) -> Finding {
+    let waits: Vec<String> = found
+        .waits
+        .iter()
+        .map(|&(robot, wait)| {
+            let robot = &product.robots[robot];
+            let wait = &robot.waits[wait];
+            let called = &robot.received[wait.received_message].called;
+            let (name, path) = (&robot.name, robot.subject.path(wait.node));
+            format!("`{name}` waits in `{path}` for `{}` of `{}`", called.word.name(), called.host)
+        })
+        .collect();
+    let message = match waits.as_slice() {
+        [one] => format!("{one}, which never comes"),
+        several => format!("{}: none of it ever comes", several.join(", ")),
+    };
+    let (robot, wait) = found.waits.first().copied().unwrap_or_default();
+    let robot = &product.robots[robot];
+    let place =
+        robot.waits.get(wait).map_or(Span::default(), |wait| robot.subject.places.transition(wait.way));
+    let diagnostic = Diagnostic::error("E0930", place, message)
+        .with_hint("let one of them go on by itself: say its message first, or wait no longer than a timer")
+        .in_source(&robot.source);
+    Finding { diagnostic, trace: Some(product.trace_text(&product.path_to(found.state))) }
+}
+
+/// The way to an edge, and that.
+fn trace_to_edge(product: &GlobalProduct<'_>, edge: usize) -> Option<String> {
+    let edge = product.edges.get(edge)?;
+    let mut way = product.path_to(edge.from);
+    way.push(edge.by);
+    Some(product.trace_text(&way))
+}
+
+fn dropped(product: &GlobalProduct<'_>, passage: usize, edge: usize) -> Finding {
+    let (from, to, name) = route_names(product.robots, &product.passages[passage]);
+    let robot = &product.robots[product.passages[passage].to];
+    let hearing = product.passages[passage].waited.and_then(|hearing| robot.received.get(hearing));
+    let place = hearing.map_or(Span::default(), |hearing| robot.subject.places.transition(hearing.way));
+    let message =
+        format!("`{name}` of `{from}` may come to `{to}` where nothing waits for it: then it is lost");
+    let found = Diagnostic::warning("E0931", place, message);
+    let hint = "defer it in the states before, or wait for it there too";
+    Finding {
+        diagnostic: found.with_hint(hint).in_source(&robot.source),
+        trace: trace_to_edge(product, edge),
+    }
+}
+
+fn channel_overflow(product: &GlobalProduct<'_>, passage: usize, edge: usize, channels: Channels) -> Finding {
+    let (from, to, name) = route_names(product.robots, &product.passages[passage]);
+    let robot = &product.robots[product.passages[passage].from];
+    let place = match robot.sent[product.passages[passage].sent_message].places.first() {
+        Some(&MessageUse::Way(way)) => robot.subject.places.transition(way),
+        Some(&MessageUse::Node(node)) => robot.subject.places.node(node),
+        None => Span::default(),
+    };
+    let most = channels.capacity;
+    let message = format!(
+        "`{from}` may say more than {most} messages before `{to}` has heard the first: `{name}` is lost then"
+    );
+    let found = Diagnostic::warning("E0932", place, message);
+    let hint = "wait for an answer before the next one is said, or let the channel hold more (`--channel`)";
+    Finding {
+        diagnostic: found.with_hint(hint).in_source(&robot.source),
+        trace: trace_to_edge(product, edge),
+    }
+}
+
+fn not_decided(robots: &[ComposedRobot], behaviours: &[Behaviour], product: &GlobalProduct<'_>) -> Finding {
+    let large = robots.iter().zip(behaviours).find(|(_, behaviour)| !behaviour.found.is_finished());
+    let message = match large {
+        Some((robot, behaviour)) => {
+            let states = behaviour.found.states().len();
+            format!(
+                "it is not decided whether the robots wait for ever: `{}` alone has more than {states} states",
+                robot.name
+            )
+        }
+        None => format!(
+            "it is not decided whether the robots wait for ever: together they have more than {} states",
+            product.states.len()
+        ),
+    };
+    let found = Diagnostic::error("E0933", Span::default(), message);
+    let found = found.with_hint("look at more with `--states`, or at fewer robots at once");
+    match robots.first() {
+        Some(robot) => found.in_source(&robot.source).into(),
+        None => found.into(),
+    }
+}

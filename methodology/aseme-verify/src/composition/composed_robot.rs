@@ -1,0 +1,538 @@
+//! One robot of a composition: the observable behaviour of its chart.
+//!
+//! A chart is explored alone, with its guards and triggers as free inputs. Each step keeps what is
+//! observable: the message received, the conditions on received messages, the message sent, and the
+//! wait that it ends. States with the same observable behaviour form one class.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use yase::expression::{Expression, ExpressionKind, ScriptId, Trigger};
+use yase::statechart::{Constant, ConstantValue};
+use yase::{Diagnostic, NodeId, NodeKind, Source, Statechart, Status, TransitionId};
+use yase_explore::{LabelledGraph, PendingEvent, StepCause, StepLabeler, StepObservation, explore_labelled};
+
+use super::message_names::{
+    self, MessageName, MessageReference, MessageUse, actions, message_reference, paths, triggers,
+};
+use crate::abstraction::Abstraction;
+use crate::check_settings::CheckSettings;
+use crate::checked_model::CheckedModel;
+use crate::cone_of_influence;
+use crate::conformance::graph::{Graph, LabelledEdge, Observable};
+use crate::program_symbols::ProgramSymbols;
+
+/// What a field is set to, as far as that is known.
+pub(crate) type FieldSetting = (String, Option<String>);
+
+/// What a step of a robot is to the others.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
+pub(crate) struct StepInterface {
+    /// The message that it hears, by its place among those that the robot hears.
+    pub(crate) receives: Option<usize>,
+    /// Whether no state of the chart reads what it receives, now or later.
+    pub(crate) drops: bool,
+    /// The conditions on messages of others that it reads, and their values.
+    pub(crate) conditions: Vec<(ScriptId, bool)>,
+    /// What it says, by place among what the robot says, with the fields that it sets.
+    pub(crate) sends: Vec<(usize, Vec<FieldSetting>)>,
+    /// The waits that it ends.
+    pub(crate) exited_waits: Vec<usize>,
+}
+
+impl StepInterface {
+    fn is_seen(&self) -> bool {
+        *self != StepInterface::default()
+    }
+}
+
+/// A message of a robot, another one or itself, that a chart reads or waits for.
+#[derive(Clone, Debug)]
+pub(crate) struct ReceivedMessage {
+    pub(crate) called: MessageReference,
+    /// What its arrival is called in triggers, if any waits for it.
+    pub(crate) event: Option<String>,
+    /// A transition that waits for it or reads it.
+    pub(crate) way: TransitionId,
+}
+
+/// A state in which a chart waits for others.
+#[derive(Clone, Debug)]
+pub(crate) struct WaitingState {
+    pub(crate) node: NodeId,
+    /// What it waits for, by place among what the robot hears.
+    pub(crate) received_message: usize,
+    /// The transition that would end it.
+    pub(crate) way: TransitionId,
+}
+
+/// A message that a chart says.
+#[derive(Clone, Debug)]
+pub(crate) struct SentMessage {
+    pub(crate) word: MessageName,
+    /// Wherever it does, one at least.
+    pub(crate) places: Vec<MessageUse>,
+}
+
+/// A robot that is ready to be put beside others.
+pub(crate) struct ComposedRobot {
+    pub(crate) name: String,
+    pub(crate) source: Arc<Source>,
+    pub(crate) subject: CheckedModel,
+    pub(crate) abstraction: Abstraction,
+    pub(crate) received: Vec<ReceivedMessage>,
+    pub(crate) sent: Vec<SentMessage>,
+    pub(crate) waits: Vec<WaitingState>,
+}
+
+impl ComposedRobot {
+    /// A robot among others, by their names.
+    pub(crate) fn new(
+        name: &str,
+        source: &Arc<Source>,
+        (subject, abstraction): (CheckedModel, Abstraction),
+        hosts: &[&str],
+        world: Option<&ProgramSymbols>,
+    ) -> ComposedRobot {
+        let ears = MessageFilter::new(name, hosts, &subject.chart, world);
+        let hearings = received_messages(&subject.chart, &ears);
+        let waits = waits(&subject, &hearings, &ears);
+        let sayings = messages_to_send(&subject.chart, world);
+        ComposedRobot {
+            name: name.into(),
+            source: source.clone(),
+            subject,
+            abstraction,
+            received: hearings,
+            sent: sayings,
+            waits,
+        }
+    }
+
+    /// What of the messages is written in more than one way, which would be two events here and is
+    /// one in a run.
+    pub(crate) fn ambiguous(&self) -> Option<Diagnostic> {
+        let events = || self.received.iter().enumerate().filter(|(_, it)| it.event.is_some());
+        let twice = events().find(|(index, it)| {
+            events().any(|(other, that)| {
+                other < *index
+                    && that.called.host == it.called.host
+                    && that.called.word.means(&it.called.word)
+            })
+        });
+        twice.map(|(_, hearing)| {
+            let message = format!("`{}` is waited for under two names", hearing.called.prefix.text());
+            let found = Diagnostic::error("E0935", self.subject.places.transition(hearing.way), message);
+            found.with_hint("write it the same way in each trigger").in_source(&self.source)
+        })
+    }
+
+    /// Explores the chart. Of what it says only that counts which others hear.
+    pub(crate) fn explored(&self, settings: &CheckSettings, heard: &[bool]) -> Behaviour {
+        let scripts = self.scripts_on_messages();
+        let mut deeds: Vec<StepInterface> = vec![StepInterface::default()];
+        let mut numbers: BTreeMap<StepInterface, u64> = BTreeMap::from([(StepInterface::default(), 0)]);
+        let letter = |seen: &StepObservation<'_>| {
+            let deed = self.deed(seen, &scripts, (settings.world.as_ref(), heard));
+            *numbers.entry(deed).or_insert_with_key(|deed| {
+                deeds.push(deed.clone());
+                deeds.len() as u64 - 1
+            })
+        };
+        let mut surroundings = self.abstraction.surroundings();
+        surroundings.messages = true;
+        let mut asked = StepLabeler {
+            conditions: 0,
+            idle: self.idle_regions(heard),
+            pace: None,
+            letter: Box::new(letter),
+        };
+        let found = explore_labelled(&self.abstraction.chart, &mut surroundings, &mut asked, settings.states);
+        drop((asked, surroundings));
+        Behaviour::new(found, deeds, &self.waits)
+    }
+
+    /// The regions that neither speak nor listen to others, nor to those that do.
+    fn idle_regions(&self, heard: &[bool]) -> Vec<NodeId> {
+        let chart = self.abstraction.chart.statechart();
+        let said = self.sent.iter().zip(heard).filter(|(_, heard)| **heard);
+        let spoken = said.flat_map(|(saying, _)| &saying.places).map(|place| match *place {
+            MessageUse::Way(way) => chart.transition(way).source,
+            MessageUse::Node(node) => node,
+        });
+        let heard = self.received.iter().map(|hearing| chart.transition(hearing.way).source);
+        let nodes: Vec<NodeId> = spoken.chain(heard).chain(self.waits.iter().map(|wait| wait.node)).collect();
+        cone_of_influence::idle_but(chart, &|region| {
+            nodes.iter().any(|&node| cone_of_influence::is_within(chart, node, region))
+        })
+    }
+
+    /// The conditions of the exploration that read a message of another.
+    fn scripts_on_messages(&self) -> Vec<bool> {
+        let reads = |condition: &Expression| {
+            paths(condition)
+                .into_iter()
+                .any(|path| self.received.iter().any(|it| begins_with(path, &it.called.prefix)))
+        };
+        self.abstraction.conditions.iter().map(|condition| condition.as_ref().is_some_and(reads)).collect()
+    }
+
+    fn deed(
+        &self,
+        seen: &StepObservation<'_>,
+        scripts: &[bool],
+        said: (Option<&ProgramSymbols>, &[bool]),
+    ) -> StepInterface {
+        let hears = match seen.cause {
+            StepCause::Event(name) => self.received.iter().position(|it| it.event.as_ref() == Some(name)),
+            _ => None,
+        };
+        let event = hears
+            .and_then(|hearing| self.abstraction.chart.events().find(self.received[hearing].event.as_ref()?));
+        let mut asks: Vec<(ScriptId, bool)> = seen
+            .decisions
+            .iter()
+            .copied()
+            .filter(|(script, _)| scripts.get(script.0 as usize) == Some(&true))
+            .collect();
+        asks.sort_unstable();
+        asks.dedup();
+        let leaves = (0..self.waits.len()).filter(|&wait| seen.left.contains(&self.waits[wait].node));
+        StepInterface {
+            receives: hears,
+            drops: event.is_some_and(|event| seen.dropped.contains(&event)),
+            conditions: asks,
+            sends: self.sent_messages(seen, said),
+            exited_waits: leaves.collect(),
+        }
+    }
+
+    /// What is published at the end of a step: what its actions have written, and what an activity
+    /// says that has returned.
+    fn sent_messages(
+        &self,
+        seen: &StepObservation<'_>,
+        (world, heard): (Option<&ProgramSymbols>, &[bool]),
+    ) -> Vec<(usize, Vec<FieldSetting>)> {
+        let chart = &self.subject.chart;
+        let of_exits = seen.left.iter().flat_map(|&node| &chart.node(node).exit);
+        let of_ways = seen.taken.iter().flat_map(|&way| &chart.transition(way).expression.actions);
+        let of_entries = seen.entered.iter().flat_map(|&node| &chart.node(node).entry);
+        let mut says: BTreeMap<usize, BTreeMap<String, Option<String>>> = BTreeMap::new();
+        for (word, setting) in of_exits
+            .chain(of_ways)
+            .chain(of_entries)
+            .filter_map(|it| message_names::message_written(it, world))
+        {
+            let Some(saying) = self.sent_message_index(&word) else { continue };
+            let fields = says.entry(saying).or_default();
+            fields.extend(setting.map(|(field, value)| (field, literal(&value, &chart.constants))));
+        }
+        let returned = match seen.cause {
+            StepCause::Return(node) => chart.node(*node).activity.as_deref(),
+            _ => None,
+        };
+        let by_activity =
+            returned.map(|activity| message_names::messages_written_by(activity, world)).unwrap_or_default();
+        for saying in by_activity.iter().filter_map(|word| self.sent_message_index(word)) {
+            // of what an activity writes nothing is known but that it comes
+            says.entry(saying).or_default().insert(String::new(), None);
+        }
+        says.retain(|&saying, _| heard.get(saying) == Some(&true));
+        says.into_iter().map(|(saying, fields)| (saying, fields.into_iter().collect())).collect()
+    }
+
+    fn sent_message_index(&self, word: &MessageName) -> Option<usize> {
+        self.sent.iter().position(|it| it.word == *word)
+    }
+}
+
+/// Whether a path begins with another.
+pub(crate) fn begins_with(path: &yase::expression::Path, prefix: &yase::expression::Path) -> bool {
+    path.segments.len() >= prefix.segments.len()
+        && path.segments.iter().zip(&prefix.segments).all(|(one, other)| one.text == other.text)
+}
+
+/// A value that does not hang on anything, as text.
+fn literal(value: &Expression, constants: &[Constant]) -> Option<String> {
+    match &value.kind {
+        ExpressionKind::Bool(_)
+        | ExpressionKind::Integer(_)
+        | ExpressionKind::Decimal(_)
+        | ExpressionKind::Text(_) => Some(value.to_string()),
+        ExpressionKind::Negative(inner) => literal(inner, constants).map(|inner| format!("-{inner}")),
+        ExpressionKind::Variable(path) => {
+            let name = path.bare()?;
+            let constant = constants.iter().find(|constant| constant.name == name).map(|it| &it.value);
+            Some(match constant {
+                None => name.to_owned(),
+                Some(ConstantValue::Bool(value)) => value.to_string(),
+                Some(ConstantValue::Number(value)) => value.to_string(),
+                Some(ConstantValue::Text(value)) => format!("{value:?}"),
+            })
+        }
+        _ => None,
+    }
+}
+
+/// What a chart's paths may be about: messages of robots, itself among them.
+struct MessageFilter<'a> {
+    own: &'a str,
+    hosts: &'a [&'a str],
+    /// What its actions say.
+    sent: Vec<MessageName>,
+    world: Option<&'a ProgramSymbols>,
+}
+
+impl<'a> MessageFilter<'a> {
+    fn new(
+        own: &'a str,
+        hosts: &'a [&'a str],
+        chart: &Statechart,
+        world: Option<&'a ProgramSymbols>,
+    ) -> MessageFilter<'a> {
+        let said = actions(chart)
+            .filter_map(|(_, action)| message_names::message_written(action, world).map(|(word, _)| word));
+        MessageFilter { own, hosts, sent: said.collect(), world }
+    }
+
+    /// The message that a condition reads. Its own are what has been read before, whatever it is.
+    fn read(&self, path: &yase::expression::Path) -> Option<MessageReference> {
+        message_reference(path, self.hosts.iter().copied(), self.world)
+    }
+
+    /// The message that a trigger waits for: also one that the chart says to itself, without a name
+    /// in front.
+    fn awaited_message(&self, path: &yase::expression::Path) -> Option<MessageReference> {
+        let own = || {
+            let called = message_names::own(path, self.own, self.world)?;
+            self.sent.iter().any(|said| said.means(&called.word)).then_some(called)
+        };
+        self.read(path).or_else(own)
+    }
+}
+
+fn received_messages(chart: &Statechart, ears: &MessageFilter<'_>) -> Vec<ReceivedMessage> {
+    let mut found: Vec<ReceivedMessage> = Vec::new();
+    for (way, transition) in chart.transitions() {
+        let waited = triggers(transition).iter().map(|path| (ears.awaited_message(path), Some(path.text())));
+        let read = transition.expression.guard.iter().flat_map(paths).map(|path| (ears.read(path), None));
+        for (called, event) in waited.chain(read) {
+            let Some(called) = called else { continue };
+            match found.iter_mut().find(|it| it.called.prefix == called.prefix) {
+                Some(known) if known.event.is_none() => (known.event, known.way) = (event, way),
+                Some(_) => {}
+                None => found.push(ReceivedMessage { called, event, way }),
+            }
+        }
+    }
+    found
+}
+
+fn messages_to_send(chart: &Statechart, world: Option<&ProgramSymbols>) -> Vec<SentMessage> {
+    let mut found: Vec<SentMessage> = Vec::new();
+    let by_actions = actions(chart).filter_map(|(place, action)| {
+        message_names::message_written(action, world).map(|(word, _)| (place, word))
+    });
+    let by_activities = chart.nodes().flat_map(|(id, node)| {
+        let said =
+            node.activity.iter().flat_map(|activity| message_names::messages_written_by(activity, world));
+        said.map(move |word| (MessageUse::Node(id), word)).collect::<Vec<_>>()
+    });
+    for (place, word) in by_actions.chain(by_activities) {
+        match found.iter_mut().find(|it| it.word == word) {
+            Some(known) => known.places.push(place),
+            None => found.push(SentMessage { word, places: vec![place] }),
+        }
+    }
+    found
+}
+
+/// The places where a chart rests until something of another comes: states that have nothing else
+/// to do, and the end of composites that go on then.
+fn waits(
+    subject: &CheckedModel,
+    hearings: &[ReceivedMessage],
+    ears: &MessageFilter<'_>,
+) -> Vec<WaitingState> {
+    let mut found: Vec<WaitingState> = Vec::new();
+    for (way, transition) in subject.chart.transitions() {
+        let waited = triggers(transition).iter().filter_map(|path| ears.awaited_message(path));
+        let read = transition.expression.guard.iter().flat_map(paths).filter_map(|path| ears.read(path));
+        let named = waited.chain(read).next();
+        let heard = named.and_then(|called| hearings.iter().position(|it| it.called.prefix == called.prefix));
+        let Some(hearing) = heard else { continue };
+        for node in stable_nodes(subject, transition.source) {
+            if !found.iter().any(|wait| wait.node == node) {
+                found.push(WaitingState { node, received_message: hearing, way });
+            }
+        }
+    }
+    found
+}
+
+/// Where a chart rests when it is about to leave a node: connectors lie between.
+fn stable_nodes(subject: &CheckedModel, node: NodeId) -> Vec<NodeId> {
+    let (mut found, mut open, mut seen) = (Vec::new(), vec![node], Vec::new());
+    while let Some(node) = open.pop() {
+        if seen.contains(&node) {
+            continue;
+        }
+        seen.push(node);
+        match subject.kind(node) {
+            NodeKind::Basic | NodeKind::Start => found.push(node),
+            NodeKind::Or => {
+                let inside = subject.chart.children(node).iter().copied();
+                found.extend(inside.filter(|&inner| subject.kind(inner) == NodeKind::End));
+            }
+            NodeKind::And | NodeKind::End => {}
+            _ => open.extend(subject.incoming(node).iter().map(|&way| subject.transition(way).source)),
+        }
+    }
+    found
+}
+
+/// Whether a chart has triggers that take whatever comes.
+pub(crate) fn wildcard_trigger(chart: &Statechart) -> Option<TransitionId> {
+    let takes = |trigger: &Trigger| matches!(trigger, Trigger::Any | Trigger::Not(_));
+    chart.transitions().find(|(_, it)| it.expression.trigger.as_ref().is_some_and(takes)).map(|(id, _)| id)
+}
+
+/// What a robot does, in classes of states that are the same to the others. The last state of the
+/// graph is that before the start.
+pub(crate) struct Behaviour {
+    pub(crate) found: LabelledGraph,
+    pub(crate) step_interfaces: Vec<StepInterface>,
+    /// All states.
+    full: Graph,
+    /// The class of each state.
+    classes: Vec<usize>,
+    /// Classes and the ways between them.
+    pub(crate) graph: Graph,
+    /// The waits that go on in each class.
+    pub(crate) waiting: Vec<Vec<usize>>,
+    /// The waits of each class that could end if others said whatever it takes.
+    pub(crate) may_end: Vec<Vec<bool>>,
+}
+
+impl Behaviour {
+    fn new(found: LabelledGraph, deeds: Vec<StepInterface>, waits: &[WaitingState]) -> Behaviour {
+        let begin = found.states().len();
+        let mut full = Graph { initial: vec![begin], ends: Vec::new(), ways: vec![Vec::new(); begin + 1] };
+        full.ends = found.states().iter().map(|it| it.status != Status::Running).chain([false]).collect();
+        for (edge, step) in found.steps().iter().enumerate() {
+            let deed = &deeds[step.letter as usize];
+            let shows =
+                if deed.is_seen() { Observable::Letter(step.letter as u32) } else { Observable::Nothing };
+            let from = step.from.unwrap_or(begin);
+            if from != step.to
+                || deed.receives.is_some()
+                || !deed.sends.is_empty()
+                || !deed.exited_waits.is_empty()
+            {
+                full.ways[from].push(LabelledEdge { observable: shows, to: step.to, edge });
+            }
+        }
+        let waiting_in = |state: &yase_explore::LabelledState| -> Vec<usize> {
+            let rests = |wait: &usize| {
+                let node = waits[*wait].node;
+                state.configuration.contains(&node) && !state.pending.contains(&PendingEvent::Return(node))
+            };
+            (0..waits.len()).filter(rests).collect()
+        };
+        let waiting: Vec<Vec<usize>> = found.states().iter().map(waiting_in).chain([Vec::new()]).collect();
+        let classes = first_classes(&full, &waiting, begin);
+        let (classes, count) = full.classes(classes).unwrap_or_else(|| ((0..=begin).collect(), begin + 1));
+        let graph = full.of_classes(&classes, count);
+        let mut by_class = vec![Vec::new(); count];
+        for (state, &class) in classes.iter().enumerate() {
+            by_class[class].clone_from(&waiting[state]);
+        }
+        let may_end = (0..waits.len()).map(|wait| wait_end_classes(&graph, &deeds, wait)).collect();
+        Behaviour { found, step_interfaces: deeds, full, classes, graph, waiting: by_class, may_end }
+    }
+
+    /// The class before the start.
+    pub(crate) fn begin(&self) -> usize {
+        self.graph.initial.first().copied().unwrap_or(0)
+    }
+
+    /// Whether the chart has not been started.
+    pub(crate) fn is_begin(&self, class: usize) -> bool {
+        class == self.begin()
+    }
+
+    /// The deed of a way.
+    pub(crate) fn deed(&self, way: &LabelledEdge) -> &StepInterface {
+        match way.observable {
+            Observable::Letter(letter) => &self.step_interfaces[letter as usize],
+            Observable::Nothing | Observable::Other => &self.step_interfaces[0],
+        }
+    }
+
+    /// The steps by which a state goes a way of its class, and where they lead.
+    pub(crate) fn steps(&self, state: usize, shows: Observable, to: usize) -> (Vec<usize>, usize) {
+        let class = self.classes[state];
+        let mut came: BTreeMap<usize, Option<(usize, usize)>> = BTreeMap::from([(state, None)]);
+        let mut open = std::collections::VecDeque::from([state]);
+        while let Some(at) = open.pop_front() {
+            let fits = |way: &&LabelledEdge| way.observable == shows && self.classes[way.to] == to;
+            if let Some(last) = self.full.ways[at].iter().find(fits) {
+                let mut steps = vec![last.edge];
+                let mut back = at;
+                while let Some(Some((before, edge))) = came.get(&back) {
+                    steps.push(*edge);
+                    back = *before;
+                }
+                steps.reverse();
+                return (steps, last.to);
+            }
+            for way in self.full.ways[at].iter().filter(|way| way.observable == Observable::Nothing) {
+                if self.classes[way.to] == class && !came.contains_key(&way.to) {
+                    came.insert(way.to, Some((at, way.edge)));
+                    open.push_back(way.to);
+                }
+            }
+        }
+        (Vec::new(), state)
+    }
+
+    /// The state before the start.
+    pub(crate) fn first_state(&self) -> usize {
+        self.found.states().len()
+    }
+}
+
+/// The initial partition of states: by whether the chart has ended, and by the messages it waits
+/// for.
+fn first_classes(full: &Graph, waiting: &[Vec<usize>], begin: usize) -> Vec<usize> {
+    let mut numbers = BTreeMap::new();
+    let key = |state: usize| (state == begin, full.ends[state], waiting[state].clone());
+    (0..=begin)
+        .map(|state| {
+            let number = numbers.len();
+            *numbers.entry(key(state)).or_insert(number)
+        })
+        .collect()
+}
+
+/// From which classes a wait can come to its end, by some way or other.
+fn wait_end_classes(graph: &Graph, deeds: &[StepInterface], wait: usize) -> Vec<bool> {
+    let ends = |way: &LabelledEdge| match way.observable {
+        Observable::Letter(letter) => deeds[letter as usize].exited_waits.contains(&wait),
+        Observable::Nothing | Observable::Other => false,
+    };
+    let mut before = vec![Vec::new(); graph.ways.len()];
+    let mut open = Vec::new();
+    for (from, ways) in graph.ways.iter().enumerate() {
+        ways.iter().for_each(|way| before[way.to].push(from));
+        open.extend(ways.iter().any(ends).then_some(from));
+    }
+    let mut reaches = vec![false; graph.ways.len()];
+    while let Some(class) = open.pop() {
+        if !std::mem::replace(&mut reaches[class], true) {
+            open.extend(before[class].iter().copied());
+        }
+    }
+    reaches
+}

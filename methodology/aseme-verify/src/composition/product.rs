@@ -1,0 +1,399 @@
+//! The product of several robots: their classes of states, the messages in channels, and the last
+//! message that each has received.
+
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, VecDeque};
+
+use yase_explore::{StepCause, Trace};
+
+use super::Channels;
+use super::composed_robot::{Behaviour, ComposedRobot, FieldSetting};
+use super::content_table::{ContentTable, MISSING};
+use crate::conformance::graph::{LabelledEdge, Observable};
+
+/// A message that passes from one robot to another.
+#[derive(Clone, Debug)]
+pub(crate) struct MessageRoute {
+    pub(crate) from: usize,
+    /// By place among what the one says.
+    pub(crate) sent_message: usize,
+    pub(crate) to: usize,
+    /// By places among what the other hears.
+    pub(crate) received_messages: Vec<usize>,
+    /// That of them which waits for its arrival.
+    pub(crate) waited: Option<usize>,
+    /// Its channel.
+    channel: usize,
+}
+
+/// Which messages pass between robots.
+pub(crate) fn passages(robots: &[ComposedRobot]) -> Vec<MessageRoute> {
+    let mut found: Vec<MessageRoute> = Vec::new();
+    let mut channels: Vec<(usize, usize)> = Vec::new();
+    for (to, hearer) in robots.iter().enumerate() {
+        for (from, speaker) in robots.iter().enumerate() {
+            for (saying, said) in speaker.sent.iter().enumerate() {
+                let hears = |&hearing: &usize| {
+                    let called = &hearer.received[hearing].called;
+                    called.host == speaker.name && called.word.means(&said.word)
+                };
+                let hearings: Vec<usize> = (0..hearer.received.len()).filter(hears).collect();
+                if hearings.is_empty() {
+                    continue;
+                }
+                let channel = channels.iter().position(|it| *it == (from, to)).unwrap_or_else(|| {
+                    channels.push((from, to));
+                    channels.len() - 1
+                });
+                let waited = hearings.iter().copied().find(|&it| hearer.received[it].event.is_some());
+                found.push(MessageRoute {
+                    from,
+                    sent_message: saying,
+                    to,
+                    received_messages: hearings,
+                    waited,
+                    channel,
+                });
+            }
+        }
+    }
+    found
+}
+
+/// A state of all together.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) struct GlobalState {
+    /// The class of each robot.
+    pub(crate) classes: Vec<usize>,
+    /// What each has heard last, by passage.
+    newest: Vec<u32>,
+    /// What was said last, by passage.
+    last_sent: Vec<u32>,
+    /// What is on its way, by channel: passages and contents.
+    channels: Vec<Vec<(usize, u32)>>,
+}
+
+/// What leads from one state of all to another.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum GlobalEvent {
+    /// A robot makes a step of its own.
+    Step { robot: usize, way: LabelledEdge },
+    /// What was on its way arrives; who waits for it makes a step.
+    Arrival { passage: usize, way: Option<LabelledEdge> },
+    /// What was on its way is lost.
+    Loss { passage: usize },
+}
+
+/// A step of all.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ProductEdge {
+    pub(crate) from: usize,
+    pub(crate) to: usize,
+    pub(crate) by: GlobalEvent,
+}
+
+/// All that was found.
+pub(crate) struct GlobalProduct<'a> {
+    pub(crate) robots: &'a [ComposedRobot],
+    pub(crate) behaviours: &'a [Behaviour],
+    pub(crate) passages: &'a [MessageRoute],
+    channels: Channels,
+    pub(crate) states: Vec<GlobalState>,
+    pub(crate) edges: Vec<ProductEdge>,
+    /// Where each state was reached from.
+    predecessor: Vec<Option<(usize, GlobalEvent)>>,
+    /// The states of which not every successor is known.
+    pub(crate) open_ended: Vec<usize>,
+    /// The first edge by which a message arrived that no state reads, by passage.
+    pub(crate) dropped: BTreeMap<usize, usize>,
+    /// The first edge by which a channel was too full, by the passage of what it lost.
+    pub(crate) overflows: BTreeMap<usize, usize>,
+}
+
+/// Finds out what robots do together, looking at no more than `limit` states.
+pub(crate) fn product<'a>(
+    robots: &'a [ComposedRobot],
+    behaviours: &'a [Behaviour],
+    passages: &'a [MessageRoute],
+    channels: Channels,
+    limit: usize,
+) -> GlobalProduct<'a> {
+    let found = GlobalProduct {
+        robots,
+        behaviours,
+        passages,
+        channels,
+        states: Vec::new(),
+        edges: Vec::new(),
+        predecessor: Vec::new(),
+        open_ended: Vec::new(),
+        dropped: BTreeMap::new(),
+        overflows: BTreeMap::new(),
+    };
+    let mut search = CompositionSearch {
+        found,
+        contents: ContentTable::new(robots, passages),
+        numbers: BTreeMap::new(),
+        open: VecDeque::new(),
+        limit,
+    };
+    search.run();
+    search.found
+}
+
+struct CompositionSearch<'a> {
+    found: GlobalProduct<'a>,
+    contents: ContentTable<'a>,
+    numbers: BTreeMap<GlobalState, usize>,
+    open: VecDeque<usize>,
+    limit: usize,
+}
+
+/// A successor: what leads there, and what was lost on the way because a channel was full.
+struct GlobalSuccessor {
+    global: GlobalState,
+    by: GlobalEvent,
+    is_dropped: bool,
+    crowded: Option<usize>,
+}
+
+impl<'a> CompositionSearch<'a> {
+    fn run(&mut self) {
+        let (robots, passages) = (self.found.behaviours, self.found.passages);
+        let channels = passages.iter().map(|passage| passage.channel + 1).max().unwrap_or(0);
+        let begin = GlobalState {
+            classes: robots.iter().map(Behaviour::begin).collect(),
+            newest: vec![MISSING; passages.len()],
+            last_sent: vec![MISSING; passages.len()],
+            channels: vec![Vec::new(); channels],
+        };
+        self.number(begin, None);
+        while let Some(state) = self.open.pop_front() {
+            for next in self.successors(&self.found.states[state].clone()) {
+                self.arrive(state, next);
+            }
+        }
+    }
+
+    fn arrive(&mut self, from: usize, next: GlobalSuccessor) {
+        let Some(to) = self.number(next.global, Some((from, next.by))) else {
+            if self.found.open_ended.last() != Some(&from) {
+                self.found.open_ended.push(from);
+            }
+            return;
+        };
+        let edge = self.found.edges.len();
+        self.found.edges.push(ProductEdge { from, to, by: next.by });
+        if let (true, GlobalEvent::Arrival { passage, .. }) = (next.is_dropped, next.by) {
+            self.found.dropped.entry(passage).or_insert(edge);
+        }
+        if let Some(lost) = next.crowded {
+            self.found.overflows.entry(lost).or_insert(edge);
+        }
+    }
+
+    fn number(&mut self, global: GlobalState, came: Option<(usize, GlobalEvent)>) -> Option<usize> {
+        let count = self.found.states.len();
+        match self.numbers.entry(global) {
+            Entry::Occupied(known) => Some(*known.get()),
+            Entry::Vacant(_) if count >= self.limit => None,
+            Entry::Vacant(place) => {
+                self.found.states.push(place.key().clone());
+                place.insert(count);
+                self.found.predecessor.push(came);
+                self.open.push_back(count);
+                Some(count)
+            }
+        }
+    }
+
+    fn successors(&mut self, global: &GlobalState) -> Vec<GlobalSuccessor> {
+        let behaviours = self.found.behaviours;
+        let mut found = Vec::new();
+        // what robots say while they start is heard by those that have started: all do, one after
+        // the other, before anything else
+        let starting = (0..behaviours.len()).find(|&it| behaviours[it].is_begin(global.classes[it]));
+        let robots = starting.map_or(0..behaviours.len(), |robot| robot..robot + 1);
+        robots.for_each(|robot| self.own_steps(global, robot, &mut found));
+        if starting.is_none() {
+            (0..global.channels.len()).for_each(|channel| self.arrivals(global, channel, &mut found));
+        }
+        found
+    }
+
+    fn own_steps(&mut self, global: &GlobalState, robot: usize, found: &mut Vec<GlobalSuccessor>) {
+        let behaviours = self.found.behaviours;
+        for &way in &behaviours[robot].graph.ways[global.classes[robot]] {
+            let deed = behaviours[robot].deed(&way);
+            let comes_by_channel = deed.receives.is_some_and(|hearing| self.is_routed(robot, hearing));
+            if comes_by_channel || !self.contents.allow(robot, &deed.conditions, &global.newest) {
+                continue;
+            }
+            let (global, crowded) = self.apply_step(global.clone(), robot, way);
+            found.push(GlobalSuccessor {
+                global,
+                by: GlobalEvent::Step { robot, way },
+                is_dropped: false,
+                crowded,
+            });
+        }
+    }
+
+    /// Whether a robot of the composition says what another hears.
+    fn is_routed(&self, robot: usize, hearing: usize) -> bool {
+        self.found.passages.iter().any(|it| it.to == robot && it.received_messages.contains(&hearing))
+    }
+
+    /// What comes next out of a channel. A message of which one waits in the chart already is taken
+    /// behind that: it stays where it is, and others may come before it.
+    fn arrivals(&mut self, global: &GlobalState, channel: usize, found: &mut Vec<GlobalSuccessor>) {
+        let arrives = |&(passage, _): &(usize, u32)| !self.is_blocked(global, passage);
+        let Some(place) = global.channels[channel].iter().position(arrives) else { return };
+        let mut there = global.clone();
+        let (passage, content) = there.channels[channel].remove(place);
+        if self.found.channels.may_lose {
+            let (global, by) = (there.clone(), GlobalEvent::Loss { passage });
+            found.push(GlobalSuccessor { global, by, is_dropped: false, crowded: None });
+        }
+        there.newest[passage] = content;
+        let ways = self.receiving_steps(&there, passage);
+        if ways.is_empty() {
+            let (global, by) = (there, GlobalEvent::Arrival { passage, way: None });
+            found.push(GlobalSuccessor { global, by, is_dropped: false, crowded: None });
+            return;
+        }
+        let (behaviours, to) = (self.found.behaviours, self.found.passages[passage].to);
+        for way in ways {
+            let deed = behaviours[to].deed(&way);
+            if self.contents.allow(to, &deed.conditions, &there.newest) {
+                let (global, crowded) = self.apply_step(there.clone(), to, way);
+                let by = GlobalEvent::Arrival { passage, way: Some(way) };
+                found.push(GlobalSuccessor { global, by, is_dropped: deed.drops, crowded });
+            }
+        }
+    }
+
+    /// What a robot may do when a message arrives that it waits for.
+    fn receiving_steps(&self, global: &GlobalState, passage: usize) -> Vec<LabelledEdge> {
+        let &MessageRoute { to, waited, .. } = &self.found.passages[passage];
+        let behaviour = &self.found.behaviours[to];
+        let hears = |way: &&LabelledEdge| waited.is_some() && behaviour.deed(way).receives == waited;
+        behaviour.graph.ways[global.classes[to]].iter().filter(hears).copied().collect()
+    }
+
+    /// Whether one of a kind waits in the chart already: then the chart is offered no other. One
+    /// that has ended waits for nothing.
+    fn is_blocked(&self, global: &GlobalState, passage: usize) -> bool {
+        let &MessageRoute { to, waited, .. } = &self.found.passages[passage];
+        let has_ended = self.found.behaviours[to].graph.ends[global.classes[to]];
+        waited.is_some() && !has_ended && self.receiving_steps(global, passage).is_empty()
+    }
+
+    /// A robot goes a way, and what it says is on its way. Gives what a full channel has lost by
+    /// that, too.
+    fn apply_step(
+        &mut self,
+        mut global: GlobalState,
+        robot: usize,
+        way: LabelledEdge,
+    ) -> (GlobalState, Option<usize>) {
+        let behaviours = self.found.behaviours;
+        global.classes[robot] = way.to;
+        let mut crowded = None;
+        for (saying, settings) in &behaviours[robot].deed(&way).sends {
+            crowded = crowded.or(self.send(&mut global, robot, *saying, settings));
+        }
+        (global, crowded)
+    }
+
+    fn send(
+        &mut self,
+        global: &mut GlobalState,
+        robot: usize,
+        saying: usize,
+        settings: &[FieldSetting],
+    ) -> Option<usize> {
+        let mut lost = None;
+        let passages = self.found.passages;
+        let meant = |it: &(usize, &MessageRoute)| it.1.from == robot && it.1.sent_message == saying;
+        for (number, passage) in passages.iter().enumerate().filter(meant) {
+            let content = self.contents.changed(global.last_sent[number], settings);
+            global.last_sent[number] = content;
+            let channel = &mut global.channels[passage.channel];
+            let waiting = channel.iter_mut().find(|(other, _)| *other == number);
+            match waiting.filter(|_| passage.waited.is_none()) {
+                // whoever only looks at the newest message misses nothing by not seeing the one
+                // before
+                Some(waiting) => waiting.1 = content,
+                None => channel.push((number, content)),
+            }
+            if channel.len() > self.found.channels.capacity {
+                lost = Some(channel.remove(0).0);
+            }
+        }
+        lost
+    }
+}
+
+impl GlobalProduct<'_> {
+    /// Whether everything was found.
+    pub(crate) fn is_finished(&self) -> bool {
+        self.open_ended.is_empty() && self.behaviours.iter().all(|it| it.found.is_finished())
+    }
+
+    /// What happens on the shortest way to a state.
+    pub(crate) fn path_to(&self, mut state: usize) -> Vec<GlobalEvent> {
+        let mut way = Vec::new();
+        while let Some(Some((before, by))) = self.predecessor.get(state) {
+            way.push(*by);
+            state = *before;
+        }
+        way.reverse();
+        way
+    }
+
+    /// A way as text: the steps of each robot behind its name, as [`super::joint`] reads it.
+    pub(crate) fn trace_text(&self, way: &[GlobalEvent]) -> String {
+        let mut at: Vec<usize> = self.behaviours.iter().map(Behaviour::first_state).collect();
+        let mut text = String::new();
+        for happening in way {
+            match *happening {
+                GlobalEvent::Step { robot, way } => self.write_step(robot, way, &mut at, &mut text),
+                GlobalEvent::Arrival { passage, way } => {
+                    let MessageRoute { from, sent_message: saying, to, .. } = &self.passages[passage];
+                    let (from, to, name) = (&self.robots[*from], *to, *saying);
+                    let said = from.sent[name].word.name();
+                    text += &format!("# `{said}` of {} comes to {}\n", from.name, self.robots[to].name);
+                    if let Some(way) = way {
+                        self.write_step(to, way, &mut at, &mut text);
+                    }
+                }
+                GlobalEvent::Loss { passage } => {
+                    let MessageRoute { from, sent_message: saying, to, .. } = &self.passages[passage];
+                    let said = self.robots[*from].sent[*saying].word.name();
+                    let (from, to) = (&self.robots[*from].name, &self.robots[*to].name);
+                    text += &format!("# `{said}` of {from} to {to} is lost\n");
+                }
+            }
+        }
+        text
+    }
+
+    fn write_step(&self, robot: usize, way: LabelledEdge, at: &mut [usize], text: &mut String) {
+        let (behaviour, name) = (&self.behaviours[robot], &self.robots[robot].name);
+        let (steps, to) = behaviour.steps(at[robot], way.observable, way.to);
+        at[robot] = to;
+        let trace: Trace = behaviour.found.trace_along(&steps);
+        let is_silent = way.observable == Observable::Nothing;
+        for step in trace
+            .steps()
+            .iter()
+            .filter(|step| !is_silent || step.cause != StepCause::Messages || !step.decisions.is_empty())
+        {
+            *text += &format!("{name}: {}", trace.text_of(step));
+        }
+        for (saying, _) in &behaviour.deed(&way).sends {
+            *text += &format!("  # says `{}`\n", self.robots[robot].sent[*saying].word.name());
+        }
+    }
+}

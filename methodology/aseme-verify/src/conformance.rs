@@ -1,0 +1,525 @@
+//! M24: trace inclusion between a chart and its formulas.
+//!
+//! Both are sets of traces, the orders in which activities return. Every trace of the chart must be
+//! one of the formulas, and vice versa. A chart that is left early by a guard or an event cuts
+//! traces short, as intended. Infinite traces are compared by the activities that can still follow
+//! ([`infinite_traces`]).
+
+pub(crate) mod derivatives;
+pub(crate) mod graph;
+mod infinite_traces;
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+use yase::{NodeId, Statechart};
+use yase_explore::{Edge, Exploration, Trace};
+
+use crate::conformance::derivatives::{Language, Residual, Symbol};
+use aseme::liveness::Liveness;
+use graph::{Graph, Observable};
+use infinite_traces::{InfiniteTraceResult, endlessly};
+
+/// So many pairs of states and rests are looked at.
+const MOST: usize = 400_000;
+
+/// A way in which a chart and its formulas differ.
+#[derive(Clone, Debug)]
+pub(crate) struct ConformanceDifference {
+    /// The activities that have returned before, in order.
+    pub(crate) before: Vec<String>,
+    /// What differs then.
+    pub(crate) kind: DifferenceKind,
+    /// A trace that leads there, for what the chart does.
+    pub(crate) trace: Option<Trace>,
+}
+
+/// What differs.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(crate) enum DifferenceKind {
+    /// The chart does an activity that the formulas do not allow.
+    NotAllowed(NodeId),
+    /// The chart ends where the formulas go on.
+    EndsEarly,
+    /// The formulas allow an activity that the chart cannot do.
+    NeverDone(String),
+    /// The formulas may end, and the chart cannot.
+    NeverEnds,
+    /// What the formulas do again and again the chart can no longer do: these `x~`, or something
+    /// that comes once.
+    Starves(Vec<String>),
+}
+
+impl DifferenceKind {
+    /// Whether the chart does something; else there is something that it does not do.
+    pub(crate) fn is_of_what_is_done(&self) -> bool {
+        matches!(self, DifferenceKind::NotAllowed(_) | DifferenceKind::EndsEarly)
+    }
+}
+
+/// The first difference in each direction: what the chart does, then what it cannot do. And whether
+/// all was judged: of what is too large, nothing is known.
+pub(crate) fn differences(
+    chart: &Statechart,
+    found: &Exploration,
+    liveness: &Liveness,
+) -> (Vec<ConformanceDifference>, bool) {
+    compared(chart, found, Language::new(liveness), false)
+}
+
+/// The first thing that the chart does and formulas do not allow, even if composites may be left
+/// before they are done: those of such names.
+pub(crate) fn difference_beyond(
+    chart: &Statechart,
+    found: &Exploration,
+    liveness: &Liveness,
+    cut: BTreeSet<String>,
+) -> Option<ConformanceDifference> {
+    let (language, all) = Language::with_cut(liveness, cut)?;
+    let full = Graph::of(found, |edge| shows(&language, chart, &found.edges()[edge]));
+    let mut comparison = ConformanceComparison { chart, found, language, may_end_early: false };
+    comparison.follow_chart(&full, all).0.difference()
+}
+
+/// The same for a chart that may be left early: ending where the formulas continue is no
+/// difference.
+pub(crate) fn differences_of_what_is_left_early(
+    chart: &Statechart,
+    found: &Exploration,
+    liveness: &Liveness,
+) -> (Vec<ConformanceDifference>, bool) {
+    compared(chart, found, Language::new(liveness), true)
+}
+
+fn compared(
+    chart: &Statechart,
+    found: &Exploration,
+    language: Option<(Language, Residual)>,
+    may_end_early: bool,
+) -> (Vec<ConformanceDifference>, bool) {
+    let Some((language, all)) = language else { return (Vec::new(), false) };
+    let full = Graph::of(found, |edge| shows(&language, chart, &found.edges()[edge]));
+    let mut comparison = ConformanceComparison { chart, found, language, may_end_early };
+    let small = full.collapsed();
+    let (does, cannot) = comparison.check_both_directions(small.as_ref().unwrap_or(&full), all);
+    // classes tell that there is a difference, and only states the way there
+    let does = match (does, small) {
+        (InclusionResult::Differs(brief), Some(_)) => match comparison.chart_included(&full, all) {
+            InclusionResult::Differs(whole) => InclusionResult::Differs(whole),
+            _ => InclusionResult::Differs(ConformanceDifference { trace: None, ..brief }),
+        },
+        (does, _) => does,
+    };
+    let is_whole = !matches!(does, InclusionResult::Unknown) && !matches!(cannot, InclusionResult::Unknown);
+    (does.difference().into_iter().chain(cannot.difference()).collect(), is_whole)
+}
+
+fn shows(language: &Language, chart: &Statechart, edge: &Edge) -> Observable {
+    let letter = |node: NodeId| language.find(&chart.node(node).name);
+    edge.returned
+        .map_or(Observable::Nothing, |node| letter(node).map_or(Observable::Other, Observable::Letter))
+}
+
+struct ConformanceComparison<'a> {
+    chart: &'a Statechart,
+    found: &'a Exploration,
+    language: Language,
+    /// Whether it may end where the formulas go on.
+    may_end_early: bool,
+}
+
+/// What is known in one direction.
+enum InclusionResult {
+    Same,
+    Differs(ConformanceDifference),
+    /// It is too large to be judged.
+    Unknown,
+}
+
+impl InclusionResult {
+    fn difference(self) -> Option<ConformanceDifference> {
+        match self {
+            InclusionResult::Differs(difference) => Some(difference),
+            InclusionResult::Same | InclusionResult::Unknown => None,
+        }
+    }
+}
+
+type ResidualSet = BTreeSet<Residual>;
+
+/// A state of the chart, and what may be left of the formulas there.
+type ProductState = (usize, ResidualSet);
+
+/// What was reached.
+#[derive(Default)]
+struct Reached {
+    /// In the order in which it was.
+    order: Vec<ProductState>,
+    /// From where, and along which edge.
+    from: BTreeMap<ProductState, Option<(ProductState, usize)>>,
+}
+
+impl Reached {
+    /// Whether it is new.
+    fn visit(&mut self, at: ProductState, from: Option<(ProductState, usize)>) -> bool {
+        let is_new = !self.from.contains_key(&at);
+        if is_new {
+            self.order.push(at.clone());
+            self.from.insert(at, from);
+        }
+        is_new
+    }
+}
+
+impl ConformanceComparison<'_> {
+    fn check_both_directions(&mut self, graph: &Graph, all: Residual) -> (InclusionResult, InclusionResult) {
+        let does = self.chart_included(graph, all);
+        let cannot =
+            if self.found.is_finished() { self.formulas_included(graph, all) } else { InclusionResult::Same };
+        (does, cannot)
+    }
+
+    /// What the chart does: each step of it, then what it can go on with.
+    fn chart_included(&mut self, graph: &Graph, all: Residual) -> InclusionResult {
+        match self.follow_chart(graph, all) {
+            (InclusionResult::Same, came) if self.found.is_finished() => {
+                self.check_completable(graph, all, &came)
+            }
+            (does, _) => does,
+        }
+    }
+
+    /// Looks whether the formulas can still be met from wherever the chart has come.
+    fn check_completable(&mut self, graph: &Graph, all: Residual, came: &Reached) -> InclusionResult {
+        match endlessly(graph, &mut self.language, all, &came.order, self.may_end_early) {
+            InfiniteTraceResult::Met => InclusionResult::Same,
+            InfiniteTraceResult::Missed(index, names) => {
+                let kind = DifferenceKind::Starves(names);
+                InclusionResult::Differs(self.difference(kind, came, &came.order[index], None))
+            }
+            InfiniteTraceResult::Unknown => InclusionResult::Unknown,
+        }
+    }
+
+    /// Follows the chart, and looks whether the formulas allow it; with all that it came to.
+    fn follow_chart(&mut self, graph: &Graph, all: Residual) -> (InclusionResult, Reached) {
+        let mut came = Reached::default();
+        for &state in &graph.initial {
+            came.visit((state, ResidualSet::from([all])), None);
+        }
+        let mut open = 0;
+        while let Some(at) = came.order.get(open).cloned() {
+            open += 1;
+            if came.order.len() > MOST || self.language.is_too_large() {
+                return (InclusionResult::Unknown, came);
+            }
+            let may_end = self.may_end_early || at.1.iter().any(|&rest| self.language.may_end(rest));
+            if graph.ends[at.0] && !may_end {
+                let difference = self.difference(DifferenceKind::EndsEarly, &came, &at, None);
+                return (InclusionResult::Differs(difference), came);
+            }
+            for way in &graph.ways[at.0] {
+                let rests = match way.observable {
+                    Observable::Nothing => at.1.clone(),
+                    Observable::Letter(letter) => self.language.derivative_of_any(&at.1, letter),
+                    Observable::Other => ResidualSet::new(),
+                };
+                if let (true, Some(node)) = (rests.is_empty(), self.found.edges()[way.edge].returned) {
+                    let kind = DifferenceKind::NotAllowed(node);
+                    let difference = self.difference(kind, &came, &at, Some(way.edge));
+                    return (InclusionResult::Differs(difference), came);
+                }
+                came.visit((way.to, rests), Some((at.clone(), way.edge)));
+            }
+        }
+        (InclusionResult::Same, came)
+    }
+
+    fn difference(
+        &self,
+        kind: DifferenceKind,
+        came: &Reached,
+        at: &ProductState,
+        last: Option<usize>,
+    ) -> ConformanceDifference {
+        let (mut edges, mut at) = (Vec::new(), at.clone());
+        while let Some(Some((before, edge))) = came.from.get(&at) {
+            edges.push(*edge);
+            at = before.clone();
+        }
+        edges.reverse();
+        let before = self.names(&edges);
+        edges.extend(last);
+        ConformanceDifference { before, kind, trace: Some(self.found.trace_along(at.0, &edges)) }
+    }
+
+    fn names(&self, edges: &[usize]) -> Vec<String> {
+        let returned = edges.iter().filter_map(|&edge| self.found.edges()[edge].returned);
+        returned.map(|node| self.chart.node(node).name.clone()).collect()
+    }
+
+    /// Follows the formulas, with all the states in which the chart may be after the same trace.
+    fn formulas_included(&mut self, graph: &Graph, all: Residual) -> InclusionResult {
+        let start =
+            (internal_closure(graph, graph.initial.iter().copied().collect()), ResidualSet::from([all]));
+        let mut seen = BTreeSet::from([start.clone()]);
+        let mut open = VecDeque::from([(start, Vec::new())]);
+        let mut work = 0;
+        while let Some(((states, rests), before)) = open.pop_front() {
+            work += states.len() * (1 + rests.len());
+            if work > MOST || self.language.is_too_large() {
+                return InclusionResult::Unknown;
+            }
+            let may_end = rests.iter().any(|&rest| self.language.may_end(rest));
+            if may_end && !states.iter().any(|&state| graph.ends[state]) {
+                return InclusionResult::Differs(self.missing(DifferenceKind::NeverEnds, &before));
+            }
+            for letter in 0..self.language.letters().len() as Symbol {
+                let after = self.language.derivative_of_any(&rests, letter);
+                if after.is_empty() {
+                    continue;
+                }
+                let reached = reached(graph, &states, letter);
+                if reached.is_empty() {
+                    let name = self.language.letters()[letter as usize].clone();
+                    return InclusionResult::Differs(self.missing(DifferenceKind::NeverDone(name), &before));
+                }
+                let next = (internal_closure(graph, reached), after);
+                if seen.insert(next.clone()) {
+                    open.push_back((next, [before.as_slice(), &[letter]].concat()));
+                }
+            }
+        }
+        InclusionResult::Same
+    }
+
+    fn missing(&self, kind: DifferenceKind, before: &[Symbol]) -> ConformanceDifference {
+        let before = before.iter().map(|&letter| self.language.letters()[letter as usize].clone());
+        ConformanceDifference { before: before.collect(), kind, trace: None }
+    }
+}
+
+fn reached(graph: &Graph, states: &BTreeSet<usize>, letter: Symbol) -> BTreeSet<usize> {
+    let ways = states.iter().flat_map(|&state| &graph.ways[state]);
+    ways.filter(|way| way.observable == Observable::Letter(letter)).map(|way| way.to).collect()
+}
+
+/// All states that are reached without an activity's return.
+fn internal_closure(graph: &Graph, mut states: BTreeSet<usize>) -> BTreeSet<usize> {
+    let mut open: Vec<usize> = states.iter().copied().collect();
+    while let Some(state) = open.pop() {
+        for way in graph.ways[state].iter().filter(|way| way.observable == Observable::Nothing) {
+            if states.insert(way.to) {
+                open.push(way.to);
+            }
+        }
+    }
+    states
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use proptest::prelude::*;
+    use proptest::strategy::ValueTree;
+    use proptest::test_runner::TestRunner;
+    use yase::expression::parse_transition;
+    use yase::{NodeKind, TransitionId, TypeEnvironment};
+    use yase_explore::{Environment, explore};
+
+    use super::*;
+
+    /// A formula in which no name stands twice.
+    #[derive(Clone, Debug)]
+    enum SampleFormula {
+        Name,
+        Several(&'static str, Vec<SampleFormula>),
+        Optional(Box<SampleFormula>),
+        Repeated(&'static str, Box<SampleFormula>),
+    }
+
+    impl SampleFormula {
+        fn text(&self, count: &mut usize) -> String {
+            match self {
+                SampleFormula::Name => {
+                    *count += 1;
+                    format!("a{count}")
+                }
+                SampleFormula::Several(operator, parts) => {
+                    let parts: Vec<String> = parts.iter().map(|part| part.text(count)).collect();
+                    format!("({})", parts.join(operator))
+                }
+                SampleFormula::Optional(inner) => format!("[{}]", inner.text(count)),
+                SampleFormula::Repeated(operator, inner) => format!("({}){operator}", inner.text(count)),
+            }
+        }
+    }
+
+    fn formula() -> impl Strategy<Value = SampleFormula> {
+        Just(SampleFormula::Name).prop_recursive(3, 7, 3, |inner| {
+            let several = (
+                prop::sample::select(vec![" . ", " | ", " || "]),
+                prop::collection::vec(inner.clone(), 2..4),
+            );
+            let repeated = (prop::sample::select(vec!["*", "+", "~"]), inner.clone());
+            prop_oneof![
+                3 => several.prop_map(|(operator, parts)| SampleFormula::Several(operator, parts)),
+                1 => inner.prop_map(|inner| SampleFormula::Optional(Box::new(inner))),
+                1 => repeated.prop_map(|(operator, inner)| SampleFormula::Repeated(operator, Box::new(inner))),
+            ]
+        })
+    }
+
+    /// The chart of formulas in which every choice is free: of the ways out of a node all but the
+    /// last have a guard that may hold or not.
+    fn free(text: &str) -> (Statechart, Liveness, Vec<TransitionId>) {
+        let (liveness, _) = aseme::liveness::parse(text);
+        let (mut chart, _) = aseme::liveness_to_statechart(&liveness);
+        let mut guarded = Vec::new();
+        let nodes: Vec<NodeId> = chart.nodes().map(|(id, _)| id).collect();
+        for node in nodes {
+            let ways: Vec<TransitionId> =
+                chart.transitions().filter(|(_, it)| it.source == node).map(|(id, _)| id).collect();
+            for &way in &ways[..ways.len().saturating_sub(1)] {
+                set_guard(&mut chart, way, &format!("script(\"{}\")", way.0));
+                guarded.push(way);
+            }
+        }
+        (chart, liveness, guarded)
+    }
+
+    fn set_guard(chart: &mut Statechart, way: TransitionId, guard: &str) {
+        chart.transition_mut(way).expression = parse_transition(&format!("[{guard}]")).0;
+    }
+
+    /// The differences, if the chart is small enough to be explored.
+    fn found_in(chart: &Statechart, liveness: &Liveness) -> Option<Vec<DifferenceKind>> {
+        let vocabulary = TypeEnvironment { scripts: true, ..TypeEnvironment::default() };
+        let compiled = Arc::new(chart.compile(&vocabulary).unwrap());
+        let mut surroundings = Environment { messages: true, ..Environment::default() };
+        let found = explore(&compiled, &mut surroundings, 1_500);
+        let kinds =
+            || differences(chart, &found, liveness).0.into_iter().map(|difference| difference.kind).collect();
+        found.is_finished().then(kinds)
+    }
+
+    /// The templates of formulas, judged by another way to say what formulas mean.
+    #[test]
+    fn charts_do_what_their_formulas_say_and_nothing_else() {
+        let mut runner = TestRunner::deterministic();
+        let mut judged = 0;
+        for _ in 0..80 {
+            let formula = formula().new_tree(&mut runner).unwrap().current();
+            let text = format!("r = {}", formula.text(&mut 0));
+            let (chart, liveness, _) = free(&text);
+            let Some(found) = found_in(&chart, &liveness) else { continue };
+            assert_eq!(found, [], "{text}");
+            judged += 1;
+        }
+        assert!(judged >= 60, "only {judged} were small enough");
+    }
+
+    /// Charts with one guard closed are found to differ, or not to, by their classes as by their
+    /// states.
+    #[test]
+    fn classes_of_states_have_the_traces_of_the_states() {
+        let mut runner = TestRunner::deterministic();
+        let (mut smaller, mut different) = (0, 0);
+        for round in 0..120 {
+            let formula = formula().new_tree(&mut runner).unwrap().current();
+            let text = format!("r = {}", formula.text(&mut 0));
+            let (mut chart, liveness, guarded) = free(&text);
+            // what is done waits, so that there are steps that no trace shows
+            let done: Vec<TransitionId> = (chart.transitions())
+                .filter(|(id, it)| chart.node(it.source).kind == NodeKind::Basic && !guarded.contains(id))
+                .map(|(id, _)| id)
+                .collect();
+            done.into_iter().for_each(|way| set_guard(&mut chart, way, &format!("script(\"{}\")", way.0)));
+            if let Some(&way) = guarded.get(round % (guarded.len() + 1)) {
+                set_guard(&mut chart, way, "false");
+            }
+            let vocabulary = TypeEnvironment { scripts: true, ..TypeEnvironment::default() };
+            let compiled = Arc::new(chart.compile(&vocabulary).unwrap());
+            let mut surroundings = Environment { messages: true, ..Environment::default() };
+            let found = explore(&compiled, &mut surroundings, 500);
+            if !found.is_finished() {
+                continue;
+            }
+            let (language, all) = Language::new(&liveness).unwrap();
+            let full = Graph::of(&found, |edge| shows(&language, &chart, &found.edges()[edge]));
+            let small = full.collapsed().unwrap();
+            let mut comparison =
+                ConformanceComparison { chart: &chart, found: &found, language, may_end_early: false };
+            let mut kinds = |graph: &Graph| {
+                let (does, cannot) = comparison.check_both_directions(graph, all);
+                [does, cannot].map(|verdict| verdict.difference().map(|it| (it.before.len(), it.kind)))
+            };
+            let (by_states, by_classes) = (kinds(&full), kinds(&small));
+            assert_eq!(by_states[1], by_classes[1], "{text}");
+            // of the ways that lead to what is not allowed, equally short ones may come in another
+            // order
+            let is_some = |it: &Option<(usize, DifferenceKind)>| it.is_some();
+            assert_eq!(is_some(&by_states[0]), is_some(&by_classes[0]), "{text}");
+            smaller += usize::from(small.ways.len() < full.ways.len());
+            different += usize::from(by_states.iter().any(is_some));
+        }
+        assert!(smaller >= 20 && different >= 20, "{smaller} were smaller, {different} differ");
+    }
+
+    fn kinds(text: &str, change: impl Fn(&mut Statechart)) -> Vec<DifferenceKind> {
+        let (mut chart, liveness, _) = free(text);
+        change(&mut chart);
+        found_in(&chart, &liveness).unwrap()
+    }
+
+    fn named(chart: &Statechart, name: &str) -> NodeId {
+        chart.nodes().find(|(_, node)| node.name == name).unwrap().0
+    }
+
+    fn between(chart: &Statechart, source: &str, target: NodeKind) -> TransitionId {
+        let source = named(chart, source);
+        let is_meant = |it: &yase::Transition| it.source == source && chart.node(it.target).kind == target;
+        chart.transitions().find(|(_, it)| is_meant(it)).unwrap().0
+    }
+
+    #[test]
+    fn each_difference_is_found() {
+        assert_eq!(kinds("r = a . b", |_| {}), []);
+        let closed = |chart: &mut Statechart| {
+            let way = between(chart, "b", NodeKind::End);
+            set_guard(chart, way, "false");
+        };
+        assert_eq!(kinds("r = a . b", closed), [DifferenceKind::NeverEnds]);
+        let skipped = |chart: &mut Statechart| {
+            let (way, end) = (between(chart, "a", NodeKind::Basic), between(chart, "b", NodeKind::End));
+            chart.transition_mut(way).target = chart.transition(end).target;
+        };
+        assert_eq!(
+            kinds("r = a . b", skipped),
+            [DifferenceKind::EndsEarly, DifferenceKind::NeverDone("b".into())]
+        );
+        let other = |chart: &mut Statechart| {
+            let way = between(chart, "a", NodeKind::Basic);
+            let target = named(chart, "c");
+            chart.transition_mut(way).target = target;
+        };
+        assert!(matches!(
+            kinds("r = a . b . c", other)[..],
+            [DifferenceKind::NotAllowed(_), DifferenceKind::NeverDone(_)]
+        ));
+        let once = |chart: &mut Statechart| {
+            let way = between(chart, "a", NodeKind::Basic);
+            set_guard(chart, way, "false");
+        };
+        assert_eq!(kinds("r = a+ . b", once), [DifferenceKind::NeverDone("a".into())]);
+        let until = |chart: &mut Statechart| {
+            let way = between(chart, "a", NodeKind::Basic);
+            set_guard(chart, way, "In(b)");
+        };
+        let ceases = kinds("r = a~ || b", until);
+        let [DifferenceKind::Starves(names), DifferenceKind::NeverDone(_)] = &ceases[..] else {
+            panic!("{ceases:?}")
+        };
+        assert_eq!(names, &["a~"]);
+    }
+}

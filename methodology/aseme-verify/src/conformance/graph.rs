@@ -1,0 +1,158 @@
+//! The observable behaviour of a chart: states, and the activities that return between them.
+
+use std::collections::BTreeMap;
+
+use yase::Status;
+use yase_explore::Exploration;
+
+use crate::conformance::derivatives::Symbol;
+
+/// A way from one state to another.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct LabelledEdge {
+    /// What a trace shows of it.
+    pub(crate) observable: Observable,
+    /// Where it leads.
+    pub(crate) to: usize,
+    /// An edge of the exploration that it stands for.
+    pub(crate) edge: usize,
+}
+
+/// What a trace shows of a step.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) enum Observable {
+    /// No activity returned.
+    Nothing,
+    /// One did that formulas name.
+    Letter(Symbol),
+    /// One did that no formula names.
+    Other,
+}
+
+/// States and ways.
+#[derive(Debug)]
+pub(crate) struct Graph {
+    pub(crate) initial: Vec<usize>,
+    /// Whether the chart has ended in a state.
+    pub(crate) ends: Vec<bool>,
+    /// The ways out of each state.
+    pub(crate) ways: Vec<Vec<LabelledEdge>>,
+}
+
+/// What a state has, as bits: the numbers of what ways show with where they lead.
+type Signature = Vec<u64>;
+
+/// Limit of equivalence classes; minimising a chart with more gains little.
+const MOST_CLASSES: usize = 2_000;
+
+impl Graph {
+    /// All that was found.
+    pub(crate) fn of(found: &Exploration, shows: impl Fn(usize) -> Observable) -> Graph {
+        let mut ways = vec![Vec::new(); found.states().len()];
+        for (index, edge) in found.edges().iter().enumerate() {
+            let shows = shows(index);
+            if shows != Observable::Nothing || edge.from != edge.to {
+                ways[edge.from].push(LabelledEdge { observable: shows, to: edge.to, edge: index });
+            }
+        }
+        let ends = found.states().iter().map(|state| state.status == Status::Finished).collect();
+        Graph { initial: found.initial().collect(), ends, ways }
+    }
+
+    /// The same traces with fewer states: those are one that are branching bisimilar. None if there
+    /// are too many left.
+    ///
+    /// States are sorted into classes, which are split for as long as some states in one class have
+    /// what others do not have: a way that shows something or leads to another class, perhaps
+    /// behind steps within the class that show nothing. Loops that go on at a pace of their own,
+    /// which are what makes a player's chart large, are one state each by that.
+    pub(crate) fn collapsed(&self) -> Option<Graph> {
+        let (classes, count) = self.classes(self.ends.iter().map(|&ends| usize::from(ends)).collect())?;
+        Some(self.of_classes(&classes, count))
+    }
+
+    /// Refines an initial partition into bisimulation classes: the class of each state and the
+    /// number of classes. None if there are too many.
+    pub(crate) fn classes(&self, mut classes: Vec<usize>) -> Option<(Vec<usize>, usize)> {
+        let mut count = 0;
+        loop {
+            let mut numbers = BTreeMap::new();
+            let mut next = Vec::with_capacity(classes.len());
+            for state in classes.iter().copied().zip(self.signatures(&classes)) {
+                let number = numbers.len();
+                next.push(*numbers.entry(state).or_insert(number));
+            }
+            match numbers.len() {
+                same if same == count => return Some((next, count)),
+                more if more > MOST_CLASSES => return None,
+                more => (classes, count) = (next, more),
+            }
+        }
+    }
+
+    fn signatures(&self, classes: &[usize]) -> Vec<Signature> {
+        let mut numbers = BTreeMap::new();
+        let mut before: Vec<Vec<usize>> = vec![Vec::new(); self.ways.len()];
+        let mut own = vec![Vec::new(); self.ways.len()];
+        for (from, ways) in self.ways.iter().enumerate() {
+            for way in ways {
+                let class = classes[way.to];
+                if way.observable == Observable::Nothing && class == classes[from] {
+                    before[way.to].push(from);
+                } else {
+                    let number = numbers.len();
+                    own[from].push(*numbers.entry((way.observable, class)).or_insert(number));
+                }
+            }
+        }
+        let mut signatures = vec![vec![0; numbers.len().div_ceil(64)]; self.ways.len()];
+        for (signature, own) in signatures.iter_mut().zip(own) {
+            own.into_iter().for_each(|number: usize| signature[number / 64] |= 1 << (number % 64));
+        }
+        propagate_back(&mut signatures, &before);
+        signatures
+    }
+
+    /// Classes as states, and the ways between them.
+    pub(crate) fn of_classes(&self, classes: &[usize], count: usize) -> Graph {
+        let mut ways: Vec<BTreeMap<(Observable, usize), usize>> = vec![BTreeMap::new(); count];
+        let mut ends = vec![false; count];
+        for (from, out) in self.ways.iter().enumerate() {
+            let class = classes[from];
+            ends[class] = self.ends[from];
+            for way in
+                out.iter().filter(|way| way.observable != Observable::Nothing || classes[way.to] != class)
+            {
+                ways[class].entry((way.observable, classes[way.to])).or_insert(way.edge);
+            }
+        }
+        let way = |((shows, to), edge)| LabelledEdge { observable: shows, to, edge };
+        let mut initial: Vec<usize> = self.initial.iter().map(|&state| classes[state]).collect();
+        initial.sort_unstable();
+        initial.dedup();
+        Graph {
+            initial,
+            ends,
+            ways: ways.into_iter().map(|ways| ways.into_iter().map(way).collect()).collect(),
+        }
+    }
+}
+
+/// What a state has, those have too from which steps lead there that show nothing, within a class.
+fn propagate_back(signatures: &mut [Signature], before: &[Vec<usize>]) {
+    let mut open: Vec<usize> = (0..signatures.len()).collect();
+    let mut is_open = vec![true; signatures.len()];
+    while let Some(to) = open.pop() {
+        is_open[to] = false;
+        let behind = std::mem::take(&mut signatures[to]);
+        for &from in before[to].iter().filter(|&&from| from != to) {
+            let had = &mut signatures[from];
+            let has_more = had.iter().zip(&behind).any(|(had, behind)| behind & !had != 0);
+            had.iter_mut().zip(&behind).for_each(|(had, behind)| *had |= behind);
+            if has_more && !std::mem::replace(&mut is_open[from], true) {
+                open.push(from);
+            }
+        }
+        signatures[to] = behind;
+    }
+}

@@ -1,0 +1,174 @@
+//! Inclusion of infinite traces.
+//!
+//! An infinite trace satisfies formulas if each required `x~` is begun infinitely often: a
+//! generalised Büchi condition with a set for each `x~`. A chart that waits for its environment has
+//! traces that violate it in any case: a ball may never come. The check is therefore weaker: after
+//! every finite trace it must still be possible to satisfy the condition. Where it is not, the
+//! chart itself has cut something short.
+//!
+//! The other direction follows from finite traces: an infinite trace is one of the chart if all its
+//! prefixes are, since a chart has finitely many states.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::graph::{Graph, Observable};
+use super::{MOST, ProductState};
+use crate::conformance::derivatives::{Language, LoopId, Residual};
+use crate::strongly_connected_components::strongly_connected_components;
+
+/// A state of the chart with one of the rests of the formulas there.
+type LoopProductState = (usize, Residual);
+
+/// Where a step leads, whether it can be part of what goes on forever, and what it begins a turn
+/// of.
+type LoopProductStep = (usize, (bool, BTreeSet<LoopId>));
+
+/// The first of some states of affairs from which the formulas cannot be met any more, and which of
+/// their `x~` are not begun again; none of those if it is something else.
+pub(crate) enum InfiniteTraceResult {
+    /// They can be met from all of them.
+    Met,
+    /// From this one they cannot.
+    Missed(usize, Vec<String>),
+    /// There is too much to look at.
+    Unknown,
+}
+
+/// Looks at states of affairs in the order in which they are reached.
+pub(crate) fn endlessly(
+    graph: &Graph,
+    language: &mut Language,
+    all: Residual,
+    reached: &[ProductState],
+    may_end_early: bool,
+) -> InfiniteTraceResult {
+    let Some(product) = LoopProduct::new(graph, language, all) else { return InfiniteTraceResult::Unknown };
+    let turns = product.turns(language);
+    let met = product.satisfying_states(graph, language, &turns, may_end_early);
+    let is_met = |at: &ProductState| {
+        at.1.iter().any(|&rest| product.numbers.get(&(at.0, rest)).is_none_or(|&place| met[place]))
+    };
+    match reached.iter().position(|at| !is_met(at)) {
+        None => InfiniteTraceResult::Met,
+        Some(index) => {
+            InfiniteTraceResult::Missed(index, product.starved_loop(language, &turns, &reached[index]))
+        }
+    }
+}
+
+/// All that chart and formulas can come to together.
+struct LoopProduct {
+    places: Vec<LoopProductState>,
+    numbers: BTreeMap<LoopProductState, usize>,
+    next: Vec<Vec<LoopProductStep>>,
+}
+
+/// The circles of what goes on forever: the component of each place, and what is begun in each.
+struct LoopComponents {
+    of_place: Vec<usize>,
+    begun: Vec<BTreeSet<LoopId>>,
+}
+
+impl LoopProduct {
+    /// None if it is too large.
+    fn new(graph: &Graph, language: &mut Language, all: Residual) -> Option<LoopProduct> {
+        let mut product = LoopProduct { places: Vec::new(), numbers: BTreeMap::new(), next: Vec::new() };
+        for &state in &graph.initial {
+            product.number((state, all));
+        }
+        while let Some(&(state, rest)) = product.places.get(product.next.len()) {
+            if product.places.len() > MOST || language.is_too_large() {
+                return None;
+            }
+            let mut steps = Vec::new();
+            for way in &graph.ways[state] {
+                match way.observable {
+                    Observable::Nothing => {
+                        steps.push((product.number((way.to, rest)), (true, BTreeSet::new())));
+                    }
+                    Observable::Letter(letter) => {
+                        for step in language.steps(rest, letter) {
+                            steps.push((product.number((way.to, step.rest)), (step.recurs, step.begun)));
+                        }
+                    }
+                    Observable::Other => {}
+                }
+            }
+            product.next.push(steps);
+        }
+        Some(product)
+    }
+
+    fn number(&mut self, place: LoopProductState) -> usize {
+        let number = *self.numbers.entry(place).or_insert(self.places.len());
+        if number == self.places.len() {
+            self.places.push(place);
+        }
+        number
+    }
+
+    fn turns(&self, language: &Language) -> LoopComponents {
+        let recurring = |steps: &Vec<LoopProductStep>| -> Vec<(usize, ())> {
+            steps.iter().filter(|(_, (recurs, _))| *recurs).map(|(to, _)| (*to, ())).collect()
+        };
+        let next: Vec<Vec<(usize, ())>> = self.next.iter().map(recurring).collect();
+        let of_place = strongly_connected_components(&next);
+        let count = of_place.iter().max().map_or(0, |last| last + 1);
+        let mut begun = vec![BTreeSet::new(); count];
+        for (from, steps) in self.next.iter().enumerate() {
+            for (to, (recurs, numbers)) in steps {
+                let is_owed = language.owed_loops(self.places[from].1).is_some();
+                if *recurs && is_owed && of_place[from] == of_place[*to] {
+                    begun[of_place[from]].extend(numbers);
+                }
+            }
+        }
+        LoopComponents { of_place, begun }
+    }
+
+    /// From which places the formulas can be met: from those where they are, and from those that
+    /// lead there.
+    fn satisfying_states(
+        &self,
+        graph: &Graph,
+        language: &Language,
+        turns: &LoopComponents,
+        may_end_early: bool,
+    ) -> Vec<bool> {
+        let mut before: Vec<Vec<usize>> = vec![Vec::new(); self.places.len()];
+        for (from, steps) in self.next.iter().enumerate() {
+            steps.iter().for_each(|(to, _)| before[*to].push(from));
+        }
+        let is_met = |place: usize| {
+            let (state, rest) = self.places[place];
+            let has_ended = graph.ends[state] && (may_end_early || language.may_end(rest));
+            // with nothing owed it may be silent forever; whether it could end is another question
+            let is_satisfied = |owed: BTreeSet<LoopId>| owed.is_subset(&turns.begun[turns.of_place[place]]);
+            has_ended || language.owed_loops(rest).is_some_and(is_satisfied)
+        };
+        let mut met: Vec<bool> = (0..self.places.len()).map(is_met).collect();
+        let mut open: Vec<usize> = (0..met.len()).filter(|&place| met[place]).collect();
+        while let Some(place) = open.pop() {
+            for &earlier in &before[place] {
+                if !std::mem::replace(&mut met[earlier], true) {
+                    open.push(earlier);
+                }
+            }
+        }
+        met
+    }
+
+    /// What is owed in a state of affairs and never begun again from there on, as it is written.
+    fn starved_loop(&self, language: &Language, turns: &LoopComponents, at: &ProductState) -> Vec<String> {
+        let first: Vec<usize> =
+            at.1.iter().filter_map(|&rest| self.numbers.get(&(at.0, rest)).copied()).collect();
+        let (mut seen, mut open): (BTreeSet<usize>, Vec<usize>) = (first.iter().copied().collect(), first);
+        let (mut owed, mut begun) = (BTreeSet::new(), BTreeSet::new());
+        while let Some(place) = open.pop() {
+            owed.extend(language.owed_loops(self.places[place].1).unwrap_or_default());
+            begun.extend(&turns.begun[turns.of_place[place]]);
+            open.extend(self.next[place].iter().map(|(to, _)| *to).filter(|to| seen.insert(*to)));
+        }
+        owed.difference(&begun).map(|&number| language.endless(number).to_owned()).collect()
+    }
+}

@@ -1,0 +1,127 @@
+//! Satisfiability of guards: can conditions hold together, does one imply another.
+//!
+//! A guard is a quantifier-free combination of comparisons. A query is expanded into its
+//! alternatives, up to a bound, and each is decided by the kind of its values: numbers by
+//! difference bounds, texts and enumeration values by equality, the rest as booleans. Numbers are
+//! real numbers.
+//!
+//! Terms outside this theory (functions, products and sums of several fields, scripts) are treated
+//! as opaque values; only terms with equal text are known to be equal. *No* is therefore reliable,
+//! and where *yes* would depend on an opaque value, the answer is *unknown*.
+//!
+//! Guards are three-valued: one that reads a message that has not arrived is unknown and does not
+//! fire. A [`Claim`] states which value is meant.
+//!
+//! ```
+//! use aseme_verify::logic::{Claim, GuardSolver, Satisfiability};
+//! use yase::expression::parse_condition;
+//!
+//! let condition = |text| parse_condition(text).0.expect("a condition");
+//! let (near, far) = (condition("Ball.distance < 1 && Ball.found"), condition("Ball.distance > 2 || !Ball.found"));
+//! let logic = GuardSolver::default();
+//! assert_eq!(logic.together(&[Claim::Holds(&near), Claim::Holds(&far)]), Satisfiability::No);
+//! let Satisfiability::Yes(example) = logic.together(&[Claim::IsFalse(&near), Claim::IsFalse(&far)]) else { panic!() };
+//! assert_eq!(example.to_string(), "`Ball.distance` is 1 and `Ball.found` is true");
+//! assert_eq!(logic.together(&[Claim::Holds(&condition("seen(Ball.x)"))]), Satisfiability::Unknown);
+//! ```
+
+mod bounds;
+mod formula;
+mod linear;
+mod search;
+
+use std::fmt;
+
+use yase::expression::Expression;
+use yase::statechart::Constant;
+
+pub(crate) use formula::messages;
+use formula::{ConditionReader, NegationNormalForm, Polarity};
+use search::SatisfiabilitySearch;
+
+/// How many alternatives are looked at before the answer is that it is unknown.
+const ALTERNATIVES: usize = 500;
+
+/// What is asked of a condition.
+#[derive(Clone, Copy, Debug)]
+pub enum Claim<'a> {
+    /// It is true.
+    Holds(&'a Expression),
+    /// It is false: all that decides it is known.
+    IsFalse(&'a Expression),
+    /// It is false or unknown.
+    DoesNotHold(&'a Expression),
+}
+
+/// Whether something can be.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Satisfiability {
+    /// It can: so.
+    Yes(Example),
+    /// It cannot.
+    No,
+    /// It is outside of what can be judged.
+    Unknown,
+}
+
+impl Satisfiability {
+    /// Whether it surely can.
+    pub fn is_yes(&self) -> bool {
+        matches!(self, Satisfiability::Yes(_))
+    }
+
+    /// Whether it surely cannot.
+    pub fn is_no(&self) -> bool {
+        *self == Satisfiability::No
+    }
+}
+
+/// Values under which something is so.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Example {
+    /// What each is, by its name, in the order of names.
+    pub values: Vec<(String, String)>,
+}
+
+impl fmt::Display for Example {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, (name, value)) in self.values.iter().enumerate() {
+            let between = match index {
+                0 => "",
+                _ if index + 1 == self.values.len() => " and ",
+                _ => ", ",
+            };
+            write!(f, "{between}`{name}` is {value}")?;
+        }
+        Ok(())
+    }
+}
+
+/// What is known of the names in conditions.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct GuardSolver<'a> {
+    constants: &'a [Constant],
+}
+
+impl<'a> GuardSolver<'a> {
+    /// With the constants of a model.
+    pub fn new(constants: &'a [Constant]) -> GuardSolver<'a> {
+        GuardSolver { constants }
+    }
+
+    /// Whether all of this can be so at one moment, on one blackboard.
+    pub fn together(&self, claims: &[Claim<'_>]) -> Satisfiability {
+        let reading = ConditionReader { constants: self.constants };
+        let formulas = claims.iter().map(|claim| match claim {
+            Claim::Holds(condition) => reading.formula(condition, Polarity::True),
+            Claim::IsFalse(condition) => reading.formula(condition, Polarity::False),
+            Claim::DoesNotHold(condition) => reading.formula(condition, Polarity::NotTrue),
+        });
+        SatisfiabilitySearch::new(ALTERNATIVES).answer(NegationNormalForm::All(formulas.collect()))
+    }
+
+    /// Whether one condition holds only when another does: yes, or it is not known to.
+    pub fn implies(&self, one: &Expression, other: &Expression) -> bool {
+        self.together(&[Claim::Holds(one), Claim::DoesNotHold(other)]).is_no()
+    }
+}

@@ -1,0 +1,115 @@
+//! Mutants: removed actions and timers with another delay.
+
+use std::time::Duration;
+
+use yase::expression::{Action, ActionKind, Expression, ExpressionKind, TransitionExpression};
+use yase::{Node, NodeId, Statechart, Transition, TransitionId};
+
+use super::{MutantCollector, MutantDescription, MutationKind};
+use aseme::path::shortest_path;
+
+/// A list of actions with one of them changed or gone.
+struct ActionVariant {
+    description: MutantDescription,
+    actions: Vec<Action>,
+    /// The start of a timer that is gone from them.
+    unstarted: Option<Action>,
+}
+
+/// All that can be done to what a transition does.
+pub(crate) fn of_transition(making: &mut MutantCollector<'_>, id: TransitionId) {
+    let transition = making.chart.transition(id);
+    if transition.expression.is_never() {
+        return;
+    }
+    for ActionVariant { description: told, actions, unstarted } in variants(&transition.expression.actions) {
+        making.changed(id, told, |chart| {
+            chart.transition_mut(id).expression.actions = actions;
+            unstarted.into_iter().for_each(|action| keep_known(chart, id, action));
+        });
+    }
+}
+
+/// A name that nothing starts is none of a timer, and nothing could read it: so the start stays,
+/// where it never happens.
+fn keep_known(chart: &mut Statechart, id: TransitionId, action: Action) {
+    let Transition { source, target, .. } = *chart.transition(id);
+    let never = Expression { kind: ExpressionKind::Bool(false), place: action.place };
+    let expression = TransitionExpression { trigger: None, guard: Some(never), actions: vec![action] };
+    chart.connect(Transition { expression, ..Transition::new(source, target) });
+}
+
+/// All that can be done to what states do when they are entered and left. A model's text has no
+/// place for a state of its own.
+pub(crate) fn of_states(making: &mut MutantCollector<'_>) {
+    let ids: Vec<NodeId> = making.chart.nodes().map(|(id, _)| id).collect();
+    for id in ids {
+        of_node(making, id, "entry", |node| &mut node.entry);
+        of_node(making, id, "exit", |node| &mut node.exit);
+    }
+}
+
+fn of_node(
+    making: &mut MutantCollector<'_>,
+    id: NodeId,
+    when: &str,
+    actions: fn(&mut Node) -> &mut Vec<Action>,
+) {
+    let mut node = making.chart.node(id).clone();
+    for ActionVariant { description: told, actions: changed, .. } in variants(actions(&mut node)) {
+        let mut chart = making.chart.clone();
+        let what = format!("{when} {} {changed:?}", id.0);
+        *actions(chart.node_mut(id)) = changed;
+        let place = format!("{} {when}", shortest_path(making.chart, id));
+        making.add(&what, place, yase::Span::default(), told, chart);
+    }
+}
+
+fn variants(actions: &[Action]) -> Vec<ActionVariant> {
+    let mut found = Vec::new();
+    for (place, action) in actions.iter().enumerate() {
+        if let ActionKind::StartTimeout { timer, delay, form } = &action.kind {
+            for other in [*delay / 2, *delay * 2] {
+                let mut changed = actions.to_vec();
+                changed[place].kind =
+                    ActionKind::StartTimeout { timer: timer.clone(), delay: other, form: *form };
+                let told = timed(&timer.text(), *delay, other);
+                found.push(ActionVariant { description: told, actions: changed, unstarted: None });
+            }
+        }
+        let mut rest = actions.to_vec();
+        rest.remove(place);
+        found.push(gone(action, rest));
+    }
+    found
+}
+
+/// One of the actions is not there.
+fn gone(action: &Action, rest: Vec<Action>) -> ActionVariant {
+    let wanted = format!("something that comes of `{action}`");
+    match &action.kind {
+        ActionKind::StartTimeout { timer, .. } => {
+            let change = format!("`{timer}` is never started");
+            let told = MutantDescription { kind: MutationKind::Timeout, change, wanted };
+            ActionVariant { description: told, actions: rest, unstarted: Some(action.clone()) }
+        }
+        _ => {
+            let change = format!("the action `{action}` is removed");
+            let told = MutantDescription { kind: MutationKind::ActionRemoved, change, wanted };
+            ActionVariant { description: told, actions: rest, unstarted: None }
+        }
+    }
+}
+
+/// The description of a timer with another delay.
+fn timed(timer: &str, delay: Duration, other: Duration) -> MutantDescription {
+    MutantDescription {
+        kind: MutationKind::Timeout,
+        change: format!("`{timer}` runs {other:?} in place of {delay:?}"),
+        wanted: format!(
+            "what is so between {:?} and {:?} after `{timer}` is started",
+            delay.min(other),
+            delay.max(other)
+        ),
+    }
+}

@@ -1,0 +1,72 @@
+//! Mutants: constants in guards, one step larger and one step smaller.
+
+use std::collections::BTreeSet;
+
+use yase::Span;
+use yase::expression::{Expression, ExpressionKind};
+use yase::statechart::ConstantValue;
+
+use super::{MutantCollector, MutantDescription, MutationKind};
+use aseme::srm::{Section, SrmFile};
+
+/// Of a number the step is a tenth.
+const SHARE: f64 = 0.1;
+/// So many digits tell steps apart, and no more are written.
+const DIGITS: usize = 12;
+
+/// A number's neighbours: a tenth of it larger and smaller, of nothing one.
+pub(crate) fn around(value: f64) -> [f64; 2] {
+    let step = if value == 0.0 { 1.0 } else { value.abs() * SHARE };
+    [value + step, value - step].map(rounded)
+}
+
+/// Rounds off the noise digits of floating-point sums.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.DIGITS$e}").parse().unwrap_or(value)
+}
+
+/// Every constant that some guard names.
+pub(crate) fn all(making: &mut MutantCollector<'_>) {
+    let mut named = BTreeSet::new();
+    for (_, transition) in making.chart.transitions() {
+        transition.expression.guard.iter().for_each(|guard| names(guard, &mut named));
+    }
+    let places = places(making);
+    for (place, constant) in making.chart.constants.iter().enumerate() {
+        let ConstantValue::Number(value) = constant.value else { continue };
+        if !named.contains(&constant.name) {
+            continue;
+        }
+        let span = places.iter().find(|(name, _)| *name == constant.name).map(|(_, span)| *span);
+        for other in around(value) {
+            let mut chart = making.chart.clone();
+            chart.constants[place].value = ConstantValue::Number(other);
+            let told = MutantDescription {
+                kind: MutationKind::Number,
+                change: format!("the constant is {other} in place of {value}"),
+                wanted: format!("a moment at which it matters that `{}` is not {other}", constant.name),
+            };
+            let what = format!("constant {place} {other}");
+            making.add(&what, constant.name.clone(), span.unwrap_or_default(), told, chart);
+        }
+    }
+}
+
+/// The single names that a condition reads.
+fn names(condition: &Expression, found: &mut BTreeSet<String>) {
+    if let ExpressionKind::Variable(path) = &condition.kind {
+        found.extend(path.bare().map(str::to_owned));
+    }
+    condition.parts().into_iter().for_each(|part| names(part, found));
+}
+
+/// Where each constant of a role stands; nothing for charts in files of their own.
+fn places(making: &MutantCollector<'_>) -> Vec<(String, Span)> {
+    let (file, _) = SrmFile::parse(making.source.text.as_str());
+    let of_constants = file.entries().iter().filter(|entry| entry.section == Section::Constants);
+    let named = of_constants.filter_map(|entry| {
+        let text = file.text().get(entry.span.start..entry.span.end)?;
+        Some((text.split('=').next()?.trim().to_owned(), entry.span))
+    });
+    named.collect()
+}

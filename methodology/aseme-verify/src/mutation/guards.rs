@@ -1,0 +1,241 @@
+//! Mutants: guards removed, negated, or slightly changed.
+
+use yase::expression::{Comparison, Expression, ExpressionKind, TransitionExpression};
+use yase::{NodeId, NodeKind, Statechart, Transition, TransitionId};
+
+use super::constants::around;
+use super::{MutantCollector, MutantDescription, MutationKind, bracketed};
+
+/// A guard with one part of it changed.
+struct GuardVariant {
+    kind: MutationKind,
+    guard: Expression,
+    wanted: String,
+}
+
+/// All that can be done to the guard of a transition.
+pub(crate) fn of_transition(making: &mut MutantCollector<'_>, id: TransitionId) {
+    let transition = making.chart.transition(id);
+    let Some(guard) = transition.expression.guard.clone() else { return };
+    let is_never = transition.expression.is_never();
+    change(
+        making,
+        id,
+        GuardVariant {
+            kind: MutationKind::GuardNegated,
+            guard: negated(&guard),
+            wanted: format!("a moment at which it matters that the guard is {}", bracketed(Some(&guard))),
+        },
+    );
+    let source = transition.source;
+    if !is_never || completes(making.chart, source) {
+        remove(making, id, &guard);
+    }
+    if !is_never {
+        variants(&guard).into_iter().for_each(|variant| change(making, id, variant));
+    }
+}
+
+fn change(making: &mut MutantCollector<'_>, id: TransitionId, variant: GuardVariant) {
+    let GuardVariant { kind, guard, wanted } = variant;
+    let before = bracketed(making.chart.transition(id).expression.guard.as_ref());
+    let change = format!("the guard {before} becomes {}", bracketed(Some(&guard)));
+    making.transition(id, MutantDescription { kind, change, wanted }, |it| it.expression.guard = Some(guard));
+}
+
+fn remove(making: &mut MutantCollector<'_>, id: TransitionId, guard: &Expression) {
+    let before = bracketed(Some(guard));
+    let told = MutantDescription {
+        kind: MutationKind::GuardRemoved,
+        change: format!("the guard {before} is removed"),
+        wanted: format!("a moment at which the transition is not taken only because {before} does not hold"),
+    };
+    making.transition(id, told, |it| it.expression.guard = None);
+}
+
+/// Whether a state can ever complete, going by what it is made of. Without a guard an exit of one
+/// that cannot is never taken, as with `[false]`.
+fn completes(chart: &Statechart, node: NodeId) -> bool {
+    let children = chart.children(node);
+    match chart.node(node).kind {
+        NodeKind::Or => chart.transitions().any(|(_, it)| {
+            let ends = chart.node(it.target).kind == NodeKind::End && children.contains(&it.target);
+            ends && !it.expression.is_never() && leaves(chart, it)
+        }),
+        NodeKind::And => children.iter().all(|&child| completes(chart, child)),
+        _ => true,
+    }
+}
+
+/// Whether a transition that leads to an END beside its source can be taken: one that waits for its
+/// source to complete cannot, if that never does.
+fn leaves(chart: &Statechart, transition: &Transition) -> bool {
+    let TransitionExpression { trigger, guard, .. } = &transition.expression;
+    trigger.is_some() || guard.is_some() || completes(chart, transition.source)
+}
+
+/// The negation of a condition in simplified form.
+fn negated(condition: &Expression) -> Expression {
+    let kind = match &condition.kind {
+        ExpressionKind::Not(inner) => return (**inner).clone(),
+        ExpressionKind::Bool(value) => ExpressionKind::Bool(!value),
+        ExpressionKind::Absent(message) => ExpressionKind::Present(message.clone()),
+        ExpressionKind::Present(message) => ExpressionKind::Absent(message.clone()),
+        ExpressionKind::Compare(left, comparison, right) => {
+            ExpressionKind::Compare(left.clone(), comparison.contrary(), right.clone())
+        }
+        _ => ExpressionKind::Not(Box::new(condition.clone())),
+    };
+    Expression { kind, place: condition.place }
+}
+
+const fn neighbour(comparison: Comparison) -> Comparison {
+    match comparison {
+        Comparison::Equal => Comparison::NotEqual,
+        Comparison::NotEqual => Comparison::Equal,
+        Comparison::Less => Comparison::LessOrEqual,
+        Comparison::LessOrEqual => Comparison::Less,
+        Comparison::Greater => Comparison::GreaterOrEqual,
+        Comparison::GreaterOrEqual => Comparison::Greater,
+    }
+}
+
+/// A condition with one part of it changed, in each way.
+fn variants(condition: &Expression) -> Vec<GuardVariant> {
+    let mut found = own(condition);
+    for (place, part) in condition.parts().into_iter().enumerate() {
+        for variant in variants(part) {
+            let guard = with_part(condition, place, variant.guard);
+            let wanted = match (variant.kind, &condition.kind) {
+                (MutationKind::Number, ExpressionKind::Compare(..)) => {
+                    format!("a moment at which `{condition}` and `{guard}` differ")
+                }
+                _ => variant.wanted,
+            };
+            found.push(GuardVariant { kind: variant.kind, guard, wanted });
+        }
+    }
+    found
+}
+
+/// The ways in which a condition itself is changed, its parts staying what they are.
+fn own(condition: &Expression) -> Vec<GuardVariant> {
+    match &condition.kind {
+        ExpressionKind::Compare(left, comparison, right) => {
+            vec![compared(condition, left, *comparison, right)]
+        }
+        ExpressionKind::And(operands) | ExpressionKind::Or(operands) => joined(condition, operands),
+        ExpressionKind::Integer(_) | ExpressionKind::Decimal(_) => steps(condition),
+        _ => Vec::new(),
+    }
+}
+
+fn compared(
+    condition: &Expression,
+    left: &Expression,
+    comparison: Comparison,
+    right: &Expression,
+) -> GuardVariant {
+    let kind =
+        ExpressionKind::Compare(Box::new(left.clone()), neighbour(comparison), Box::new(right.clone()));
+    let wanted = match comparison {
+        Comparison::Equal | Comparison::NotEqual => {
+            format!("a moment at which it matters that `{condition}` holds, or does not")
+        }
+        _ => format!("a moment at which `{left}` is exactly `{right}`"),
+    };
+    GuardVariant {
+        kind: MutationKind::Comparison,
+        guard: Expression { kind, place: condition.place },
+        wanted,
+    }
+}
+
+/// What becomes of `a && b` and `a || b`.
+fn joined(condition: &Expression, operands: &[Expression]) -> Vec<GuardVariant> {
+    let is_and = matches!(condition.kind, ExpressionKind::And(_));
+    let join = |operands: Vec<Expression>, all: bool| {
+        let kind = if all { ExpressionKind::And(operands) } else { ExpressionKind::Or(operands) };
+        Expression { kind, place: condition.place }
+    };
+    let dropped = operands.iter().enumerate().map(|(place, operand)| {
+        let mut rest = operands.to_vec();
+        rest.remove(place);
+        let guard = match rest.as_slice() {
+            [one] => one.clone(),
+            _ => join(rest, is_and),
+        };
+        let wanted = match is_and {
+            true => format!("a moment at which all but `{operand}` holds"),
+            false => format!("a moment at which nothing but `{operand}` holds"),
+        };
+        GuardVariant { kind: MutationKind::PartDropped, guard, wanted }
+    });
+    let turned = GuardVariant {
+        kind: MutationKind::AndOr,
+        guard: join(operands.to_vec(), !is_and),
+        wanted: format!("a moment at which only a part of `{condition}` holds"),
+    };
+    dropped.chain([turned]).collect()
+}
+
+/// A number, a step larger and a step smaller.
+fn steps(number: &Expression) -> Vec<GuardVariant> {
+    let stepped: Vec<Expression> = match number.kind {
+        ExpressionKind::Integer(value) => {
+            let larger = value.checked_add(1).map(|value| plain(ExpressionKind::Integer(value), number));
+            let smaller = match value.checked_sub(1) {
+                Some(smaller) => plain(ExpressionKind::Integer(smaller), number),
+                None => negative(plain(ExpressionKind::Integer(1), number)),
+            };
+            larger.into_iter().chain([smaller]).collect()
+        }
+        ExpressionKind::Decimal(value) => {
+            around(value).into_iter().map(|value| decimal(value, number)).collect()
+        }
+        _ => Vec::new(),
+    };
+    let told = |guard: Expression| {
+        let wanted = format!("a moment at which it matters that `{number}` is not `{guard}`");
+        GuardVariant { kind: MutationKind::Number, guard, wanted }
+    };
+    stepped.into_iter().map(told).collect()
+}
+
+fn decimal(value: f64, like: &Expression) -> Expression {
+    let size = plain(ExpressionKind::Decimal(value.abs()), like);
+    if value < 0.0 { negative(size) } else { size }
+}
+
+fn plain(kind: ExpressionKind, like: &Expression) -> Expression {
+    Expression { kind, place: like.place }
+}
+
+fn negative(number: Expression) -> Expression {
+    Expression { place: number.place, kind: ExpressionKind::Negative(Box::new(number)) }
+}
+
+/// A condition with another part at a place among its [parts](Expression::parts).
+fn with_part(condition: &Expression, place: usize, part: Expression) -> Expression {
+    let mut changed = condition.clone();
+    let found = match &mut changed.kind {
+        ExpressionKind::Or(operands) | ExpressionKind::And(operands) | ExpressionKind::Call(_, operands) => {
+            operands.get_mut(place)
+        }
+        ExpressionKind::Not(inner) | ExpressionKind::Negative(inner) => Some(&mut **inner),
+        ExpressionKind::Compare(left, _, right) => Some(if place == 0 { &mut **left } else { &mut **right }),
+        ExpressionKind::Sum(first, rest) => match place.checked_sub(1) {
+            None => Some(&mut **first),
+            Some(place) => rest.get_mut(place).map(|(_, part)| part),
+        },
+        ExpressionKind::Product(first, rest) => match place.checked_sub(1) {
+            None => Some(&mut **first),
+            Some(place) => rest.get_mut(place).map(|(_, part)| part),
+        },
+        _ => None,
+    };
+    if let Some(found) = found {
+        *found = part;
+    }
+    changed
+}

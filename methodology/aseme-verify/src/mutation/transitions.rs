@@ -1,0 +1,114 @@
+//! Mutants: transitions with another target, removed, or in another order.
+
+use std::cmp::Reverse;
+
+use yase::expression::{Expression, ExpressionKind, TextPosition};
+use yase::{NodeId, NodeKind, Statechart, Transition, TransitionId};
+
+use super::{MutantCollector, MutantDescription, MutationKind};
+use crate::logic::{Claim, GuardSolver};
+use aseme::path::shortest_path;
+
+/// All that can be done to where a transition leads and when it is tried.
+pub(crate) fn of_transition(making: &mut MutantCollector<'_>, id: TransitionId) {
+    if making.chart.transition(id).expression.is_never() {
+        return;
+    }
+    target(making, id);
+    removed(making, id);
+    priority(making, id);
+}
+
+fn target(making: &mut MutantCollector<'_>, id: TransitionId) {
+    let chart = making.chart;
+    let before = chart.transition(id).target;
+    let Some(after) = sibling(chart, before) else { return };
+    let (from, to) = (shortest_path(chart, before), shortest_path(chart, after));
+    let told = MutantDescription {
+        kind: MutationKind::Target,
+        change: format!("it leads to `{to}`"),
+        wanted: format!("that `{from}` is reached and not `{to}`"),
+    };
+    making.transition(id, told, |it| it.target = after);
+}
+
+/// The next sibling state of a node in document order, cyclically; none if there is no other.
+fn sibling(chart: &Statechart, node: NodeId) -> Option<NodeId> {
+    let parent = chart.node(node).parent?;
+    if chart.node(parent).kind == NodeKind::And {
+        return None;
+    }
+    let is_state = |id: &NodeId| {
+        let kind = chart.node(*id).kind;
+        matches!(kind, NodeKind::Or | NodeKind::And | NodeKind::Basic | NodeKind::End)
+    };
+    let children = chart.children(parent);
+    let place = children.iter().position(|&child| child == node)?;
+    let after = children.iter().skip(place + 1).chain(children.iter().take(place));
+    after.copied().find(is_state)
+}
+
+fn removed(making: &mut MutantCollector<'_>, id: TransitionId) {
+    let told = MutantDescription {
+        kind: MutationKind::TransitionRemoved,
+        change: String::from("it is never taken"),
+        wanted: String::from("a moment at which it is taken"),
+    };
+    let never = Expression { kind: ExpressionKind::Bool(false), place: TextPosition::default() };
+    making.transition(id, told, |it| it.expression.guard = Some(never));
+}
+
+/// Has the way that is tried next tried before this one.
+fn priority(making: &mut MutantCollector<'_>, id: TransitionId) {
+    let chart = making.chart;
+    let Some(later) = next(chart, id).filter(|later| matters(chart, id, *later)) else { return };
+    let (first, second) = (making.arrow(id), making.arrow(later));
+    let told = MutantDescription {
+        kind: MutationKind::Priority,
+        change: format!("`{second}` is tried before it"),
+        wanted: format!("a moment at which `{first}` and `{second}` could both be taken"),
+    };
+    let (high, low) = (chart.transition(id).priority, chart.transition(later).priority);
+    let mut changed = chart.clone();
+    match high == low {
+        true => changed.transition_mut(later).priority = high.saturating_add(1),
+        false => {
+            changed.transition_mut(id).priority = low;
+            changed.transition_mut(later).priority = high;
+        }
+    }
+    let span = making.places.get(id.0 as usize).copied().unwrap_or_default();
+    making.add(&format!("priority {} {}", id.0, later.0), first, span, told, changed);
+}
+
+/// The way out of the same node, for the same event, that is tried after a transition.
+fn next(chart: &Statechart, id: TransitionId) -> Option<TransitionId> {
+    let this = chart.transition(id);
+    let is_beside = |it: &Transition| {
+        it.source == this.source
+            && it.expression.trigger == this.expression.trigger
+            && it.weight.is_none()
+            && this.weight.is_none()
+            && !it.expression.is_never()
+    };
+    let rank = |id: TransitionId| {
+        let it = chart.transition(id);
+        (Reverse(it.priority), it.expression.guard.is_none(), id)
+    };
+    let ways = chart.transitions().filter(|(_, it)| is_beside(it)).map(|(id, _)| id);
+    ways.filter(|&other| rank(other) > rank(id)).min_by_key(|&other| rank(other))
+}
+
+/// Whether it matters which of two ways is tried first: both may be open, and they do not come to
+/// the same.
+fn matters(chart: &Statechart, first: TransitionId, second: TransitionId) -> bool {
+    let (first, second) = (chart.transition(first), chart.transition(second));
+    let is_same = first.target == second.target && first.expression.actions == second.expression.actions;
+    let exclude = match (&first.expression.guard, &second.expression.guard) {
+        (Some(one), Some(other)) => {
+            GuardSolver::new(&chart.constants).together(&[Claim::Holds(one), Claim::Holds(other)]).is_no()
+        }
+        _ => false,
+    };
+    !is_same && !exclude
+}

@@ -1,0 +1,155 @@
+//! Checks a file of properties against a model.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use yase::diagnostic::nearest;
+use yase::expression::{Expression, ExpressionKind, Path};
+use yase::{Diagnostic, Source};
+
+use super::compiled_property::AtomicProposition;
+use super::explore::{ExplorationVerdict, explored};
+use super::names::{BoundProperty, bind, guards};
+use super::syntax::Property;
+use crate::abstraction::Abstraction;
+use crate::abstraction::abstracted;
+use crate::check_settings::CheckSettings;
+use crate::finding::Finding;
+
+/// What was found of one property.
+#[derive(Clone, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub struct PropertyResult {
+    /// Its name.
+    pub name: String,
+    /// Whether it holds.
+    pub outcome: PropertyOutcome,
+    /// How many states of the chart were looked at.
+    pub states: usize,
+}
+
+/// Whether a property holds of all runs.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum PropertyOutcome {
+    /// It does.
+    Holds,
+    /// There is a run that violates it.
+    Violated,
+    /// There are more states than were looked at, and none of those that were violates it.
+    NotDecided,
+}
+
+/// Checks the properties in a file against a model. Returns the result of each property that can be
+/// explored, and the findings: errors of the file, properties that do not hold, each with a
+/// violating run (E0870), and undecided properties (E0871).
+///
+/// # Errors
+/// The errors that prevent exploring the model.
+pub fn check(
+    model: &Arc<Source>,
+    properties: &Arc<Source>,
+    settings: &CheckSettings,
+) -> Result<(Vec<PropertyResult>, Vec<Finding>), Vec<Diagnostic>> {
+    let abstraction = abstracted(model)?.with_events(&settings.events);
+    let (list, found) = super::parse(&properties.text);
+    let mut findings: Vec<Finding> = found.into_iter().map(Finding::from).collect();
+    let mut judgements = Vec::new();
+    for property in &list {
+        match bound(property, &abstraction, settings) {
+            Ok((bound, doubts)) => {
+                findings.extend(doubts.into_iter().map(Finding::from));
+                let (judgement, finding) = judged(property, &abstraction, &bound, settings.states);
+                judgements.push(judgement);
+                findings.extend(finding);
+            }
+            Err(wrong) => findings.extend(wrong.into_iter().map(Finding::from)),
+        }
+    }
+    for finding in &mut findings {
+        finding.diagnostic = finding.diagnostic.clone().in_source(properties);
+    }
+    findings.sort_by_key(|finding| finding.diagnostic.span);
+    Ok((judgements, findings))
+}
+
+fn bound(
+    property: &Property,
+    abstraction: &Abstraction,
+    settings: &CheckSettings,
+) -> Result<(BoundProperty, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let bound = bind(property, &abstraction.chart)?;
+    let doubts = match &settings.world {
+        Some(world) => {
+            guards(&bound.plan, &abstraction.chart, &world.vocabulary)?;
+            Vec::new()
+        }
+        None => unread(&bound, abstraction),
+    };
+    Ok((bound, doubts))
+}
+
+fn judged(
+    property: &Property,
+    abstraction: &Abstraction,
+    bound: &BoundProperty,
+    limit: usize,
+) -> (PropertyResult, Option<Finding>) {
+    let name = &property.name;
+    let (answer, states) = explored(abstraction, bound, limit);
+    let judgement = |outcome| PropertyResult { name: name.clone(), outcome, states };
+    let place = property.formula.span();
+    match answer {
+        ExplorationVerdict::Holds => (judgement(PropertyOutcome::Holds), None),
+        ExplorationVerdict::Violated(trace, is_circle) => {
+            let message = format!("the property `{name}` does not hold");
+            let hint = match is_circle {
+                true => "the trace shows a run that goes round for ever without what must come",
+                false => "the trace shows a run that violates it",
+            };
+            let diagnostic = Diagnostic::error("E0870", place, message).with_hint(hint);
+            (judgement(PropertyOutcome::Violated), Some(Finding { diagnostic, trace: Some(trace) }))
+        }
+        ExplorationVerdict::NotDecided => {
+            let message =
+                format!("the property `{name}` is not decided: after {states} states there are more");
+            let hint = "nothing that was looked at violates it; look at more with `--states`, or say less in one property";
+            let diagnostic = Diagnostic::error("E0871", place, message).with_hint(hint);
+            (judgement(PropertyOutcome::NotDecided), Some(diagnostic.into()))
+        }
+    }
+}
+
+/// Fields that no guard of the chart reads: as likely misspelt as meant.
+fn unread(bound: &BoundProperty, abstraction: &Abstraction) -> Vec<Diagnostic> {
+    let mut known: BTreeSet<String> = BTreeSet::new();
+    for condition in abstraction.conditions.iter().flatten() {
+        fields(condition, &mut |path| {
+            known.insert(path.text());
+        });
+    }
+    let mut found = Vec::new();
+    for atom in bound.plan.atoms() {
+        let AtomicProposition::Condition(condition) = atom else { continue };
+        fields(condition, &mut |path| {
+            let text = path.text();
+            if !known.contains(&text) {
+                let message = format!("no guard of the chart reads `{text}`");
+                let wrong = Diagnostic::warning("E0848", path.place.0, message);
+                found.push(match nearest(&text, known.iter().map(String::as_str)) {
+                    Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
+                    None => wrong.with_hint("with `--linked` the program says whether there is such a field"),
+                });
+            }
+        });
+    }
+    found
+}
+
+/// The fields and messages that a condition reads.
+fn fields<'a>(expression: &'a Expression, told: &mut impl FnMut(&'a Path)) {
+    match &expression.kind {
+        ExpressionKind::Variable(path) if path.segments.len() > 1 => told(path),
+        _ => expression.parts().into_iter().for_each(|operand| fields(operand, told)),
+    }
+}

@@ -1,0 +1,282 @@
+//! The residual of a property after some steps: clauses of obligations.
+//!
+//! A step rewrites a formula into what must hold from the next step on (formula progression), in
+//! disjunctive form: a [`Clause`] is a set of temporal terms that must all hold from the next step
+//! on, each with its deadline if it is bounded; one of the clauses must be fulfilled. The empty set
+//! of clauses is *false*, a clause without obligations is *true*.
+//!
+//! A term occurs at most once in a clause. Two obligations of the same bounded term differ only in
+//! their deadlines, and one implies the other: the earlier for `until`, the later for its negation.
+//! So a clause has a fixed size, and a step allocates no memory beyond that of the [`Scratch`].
+
+use super::compiled_property::{BOUNDED, CompiledProperty, Subformula};
+
+/// So many clauses are kept.
+pub(crate) const CLAUSES: usize = 64;
+/// So many clauses may be at hand in the midst of a step.
+const ROOM: usize = 1_024;
+
+/// Obligations that must all be met.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) struct Clause {
+    /// A bit for each obligation.
+    pub(crate) obligations: u32,
+    /// When the time of those with a bound is over; 0 for those that are not there.
+    pub(crate) deadlines: [u64; BOUNDED],
+}
+
+impl Clause {
+    /// Nothing is left to be met.
+    pub(crate) const TRUE: Clause = Clause { obligations: 0, deadlines: [0; BOUNDED] };
+
+    pub(crate) fn is_true(&self) -> bool {
+        self.obligations == 0
+    }
+
+    pub(crate) fn has(&self, obligation: usize) -> bool {
+        self.obligations & (1 << obligation) != 0
+    }
+
+    fn one(plan: &CompiledProperty, obligation: usize, deadline: u64) -> Clause {
+        let mut clause = Clause { obligations: 1 << obligation, ..Clause::TRUE };
+        if let Some((_, Some(place))) = plan.obligations.get(obligation) {
+            clause.deadlines[*place] = deadline;
+        }
+        clause
+    }
+
+    /// Both.
+    fn and(&self, other: &Clause, plan: &CompiledProperty) -> Clause {
+        let mut both = Clause { obligations: self.obligations | other.obligations, ..*self };
+        for (obligation, place, is_until) in bounded(plan) {
+            both.deadlines[place] = match (self.has(obligation), other.has(obligation)) {
+                (true, true) if is_until => self.deadlines[place].min(other.deadlines[place]),
+                (true, true) => self.deadlines[place].max(other.deadlines[place]),
+                (false, true) => other.deadlines[place],
+                _ => self.deadlines[place],
+            };
+        }
+        both
+    }
+
+    /// Whether whatever meets this clause meets the other.
+    fn implies(&self, other: &Clause, plan: &CompiledProperty) -> bool {
+        other.obligations & !self.obligations == 0
+            && bounded(plan).all(|(obligation, place, is_until)| {
+                !other.has(obligation)
+                    || match is_until {
+                        true => self.deadlines[place] <= other.deadlines[place],
+                        false => self.deadlines[place] >= other.deadlines[place],
+                    }
+            })
+    }
+
+    /// What is left at a time that is not that of a step; nothing if it can no longer be met.
+    pub(crate) fn at_time(&self, now: u64, plan: &CompiledProperty) -> Option<Clause> {
+        let mut left = *self;
+        for (obligation, place, is_until) in bounded(plan) {
+            if self.has(obligation) && self.deadlines[place] < now {
+                if is_until {
+                    return None;
+                }
+                left.obligations &= !(1 << obligation);
+                left.deadlines[place] = 0;
+            }
+        }
+        Some(left)
+    }
+
+    /// The deadlines counted from a later moment.
+    pub(crate) fn shifted(mut self, by: u64, plan: &CompiledProperty) -> Clause {
+        for (obligation, place, _) in bounded(plan) {
+            if self.has(obligation) {
+                self.deadlines[place] = self.deadlines[place].saturating_sub(by);
+            }
+        }
+        self
+    }
+
+    /// The first moment after which [`after`](Clause::after) says something else.
+    pub(crate) fn first_deadline(&self, plan: &CompiledProperty) -> Option<u64> {
+        bounded(plan)
+            .filter(|(obligation, ..)| self.has(*obligation))
+            .map(|(_, place, _)| self.deadlines[place])
+            .min()
+    }
+
+    /// Whether it waits for something that must come.
+    pub(crate) fn awaits(&self, plan: &CompiledProperty) -> bool {
+        plan.obligations.iter().enumerate().any(|(obligation, &(term, _))| {
+            self.has(obligation) && matches!(plan.terms[term], Subformula::Until { .. })
+        })
+    }
+}
+
+/// The obligations with a bound: which, the place of its deadline, and whether it is an `until`.
+fn bounded(plan: &CompiledProperty) -> impl Iterator<Item = (usize, usize, bool)> {
+    plan.obligations.iter().enumerate().filter_map(|(obligation, &(term, place))| {
+        Some((obligation, place?, matches!(plan.terms[term], Subformula::Until { .. })))
+    })
+}
+
+/// What is true of one step, and when it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TimedLetter {
+    pub(crate) letter: u64,
+    pub(crate) now: u64,
+}
+
+/// More clauses than there is room for.
+#[derive(Debug)]
+pub(crate) struct Overflow;
+
+/// Where steps are made. It takes no more memory once it has been made.
+#[derive(Clone, Debug)]
+pub(crate) struct Scratch {
+    clauses: Vec<Clause>,
+}
+
+impl Scratch {
+    pub(crate) fn new() -> Scratch {
+        Scratch { clauses: Vec::with_capacity(ROOM) }
+    }
+
+    /// The clauses that the last step left, none of which follows from another.
+    pub(crate) fn clauses(&self) -> &[Clause] {
+        &self.clauses
+    }
+
+    /// The first step.
+    pub(crate) fn begin(&mut self, plan: &CompiledProperty, at: TimedLetter) -> Result<(), Overflow> {
+        self.clauses.clear();
+        self.expand(plan, plan.root, None, at)?;
+        self.simplify(0, plan);
+        Ok(())
+    }
+
+    /// A step from clauses on.
+    pub(crate) fn step(
+        &mut self,
+        plan: &CompiledProperty,
+        from: &[Clause],
+        at: TimedLetter,
+    ) -> Result<(), Overflow> {
+        self.clauses.clear();
+        for clause in from {
+            let begin = self.clauses.len();
+            self.push(Clause::TRUE)?;
+            for (obligation, &(term, place)) in plan.obligations.iter().enumerate() {
+                if clause.has(obligation) {
+                    let middle = self.clauses.len();
+                    let deadline = place.map_or(u64::MAX, |place| clause.deadlines[place]);
+                    self.expand(plan, term, Some(deadline), at)?;
+                    self.product(begin, middle, plan)?;
+                }
+            }
+        }
+        self.simplify(0, plan);
+        Ok(())
+    }
+
+    /// Puts on top what is left of a term after a step; a temporal one may be older than the step,
+    /// and have its deadline.
+    fn expand(
+        &mut self,
+        plan: &CompiledProperty,
+        term: usize,
+        deadline: Option<u64>,
+        at: TimedLetter,
+    ) -> Result<(), Overflow> {
+        let begin = self.clauses.len();
+        match plan.terms[term] {
+            Subformula::Constant(true) => self.push(Clause::TRUE),
+            Subformula::Constant(false) => Ok(()),
+            Subformula::Literal { atom, holds } => match (at.letter & (1 << atom) != 0) == holds {
+                true => self.push(Clause::TRUE),
+                false => Ok(()),
+            },
+            Subformula::Or(one, other) => {
+                self.expand(plan, one, None, at)?;
+                self.expand(plan, other, None, at)?;
+                self.simplify(begin, plan);
+                Ok(())
+            }
+            Subformula::And(one, other) => {
+                self.expand(plan, one, None, at)?;
+                let middle = self.clauses.len();
+                self.expand(plan, other, None, at)?;
+                self.product(begin, middle, plan)
+            }
+            Subformula::Until { obligation, left, right, bound } => {
+                let deadline = deadline_of(deadline, bound, at);
+                if at.now > deadline {
+                    return Ok(());
+                }
+                self.expand(plan, right, None, at)?;
+                let middle = self.clauses.len();
+                self.expand(plan, left, None, at)?;
+                let goes_on = Clause::one(plan, obligation, deadline);
+                self.clauses[middle..].iter_mut().for_each(|clause| *clause = clause.and(&goes_on, plan));
+                self.simplify(begin, plan);
+                Ok(())
+            }
+            Subformula::Release { obligation, left, right, bound } => {
+                let deadline = deadline_of(deadline, bound, at);
+                if at.now > deadline {
+                    return self.push(Clause::TRUE);
+                }
+                self.expand(plan, right, None, at)?;
+                let middle = self.clauses.len();
+                self.expand(plan, left, None, at)?;
+                self.push(Clause::one(plan, obligation, deadline))?;
+                self.product(begin, middle, plan)
+            }
+        }
+    }
+
+    /// Takes what stands from `begin` and what stands from `middle`, and leaves what meets one of
+    /// each.
+    fn product(&mut self, begin: usize, middle: usize, plan: &CompiledProperty) -> Result<(), Overflow> {
+        let end = self.clauses.len();
+        for one in begin..middle {
+            for other in middle..end {
+                self.push(self.clauses[one].and(&self.clauses[other], plan))?;
+            }
+        }
+        self.clauses.copy_within(end.., begin);
+        self.clauses.truncate(begin + self.clauses.len() - end);
+        self.simplify(begin, plan);
+        Ok(())
+    }
+
+    /// Takes away what follows from another.
+    fn simplify(&mut self, begin: usize, plan: &CompiledProperty) {
+        let mut kept = begin;
+        for index in begin..self.clauses.len() {
+            let clause = self.clauses[index];
+            let weaker = |other: &Clause| clause.implies(other, plan);
+            // of two that are equal the first stays
+            let is_needless = self.clauses[begin..kept].iter().any(weaker)
+                || self.clauses[index + 1..]
+                    .iter()
+                    .any(|other| weaker(other) && !other.implies(&clause, plan));
+            if !is_needless {
+                self.clauses[kept] = clause;
+                kept += 1;
+            }
+        }
+        self.clauses.truncate(kept);
+    }
+
+    fn push(&mut self, clause: Clause) -> Result<(), Overflow> {
+        if self.clauses.len() == ROOM {
+            return Err(Overflow);
+        }
+        self.clauses.push(clause);
+        Ok(())
+    }
+}
+
+fn deadline_of(known: Option<u64>, bound: Option<u64>, at: TimedLetter) -> u64 {
+    known.unwrap_or_else(|| bound.map_or(u64::MAX, |bound| at.now.saturating_add(bound)))
+}

@@ -1,0 +1,172 @@
+//! Resolution of the names in a property.
+
+use std::sync::Arc;
+
+use yase::diagnostic::nearest;
+use yase::expression::{
+    EventId, EventInterner, Expression, ExpressionKind, Guard, Name, NameScope, ScriptInterner,
+    TransitionExpression,
+};
+use yase::{CompiledChart, Diagnostic, NodeId, NodeKind, TypeEnvironment};
+
+use super::compiled_property::{AtomicProposition, CompiledProperty, Lowering};
+use super::syntax::{Property, PropertyFormula, PropertyFormulaKind};
+use aseme::path::{Path, shortest_path};
+
+/// A property whose names a chart knows.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct BoundProperty {
+    /// What is to be followed.
+    pub plan: Arc<CompiledProperty>,
+    /// The contrary: what a run that violates the property does.
+    pub(crate) contrary: CompiledProperty,
+}
+
+/// Looks up the states and events of a property in a chart. What conditions name is
+/// [another's](guards) to know.
+///
+/// # Errors
+/// Names that the chart does not have (E0845, E0846), timers in a condition (E0841), and a property
+/// that is too large (E0844).
+pub fn bind(property: &Property, chart: &CompiledChart) -> Result<BoundProperty, Vec<Diagnostic>> {
+    let mut found = Vec::new();
+    let is_lasting = matches!(property.formula.kind, PropertyFormulaKind::Always(_));
+    let plan = |holds: bool, found: &mut Vec<Diagnostic>| {
+        let lookup = |formula: &PropertyFormula| atom(formula, chart, found);
+        Lowering::new(&property.name, is_lasting, lookup).finish(&property.formula, holds)
+    };
+    let made = plan(true, &mut found);
+    let contrary = plan(false, &mut Vec::new());
+    match (made, contrary) {
+        (Ok(plan), Ok(contrary)) if found.is_empty() => Ok(BoundProperty { plan: Arc::new(plan), contrary }),
+        (Ok(_), Ok(_)) => Err(found),
+        (Err(too_large), _) | (_, Err(too_large)) => {
+            let message = format!("`{}` says more than {} {}", property.name, too_large.1, too_large.0);
+            let wrong = Diagnostic::error("E0844", property.place.0, message);
+            found.push(wrong.with_hint("make several properties of it"));
+            Err(found)
+        }
+    }
+}
+
+fn atom(
+    formula: &PropertyFormula,
+    chart: &CompiledChart,
+    found: &mut Vec<Diagnostic>,
+) -> Option<AtomicProposition> {
+    let looked_up = match &formula.kind {
+        PropertyFormulaKind::In(name) => state(name, chart).map(AtomicProposition::In),
+        PropertyFormulaKind::Entering(name) => state(name, chart).map(AtomicProposition::Entering),
+        PropertyFormulaKind::Leaving(name) => state(name, chart).map(AtomicProposition::Leaving),
+        PropertyFormulaKind::Event(name) => event(name, chart).map(AtomicProposition::Event),
+        PropertyFormulaKind::Condition(condition) => {
+            without_timers(condition, chart).map(AtomicProposition::Condition)
+        }
+        _ => return None,
+    };
+    looked_up.map_err(|wrong| found.push(wrong)).ok()
+}
+
+/// The state that a path names.
+pub(crate) fn state(name: &Name, chart: &CompiledChart) -> Result<NodeId, Diagnostic> {
+    let place = name.place.0;
+    let path = Path::parse(&name.text).map_err(|wrong| Diagnostic { span: place, ..wrong })?;
+    let statechart = chart.statechart();
+    let is_state = |id: NodeId| {
+        use NodeKind::{And, Basic, End, Or};
+        matches!(statechart.node(id).kind, And | Basic | End | Or)
+    };
+    let states: Vec<NodeId> = statechart.nodes().map(|(id, _)| id).filter(|&id| is_state(id)).collect();
+    let fitting: Vec<NodeId> = states.iter().copied().filter(|&id| path.matches(statechart, id)).collect();
+    match fitting.as_slice() {
+        [one] => Ok(*one),
+        [] => {
+            let message = format!("the chart `{}` has no state `{}`", statechart.name, name.text);
+            let names =
+                states.iter().map(|&id| statechart.node(id).name.as_str()).filter(|it| !it.is_empty());
+            let last = name.text.rsplit('/').next().unwrap_or_default();
+            let wrong = Diagnostic::error("E0845", place, message);
+            Err(match nearest(last, names) {
+                Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
+                None => wrong.with_hint("a state is named by a path of names as its formula has them"),
+            })
+        }
+        several => {
+            let message = format!("{} states are called `{}`", several.len(), name.text);
+            let paths: Vec<String> =
+                several.iter().take(3).map(|&id| format!("`{}`", shortest_path(statechart, id))).collect();
+            let wrong = Diagnostic::error("E0845", place, message);
+            Err(wrong.with_hint(format!("say which: {}", paths.join(", "))))
+        }
+    }
+}
+
+/// The event of a name.
+pub(crate) fn event(name: &Name, chart: &CompiledChart) -> Result<EventId, Diagnostic> {
+    let events = chart.events();
+    if let Some(event) = events.find(&name.text) {
+        return Ok(event);
+    }
+    let message =
+        format!("nothing in the chart `{}` names an event `{}`", chart.statechart().name, name.text);
+    let wrong = Diagnostic::error("E0846", name.place.0, message);
+    let known: Vec<&str> = events.ids().map(|event| events.name(event)).collect();
+    Err(match nearest(&name.text, known.iter().copied()) {
+        Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
+        None => wrong.with_hint("a chart is offered the events that its triggers and actions name"),
+    })
+}
+
+/// A condition that asks for no timer of the chart: what an exploration knows of a timer, and what
+/// a monitor could, is not the same.
+fn without_timers(condition: &Expression, chart: &CompiledChart) -> Result<Expression, Diagnostic> {
+    let timer = condition.find_map(&mut |part| match &part.kind {
+        ExpressionKind::Variable(path) => {
+            path.bare().filter(|name| chart.timers().any(|(_, it)| it == *name))
+        }
+        _ => None,
+    });
+    match timer {
+        None => Ok(condition.clone()),
+        Some(timer) => {
+            let message =
+                format!("`{timer}` is a timer of the chart and has no place in the condition of a property");
+            let wrong = Diagnostic::error("E0841", condition.span(), message);
+            Err(wrong.with_hint("write `within` behind what must come in time"))
+        }
+    }
+}
+
+/// The conditions of a compiled property in the order of its atoms, ready to be evaluated; none for
+/// other atoms.
+///
+/// # Errors
+/// Whatever a guard with such a condition would be refused for.
+pub fn guards(
+    plan: &CompiledProperty,
+    chart: &CompiledChart,
+    vocabulary: &TypeEnvironment,
+) -> Result<Vec<Option<Guard>>, Vec<Diagnostic>> {
+    let (mut guards, mut found) = (Vec::new(), Vec::new());
+    for atom in plan.atoms() {
+        let AtomicProposition::Condition(condition) = atom else {
+            guards.push(None);
+            continue;
+        };
+        let expression = TransitionExpression { guard: Some(condition.clone()), ..Default::default() };
+        let compiled = expression.compile(&mut NameScope {
+            vocabulary,
+            constants: &chart.statechart().constants,
+            timers: &[],
+            events: &mut EventInterner::new(),
+            scripts: &mut ScriptInterner::new(),
+            states: &|_| None,
+        });
+        match compiled {
+            Ok(compiled) => guards.push(compiled.guard),
+            Err(wrong) => found.extend(wrong),
+        }
+    }
+    if found.is_empty() { Ok(guards) } else { Err(found) }
+}

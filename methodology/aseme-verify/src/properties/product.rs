@@ -1,0 +1,308 @@
+//! The product of a chart's state space and the automaton of a negated property.
+//!
+//! A product state is a pair of a chart state and a [`Clause`] of the negated property. A run
+//! violates the property if it reaches a product state without obligations, if it ends in one
+//! without unfulfilled obligations, or if it enters an accepting cycle. A cycle counts only if the
+//! chart can repeat it: running activities return, timers that are started expire, and time, if
+//! counted, advances.
+
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+use yase::Status;
+use yase_explore::{LabelledGraph, LabelledStep, PendingEvent};
+
+use super::clause::{Clause, Scratch, TimedLetter};
+use super::compiled_property::{CompiledProperty, Subformula};
+use crate::strongly_connected_components::strongly_connected_components;
+
+/// A run that violates a property, by its steps.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(crate) struct Violation {
+    pub(crate) prefix: Vec<usize>,
+    /// The steps that repeat forever after that; empty if the run violates the property at its end,
+    /// or ends there.
+    pub(crate) cycle: Vec<usize>,
+}
+
+/// What came of the search.
+pub(crate) enum SearchOutcome {
+    Violation(Violation),
+    Nothing,
+    /// There was more than was looked at.
+    TooMuch,
+}
+
+/// Looks for a run that meets the contrary of a property, looking at no more than `limit` places.
+/// Bounds are in ticks.
+pub(crate) fn violation(
+    found: &LabelledGraph,
+    contrary: &CompiledProperty,
+    is_timed: bool,
+    has_idle: bool,
+    limit: usize,
+) -> SearchOutcome {
+    let (from, begin) = outgoing(found);
+    let mut search = ProductSearch {
+        found,
+        contrary,
+        has_idle,
+        from,
+        places: Vec::new(),
+        numbers: BTreeMap::new(),
+        next: Vec::new(),
+        limit,
+        is_whole: true,
+    };
+    if let Some(violation) = search.reached(begin) {
+        return SearchOutcome::Violation(violation);
+    }
+    let circles = CycleSearch { search: &search, is_timed };
+    match circles.find() {
+        Some(violation) => SearchOutcome::Violation(violation),
+        None if search.is_whole => SearchOutcome::Nothing,
+        None => SearchOutcome::TooMuch,
+    }
+}
+
+/// The steps out of each state, and those that start the chart.
+fn outgoing(found: &LabelledGraph) -> (Vec<Vec<usize>>, Vec<usize>) {
+    let mut from = vec![Vec::new(); found.states().len()];
+    let mut begin = Vec::new();
+    for (place, step) in found.steps().iter().enumerate() {
+        match step.from {
+            Some(state) => from[state].push(place),
+            None => begin.push(place),
+        }
+    }
+    (from, begin)
+}
+
+struct ProductPosition {
+    state: usize,
+    clause: Clause,
+    /// The place before it and the step that led here first.
+    predecessor: (Option<usize>, usize),
+}
+
+struct ProductSearch<'a> {
+    found: &'a LabelledGraph,
+    contrary: &'a CompiledProperty,
+    /// Whether parts of the chart are left to do nothing: then it is never at rest.
+    has_idle: bool,
+    from: Vec<Vec<usize>>,
+    places: Vec<ProductPosition>,
+    numbers: BTreeMap<(usize, Clause), usize>,
+    /// Where each place leads, and by which step.
+    next: Vec<Vec<(usize, usize)>>,
+    limit: usize,
+    is_whole: bool,
+}
+
+impl<'a> ProductSearch<'a> {
+    fn step(&self, place: usize) -> &'a LabelledStep {
+        &self.found.steps()[place]
+    }
+
+    /// The shortest run at whose end the property is violated.
+    fn reached(&mut self, begin: Vec<usize>) -> Option<Violation> {
+        let mut stack = Scratch::new();
+        let mut open = VecDeque::new();
+        for step in begin {
+            let at = TimedLetter { letter: self.step(step).letter, now: 0 };
+            let result = stack.begin(self.contrary, at);
+            self.is_whole &= result.is_ok();
+            if let Some(way) = self.arrive(None, step, &stack, &mut open) {
+                return Some(way);
+            }
+        }
+        while let Some(place) = open.pop_front() {
+            let ProductPosition { state, clause, .. } = self.places[place];
+            if self.may_end(state) && !clause.awaits(self.contrary) {
+                return Some(Violation { prefix: self.path_to(Some(place)), cycle: Vec::new() });
+            }
+            for step in self.from[state].clone() {
+                let at = TimedLetter { letter: self.step(step).letter, now: self.step(step).elapsed };
+                let result = stack.step(self.contrary, &[clause], at);
+                self.is_whole &= result.is_ok();
+                if let Some(way) = self.arrive(Some(place), step, &stack, &mut open) {
+                    return Some(way);
+                }
+            }
+        }
+        None
+    }
+
+    /// Whether nothing need happen any more.
+    fn may_end(&self, state: usize) -> bool {
+        let it = &self.found.states()[state];
+        it.status != Status::Running || (it.pending.is_empty() && !self.has_idle)
+    }
+
+    fn arrive(
+        &mut self,
+        from: Option<usize>,
+        step: usize,
+        stack: &Scratch,
+        open: &mut VecDeque<usize>,
+    ) -> Option<Violation> {
+        let LabelledStep { to, elapsed, .. } = *self.step(step);
+        for clause in stack.clauses() {
+            if clause.is_true() {
+                let mut way = self.path_to(from);
+                way.push(step);
+                return Some(Violation { prefix: way, cycle: Vec::new() });
+            }
+            let clause = clause.shifted(elapsed, self.contrary);
+            let count = self.places.len();
+            let place = match self.numbers.entry((to, clause)) {
+                Entry::Occupied(known) => *known.get(),
+                Entry::Vacant(_) if count == self.limit => {
+                    self.is_whole = false;
+                    continue;
+                }
+                Entry::Vacant(new) => {
+                    new.insert(count);
+                    self.places.push(ProductPosition { state: to, clause, predecessor: (from, step) });
+                    self.next.push(Vec::new());
+                    open.push_back(count);
+                    count
+                }
+            };
+            if let Some(from) = from {
+                self.next[from].push((place, step));
+            }
+        }
+        None
+    }
+
+    fn path_to(&self, mut place: Option<usize>) -> Vec<usize> {
+        let mut way = Vec::new();
+        while let Some(at) = place {
+            let (before, step) = self.places[at].predecessor;
+            way.push(step);
+            place = before;
+        }
+        way.reverse();
+        way
+    }
+}
+
+/// The search for a circle, among places that are all known.
+struct CycleSearch<'a> {
+    search: &'a ProductSearch<'a>,
+    is_timed: bool,
+}
+
+impl CycleSearch<'_> {
+    fn find(&self) -> Option<Violation> {
+        let components = strongly_connected_components(&self.search.next);
+        let mut members: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (place, &component) in components.iter().enumerate() {
+            members.entry(component).or_default().push(place);
+        }
+        // the one that is reached first
+        let mut candidates: Vec<(usize, Vec<usize>)> = members.into_values().map(|it| (it[0], it)).collect();
+        candidates.sort_unstable();
+        candidates.into_iter().find_map(|(first, members)| {
+            let inside: BTreeSet<usize> = members.into_iter().collect();
+            let stops = self.stops(&inside)?;
+            let circle = self.find_cycle(first, &stops, &inside)?;
+            Some(Violation { prefix: self.search.path_to(Some(first)), cycle: circle })
+        })
+    }
+
+    /// What a circle has to go by to be a run that violates the property; none if it cannot.
+    fn stops(&self, inside: &BTreeSet<usize>) -> Option<Vec<CycleStop>> {
+        let search = self.search;
+        let mut stops = Vec::new();
+        for (obligation, &(term, _)) in search.contrary.obligations.iter().enumerate() {
+            if matches!(search.contrary.terms[term], Subformula::Until { bound: None, .. }) {
+                let met = |place: &&usize| !search.places[**place].clause.has(obligation);
+                stops.push(CycleStop::Place(*inside.iter().find(met)?));
+            }
+        }
+        let steps = || {
+            inside.iter().flat_map(|&place| {
+                let next = search.next[place].iter().filter(|(to, _)| inside.contains(to));
+                next.map(move |&(to, step)| (place, to, step))
+            })
+        };
+        steps().next()?;
+        if self.is_timed {
+            let (from, to, step) = steps().find(|&(.., step)| search.step(step).elapsed > 0)?;
+            stops.push(CycleStop::Step(from, to, step));
+            return Some(stops);
+        }
+        let pending = |place: usize| &search.found.states()[search.places[place].state].pending;
+        let first = *inside.first()?;
+        let always =
+            pending(first).iter().filter(|it| inside.iter().all(|&place| pending(place).contains(it)));
+        for &waiting in always {
+            let ends =
+                |&(.., step): &(usize, usize, usize)| search.step(step).ends == Some::<PendingEvent>(waiting);
+            let (from, to, step) = steps().find(ends)?;
+            stops.push(CycleStop::Step(from, to, step));
+        }
+        for &waiting in pending(first) {
+            if let Some(&place) = inside.iter().find(|&&place| !pending(place).contains(&waiting)) {
+                stops.push(CycleStop::Place(place));
+            }
+        }
+        Some(stops)
+    }
+
+    /// A circle from a place by all stops.
+    fn find_cycle(&self, first: usize, stops: &[CycleStop], inside: &BTreeSet<usize>) -> Option<Vec<usize>> {
+        let (mut at, mut circle) = (first, Vec::new());
+        for stop in stops {
+            match *stop {
+                CycleStop::Place(place) => circle.extend(self.path_within(at, place, inside)?),
+                CycleStop::Step(from, ..) => circle.extend(self.path_within(at, from, inside)?),
+            }
+            at = match *stop {
+                CycleStop::Place(place) => place,
+                CycleStop::Step(_, to, step) => {
+                    circle.push(step);
+                    to
+                }
+            };
+        }
+        if circle.is_empty() {
+            let &(to, step) = self.search.next[at].iter().find(|(to, _)| inside.contains(to))?;
+            circle.push(step);
+            at = to;
+        }
+        circle.extend(self.path_within(at, first, inside)?);
+        Some(circle)
+    }
+
+    fn path_within(&self, from: usize, to: usize, inside: &BTreeSet<usize>) -> Option<Vec<usize>> {
+        let mut came: BTreeMap<usize, Option<(usize, usize)>> = BTreeMap::from([(from, None)]);
+        let mut open = VecDeque::from([from]);
+        while let Some(at) = open.pop_front() {
+            if at == to {
+                let (mut way, mut at) = (Vec::new(), at);
+                while let Some(Some((before, step))) = came.get(&at) {
+                    way.push(*step);
+                    at = *before;
+                }
+                way.reverse();
+                return Some(way);
+            }
+            for &(next, step) in self.search.next[at].iter().filter(|(next, _)| inside.contains(next)) {
+                if let Entry::Vacant(entry) = came.entry(next) {
+                    entry.insert(Some((at, step)));
+                    open.push_back(next);
+                }
+            }
+        }
+        None
+    }
+}
+
+/// The edges of a cycle.
+enum CycleStop {
+    Place(usize),
+    Step(usize, usize, usize),
+}

@@ -1,0 +1,274 @@
+//! Conformance of a protocol's chart to the protocol, and of a player's chart to both.
+//!
+//! A protocol lists its participants, the formulas of each, the rule by which it is engaged and its
+//! outcomes. Rules and outcomes that are conditions, each in brackets
+//! (`[Attack.ball_is_free && Attack.part == CENTER]`), are checked; those in prose are
+//! documentation.
+//!
+//! [`chart_conforms`] checks the chart of a protocol: every participant is present and does what
+//! its formulas say, is engaged only by its rule, has an exit for each outcome and for nothing
+//! else, and guards its optional activities. [`player_conforms`] checks the chart of a player: it
+//! contains the parts that it takes, with their transitions, rules and exits. Both then explore
+//! these charts and compare every trace with the formulas of the protocol: for a player both its
+//! parts alone, and the whole player while it is engaged in them.
+
+mod part;
+mod trace_inclusion;
+
+use yase::expression::{Expression, parse_transition};
+use yase::{Diagnostic, Span};
+use yase_explore::explore;
+
+use crate::abstraction::Abstraction;
+use crate::checked_model;
+use crate::conformance::{DifferenceKind, differences_of_what_is_left_early};
+use crate::exploration_extent::ExplorationExtent;
+use crate::logic::GuardSolver;
+use aseme::liveness::{self, Liveness};
+use aseme_models::aip::{Aip, Participant, Protocol};
+use aseme_models::iac::{Iac, IacTransition};
+use aseme_models::transformations::{
+    ShapeMatch, conditions, participant_formula, participants, protocol_formulas, same_shape,
+};
+
+/// So many states are explored of one chart.
+const STATES: usize = 100_000;
+
+/// The result of a conformance check.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+#[non_exhaustive]
+pub struct Conformance {
+    /// What does not conform (E0860 to E0869), in the order of the chart.
+    pub findings: Vec<Diagnostic>,
+    /// What was explored, and how far that came.
+    pub explored: Vec<(String, ExplorationExtent)>,
+}
+
+impl Conformance {
+    /// Whether the chart conforms.
+    pub fn is_given(&self) -> bool {
+        !self.findings.iter().any(Diagnostic::is_error)
+    }
+
+    fn report(&mut self, code: &'static str, place: Span, message: String, hint: &str) {
+        self.findings.push(Diagnostic::error(code, place, message).with_hint(hint));
+    }
+}
+
+/// Whether the chart of a protocol (EAC) is that protocol.
+pub fn chart_conforms(eac: &Iac, aip: &Aip) -> Conformance {
+    let mut found = Conformance::default();
+    let Some(protocol) = protocol_of(eac, aip, &mut found) else { return found };
+    let expected = aseme_models::transformations::aip_to_eac(aip).0;
+    let Some(expected) = expected.iter().find(|chart| chart.name == protocol.name) else { return found };
+    let parts = participants(eac);
+    for index in participants(expected) {
+        let name = expected.nodes[index].name.as_str();
+        let part = part_named(aip, protocol, name);
+        match (parts.iter().find(|&&part| eac.nodes[part].name == name), part) {
+            (Some(&node), Some(part)) => chart_part(eac, node, expected, index, part, &mut found),
+            _ => {
+                let message = format!("`{name}` of the protocol `{}` is not in its chart", protocol.name);
+                found.report("E0861", Span::default(), message, "each participant has a region of its own");
+            }
+        }
+    }
+    for &part in parts.iter().filter(|&&part| part_named(aip, protocol, &eac.nodes[part].name).is_none()) {
+        let message = format!("`{}` takes no part in the protocol `{}`", eac.nodes[part].name, protocol.name);
+        found.report(
+            "E0861",
+            eac.nodes[part].place.0,
+            message,
+            "name it among the participants, or take it away",
+        );
+    }
+    if found.is_given() {
+        traces(eac, &liveness::parse(&protocol_formulas(aip, protocol).0).0, &protocol.name, &mut found);
+    }
+    found
+}
+
+/// Whether a player's chart (IAC) contains its parts in a protocol as the chart of that has them,
+/// and does nothing in them that the protocol does not allow.
+pub fn player_conforms(player: &Iac, eac: &Iac, aip: &Aip) -> Conformance {
+    let mut found = Conformance::default();
+    let Some(protocol) = protocol_of(eac, aip, &mut found) else { return found };
+    let mut takes_part = false;
+    for part in participants(eac) {
+        let name = eac.nodes[part].name.as_str();
+        let places = (0..player.nodes.len())
+            .filter(|&node| player.nodes[node].kind == "OR" && player.nodes[node].name == name);
+        for place in places {
+            takes_part = true;
+            let before = found.findings.len();
+            part::contained(player, place, eac, part, &mut found);
+            let formulas =
+                part_named(aip, protocol, name).map(|it| participant_formula(&it.name, &it.liveness));
+            if let (true, Some(formulas)) = (found.findings.len() == before, formulas) {
+                let alone = part::alone(player, place, eac, part);
+                let liveness = liveness::parse(&formulas).0;
+                traces(&alone, &liveness, name, &mut found);
+                trace_inclusion::in_whole(player, place, (eac, part), &liveness, &mut found);
+            }
+        }
+    }
+    if !takes_part {
+        let message = format!("`{}` takes no part in the protocol `{}`", player.name, protocol.name);
+        let hint = "a part is a composite that is called like a participant: merge the protocol's chart into the player's";
+        found.report("E0861", Span::default(), message, hint);
+    }
+    found
+}
+
+/// The parts that a protocol's chart has, each with whether a player takes it.
+pub fn parts_taken(player: &Iac, eac: &Iac) -> Vec<(String, bool)> {
+    let takes = |name: &str| player.nodes.iter().any(|node| node.kind == "OR" && node.name == name);
+    let names = participants(eac).into_iter().map(|part| eac.nodes[part].name.clone());
+    names.map(|name| (name.clone(), takes(&name))).collect()
+}
+
+fn protocol_of<'a>(eac: &Iac, aip: &'a Aip, found: &mut Conformance) -> Option<&'a Protocol> {
+    let protocol = aip.protocols.iter().find(|protocol| protocol.name == eac.name);
+    if protocol.is_none() {
+        let names = aip.protocols.iter().map(|protocol| protocol.name.as_str());
+        let message = format!("there is no protocol `{}`", eac.name);
+        found
+            .findings
+            .push(Diagnostic::error("E0860", Span::default(), message).with_nearest(&eac.name, names));
+    }
+    protocol
+}
+
+fn part_named<'a>(aip: &'a Aip, protocol: &Protocol, name: &str) -> Option<&'a Participant> {
+    let parts = protocol.participants.iter().filter_map(|&index| aip.participants.get(index));
+    parts.into_iter().find(|part| part.name == name)
+}
+
+/// One part of a protocol's chart.
+fn chart_part(
+    eac: &Iac,
+    node: usize,
+    expected: &Iac,
+    wanted: usize,
+    part: &Participant,
+    found: &mut Conformance,
+) {
+    let name = &part.name;
+    if let Err((wanted, there)) = same_shape(expected, wanted, eac, node, ShapeMatch::Same) {
+        let message =
+            format!("`{name}` does not do what the protocol says: {there} stands where {wanted} would be");
+        return found.report("E0862", eac.nodes[node].place.0, message, "its formula is the protocol's");
+    }
+    let borders = BoundaryTransitions::of(eac, node);
+    for rule in conditions(&part.engaging_rules).into_iter().flatten() {
+        borders.engaged_by(eac, name, &rule, found);
+    }
+    let outcomes: Vec<Expression> = conditions(&part.outcomes).into_iter().flatten().collect();
+    for outcome in &outcomes {
+        borders.has_exit(eac, name, outcome, found);
+    }
+    if !outcomes.is_empty() {
+        borders.no_other_exit(eac, name, &outcomes, found);
+    }
+    part::guarded(eac, node, found);
+}
+
+/// The transitions that lead into a composite and out of it.
+struct BoundaryTransitions<'a> {
+    into: Vec<&'a IacTransition>,
+    out: Vec<&'a IacTransition>,
+}
+
+impl BoundaryTransitions<'_> {
+    fn of(chart: &Iac, node: usize) -> BoundaryTransitions<'_> {
+        let inside = |at: usize| part::is_inside(chart, at, node);
+        let crossing = |it: &&IacTransition| inside(it.source) != inside(it.target);
+        let (into, out) =
+            chart.transitions.iter().filter(crossing).partition(|it: &&IacTransition| inside(it.target));
+        BoundaryTransitions { into, out }
+    }
+
+    fn engaged_by(&self, chart: &Iac, name: &str, rule: &Expression, found: &mut Conformance) {
+        let logic = GuardSolver::new(&chart.constants);
+        for way in &self.into {
+            let is_ruled = guard(way).is_some_and(|guard| logic.implies(&guard, rule));
+            if !is_ruled {
+                let message = format!("`{name}` may be engaged in while `{rule}` does not hold");
+                found.report("E0863", way.place.0, message, "guard the way into it by the engagement rule");
+            }
+        }
+    }
+
+    fn has_exit(&self, chart: &Iac, name: &str, outcome: &Expression, found: &mut Conformance) {
+        let logic = GuardSolver::new(&chart.constants);
+        let leads_out = |guard: Expression| logic.implies(outcome, &guard);
+        if !self.out.iter().filter_map(|way| guard(way)).any(leads_out) {
+            let message = format!("the outcome `{outcome}` is no exit of `{name}`");
+            let place = self.out.first().map_or(Span::default(), |way| way.place.0);
+            found.report("E0864", place, message, "let a transition lead out of it when that is so");
+        }
+    }
+
+    fn no_other_exit(&self, chart: &Iac, name: &str, outcomes: &[Expression], found: &mut Conformance) {
+        let logic = GuardSolver::new(&chart.constants);
+        for way in &self.out {
+            let Some(guard) = guard(way) else { continue };
+            if !outcomes.iter().any(|outcome| logic.implies(&guard, outcome)) {
+                let message = format!("`{name}` is left when `{guard}`, which is no outcome of the protocol");
+                found.report("E0865", way.place.0, message, "make it an outcome, or take the exit away");
+            }
+        }
+    }
+}
+
+/// The guard of a transition; `false` never enables it.
+fn guard(transition: &IacTransition) -> Option<Expression> {
+    parse_transition(&transition.te).0.guard
+}
+
+/// Explores a chart and holds its traces against formulas. What is left early by an exit is a trace
+/// cut short, as it is meant to be.
+fn traces(chart: &Iac, liveness: &Liveness, name: &str, found: &mut Conformance) {
+    let (subject, made) = checked_model::of_chart(chart);
+    let abstraction = match Abstraction::new(&subject) {
+        Ok(abstraction) if !made.iter().any(Diagnostic::is_error) => abstraction,
+        Ok(_) => return found.findings.extend(made),
+        Err(reasons) => return found.findings.extend(reasons),
+    };
+    let mut surroundings = abstraction.surroundings();
+    let explored = explore(&abstraction.chart, &mut surroundings, STATES);
+    drop(surroundings);
+    let extent = ExplorationExtent {
+        states: explored.states().len(),
+        configurations: explored.configurations(),
+        is_finished: explored.is_finished(),
+    };
+    found.explored.push((name.to_owned(), extent));
+    let (differences, is_whole) = differences_of_what_is_left_early(&subject.chart, &explored, liveness);
+    if !extent.is_finished || !is_whole {
+        let message = format!("`{name}` is too large: not all of its traces are known");
+        return found.report("E0869", Span::default(), message, "make parts of it protocols of their own");
+    }
+    for difference in differences {
+        let before = match difference.before.as_slice() {
+            [] => String::from("at the beginning"),
+            names => format!("after `{}`", names.join(" ")),
+        };
+        let (code, what) = match difference.kind {
+            DifferenceKind::NotAllowed(node) => (
+                "E0867",
+                format!("`{}` is done, which the protocol does not allow", subject.chart.node(node).name),
+            ),
+            DifferenceKind::EndsEarly => ("E0867", "it ends, and the protocol goes on".into()),
+            DifferenceKind::NeverDone(activity) => {
+                ("E0868", format!("the protocol allows `{activity}`, and the chart never does it"))
+            }
+            DifferenceKind::NeverEnds => ("E0868", "the protocol may end, and the chart never does".into()),
+            DifferenceKind::Starves(_) => {
+                ("E0868", "what the protocol goes on with can never come, whatever happens".into())
+            }
+        };
+        let message = format!("in `{name}`, {before} {what}");
+        found.report(code, Span::default(), message, "some guard or transition is not as in the protocol");
+    }
+}

@@ -1,0 +1,129 @@
+//! A participant of a protocol: inside a player's chart, and alone.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{BoundaryTransitions, Conformance, guard};
+use crate::logic::GuardSolver;
+use aseme_models::iac::{Iac, IacTransition};
+use aseme_models::transformations::{ShapeMatch, same_shape};
+
+/// Whether a node is another or lies in it.
+pub(crate) fn is_inside(chart: &Iac, node: usize, outer: usize) -> bool {
+    let mut way = std::iter::successors(Some(node), |&node| chart.nodes.get(node)?.parent);
+    way.any(|node| node == outer)
+}
+
+/// At a CONDITION inside a part: what may be left out is done by a guard only, and of a choice at
+/// most one is open to all.
+pub(crate) fn guarded(chart: &Iac, part: usize, found: &mut Conformance) {
+    let conditions = (0..chart.nodes.len())
+        .filter(|&node| chart.nodes[node].kind == "CONDITION" && is_inside(chart, node, part));
+    for condition in conditions {
+        let ways: Vec<&IacTransition> =
+            chart.transitions.iter().filter(|it| it.source == condition).collect();
+        let ends = |way: &&&IacTransition| chart.nodes[way.target].kind == "END";
+        let may_be_left_out = ways.iter().any(|way| ends(&way));
+        let open: Vec<&&IacTransition> =
+            ways.iter().filter(|way| !ends(way) && guard(way).is_none()).collect();
+        let spared = if may_be_left_out { 0 } else { 1 };
+        for way in open.iter().skip(spared) {
+            let name = chart.nodes[way.target].written();
+            let message = format!("`{name}` is done whatever happens: the way to it is unguarded");
+            let hint = "write in brackets when it is to be done";
+            found.report("E0866", way.place.0, message, hint);
+        }
+    }
+}
+
+/// Whether a player's composite is the part of a protocol's chart: the states, the transitions
+/// between them, the rules to engage by and the exits.
+pub(crate) fn contained(player: &Iac, place: usize, eac: &Iac, part: usize, found: &mut Conformance) {
+    let name = &eac.nodes[part].name;
+    let pairs = match same_shape(eac, part, player, place, ShapeMatch::Refined) {
+        Ok(pairs) => pairs,
+        Err((wanted, there)) => {
+            let message =
+                format!("`{name}` is not that of the protocol: {there} stands where {wanted} would be");
+            let hint = "take the formula of the participant over as it is";
+            return found.report("E0862", player.nodes[place].place.0, message, hint);
+        }
+    };
+    inside(player, eac, &pairs, found);
+    let (own, theirs) = (BoundaryTransitions::of(player, place), BoundaryTransitions::of(eac, part));
+    for rule in theirs.into.iter().filter_map(|way| guard(way)) {
+        own.engaged_by(player, name, &rule, found);
+    }
+    let outcomes: Vec<_> = theirs.out.iter().filter_map(|way| guard(way)).collect();
+    for outcome in &outcomes {
+        own.has_exit(player, name, outcome, found);
+    }
+    let logic = GuardSolver::new(&player.constants);
+    for way in &own.out {
+        let is_exit = |guard: &yase::expression::Expression| {
+            matches!(guard.kind, yase::expression::ExpressionKind::Bool(false))
+                || outcomes.iter().any(|outcome| logic.implies(guard, outcome))
+        };
+        if let Some(guard) = guard(way).filter(|guard| !is_exit(guard)) {
+            let message = format!("`{name}` is left when `{guard}`, which is no outcome of the protocol");
+            found.report("E0865", way.place.0, message, "make it an outcome, or take the exit away");
+        }
+    }
+}
+
+/// The transitions of the part, which are to be the player's, and no others.
+fn inside(player: &Iac, eac: &Iac, pairs: &BTreeMap<usize, usize>, found: &mut Conformance) {
+    let own: BTreeSet<usize> = pairs.values().copied().collect();
+    let mut there: Vec<&IacTransition> =
+        player.transitions.iter().filter(|it| own.contains(&it.source) && own.contains(&it.target)).collect();
+    let words = |it: &IacTransition| yase::expression::parse_transition(&it.te).0.to_string();
+    for theirs in &eac.transitions {
+        let (Some(&source), Some(&target)) = (pairs.get(&theirs.source), pairs.get(&theirs.target)) else {
+            continue;
+        };
+        let same = there.iter().position(|it| {
+            (it.source, it.target) == (source, target)
+                && words(it) == words(theirs)
+                && it.refinement == theirs.refinement
+        });
+        match same {
+            Some(same) => drop(there.remove(same)),
+            None => {
+                let (from, to) = (eac.nodes[theirs.source].written(), eac.nodes[theirs.target].written());
+                let message =
+                    format!("the protocol has `{from} -> {to} : {}`, and the player does not", theirs.te);
+                found.report(
+                    "E0867",
+                    player.nodes[source].place.0,
+                    message,
+                    "merge the protocol's chart again",
+                );
+            }
+        }
+    }
+    for more in there {
+        let (from, to) = (player.nodes[more.source].written(), player.nodes[more.target].written());
+        let message = format!("the player has `{from} -> {to} : {}`, and the protocol does not", more.te);
+        found.report("E0867", more.place.0, message, "merge the protocol's chart again");
+    }
+}
+
+/// The player's part as a chart of its own. What the protocol calls an activity is one there,
+/// though the player does it in several steps.
+pub(crate) fn alone(player: &Iac, place: usize, eac: &Iac, part: usize) -> Iac {
+    let pairs = same_shape(eac, part, player, place, ShapeMatch::Refined).unwrap_or_default();
+    let own: BTreeMap<usize, usize> = pairs.iter().map(|(&theirs, &own)| (own, theirs)).collect();
+    let places: BTreeMap<usize, usize> = own.keys().enumerate().map(|(new, &old)| (old, new)).collect();
+    let nodes = own.iter().map(|(&old, &theirs)| {
+        let mut node = player.nodes[old].clone();
+        node.kind.clone_from(&eac.nodes[theirs].kind);
+        node.parent = node.parent.and_then(|parent| places.get(&parent).copied());
+        node.variables.clear();
+        node
+    });
+    let transitions = player.transitions.iter().filter_map(|it| {
+        let (source, target) = (*places.get(&it.source)?, *places.get(&it.target)?);
+        Some(IacTransition { source, target, ..it.clone() })
+    });
+    let (name, constants) = (player.nodes[place].name.clone(), player.constants.clone());
+    Iac { name, constants, nodes: nodes.collect(), transitions: transitions.collect(), ..Iac::default() }
+}

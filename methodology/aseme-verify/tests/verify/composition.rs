@@ -1,0 +1,219 @@
+//! Robots together: a folder for each case, with a model for each robot and `expected.txt`. With
+//! `MONAS_BLESS=1` that is written anew.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use aseme_verify::composition::{Channels, Composition, TeamTrace, compose};
+use aseme_verify::{CheckSettings, explorable};
+use yase::Source;
+
+type Models = Vec<(String, Arc<Source>)>;
+
+fn models(case: &str) -> Models {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/verify/composed").join(case);
+    let mut files: Vec<_> = folder.read_dir().unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|file| file.extension().is_some_and(|it| it == "srm"));
+    files.sort();
+    let model = |file: &std::path::PathBuf| {
+        let name = file.file_stem().unwrap().to_string_lossy().into_owned();
+        let source = Source::new(format!("{name}.srm"), std::fs::read_to_string(file).unwrap());
+        (name, source)
+    };
+    files.iter().map(model).collect()
+}
+
+fn composed(case: &str, channels: Channels, states: usize) -> Composition {
+    let mut settings = CheckSettings::default();
+    settings.states = states;
+    compose(&models(case), channels, &settings).unwrap_or_else(|wrong| panic!("{case}: {wrong:?}"))
+}
+
+/// All that is said, with the ways there.
+fn text(found: &Composition) -> String {
+    let mut text = String::new();
+    for (from, to, message) in &found.passing {
+        text += &format!("{from} -> {to}: {message}\n");
+    }
+    let robots: Vec<String> = found.robots.iter().map(|(name, states)| format!("{name} {states}")).collect();
+    text += &format!("states: {}, together {}\n", robots.join(", "), found.states);
+    for finding in &found.findings {
+        text += &format!("{}\n", finding.diagnostic);
+        let trace = finding.trace.iter().flat_map(|trace| trace.lines());
+        trace.for_each(|line| text += &format!("    {line}\n"));
+    }
+    text
+}
+
+fn codes(found: &Composition) -> Vec<&'static str> {
+    found.findings.iter().map(|finding| finding.diagnostic.code).collect()
+}
+
+#[test]
+fn robots_that_wait_for_each_other_are_found_and_those_that_nearly_do_are_not() {
+    let cases: [(&str, &[&str]); 8] = [
+        ("deadlock", &["E0930"]),
+        ("near", &[]),
+        ("early", &["E0930", "E0931"]),
+        ("guards", &["E0930"]),
+        ("guards_near", &[]),
+        ("crowded", &["E0932"]),
+        ("three", &["E0930"]),
+        ("twice", &[]),
+    ];
+    for (case, expected) in cases {
+        let mut channels = Channels::default();
+        channels.capacity = if case == "twice" { 3 } else { channels.capacity };
+        let found = composed(case, channels, 10_000);
+        let golden = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("tests/verify/composed")
+            .join(case)
+            .join("expected.txt");
+        let actual = text(&found);
+        if std::env::var_os("MONAS_BLESS").is_some() {
+            std::fs::write(&golden, &actual).unwrap();
+        }
+        assert_eq!(codes(&found), expected, "{case}:\n{actual}");
+        let known = std::fs::read_to_string(&golden).unwrap_or_default();
+        assert!(actual == known, "{} differs; MONAS_BLESS=1 accepts it:\n{actual}", golden.display());
+        assert!(found.is_finished);
+    }
+}
+
+#[test]
+fn a_way_to_a_standstill_is_played_by_the_charts() {
+    let models = models("deadlock");
+    let found = composed("deadlock", Channels::default(), 10_000);
+    let trace = found.findings[0].trace.as_deref().unwrap();
+    assert!(TeamTrace::is_one(trace) && !TeamTrace::is_one("start\nreturn Aim\n"));
+    let charts: Vec<_> = models.iter().map(|(name, source)| (name, explorable(source).unwrap())).collect();
+    let robots: Vec<_> = charts.iter().map(|(name, chart)| (name.as_str(), chart)).collect();
+    let (played, wrong) = TeamTrace::parse(&robots, trace).unwrap().play();
+    assert!(wrong.is_none());
+    let last = |robot: usize| played.iter().rfind(|it| it.robot == robot).unwrap().active.clone();
+    assert_eq!(
+        (last(0), last(1)),
+        (vec!["passer".into(), "Wait".into()], vec!["receiver".into(), "Listen".into()])
+    );
+    let refused = |text: &str| TeamTrace::parse(&robots, text).unwrap_err().to_string();
+    assert_eq!(
+        refused("passer: start\nkeeper: start\n"),
+        "line 2: `keeper: start` belongs to no robot: a step begins with `passer:` or `receiver:`"
+    );
+    assert!(
+        refused("passer: start\nreceiver: start\nreceiver: return Aim\n").starts_with("line 3: no state")
+    );
+}
+
+/// Another region may say the same as a first one: neither is left out of what is explored.
+#[test]
+fn who_says_something_in_two_regions_is_heard_from_both() {
+    let mut models = models("deadlock");
+    let passer = "Role: passer\nLiveness:\npasser = (Aim . Pass) || (Stand . Shout)\nTransitions:\n\
+        Pass -> END : receiver.ready.Signal.Ready / publish.passed.Signal.Passed\n\
+        Shout -> END : / publish.passed.Signal.Passed\n";
+    models[0].1 = Source::new("passer.srm", passer);
+    let found = compose(&models, Channels::default(), &CheckSettings::default()).unwrap();
+    assert_eq!(codes(&found), ["E0930", "E0931", "E0931"], "{}", text(&found));
+    let shouted = "passer: return (Aim.Pass)||(Stand.Shout)/2/(Stand.Shout)/Shout\n      # says `Passed`\n";
+    assert!(text(&found).contains(shouted), "{}", text(&found));
+}
+
+/// Of robots to which nothing passes no more is explored than whether they start.
+#[test]
+fn what_nobody_hears_is_left_out() {
+    let role =
+        "Role: a\nLiveness:\na = b~ || c~ || d~\nTransitions:\nb -> b : / publish.noise.Signal.Noise\n";
+    let models: Models = ["one", "two"].map(|name| (name.to_owned(), Source::new("a.srm", role))).into();
+    let found = compose(&models, Channels::default(), &CheckSettings::default()).unwrap();
+    assert_eq!((codes(&found), found.robots[0].1 <= 3), (Vec::new(), true), "{}", text(&found));
+}
+
+/// What waits for an answer stands still if the answer may be lost.
+#[test]
+fn a_handshake_without_a_timer_does_not_survive_a_loss() {
+    let mut channels = Channels::default();
+    channels.may_lose = true;
+    assert_eq!(codes(&composed("near", channels, 10_000)), ["E0930"]);
+}
+
+#[test]
+fn what_was_not_looked_at_is_not_decided() {
+    let found = composed("near", Channels::default(), 8);
+    assert_eq!((codes(&found), found.is_finished), (vec!["E0933"], false));
+}
+
+#[test]
+fn what_nobody_says_may_come_at_any_time() {
+    let mut models = models("deadlock");
+    models[1].1 = Source::new("receiver.srm", "Role: receiver\nLiveness:\nreceiver = Stand\n");
+    let found = compose(&models, Channels::default(), &CheckSettings::default()).unwrap();
+    assert_eq!(codes(&found), ["E0934"], "{}", text(&found));
+}
+
+#[test]
+fn messages_that_cannot_be_told_apart_are_refused() {
+    let mut models = models("deadlock");
+    let text =
+        "Role: receiver\nLiveness:\nreceiver = Listen . Take\nTransitions:\nListen -> Take : not other\n";
+    models[1].1 = Source::new("receiver.srm", text);
+    let found = compose(&models, Channels::default(), &CheckSettings::default()).unwrap();
+    assert_eq!(codes(&found), ["E0935", "E0934"]);
+}
+
+fn of_texts(texts: &[(&str, &str)]) -> Models {
+    let model = |&(name, text): &(&str, &str)| (name.to_owned(), Source::new(name, text));
+    texts.iter().map(model).collect()
+}
+
+/// What a robot says to itself goes by a channel like any other message.
+#[test]
+fn who_says_something_to_itself_hears_it_if_it_has_been_said() {
+    let speaks = "Role: echo\nLiveness:\necho = Call . Listen . Act\nTransitions:\n\
+        Call -> Listen : / publish.word.Signal.Word\nListen -> Act : echo.word.Signal.Word\n";
+    let found =
+        compose(&of_texts(&[("echo", speaks)]), Channels::default(), &CheckSettings::default()).unwrap();
+    assert_eq!(found.passing, [("echo".into(), "echo".into(), "Word".into())]);
+    assert!(found.findings.is_empty() && found.is_finished, "{}", text(&found));
+    let plain = speaks.replace("echo.word", "word");
+    let found =
+        compose(&of_texts(&[("echo", &plain)]), Channels::default(), &CheckSettings::default()).unwrap();
+    assert_eq!(found.passing, [("echo".into(), "echo".into(), "Word".into())], "its own needs no name");
+    assert!(found.findings.is_empty() && found.is_finished, "{}", text(&found));
+    let waits = "Role: echo\nLiveness:\necho = Listen . Call . Act\nTransitions:\n\
+        Listen -> Call : echo.word.Signal.Word\nCall -> Act : / publish.word.Signal.Word\n";
+    let found =
+        compose(&of_texts(&[("echo", waits)]), Channels::default(), &CheckSettings::default()).unwrap();
+    assert_eq!(codes(&found), ["E0930"], "{}", text(&found));
+    let plain = waits.replace("echo.word", "word");
+    let again =
+        compose(&of_texts(&[("echo", &plain)]), Channels::default(), &CheckSettings::default()).unwrap();
+    assert_eq!(codes(&again), ["E0930"], "{}", text(&again));
+    let said = found.findings[0].diagnostic.message.clone();
+    assert!(said.contains("waits in `Listen` for `Word` of `echo`"), "{said}");
+}
+
+/// A robot that TERMINATE has stopped says nothing any more, and waits for nothing.
+#[test]
+fn who_waits_for_a_robot_that_was_stopped_waits_for_ever() {
+    let receiver = |end: &str| {
+        format!(
+            "IAC: receiver\n\nStates:\n  receiver OR\n    START\n    Walk BASIC\n    Ready BASIC\n    halt {end}\n\n\
+             Transitions:\n  START -> Walk\n  Walk -> Ready : [tired]\n  Walk -> halt : [!tired]\n  \
+             Ready -> Ready : passer.more.Signal.More / publish.ready.Signal.Ready\n"
+        )
+        .replace("tired", "passer.more.State.Tired.yes")
+        .replace("Walk -> Ready :", "Walk -> Ready !1 :")
+    };
+    let passer = "Role: passer\nLiveness:\npasser = Call . Wait . Pass\nTransitions:\n\
+        Call -> Wait : / publish.more.Signal.More\nWait -> Pass : receiver.ready.Signal.Ready\n";
+    let stopped = receiver("TERMINATE");
+    let models = of_texts(&[("passer", passer), ("receiver", &stopped)]);
+    let found = compose(&models, Channels::default(), &CheckSettings::default()).unwrap();
+    let waits = found.findings.iter().find(|it| it.diagnostic.code == "E0930");
+    let waits = waits.unwrap_or_else(|| panic!("{}", text(&found)));
+    let said = &waits.diagnostic.message;
+    assert!(said.contains("`passer` waits in `Wait` for `Ready` of `receiver`"), "{said}");
+    assert!(!said.contains("`receiver` waits"), "it has stopped: {said}");
+    assert!(found.is_finished);
+}

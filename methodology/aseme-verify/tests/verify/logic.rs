@@ -1,0 +1,186 @@
+//! The logic of guards, compared with what comes out when all values of small domains are tried.
+
+use aseme_verify::logic::{Claim, GuardSolver, Satisfiability};
+use proptest::prelude::*;
+use yase::expression::{Expression, parse_condition};
+use yase::statechart::{Constant, ConstantValue};
+
+fn condition(text: &str) -> Expression {
+    let (condition, wrong) = parse_condition(text);
+    assert!(wrong.is_empty(), "{text}: {wrong:?}");
+    condition.unwrap()
+}
+
+/// A condition over two numbers, a value of three, and a flag, and what it says of a message that
+/// is there.
+#[derive(Clone, Debug)]
+enum Guard {
+    Number(&'static str, &'static str, i8),
+    Difference(&'static str, i8),
+    Phase(bool, &'static str),
+    Found,
+    Not(Box<Guard>),
+    And(Vec<Guard>),
+    Or(Vec<Guard>),
+}
+
+const COMPARISONS: [&str; 6] = ["==", "!=", "<", "<=", ">", ">="];
+const PHASES: [&str; 4] = ["READY", "SET", "PLAYING", "FINISHED"];
+
+#[derive(Clone, Copy, Debug)]
+struct World {
+    x: f64,
+    y: f64,
+    phase: &'static str,
+    found: bool,
+}
+
+impl Guard {
+    fn text(&self) -> String {
+        let join = |parts: &[Guard], word: &str| {
+            format!("({})", parts.iter().map(Guard::text).collect::<Vec<_>>().join(word))
+        };
+        match self {
+            Guard::Number(name, comparison, value) => format!("Ball.{name} {comparison} {value}"),
+            Guard::Difference(comparison, value) => format!("Ball.x - Ball.y {comparison} {value}"),
+            Guard::Phase(true, phase) => format!("Game.phase == {phase}"),
+            Guard::Phase(false, phase) => format!("Game.phase != {phase}"),
+            Guard::Found => "Ball.found".into(),
+            Guard::Not(inner) => format!("!({})", inner.text()),
+            Guard::And(parts) => join(parts, " && "),
+            Guard::Or(parts) => join(parts, " || "),
+        }
+    }
+
+    fn holds(&self, world: World) -> bool {
+        match self {
+            Guard::Number("x", comparison, value) => compare(world.x, comparison, f64::from(*value)),
+            Guard::Number(_, comparison, value) => compare(world.y, comparison, f64::from(*value)),
+            Guard::Difference(comparison, value) => compare(world.x - world.y, comparison, f64::from(*value)),
+            Guard::Phase(same, phase) => (world.phase == *phase) == *same,
+            Guard::Found => world.found,
+            Guard::Not(inner) => !inner.holds(world),
+            Guard::And(parts) => parts.iter().all(|part| part.holds(world)),
+            Guard::Or(parts) => parts.iter().any(|part| part.holds(world)),
+        }
+    }
+}
+
+fn compare(left: f64, comparison: &str, right: f64) -> bool {
+    match comparison {
+        "==" => left == right,
+        "!=" => left != right,
+        "<" => left < right,
+        "<=" => left <= right,
+        ">" => left > right,
+        _ => left >= right,
+    }
+}
+
+fn worlds() -> impl Iterator<Item = World> {
+    // quarters lie between whole limits in every order that two numbers and their difference can
+    // have
+    let numbers = || (-20..=20).map(|number| f64::from(number) / 4.0);
+    numbers().flat_map(move |x| {
+        numbers().flat_map(move |y| {
+            let phases = PHASES.into_iter();
+            phases.flat_map(move |phase| [true, false].map(|found| World { x, y, phase, found }))
+        })
+    })
+}
+
+fn guard() -> impl Strategy<Value = Guard> {
+    let comparison = || prop::sample::select(COMPARISONS.to_vec());
+    let leaf = prop_oneof![
+        (prop::sample::select(vec!["x", "y"]), comparison(), -2_i8..=2)
+            .prop_map(|(n, c, v)| Guard::Number(n, c, v)),
+        (comparison(), -2_i8..=2).prop_map(|(comparison, value)| Guard::Difference(comparison, value)),
+        // the fourth is never named: it stands for the values that no guard knows
+        (any::<bool>(), prop::sample::select(PHASES[..3].to_vec()))
+            .prop_map(|(same, p)| Guard::Phase(same, p)),
+        Just(Guard::Found),
+    ];
+    leaf.prop_recursive(3, 12, 3, |inner| {
+        prop_oneof![
+            inner.clone().prop_map(|guard| Guard::Not(Box::new(guard))),
+            prop::collection::vec(inner.clone(), 2..4).prop_map(Guard::And),
+            prop::collection::vec(inner, 2..4).prop_map(Guard::Or),
+        ]
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 150, ..ProptestConfig::default() })]
+
+    #[test]
+    fn what_can_hold_is_what_holds_somewhere(one in guard(), other in guard()) {
+        let (first, second) = (condition(&one.text()), condition(&other.text()));
+        let logic = GuardSolver::default();
+        let both = worlds().any(|world| one.holds(world) && other.holds(world));
+        prop_assert_eq!(logic.together(&[Claim::Holds(&first), Claim::Holds(&second)]).is_yes(), both);
+        prop_assert_eq!(logic.together(&[Claim::Holds(&first), Claim::Holds(&second)]).is_no(), !both);
+        let follows = worlds().all(|world| !one.holds(world) || other.holds(world));
+        prop_assert_eq!(logic.together(&[Claim::Holds(&first), Claim::IsFalse(&second)]).is_no(), follows);
+    }
+}
+
+fn holds(texts: &[&str]) -> Satisfiability {
+    let constants = [Constant { name: "near".into(), value: ConstantValue::Number(0.25) }];
+    let conditions: Vec<Expression> = texts.iter().map(|text| condition(text)).collect();
+    let claims: Vec<Claim<'_>> = conditions.iter().map(Claim::Holds).collect();
+    GuardSolver::new(&constants).together(&claims)
+}
+
+#[test]
+fn what_is_outside_is_unknown_unless_its_text_alone_decides() {
+    assert_eq!(holds(&["seen(Ball.x)"]), Satisfiability::Unknown);
+    assert_eq!(holds(&["seen(Ball.x) && !seen(Ball.x)"]), Satisfiability::No);
+    assert_eq!(holds(&["abs(Ball.x) > 2", "abs(Ball.x) <= 2"]), Satisfiability::No);
+    assert_eq!(holds(&["abs(Ball.x) < 0 - 1"]), Satisfiability::Unknown);
+    assert_eq!(holds(&["Ball.x * Ball.y > 2", "Ball.x * Ball.y < 1"]), Satisfiability::No);
+    assert_eq!(holds(&["Ball.x + Ball.y > 2", "2 * Ball.x + 2 * Ball.y < 4"]), Satisfiability::No);
+    assert_eq!(holds(&["In(walk)"]), Satisfiability::Unknown);
+}
+
+#[test]
+fn constants_arithmetic_and_spellings_are_understood() {
+    assert_eq!(holds(&["Ball.distance < near", "Ball.distance >= 0.25"]), Satisfiability::No);
+    assert_eq!(holds(&["2 * Ball.x - 1 > 3", "Ball.x < 2"]), Satisfiability::No);
+    assert_eq!(holds(&["Ball.x - near > Ball.y", "Ball.x < Ball.y"]), Satisfiability::No);
+    assert_eq!(holds(&["Ball.found == true", "not Ball.found"]), Satisfiability::No);
+    assert_eq!(holds(&["Team.colour == \"red\"", "Team.colour == \"blue\""]), Satisfiability::No);
+    assert!(holds(&["Ball.x / 2 < 1", "Ball.x > 1"]).is_yes());
+}
+
+#[test]
+fn a_message_that_is_missing_has_no_fields() {
+    assert_eq!(holds(&["Ball == NULL", "Ball.found"]), Satisfiability::No);
+    assert_eq!(holds(&["Ball == NULL || Ball.x > 2", "Ball.x < 1"]), Satisfiability::No);
+    assert!(holds(&["Ball != NULL", "Ball.found"]).is_yes());
+    let (one, other) = (condition("Ball.found"), condition("Ball.found || Game.over"));
+    let logic = GuardSolver::default();
+    assert!(logic.implies(&one, &other));
+    assert!(!logic.implies(&other, &one));
+    let (either, neither) = (condition("Ball.found || !Ball.found"), condition("Game.over"));
+    assert!(!logic.implies(&neither, &either), "the ball may be missing");
+}
+
+#[test]
+fn a_timer_that_is_over_is_over_in_both_forms() {
+    assert_eq!(holds(&["TimeoutCheck(look)", "!look"]), Satisfiability::No);
+    assert!(holds(&["look", "!TimeoutCheck(look)"]).is_yes(), "it was never started");
+}
+
+#[test]
+fn too_many_alternatives_are_not_judged() {
+    let alternatives: Vec<String> =
+        (0..40).map(|number| format!("(Ball.a{number} == 1 || Ball.a{number} == 2)")).collect();
+    let conflict = format!(
+        "{} && Ball.z < 1 && Ball.y > 1 && (Ball.z > Ball.y || Ball.z == Ball.y)",
+        alternatives.join(" && ")
+    );
+    assert!(!holds(&[&conflict]).is_yes());
+    let deep =
+        (0..3_000).map(|number| format!("(a.b{number} || a.c{number})")).collect::<Vec<_>>().join(" && ");
+    assert_eq!(holds(&[&deep]), Satisfiability::Unknown);
+}

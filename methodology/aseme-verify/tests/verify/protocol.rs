@@ -1,0 +1,276 @@
+//! The attack protocol of thesis 5.5: from its table to the chart of the player, and whether charts
+//! hold to it. With `MONAS_BLESS=1` the chart of the player in `models` is written anew.
+
+use std::path::{Path, PathBuf};
+
+use aseme::{role_to_statechart, to_text};
+use aseme_models::convert::{self, Model};
+use aseme_models::diff::diff;
+use aseme_models::iac::ChartKind;
+use aseme_models::{Aip, Iac, regenerate, statechart_of, transformations};
+use aseme_verify::protocol::{Conformance, chart_conforms, player_conforms};
+use yase::Source;
+
+/// The model in a text that has no findings.
+fn clean(text: &str) -> Model {
+    let (found, findings) = convert::read(&Source::new("model", text));
+    assert_eq!(findings, [], "{text}");
+    found.unwrap_or_else(|| panic!("no model:\n{text}")).0
+}
+
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name)
+}
+
+fn text(name: &str) -> String {
+    std::fs::read_to_string(path(name)).expect("a model")
+}
+
+fn aip() -> Aip {
+    let Model::Aip(aip) = clean(&text("attack.aip")) else { panic!("protocols") };
+    aip
+}
+
+fn chart(text: &str) -> Iac {
+    let Model::Chart(chart) = clean(text) else { panic!("a chart") };
+    chart
+}
+
+fn eac() -> Iac {
+    chart(&text("attack.eac"))
+}
+
+fn player() -> Iac {
+    role(&text("extended_attacker.srm"))
+}
+
+fn role(text: &str) -> Iac {
+    let Model::Role(role) = clean(text) else { panic!("a role") };
+    let (chart, found) = role_to_statechart(role.srm());
+    assert_eq!(found, []);
+    Iac::from_statechart(&chart, ChartKind::Intra)
+}
+
+/// The player with the protocol in it.
+fn merged(eac: &Iac) -> Iac {
+    let mut player = player();
+    let (places, found) = transformations::merge_eac(&mut player, eac);
+    assert_eq!((places.len(), found), (2, Vec::new()));
+    player
+}
+
+fn said(conformance: &Conformance) -> Vec<String> {
+    conformance.findings.iter().map(|found| format!("{}: {}", found.code, found.message)).collect()
+}
+
+#[test]
+fn the_table_becomes_the_chart_of_the_protocol_and_keeps_its_guards() {
+    let (mut charts, found) = transformations::aip_to_eac(&aip());
+    assert_eq!((charts.len(), found), (1, Vec::new()));
+    let mut made = charts.remove(0);
+    let rule = "[Attack.ball_is_free && Attack.center_is_closest && Attack.center_for_is_farthest && Attack.part == CENTER]";
+    assert!(made.transitions.iter().any(|it| it.te == rule), "the rule guards the way in");
+    for outcome in ["[Attack.shot_at_goal]", "[Attack.opponent_has_ball]", "[Attack.ball_is_out]"] {
+        assert_eq!(
+            made.transitions.iter().filter(|it| it.te == outcome).count(),
+            2,
+            "{outcome} leads out of both"
+        );
+    }
+    if std::env::var_os("MONAS_BLESS").is_some() && !path("attack.eac").exists() {
+        std::fs::write(path("attack.eac"), Model::Chart(made.clone()).to_text()).expect("writable");
+    }
+    assert_eq!(regenerate::transfer_refinements(&eac(), &mut made), []);
+    assert_eq!(made, eac(), "what is written in attack.eac besides is kept");
+}
+
+#[test]
+fn the_protocol_goes_into_the_chart_of_the_player() {
+    let made = Model::Chart(merged(&eac())).to_text();
+    if std::env::var_os("MONAS_BLESS").is_some() {
+        std::fs::write(path("extended_attacker.iac"), &made).expect("writable");
+    }
+    assert!(
+        made == text("extended_attacker.iac"),
+        "models/extended_attacker.iac is not up to date; MONAS_BLESS=1 writes it:\n{made}"
+    );
+}
+
+#[test]
+fn the_role_as_text_is_the_chart_of_the_player() {
+    let found = |name: &str| statechart_of(&Source::new(name, text(name)));
+    let ((role, of_role), (player, of_player)) =
+        (found("extended_attacker.srm"), found("extended_attacker.iac"));
+    assert_eq!((of_role, of_player), (Vec::new(), Vec::new()));
+    assert_eq!(to_text(&role), to_text(&player));
+    assert!(diff(&role, &player).is_empty());
+}
+
+#[test]
+fn a_role_that_says_nothing_of_the_protocol_gets_its_rules_guards_and_exits() {
+    let text = text("extended_attacker.srm");
+    let lines = text.lines().filter(|line| !line.contains(" also : "));
+    let lines = lines.map(|line| line.split_once(" : [Attack.").map_or(line, |(before, _)| before));
+    let bare: String = lines.map(|line| format!("{line}\n")).collect();
+    let mut made = role(&bare);
+    assert!(!made.transitions.iter().any(|it| it.te.contains("Attack.")));
+    let (_, found) = transformations::merge_eac(&mut made, &eac());
+    assert_eq!(found, []);
+    assert_eq!(made, merged(&eac()));
+}
+
+#[test]
+fn the_chart_of_the_protocol_and_that_of_the_player_conform() {
+    let protocol = chart_conforms(&eac(), &aip());
+    assert_eq!(said(&protocol), [""; 0]);
+    let player = player_conforms(&chart(&text("extended_attacker.iac")), &eac(), &aip());
+    assert_eq!(said(&player), [""; 0]);
+    let explored: Vec<(&str, usize, bool)> = protocol
+        .explored
+        .iter()
+        .chain(&player.explored)
+        .map(|(name, it)| (name.as_str(), it.states, it.is_finished))
+        .collect();
+    let expected = [
+        ("Attack", 20, true),
+        ("center", 3, true),
+        ("center in all that player does", 39, true),
+        ("center_for", 4, true),
+        ("center_for in all that player does", 39, true),
+    ];
+    assert_eq!(explored, expected);
+}
+
+/// The part itself is the protocol's, and so is the rule; only all that the player does shows that
+/// it begins in its middle.
+#[test]
+fn a_way_into_the_middle_of_a_part_is_found_in_all_that_the_player_does() {
+    let whole = text("extended_attacker.iac");
+    let way = whole.lines().find(|line| line.contains("/CONDITION -> center !1 : ")).unwrap();
+    let middle = way.replace("-> center !1", "-> [passBall] !2");
+    let player = chart(&whole.replace(way, &format!("{way}\n{middle}")));
+    let found = player_conforms(&player, &eac(), &aip());
+    assert_eq!(
+        said(&found),
+        [
+            "E0867: `player` does `passBall` while it is engaged as `center`, where the protocol does not allow it"
+        ]
+    );
+}
+
+/// What is said of the chart of the protocol after an edit.
+fn broken(edit: impl Fn(&str) -> String) -> Vec<String> {
+    let (before, after) = (text("attack.eac"), edit(&text("attack.eac")));
+    assert_ne!(before, after);
+    let found = chart_conforms(&chart(&after), &aip());
+    assert!(!found.is_given());
+    said(&found)
+}
+
+fn without(text: &str, part: &str) -> String {
+    let lines: Vec<&str> = text.lines().filter(|line| !line.contains(part)).collect();
+    lines.join("\n")
+}
+
+#[test]
+fn a_protocol_that_lacks_an_outcome_is_refused() {
+    let found = broken(|text| without(text, "[Attack.opponent_has_ball]"));
+    assert_eq!(
+        found,
+        [
+            "E0864: the outcome `Attack.opponent_has_ball` is no exit of `center`",
+            "E0864: the outcome `Attack.opponent_has_ball` is no exit of `center_for`",
+        ]
+    );
+}
+
+#[test]
+fn a_protocol_with_its_parts_swapped_is_refused() {
+    let swapped = |text: &str| {
+        let text = text.replace("CENTER_FOR", "@2").replace("CENTER", "@1");
+        text.replace("@2", "CENTER").replace("@1", "CENTER_FOR")
+    };
+    let found = broken(swapped);
+    assert_eq!(found.len(), 2);
+    assert!(found.iter().all(|line| line.starts_with("E0863: `center")), "{found:?}");
+    let aip = aip();
+    let mut other = aip.clone();
+    (other.participants[0].liveness, other.participants[1].liveness) =
+        (aip.participants[1].liveness.clone(), aip.participants[0].liveness.clone());
+    let found = said(&chart_conforms(&eac(), &other));
+    assert!(found[0].starts_with("E0862: `center` does not do what the protocol says: WalkTowardsBall BASIC stands where WalkTowardsGoal BASIC would be"), "{found:?}");
+}
+
+#[test]
+fn a_protocol_with_an_unguarded_pass_is_refused() {
+    let found = broken(|text| text.replace(" : [Attack.pass_is_open]", ""));
+    assert_eq!(found, ["E0866: `passBall` is done whatever happens: the way to it is unguarded"]);
+}
+
+/// What is done in several steps is called as a formula has it, not as a file of the tools does.
+#[test]
+fn an_unguarded_composite_is_named_by_its_term() {
+    let found = broken(|text| text.replace(" : [Attack.ball_is_passed]", ""));
+    let name = "WalkTowardsBall.[kickBall]";
+    assert_eq!(found, [format!("E0866: `{name}` is done whatever happens: the way to it is unguarded")]);
+}
+
+#[test]
+fn a_protocol_that_is_engaged_in_at_any_time_is_refused() {
+    let found = broken(|text| text.replace("Attack.ball_is_free && ", ""));
+    assert_eq!(found.len(), 2);
+    assert!(
+        found[0].starts_with("E0863: `center` may be engaged in while `Attack.ball_is_free && "),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn a_protocol_that_is_left_for_another_reason_is_refused() {
+    let found = broken(|text| text.replace("[Attack.ball_is_out]", "[Attack.ball_is_out || Attack.tired]"));
+    assert_eq!(found.len(), 2);
+    assert!(found[0].contains("which is no outcome of the protocol"), "{found:?}");
+}
+
+#[test]
+fn a_protocol_of_which_a_part_can_never_be_done_is_refused() {
+    let found = broken(|text| text.replace("[Attack.pass_is_open]", "[false]"));
+    assert_eq!(
+        found,
+        [
+            "E0868: in `Attack`, after `WalkTowardsBall` the protocol allows `passBall`, and the chart never does it"
+        ]
+    );
+}
+
+#[test]
+fn a_player_that_does_otherwise_than_the_protocol_is_refused() {
+    let judged = |edit: &dyn Fn(&mut Iac)| {
+        let mut player = merged(&eac());
+        edit(&mut player);
+        said(&player_conforms(&player, &eac(), &aip()))
+    };
+    assert_eq!(judged(&|_| {}), [""; 0]);
+    let always = |player: &mut Iac| {
+        player
+            .transitions
+            .iter_mut()
+            .filter(|it| it.te == "[Attack.pass_is_open]")
+            .for_each(|it| it.te = String::new());
+    };
+    let found = judged(&always);
+    assert!(found[0].starts_with("E0867: the protocol has `"), "{found:?}");
+    let stays = |player: &mut Iac| player.transitions.retain(|it| it.te != "[Attack.ball_is_out]");
+    assert_eq!(judged(&stays).len(), 2, "an outcome is missing from each part");
+    let joins = |player: &mut Iac| {
+        player
+            .transitions
+            .iter_mut()
+            .filter(|it| it.te.contains("CENTER"))
+            .for_each(|it| it.te = "[Ball.found]".into());
+    };
+    assert!(judged(&joins)[0].starts_with("E0863"), "it engages by another rule");
+    let mut other = player();
+    other.nodes.iter_mut().filter(|it| it.name.starts_with("center")).for_each(|it| it.name = "x".into());
+    assert!(said(&player_conforms(&other, &eac(), &aip()))[0].starts_with("E0861"));
+}

@@ -1,0 +1,86 @@
+//! The lexer of formulas.
+
+use yase::{Diagnostic, Span};
+
+use crate::text::{is_forever, is_name_character};
+
+/// What a token is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum FormulaTokenKind {
+    Name,
+    Dot,
+    Bar,
+    DoubleBar,
+    Star,
+    Plus,
+    Forever,
+    Open,
+    Close,
+    OpenOption,
+    CloseOption,
+}
+
+/// A token and its place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Token {
+    pub(crate) kind: FormulaTokenKind,
+    pub(crate) span: Span,
+}
+
+/// The tokens of a part of a text; what is none is reported.
+pub(crate) fn tokens(text: &str, part: Span, diagnostics: &mut Vec<Diagnostic>) -> Vec<Token> {
+    let mut tokens = Vec::new();
+    let mut at = part.start;
+    while let Some(character) = text[at..part.end].chars().next() {
+        let rest = &text[at..part.end];
+        let (kind, length) = recognize(rest, character);
+        let span = Span::new(at, at + length);
+        match kind {
+            Some(kind) => tokens.push(Token { kind, span }),
+            None if is_ignored(rest, character) => {}
+            None => report(text, span, diagnostics),
+        }
+        at = span.end;
+    }
+    tokens
+}
+
+fn recognize(rest: &str, character: char) -> (Option<FormulaTokenKind>, usize) {
+    let kind = match character {
+        '.' => FormulaTokenKind::Dot,
+        '|' if rest.starts_with("||") => return (Some(FormulaTokenKind::DoubleBar), 2),
+        '|' => FormulaTokenKind::Bar,
+        '*' => FormulaTokenKind::Star,
+        '+' => FormulaTokenKind::Plus,
+        '(' => FormulaTokenKind::Open,
+        ')' => FormulaTokenKind::Close,
+        '[' => FormulaTokenKind::OpenOption,
+        ']' => FormulaTokenKind::CloseOption,
+        _ if is_forever(character) => FormulaTokenKind::Forever,
+        _ if is_name_character(character) => {
+            return (
+                Some(FormulaTokenKind::Name),
+                rest.find(|c| !is_name_character(c)).unwrap_or(rest.len()),
+            );
+        }
+        _ => return (None, character.len_utf8()),
+    };
+    (Some(kind), character.len_utf8())
+}
+
+/// Blanks, and the `^` that some write before an exponent.
+fn is_ignored(rest: &str, character: char) -> bool {
+    let exponent = |c: char| is_forever(c) || matches!(c, '*' | '+') || c.is_ascii_digit();
+    character.is_whitespace() || character == '^' && rest[1..].trim_start().starts_with(exponent)
+}
+
+/// Reports a foreign character, or lengthens the report about the one just before it.
+fn report(text: &str, span: Span, diagnostics: &mut Vec<Diagnostic>) {
+    let span = match diagnostics.pop_if(|last| last.code == "E0204" && last.span.end == span.start) {
+        Some(last) => last.span.to(span),
+        None => span,
+    };
+    let message = format!("`{}` has no meaning in a formula", &text[span.start..span.end]);
+    let hint = "names have letters, digits and underscores; operators are . | || * + ~ ω [ ] ( )";
+    diagnostics.push(Diagnostic::error("E0204", span, message).with_hint(hint));
+}

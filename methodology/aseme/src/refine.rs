@@ -1,0 +1,256 @@
+//! Refinement of a chart: applies the entries of a role to the transitions and states that its
+//! formulas make.
+//!
+//! An entry refers to its transition or state by [`Path`]s, never by label, so it stays valid when
+//! the formula is edited, as long as its paths match exactly one element. An entry that does not is
+//! returned as [`UnmatchedEntry`] with its text and likely candidates; none is dropped. An entry
+//! with a wildcard applies to everything it matches that no entry without wildcard refers to. An
+//! entry with `also` adds a transition parallel to the one it refers to, after all others, in the
+//! order of the entries.
+
+mod layout;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use yase::diagnostic::nearest;
+use yase::{Diagnostic, NodeId, NodeKind, Span, Statechart, Transition, TransitionId};
+
+use crate::path::{self, Path};
+use crate::srm::{StateEntry, TransitionEntry};
+
+pub use layout::{place_among_twins, refine_layout};
+
+/// An entry that matches no element, or too many.
+#[derive(Clone, PartialEq, Debug)]
+pub struct UnmatchedEntry {
+    /// The entry as it was written, on one line.
+    pub text: String,
+    /// Likely candidates, each in a form that would match.
+    pub candidates: Vec<String>,
+    /// The same as a diagnostic.
+    pub diagnostic: Diagnostic,
+}
+
+/// Limit of candidates.
+const CANDIDATES: usize = 5;
+
+/// Applies entries to the transitions of a chart; entries that do not match are returned, in order.
+pub fn refine(chart: &mut Statechart, entries: &[TransitionEntry]) -> Vec<UnmatchedEntry> {
+    refine_placed(chart, entries).1
+}
+
+/// The same, with the index of the entry applied to each transition.
+pub fn refine_placed(
+    chart: &mut Statechart,
+    entries: &[TransitionEntry],
+) -> (BTreeMap<TransitionId, usize>, Vec<UnmatchedEntry>) {
+    let (besides, own): (Vec<usize>, Vec<usize>) = (0..entries.len()).partition(|&index| entries[index].also);
+    let wishes: Vec<RefinementTarget<TransitionId>> =
+        own.iter().map(|&index| transitions_of(chart, &entries[index])).collect();
+    let (chosen, mut unmatched) = assign_entries(&wishes, |id| path::shortest_transition(chart, *id));
+    let mut chosen: BTreeMap<TransitionId, usize> =
+        chosen.into_iter().map(|(id, wish)| (id, own[wish])).collect();
+    for (&id, &index) in &chosen {
+        entries[index].apply(chart, id);
+    }
+    for index in besides {
+        match apply_to_transitions(chart, &entries[index]) {
+            Ok(added) => chosen.extend(added.into_iter().map(|id| (id, index))),
+            Err(misfit) => unmatched.push(*misfit),
+        }
+    }
+    unmatched.sort_by_key(|unmatched| unmatched.diagnostic.span);
+    (chosen, unmatched)
+}
+
+/// Adds a transition parallel to each one that an entry refers to.
+fn apply_to_transitions(
+    chart: &mut Statechart,
+    entry: &TransitionEntry,
+) -> Result<Vec<TransitionId>, Box<UnmatchedEntry>> {
+    let wish = transitions_of(chart, entry);
+    if wish.is_ambiguous_or_unmatched() {
+        return Err(Box::new(unmatched_entry(&wish, |id| path::shortest_transition(chart, *id))));
+    }
+    let add = |id: TransitionId| {
+        let Transition { source, target, .. } = *chart.transition(id);
+        let added = chart.connect(Transition::new(source, target));
+        entry.apply(chart, added);
+        added
+    };
+    Ok(wish.named.into_iter().map(add).collect())
+}
+
+/// Applies entries to the states of a chart; entries that do not match are returned, in order.
+pub fn refine_states(chart: &mut Statechart, entries: &[StateEntry]) -> Vec<UnmatchedEntry> {
+    let wishes: Vec<RefinementTarget<NodeId>> = entries.iter().map(|entry| states_of(chart, entry)).collect();
+    let (chosen, mut unmatched) = assign_entries(&wishes, |id| path::shortest_path(chart, *id));
+    for (id, index) in chosen {
+        let misfit: Option<fn(&RefinementTarget<'_, NodeId>, String) -> UnmatchedEntry> =
+            match chart.node(id).kind {
+                NodeKind::Basic | NodeKind::End if entries[index].history.is_some() => Some(childless),
+                NodeKind::Basic => None,
+                _ => entries[index].is_about_activity().then_some(composite),
+            };
+        match misfit {
+            Some(misfit) => unmatched.push(misfit(&wishes[index], path::shortest_path(chart, id))),
+            None => entries[index].apply(chart, id),
+        }
+    }
+    unmatched.sort_by_key(|unmatched| unmatched.diagnostic.span);
+    unmatched
+}
+
+/// What one entry names.
+struct RefinementTarget<'a, Id> {
+    text: &'a str,
+    span: Span,
+    thing: &'static str,
+    has_wildcard: bool,
+    named: Vec<Id>,
+    /// What it may have meant, should it name nothing.
+    near: Vec<String>,
+}
+
+impl<Id> RefinementTarget<'_, Id> {
+    /// Whether it names nothing, or several things without a wildcard.
+    fn is_ambiguous_or_unmatched(&self) -> bool {
+        self.named.is_empty() || self.named.len() > 1 && !self.has_wildcard
+    }
+}
+
+fn transitions_of<'a>(chart: &Statechart, entry: &'a TransitionEntry) -> RefinementTarget<'a, TransitionId> {
+    // of several between the same two ends the first is the formula's, the others stand beside it
+    let mut ends = BTreeSet::new();
+    let is_first = |id: &TransitionId| {
+        let Transition { source, target, .. } = *chart.transition(*id);
+        ends.insert((source, target))
+    };
+    let named: Vec<TransitionId> =
+        path::transitions(chart, &entry.source, &entry.target).filter(is_first).collect();
+    let near =
+        if named.is_empty() { similar_transitions(chart, &entry.source, &entry.target) } else { Vec::new() };
+    let has_wildcard = entry.has_wildcard();
+    RefinementTarget { text: &entry.text, span: entry.span, thing: "transition", has_wildcard, named, near }
+}
+
+fn states_of<'a>(chart: &Statechart, entry: &'a StateEntry) -> RefinementTarget<'a, NodeId> {
+    let is_state = |kind| matches!(kind, NodeKind::Or | NodeKind::And | NodeKind::Basic | NodeKind::End);
+    let states = chart.nodes().filter(|(_, node)| is_state(node.kind)).map(|(id, _)| id);
+    let named: Vec<NodeId> = states.filter(|&id| entry.path.matches(chart, id)).collect();
+    let near = if named.is_empty() { near_names(chart, &entry.path).collect() } else { Vec::new() };
+    RefinementTarget {
+        text: &entry.text,
+        span: entry.span,
+        thing: "state",
+        has_wildcard: entry.path.has_wildcard(),
+        named,
+        near,
+    }
+}
+
+/// The names nearest to those in a path that the chart does not have.
+fn near_names<'a>(chart: &'a Statechart, path: &'a Path) -> impl Iterator<Item = String> + 'a {
+    let names = || chart.nodes().map(|(_, node)| node.name.as_str()).filter(|name| !name.is_empty());
+    path.unknown_names(chart).filter_map(move |name| nearest(name, names())).map(String::from)
+}
+
+/// If a name is misspelt, the right one; else the transitions that share the source, then those
+/// that share the target.
+fn similar_transitions(chart: &Statechart, source: &Path, target: &Path) -> Vec<String> {
+    let names: Vec<String> = near_names(chart, source).chain(near_names(chart, target)).collect();
+    if !names.is_empty() {
+        return names;
+    }
+    let sharing_source =
+        chart.transitions().filter(|(_, transition)| source.matches(chart, transition.source));
+    let sharing_target =
+        chart.transitions().filter(|(_, transition)| target.matches(chart, transition.target));
+    let near = sharing_source.chain(sharing_target).map(|(id, _)| path::shortest_transition(chart, id));
+    near.take(CANDIDATES).collect()
+}
+
+/// Which entry is for which thing, and which entries are for none, in order.
+fn assign_entries<Id: Copy + Ord>(
+    wishes: &[RefinementTarget<'_, Id>],
+    text_of: impl Fn(&Id) -> String,
+) -> (BTreeMap<Id, usize>, Vec<UnmatchedEntry>) {
+    let mut chosen = BTreeMap::new();
+    let mut unmatched = BTreeMap::new();
+    let (wild, plain): (Vec<usize>, Vec<usize>) =
+        (0..wishes.len()).partition(|&index| wishes[index].has_wildcard);
+    for index in plain.into_iter().chain(wild) {
+        let wish = &wishes[index];
+        if wish.is_ambiguous_or_unmatched() {
+            unmatched.insert(index, unmatched_entry(wish, &text_of));
+            continue;
+        }
+        for id in &wish.named {
+            let earlier: usize = *chosen.entry(*id).or_insert(index);
+            if earlier != index && wishes[earlier].has_wildcard == wish.has_wildcard {
+                unmatched
+                    .entry(index)
+                    .or_insert_with(|| duplicate_entry(wish, &wishes[earlier], &text_of(id)));
+            }
+        }
+    }
+    (chosen, unmatched.into_values().collect())
+}
+
+/// An entry that names nothing, or several things without a wildcard.
+fn unmatched_entry<Id>(wish: &RefinementTarget<'_, Id>, text_of: impl Fn(&Id) -> String) -> UnmatchedEntry {
+    let (code, number, candidates) = match wish.named.len() {
+        0 => ("E0250", "no", wish.near.clone()),
+        _ => ("E0251", "more than one", wish.named.iter().take(CANDIDATES).map(text_of).collect()),
+    };
+    let message = format!("`{}` names {number} {} of the chart", wish.text, wish.thing);
+    let diagnostic = Diagnostic::error(code, wish.span, message);
+    let diagnostic = match hint(&candidates) {
+        Some(hint) => diagnostic.with_hint(hint),
+        None => diagnostic,
+    };
+    UnmatchedEntry { text: wish.text.into(), candidates, diagnostic }
+}
+
+fn hint(candidates: &[String]) -> Option<String> {
+    let mut quoted: Vec<String> = Vec::new();
+    for candidate in candidates.iter().map(|candidate| format!("`{candidate}`")) {
+        // A loop's two ends are near the same name.
+        if !quoted.contains(&candidate) {
+            quoted.push(candidate);
+        }
+    }
+    match quoted.as_slice() {
+        [] => None,
+        [one] => Some(format!("did you mean {one}?")),
+        several => Some(format!("did you mean one of {}?", several.join(", "))),
+    }
+}
+
+/// An entry for something that another one is for already.
+fn duplicate_entry<Id>(
+    wish: &RefinementTarget<'_, Id>,
+    earlier: &RefinementTarget<'_, Id>,
+    named: &str,
+) -> UnmatchedEntry {
+    let message = format!("`{}` is for `{named}`, as `{}` is", wish.text, earlier.text);
+    let diagnostic = Diagnostic::error("E0252", wish.span, message).with_hint("keep one of the two");
+    UnmatchedEntry { text: wish.text.into(), candidates: vec![named.into()], diagnostic }
+}
+
+/// An entry that gives an activity, or what belongs to one, to a state that is made of others.
+fn composite(wish: &RefinementTarget<'_, NodeId>, named: String) -> UnmatchedEntry {
+    let message = format!("`{named}` consists of other states and runs no activity of its own");
+    let diagnostic = Diagnostic::error("E0253", wish.span, message);
+    let diagnostic =
+        diagnostic.with_hint("activity, priority and duration belong to states without children");
+    UnmatchedEntry { text: wish.text.into(), candidates: vec![named], diagnostic }
+}
+
+/// An entry that has a state remember what was active inside, where there is nothing inside.
+fn childless(wish: &RefinementTarget<'_, NodeId>, named: String) -> UnmatchedEntry {
+    let message = format!("`{named}` has no states inside that it could remember");
+    let diagnostic = Diagnostic::error("E0254", wish.span, message);
+    let diagnostic = diagnostic.with_hint("history belongs to composites");
+    UnmatchedEntry { text: wish.text.into(), candidates: vec![named], diagnostic }
+}

@@ -1,0 +1,47 @@
+//! Bodies: sensor messages, command messages, and the trait that connects them.
+//!
+//! A robot's algorithms communicate with its body through six messages only: inputs are
+//! [`Sensors`], [`Sightings`], [`Announcement`] and [`Heard`] (radio messages of the team), outputs
+//! are [`Actuators`] and [`Said`]. The runtime owns the body, a value of a type that implements
+//! [`Robot`]; it publishes the sensor messages on the topics of [`topics`] and passes the newest
+//! actuators to the body. An activity is therefore independent of the robot it runs on: a disk on
+//! the embedded field, a humanoid on a physics server, or a Nao.
+//!
+//! The capabilities of a body are described by its [`Anatomy`]: joint limits, the camera's field of
+//! view, the named [skills](Skill). [`conformance::check`] is the test suite that every body has to
+//! pass.
+//!
+//! ```
+//! use std::time::Duration;
+//! use monas_robot::{Actuators, Anatomy, Error, Percepts, Robot};
+//! use narukom::Timestamp;
+//!
+//! /// A body that is a head on a table.
+//! struct Head { yaw: f64, anatomy: Anatomy }
+//!
+//! impl Robot for Head {
+//!     fn anatomy(&self) -> &Anatomy { &self.anatomy }
+//!     fn sense(&mut self, now: Timestamp, percepts: &mut Percepts) -> Result<(), Error> {
+//!         percepts.sensors.measured_at = now.as_nanos();
+//!         percepts.sensors.head_yaw = self.yaw;
+//!         Ok(())
+//!     }
+//!     fn act(&mut self, _now: Timestamp, actuators: &Actuators) -> Result<(), Error> {
+//!         self.yaw = self.anatomy.head_yaw.clamp(actuators.head_yaw);
+//!         Ok(())
+//!     }
+//! }
+//!
+//! let mut head = Head { yaw: 0.0, anatomy: Anatomy::new("table head", Duration::from_millis(10)) };
+//! monas_robot::conformance::check(&mut head);
+//! ```
+
+mod anatomy;
+pub mod conformance;
+mod robot;
+pub mod topics;
+
+narukom::include_messages!("monas.robot");
+
+pub use anatomy::{Anatomy, Camera, Limits};
+pub use robot::{Error, ErrorKind, Percepts, Robot};

@@ -1,0 +1,67 @@
+//! Files named by a file.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use yase::diagnostic::nearest;
+use yase::{Diagnostic, Source};
+
+/// The text of a file.
+///
+/// # Errors
+/// A diagnostic that names the file.
+pub fn read(path: &Path) -> Result<Arc<Source>, Box<Diagnostic>> {
+    let name = path.display().to_string();
+    match fs::read(path) {
+        Ok(bytes) => match String::from_utf8(bytes) {
+            Ok(text) => Ok(Source::new(name, text)),
+            Err(error) => {
+                let at = error.utf8_error().valid_up_to();
+                Err(unreadable("E0317", &name, format!("`{name}` is not UTF-8 text at byte {at}")))
+            }
+        },
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            let diagnostic = unreadable("E0316", &name, format!("no file `{name}`"));
+            Err(match neighbour(path) {
+                Some(found) => Box::new(diagnostic.with_hint(format!("did you mean `{}`?", found.display()))),
+                None => diagnostic,
+            })
+        }
+        Err(error) => Err(unreadable("E0317", &name, format!("`{name}` cannot be read: {error}"))),
+    }
+}
+
+fn unreadable(code: &'static str, name: &str, message: String) -> Box<Diagnostic> {
+    Box::new(Diagnostic::error(code, 0..0, message).in_source(&Source::new(name, "")))
+}
+
+/// Resolves `named` in a file at `path`: in the folder of that file, then in each parent folder, so
+/// that the files of a project name each other from the project's root independent of the working
+/// directory.
+///
+/// # Errors
+/// The path of a file with a similar name, if there is one.
+pub fn locate(path: &Path, named: &str) -> Result<PathBuf, Option<String>> {
+    let candidates: Vec<PathBuf> = path.ancestors().skip(1).map(|folder| folder.join(named)).collect();
+    match candidates.iter().find(|candidate| candidate.is_file()) {
+        Some(found) => Ok(found.clone()),
+        None => {
+            let near = candidates.iter().find_map(|candidate| neighbour(candidate));
+            let name = near.and_then(|near| near.file_name().map(|name| name.to_string_lossy().into_owned()));
+            Err(name.map(|name| Path::new(named).with_file_name(name).display().to_string()))
+        }
+    }
+}
+
+/// The file in the same folder with the most similar name.
+fn neighbour(path: &Path) -> Option<PathBuf> {
+    let name = path.file_name()?.to_str()?;
+    let folder = path.parent()?;
+    let listed = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let mut names: Vec<String> =
+        fs::read_dir(listed).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
+    // The order of a directory listing is unspecified.
+    names.sort_unstable();
+    nearest(name, names.iter().map(String::as_str)).map(|found| folder.join(found))
+}

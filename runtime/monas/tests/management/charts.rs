@@ -1,0 +1,108 @@
+//! Statecharts that are changed while they run.
+
+use monas::records::{Action, Change, Changed};
+use monas::{Agent, Blackboard, Progress, Registry, Simulation, Talws};
+use yase::Source;
+
+use crate::kit::{Recorder, at, recorder};
+use crate::{change, made, settings};
+
+/// A chart whose activities record their calls: A is done at once, B continues every 100 ms.
+fn simulation(text: &str) -> (Simulation, Recorder<&'static str>) {
+    let (told, note) = recorder();
+    let (a, b) = (note.clone(), note);
+    let registry = Registry::empty()
+        .with("A", move || {
+            let note = a.clone();
+            move |_: &mut Blackboard| note("A")
+        })
+        .with("B", move || {
+            let (note, mut calls) = (b.clone(), 0);
+            move |_: &mut Blackboard| {
+                calls += 1;
+                note(if calls == 1 { "B first" } else { "B again" });
+                Progress::after(std::time::Duration::from_millis(100))
+            }
+        });
+    let (chart, diagnostics) = aseme_models::statechart_of(&Source::new("m.srm", text));
+    assert_eq!(diagnostics, []);
+    let talws = Talws::new().registry(registry).agent(Agent::statechart("m", chart));
+    let mut simulation = talws.simulate(1).unwrap();
+    simulation.run_until(at(150)).unwrap();
+    (simulation, told)
+}
+
+/// The first reason of a rejection.
+fn refused_first(changed: &Changed) -> (String, String) {
+    assert!(!changed.done);
+    (changed.findings[0].code.clone(), changed.findings[0].message.clone())
+}
+
+fn swap(text: &str) -> Change {
+    Change { file: "new.srm".into(), text: text.into(), ..change(Action::SwapModel, "m") }
+}
+
+#[test]
+fn a_model_is_swapped_and_what_is_active_goes_on() {
+    let (mut simulation, told) = simulation("m = A . B");
+    assert_eq!(told.taken(), ["A", "B first", "B again"]);
+    // Another activity comes before, and one after; B is where it was, with what it remembers.
+    let changed = simulation.change("local", swap("m = A . A . B . A")).unwrap();
+    made(&changed);
+    assert!(!changed.findings.is_empty(), "what became of what was active is said");
+    simulation.run_until(at(250)).unwrap();
+    assert_eq!(told.taken(), ["B again"], "it is the same instance, at its own time");
+    made(&simulation.change("local", swap("m = A . (B | A)")).unwrap());
+    simulation.run_until(at(450)).unwrap();
+    assert_eq!(told.taken(), ["B again", "B again"]);
+}
+
+#[test]
+fn a_model_that_is_wrong_is_refused_with_its_places_and_the_chart_goes_on() {
+    let (mut simulation, told) = simulation("m = A . B");
+    told.taken();
+    for (text, code) in [("m = A . . B", "E0"), ("m = A . C", "E0318"), ("m = A", "E0356")] {
+        let changed = simulation.change("local", swap(text)).unwrap();
+        assert!(
+            !changed.done && changed.findings[0].code.starts_with(code),
+            "{text}: {:?}",
+            changed.findings
+        );
+    }
+    simulation.run_until(at(350)).unwrap();
+    assert_eq!(told.taken(), ["B again", "B again"]);
+    assert_eq!(simulation.statistics().agents[0].stopped, None);
+}
+
+#[test]
+fn a_state_that_is_gone_goes_on_in_the_one_that_is_named() {
+    let (mut simulation, told) = simulation("m = A . B");
+    told.taken();
+    let text = "Liveness:\nm = A . Late\nStates:\nLate : activity = B";
+    let (code, reason) = refused_first(&simulation.change("local", swap(text)).unwrap());
+    assert_eq!(
+        (code.as_str(), reason.as_str()),
+        ("E0356", "`m/B` is active, and there is nothing like it: say what replaces it")
+    );
+    let states = settings(&[("m/B", "m/Late")]);
+    made(&simulation.change("local", Change { states, ..swap(text) }).unwrap());
+    simulation.run_until(at(250)).unwrap();
+    assert_eq!(told.taken(), ["B again"], "its activity is the same");
+}
+
+#[test]
+fn a_chart_pauses_steps_stops_and_starts_anew() {
+    let (mut simulation, told) = simulation("m = (A . B)~");
+    told.taken();
+    let mut ask = |action| made(&simulation.change("local", change(action, "m")).unwrap());
+    ask(Action::PauseAgent);
+    ask(Action::StopAgent);
+    ask(Action::StartAgent);
+    simulation.run_until(at(200)).unwrap();
+    assert_eq!(told.taken(), ["A", "B first"], "it begins at its START, with new activities");
+    simulation.change("local", change(Action::PauseAgent, "m")).unwrap();
+    simulation.run_until(at(1000)).unwrap();
+    assert_eq!(told.taken(), [""; 0]);
+    made(&simulation.change("local", change(Action::StepAgent, "m")).unwrap());
+    assert_eq!(told.taken(), ["B again"]);
+}

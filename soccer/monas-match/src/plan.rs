@@ -1,0 +1,300 @@
+//! A match that was read and checked but not started.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use monas::config::{self, Element, Grammar, Layers};
+use monas::{
+    Agent, ChartListener, ConfigurationBundle, HostConfig, LinkConfig, Module, Registry, RunHash, Talws,
+};
+use monas_sim::{FieldGeometry, MatchRules, Physics, Setup, SharedField, SimulatedWorld, TeamSetup};
+use yase::{Diagnostic, Source};
+
+use crate::error::Error;
+use crate::file::{self, MatchFile};
+use crate::match_world::MatchWorld;
+use crate::running_match::RunningMatch;
+use crate::settings::MatchSettings;
+use crate::tape_metadata;
+
+/// Loads matches.
+#[derive(Debug)]
+pub struct MatchSource;
+
+impl MatchSource {
+    /// Reads a match file and all files it refers to, and binds every chart, without starting
+    /// anything.
+    ///
+    /// # Errors
+    /// All diagnostics of all files, without duplicates.
+    pub fn load(path: impl AsRef<Path>, registry: &Registry) -> Result<MatchPlan, Vec<Diagnostic>> {
+        MatchSource::load_with(path, registry, &Layers::new())
+    }
+
+    /// Like [`load`](MatchSource::load), with layers that override the files.
+    ///
+    /// # Errors
+    /// All diagnostics of all files, without duplicates.
+    pub fn load_with(
+        path: impl AsRef<Path>,
+        registry: &Registry,
+        layers: &Layers,
+    ) -> Result<MatchPlan, Vec<Diagnostic>> {
+        let mut diagnostics = Vec::new();
+        let file = file::read(path.as_ref(), layers, &mut diagnostics);
+        let robots =
+            file.as_ref().map(|file| robots(file, registry, layers, &mut diagnostics)).unwrap_or_default();
+        config::sort_diagnostics(&mut diagnostics);
+        let once = each_once(diagnostics);
+        match file.filter(|_| !once.iter().any(Diagnostic::is_error)) {
+            Some(file) => match MatchPlan::new(file, robots, registry.clone()) {
+                Some(plan) => {
+                    let settings = layers.settings().collect::<Vec<_>>().join("\n");
+                    Ok(MatchPlan { warnings: once, files: ConfigurationBundle::of(path), settings, ..plan })
+                }
+                None => Err(once),
+            },
+            None => Err(once),
+        }
+    }
+
+    /// The elements of a match file and all files it refers to, with overriding layers applied, and
+    /// their diagnostics. Names of activities and models are not resolved. The elements are those
+    /// of [`grammar`](crate::grammar).
+    pub fn elements(path: impl AsRef<Path>, layers: &Layers) -> (Vec<Element>, Vec<Diagnostic>) {
+        let mut diagnostics = Vec::new();
+        let elements = file::elements(path.as_ref(), layers, &mut diagnostics);
+        config::sort_diagnostics(&mut diagnostics);
+        (elements, each_once(diagnostics))
+    }
+}
+
+/// The robots of a match file with their agents.
+fn robots(
+    file: &MatchFile,
+    registry: &Registry,
+    layers: &Layers,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Vec<RobotPlan> {
+    let mut robots = Vec::new();
+    let (mut settings, mut registry) = (MatchSettings::new(layers), registry.clone());
+    for team in &file.teams {
+        for robot in &team.robots {
+            let resolved = config::resolve(&robot.role, &Grammar::agents(), &settings.over(&robot.own));
+            diagnostics.extend(resolved.diagnostics);
+            diagnostics.extend(settings.unmatched(&robot.own, resolved.unmatched));
+            let setup = config::assemble(&resolved.elements, &robot.role, &registry, diagnostics);
+            let config::HostSetup { agents, links, modules, source } = setup;
+            // Modules loaded for one robot are available to the next.
+            registry = modules
+                .iter()
+                .fold(registry, |registry, module| registry.with_module(module.clone()).unwrap_or(registry));
+            let host = format!("{}-{}", file::host_name(&team.setup.name), robot.number);
+            robots.push(RobotPlan {
+                team: team.setup.number,
+                number: robot.number,
+                host,
+                agents,
+                links,
+                modules,
+                source,
+            });
+        }
+    }
+    diagnostics.extend(settings.unused_settings());
+    robots
+}
+
+/// Removes duplicates: robots with the same role give the same diagnostics.
+fn each_once(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    diagnostics.into_iter().fold(Vec::new(), |mut once, diagnostic| {
+        if !once.contains(&diagnostic) {
+            once.push(diagnostic);
+        }
+        once
+    })
+}
+
+/// A match that was read and checked.
+pub struct MatchPlan {
+    geometry: FieldGeometry,
+    physics: Physics,
+    rules: MatchRules,
+    teams: [TeamSetup; 2],
+    robots: Vec<RobotPlan>,
+    registry: Registry,
+    listeners: Vec<Box<dyn ChartListener>>,
+    warnings: Vec<Diagnostic>,
+    is_linked: bool,
+    files: ConfigurationBundle,
+    settings: String,
+}
+
+impl std::fmt::Debug for MatchPlan {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("MatchPlan")
+            .field("teams", &self.teams)
+            .field("robots", &self.robots)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A robot of a match and its agents.
+#[derive(Debug)]
+struct RobotPlan {
+    team: u8,
+    number: u8,
+    host: String,
+    agents: Vec<Agent>,
+    links: Vec<LinkConfig>,
+    modules: Vec<Module>,
+    /// The text of its role.
+    source: Option<Arc<Source>>,
+}
+
+/// Options of a match.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct MatchOptions {
+    /// The seed of all random numbers.
+    pub seed: u64,
+    /// The file to which all messages are recorded.
+    pub record: Option<PathBuf>,
+}
+
+impl MatchPlan {
+    fn new(file: MatchFile, mut robots: Vec<RobotPlan>, registry: Registry) -> Option<MatchPlan> {
+        // Sorts the teams, so that a match does not depend on their order in the file.
+        let mut teams: Vec<TeamSetup> = file.teams.into_iter().map(|team| team.setup).collect();
+        teams.sort_by_key(|team| team.number);
+        robots.sort_by_key(|robot| (robot.team, robot.number));
+        let teams = teams.try_into().ok()?;
+        Some(MatchPlan {
+            geometry: file.geometry,
+            physics: file.physics,
+            rules: file.rules,
+            teams,
+            robots,
+            registry,
+            listeners: Vec::new(),
+            warnings: Vec::new(),
+            is_linked: false,
+            files: ConfigurationBundle::default(),
+            settings: String::new(),
+        })
+    }
+
+    /// Warnings about the files.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    /// Adds a listener that is called for every micro-step of every chart.
+    pub fn listen(mut self, listener: Box<dyn ChartListener>) -> MatchPlan {
+        self.listeners.push(listener);
+        self
+    }
+
+    /// Whether robots have links to other processes.
+    pub fn has_links(&self) -> bool {
+        self.robots.iter().any(|robot| !robot.links.is_empty())
+    }
+
+    /// Opens the links of the robots when the match begins. The caller of
+    /// [`advance`](RunningMatch::advance) then sets the pace, and the match is no longer a function
+    /// of its seed. Without this, a match with links is rejected.
+    pub fn linked(mut self) -> MatchPlan {
+        self.is_linked = true;
+        self
+    }
+
+    /// The match file and all files it refers to, as they were read.
+    pub fn files(&self) -> &ConfigurationBundle {
+        &self.files
+    }
+
+    /// The robots with their agents but without bodies, for replays.
+    pub fn agents(self) -> Vec<HostConfig> {
+        let host = |robot: RobotPlan| HostConfig {
+            name: robot.host,
+            team: robot.team.into(),
+            number: robot.number.into(),
+            body: None,
+            agents: robot.agents,
+            // Links name the peers; a replay opens none.
+            links: robot.links,
+            modules: robot.modules,
+            configuration: robot.source,
+        };
+        self.robots.into_iter().map(host).collect()
+    }
+
+    /// The length of the match in simulated time.
+    pub fn length(&self) -> Duration {
+        Duration::from_secs_f64(2.0 * self.rules.half_duration)
+    }
+
+    /// The diagnostics that [`start`](MatchPlan::start) would give for the agents, without
+    /// starting.
+    ///
+    /// # Errors
+    /// The field rejects its parameters or the line-up.
+    pub fn check(self) -> Result<Vec<Diagnostic>, Error> {
+        Ok(self.set_up(0)?.0.check())
+    }
+
+    /// Starts the match.
+    ///
+    /// # Errors
+    /// The recording cannot be written, or a part cannot be set up.
+    pub fn start(self, options: MatchOptions) -> Result<RunningMatch, Error> {
+        let (length, is_linked, files) = (self.length(), self.is_linked, self.files.clone());
+        let settings = self.settings.clone();
+        let hosts: Vec<String> = self.robots.iter().map(|robot| robot.host.clone()).collect();
+        let (mut talws, pitch) = self.set_up(options.seed)?;
+        let hash = RunHash::new();
+        talws.observe(Box::new(hash.clone()));
+        let tape = options.record.map(|path| {
+            let tape = tape_metadata::simulated(&path, &files, &settings, options.seed, &hosts);
+            Ok((tape.map_err(|error| Error::recording(&path, error))?, path))
+        });
+        let tape = tape.transpose()?;
+        if let Some((tape, _)) = &tape {
+            talws.observe(Box::new(tape.clone()));
+        }
+        let simulation = match is_linked {
+            true => talws.simulate_linked(options.seed),
+            false => talws.simulate(options.seed),
+        };
+        let simulation = simulation.map_err(Error::agents)?;
+        Ok(RunningMatch::new(simulation, pitch, hash, tape, length))
+    }
+
+    /// The robots with their bodies on the field.
+    fn set_up(self, seed: u64) -> Result<(Talws, SharedField), Error> {
+        let lineup =
+            self.robots.iter().map(|robot| monas_sim::RobotSetup { team: robot.team, number: robot.number });
+        let setup = Setup {
+            field: self.geometry,
+            physics: self.physics,
+            rules: self.rules,
+            teams: self.teams,
+            robots: lineup.collect(),
+            seed,
+        };
+        let pitch = SharedField::new(SimulatedWorld::new(setup).map_err(Error::field)?);
+        let mut talws = Talws::new().registry(self.registry);
+        for (index, robot) in self.robots.into_iter().enumerate() {
+            let RobotPlan { team, number, host, agents, links, modules, source } = robot;
+            let body = pitch.body(index).map(|body| Box::new(body) as _);
+            let (team, number) = (team.into(), number.into());
+            let configuration = source;
+            talws.host(HostConfig { name: host, team, number, body, agents, links, modules, configuration });
+        }
+        talws.world(Box::new(MatchWorld::new(pitch.clone())));
+        for listener in self.listeners {
+            talws.listen(listener);
+        }
+        Ok((talws, pitch))
+    }
+}

@@ -1,0 +1,171 @@
+//! A running match.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use monas::{RunHash, Simulation, Timestamp};
+use monas_sim::{SharedField, SimulatedWorld, TeamColour};
+use monas_tape::Tape;
+
+use crate::error::Error;
+use crate::match_events;
+use crate::summary::{AgentSummary, MatchEvent, MatchSummary, Scoreboard, TeamScore, TeamSummary};
+use crate::tape_metadata;
+
+/// A running match, in simulated time.
+pub struct RunningMatch {
+    simulation: Simulation,
+    pitch: SharedField,
+    hash: RunHash,
+    tape: Option<(Tape, PathBuf)>,
+    length: Duration,
+    events: Vec<MatchEvent>,
+    seen_events: usize,
+}
+
+impl RunningMatch {
+    pub(crate) fn new(
+        simulation: Simulation,
+        pitch: SharedField,
+        hash: RunHash,
+        tape: Option<(Tape, PathBuf)>,
+        length: Duration,
+    ) -> RunningMatch {
+        RunningMatch { simulation, pitch, hash, tape, length, events: Vec::new(), seen_events: 0 }
+    }
+
+    /// Advances the match to the given time since its start.
+    ///
+    /// # Errors
+    /// The field or a body failed. Failures of activities are handled by the policy of their agent.
+    pub fn advance(&mut self, to: Duration) -> Result<(), Error> {
+        let end = Timestamp::from_nanos(u64::try_from(to.as_nanos()).unwrap_or(u64::MAX));
+        self.simulation.run_until(end).map_err(Error::agents)?;
+        let RunningMatch { pitch, events, seen_events, .. } = self;
+        pitch.with_world(|world| {
+            events.extend(match_events::since(world, *seen_events));
+            *seen_events = world.events().len();
+        });
+        Ok(())
+    }
+
+    /// The simulated time since the start.
+    pub fn now(&self) -> Duration {
+        Duration::from_nanos(self.simulation.now().as_nanos())
+    }
+
+    /// Whether both halves have been played.
+    pub fn is_over(&self) -> bool {
+        self.now() >= self.length
+    }
+
+    /// The scoreboard.
+    pub fn score(&self) -> Scoreboard {
+        self.pitch.with_world(|world| {
+            let referee = world.referee();
+            let team = |index: usize| TeamScore {
+                name: world.teams()[index].name.clone(),
+                colour: colour(referee.colours()[index]),
+                goals: referee.score()[index],
+            };
+            Scoreboard {
+                teams: [team(0), team(1)],
+                half: referee.half(),
+                seconds_left: referee.seconds_remaining().max(0.0) as u32,
+                phase: match_events::phase(referee.state()),
+            }
+        })
+    }
+
+    /// The notable events so far.
+    pub fn events(&self) -> &[MatchEvent] {
+        &self.events
+    }
+
+    /// A picture of the current state of the field, as SVG.
+    pub fn picture(&self) -> String {
+        self.pitch.with_world(monas_sim::render_svg)
+    }
+
+    /// The field, for exercises and evaluation.
+    pub fn pitch(&self) -> &SharedField {
+        &self.pitch
+    }
+
+    /// The simulation of the agents.
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// Ends the match and its recording.
+    ///
+    /// # Errors
+    /// The recording cannot be completed.
+    pub fn finish(mut self) -> Result<MatchSummary, Error> {
+        if let Some((tape, path)) = &self.tape {
+            tape_metadata::ended(tape, self.simulation.now())
+                .map_err(|error| Error::recording(path, error))?;
+        }
+        self.simulation.stop();
+        let (hash, messages) = self.hash.finish();
+        if let Some((tape, path)) = self.tape.take() {
+            tape.finish().map_err(|error| Error::recording(&path, error))?;
+        }
+        let touch = self.pitch.with_world(|world| world.statistics().time_to_first_touch());
+        Ok(MatchSummary {
+            hash,
+            messages,
+            simulated: self.now(),
+            teams: self.pitch.with_world(teams),
+            agents: self.agents(),
+            time_to_first_touch: touch.map(Duration::from_secs_f64),
+            coverage: self.simulation.coverage(),
+            links: self.simulation.statistics().links,
+            events: self.events,
+        })
+    }
+
+    fn agents(&self) -> Vec<AgentSummary> {
+        let statistics = self.simulation.statistics();
+        let summary = |agent: &monas::AgentStatistics| AgentSummary {
+            host: agent.host.clone(),
+            agent: agent.agent.clone(),
+            cycles: agent.cycles,
+            overruns: agent.overruns,
+            micro_steps: agent.micro_steps,
+            activity_calls: agent.activities.iter().map(|activity| activity.calls).sum(),
+        };
+        statistics.agents.iter().map(summary).collect()
+    }
+}
+
+fn teams(world: &SimulatedWorld) -> Vec<TeamSummary> {
+    let statistics = world.statistics();
+    let playing = statistics.playing_time();
+    let team = |(index, setup): (usize, &monas_sim::TeamSetup)| {
+        let tally = statistics.team(index);
+        TeamSummary {
+            name: setup.name.clone(),
+            colour: colour(setup.colour),
+            goals: world.referee().score()[index],
+            kicks: tally.strikes,
+            shots: tally.shots,
+            saves: tally.saves,
+            falls: tally.falls,
+            penalties: tally.penalties,
+            possession: if playing > 0.0 { tally.possession / playing } else { 0.0 },
+            actions: tally.actions,
+            actions_to_ball: tally.actions_to_ball,
+            returns: tally.returns,
+            return_seconds: tally.return_time,
+        }
+    };
+    world.teams().iter().enumerate().map(team).collect()
+}
+
+fn colour(colour: TeamColour) -> &'static str {
+    match colour {
+        TeamColour::Blue => "blue",
+        TeamColour::Red => "red",
+    }
+}

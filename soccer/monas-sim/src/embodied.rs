@@ -1,0 +1,99 @@
+//! The world's robots as bodies for agents.
+//!
+//! A [`SharedField`] is a world that several bodies share; [`SharedField::body`] returns the body
+//! of one robot, which implements [`monas_robot::Robot`]. The caller of [`SharedField::step`]
+//! determines how simulated time advances.
+
+mod announce;
+mod body;
+mod radio_channel;
+mod skill;
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use crate::{EventKind, GameState, Pose, SimulatedWorld};
+
+use radio_channel::RadioChannel;
+
+pub use body::FieldBody;
+
+/// A world shared by the bodies in it. Clones refer to the same world.
+#[derive(Clone)]
+pub struct SharedField {
+    world: Arc<Mutex<SharedWorld>>,
+}
+
+/// The world, and the last pose at which the referee placed each robot.
+pub(crate) struct SharedWorld {
+    pub(crate) world: SimulatedWorld,
+    pub(crate) placements: Vec<Placement>,
+    /// Radio messages that the robots have not received yet.
+    pub(crate) air: RadioChannel,
+    seen_events: usize,
+}
+
+/// How often a robot was placed by hand, and its last such pose in the field frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Placement {
+    pub(crate) count: u32,
+    pub(crate) pose: Pose,
+}
+
+impl SharedField {
+    /// Shares a world. The current poses of its robots count as their first placement.
+    pub fn new(world: SimulatedWorld) -> SharedField {
+        let placements =
+            world.robots().iter().map(|robot| Placement { count: 1, pose: robot.pose }).collect();
+        let air = RadioChannel::new(world.robots());
+        SharedField { world: Arc::new(Mutex::new(SharedWorld { world, placements, air, seen_events: 0 })) }
+    }
+
+    /// Advances the world by one [`STEP`](crate::STEP).
+    pub fn step(&self) {
+        let mut ground = self.lock();
+        ground.world.step();
+        ground.note_placements();
+    }
+
+    /// Gives read access to the world.
+    pub fn with_world<T>(&self, look: impl FnOnce(&SimulatedWorld) -> T) -> T {
+        look(&self.lock().world)
+    }
+
+    /// Gives write access to the world, for tests and exercises.
+    pub fn change<T>(&self, change: impl FnOnce(&mut SimulatedWorld) -> T) -> T {
+        change(&mut self.lock().world)
+    }
+
+    /// The body of a robot, by its index in the world.
+    pub fn body(&self, robot: usize) -> Option<FieldBody> {
+        self.with_world(|world| world.robots().get(robot).map(|_| ()))?;
+        Some(FieldBody::new(self.clone(), robot))
+    }
+
+    pub(crate) fn lock(&self) -> MutexGuard<'_, SharedWorld> {
+        self.world.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl SharedWorld {
+    /// Records placements by hand: before a half or a kick-off, and after a penalty.
+    fn note_placements(&mut self) {
+        let mut placed = Vec::new();
+        for event in &self.world.events()[self.seen_events..] {
+            match event.kind {
+                EventKind::StateChanged { to: GameState::Ready | GameState::Initial, .. } => {
+                    placed.extend(0..self.placements.len());
+                }
+                EventKind::Return { robot } => placed.push(robot),
+                _ => {}
+            }
+        }
+        self.seen_events = self.world.events().len();
+        for robot in placed {
+            let Placement { count, pose } = &mut self.placements[robot];
+            *count += 1;
+            *pose = self.world.robots()[robot].pose;
+        }
+    }
+}

@@ -1,0 +1,314 @@
+//! Implements [`Robot`] for a robot of the simulated world.
+
+use std::time::Duration;
+
+use monas_robot::{
+    Actuators, Anatomy, Announcement, Camera, Error, ErrorKind, Limits, ObjectKind, Percepts, Posture, Robot,
+    Skill,
+};
+use narukom::Timestamp;
+
+use super::skill::SkillTrack;
+use super::{SharedField, announce, radio_channel};
+use crate::{BodyPhase, Command, Motion, Physics, Senses, Side, Sighting, Velocity};
+
+/// How often a body senses and acts: every second step of the world, 50 Hz.
+const CYCLE: Duration = Duration::from_millis(20);
+
+/// Interval at which an unchanged announcement is repeated, as by a game controller.
+const ANNOUNCE_EVERY: Duration = Duration::from_millis(500);
+
+/// The body of one robot on a [`SharedField`].
+pub struct FieldBody {
+    pitch: SharedField,
+    robot: usize,
+    anatomy: Anatomy,
+    senses: Senses,
+    skill: SkillTrack,
+    command: Actuators,
+    announced: Option<(Timestamp, Announcement)>,
+    /// The body sits or is about to; commands are ignored.
+    rests: bool,
+}
+
+impl FieldBody {
+    pub(super) fn new(pitch: SharedField, robot: usize) -> FieldBody {
+        let anatomy = pitch.with_world(|world| anatomy(world.physics()));
+        let (senses, skill, command) = Default::default();
+        FieldBody { pitch, robot, anatomy, senses, skill, command, announced: None, rests: false }
+    }
+
+    /// The announcement, if it has changed or is due for repetition.
+    fn announcement(&mut self, now: Timestamp) -> Option<Announcement> {
+        let announcement = announce::announcement(&self.pitch.lock(), self.robot)?;
+        let said = self.announced.as_ref();
+        let stale = |(at, before): &(Timestamp, Announcement)| {
+            now.since(*at) >= ANNOUNCE_EVERY || announce::is_news(&announcement, before)
+        };
+        if !said.is_none_or(stale) {
+            return None;
+        }
+        self.announced = Some((now, announcement));
+        Some(announcement)
+    }
+
+    fn feel(&self, now: Timestamp, on_field: bool, sensors: &mut monas_robot::Sensors) {
+        let Senses { odometry, buttons, .. } = &self.senses;
+        *sensors = monas_robot::Sensors {
+            measured_at: now.as_nanos(),
+            head_yaw: self.anatomy.head_yaw.clamp(self.senses.head_yaw),
+            head_pitch: self.anatomy.head_pitch.clamp(self.senses.head_pitch),
+            torso_roll: self.senses.torso_roll,
+            torso_pitch: self.senses.torso_pitch,
+            odometry_x: odometry.position.x,
+            odometry_y: odometry.position.y,
+            odometry_turn: odometry.heading,
+            chest_button: buttons.chest,
+            left_bumper: buttons.left_bumper,
+            right_bumper: buttons.right_bumper,
+            posture: posture(self.senses.phase, on_field) as i32,
+            skill_done: self.skill.done(),
+            battery: 1.0,
+            relaxed: self.rests && (self.senses.phase == BodyPhase::Sitting || self.senses.phase.is_fallen()),
+        };
+    }
+
+    fn see(&self, now: Timestamp) -> Option<monas_robot::Sightings> {
+        self.senses.new_picture.then(|| monas_robot::Sightings {
+            taken_at: now.as_nanos(),
+            head_yaw: self.senses.head_yaw,
+            head_pitch: self.senses.head_pitch,
+            objects: self.senses.sightings.iter().map(sighting).collect(),
+        })
+    }
+
+    /// Sends the current command for legs and head to the world.
+    fn drive(&self) -> Result<(), Error> {
+        let Actuators { walk_x, walk_y, walk_turn, head_yaw, head_pitch, .. } = self.command;
+        let limits = &self.anatomy;
+        let walk = Velocity::new(
+            limits.walk_x.clamp(walk_x),
+            limits.walk_y.clamp(walk_y),
+            limits.walk_turn.clamp(walk_turn),
+        );
+        let still = walk == Velocity::default();
+        let legs = match still {
+            true if self.rests => Motion::Sit,
+            true => Motion::Stand,
+            false => Motion::Walk(walk),
+        };
+        let command = Command {
+            head_yaw: limits.head_yaw.clamp(head_yaw),
+            head_pitch: limits.head_pitch.clamp(head_pitch),
+            motion: self.skill.motion().unwrap_or(legs),
+        };
+        self.pitch.lock().world.command(self.robot, command).map_err(refused)
+    }
+}
+
+impl Robot for FieldBody {
+    fn anatomy(&self) -> &Anatomy {
+        &self.anatomy
+    }
+
+    fn sense(&mut self, now: Timestamp, percepts: &mut Percepts) -> Result<(), Error> {
+        let on_field = {
+            let mut ground = self.pitch.lock();
+            ground.world.sense(self.robot, &mut self.senses).map_err(refused)?;
+            ground.air.receive(self.robot, now.as_nanos(), &mut percepts.heard);
+            ground.world.robots()[self.robot].on_field
+        };
+        let was_busy = self.skill.motion().is_some();
+        self.skill.observe(self.senses.phase);
+        if self.rests || (was_busy && self.skill.motion().is_none()) {
+            self.drive()?;
+        }
+        self.feel(now, on_field, &mut percepts.sensors);
+        percepts.sightings = self.see(now);
+        percepts.announcement = self.announcement(now);
+        Ok(())
+    }
+
+    fn act(&mut self, _now: Timestamp, actuators: &Actuators) -> Result<(), Error> {
+        if self.rests {
+            return Ok(());
+        }
+        self.command = *actuators;
+        self.skill.command(actuators);
+        self.drive()
+    }
+
+    /// The body sits down as soon as it stands; a lying body stays down.
+    fn rest(&mut self, _now: Timestamp) -> Result<(), Error> {
+        self.rests = true;
+        self.command = Actuators::default();
+        self.drive()
+    }
+
+    fn say(&mut self, _now: Timestamp, words: &[u8]) -> Result<(), Error> {
+        if words.len() > self.anatomy.radio {
+            let message =
+                format!("{} bytes are more than the {} of a message", words.len(), self.anatomy.radio);
+            return Err(Error::new(ErrorKind::Protocol, message));
+        }
+        self.pitch.lock().air.broadcast(self.robot, words);
+        Ok(())
+    }
+}
+
+fn refused(error: crate::Error) -> Error {
+    Error::new(ErrorKind::Protocol, error.to_string())
+}
+
+fn anatomy(physics: &Physics) -> Anatomy {
+    Anatomy {
+        head_yaw: Limits::symmetric(physics.head_yaw_limit),
+        head_pitch: Limits::new(physics.head_pitch_least, physics.head_pitch_most),
+        walk_x: Limits::new(-physics.walk_backward, physics.walk_forward),
+        walk_y: Limits::symmetric(physics.walk_sideways),
+        walk_turn: Limits::symmetric(physics.walk_turn),
+        camera: Some(Camera {
+            horizontal: physics.camera_view_horizontal,
+            vertical: physics.camera_view_vertical,
+            height: physics.camera_height,
+        }),
+        skills: vec![
+            Skill::KickLeft,
+            Skill::KickRight,
+            Skill::FallLeft,
+            Skill::FallRight,
+            Skill::DiveLeft,
+            Skill::DiveRight,
+            Skill::StandUp,
+        ],
+        radio: radio_channel::LONGEST,
+        ..Anatomy::new("field robot", CYCLE)
+    }
+}
+
+fn posture(phase: BodyPhase, on_field: bool) -> Posture {
+    match phase {
+        _ if !on_field => Posture::Lifted,
+        BodyPhase::Standing => Posture::Standing,
+        BodyPhase::Walking => Posture::Walking,
+        BodyPhase::Kicking(_) | BodyPhase::SideFalling(_) | BodyPhase::Diving(_) | BodyPhase::Falling(_) => {
+            Posture::Busy
+        }
+        BodyPhase::Fallen(_) => Posture::Fallen,
+        BodyPhase::StandingUp => Posture::StandingUp,
+        BodyPhase::SittingDown | BodyPhase::Sitting => Posture::Sitting,
+    }
+}
+
+fn sighting(seen: &Sighting) -> monas_robot::Sighting {
+    let (kind, colour, percept) = match seen {
+        Sighting::Ball(percept) => (ObjectKind::Ball, monas_robot::Colour::Orange, percept),
+        Sighting::Post { goal, side, percept } => (post(*side), announce::goal_colour(*goal), percept),
+        Sighting::Robot { colour, percept } => (ObjectKind::Robot, announce::team_colour(*colour), percept),
+    };
+    monas_robot::Sighting {
+        kind: kind as i32,
+        bearing: percept.bearing,
+        distance: percept.distance,
+        colour: colour as i32,
+    }
+}
+
+fn post(side: Option<Side>) -> ObjectKind {
+    match side {
+        Some(Side::Left) => ObjectKind::LeftPost,
+        Some(Side::Right) => ObjectKind::RightPost,
+        None => ObjectKind::SomePost,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{FieldSide, RobotSetup, Setup, SimulatedWorld, TeamColour, TeamSetup};
+
+    fn pitch() -> SharedField {
+        let team =
+            |number, colour, plays| TeamSetup { number, name: format!("team {number}"), colour, plays };
+        let setup = Setup {
+            field: Default::default(),
+            physics: Default::default(),
+            rules: Default::default(),
+            teams: [team(1, TeamColour::Blue, FieldSide::Left), team(2, TeamColour::Red, FieldSide::Right)],
+            robots: vec![RobotSetup { team: 1, number: 2 }],
+            seed: 7,
+        };
+        SharedField::new(SimulatedWorld::new(setup).unwrap())
+    }
+
+    #[test]
+    fn it_is_a_body_like_any_other() {
+        let pitch = pitch();
+        let mut body = pitch.body(0).unwrap();
+        monas_robot::conformance::check(&mut body);
+        assert!(pitch.body(1).is_none());
+    }
+
+    #[test]
+    fn a_body_that_rests_sits_relaxed_and_takes_no_commands() {
+        let pitch = pitch();
+        let mut body = pitch.body(0).unwrap();
+        let mut percepts = Percepts::default();
+        let walk = Actuators { walk_x: 0.2, ..Actuators::default() };
+        for cycle in 0..200 {
+            let now = Timestamp::from_nanos(cycle * 20_000_000);
+            (0..2).for_each(|_| pitch.lock().world.step());
+            body.sense(now, &mut percepts).unwrap();
+            if cycle == 20 {
+                body.rest(now).unwrap();
+            }
+            body.act(now, &walk).unwrap();
+        }
+        assert_eq!((percepts.sensors.posture(), percepts.sensors.relaxed), (Posture::Sitting, true));
+    }
+
+    #[test]
+    fn what_is_said_is_heard_once_by_the_others_of_the_team() {
+        let pitch = SharedField::new(SimulatedWorld::new(Setup::three_against_three(7)).unwrap());
+        let mut bodies: Vec<FieldBody> = (0..6).filter_map(|robot| pitch.body(robot)).collect();
+        bodies[1].say(Timestamp::ZERO, b"mine").unwrap();
+        for heard_then in [[1, 0, 1, 0, 0, 0], [0; 6]] {
+            let now = Timestamp::from_nanos(20_000_000);
+            let heard =
+                bodies.iter_mut().map(|body| {
+                    let mut percepts = Percepts::default();
+                    body.sense(now, &mut percepts).unwrap();
+                    assert!(percepts.heard.iter().all(|it| {
+                        (it.number, it.heard_at, &it.words[..]) == (2, now.as_nanos(), b"mine")
+                    }));
+                    percepts.heard.len()
+                });
+            assert_eq!(heard.collect::<Vec<_>>(), heard_then);
+        }
+        assert!(bodies[1].say(Timestamp::ZERO, &[0; 129]).is_err());
+    }
+
+    #[test]
+    fn a_kick_ends_and_says_so() {
+        let pitch = pitch();
+        let mut body = pitch.body(0).unwrap();
+        let kick = Actuators { skill: Skill::KickLeft as i32, skill_number: 5, ..Actuators::default() };
+        let mut percepts = Percepts::default();
+        let mut done_at = None;
+        for cycle in 1..=600 {
+            let now = Timestamp::from_nanos(cycle * 20_000_000);
+            pitch.step();
+            pitch.step();
+            body.sense(now, &mut percepts).unwrap();
+            // Only PLAYING lets a robot move; the match begins with six seconds of preparation.
+            if cycle >= 400 {
+                body.act(now, &kick).unwrap();
+            }
+            if percepts.sensors.skill_done == 5 && done_at.is_none() {
+                done_at = Some(cycle - 400);
+            }
+        }
+        let cycles = done_at.expect("the kick ends");
+        assert!((70..100).contains(&cycles), "a kick takes 1.6 s, not {cycles} cycles");
+    }
+}

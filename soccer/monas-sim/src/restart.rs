@@ -1,0 +1,198 @@
+//! Positions at which the referee puts robots and ball.
+
+use crate::state::{GOALIE, WorldView};
+use crate::{FieldGeometry, FieldSide, Physics, Pose, RobotState, Vector};
+
+/// Distance from the ball of the robot that kicks off, m.
+const KICK_OFF_DISTANCE: f64 = 0.3;
+
+/// Least distance between a placed ball or robot and another robot, m.
+const CLEARANCE: f64 = 0.08;
+
+/// Positions of field players that do not kick off, as fractions of half the length and half the
+/// width towards the own goal, in the order of their numbers.
+const PLACES: [(f64, f64); 10] = [
+    (-0.35, 0.45),
+    (-0.35, -0.45),
+    (-0.6, 0.0),
+    (-0.55, 0.75),
+    (-0.55, -0.75),
+    (-0.75, 0.4),
+    (-0.75, -0.4),
+    (-0.3, 0.8),
+    (-0.3, -0.8),
+    (-0.5, 0.25),
+];
+
+/// The legal pose of a robot for a kick-off: in its own half, and outside the centre circle for the
+/// opponents of the team that kicks off. `rank` counts the field players of its team before it.
+pub(crate) fn kick_off_pose(
+    field: &FieldGeometry,
+    physics: &Physics,
+    defends: FieldSide,
+    kicks_off: bool,
+    number: u8,
+    rank: usize,
+) -> Pose {
+    let clear_of_circle = field.centre_circle_radius + physics.robot_radius + CLEARANCE;
+    let own_half = match (number, rank) {
+        (GOALIE, _) => Vector::new(-field.half_length() + physics.robot_radius, 0.0),
+        (_, 0) if kicks_off => Vector::new(-KICK_OFF_DISTANCE, 0.0),
+        (_, 0) => Vector::new(-clear_of_circle, 0.0),
+        _ => spread(field, rank, clear_of_circle),
+    };
+    Pose::facing(own_half * -defends.sign(), Vector::zeros())
+}
+
+fn spread(field: &FieldGeometry, rank: usize, clear_of_circle: f64) -> Vector {
+    let (x, y) = PLACES[(rank - 1) % PLACES.len()];
+    let least_x = field.goal_area_depth + CLEARANCE - field.half_length();
+    let place = Vector::new((x * field.half_length()).max(least_x), y * field.half_width());
+    if place.norm() >= clear_of_circle { place } else { place * (clear_of_circle / place.norm()) }
+}
+
+/// Where a ball that left the field at `position` is put back: on the throw-in line, set back
+/// against the team that touched it last, which defends `against`.
+pub(crate) fn throw_in(
+    field: &FieldGeometry,
+    setback: f64,
+    position: Vector,
+    against: Option<FieldSide>,
+) -> Vector {
+    let most =
+        Vector::new(field.half_length() - field.throw_in_inset, field.half_width() - field.throw_in_inset);
+    let at = position.x.clamp(-field.half_length(), field.half_length());
+    let back = against.map_or(0.0, |side| side.sign() * setback);
+    Vector::new((at + back).clamp(-most.x, most.x), most.y.copysign(position.y))
+}
+
+/// Where a stuck ball is dropped: at the centre, or on a penalty mark when it is stuck there
+/// already.
+pub(crate) fn drop_place(field: &FieldGeometry, ball: Vector, mark: FieldSide) -> Vector {
+    if ball.norm() > field.centre_circle_radius {
+        return Vector::zeros();
+    }
+    Vector::new(mark.sign() * field.mark_distance, 0.0)
+}
+
+/// The free position for a ball nearest to `wanted`.
+pub(crate) fn free_for_ball(scene: &WorldView<'_>, wanted: Vector) -> Vector {
+    let physics = scene.physics;
+    let reach = physics.robot_radius.max(physics.foot_front).max(physics.foot_side) + physics.ball_radius;
+    let lying = physics.lying_reach.max(physics.dive_reach) + physics.ball_radius;
+    let limit = Vector::new(
+        scene.field.half_length() - physics.ball_radius,
+        scene.field.half_width() - physics.ball_radius,
+    );
+    let is_free = |place: Vector| {
+        scene.on_field().all(|(_, robot)| {
+            let reach = if robot.phase.is_upright() { reach } else { lying };
+            (robot.pose.position - place).norm() > reach + CLEARANCE
+        })
+    };
+    nearest(wanted, limit, is_free)
+}
+
+/// Where a robot returns after a penalty: at the end of the halfway line away from the ball, facing
+/// it.
+pub(crate) fn return_pose(scene: &WorldView<'_>, robot: usize) -> Pose {
+    let side = -1f64.copysign(scene.ball.position.y);
+    let wanted = Vector::new(0.0, side * scene.field.half_width());
+    let limit = Vector::new(scene.field.half_length(), scene.field.half_width());
+    let apart = 2.0 * scene.physics.robot_radius + CLEARANCE;
+    let is_free = |place: Vector| {
+        let mut others = scene.on_field().filter(|(index, _)| *index != robot);
+        others.all(|(_, other)| (other.pose.position - place).norm() > apart)
+            && (scene.ball.position - place).norm() > apart
+    };
+    Pose::facing(nearest(wanted, limit, is_free), Vector::zeros())
+}
+
+/// Where a penalized robot waits: beside the field, in its own half.
+pub(crate) fn waiting_pose(field: &FieldGeometry, defends: FieldSide, robot: &RobotState) -> Pose {
+    let along = 0.4 + 0.35 * f64::from(robot.number);
+    let x = defends.sign() * along.min(field.half_length() + field.border);
+    let y = field.half_width() + field.border * 0.7;
+    Pose::facing(Vector::new(x, y), Vector::zeros())
+}
+
+/// The first free position on rings of growing radius around `wanted`, inside a rectangle; `wanted`
+/// itself if none is free.
+fn nearest(wanted: Vector, limit: Vector, is_free: impl Fn(Vector) -> bool) -> Vector {
+    const DIRECTIONS: usize = 12;
+    let within =
+        |place: Vector| Vector::new(place.x.clamp(-limit.x, limit.x), place.y.clamp(-limit.y, limit.y));
+    let around = (0..20).flat_map(|ring| {
+        (0..DIRECTIONS).map(move |turn| {
+            let angle = std::f64::consts::TAU * turn as f64 / DIRECTIONS as f64;
+            Vector::new(libm::cos(angle), libm::sin(angle)) * (0.1 * f64::from(ring))
+        })
+    });
+    around.map(|offset| within(wanted + offset)).find(|place| is_free(*place)).unwrap_or(wanted)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kick_off_places_are_legal_on_any_field() {
+        for (length, width) in [(6.0, 4.0), (9.0, 6.0), (4.0, 3.0)] {
+            let field = FieldGeometry { length, width, ..FieldGeometry::default() };
+            let physics = Physics::default();
+            for defends in [FieldSide::Left, FieldSide::Right] {
+                for (number, rank) in (1..=11u8).map(|number| (number, usize::from(number.saturating_sub(2))))
+                {
+                    for kicks_off in [false, true] {
+                        let pose = kick_off_pose(&field, &physics, defends, kicks_off, number, rank);
+                        assert!(field.contains(pose.position), "{number} {pose:?}");
+                        assert!(pose.position.x * defends.sign() > 0.0, "{number} {pose:?}");
+                        assert!(
+                            number == GOALIE || !field.in_goal_area(defends, pose.position),
+                            "{number} {pose:?}"
+                        );
+                        let outside = pose.position.norm() > field.centre_circle_radius;
+                        assert!(outside || (kicks_off && rank == 0), "{number} {pose:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn kick_off_places_are_apart() {
+        let field = FieldGeometry::default();
+        let physics = Physics::default();
+        let place = |number: u8| {
+            let rank = usize::from(number.saturating_sub(2));
+            kick_off_pose(&field, &physics, FieldSide::Left, true, number, rank).position
+        };
+        for one in 1..=11 {
+            for other in (1..=11).filter(|other| *other != one) {
+                assert!((place(one) - place(other)).norm() > 0.26, "{one} {other}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_throw_in_is_set_back_against_who_touched_last() {
+        let field = FieldGeometry::default();
+        let at = |x, y, against| throw_in(&field, 1.0, Vector::new(x, y), against);
+        assert_eq!(at(0.5, 2.1, None), Vector::new(0.5, 1.6));
+        assert_eq!(at(0.5, 2.1, Some(FieldSide::Left)), Vector::new(-0.5, 1.6));
+        assert_eq!(at(0.5, -2.1, Some(FieldSide::Right)), Vector::new(1.5, -1.6));
+        assert_eq!(
+            at(3.1, 1.2, Some(FieldSide::Left)),
+            Vector::new(2.0, 1.6),
+            "an attacker over the goal line"
+        );
+        assert_eq!(at(3.1, -1.2, Some(FieldSide::Right)), Vector::new(2.6, -1.6), "a defender: a corner");
+    }
+
+    #[test]
+    fn a_stuck_ball_goes_to_the_centre_or_from_there_to_a_mark() {
+        let field = FieldGeometry::default();
+        assert_eq!(drop_place(&field, Vector::new(2.0, 1.0), FieldSide::Left), Vector::zeros());
+        assert_eq!(drop_place(&field, Vector::new(0.1, 0.1), FieldSide::Right), Vector::new(1.2, 0.0));
+    }
+}

@@ -1,0 +1,47 @@
+//! The activities of the roles: thin adapters that read a blackboard, call functionalities and
+//! publish the results.
+//!
+//! None of them chooses between behaviours; the chart does. Each runs once per activation of its
+//! state; kicks, falls and dives continue until the body stands again.
+
+#[cfg(test)]
+mod activity_fixture;
+mod align_with_ball;
+mod attack_watch;
+mod bring_ball;
+mod led_handler;
+mod motion_controller;
+mod motion_requests;
+mod pass_ball;
+mod robot_controller;
+mod search_ball;
+mod send_calibration;
+mod sensors;
+mod shot;
+mod skills;
+mod stand;
+mod team_radio;
+mod track_ball;
+mod vision;
+mod wait_for_ball_message;
+mod walk_towards_ball;
+mod walk_towards_goal;
+
+pub use align_with_ball::AlignWithBall;
+pub use attack_watch::AttackWatch;
+pub use bring_ball::{BringBallToPass, BringBallToShoot};
+pub use led_handler::LedHandler;
+pub use motion_controller::MotionController;
+pub use pass_ball::PassBall;
+pub use robot_controller::RobotController;
+pub use search_ball::SearchBall;
+pub use send_calibration::SendCalibration;
+pub use sensors::Sensors;
+pub use skills::{LeftDive, LeftFall, LeftKick, RightDive, RightFall, RightKick};
+pub use stand::Stand;
+pub use team_radio::TeamRadio;
+pub use track_ball::TrackBall;
+pub use vision::Vision;
+pub use wait_for_ball_message::WaitForBallMessage;
+pub use walk_towards_ball::WalkTowardsBall;
+pub use walk_towards_goal::WalkTowardsGoal;

@@ -1,0 +1,44 @@
+//! Requests of the behaviours.
+
+use monas::{Blackboard, BoxError};
+
+use crate::functionality::head::Gaze;
+use crate::functionality::walk::Walk;
+use crate::{HeadMode, HeadRequest, MotionKind, MotionRequest, topics};
+
+pub(super) fn request_stand(blackboard: &mut Blackboard) -> Result<(), BoxError> {
+    let number = last_number(blackboard);
+    publish(blackboard, MotionRequest { kind: MotionKind::Stand.into(), number, ..MotionRequest::default() })
+}
+
+pub(super) fn request_walk(blackboard: &mut Blackboard, walk: Walk) -> Result<(), BoxError> {
+    let number = last_number(blackboard);
+    let Walk { ahead: vx, left: vy, turn: wz } = walk;
+    publish(blackboard, MotionRequest { kind: MotionKind::Walk.into(), vx, vy, wz, number })
+}
+
+/// Requests a one-time motion; the returned number identifies its completion.
+pub(super) fn request_skill(blackboard: &mut Blackboard, kind: MotionKind) -> Result<u64, BoxError> {
+    let done = blackboard.read(topics::MOTION_STATE).map_or(0, |state| state.done);
+    let number = last_number(blackboard).max(done) + 1;
+    publish(blackboard, MotionRequest { kind: kind.into(), number, ..MotionRequest::default() })?;
+    Ok(number)
+}
+
+pub(super) fn request_gaze(blackboard: &mut Blackboard, gaze: Gaze) -> Result<(), BoxError> {
+    let Gaze { yaw, pitch } = gaze;
+    Ok(blackboard.publish(topics::HEAD, HeadRequest { mode: HeadMode::Look.into(), yaw, pitch })?)
+}
+
+pub(super) fn request_scan(blackboard: &mut Blackboard) -> Result<(), BoxError> {
+    Ok(blackboard
+        .publish(topics::HEAD, HeadRequest { mode: HeadMode::Scan.into(), ..HeadRequest::default() })?)
+}
+
+fn publish(blackboard: &mut Blackboard, request: MotionRequest) -> Result<(), BoxError> {
+    Ok(blackboard.publish(topics::MOTION, request)?)
+}
+
+fn last_number(blackboard: &Blackboard) -> u64 {
+    blackboard.read(topics::MOTION).map_or(0, |request| request.number)
+}

@@ -1,0 +1,107 @@
+//! Passing the ball.
+
+use std::time::Duration;
+
+use monas::{Activity, Blackboard, BoxError, Progress, Topics};
+use narukom::Timestamp;
+
+use super::bring_ball::LOOK;
+use super::motion_requests::{request_gaze, request_walk};
+use super::skills::{RunningSkill, perform};
+use crate::functionality::head::HeadController;
+use crate::functionality::walk::{Walk, turn_to};
+use crate::{MotionKind, topics};
+
+/// Kicks the ball ahead with the foot in front of which it lies, and then watches the outcome for a
+/// while.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PassBall {
+    kick: Option<MotionKind>,
+    under_way: RunningSkill,
+    kicked_at: Option<Timestamp>,
+    head: HeadController,
+}
+
+/// How long the outcome of a pass is watched.
+const WATCH: Duration = Duration::from_secs(6);
+
+impl Activity for PassBall {
+    fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
+        let now = blackboard.now();
+        match self.kicked_at {
+            Some(kicked_at) if now.since(kicked_at) >= WATCH => {
+                self.forget();
+                Ok(Progress::Done)
+            }
+            Some(_) => self.watch_pass(blackboard),
+            None => {
+                let progress = self.kick(blackboard)?;
+                if progress != Progress::Done {
+                    return Ok(progress);
+                }
+                self.kicked_at = Some(now);
+                Ok(Progress::after(LOOK))
+            }
+        }
+    }
+
+    fn stop(&mut self, _: &mut Blackboard) {
+        self.forget();
+    }
+
+    fn topics(&self) -> Topics {
+        let topics = Topics::declared().reads(topics::BALL).reads(topics::MOTION).reads(topics::MOTION_STATE);
+        topics.publishes(topics::MOTION).publishes(topics::HEAD)
+    }
+}
+
+impl PassBall {
+    fn forget(&mut self) {
+        *self = PassBall { head: self.head, ..PassBall::default() };
+    }
+
+    fn kick(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
+        let is_left = blackboard.read(topics::BALL).is_some_and(|ball| ball.y >= 0.0);
+        let foot = if is_left { MotionKind::KickLeft } else { MotionKind::KickRight };
+        let kick = *self.kick.get_or_insert(foot);
+        perform(&mut self.under_way, kick, blackboard)
+    }
+
+    /// Stands facing the ball.
+    fn watch_pass(&self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
+        if let Some(ball) = blackboard.read(topics::BALL).copied() {
+            request_gaze(blackboard, self.head.look_at(ball.position()))?;
+            request_walk(blackboard, Walk::turning(turn_to(ball.bearing)))?;
+        }
+        Ok(Progress::after(LOOK))
+    }
+}
+
+monas::activity!(PassBall as "passBall");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::activities::activity_fixture::{ActivityFixture, TICK};
+    use crate::{Ball, HeadMode, MotionState};
+
+    #[test]
+    fn it_kicks_with_the_foot_at_the_ball_and_then_watches() {
+        for (y, kind) in [(0.05, MotionKind::KickLeft), (-0.05, MotionKind::KickRight)] {
+            let (mut stage, mut activity) = (ActivityFixture::new(), PassBall::default());
+            stage.publish(topics::BALL, Ball { x: 0.15, y, ..Ball::default() });
+            assert!(!stage.run(&mut activity));
+            let wanted = stage.latest(topics::MOTION).unwrap();
+            assert_eq!((wanted.kind(), wanted.number), (kind, 1));
+            stage.publish(topics::BALL, Ball { x: 1.0, y: -3.0 * y, bearing: -0.3, ..Ball::default() });
+            assert!(!stage.wait(TICK).run(&mut activity));
+            assert_eq!(stage.latest(topics::MOTION).unwrap().number, 1, "it kicks once");
+            stage.publish(topics::MOTION_STATE, MotionState { done: 1, ..MotionState::default() });
+            assert!(!stage.run(&mut activity));
+            assert!(!stage.wait(TICK).run(&mut activity));
+            assert_eq!(stage.latest(topics::HEAD).unwrap().mode(), HeadMode::Look);
+            assert!(stage.latest(topics::MOTION).unwrap().wz < -0.1);
+            assert!(stage.wait(WATCH).run(&mut activity));
+        }
+    }
+}

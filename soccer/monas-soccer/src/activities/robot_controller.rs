@@ -1,0 +1,197 @@
+//! The state of the game, from the referee and the chest button.
+
+use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
+use monas_robot::{Announcement, topics as body};
+use narukom::{Header, PublisherId};
+
+use crate::functionality::field::FieldModel;
+use crate::functionality::game::GameTracker;
+use crate::{GameState, PlayerState, convert, topics};
+
+/// Publishes the state of the game from the referee's announcements and presses of the chest
+/// button.
+///
+/// Parameters are rules of the league that the referee does not announce: `goalkeeper`, the number
+/// of the goalkeeper; `area_depth` and `area_width` (m), the size of the goal area. The defaults
+/// are those of 2010.
+#[derive(Clone, Debug)]
+pub struct RobotController {
+    goalkeeper: u32,
+    area: (f64, f64),
+    game: GameTracker,
+    heard: Option<(PublisherId, u64)>,
+    button: Button,
+    said: Option<GameState>,
+}
+
+/// The chest button; only the rising edge counts.
+#[derive(Clone, Copy, Debug, Default)]
+struct Button {
+    seen_until: u64,
+    pressed: bool,
+}
+
+impl Default for RobotController {
+    fn default() -> RobotController {
+        let FieldModel { area_depth, area_width, .. } = FieldModel::LEAGUE_2010;
+        RobotController {
+            goalkeeper: 1,
+            area: (area_depth, area_width),
+            game: GameTracker::default(),
+            heard: None,
+            button: Button::default(),
+            said: None,
+        }
+    }
+}
+
+impl Activity for RobotController {
+    fn configure(&mut self, parameters: &Parameters) {
+        if let Some(number) = parameters.read("goalkeeper", "a player's number", |text| text.parse().ok()) {
+            self.goalkeeper = number;
+        }
+        self.area.0 = parameters.number("area_depth").unwrap_or(self.area.0);
+        self.area.1 = parameters.number("area_width").unwrap_or(self.area.1);
+    }
+
+    fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
+        self.feel_button(blackboard);
+        let announcement = blackboard.sample(body::ANNOUNCEMENT);
+        if let Some(announcement) = announcement
+            && self.is_news(announcement.header)
+        {
+            self.game.announce(convert::phase(announcement.phase()), announcement.penalized);
+        }
+        let game_state = self.game_state(announcement.map(|sample| sample.message));
+        if self.said.as_ref() != Some(&game_state) {
+            blackboard.publish(topics::GAME_STATE, game_state)?;
+            self.said = Some(game_state);
+        }
+        Ok(Progress::Done)
+    }
+
+    fn topics(&self) -> Topics {
+        Topics::declared().reads(body::SENSORS).reads(body::ANNOUNCEMENT).publishes(topics::GAME_STATE)
+    }
+}
+
+impl RobotController {
+    fn is_news(&mut self, header: &Header) -> bool {
+        let this = Some((header.publisher, header.sequence));
+        let is_news = self.heard != this;
+        self.heard = this;
+        is_news
+    }
+
+    fn feel_button(&mut self, blackboard: &Blackboard) {
+        for sensors in blackboard.recent(body::SENSORS, std::time::Duration::MAX) {
+            if sensors.measured_at <= self.button.seen_until {
+                continue;
+            }
+            if sensors.chest_button && !self.button.pressed {
+                self.game.press_chest_button();
+            }
+            self.button = Button { seen_until: sensors.measured_at, pressed: sensors.chest_button };
+        }
+    }
+
+    fn game_state(&self, announcement: Option<&Announcement>) -> GameState {
+        let player_state = PlayerState::from(self.game.state()).into();
+        let Some(said) = announcement else {
+            return GameState { player_state, ..GameState::default() };
+        };
+        GameState {
+            player_state,
+            team: said.team,
+            number: said.number,
+            goalkeeper: said.number == self.goalkeeper,
+            team_colour: said.team_colour,
+            goal_to_attack: said.goal_to_attack,
+            own_score: said.own_score,
+            opponent_score: said.opponent_score,
+            secs_remaining: said.seconds_left,
+            first_half: said.first_half,
+            kick_off_own: said.kick_off,
+            placements: said.placements,
+            placed_x: said.placed_x,
+            placed_y: said.placed_y,
+            placed_heading: said.placed_heading,
+            field_length: said.field_length,
+            field_width: said.field_width,
+            goal_width: said.goal_width,
+            area_depth: self.area.0,
+            area_width: self.area.1,
+        }
+    }
+}
+
+monas::activity!(RobotController);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::activities::activity_fixture::{ActivityFixture, TICK};
+
+    fn announcement(phase: monas_robot::GamePhase, penalized: bool) -> Announcement {
+        Announcement {
+            phase: phase.into(),
+            penalized,
+            team: 3,
+            number: 2,
+            field_length: 6.0,
+            ..Announcement::default()
+        }
+    }
+
+    #[test]
+    fn it_says_what_the_referee_says_and_only_when_it_changes() {
+        let (mut stage, mut activity) = (ActivityFixture::new(), RobotController::default());
+        stage.run(&mut activity);
+        assert_eq!(stage.latest(topics::GAME_STATE).unwrap().player_state(), PlayerState::Initial);
+        stage
+            .publish(body::ANNOUNCEMENT, announcement(monas_robot::GamePhase::Playing, false))
+            .run(&mut activity);
+        let game = stage.latest(topics::GAME_STATE).unwrap();
+        assert_eq!(
+            (game.player_state(), game.team, game.number, game.goalkeeper),
+            (PlayerState::Playing, 3, 2, false)
+        );
+        assert_eq!(stage.count_arrivals(topics::GAME_STATE), 0);
+        stage.wait(TICK).run(&mut activity);
+        assert_eq!(stage.count_arrivals(topics::GAME_STATE), 0);
+        stage
+            .publish(body::ANNOUNCEMENT, announcement(monas_robot::GamePhase::Playing, true))
+            .run(&mut activity);
+        assert_eq!(stage.latest(topics::GAME_STATE).unwrap().player_state(), PlayerState::Penalized);
+    }
+
+    #[test]
+    fn the_number_of_the_goalkeeper_is_a_parameter() {
+        let (mut stage, mut activity) = (ActivityFixture::new(), RobotController::default());
+        activity.configure(&Parameters::new().with("goalkeeper", "2"));
+        stage
+            .publish(body::ANNOUNCEMENT, announcement(monas_robot::GamePhase::Ready, false))
+            .run(&mut activity);
+        let game = stage.latest(topics::GAME_STATE).unwrap();
+        assert!(game.goalkeeper && game.field().area_depth == 0.6);
+        let parameters = Parameters::new().with("goalkeeper", "first");
+        activity.configure(&parameters);
+        assert_eq!(parameters.faults().len(), 1);
+    }
+
+    #[test]
+    fn a_held_chest_button_is_one_press() {
+        let (mut stage, mut activity) = (ActivityFixture::new(), RobotController::default());
+        for (measured_at, chest_button) in [(1, false), (2, true), (3, true), (4, true)] {
+            let felt = monas_robot::Sensors { measured_at, chest_button, ..Default::default() };
+            stage.publish(body::SENSORS, felt).run(&mut activity);
+        }
+        assert_eq!(stage.latest(topics::GAME_STATE).unwrap().player_state(), PlayerState::Penalized);
+        for (measured_at, chest_button) in [(5, false), (6, true)] {
+            let felt = monas_robot::Sensors { measured_at, chest_button, ..Default::default() };
+            stage.publish(body::SENSORS, felt);
+        }
+        stage.run(&mut activity);
+        assert_eq!(stage.latest(topics::GAME_STATE).unwrap().player_state(), PlayerState::Playing);
+    }
+}

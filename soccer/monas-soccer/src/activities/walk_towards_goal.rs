@@ -1,0 +1,100 @@
+//! Walks to where a pass can be received.
+
+use std::time::Duration;
+
+use monas::{Activity, Blackboard, BoxError, Progress, Topics};
+use nalgebra::Point2;
+use narukom::Timestamp;
+
+use super::bring_ball::{LOOK, LOST};
+use super::motion_requests::{request_gaze, request_walk};
+use super::shot::{ground, others};
+use super::walk_towards_ball::wait_at;
+use crate::functionality::head::HeadController;
+use crate::functionality::support::support_place;
+use crate::topics;
+
+/// Walks towards the opponents' goal to a position for receiving a pass, and waits there facing the
+/// ball until it is passed or lost, or for 30 s.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WalkTowardsGoal {
+    head: HeadController,
+    since: Option<Timestamp>,
+}
+
+/// How long a pass is awaited.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+impl Activity for WalkTowardsGoal {
+    fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
+        let now = blackboard.now();
+        let late = now.since(*self.since.get_or_insert(now)) > PATIENCE;
+        let passed = blackboard.read(topics::ATTACK).is_some_and(|attack| attack.ball_is_passed);
+        let ball = blackboard.read(topics::BALL).copied().filter(|ball| ball.age < LOST);
+        let (Some(ball), Some(ground), false) = (ball, ground(blackboard), late || passed) else {
+            self.since = None;
+            return Ok(Progress::Done);
+        };
+        let here = Point2::from(ground.field_from_robot.translation.vector);
+        let place = support_place(&ground.field, ground.field_from_robot * ball.position(), here);
+        let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
+        let walk = wait_at(ground.field_from_robot.inverse_transform_point(&place), &ball, &obstacles);
+        request_gaze(blackboard, self.head.look_at(ball.position()))?;
+        request_walk(blackboard, walk)?;
+        Ok(Progress::after(LOOK))
+    }
+
+    fn stop(&mut self, _: &mut Blackboard) {
+        self.since = None;
+    }
+
+    fn topics(&self) -> Topics {
+        let topics = Topics::declared().reads(topics::BALL).reads(topics::GAME_STATE).reads(topics::POSE);
+        let topics = topics.reads(topics::ROBOTS).reads(topics::MOTION).reads(topics::ATTACK);
+        topics.publishes(topics::MOTION).publishes(topics::HEAD)
+    }
+}
+
+monas::activity!(WalkTowardsGoal);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::activities::activity_fixture::ActivityFixture;
+    use crate::{Attack, Ball, GameState, Pose};
+
+    fn stage(pose: Pose, ball: Ball) -> ActivityFixture {
+        let mut stage = ActivityFixture::new();
+        let game = GameState { field_length: 6.0, field_width: 4.0, goal_width: 1.4, ..GameState::default() };
+        stage.publish(topics::GAME_STATE, game).publish(topics::POSE, pose).publish(topics::BALL, ball);
+        stage
+    }
+
+    fn ball(x: f64, y: f64) -> Ball {
+        Ball { found: true, x, y, distance: libm::hypot(x, y), bearing: libm::atan2(y, x), ..Ball::default() }
+    }
+
+    #[test]
+    fn it_walks_ahead_of_the_ball_and_waits_there() {
+        let mut behind = stage(Pose { x: -1.0, y: 0.85, ..Pose::default() }, ball(1.0, -0.85));
+        assert!(!behind.run(&mut WalkTowardsGoal::default()));
+        assert!(behind.latest(topics::MOTION).unwrap().vx > 0.2);
+        let mut there = stage(Pose { x: 1.0, y: 0.85, ..Pose::default() }, ball(-1.0, -0.85));
+        assert!(!there.run(&mut WalkTowardsGoal::default()));
+        let walk = there.latest(topics::MOTION).unwrap();
+        assert!(walk.vx == 0.0 && walk.wz < -0.5, "it only turns to the ball: {walk:?}");
+    }
+
+    #[test]
+    fn it_is_done_when_the_ball_is_passed_or_lost_and_after_a_while() {
+        let pose = Pose { x: -1.0, ..Pose::default() };
+        let mut passed = stage(pose, ball(1.0, 0.0));
+        passed.publish(topics::ATTACK, Attack { ball_is_passed: true, ..Attack::default() });
+        assert!(passed.run(&mut WalkTowardsGoal::default()));
+        assert!(stage(pose, Ball { age: LOST, ..ball(1.0, 0.0) }).run(&mut WalkTowardsGoal::default()));
+        let (mut waiting, mut activity) = (stage(pose, ball(1.0, 0.0)), WalkTowardsGoal::default());
+        assert!(!waiting.run(&mut activity));
+        assert!(waiting.wait(PATIENCE + LOOK).run(&mut activity));
+        assert!(!waiting.run(&mut activity), "a restart resets the time limit");
+    }
+}

@@ -1,0 +1,249 @@
+//! Conversions between messages and the types of functionalities.
+
+use std::time::Duration;
+
+use monas_robot::{Actuators, GamePhase, ObjectKind, Posture as BodyPosture, Sighting, Skill as BodySkill};
+use nalgebra::{Isometry2, Point2, Vector2};
+
+use crate::functionality::ball_filter::BallEstimate;
+use crate::functionality::field::{FieldModel, Goal};
+use crate::functionality::game;
+use crate::functionality::geometry::{self, heading};
+use crate::functionality::interception::Crossing;
+use crate::functionality::localisation::{GoalPost, Localisation, PostSighting};
+use crate::functionality::motion::{
+    BodyReport, DesiredMotion, MotionCommand, PendingRequest, Posture, Skill,
+};
+use crate::functionality::walk::Walk;
+use crate::{
+    Ball, GameState, LedRequest, MotionKind, MotionRequest, OtherRobot, PlayerState, Pose, SensorEntry,
+};
+
+/// `time_to_cross` of a ball that will not cross, seconds.
+const NEVER: f64 = 1e6;
+
+/// The distance behind the robot of the point from which `crossing_bearing` is measured, metres.
+const CROSSING_DEPTH: f64 = 0.6;
+
+impl Ball {
+    /// Its position in the robot's frame.
+    pub fn position(&self) -> Point2<f64> {
+        Point2::new(self.x, self.y)
+    }
+
+    /// Its velocity over the ground, in the robot's frame.
+    pub fn velocity(&self) -> Vector2<f64> {
+        Vector2::new(self.vx, self.vy)
+    }
+
+    /// Sets its position and velocity.
+    pub(crate) fn with_estimate(self, ball: &BallEstimate) -> Ball {
+        Ball {
+            distance: ball.position.coords.norm(),
+            x: ball.position.x,
+            y: ball.position.y,
+            bearing: geometry::angle_of(&ball.position.coords),
+            vx: ball.velocity.x,
+            vy: ball.velocity.y,
+            speed: ball.velocity.norm(),
+            ..self
+        }
+    }
+
+    /// Sets where it crosses the robot's lateral axis, if it does.
+    pub(crate) fn with_crossing(self, crossing: Option<Crossing>) -> Ball {
+        let approaching = crossing.is_some();
+        let crossing = crossing.unwrap_or(Crossing { time: NEVER, y: 0.0 });
+        let crossing_bearing = if approaching { libm::atan2(crossing.y, CROSSING_DEPTH) } else { 0.0 };
+        Ball { approaching, time_to_cross: crossing.time, crossing_y: crossing.y, crossing_bearing, ..self }
+    }
+}
+
+impl Pose {
+    /// The pose as a transformation from the robot's frame to the field frame.
+    pub fn field_from_robot(&self) -> Isometry2<f64> {
+        geometry::pose(self.x, self.y, self.heading)
+    }
+
+    pub(crate) fn from_filter(filter: &Localisation) -> Pose {
+        let pose = filter.field_from_robot();
+        Pose {
+            x: pose.translation.x,
+            y: pose.translation.y,
+            heading: heading(&pose),
+            confidence: filter.confidence(),
+        }
+    }
+}
+
+impl SensorEntry {
+    /// The pose of the robot relative to the start of accumulation.
+    pub(crate) fn odometry(&self) -> Isometry2<f64> {
+        geometry::pose(self.odometry_x, self.odometry_y, self.odometry_heading)
+    }
+}
+
+impl OtherRobot {
+    /// Its position in the robot's frame.
+    pub fn position(&self) -> Point2<f64> {
+        Point2::new(self.x, self.y)
+    }
+}
+
+impl GameState {
+    /// The model of the field.
+    pub fn field(&self) -> FieldModel {
+        FieldModel {
+            length: self.field_length,
+            width: self.field_width,
+            goal_width: self.goal_width,
+            area_depth: self.area_depth,
+            area_width: self.area_width,
+        }
+    }
+
+    /// The goal of the given colour.
+    pub(crate) fn goal_of(&self, colour: i32) -> Goal {
+        if colour == self.goal_to_attack { Goal::Opponent } else { Goal::Own }
+    }
+
+    pub(crate) fn state(&self) -> game::PlayerState {
+        match self.player_state() {
+            PlayerState::Initial => game::PlayerState::Initial,
+            PlayerState::Ready => game::PlayerState::Ready,
+            PlayerState::Set => game::PlayerState::Set,
+            PlayerState::Playing => game::PlayerState::Playing,
+            PlayerState::Penalized => game::PlayerState::Penalized,
+            PlayerState::Finished => game::PlayerState::Finished,
+        }
+    }
+}
+
+impl From<game::PlayerState> for PlayerState {
+    fn from(state: game::PlayerState) -> PlayerState {
+        match state {
+            game::PlayerState::Initial => PlayerState::Initial,
+            game::PlayerState::Ready => PlayerState::Ready,
+            game::PlayerState::Set => PlayerState::Set,
+            game::PlayerState::Playing => PlayerState::Playing,
+            game::PlayerState::Penalized => PlayerState::Penalized,
+            game::PlayerState::Finished => PlayerState::Finished,
+        }
+    }
+}
+
+impl MotionRequest {
+    /// The request as input of the motion arbiter.
+    pub(crate) fn request(&self, age: Duration) -> PendingRequest {
+        let wish = match self.kind() {
+            MotionKind::Stand => DesiredMotion::Stand,
+            MotionKind::Walk => DesiredMotion::Walk(Walk { ahead: self.vx, left: self.vy, turn: self.wz }),
+            MotionKind::KickLeft => DesiredMotion::Skill(Skill::KickLeft),
+            MotionKind::KickRight => DesiredMotion::Skill(Skill::KickRight),
+            MotionKind::FallLeft => DesiredMotion::Skill(Skill::FallLeft),
+            MotionKind::FallRight => DesiredMotion::Skill(Skill::FallRight),
+            MotionKind::DiveLeft => DesiredMotion::Skill(Skill::DiveLeft),
+            MotionKind::DiveRight => DesiredMotion::Skill(Skill::DiveRight),
+            MotionKind::StandUp => DesiredMotion::Skill(Skill::StandUp),
+        };
+        PendingRequest { wish, number: self.number, age }
+    }
+}
+
+pub(crate) fn phase(phase: GamePhase) -> game::GamePhase {
+    match phase {
+        GamePhase::Initial => game::GamePhase::Initial,
+        GamePhase::Ready => game::GamePhase::Ready,
+        GamePhase::Set => game::GamePhase::Set,
+        GamePhase::Playing => game::GamePhase::Playing,
+        GamePhase::Finished => game::GamePhase::Finished,
+    }
+}
+
+pub(crate) fn report(sensors: &monas_robot::Sensors) -> BodyReport {
+    let posture = match sensors.posture() {
+        BodyPosture::Standing | BodyPosture::Walking => Posture::Upright,
+        BodyPosture::Busy | BodyPosture::StandingUp | BodyPosture::Sitting | BodyPosture::Unknown => {
+            Posture::Busy
+        }
+        BodyPosture::Fallen => Posture::Fallen,
+        BodyPosture::Lifted => Posture::Lifted,
+    };
+    BodyReport { posture, skill_done: sensors.skill_done }
+}
+
+/// The motion since the sensors' previous message: the new pose in the old frame.
+pub(crate) fn odometry(sensors: &monas_robot::Sensors) -> Isometry2<f64> {
+    geometry::pose(sensors.odometry_x, sensors.odometry_y, sensors.odometry_turn)
+}
+
+/// The position of a sighted object in the robot's frame.
+pub(crate) fn position(sighting: &Sighting) -> Point2<f64> {
+    geometry::polar(sighting.distance, sighting.bearing).into()
+}
+
+/// A sighting of a goal post; none for other objects.
+pub(crate) fn post(sighting: &Sighting, game: &GameState) -> Option<PostSighting> {
+    let post = match sighting.kind() {
+        ObjectKind::LeftPost => GoalPost::Left,
+        ObjectKind::RightPost => GoalPost::Right,
+        ObjectKind::SomePost => GoalPost::Either,
+        _ => return None,
+    };
+    let goal = game.goal_of(sighting.colour);
+    Some(PostSighting { goal, post, distance: sighting.distance, bearing: sighting.bearing })
+}
+
+/// The commands to the body: motion, head (yaw, pitch) and LEDs.
+pub(crate) fn actuators(
+    order: &MotionCommand,
+    (head_yaw, head_pitch): (f64, f64),
+    lights: LedRequest,
+) -> Actuators {
+    let skill = match order.skill {
+        None => BodySkill::NoSkill,
+        Some(Skill::KickLeft) => BodySkill::KickLeft,
+        Some(Skill::KickRight) => BodySkill::KickRight,
+        Some(Skill::FallLeft) => BodySkill::FallLeft,
+        Some(Skill::FallRight) => BodySkill::FallRight,
+        Some(Skill::DiveLeft) => BodySkill::DiveLeft,
+        Some(Skill::DiveRight) => BodySkill::DiveRight,
+        Some(Skill::StandUp) => BodySkill::StandUp,
+    };
+    Actuators {
+        walk_x: order.walk.ahead,
+        walk_y: order.walk.left,
+        walk_turn: order.walk.turn,
+        head_yaw,
+        head_pitch,
+        skill: skill.into(),
+        skill_number: order.skill_number,
+        left_eye: lights.left_eye,
+        right_eye: lights.right_eye,
+        chest: lights.chest,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_have_the_same_numbers_on_both_sides() {
+        for number in 0..=9 {
+            let body = monas_robot::Colour::try_from(number).map(|colour| colour.as_str_name().to_owned());
+            let soccer = crate::Colour::try_from(number).map(|colour| colour.as_str_name().to_owned());
+            assert_eq!(body.ok(), soccer.ok(), "colour {number}");
+        }
+    }
+
+    #[test]
+    fn a_ball_that_does_not_cross_has_no_crossing() {
+        let ball = Ball { x: 1.0, ..Ball::default() };
+        let far = ball.with_crossing(None);
+        assert!(!far.approaching && far.time_to_cross >= 1e6 && far.crossing_bearing == 0.0);
+        let near = far.with_crossing(Some(Crossing { time: 0.5, y: -0.6 }));
+        assert!(near.approaching && near.time_to_cross == 0.5);
+        assert!((near.crossing_bearing + std::f64::consts::FRAC_PI_4).abs() < 1e-12);
+    }
+}

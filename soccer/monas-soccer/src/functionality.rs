@@ -1,0 +1,22 @@
+//! The algorithms of a player: independent of messages, topics and blackboards, so that they can be
+//! used and tested alone.
+
+pub mod aim;
+pub mod align;
+pub mod approach;
+pub mod attack;
+pub mod avoidance;
+pub mod ball_filter;
+pub mod field;
+pub mod game;
+pub mod geometry;
+pub mod guard;
+pub mod head;
+pub mod interception;
+pub mod kicks;
+pub mod lights;
+pub mod localisation;
+pub mod motion;
+pub mod obstacles;
+pub mod support;
+pub mod walk;

@@ -1,0 +1,321 @@
+//! Evaluates an attack of two players: their parts, whether a pass or a shot is open, and the
+//! outcome.
+//!
+//! Each player evaluates this from its perception and the reports of its team mates, so two players
+//! may disagree temporarily. Parts are assigned with a margin: while it is unclear which player is
+//! nearer to the ball, no player has a part.
+
+use nalgebra::{Point2, Vector2};
+
+use super::aim::shot_target;
+use super::field::FieldModel;
+use super::geometry::{angle_of, distance_to_segment, wrap};
+
+/// Distance within which a robot has the ball in reach, metres.
+pub const REACH: f64 = 0.35;
+/// Least difference between the distances of center and partner from the ball, metres.
+const MARGIN: f64 = 0.4;
+/// Least distance of robots from the line of a pass or shot, metres: robot, ball and a margin.
+const WAY: f64 = 0.3;
+/// Least and greatest length of a pass, metres.
+const PASS: (f64, f64) = (0.7, 3.5);
+/// Accepted error of the heading for a kick, radians.
+const FACING: f64 = 0.22;
+/// How long after a pass the ball belongs to the partner, and how long a shot counts as outcome,
+/// seconds.
+const PASSED: f64 = 8.0;
+const SHOT: f64 = 1.0;
+/// Prediction time for a rolling ball, seconds.
+const FORESIGHT: f64 = 0.4;
+
+/// A part in the attack.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum AttackRole {
+    /// Walks to the ball and passes it.
+    Center,
+    /// Walks towards the goal and shoots.
+    CenterFor,
+}
+
+/// A field player of the own team. Positions are in the field frame of the team.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct AttackPlayer {
+    /// Its number.
+    pub number: u32,
+    /// Its position.
+    pub place: Point2<f64>,
+    /// Its heading, radians.
+    pub heading: f64,
+    /// Its distance from the ball, metres.
+    pub ball_distance: f64,
+    /// Seconds since its last pass.
+    pub since_pass: f64,
+    /// Seconds since its last other kick.
+    pub since_shot: f64,
+}
+
+/// Inputs of the evaluation. Positions are in the field frame of the team.
+#[derive(Clone, PartialEq, Debug)]
+pub struct AttackSituation<'a> {
+    /// The field.
+    pub field: FieldModel,
+    /// The position of the ball.
+    pub ball: Point2<f64>,
+    /// Its velocity.
+    pub rolling: Vector2<f64>,
+    /// Whether the ball lies at a kick point of the evaluating player.
+    pub at_foot: bool,
+    /// The evaluating player.
+    pub own: AttackPlayer,
+    /// The other field players.
+    pub mates: &'a [AttackPlayer],
+    /// Positions of opponents that were seen.
+    pub opponents: &'a [Point2<f64>],
+}
+
+/// The state of an attack from the view of the evaluating player.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct AttackState {
+    /// No robot has the ball within reach.
+    pub ball_is_free: bool,
+    /// The center is nearer to the ball than every other known robot.
+    pub center_is_closest: bool,
+    /// The partner is the farthest, by more than the margin.
+    pub center_for_is_farthest: bool,
+    /// The player's own part.
+    pub part: Option<AttackRole>,
+    /// This player is at the ball and faces the partner, with no robot in between.
+    pub pass_is_open: bool,
+    /// The center has passed recently.
+    pub ball_is_passed: bool,
+    /// This player is at the ball and faces a part of the goal, with no robot in between.
+    pub path_is_clear: bool,
+    /// The position of the partner.
+    pub mate: Option<Point2<f64>>,
+    /// A player of the team has just shot.
+    pub shot_at_goal: bool,
+    /// An opponent has the ball.
+    pub opponent_has_ball: bool,
+    /// The ball is over a line or about to cross it.
+    pub ball_is_out: bool,
+}
+
+/// Evaluates a situation. Conditions that do not need two players are evaluated for any number.
+pub fn evaluate(scene: &AttackSituation<'_>) -> AttackState {
+    let alone = AttackState {
+        ball_is_free: ball_is_free(scene),
+        shot_at_goal: players(scene).any(|it| it.since_shot < SHOT),
+        opponent_has_ball: opponent_has_ball(scene),
+        ball_is_out: ball_is_out(scene),
+        ..AttackState::default()
+    };
+    let Some((center, center_for)) = parts(scene) else { return alone };
+    let (part, mate) = match scene.own.number {
+        number if number == center.number => (Some(AttackRole::Center), Some(center_for.place)),
+        number if number == center_for.number => (Some(AttackRole::CenterFor), Some(center.place)),
+        _ => (None, None),
+    };
+    AttackState {
+        center_is_closest: scene.opponents.iter().all(|it| (it - scene.ball).norm() > center.ball_distance),
+        center_for_is_farthest: center_for.ball_distance > center.ball_distance + MARGIN,
+        part,
+        mate,
+        pass_is_open: part == Some(AttackRole::Center) && pass_is_open(scene, center_for.place),
+        ball_is_passed: center.since_pass < PASSED,
+        path_is_clear: part == Some(AttackRole::CenterFor) && path_is_clear(scene),
+        ..alone
+    }
+}
+
+fn players<'a>(scene: &'a AttackSituation<'_>) -> impl Iterator<Item = &'a AttackPlayer> {
+    scene.mates.iter().chain([&scene.own])
+}
+
+/// The center and its partner: the players nearest to and farthest from the ball. During a pass:
+/// the player that has passed, and the nearest of the others.
+fn parts<'a>(scene: &'a AttackSituation<'_>) -> Option<(&'a AttackPlayer, &'a AttackPlayer)> {
+    let nearest_but = |but: Option<u32>| {
+        let others = players(scene).filter(move |it| Some(it.number) != but);
+        others.min_by(|a, b| a.ball_distance.total_cmp(&b.ball_distance).then(a.number.cmp(&b.number)))
+    };
+    let passers = players(scene).filter(|it| it.since_pass < PASSED);
+    if let Some(passer) = passers.min_by(|a, b| a.since_pass.total_cmp(&b.since_pass)) {
+        return Some((passer, nearest_but(Some(passer.number))?));
+    }
+    let nearest = nearest_but(None)?;
+    let others = players(scene).filter(|it| it.number != nearest.number);
+    let farthest =
+        others.max_by(|a, b| a.ball_distance.total_cmp(&b.ball_distance).then(a.number.cmp(&b.number)));
+    Some((nearest, farthest?))
+}
+
+fn ball_is_free(scene: &AttackSituation<'_>) -> bool {
+    let of_team = players(scene).all(|it| it.ball_distance > REACH);
+    of_team && scene.opponents.iter().all(|it| (it - scene.ball).norm() > REACH)
+}
+
+fn opponent_has_ball(scene: &AttackSituation<'_>) -> bool {
+    let own = players(scene).map(|it| it.ball_distance).fold(f64::INFINITY, f64::min);
+    scene.opponents.iter().map(|it| (it - scene.ball).norm()).any(|it| it < REACH && it < own)
+}
+
+fn ball_is_out(scene: &AttackSituation<'_>) -> bool {
+    let FieldModel { length, width, .. } = scene.field;
+    let then = scene.ball + scene.rolling * FORESIGHT;
+    then.x.abs() > length / 2.0 || then.y.abs() > width / 2.0
+}
+
+fn pass_is_open(scene: &AttackSituation<'_>, receiver: Point2<f64>) -> bool {
+    let way = (receiver - scene.ball).norm();
+    (PASS.0..PASS.1).contains(&way) && faces(scene, receiver) && is_free(scene, receiver)
+}
+
+fn path_is_clear(scene: &AttackSituation<'_>) -> bool {
+    let target = shot_target(&scene.field, scene.ball, scene.opponents);
+    faces(scene, target) && is_free(scene, target)
+}
+
+/// Whether the player stands at the ball so that a kick goes to the target.
+fn faces(scene: &AttackSituation<'_>, target: Point2<f64>) -> bool {
+    scene.at_foot && wrap(angle_of(&(target - scene.ball)) - scene.own.heading).abs() < FACING
+}
+
+fn is_free(scene: &AttackSituation<'_>, target: Point2<f64>) -> bool {
+    scene.opponents.iter().all(|it| distance_to_segment(*it, scene.ball, target).0 > WAY)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn player(number: u32, x: f64, y: f64) -> AttackPlayer {
+        let place = Point2::new(x, y);
+        let far = f64::INFINITY;
+        AttackPlayer {
+            number,
+            place,
+            heading: 0.0,
+            ball_distance: place.coords.norm(),
+            since_pass: far,
+            since_shot: far,
+        }
+    }
+
+    /// The ball lies in the middle of the field; player 2 evaluates.
+    fn scene<'a>(
+        own: AttackPlayer,
+        mates: &'a [AttackPlayer],
+        opponents: &'a [Point2<f64>],
+    ) -> AttackSituation<'a> {
+        let (ball, rolling) = (Point2::origin(), Vector2::zeros());
+        AttackSituation {
+            field: FieldModel::LEAGUE_2010,
+            ball,
+            rolling,
+            at_foot: false,
+            own,
+            mates,
+            opponents,
+        }
+    }
+
+    #[test]
+    fn both_agree_on_who_takes_which_part() {
+        let (near, far) = (player(2, -1.0, 0.0), player(3, -1.0, 1.5));
+        let one = evaluate(&scene(near, &[far], &[]));
+        let other = evaluate(&scene(far, &[near], &[]));
+        assert_eq!((one.part, other.part), (Some(AttackRole::Center), Some(AttackRole::CenterFor)));
+        assert_eq!((one.mate, other.mate), (Some(far.place), Some(near.place)));
+        for it in [one, other] {
+            assert!(it.ball_is_free && it.center_is_closest && it.center_for_is_farthest);
+        }
+    }
+
+    #[test]
+    fn of_three_the_one_in_between_has_no_part() {
+        let (near, far) = (player(3, -0.5, 0.0), player(4, -2.5, 0.0));
+        assert_eq!(evaluate(&scene(player(2, -1.0, 0.0), &[near, far], &[])).part, None);
+    }
+
+    #[test]
+    fn a_ball_in_reach_of_any_robot_is_not_free() {
+        let (own, mate) = (player(2, -1.0, 0.0), player(3, -2.0, 0.0));
+        let judged = |own, mate, opponent| evaluate(&scene(own, &[mate], &[opponent])).ball_is_free;
+        let away = Point2::new(2.0, 0.0);
+        assert!(judged(own, mate, away));
+        assert!(!judged(player(2, 0.2, 0.0), mate, away));
+        assert!(!judged(own, player(3, 0.0, 0.3), away));
+        assert!(!judged(own, mate, Point2::new(0.0, -0.3)));
+    }
+
+    #[test]
+    fn rules_fail_where_an_opponent_is_nearer_or_the_two_are_equally_near() {
+        let (own, mate) = (player(2, -1.0, 0.0), player(3, -2.0, 0.0));
+        assert!(!evaluate(&scene(own, &[mate], &[Point2::new(0.0, 0.8)])).center_is_closest);
+        assert!(!evaluate(&scene(own, &[player(3, 0.0, 1.1)], &[])).center_for_is_farthest);
+    }
+
+    #[test]
+    fn a_pass_is_open_when_the_center_faces_its_partner_and_no_robot_is_between() {
+        let center = AttackPlayer { heading: 0.5, ..player(2, -0.15, -0.05) };
+        let other = player(3, 1.5, 0.8);
+        let open = |at_foot, own, mate, opponents: &[Point2<f64>]| {
+            evaluate(&AttackSituation { at_foot, ..scene(own, &[mate], opponents) }).pass_is_open
+        };
+        assert!(open(true, center, other, &[]));
+        assert!(!open(false, center, other, &[]), "the ball is not at its foot");
+        assert!(!open(true, AttackPlayer { heading: 0.0, ..center }, other, &[]), "it faces elsewhere");
+        assert!(!open(true, center, other, &[Point2::new(0.8, 0.3)]), "a robot is between");
+        assert!(!open(true, center, player(3, 0.5, 0.27), &[]), "the other is too near");
+        assert!(!open(true, other, center, &[]), "it is not the center");
+    }
+
+    #[test]
+    fn after_a_pass_the_parts_stay_though_the_other_is_nearer_now() {
+        let passer = AttackPlayer { since_pass: 2.0, ..player(2, -1.0, 0.0) };
+        let other = AttackPlayer { heading: 0.0, ..player(3, -0.15, 0.0) };
+        let it = evaluate(&AttackSituation { at_foot: true, ..scene(other, &[passer], &[]) });
+        assert!(it.part == Some(AttackRole::CenterFor) && it.ball_is_passed && it.path_is_clear);
+        let it = evaluate(&scene(passer, &[other], &[]));
+        assert!(it.part == Some(AttackRole::Center) && it.ball_is_passed && !it.shot_at_goal);
+        let forgotten = AttackPlayer { since_pass: PASSED, ..passer };
+        let it = evaluate(&scene(forgotten, &[other], &[]));
+        assert!(it.part == Some(AttackRole::CenterFor) && !it.ball_is_passed);
+    }
+
+    #[test]
+    fn a_path_is_clear_when_part_of_the_goal_is() {
+        let passer = AttackPlayer { since_pass: 2.0, ..player(2, -1.0, 0.0) };
+        let shooter = |heading| AttackPlayer { heading, ..player(3, -0.15, 0.0) };
+        let clear = |heading, opponents: &[Point2<f64>]| {
+            evaluate(&AttackSituation { at_foot: true, ..scene(shooter(heading), &[passer], opponents) })
+                .path_is_clear
+        };
+        assert!(clear(0.0, &[]) && !clear(0.5, &[]));
+        assert!(!clear(0.0, &[Point2::new(0.5, 0.0)]), "all of it is covered");
+    }
+
+    #[test]
+    fn each_outcome_is_seen() {
+        let (own, mate) = (player(2, -1.0, 0.0), player(3, -2.0, 0.0));
+        let nothing = evaluate(&scene(own, &[mate], &[Point2::new(1.0, 0.0)]));
+        assert!(!nothing.shot_at_goal && !nothing.opponent_has_ball && !nothing.ball_is_out);
+        let shot = AttackPlayer { since_shot: 0.5, ..mate };
+        assert!(evaluate(&scene(own, &[shot], &[])).shot_at_goal);
+        assert!(evaluate(&scene(own, &[mate], &[Point2::new(0.3, 0.0)])).opponent_has_ball);
+        let contested = player(2, 0.2, 0.0);
+        assert!(!evaluate(&scene(contested, &[mate], &[Point2::new(0.3, 0.0)])).opponent_has_ball);
+        for (place, rolling, is_out) in [
+            ((0.0, 1.9), (0.0, 1.0), true),
+            ((0.0, 1.9), (0.0, -1.0), false),
+            ((3.1, 0.0), (0.0, 0.0), true),
+            ((1.0, 1.0), (0.5, 0.5), false),
+        ] {
+            let (ball, rolling) = (Point2::new(place.0, place.1), Vector2::new(rolling.0, rolling.1));
+            assert_eq!(
+                evaluate(&AttackSituation { ball, rolling, ..scene(own, &[mate], &[]) }).ball_is_out,
+                is_out
+            );
+        }
+    }
+}

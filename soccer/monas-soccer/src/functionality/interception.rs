@@ -1,0 +1,59 @@
+//! When and where a rolling ball crosses the robot's lateral axis.
+
+use nalgebra::{Point2, Vector2};
+
+/// Where a ball crosses the line x = 0 of the robot's frame.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Crossing {
+    /// Seconds from now.
+    pub time: f64,
+    /// Position on the axis, metres to the left of the robot.
+    pub y: f64,
+}
+
+/// Where a ball ahead of the robot crosses its lateral axis, if it does so before friction stops
+/// it.
+///
+/// It rolls straight and decelerates by `deceleration` m/s², so the time for a distance `s` is the
+/// smaller root of `s = v t - a t²/2`.
+pub fn crossing(position: Point2<f64>, velocity: Vector2<f64>, deceleration: f64) -> Option<Crossing> {
+    let speed = velocity.norm();
+    if position.x <= 0.0 || velocity.x >= 0.0 {
+        return None;
+    }
+    let way = position.x * speed / -velocity.x;
+    let root = speed * speed - 2.0 * deceleration * way;
+    if root < 0.0 {
+        return None;
+    }
+    // The smaller root, in a form that also holds without friction.
+    let time = 2.0 * way / (speed + root.sqrt());
+    let y = position.y + velocity.y * position.x / -velocity.x;
+    (time.is_finite() && y.is_finite()).then_some(Crossing { time, y })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_friction_it_takes_the_way_over_the_speed() {
+        let crossing = crossing(Point2::new(2.0, 0.5), Vector2::new(-1.0, -0.5), 0.0).unwrap();
+        assert!((crossing.time - 2.0).abs() < 1e-12);
+        assert!((crossing.y - -0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn friction_delays_it_and_may_stop_it() {
+        let late = crossing(Point2::new(1.5, 0.0), Vector2::new(-1.0, 0.0), 0.25).unwrap();
+        assert!((late.time - 2.0).abs() < 1e-12, "1.5 = t - t²/8 at t = 2: {late:?}");
+        assert_eq!(crossing(Point2::new(2.1, 0.0), Vector2::new(-1.0, 0.0), 0.25), None);
+    }
+
+    #[test]
+    fn a_ball_behind_or_leaving_does_not_cross() {
+        assert_eq!(crossing(Point2::new(-1.0, 0.0), Vector2::new(-1.0, 0.0), 0.25), None);
+        assert_eq!(crossing(Point2::new(1.0, 0.0), Vector2::new(0.5, 0.0), 0.25), None);
+        assert_eq!(crossing(Point2::new(1.0, 0.0), Vector2::zeros(), 0.25), None);
+    }
+}
