@@ -209,7 +209,7 @@ fn a_robot_gets_program_configuration_and_models_and_runs_them_and_what_fails_do
     let broken = script(&site.at("broken"), "exit 126");
     let answer = site.deploy(&["--program", &broken]);
     assert_eq!(answer.code, Some(1), "{answer:?}");
-    assert!(answer.err.contains("does not start there, and is not used"), "{}", answer.err);
+    assert!(answer.err.contains("does not start on the robot, and is not used"), "{}", answer.err);
     assert_eq!(site.current(), two);
 
     let back = site.deploy(&["--rollback"]);
@@ -259,7 +259,7 @@ fn what_arrives_changed_is_not_used_and_a_robot_that_is_not_there_is_said_to_be(
     site.describe("config/roles/goalie.xml", &way, "script");
     let answer = site.deploy(&["--program", "/bin/true"]);
     assert_eq!(answer.code, Some(1), "{answer:?}");
-    assert!(answer.err.contains("what has arrived is not what was sent"), "{}", answer.err);
+    assert!(answer.err.contains("the copy differs from the release and is not used"), "{}", answer.err);
     assert!(answer.err.contains("config/roles/goalie.xml: FAILED"), "{}", answer.err);
     assert!(!site.there("current").exists());
     let back = site.deploy(&["--rollback"]);
@@ -270,7 +270,7 @@ fn what_arrives_changed_is_not_used_and_a_robot_that_is_not_there_is_said_to_be(
     let answer = site.deploy(&["--list"]);
     assert_eq!(answer.code, Some(4), "{answer:?}");
     assert!(
-        answer.err.contains("nao-2 is not reached") && answer.err.contains("no route to host"),
+        answer.err.contains("nao-2 cannot be reached") && answer.err.contains("no route to host"),
         "{}",
         answer.err
     );
