@@ -9,7 +9,8 @@ use narukom::Blackboard;
 use yase::Activation;
 
 use crate::activity::{Activity, BoxError, Progress};
-use crate::logger::{self, ActivityContext};
+use crate::logger::calling;
+use crate::logger::ActivityContext;
 use crate::parameters::Parameters;
 
 /// Failure of a call of an activity.
@@ -94,7 +95,7 @@ impl ActivityCall {
 
     fn call(&mut self) -> CallResult {
         let ActivityCall { activity, context, cycle, is_started, is_called, blackboard, .. } = self;
-        logger::calling(context, *cycle, || {
+        calling(context, *cycle, || {
             if !*is_started {
                 start(activity.as_mut(), blackboard)?;
                 *is_started = true;

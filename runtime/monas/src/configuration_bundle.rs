@@ -8,7 +8,6 @@ use std::sync::Arc;
 
 use yase::{Source, Span};
 
-use crate::config;
 use crate::config::{Element, Grammar};
 
 /// Name endings and media types of the configurations and models included in a bundle. Other files,
@@ -166,7 +165,7 @@ impl NamedFile {
         if named.is_absolute() {
             return Some(normal(named));
         }
-        self.is_module.then(|| config::locate(path, &self.text).ok()).flatten()
+        self.is_module.then(|| crate::config::locate(path, &self.text).ok()).flatten()
     }
 }
 
@@ -200,12 +199,12 @@ fn collect(path: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
     if media_type(path).is_none() || found.contains_key(path) {
         return;
     }
-    let Ok(source) = config::read_file(path) else { return };
+    let Ok(source) = crate::config::read_file(path) else { return };
     let content = source.text.clone().into_bytes();
     let (_, named) = named_in(path, &content);
     found.insert(path.to_owned(), content);
     for named in named.iter().filter(|named| !named.is_module) {
-        if let Ok(file) = config::locate(path, &named.text) {
+        if let Ok(file) = crate::config::locate(path, &named.text) {
             collect(&normal(&file), found);
         }
     }

@@ -10,10 +10,13 @@ use narukom::{Blackboard, Timestamp};
 use crate::activity::Activity;
 use crate::agent::{FailurePolicy, ListedActivity};
 use crate::call::{self, CallFailure};
-use crate::logger::{self, ActivityContext};
+use crate::logger::calling;
+use crate::logger::ActivityContext;
 use crate::memory::LeakDetector;
 use crate::statistics::{ActivityStatistics, Timing};
-use crate::talws::{RunClock, Watchdog, cpu_time};
+use crate::talws::RunClock;
+use crate::talws::Watchdog;
+use crate::talws::cpu_time;
 
 pub(crate) use edit::ListEdit;
 
@@ -262,7 +265,7 @@ impl ListEntry {
             // Whatever it returns, its next call is in the next cycle.
             call::execute(activity, blackboard).map(drop)
         };
-        logger::calling(&self.caller, cycle, || match counts {
+        calling(&self.caller, cycle, || match counts {
             true => self.caller.account.with_account(call),
             false => call(),
         })?;

@@ -38,7 +38,6 @@ use yase::{Diagnostic, Source, Span};
 
 use crate::activity::BoxError;
 use crate::agent::Agent;
-use crate::config;
 use crate::error::{Error, ErrorKind};
 use crate::link_config::LinkConfig;
 use crate::listener::ChartListener;
@@ -166,7 +165,7 @@ impl Talws {
     /// [`ErrorKind::Invalid`](crate::ErrorKind::Invalid) with every diagnostic of the file and of
     /// the models that it names.
     pub fn from_config(path: impl AsRef<Path>, registry: Registry) -> Result<Talws, Error> {
-        let (setup, diagnostics) = config::load(path, &registry);
+        let (setup, diagnostics) = crate::config::load(path, &registry);
         if diagnostics.iter().any(|diagnostic| diagnostic.is_error()) {
             return Err(Error::invalid(diagnostics));
         }
@@ -176,8 +175,8 @@ impl Talws {
 
     /// Adds the agents, links and modules of a configuration to the host [`LOCAL`](Talws::LOCAL).
     /// Changes at runtime can be saved into its text.
-    pub fn setup(mut self, setup: config::HostSetup) -> Talws {
-        let config::HostSetup { agents, links, modules, source } = setup;
+    pub fn setup(mut self, setup: crate::config::HostSetup) -> Talws {
+        let crate::config::HostSetup { agents, links, modules, source } = setup;
         let local = self.local();
         local.modules.extend(modules);
         local.agents.extend(agents);

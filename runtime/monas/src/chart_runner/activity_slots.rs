@@ -18,7 +18,8 @@ use yase::{Activation, CompiledChart, NodeId, TraceRecord};
 
 use crate::activity::{Activity, Topics};
 use crate::call::{self, ActivityCall, CallTiming, FinishedCall};
-use crate::logger::{self, ActivityContext};
+use crate::logger::calling;
+use crate::logger::ActivityContext;
 use crate::memory::LeakDetector;
 use crate::parameters::Parameters;
 use crate::statistics::{ActivityStatistics, Timing};
@@ -635,7 +636,7 @@ impl ActivitySlot {
 
     /// Stops an instance that was replaced while it was running.
     fn end(&self, mut activity: Box<dyn Activity>, is_started: bool, blackboard: &mut Blackboard) {
-        let stopped = logger::calling(&self.context, 0, || match is_started {
+        let stopped = calling(&self.context, 0, || match is_started {
             true => call::stop(activity.as_mut(), blackboard),
             false => Ok(()),
         });

@@ -13,7 +13,10 @@ use super::element::{Attribute, Element};
 use super::grammar::Grammar;
 use super::paths;
 use super::values::Values;
-use crate::link_config::{Certificates, LinkConfig, LinkTransport, ZenohEndpoints};
+use crate::link_config::Certificates;
+use crate::link_config::LinkConfig;
+use crate::link_config::LinkTransport;
+use crate::link_config::ZenohEndpoints;
 
 /// Elements that apply to zenoh only.
 const OF_ZENOH: [&str; 3] = ["connect", "listen", "certificates"];

@@ -8,7 +8,8 @@ use crate::activity::Activity;
 use crate::agent::{ChartSettings, FailurePolicy};
 use crate::chart_runner::{AgentDefaults, ChartRunner, ModelSwap};
 use crate::frequency::Frequency;
-use crate::list::{ActivityList, ListEdit};
+use crate::list::ActivityList;
+use crate::list::ListEdit;
 
 /// The effects of one change on an agent. Its list and its charts each apply their share between
 /// two of their cycles.

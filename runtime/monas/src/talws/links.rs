@@ -11,7 +11,9 @@ use narukom::{HostId, Hub, Timestamp, TopicSlot};
 use super::clock::RunClock;
 use super::stop_handle::StopHandle;
 use crate::error::{Error, ErrorKind};
-use crate::link_config::{LinkConfig, LinkStatistics, LinkTransport};
+use crate::link_config::LinkConfig;
+use crate::link_config::LinkStatistics;
+use crate::link_config::LinkTransport;
 
 /// Maximum wait for the clock of another end.
 const PATIENCE: Duration = Duration::from_secs(30);

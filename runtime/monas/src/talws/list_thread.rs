@@ -14,7 +14,9 @@ use super::deadlines::Deadlines;
 use super::scheduling::Scheduling;
 use super::sync::Wakeups;
 use crate::chart_runner::FinishedCall;
-use crate::list::{ActivityList, CycleOutcome, CycleTimer};
+use crate::list::ActivityList;
+use crate::list::CycleOutcome;
+use crate::list::CycleTimer;
 use crate::records::Delivery;
 use crate::statistics::{AgentStatistics, Timing};
 

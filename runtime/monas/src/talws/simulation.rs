@@ -16,7 +16,9 @@ use super::setup::{PreparedRun, WorldDriver};
 use super::stop_handle::StopHandle;
 use crate::coverage::ChartCoverage;
 use crate::error::{Error, ErrorKind};
-use crate::logger::{LogHosts, LogHostsGuard, SimulatedTimeGuard};
+use crate::logger::LogHosts;
+use crate::logger::LogHostsGuard;
+use crate::logger::SimulatedTimeGuard;
 use crate::records::{Change, Changed};
 use crate::statistics::Statistics;
 

@@ -13,7 +13,6 @@ use super::settings;
 use crate::agent::{ActivityProfile, AgentProfile, ChartProfile, ListedActivity};
 use crate::binder::Binder;
 use crate::chart_runner::ModelSwap;
-use crate::config;
 use crate::error::Error;
 use crate::list::ListEdit;
 use crate::parameters::Parameters;
@@ -269,7 +268,7 @@ impl PlanContext<'_> {
     fn add_agents(&self, is_wanted: impl Fn(&str) -> bool) -> Result<ChangePlan, ChangeRefusal> {
         let file = if self.change.file.is_empty() { "agents.xml" } else { &self.change.file };
         let source = Source::new(file, self.change.text.clone());
-        let (setup, diagnostics) = config::read(&source, Path::new(file), &self.host.registry);
+        let (setup, diagnostics) = crate::config::read(&source, Path::new(file), &self.host.registry);
         if diagnostics.iter().any(Diagnostic::is_error) {
             return Err(diagnostics);
         }

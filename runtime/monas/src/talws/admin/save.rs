@@ -5,7 +5,6 @@ use std::sync::Arc;
 use yase::Source;
 
 use crate::agent::AgentProfile;
-use crate::config;
 use crate::registry::Registry;
 
 /// The text of the configuration, brought up to date; a new one if it was not read from XML.
@@ -14,8 +13,8 @@ pub(crate) fn text(
     profiles: &[AgentProfile],
     registry: &Registry,
 ) -> String {
-    match configuration.filter(|source| !config::is_toml(&source.name)) {
-        Some(source) => config::updated(source, profiles, registry.modules()),
-        None => config::rewritten(profiles, registry.modules()),
+    match configuration.filter(|source| !crate::config::is_toml(&source.name)) {
+        Some(source) => crate::config::updated(source, profiles, registry.modules()),
+        None => crate::config::rewritten(profiles, registry.modules()),
     }
 }

@@ -18,7 +18,6 @@ use super::super::agent_instance::AgentInstance;
 use super::super::agent_update::{AgentStatus, AgentUpdate, ChangeRef};
 use super::replay_host::ReplayedAgent;
 use crate::agent::AgentProfile;
-use crate::config;
 use crate::error::{Error, ErrorKind};
 use crate::records::{Action, AgentEntry, Change, Changed};
 use crate::registry::Registry;
@@ -121,7 +120,7 @@ pub(crate) fn added(change: &Change, registry: &Registry) -> Vec<String> {
         return Vec::new();
     }
     let source = Source::new(&change.file, change.text.clone());
-    let (setup, _) = config::read(&source, Path::new(&change.file), registry);
+    let (setup, _) = crate::config::read(&source, Path::new(&change.file), registry);
     setup.agents.into_iter().map(|agent| agent.name).collect()
 }
 
