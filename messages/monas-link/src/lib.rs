@@ -101,6 +101,7 @@ mod error;
 pub mod fuzzed;
 mod inbox;
 mod link;
+mod link_config;
 mod protocol;
 mod settings;
 mod transport;
@@ -116,6 +117,7 @@ pub use bridge::HubBridge;
 pub use error::{Error, ErrorKind};
 pub use inbox::PacketInbox;
 pub use link::{Link, LinkReport, Transport};
+pub use link_config::{Certificates, LinkConfig, LinkStatistics, LinkTransport, ZenohEndpoints};
 pub use protocol::{
     AccessError, AccessList, BudgetUsage, ClockOffset, Counters, LinkTopic, MessageBytes, Mismatch, Node,
     NodeSettings, OutgoingPublication, Packet, ReceivedCounters, ReceivedMessage, Reliability, Schema,

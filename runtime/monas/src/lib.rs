@@ -66,78 +66,28 @@
 //! - **Execution is observable.** The [`records`] of all cycles and micro-steps are ordinary
 //!   messages, so that every recorder of topics records them.
 
-mod activity;
-mod agent;
-mod binder;
-mod call;
-mod chart_runner;
-pub mod config;
-mod configuration_bundle;
-mod coverage;
-mod error;
-mod frequency;
-mod function;
-pub mod generated;
-mod link_config;
-mod list;
-mod listener;
-pub mod logger;
-pub mod memory;
-mod module;
-mod monitors;
-mod parameters;
-mod publishing_activity;
-pub mod records;
-mod registry;
-mod run_hash;
-pub mod scenario;
-mod statistics;
-mod stopwatch;
-mod talws;
-mod unreachable_sources;
-mod vocabulary;
+pub use monas_core::{
+    Activity, ActivityStatistics, Agent, AgentStatistics, Blackboard, BoxError, BuildFingerprint,
+    ChartCoverage, ChartListener, ChartSettings, Error, ErrorKind, FailurePolicy, Frequency, Histogram, Hz,
+    IntoProgress, MicroStep, Module, MovingAverage, ParameterFault, Parameters, Percentiles, Progress,
+    Registry, RunHash, StateCoverage, Statistics, Stopwatch, TimeSource, Timestamp, TimingGuard,
+    TimingPolicy, Topics, Totals, TransitionCoverage, ViolationResponse,
+};
+pub use monas_core::{activity, function, module, statechart};
+pub use monas_core::{generated, memory, records, scenario};
 
-pub use activity::{Activity, BoxError, IntoProgress, Progress, Topics};
-pub use agent::{Agent, ChartSettings, FailurePolicy};
-pub use configuration_bundle::ConfigurationBundle;
-pub use coverage::{ChartCoverage, StateCoverage, TransitionCoverage};
-pub use error::{Error, ErrorKind};
-pub use frequency::{Frequency, Hz};
-pub use link_config::{Certificates, LinkConfig, LinkStatistics, LinkTransport, ZenohEndpoints};
-pub use listener::{ChartListener, MicroStep};
-pub use module::{BuildFingerprint, Module, ModuleFile};
-pub use monitors::ViolationResponse;
-pub use narukom::{Blackboard, Timestamp};
-pub use parameters::{ParameterFault, Parameters};
-pub use registry::Registry;
-pub use run_hash::RunHash;
-pub use statistics::{ActivityStatistics, AgentStatistics, MovingAverage, Percentiles, Statistics};
-pub use stopwatch::{Histogram, Stopwatch, TimeSource, TimingGuard, TimingPolicy, Totals};
-pub use talws::{HostConfig, RealTimeRun, RunHandle, Simulation, StopHandle, Talws, World};
+pub use monas_config as config;
+pub use monas_config::ConfigurationBundle;
+pub use monas_link::{Certificates, LinkConfig, LinkStatistics, LinkTransport, ZenohEndpoints};
+pub use monas_log as logger;
+pub use monas_log::fatal;
+pub use monas_module::ModuleFile;
+pub use monas_runtime::replay;
+pub use monas_runtime::{HostConfig, RealTimeRun, RunHandle, Simulation, StopHandle, Talws, World};
 
-/// Re-execution of agents on recorded inputs: [`Talws::replay`] and [`Talws::replay_real_time`].
-pub mod replay {
-    pub use crate::talws::{
-        ComparisonCounts, RecordedMessage, RecordedPublisher, RecordedStream, Replay, ReplayChannel,
-        ReplayDifference,
-    };
-}
-
-/// Internals measured by the benches of this crate.
+/// Items used by the expansions of macros.
 #[doc(hidden)]
-pub mod measured {
-    pub use crate::talws::round_trip::RoundTrip;
-}
-
-/// Items used by the expansions of this crate's macros.
-#[doc(hidden)]
-pub mod linked {
-    pub use crate::function::{Argument, FUNCTIONS, FunctionDeclaration, ReturnValue};
-    pub use crate::generated::{CHARTS, ChartDeclaration, assembled};
-    pub use crate::module::{ModuleAbi, NoteSection, open, padded_length};
-    pub use crate::registry::{ACTIVITIES, ActivityDeclaration};
-    pub use linkme;
-}
+pub use monas_core::linked;
 
 /// The Rust examples of the chapters in `docs`, tested with the documentation.
 #[cfg(doctest)]

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use monas::records::{Action, Change, Changed};
-use monas::{Agent, Hz, Module, ModuleFile, Registry, Simulation, Talws, config};
+use monas::{Agent, Hz, ModuleFile, Registry, Simulation, Talws, config};
 use monas_soccer::Ball;
 use monas_soccer::topics::BALL;
 
@@ -45,7 +45,7 @@ fn blind_robot() -> Simulation {
 
 #[test]
 fn what_a_module_publishes_is_read_as_what_it_is() {
-    let module = Module::load(eyes()).expect("it fits");
+    let module = ModuleFile::read(eyes()).and_then(|file| file.load()).expect("it fits");
     assert_eq!((module.name(), module.activity_names().collect::<Vec<_>>()), ("eyes", vec!["Eyes"]));
     let registry = Registry::linked().with_module(module).expect("no name is taken");
     let eyes = registry.activity("Eyes").expect("it is made");
@@ -57,7 +57,7 @@ fn what_a_module_publishes_is_read_as_what_it_is() {
 
 #[test]
 fn a_constructor_that_panics_is_reported_without_effect() {
-    let module = Module::load(blind_eyes()).expect("it fits");
+    let module = ModuleFile::read(blind_eyes()).and_then(|file| file.load()).expect("it fits");
     let registry = Registry::linked().with_module(module).expect("no name is taken");
     let error = registry.activity("Eyes").err().expect("it cannot be made");
     assert!(error.to_string().ends_with("cannot be made: panicked: no lens"), "{error}");

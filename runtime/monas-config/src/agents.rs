@@ -1,0 +1,279 @@
+//! Agents and links from elements: Listing 4.17 of the thesis, read with diagnostics.
+
+mod charts;
+mod monitors;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use yase::{Diagnostic, Source};
+
+use super::element::Element;
+use super::grammar::Grammar;
+use super::layers::Layers;
+use super::links::LinkReader;
+use super::modules;
+use super::resolve::{resolve, sort};
+use super::values::Values;
+use monas_core::activity::Activity;
+use monas_core::agent::{Agent, FailurePolicy, ListedActivity};
+use monas_core::call;
+use monas_core::error::ErrorKind;
+use monas_core::frequency::Hz;
+use monas_core::module::Module;
+use monas_core::parameters::Parameters;
+use monas_core::registry::Registry;
+use monas_link::LinkConfig;
+
+/// The setup of a host from a file.
+#[derive(Debug, Default)]
+pub struct HostSetup {
+    /// The agents that run on it.
+    pub agents: Vec<Agent>,
+    /// Its links to other processes and hosts.
+    pub links: Vec<LinkConfig>,
+    /// Its loaded modules; the registry of a run with these agents contains them.
+    pub modules: Vec<Module>,
+    /// The text they were read from.
+    pub source: Option<Arc<Source>>,
+}
+
+/// Reads the agents and links of a file, with diagnostics of the file and of the models it names.
+///
+/// A file whose diagnostics hold no [error](Diagnostic::is_error) can be run.
+pub fn load(path: impl AsRef<Path>, registry: &Registry) -> (HostSetup, Vec<Diagnostic>) {
+    load_with(path, registry, &Layers::new())
+}
+
+/// As [`load`], with layers that override the file.
+pub fn load_with(
+    path: impl AsRef<Path>,
+    registry: &Registry,
+    layers: &Layers,
+) -> (HostSetup, Vec<Diagnostic>) {
+    let resolved = resolve(path.as_ref(), &Grammar::agents(), layers);
+    let elements = resolved.elements.clone();
+    assembled(&elements, path.as_ref(), registry, resolved.into_diagnostics())
+}
+
+/// As [`load`], from a text in memory; models are resolved relative to `path`.
+pub fn read(source: &Arc<Source>, path: &Path, registry: &Registry) -> (HostSetup, Vec<Diagnostic>) {
+    let (elements, diagnostics) = Grammar::agents().read(source);
+    assembled(&elements, path, registry, diagnostics)
+}
+
+fn assembled(
+    elements: &[Element],
+    path: &Path,
+    registry: &Registry,
+    mut diagnostics: Vec<Diagnostic>,
+) -> (HostSetup, Vec<Diagnostic>) {
+    let setup = assemble(elements, path, registry, &mut diagnostics);
+    sort(&mut diagnostics);
+    (setup, diagnostics)
+}
+
+/// The agents and links described by checked elements, with the errors that the grammar cannot
+/// detect; models are resolved relative to `path`.
+pub fn assemble(
+    elements: &[Element],
+    path: &Path,
+    registry: &Registry,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> HostSetup {
+    let grammar = Grammar::agents();
+    let (registry, setup) = (registry.clone(), HostSetup::default());
+    let mut reader = AgentReader { path, registry, grammar: &grammar, diagnostics, setup };
+    reader.setup.source = elements.first().map(|element| element.source().clone());
+    // Modules are read first: their activities are known to all elements of the file.
+    modules::read(&mut reader, elements);
+    // Links are read first: activities executed elsewhere are checked against them.
+    reader.links(elements);
+    reader.agents(elements);
+    reader.setup
+}
+
+pub(crate) struct AgentReader<'a> {
+    pub(crate) path: &'a Path,
+    /// Including the modules of the file.
+    pub(crate) registry: Registry,
+    pub(crate) grammar: &'a Grammar,
+    pub(crate) diagnostics: &'a mut Vec<Diagnostic>,
+    pub(crate) setup: HostSetup,
+}
+
+impl AgentReader<'_> {
+    fn links(&mut self, elements: &[Element]) {
+        for element in elements {
+            if element.is("agents") {
+                self.links(element.children());
+            } else if element.is("link") {
+                let mut reader =
+                    LinkReader { path: self.path, grammar: self.grammar, diagnostics: self.diagnostics };
+                self.setup.links.extend(reader.link(element));
+            }
+        }
+    }
+
+    fn agents(&mut self, elements: &[Element]) {
+        for element in elements {
+            if element.is("agents") {
+                self.agents(element.children());
+            } else if element.is("agent") {
+                self.agent(element);
+            } else if element.is("provider") {
+                self.provider(element);
+            }
+        }
+    }
+
+    fn agent(&mut self, element: &Element) {
+        let name = element.children_named("name").next().map(Element::text).unwrap_or_default();
+        let (mut agent, enabled) = self.settings(element, name.to_owned());
+        let parts = element.children_named("activity").chain(element.children_named("statechart"));
+        let parts: Vec<&Element> = parts.collect();
+        if parts.is_empty() && element.children().iter().all(|child| child.is("name")) {
+            let message = format!("agent `{}` has no activity and no statechart", agent.name);
+            let hint = "give it an `activity`, or a `statechart` that names a model";
+            self.diagnostics.push(element.error("E0319", element.name_span(), message).with_hint(hint));
+        }
+        for part in parts {
+            agent =
+                if part.is("activity") { self.activity(part, agent) } else { self.statechart(part, agent) };
+        }
+        for part in element.children_named("monitor") {
+            agent = self.monitor(part, agent);
+        }
+        self.add(element, agent, enabled);
+    }
+
+    /// A provider is an agent with one activity of the same name.
+    fn provider(&mut self, element: &Element) {
+        let name = element.text().to_owned();
+        let (agent, enabled) = self.settings(element, name.clone());
+        let agent = match self.instance(element, &name, &Parameters::new()) {
+            Some(activity) => agent.named_activity(name, activity),
+            None => agent,
+        };
+        self.add(element, agent, enabled);
+    }
+
+    /// The attributes of an agent, and whether it is enabled.
+    fn settings(&mut self, element: &Element, name: String) -> (Agent, bool) {
+        let values = Values::of(element, self.grammar);
+        let mut agent = Agent::idle(name);
+        agent.frequency = values.number("thread_frequency").map(|hertz: f64| Hz(hertz));
+        agent.workers = values.number("workers");
+        agent.cores = self.cores(&values);
+        let real_time = values.flag("is_real_time").unwrap_or_default();
+        let agent = agent
+            .urgency(values.number("priority").unwrap_or_default(), real_time)
+            .statistics_every(values.number("stats_cycle").unwrap_or_default())
+            .on_failure(values.word("on_failure", &FailurePolicy::NAMES).unwrap_or_default());
+        (agent, is_enabled(&values))
+    }
+
+    /// The CPU cores of its threads.
+    fn cores(&mut self, values: &Values<'_>) -> Vec<usize> {
+        let Some(given) = values.given("cores") else { return Vec::new() };
+        let cores: Result<Vec<usize>, _> = given.value.split_whitespace().map(str::parse).collect();
+        cores.unwrap_or_else(|_| {
+            let message = format!("`cores` is `{}`, expected numbers of cores, such as `2 3`", given.value);
+            self.diagnostics.push(given.error("E0306", message));
+            Vec::new()
+        })
+    }
+
+    fn activity(&mut self, element: &Element, agent: Agent) -> Agent {
+        let values = Values::of(element, self.grammar);
+        let parameters = parameters(&values);
+        let activity = self.instance(element, element.text(), &parameters);
+        match activity.filter(|_| is_enabled(&values)) {
+            Some(activity) => agent.listed(ListedActivity {
+                name: element.text().to_owned(),
+                parameters,
+                policy: values.word("on_failure", &FailurePolicy::NAMES),
+                activity,
+            }),
+            None => agent,
+        }
+    }
+
+    /// An activity with its parameters; none, with a diagnostic, if the name is unknown.
+    fn instance(
+        &mut self,
+        element: &Element,
+        name: &str,
+        parameters: &Parameters,
+    ) -> Option<Box<dyn Activity>> {
+        if name.is_empty() {
+            return None; // which has been said
+        }
+        match self.registry.activity(name) {
+            Ok(mut activity) => {
+                call::configure(&mut *activity, parameters);
+                self.faults(element, parameters);
+                Some(activity)
+            }
+            Err(error) => {
+                let code = if error.kind() == ErrorKind::AmbiguousActivity { "E0313" } else { "E0312" };
+                let diagnostic = element.error(code, element.text_span(), error.to_string());
+                self.diagnostics.push(match error.hint() {
+                    Some(hint) => diagnostic.with_hint(hint),
+                    None => diagnostic,
+                });
+                None
+            }
+        }
+    }
+
+    fn faults(&mut self, element: &Element, parameters: &Parameters) {
+        for fault in parameters.faults() {
+            let given = element.attributes().iter().find(|attribute| attribute.name == fault.key);
+            let message = format!("activity `{}`: {}", element.text(), fault.message);
+            let diagnostic = match given {
+                Some(attribute) if fault.unknown => attribute.name_error("E0314", message),
+                Some(attribute) => attribute.error("E0315", message),
+                None => element.error("E0315", element.name_span(), message),
+            };
+            self.diagnostics.push(match fault.nearest {
+                Some(known) => diagnostic.with_hint(format!("did you mean `{known}`?")),
+                None => diagnostic,
+            });
+        }
+    }
+
+    fn add(&mut self, element: &Element, agent: Agent, enabled: bool) {
+        if agent.frequency.is_none() && !agent.activities.is_empty() {
+            let values = Values::of(element, self.grammar);
+            if values.given("thread_frequency").is_none() {
+                let message = format!("agent `{}` has activities and no `thread_frequency`", agent.name);
+                let hint = "say how many cycles a second it has: `thread_frequency=\"10\"`";
+                self.diagnostics.push(element.error("E0305", element.name_span(), message).with_hint(hint));
+            }
+        }
+        if enabled {
+            self.refuse_namesake(element, &agent.name);
+            self.setup.agents.push(agent);
+        }
+    }
+
+    fn refuse_namesake(&mut self, element: &Element, name: &str) {
+        if !name.is_empty() && self.setup.agents.iter().any(|agent| agent.name == name) {
+            let named = element.children_named("name").next().unwrap_or(element);
+            let message = format!("another agent is named `{name}`");
+            let hint = "each agent of a host has a name of its own";
+            self.diagnostics.push(element.error("E0311", named.text_span(), message).with_hint(hint));
+        }
+    }
+}
+
+/// The parameters of an activity.
+fn parameters(values: &Values<'_>) -> Parameters {
+    values.parameters().fold(Parameters::new(), |all, one| all.with(&*one.name, &*one.value))
+}
+
+/// Whether an element is enabled.
+pub(crate) fn is_enabled(values: &Values<'_>) -> bool {
+    values.flag("enable").unwrap_or(true)
+}

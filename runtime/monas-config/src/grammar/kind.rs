@@ -1,0 +1,163 @@
+//! Kinds of values.
+
+use std::str::FromStr;
+use std::time::Duration;
+
+use super::super::element::listed;
+
+/// Kind of an attribute's value or an element's text.
+#[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
+pub enum Kind {
+    /// A boolean: `1`, `0`, `true` or `false`.
+    Flag,
+    /// An integer within these limits.
+    Whole {
+        /// The minimum.
+        least: i64,
+        /// The maximum.
+        most: i64,
+    },
+    /// A finite number within these limits.
+    Number {
+        /// The minimum.
+        least: f64,
+        /// The maximum.
+        most: f64,
+    },
+    /// A duration with its unit: `300s`, `100ms` or `10min`.
+    Duration {
+        /// The minimum.
+        least: Duration,
+    },
+    /// One of these words.
+    Word(Vec<&'static str>),
+    /// A name of letters, digits, `_` and `-`.
+    Name,
+    /// The path of a file, relative to the folder of the configuration or a parent of it.
+    File,
+    /// Several words separated by spaces; TOML also allows an array.
+    List,
+    /// Any text.
+    Text,
+}
+
+impl Kind {
+    /// Any integer.
+    pub const fn whole() -> Kind {
+        Kind::Whole { least: i32::MIN as i64, most: i32::MAX as i64 }
+    }
+
+    /// An integer with a minimum.
+    pub const fn whole_from(least: i64) -> Kind {
+        Kind::Whole { least, most: u32::MAX as i64 }
+    }
+
+    /// An integer in a range.
+    pub const fn whole_in(least: i64, most: i64) -> Kind {
+        Kind::Whole { least, most }
+    }
+
+    /// A number with a minimum.
+    pub const fn number_from(least: f64) -> Kind {
+        Kind::Number { least, most: f64::MAX }
+    }
+
+    /// A number in a range.
+    pub const fn number_in(least: f64, most: f64) -> Kind {
+        Kind::Number { least, most }
+    }
+
+    /// Whether a text is a value of this kind.
+    pub fn allows(&self, text: &str) -> bool {
+        let text = text.trim();
+        match self {
+            Kind::Flag => flag(text).is_some(),
+            Kind::Whole { least, most } => {
+                i64::from_str(text).is_ok_and(|number| (*least..=*most).contains(&number))
+            }
+            Kind::Number { least, most } => {
+                f64::from_str(text).is_ok_and(|number| (*least..=*most).contains(&number))
+            }
+            Kind::Duration { least } => crate::duration(text).is_some_and(|length| length >= *least),
+            Kind::Word(words) => words.contains(&text),
+            Kind::Name => {
+                !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+            }
+            Kind::File => !text.is_empty(),
+            Kind::List | Kind::Text => true,
+        }
+    }
+
+    /// The expected value, in prose.
+    pub fn expected(&self) -> String {
+        match self {
+            Kind::Flag => format!("one of {}", listed(&FLAGS.map(|(word, _)| word))),
+            Kind::Whole { least, most } => match (*least, *most) {
+                (least, most) if least <= i32::MIN.into() && most >= i32::MAX.into() => {
+                    "a whole number".into()
+                }
+                (least, most) if most >= u32::MAX.into() => format!("a whole number from {least}"),
+                (least, most) => format!("a whole number from {least} to {most}"),
+            },
+            Kind::Number { least, most: f64::MAX } => format!("a number of at least {least}"),
+            Kind::Number { least, most } => format!("a number from {least} to {most}"),
+            Kind::Duration { least: Duration::ZERO } => "a time such as `300s` or `100ms`".into(),
+            Kind::Duration { least } => {
+                let example = Duration::from_millis(200).max(*least * 2);
+                format!("a time of at least `{least:?}`, such as `{example:?}`")
+            }
+            Kind::Word(words) => format!("one of {}", listed(words)),
+            Kind::Name => "a name of letters, digits, `_` and `-`".into(),
+            Kind::File => "the path of a file".into(),
+            Kind::List => "words with blanks between them".into(),
+            Kind::Text => "a text".into(),
+        }
+    }
+
+    /// The nearest allowed word, for kinds with words.
+    pub(crate) fn nearest(&self, text: &str) -> Option<String> {
+        let Kind::Word(words) = self else { return None };
+        let near = yase::diagnostic::nearest(text, words.iter().copied());
+        near.map(|word| format!("did you mean `{word}`?"))
+    }
+}
+
+const FLAGS: [(&str, bool); 4] = [("1", true), ("0", false), ("true", true), ("false", false)];
+
+/// Parses a boolean: `1`, `0`, `true` or `false`.
+pub(crate) fn flag(text: &str) -> Option<bool> {
+    FLAGS.iter().find(|(word, _)| *word == text).map(|(_, value)| *value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_allowed_or_not() {
+        let tick = Kind::Duration { least: Duration::from_millis(1) };
+        for (kind, right, wrong) in [
+            (Kind::Flag, &["1", "0", "true", "false", " 1 "][..], &["yes", "2", ""][..]),
+            (Kind::whole_in(1, 7), &["1", "7"], &["0", "8", "1.5", "one", ""]),
+            (Kind::number_in(0.5, 2.0), &["0.5", "2", "1e0"], &["0.4", "NaN", "inf", "x"]),
+            (tick, &["1ms", "2s", "1.5min"], &["1", "999us", "-1s", "ms"]),
+            (Kind::Word(vec!["left", "right"]), &["left"], &["up", "Left"]),
+            (Kind::Name, &["robot_2", "a-b"], &["", "a b", "a/b"]),
+            (Kind::File, &["a.xml"], &["", " "]),
+            (Kind::Text, &["", "anything"], &[]),
+        ] {
+            assert!(right.iter().all(|text| kind.allows(text)), "{kind:?}");
+            assert!(!wrong.iter().any(|text| kind.allows(text)), "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_expected_is_said() {
+        assert_eq!(Kind::whole().expected(), "a whole number");
+        assert_eq!(Kind::whole_from(1).expected(), "a whole number from 1");
+        assert_eq!(Kind::whole_in(1, 7).expected(), "a whole number from 1 to 7");
+        assert_eq!(Kind::number_from(2.0).expected(), "a number of at least 2");
+        assert_eq!(Kind::Word(vec!["a", "b"]).nearest("a"), Some("did you mean `a`?".into()));
+    }
+}

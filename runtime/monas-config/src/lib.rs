@@ -1,0 +1,150 @@
+//! Configuration of agents.
+//!
+//! Agents are written as in Listing 4.17 of the thesis, with or without quotes; attributes are
+//! canonically in snake case, the names of the thesis are accepted too:
+//!
+//! ```xml
+//! <agent thread_frequency="10" priority="1" on_failure="restart">
+//!   <name>Motion</name>
+//!   <activity gait="quick">MotionController</activity>
+//!   <activity enable="0">LedHandler</activity>
+//!   <statechart>models/goalie.srm</statechart>
+//! </agent>
+//! <provider thread_frequency="100">Sensors</provider>
+//! ```
+//!
+//! | attribute of `agent` and `provider` | means |
+//! |---|---|
+//! | `thread_frequency` | cycles a second, 0 for as many as there can be; needed by a list of activities |
+//! | `is_real_time`, `priority` | whether the system's real-time scheduling is wanted for its threads, and how urgent they are then, from 1 to 99; where it is not permitted the log says so, and they run on like others |
+//! | `cores` | the numbers of the cores that its threads may run on, such as `2 3`; any, if it is not said |
+//! | `stats_cycle` | after how many cycles its times are written to the log; 0 for never |
+//! | `workers` | how many threads the activities of its statecharts have in real time; as many as can be active at once, at most twelve, if it is not said |
+//! | `enable` | `0` leaves it out |
+//! | `on_failure` | what happens when an activity fails: `restart`, `skip`, `stop-agent`, `safe-state` |
+//!
+//! `frequency` is an alias of `thread_frequency`. An `activity` may have `enable` and `on_failure`;
+//! all its other attributes are its [parameters](monas_core::Parameters). A `provider` is an agent with
+//! one activity of the same name. Files may contain any number of agents, inside an `<agents>`
+//! element or not.
+//!
+//! A `<statechart elsewhere="Vision">` leaves the named activities to another process: their states
+//! do nothing here, and a link delivers their publications.
+//!
+//! # TOML
+//!
+//! A file whose name ends with `.toml` contains the same in TOML, with the same diagnostics: a
+//! table is an element, an array of tables or values several elements of one name, a key an
+//! attribute. The text of an activity, a provider or an agent's name element is its key `name`,
+//! that of a statechart its `model`.
+//!
+//! ```toml
+//! [[agent]]
+//! name = "Motion"
+//! thread_frequency = 10
+//! activity = ["Vision", { name = "MotionController", gait = "quick" }]
+//! ```
+//!
+//! # Layers
+//!
+//! Defaults, the file, settings for one robot, and the command line override each other in this
+//! order ([`Layers`]): a setting such as `agent.Motion.frequency=50` is a path of elements and
+//! their identities to an attribute. [`entries`] lists every value with its layer and location. The
+//! [`Grammar`] defines all elements and attributes; schemas for editors are generated from it.
+//!
+//! # Files of activities
+//!
+//! [`XmlConfig`] stores names, numbers and tables in a file, and [`Xml`] queries a tree; both read
+//! the listings of the thesis, and changes leave the rest of the file as it was.
+//!
+//! # Links
+//!
+//! ```xml
+//! <link name="blue-2">
+//!   <send topics="body/*" priority="2"/>
+//!   <send topics="soccer/game_state" reliability="best_effort"/>
+//!   <receive topics="soccer/ball" as="own"/>
+//! </link>
+//! <link transport="zenoh" name="robot_1" access="config/access.txt">
+//!   <listen>7447</listen>
+//!   <connect>tls/192.168.1.22:7447</connect>
+//!   <certificates authority="team.pem" certificate="robot_1.pem" key="robot_1.key"/>
+//!   <budget profile="spl" robots="5"/>
+//!   <send topics="soccer/hello"/>
+//!   <receive topics="soccer/hello"/>
+//! </link>
+//! ```
+//!
+//! | attribute of `link` | means |
+//! |---|---|
+//! | `name` | the name of this end; that of the host if it is not said |
+//! | `transport` | `local`, sockets of one computer; or `zenoh`, in programs that have it |
+//! | `folder` | of `local`: where the sockets are; `$XDG_RUNTIME_DIR/monas` if it is not said |
+//! | `beat` | how often the link says how far it is; 200 ms if it is not said |
+//! | `clock` | the name of the other end whose time the run takes for its own, for processes of one robot; in real time only |
+//! | `access` | a file that says who may publish what, see [`AccessList`](monas_link::AccessList); everybody if it is not said |
+//! | `guests` | `1` lets programs without a link of their own send |
+//! | `realm`, `scouting`, `shared_memory` | of `zenoh`: the first segment of keys; `1` looks for others without being told where; `0` keeps large messages out of shared memory |
+//! | `enable` | `0` leaves it out |
+//!
+//! Links whose sockets are in one folder communicate, so each robot has a separate folder.
+//!
+//! `<send>` and `<receive>` name `topics` (`soccer/ball`, `soccer/*`, `soccer/**`). Sent topics
+//! have a `priority` from 1, first, to 7, last (default 4), and a `reliability`: `reliable` or
+//! `best_effort`. Received topics belong to the other host and are read with
+//! `blackboard.from(host)`, or with `as="own"` to this host: then the peer is a process of the same
+//! robot. `<budget>` is a `profile` (`spl`: 1200 packets of 128 bytes in 20 minutes for a team,
+//! divided by its `robots`), or `packets`, `window` and `payload`. `<listen>` is a local endpoint
+//! (a port alone is reachable from this computer only), `<connect>` that of a peer.
+//!
+//! [`load`] reads a file and all files it names, and returns every
+//! [`Diagnostic`](yase::Diagnostic): of the XML, of names unknown to the
+//! [`Registry`](monas_core::Registry), of model files, formulas and expressions. Nothing runs while
+//! there are errors.
+
+mod agents;
+mod configuration_bundle;
+mod element;
+mod grammar;
+mod layers;
+mod lenient_xml;
+mod links;
+mod log_settings;
+mod model;
+mod modules;
+mod paths;
+mod resolve;
+mod schema;
+mod severity;
+mod toml;
+mod tree;
+mod values;
+mod write_back;
+pub mod xml;
+mod xml_config;
+mod xml_editor;
+
+pub use agents::{HostSetup, assemble, load, load_with, read};
+pub use configuration_bundle::ConfigurationBundle;
+pub use element::{Attribute, Element, Layer, is_written};
+pub use grammar::{AttributeRule, ElementRule, Grammar, Identity, Kind};
+pub use layers::{Layers, UnmatchedSetting};
+pub use log_settings::{LogFormat, LogSettings};
+pub use model::load as load_model;
+pub use paths::{locate, read as read_file};
+pub use resolve::{Resolved, ResolvedEntry, entries, resolve, resolve_text, sort as sort_diagnostics};
+pub use severity::Severity;
+pub use tree::{Xml, XmlNode};
+pub use values::Values;
+pub use write_back::{rewritten, updated};
+pub use xml_config::{ValueError, XmlConfig};
+
+/// Whether a file name is that of a TOML file.
+pub fn is_toml(name: &str) -> bool {
+    std::path::Path::new(name).extension().is_some_and(|ending| ending == "toml")
+}
+
+/// Parses a duration: a number and `ns`, `us`, `ms`, `s` or `min`.
+pub fn duration(text: &str) -> Option<std::time::Duration> {
+    monas_core::parameters::duration(text)
+}

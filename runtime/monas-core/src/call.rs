@@ -1,0 +1,168 @@
+//! Calls of activities: their errors and panics do not propagate beyond this module.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::time::Duration;
+
+use narukom::Blackboard;
+use yase::Activation;
+
+use crate::activity::{Activity, BoxError, Progress};
+use crate::activity_context::ActivityContext;
+use crate::activity_context::calling;
+use crate::parameters::Parameters;
+
+/// Failure of a call of an activity.
+#[derive(Debug, thiserror::Error)]
+pub enum CallFailure {
+    /// It returned an error.
+    #[error("{0}")]
+    Error(BoxError),
+    /// It panicked.
+    #[error("panicked: {0}")]
+    Panic(String),
+}
+
+/// An activity to be called, with the blackboard of its region.
+pub struct ActivityCall {
+    /// The activation at the time the call is prepared.
+    pub activation: Activation,
+    pub priority: i32,
+    /// How long the call takes in simulated time.
+    pub duration: Duration,
+    /// Whether the activation was called before and returned `Ongoing`.
+    pub(crate) is_resumed: bool,
+    /// Index of its slot, as in the statistics of the chart.
+    pub(crate) slot: usize,
+    pub(crate) activity: Box<dyn Activity>,
+    pub(crate) context: Arc<ActivityContext>,
+    /// Number of the cycle from which it is called, for its log lines.
+    pub(crate) cycle: u64,
+    /// Whether `start` has been called on the instance.
+    pub(crate) is_started: bool,
+    /// Whether `execute` has been called.
+    pub(crate) is_called: bool,
+    pub(crate) blackboard: Box<Blackboard>,
+}
+
+/// Duration of a call, and its CPU time if measured.
+#[derive(Clone, Copy, Debug)]
+pub struct CallTiming {
+    pub wall: Duration,
+    pub cpu: Option<Duration>,
+}
+
+/// What an activity returned.
+pub(crate) type CallResult = Result<Progress, CallFailure>;
+
+/// A completed call.
+pub struct FinishedCall {
+    pub call: ActivityCall,
+    pub result: CallResult,
+    /// None where calls are not measured.
+    pub timing: Option<CallTiming>,
+}
+
+impl ActivityCall {
+    /// Asks the activity to return soon.
+    pub fn request_cancellation(&self) {
+        self.blackboard.cancellation().request();
+    }
+
+    /// The name of the activity.
+    pub fn name(&self) -> &str {
+        self.context.name()
+    }
+
+    /// Calls the activity on this thread.
+    pub fn run(mut self) -> FinishedCall {
+        let result = self.call();
+        FinishedCall { call: self, result, timing: None }
+    }
+
+    /// Calls the activity on this thread and accounts the memory it allocates to it.
+    pub fn run_with_memory_account(mut self) -> FinishedCall {
+        let context = self.context.clone();
+        let result = context.account.with_account(|| self.call());
+        FinishedCall { call: self, result, timing: None }
+    }
+
+    /// Ends the call with a result without calling the activity.
+    pub(crate) fn returning(self, result: CallResult) -> FinishedCall {
+        FinishedCall { call: self, result, timing: None }
+    }
+
+    fn call(&mut self) -> CallResult {
+        let ActivityCall { activity, context, cycle, is_started, is_called, blackboard, .. } = self;
+        calling(context, *cycle, || {
+            if !*is_started {
+                start(activity.as_mut(), blackboard)?;
+                *is_started = true;
+            }
+            *is_called = true;
+            execute(activity.as_mut(), blackboard)
+        })
+    }
+}
+
+/// Calls `start`.
+pub fn start(activity: &mut dyn Activity, blackboard: &mut Blackboard) -> Result<(), CallFailure> {
+    guarded(|| activity.start(blackboard))
+}
+
+/// Calls `execute`.
+pub fn execute(activity: &mut dyn Activity, blackboard: &mut Blackboard) -> Result<Progress, CallFailure> {
+    guarded(|| activity.execute(blackboard))
+}
+
+/// Calls `stop`.
+pub fn stop(activity: &mut dyn Activity, blackboard: &mut Blackboard) -> Result<(), CallFailure> {
+    guarded(|| {
+        activity.stop(blackboard);
+        Ok(())
+    })
+}
+
+/// Calls `configure`. A panic is recorded as a fault of the parameters.
+pub fn configure(activity: &mut dyn Activity, parameters: &Parameters) {
+    if let Err(failure) = caught(|| activity.configure(parameters)) {
+        parameters.fail(failure.to_string());
+    }
+}
+
+/// Calls `configure` of a running activity. It has already accepted such parameters, so it
+/// continues whatever the result.
+pub fn configure_again(name: &str, activity: &mut dyn Activity, parameters: &Parameters) {
+    if let Err(failure) = caught(|| activity.configure(parameters)) {
+        tracing::error!(activity = %name, "activity failed to take its parameters: {failure}");
+    }
+}
+
+/// State that the activity left incomplete affects only the activity itself: it is started again
+/// before its next call, or never called again. The blackboard is always consistent, since its
+/// operations do not panic.
+fn guarded<T>(call: impl FnOnce() -> Result<T, BoxError>) -> Result<T, CallFailure> {
+    caught(call)?.map_err(CallFailure::Error)
+}
+
+/// Runs code of an activity and catches its panic.
+pub(crate) fn caught<T>(act: impl FnOnce() -> T) -> Result<T, CallFailure> {
+    catch_unwind(AssertUnwindSafe(act)).map_err(|payload| CallFailure::Panic(take_panic_message(payload)))
+}
+
+/// The message of a panic. Dropping the payload may panic too; the payload of that second panic is
+/// leaked.
+fn take_panic_message(payload: Box<dyn Any + Send>) -> String {
+    let words = panic_message(payload.as_ref());
+    if let Err(another) = catch_unwind(AssertUnwindSafe(|| drop(payload))) {
+        std::mem::forget(another);
+    }
+    words
+}
+
+/// The message of a panic.
+fn panic_message(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without a message".into())
+}

@@ -1,0 +1,100 @@
+//! The state of a running chart, for status queries and statistics.
+
+use narukom::{Hub, Timestamp, TopicSlot};
+use yase::{Element, Machine, NodeId, NodeKind, Status};
+use yase_export::{Highlights, Mark, to_svg_marked};
+
+use super::ChartRunner;
+use crate::coverage::ChartCoverage;
+use crate::statistics::ActivityStatistics;
+
+impl ChartRunner {
+    /// A snapshot of its machine in JSON, and the chart as SVG with the active states highlighted.
+    pub fn inspect(&self) -> Vec<String> {
+        let chart = self.machine.chart().statechart();
+        let mut marks = Highlights::default();
+        for node in self.machine.configuration() {
+            marks.set(chart, Element::Node(node), Mark::Active);
+        }
+        // A snapshot always serializes; an empty text would be noticed.
+        let snapshot = serde_json::to_string(&self.machine.snapshot()).unwrap_or_default();
+        vec![snapshot, to_svg_marked(chart, &marks)]
+    }
+
+    /// The paths of the BASIC states that are active.
+    pub fn active_states(&self) -> Vec<String> {
+        let chart = self.machine.chart();
+        let is_basic = |node: &NodeId| chart.statechart().node(*node).kind == NodeKind::Basic;
+        let active = self.machine.configuration();
+        active.into_iter().filter(is_basic).map(|node| chart.short_path(node)).collect()
+    }
+
+    pub fn is_over(&self) -> bool {
+        matches!(self.machine.status(), Status::Finished | Status::Stopped)
+    }
+
+    pub fn is_paused(&self) -> bool {
+        self.is_paused
+    }
+
+    pub(crate) fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// The name of the model.
+    pub(crate) fn name(&self) -> &str {
+        &self.machine.chart().statechart().name
+    }
+
+    /// The hub on which its agent publishes.
+    pub fn hub(&self) -> &Hub {
+        &self.hub
+    }
+
+    /// The host of its agent.
+    pub fn host(&self) -> &str {
+        &self.host.host
+    }
+
+    /// The agent of the chart.
+    pub(crate) fn agent(&self) -> &str {
+        &self.host.agent
+    }
+
+    /// Index of the chart among the charts of the agent.
+    pub fn place(&self) -> u32 {
+        self.host.number
+    }
+
+    /// The part of its agent under which it publishes.
+    pub fn part(&self) -> u16 {
+        self.host.blackboards.part()
+    }
+
+    /// The topics whose messages wake the chart.
+    pub fn topics_of_guards(&self) -> Vec<TopicSlot> {
+        self.machine.chart().reads().iter().map(|topic| TopicSlot::new(topic.0)).collect()
+    }
+
+    /// Index of the activity that has been running for the longest time, and since when.
+    pub fn longest_running(&self) -> Option<(usize, Timestamp)> {
+        self.host.slots.longest_running()
+    }
+
+    pub fn micro_steps(&self) -> u64 {
+        self.micro_steps
+    }
+
+    pub fn activity_statistics(&self) -> impl Iterator<Item = ActivityStatistics> {
+        self.host.slots.statistics(self.machine.chart())
+    }
+
+    pub fn coverage(&self) -> ChartCoverage {
+        self.host.coverage.table(self.machine.chart(), &self.host.host, &self.host.agent)
+    }
+
+    /// The number of threads that its activities can use at once.
+    pub fn max_activities(&self) -> usize {
+        self.machine.chart().max_activities()
+    }
+}

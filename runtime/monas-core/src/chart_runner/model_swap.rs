@@ -1,0 +1,76 @@
+//! Replaces the model of a running chart: see [`yase::migrate`]. Active states, running activities
+//! and blackboards are kept.
+
+use narukom::Timestamp;
+use yase::Activation;
+use yase::migrate::plan;
+
+use super::chart_host::ChartHost;
+use super::{ChartContext, ChartRunner};
+use crate::binder::BoundChart;
+use crate::listener::ListenerSet;
+use crate::monitors::Monitors;
+
+/// A new model for a running chart.
+pub struct ModelSwap {
+    pub bound: BoundChart,
+    /// Pairs of paths: a removed state, and the state of the new chart that continues it.
+    pub states: Vec<(String, String)>,
+    pub accepts_losses: bool,
+    /// The properties of the agent on the new chart; their monitors start anew.
+    pub monitors: Option<Monitors>,
+}
+
+impl ChartRunner {
+    /// Continues with another model from the next step on. Reports what became of the active
+    /// states.
+    ///
+    /// # Errors
+    /// All reasons that prevent the swap; nothing has changed then.
+    pub fn swap(&mut self, swap: ModelSwap, now: Timestamp) -> Result<Vec<String>, Vec<String>> {
+        let BoundChart { chart, functions, activities } = swap.bound;
+        let mut plan = plan(self.machine.chart(), &chart);
+        for (old, new) in &swap.states {
+            plan = plan.with_replacement(old, new).map_err(|error| vec![error.to_string()])?;
+        }
+        if swap.accepts_losses {
+            plan = plan.accepting_losses();
+        }
+        let listeners = self.host.listeners().clone();
+        let agent = self.host.agent.clone();
+        let mut machine = self.machine.clone();
+        let report = machine
+            .swap(&plan)
+            .map_err(|refusal| refusal.reasons().iter().map(ToString::to_string).collect::<Vec<String>>())?;
+        let monitors = swap.monitors;
+        let home = self.chart_context(&agent, &listeners, now);
+        let desk =
+            ChartHost::new(&chart, home, functions, activities).map_err(|error| vec![error.to_string()])?;
+        let known = |old: Activation| {
+            report.activations.iter().find(|(known, _)| *known == old).map(|(_, activation)| *activation)
+        };
+        let old = std::mem::replace(&mut self.host, desk);
+        self.host.take_over(old, &report.regions, known, |node| plan.node(node));
+        self.machine = machine;
+        if let Some(monitors) = monitors {
+            self.set_monitors(monitors);
+        }
+        Ok(report.findings.iter().map(ToString::to_string).collect())
+    }
+
+    fn chart_context<'a>(
+        &'a self,
+        agent: &'a str,
+        listeners: &'a ListenerSet,
+        now: Timestamp,
+    ) -> ChartContext<'a> {
+        ChartContext {
+            hub: &self.hub,
+            agent,
+            number: self.host.number(),
+            seed: self.host.seed(),
+            listeners,
+            now,
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Runs in real time: a thread for each list, each chart and each body, and a pool for the
+//! activities of each agent's charts.
+
+use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::thread::JoinHandle;
+
+use narukom::Hub;
+
+use super::Talws;
+use super::agent_factory::AgentFactory;
+use super::body::BodyBridge;
+use super::clock::RunClock;
+use super::links::{RunningLink, time_of_other};
+use super::real_time_host::{HostSite, RealTimeHost, WakeCallback, spawn};
+use super::run_handle::RunHandle;
+use super::setup::{PreparedHost, PreparedRun, WorldDriver, first_tick, tick};
+use super::stop_handle::StopHandle;
+use super::supervisor::{Supervisor, SupervisorHandle, SupervisorRequest, wake_on_stop};
+use monas_core::error::{Error, ErrorKind};
+use monas_core::statistics::{AgentStatistics, Statistics};
+use monas_link::LinkStatistics;
+use monas_log::LogHosts;
+
+/// A run in real time. It ends when it is [stopped](RealTimeRun::stop) or dropped, or when its
+/// [stop handle](RealTimeRun::stopper) is used.
+pub struct RealTimeRun {
+    stopper: StopHandle,
+    clock: RunClock,
+    line: Sender<SupervisorRequest>,
+    supervisor: Option<JoinHandle<Vec<AgentStatistics>>>,
+    others: Vec<JoinHandle<()>>,
+    links: Vec<RunningLink>,
+    hubs: Vec<Hub>,
+}
+
+impl RealTimeRun {
+    /// Prepares all hosts, then starts the threads.
+    pub(crate) fn start(talws: Talws, seed: u64) -> Result<RealTimeRun, Error> {
+        let PreparedRun { world, stations, factory: crew } = PreparedRun::new(talws, seed)?;
+        let (line, events) = channel();
+        let mut running = RealTimeRun {
+            stopper: StopHandle::new(),
+            clock: run_clock(&stations)?,
+            line,
+            supervisor: None,
+            others: Vec::new(),
+            links: Vec::new(),
+            hubs: world.iter().map(|world| world.hub().clone()).collect(),
+        };
+        let mut hosts = Vec::new();
+        let mut launched = world.map_or(Ok(()), |world| running.launch_world(world));
+        for station in stations {
+            launched = launched.and_then(|()| running.launch_host(station, &crew, &mut hosts));
+        }
+        wake_on_stop(&running.line, &running.stopper);
+        let supervisor = Supervisor { hosts, events, stopper: running.stopper.clone(), clock: running.clock };
+        if launched.is_err() {
+            // Stops the threads that have already started.
+            running.stopper.stop();
+        }
+        let clock = running.clock;
+        let hosting = LogHosts::real(&running.hubs, move || clock.now());
+        running.supervisor = Some(spawn("supervisor", move || hosting.during(|| supervisor.run()))?);
+        launched.map(|()| running)
+    }
+
+    /// A handle that stops the run from any thread.
+    pub fn stopper(&self) -> StopHandle {
+        self.stopper.clone()
+    }
+
+    /// A handle for inspecting the run and publishing from outside.
+    pub fn run_handle(&self) -> RunHandle {
+        RunHandle::real(self.hubs.clone(), self.clock, SupervisorHandle(self.line.clone()))
+    }
+
+    /// The hub of a host or of the world, for inspection or participation with a separate
+    /// blackboard.
+    pub fn hub(&self, host: &str) -> Option<&Hub> {
+        self.hubs.iter().find(|hub| hub.host() == host)
+    }
+
+    /// The statistics of its links so far.
+    pub fn links(&self) -> Vec<LinkStatistics> {
+        self.links.iter().map(RunningLink::statistics).collect()
+    }
+
+    /// Whether the run has been stopped, or every agent has ended.
+    pub fn has_ended(&self) -> bool {
+        self.stopper.is_stopped()
+    }
+
+    /// Waits until the run is stopped or every agent has ended, and returns its statistics.
+    pub fn wait(self) -> Statistics {
+        self.stopper.wait();
+        self.stop()
+    }
+
+    /// Stops the run after the present cycles of its agents, and returns its statistics.
+    pub fn stop(mut self) -> Statistics {
+        self.end()
+    }
+
+    fn end(&mut self) -> Statistics {
+        self.stopper.stop();
+        let agents = self.supervisor.take().map(JoinHandle::join);
+        let agents = agents.map(|agents| {
+            agents.unwrap_or_else(|_| {
+                tracing::error!("the thread of the supervisor has panicked");
+                Vec::new()
+            })
+        });
+        for thread in self.others.drain(..) {
+            if thread.join().is_err() {
+                tracing::error!("the thread of a body or the world has panicked");
+            }
+        }
+        let links = self.links.drain(..).map(RunningLink::stop).collect();
+        Statistics { agents: agents.unwrap_or_default(), links }
+    }
+
+    fn launch_world(&mut self, mut world: WorldDriver) -> Result<(), Error> {
+        let (stopper, clock) = (self.stopper.clone(), self.clock);
+        let hosting = LogHosts::real([world.hub()], move || clock.now());
+        let thread = spawn("world", move || {
+            let _hosted = hosting.begin();
+            while stopper.wait_until(world.due(), &clock) {
+                if let Err(error) = world.advance(world.due()) {
+                    tracing::error!("{error}");
+                    return stopper.stop();
+                }
+            }
+        })?;
+        self.others.push(thread);
+        Ok(())
+    }
+
+    fn launch_host(
+        &mut self,
+        station: PreparedHost,
+        crew: &Arc<AgentFactory>,
+        hosts: &mut Vec<RealTimeHost>,
+    ) -> Result<(), Error> {
+        let PreparedHost { hub, body, agents: members, links, context: ground, profiles, configuration } =
+            station;
+        self.hubs.push(hub.clone());
+        let clock = self.clock;
+        let links = links.into_iter().map(|link| RunningLink::start(&hub, link, move || clock.now()));
+        let links = links.collect::<Result<Vec<_>, Error>>()?;
+        let rests = Arc::new(AtomicBool::new(false));
+        let linked = links.iter().map(|link| Arc::new(link.waker()) as WakeCallback).collect();
+        self.links.extend(links);
+        let (place, line) = (hosts.len(), self.line.clone());
+        let site =
+            HostSite { hub: hub.clone(), place, clock, safe_state: rests.clone(), linked, supervisor: line };
+        hosts.push(RealTimeHost::new(site, crew.clone(), ground, profiles, configuration)?);
+        hosts[place].launch(members)?;
+        body.map_or(Ok(()), |body| self.launch_body(body, &hub, rests))
+    }
+
+    /// Forwards the newest commands to a body and publishes what it senses, in each of its cycles.
+    fn launch_body(&mut self, mut body: BodyBridge, hub: &Hub, rests: Arc<AtomicBool>) -> Result<(), Error> {
+        let (stopper, clock, host) = (self.stopper.clone(), self.clock, hub.host().to_owned());
+        let hosting = LogHosts::real([hub], move || clock.now());
+        let thread = spawn(&format!("{host} body"), move || {
+            let _hosted = hosting.begin();
+            let mut next = first_tick(body.period(), clock.begin());
+            while stopper.wait_until(tick(body.period(), next), &clock) {
+                next += 1;
+                let now = clock.now();
+                let acted =
+                    if rests.load(Ordering::SeqCst) { body.enter_safe_state(now) } else { body.act(now) };
+                if let Err(error) = acted.and_then(|()| body.sense(now)) {
+                    tracing::error!(%host, "{error}");
+                }
+            }
+            // A run that ends because all agents have ended leaves the body in its safe state.
+            if rests.load(Ordering::SeqCst)
+                && let Err(error) = body.enter_safe_state(clock.now())
+            {
+                tracing::error!(%host, "{error}");
+            }
+        })?;
+        self.others.push(thread);
+        Ok(())
+    }
+}
+
+/// The clock of the run: its own, or that of the other end of a link configured for it.
+fn run_clock(stations: &[PreparedHost]) -> Result<RunClock, Error> {
+    let links = stations.iter().flat_map(|station| station.links.iter().map(|link| (&station.hub, link)));
+    let mut followed = links.filter_map(|(hub, link)| Some((hub, link, link.clock.as_deref()?)));
+    match (followed.next(), followed.next()) {
+        (None, _) => Ok(RunClock::start()),
+        (Some((hub, link, other)), None) => time_of_other(hub, link, other),
+        (Some((.., one)), Some((.., other))) => {
+            let message = format!("links say that the time is that of `{one}`, and that of `{other}`");
+            Err(Error::new(ErrorKind::Link, message))
+        }
+    }
+}
+
+impl Drop for RealTimeRun {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+impl fmt::Debug for RealTimeRun {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Running").field("stopper", &self.stopper).finish_non_exhaustive()
+    }
+}

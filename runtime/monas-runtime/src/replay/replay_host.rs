@@ -1,0 +1,371 @@
+//! A host in a replay: replayed agents, and the recorded messages of the others.
+
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use narukom::{Hub, Observer, Publication, Timestamp, TopicSlot};
+
+use super::super::ENDED;
+use super::super::admin::HostAdmin;
+use super::super::agent_factory::AgentFactory;
+use super::super::agent_instance::{AgentInstance, PublishedTopics};
+use super::super::setup::PreparedHost;
+use super::comparison::{ComparisonReport, MomentComparison};
+use super::replayed_agents::{ReplayedAgents, added, concerning};
+use super::{RecordedPublisher, ReplayDifference};
+use monas_core::activity_context::SimulatedTimeGuard;
+use monas_core::error::{Error, ErrorKind};
+use monas_core::records::{Action, Change, Changed};
+
+/// A message that was published in the replay.
+pub(crate) struct AgentOutput {
+    pub(crate) host: String,
+    pub(crate) publisher: String,
+    pub(crate) topic: TopicSlot,
+    pub(crate) bytes: Vec<u8>,
+}
+
+/// Observes what agents publish.
+#[derive(Clone, Default)]
+pub(crate) struct OutputCapture(Arc<Mutex<CaptureState>>);
+
+#[derive(Default)]
+struct CaptureState {
+    /// Whether present publications come from the recording and are ignored.
+    is_mute: bool,
+    produced: Vec<AgentOutput>,
+}
+
+impl OutputCapture {
+    pub(crate) fn mute(&self, is_mute: bool) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_mute = is_mute;
+    }
+
+    pub(crate) fn take(&self) -> Vec<AgentOutput> {
+        std::mem::take(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner).produced)
+    }
+
+    /// The messages published during `act`.
+    fn capture(&self, act: impl FnOnce()) -> Vec<AgentOutput> {
+        self.mute(false);
+        act();
+        self.mute(true);
+        self.take()
+    }
+}
+
+impl Observer for OutputCapture {
+    fn observe(&mut self, publication: Publication<'_>) {
+        let mut seen = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if !seen.is_mute {
+            seen.produced.push(AgentOutput {
+                host: publication.host.to_owned(),
+                publisher: publication.publisher.to_owned(),
+                topic: publication.sample.header.topic,
+                bytes: publication.bytes().to_vec(),
+            });
+        }
+    }
+}
+
+/// A host in a replay.
+pub(crate) struct ReplayHost {
+    pub(crate) hub: Hub,
+    moved: PublishedTopics,
+    admin: HostAdmin,
+    /// Names of agents that were removed.
+    removed: Vec<String>,
+    /// The number of the change that most recently added a removed agent again.
+    returned_by: Option<u64>,
+    /// Why the replay cannot continue.
+    refused: Option<Error>,
+    agents: Vec<ReplayedAgent>,
+    /// The names of all agents, replayed or not, in the order of their turns.
+    places: Vec<String>,
+    /// Index in `places` of the agent whose turn it is.
+    turn: Option<usize>,
+    pub(crate) now: Timestamp,
+    /// Whether no agent has run yet: records of the agents before that belong to no turn.
+    is_setting_up: bool,
+    /// Whether the recorded run has ended.
+    has_ended: bool,
+}
+
+/// A replayed agent.
+pub(crate) struct ReplayedAgent {
+    place: usize,
+    pub(crate) instance: AgentInstance,
+    /// Its recorded and replayed publications at the present timestamp.
+    comparison: MomentComparison,
+}
+
+impl ReplayHost {
+    pub(crate) fn new(
+        station: PreparedHost,
+        crew: &Arc<AgentFactory>,
+        company: &[RecordedPublisher],
+    ) -> Result<ReplayHost, Error> {
+        let PreparedHost { hub, agents: members, context: ground, profiles, configuration, .. } = station;
+        let moved = PublishedTopics::default();
+        hub.set_waker(Arc::new(moved.topic_callback()));
+        let others = company.iter().filter(|one| one.is_agent && one.host == hub.host());
+        let names: BTreeSet<String> = others
+            .map(|one| one.publisher.clone())
+            .chain(members.iter().map(|member| member.name.clone()))
+            .collect();
+        let places: Vec<String> = names.into_iter().collect();
+        let actor = |member: super::super::agent_factory::PreparedAgent| {
+            let place = places.binary_search(&member.name).unwrap_or_default();
+            let window = MomentComparison::new(hub.host(), &member.name);
+            ReplayedAgent { place, instance: AgentInstance::new(member, Timestamp::ZERO), comparison: window }
+        };
+        let actors = members.into_iter().map(actor).collect();
+        Ok(ReplayHost {
+            admin: HostAdmin::new(ground, crew.clone(), profiles, configuration)?,
+            hub,
+            moved,
+            removed: Vec::new(),
+            returned_by: None,
+            refused: None,
+            agents: actors,
+            places,
+            turn: None,
+            now: Timestamp::ZERO,
+            is_setting_up: true,
+            has_ended: false,
+        })
+    }
+
+    /// Index of a replayed agent.
+    pub(crate) fn agent_index(&self, name: &str) -> Option<usize> {
+        self.agents.iter().position(|actor| actor.instance.name() == name)
+    }
+
+    /// Index of an agent in the order of turns, replayed or not.
+    pub(crate) fn place(&self, name: &str) -> Option<usize> {
+        self.places.binary_search_by(|other| other.as_str().cmp(name)).ok()
+    }
+
+    /// Processes a publication of an agent before any agent has run.
+    pub(crate) fn was_set_up(&mut self, produced: &AgentOutput) {
+        if let Some(actor) = self.agent_index(&produced.publisher) {
+            self.agents[actor].comparison.produced(produced.topic, produced.bytes.clone());
+        }
+    }
+
+    /// Executes everything that is due before a time, and begins that time.
+    pub(crate) fn advance_to(
+        &mut self,
+        moment: Timestamp,
+        spy: &OutputCapture,
+        ledger: &mut ComparisonReport,
+        told: &mut dyn FnMut(ReplayDifference),
+    ) {
+        while self.now < moment {
+            SimulatedTimeGuard::pass(self.now);
+            self.run_and_compare(spy, ledger, told);
+            // Requests that exist only in the replay may give agents something to do at this time.
+            self.apply_requests(spy);
+            self.now = if self.has_ended { moment } else { self.due().clamp(self.now, moment) };
+            self.turn = None;
+        }
+        SimulatedTimeGuard::pass(self.now);
+    }
+
+    /// Applies the requested changes since the last call that concern replayed agents.
+    pub(crate) fn apply_requests(&mut self, spy: &OutputCapture) {
+        while let Some(change) = self.admin.next_request().filter(|_| !self.has_ended) {
+            if !self.removed.is_empty() {
+                self.restart_removed(&change, spy);
+            }
+            if let Some(change) = concerning(&change, |agent| self.admin.has_agent(agent)) {
+                self.replay_change(&change, spy);
+            }
+        }
+    }
+
+    fn replay_change(&mut self, change: &Change, spy: &OutputCapture) {
+        let is_done = self.make(spy, |roster, staff, now| roster.replay_change(change, staff, now));
+        if is_done && change.action() == Action::RemoveAgent {
+            self.removed.push(change.agent.clone());
+        }
+    }
+
+    /// Restarts removed agents that the change adds.
+    fn restart_removed(&mut self, change: &Change, spy: &OutputCapture) {
+        let names = added(change, self.admin.registry());
+        let back: Vec<String> = self.removed.iter().filter(|gone| names.contains(gone)).cloned().collect();
+        if back.is_empty() {
+            return;
+        }
+        if self.make(spy, |roster, staff, now| roster.restart_removed(change, &back, staff, now)) {
+            self.removed.retain(|gone| !back.contains(gone));
+            self.returned_by = Some(change.number);
+        }
+    }
+
+    /// Applies a change; returns false if it cannot be applied.
+    fn make(
+        &mut self,
+        spy: &OutputCapture,
+        make: impl FnOnce(&mut HostAdmin, &mut ReplayedAgents<'_>, Timestamp) -> Changed,
+    ) -> bool {
+        self.is_setting_up = false;
+        let now = self.now;
+        let mut staff = ReplayedAgents { host: self.hub.host(), agents: &mut self.agents, now };
+        let mut is_done = false;
+        let produced = spy.capture(|| is_done = make(&mut self.admin, &mut staff, now).done);
+        for one in produced {
+            if let Some(actor) = self.agent_index(&one.publisher) {
+                self.agents[actor].comparison.produced(one.topic, one.bytes);
+            }
+        }
+        self.deliver_publications();
+        is_done
+    }
+
+    /// Processes the reply to the addition of agents: it may have been refused because of an agent
+    /// that is not replayed.
+    pub(crate) fn answered(&mut self, changed: &Changed) {
+        let is_it = changed.action() == Action::AddAgents && self.returned_by == Some(changed.number);
+        if is_it && !changed.done {
+            let message = "agents that left were refused when somebody added them anew, because of others that are not replayed";
+            let error = Error::new(ErrorKind::Invalid, message).with_hint("replay all agents of the host");
+            self.refused.get_or_insert(error);
+        }
+        if is_it {
+            self.returned_by = None;
+        }
+    }
+
+    /// # Errors
+    /// Something was recorded that cannot be replayed.
+    pub(crate) fn check(&mut self) -> Result<(), Error> {
+        self.refused.take().map_or(Ok(()), Err)
+    }
+
+    fn due(&self) -> Timestamp {
+        self.agents.iter().map(|actor| actor.instance.due(self.now)).min().unwrap_or(Timestamp::MAX)
+    }
+
+    /// Executes what is still due at this time, and compares.
+    fn run_and_compare(
+        &mut self,
+        spy: &OutputCapture,
+        ledger: &mut ComparisonReport,
+        told: &mut dyn FnMut(ReplayDifference),
+    ) {
+        if !self.has_ended {
+            self.run_due(self.turn, None, spy);
+            while self.due() <= self.now {
+                self.run_due(None, None, spy);
+            }
+        }
+        for actor in &mut self.agents {
+            actor.comparison.compare(&self.hub, self.now, ledger, told);
+        }
+    }
+
+    /// Begins the turn of an agent that is not replayed, or of no agent.
+    pub(crate) fn turn_of_another(&mut self, place: Option<usize>, sets_up: bool, spy: &OutputCapture) {
+        self.is_setting_up &= sets_up;
+        if let Some(place) = place.filter(|_| !self.is_setting_up) {
+            self.run_before(place, spy);
+        }
+    }
+
+    /// Processes a recorded publication of an agent. Gives the agent its turn if it has not
+    /// published this yet.
+    pub(crate) fn expect(
+        &mut self,
+        actor: usize,
+        topic: Option<TopicSlot>,
+        line: usize,
+        bytes: &[u8],
+        spy: &OutputCapture,
+    ) {
+        let window = &mut self.agents[actor].comparison;
+        window.recorded(topic, line, bytes.to_vec());
+        if !window.is_behind() || self.has_ended {
+            return;
+        }
+        self.is_setting_up = false;
+        let place = self.agents[actor].place;
+        if self.turn == Some(place) {
+            // It has had its turn, and gets another one after all others.
+            self.run_due(Some(place), None, spy);
+            self.turn = None;
+        }
+        self.run_before(place, spy);
+        self.deliver_publications();
+        if self.agents[actor].instance.due(self.now) <= self.now {
+            self.run(actor, spy);
+        }
+    }
+
+    /// Executes the turns of the agents before a place.
+    fn run_before(&mut self, place: usize, spy: &OutputCapture) {
+        if self.turn == Some(place) {
+            return;
+        }
+        if self.turn.is_some_and(|turn| turn > place) {
+            self.run_due(self.turn, None, spy);
+            self.turn = None;
+        }
+        self.run_due(self.turn, Some(place), spy);
+        self.turn = Some(place);
+    }
+
+    /// Executes the turns of the agents between two places that have something to do.
+    fn run_due(&mut self, after: Option<usize>, before: Option<usize>, spy: &OutputCapture) {
+        self.deliver_publications();
+        for actor in 0..self.agents.len() {
+            let ReplayedAgent { place, instance, .. } = &self.agents[actor];
+            let is_between =
+                after.is_none_or(|after| *place > after) && before.is_none_or(|before| *place < before);
+            if is_between && instance.due(self.now) <= self.now {
+                self.run(actor, spy);
+            }
+        }
+    }
+
+    fn run(&mut self, actor: usize, spy: &OutputCapture) {
+        let ReplayedAgent { instance, comparison: window, .. } = &mut self.agents[actor];
+        let now = self.now;
+        // A replayed host has no body that could enter its safe state.
+        let produced = spy.capture(|| _ = instance.run(now));
+        produced.into_iter().for_each(|one| window.produced(one.topic, one.bytes));
+        self.deliver_publications();
+    }
+
+    fn deliver_publications(&mut self) {
+        self.moved.deliver(self.agents.iter_mut().map(|actor| &mut actor.instance), self.now);
+    }
+
+    /// Stops the agents, as the recorded run was stopped now.
+    pub(crate) fn stop(&mut self, spy: &OutputCapture) {
+        self.has_ended = true;
+        let now = self.now;
+        for ReplayedAgent { instance, comparison: window, .. } in &mut self.agents {
+            let produced = spy.capture(|| instance.stop(ENDED, now));
+            produced.into_iter().for_each(|one| window.produced(one.topic, one.bytes));
+        }
+    }
+
+    /// Processes the end of the recording.
+    pub(crate) fn close(
+        &mut self,
+        is_whole: bool,
+        spy: &OutputCapture,
+        ledger: &mut ComparisonReport,
+        told: &mut dyn FnMut(ReplayDifference),
+    ) {
+        if is_whole {
+            return self.run_and_compare(spy, ledger, told);
+        }
+        for actor in &mut self.agents {
+            actor.comparison.discard_pending();
+            actor.comparison.compare(&self.hub, self.now, ledger, told);
+        }
+    }
+}

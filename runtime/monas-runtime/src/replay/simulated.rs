@@ -1,0 +1,178 @@
+//! The replay of a recording of simulated time.
+
+use narukom::prost::Message as _;
+use narukom::{AnyPublisher, Receiver, RemoteHeader, Timestamp, TopicSlot};
+
+use super::super::Talws;
+use super::super::admin::HOST_ITSELF;
+use super::super::run_handle::OUTSIDE;
+use super::super::setup::PreparedRun;
+use super::comparison::ComparisonReport;
+use super::replay_host::{OutputCapture, ReplayHost};
+use super::replayed_agents::unread;
+use super::{
+    ComparisonCounts, RecordedMessage, RecordedPublisher, RecordedStream, ReplayDifference, no_input,
+};
+use monas_core::error::Error;
+use monas_core::records::{CHANGE, CHANGED, CHART, Changed, HOST, LOG, MODEL};
+
+/// Agents that run again in simulated time.
+///
+/// The replay follows the recording message by message, in the order of publication. In simulated
+/// time agents have turns: at each time in the order of their names, repeatedly until none has
+/// anything left to do. The messages of agents that are not replayed mark the turns of those that
+/// are.
+pub(crate) struct SimulatedReplay {
+    scenes: Vec<ReplayHost>,
+    capture: OutputCapture,
+    inputs: Vec<SimulatedRoute>,
+    report: ComparisonReport,
+}
+
+/// The treatment of recorded messages.
+enum SimulatedRoute {
+    /// Compared with the publications of an agent.
+    Compared { scene: usize, actor: usize, topic: Option<TopicSlot>, path: usize },
+    /// Published again. Messages of an agent are published in its turn.
+    Published {
+        scene: usize,
+        publisher: AnyPublisher,
+        place: Option<usize>,
+        sets_up: bool,
+        asks: bool,
+        answers: bool,
+    },
+    /// Received from another host, and delivered as such again.
+    Received { scene: usize, receiver: Receiver },
+    /// Ignored: their host is not replayed, or does not declare the topic.
+    Ignored,
+}
+
+impl SimulatedReplay {
+    pub(crate) fn new(
+        mut talws: Talws,
+        seed: u64,
+        company: &[RecordedPublisher],
+    ) -> Result<SimulatedReplay, Error> {
+        let spy = OutputCapture::default();
+        talws.observe(Box::new(spy.clone()));
+        talws.publishers = company.to_vec();
+        let PreparedRun { stations, factory: crew, .. } = PreparedRun::new(talws, seed)?;
+        let scenes = stations.into_iter().map(|station| ReplayHost::new(station, &crew, company));
+        let mut scenes = scenes.collect::<Result<Vec<ReplayHost>, Error>>()?;
+        for produced in spy.take() {
+            let scene = scenes.iter_mut().find(|scene| scene.hub.host() == produced.host);
+            scene.into_iter().for_each(|scene| scene.was_set_up(&produced));
+        }
+        spy.mute(true);
+        Ok(SimulatedReplay { scenes, capture: spy, inputs: Vec::new(), report: ComparisonReport::default() })
+    }
+
+    /// The names of the hosts.
+    pub(crate) fn hosts(&self) -> Vec<&str> {
+        self.scenes.iter().map(|scene| scene.hub.host()).collect()
+    }
+
+    pub(crate) fn input(&mut self, recorded: RecordedStream<'_>) -> Result<usize, Error> {
+        let route = self.route(recorded)?;
+        self.inputs.push(route);
+        Ok(self.inputs.len() - 1)
+    }
+
+    fn route(&mut self, recorded: RecordedStream<'_>) -> Result<SimulatedRoute, Error> {
+        let RecordedStream { host, received_by, publisher, part, topic } = recorded;
+        let recorder = received_by.unwrap_or(host);
+        let Some(scene) = self.scenes.iter().position(|scene| scene.hub.host() == recorder) else {
+            return Ok(SimulatedRoute::Ignored);
+        };
+        let hub = self.scenes[scene].hub.clone();
+        let slot = hub.topic(topic);
+        if received_by.is_some() {
+            let receiver = slot.map(|_| hub.receiver(host, publisher, topic)).transpose();
+            let receiver = receiver.map_err(Error::hub)?;
+            return Ok(receiver
+                .map_or(SimulatedRoute::Ignored, |receiver| SimulatedRoute::Received { scene, receiver }));
+        }
+        if let Some(actor) = self.scenes[scene].agent_index(publisher) {
+            let path = self.report.line(host, publisher, topic);
+            return Ok(SimulatedRoute::Compared { scene, actor, topic: slot, path });
+        }
+        // The host publishes its own record here too.
+        if slot.is_none() || (topic == HOST.path() && publisher == "monas") {
+            return Ok(SimulatedRoute::Ignored);
+        }
+        // The reply to a change marks the position at which it was applied.
+        let answers = topic == CHANGED.path() && publisher == HOST_ITSELF;
+        // An external request was applied immediately, before any turn.
+        let asks = topic == CHANGE.path() && publisher == OUTSIDE;
+        let place = self.scenes[scene].place(publisher);
+        let publisher = hub.publisher_by_name(topic, publisher).map_err(Error::hub)?.of_part(part);
+        // A log line may stand anywhere.
+        let sets_up = [HOST.path(), MODEL.path(), CHART.path(), LOG.path()].contains(&topic);
+        Ok(SimulatedRoute::Published { scene, publisher, place, sets_up, asks, answers })
+    }
+
+    pub(crate) fn feed(
+        &mut self,
+        input: usize,
+        message: RecordedMessage<'_>,
+        told: &mut dyn FnMut(ReplayDifference),
+    ) -> Result<(), Error> {
+        let SimulatedReplay { scenes, capture: spy, inputs, report: ledger } = self;
+        let Some(route) = inputs.get_mut(input) else {
+            return Err(no_input());
+        };
+        match route {
+            SimulatedRoute::Ignored => {}
+            SimulatedRoute::Compared { scene, actor, topic, path } => {
+                let scene = &mut scenes[*scene];
+                scene.advance_to(message.received, spy, ledger, told);
+                scene.expect(*actor, *topic, *path, message.bytes, spy);
+            }
+            SimulatedRoute::Published { scene, publisher, place, sets_up, asks, answers } => {
+                let scene = &mut scenes[*scene];
+                scene.advance_to(message.received, spy, ledger, told);
+                scene.turn_of_another(*place, *sets_up, spy);
+                if *answers {
+                    scene.apply_requests(spy);
+                    scene.answered(&Changed::decode(message.bytes).map_err(unread)?);
+                }
+                publisher.publish_bytes(message.bytes, scene.now).map_err(Error::hub)?;
+                if *asks {
+                    scene.apply_requests(spy);
+                }
+            }
+            SimulatedRoute::Received { scene, receiver } => {
+                let scene = &mut scenes[*scene];
+                scene.advance_to(message.received, spy, ledger, told);
+                let arrival = RemoteHeader {
+                    sequence: message.sequence.into(),
+                    published: message.published,
+                    local: message.published,
+                    received: message.received,
+                };
+                receiver.receive_bytes(message.bytes, arrival).map_err(Error::hub)?;
+            }
+        }
+        self.scenes.iter_mut().try_for_each(ReplayHost::check)
+    }
+
+    pub(crate) fn end(&mut self, moment: Timestamp, told: &mut dyn FnMut(ReplayDifference)) {
+        for scene in &mut self.scenes {
+            scene.advance_to(moment, &self.capture, &mut self.report, told);
+            scene.stop(&self.capture);
+        }
+    }
+
+    pub(crate) fn finish(
+        mut self,
+        is_whole: bool,
+        told: &mut dyn FnMut(ReplayDifference),
+    ) -> Result<Vec<ComparisonCounts>, Error> {
+        for scene in &mut self.scenes {
+            scene.close(is_whole, &self.capture, &mut self.report, told);
+            scene.check()?;
+        }
+        Ok(self.report.tallies())
+    }
+}

@@ -1,0 +1,314 @@
+//! A run as seen from outside: its hubs, its time, and the entry point for external publications.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
+use std::time::Duration;
+
+use narukom::{Hub, Timestamp};
+
+use prost::Message;
+
+use super::clock::RunClock;
+use super::supervisor::SupervisorHandle;
+use monas_core::records::{
+    AgentEntry, Agents, Change, Changed, ChartChoice, ChartState, Configuration, Inquiry, ModuleEntry,
+    Modules, Reply,
+};
+
+/// The publisher name of external messages.
+pub(crate) const OUTSIDE: &str = "outside";
+
+/// Maximum number of external requests that wait for the next step of a simulated run.
+const WAITING: usize = 64;
+
+/// Timeout of a request to a simulated run that is not being advanced.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// A handle for inspecting a run from outside: its hubs and its time. It may outlive the run.
+#[derive(Clone)]
+pub struct RunHandle {
+    hubs: Vec<Hub>,
+    time: RunTime,
+}
+
+#[derive(Clone)]
+enum RunTime {
+    Real(RunClock, SupervisorHandle),
+    Simulated(Arc<SimulatedClock>, SyncSender<ExternalRequest>),
+}
+
+/// The time of a simulated run, shared between threads.
+#[derive(Default)]
+pub(crate) struct SimulatedClock(AtomicU64);
+
+impl SimulatedClock {
+    pub(crate) fn set(&self, moment: Timestamp) {
+        self.0.store(moment.as_nanos(), Ordering::Release);
+    }
+
+    pub(crate) fn get(&self) -> Timestamp {
+        Timestamp::from_nanos(self.0.load(Ordering::Acquire))
+    }
+}
+
+/// A request that waits for the next step of a run.
+pub(crate) enum ExternalRequest {
+    Message { hub: Hub, path: String, bytes: Vec<u8>, answer: SyncSender<Result<(), String>> },
+    Change { host: String, change: Box<Change>, answer: SyncSender<Result<Changed, String>> },
+    Look { chart: Option<ChartChoice>, answer: SyncSender<Vec<HostStatus>> },
+}
+
+/// The present state of a host.
+pub(crate) struct HostStatus {
+    pub(crate) host: String,
+    pub(crate) agents: Vec<AgentEntry>,
+    pub(crate) configuration: Configuration,
+    pub(crate) modules: Vec<ModuleEntry>,
+    /// The requested chart, or why it is not available.
+    pub(crate) chart: Option<Result<ChartState, String>>,
+}
+
+/// The external requests to a simulated run.
+pub(crate) struct RequestQueue {
+    sender: SyncSender<ExternalRequest>,
+    waiting: Receiver<ExternalRequest>,
+}
+
+impl RequestQueue {
+    pub(crate) fn new() -> RequestQueue {
+        let (sender, waiting) = sync_channel(WAITING);
+        RequestQueue { sender, waiting }
+    }
+
+    fn sender(&self) -> SyncSender<ExternalRequest> {
+        self.sender.clone()
+    }
+
+    /// Takes the oldest request.
+    pub(crate) fn next(&self) -> Option<ExternalRequest> {
+        self.waiting.try_recv().ok()
+    }
+}
+
+/// Publishes the message encoded in `bytes`.
+pub(crate) fn publish(hub: &Hub, path: &str, bytes: &[u8], now: Timestamp) -> Result<(), String> {
+    let publisher = hub.publisher_by_name(path, OUTSIDE);
+    publisher.and_then(|mut publisher| publisher.publish_bytes(bytes, now)).map_err(|error| error.to_string())
+}
+
+impl RunHandle {
+    pub(crate) fn real(hubs: Vec<Hub>, clock: RunClock, supervisor: SupervisorHandle) -> RunHandle {
+        RunHandle { hubs, time: RunTime::Real(clock, supervisor) }
+    }
+
+    pub(crate) fn simulated(hubs: Vec<Hub>, shown: Arc<SimulatedClock>, inlet: &RequestQueue) -> RunHandle {
+        RunHandle { hubs, time: RunTime::Simulated(shown, inlet.sender()) }
+    }
+
+    /// The hubs of its hosts, and of the world if there is one.
+    pub fn hubs(&self) -> &[Hub] {
+        &self.hubs
+    }
+
+    /// The present time of the run.
+    pub fn now(&self) -> Timestamp {
+        match &self.time {
+            RunTime::Real(clock, _) => clock.now(),
+            RunTime::Simulated(shown, _) => shown.get(),
+        }
+    }
+
+    /// Whether its time is simulated.
+    pub fn is_simulated(&self) -> bool {
+        matches!(self.time, RunTime::Simulated(..))
+    }
+
+    /// Publishes the message encoded in `bytes` on a topic of a host, like an agent of that host:
+    /// recorders record it. In simulated time the publication waits for the next step of the run.
+    ///
+    /// # Errors
+    /// The host or the topic is unknown, the bytes are not a message of the topic, or the run is
+    /// not being advanced.
+    pub fn publish(&self, host: &str, path: &str, bytes: &[u8]) -> Result<(), String> {
+        let hub = self.hubs.iter().find(|hub| hub.host() == host);
+        let hub = hub.ok_or_else(|| format!("no host is named `{host}`"))?;
+        match &self.time {
+            RunTime::Real(clock, _) => publish(hub, path, bytes, clock.now()),
+            RunTime::Simulated(_, inlet) => {
+                let (path, bytes) = (path.into(), bytes.into());
+                submit(inlet, |answer| ExternalRequest::Message { hub: hub.clone(), path, bytes, answer })?
+            }
+        }
+    }
+
+    /// Requests a change of the agents of a host through [`CHANGE`](monas_core::records::CHANGE). It is
+    /// applied between two of their cycles.
+    ///
+    /// # Errors
+    /// The request could not be delivered; the refusal of a change is part of the reply.
+    pub fn change(&self, host: &str, change: Change) -> Result<Changed, String> {
+        match &self.time {
+            RunTime::Real(_, supervisor) => supervisor.change(host, change),
+            RunTime::Simulated(_, inlet) => {
+                let (host, change) = (host.into(), Box::new(change));
+                submit(inlet, |answer| ExternalRequest::Change { host, change, answer })?
+            }
+        }
+    }
+
+    /// The present entries of the agents of a host, or of all hosts.
+    ///
+    /// # Errors
+    /// There is no such host, or the run is not being advanced.
+    pub fn agents(&self, host: Option<&str>) -> Result<Vec<AgentEntry>, String> {
+        Ok(self.host_statuses(host)?.into_iter().flat_map(|view| view.agents).collect())
+    }
+
+    /// The modules that are loaded on a host, or on all hosts.
+    ///
+    /// # Errors
+    /// There is no such host, or the run is not being advanced.
+    pub fn modules(&self, host: Option<&str>) -> Result<Vec<ModuleEntry>, String> {
+        Ok(self.host_statuses(host)?.into_iter().flat_map(|view| view.modules).collect())
+    }
+
+    /// The present configuration of a host as text that can be read again: the text it was read
+    /// from, brought up to date.
+    ///
+    /// # Errors
+    /// There is no such host, or the run is not being advanced.
+    pub fn configuration(&self, host: &str) -> Result<Configuration, String> {
+        let view = self.host_statuses(Some(host))?.into_iter().next();
+        view.map(|view| view.configuration).ok_or_else(|| format!("no agents run on `{host}`"))
+    }
+
+    /// The state of a statechart of an agent at the end of its last step.
+    ///
+    /// # Errors
+    /// There is no such host, agent or chart, or the run is not being advanced.
+    pub fn chart(&self, host: &str, choice: &ChartChoice) -> Result<ChartState, String> {
+        let view = self.host_statuses_with(Some(host), Some(choice))?.into_iter().next();
+        view.and_then(|view| view.chart).ok_or_else(|| format!("no agents run on `{host}`"))?
+    }
+
+    fn host_statuses(&self, host: Option<&str>) -> Result<Vec<HostStatus>, String> {
+        self.host_statuses_with(host, None)
+    }
+
+    fn host_statuses_with(
+        &self,
+        host: Option<&str>,
+        chart: Option<&ChartChoice>,
+    ) -> Result<Vec<HostStatus>, String> {
+        let chart = chart.cloned();
+        let mut views = match &self.time {
+            RunTime::Real(_, supervisor) => supervisor.host_statuses(chart)?,
+            RunTime::Simulated(_, inlet) => submit(inlet, |answer| ExternalRequest::Look { chart, answer })?,
+        };
+        if let Some(host) = host {
+            let known: Vec<String> = views.iter().map(|view| format!("`{}`", view.host)).collect();
+            views.retain(|view| view.host == host);
+            if views.is_empty() {
+                return Err(format!("no host is named `{host}`; there are {}", known.join(", ")));
+            }
+        }
+        Ok(views)
+    }
+
+    /// Answers a query of a tool: takes an encoded [`Inquiry`] and returns an encoded [`Reply`].
+    ///
+    /// # Errors
+    /// Why the query cannot be answered.
+    pub fn manage(&self, inquiry: &[u8]) -> Result<Vec<u8>, String> {
+        let inquiry = Inquiry::decode(inquiry).map_err(|_| "what is asked is not understood".to_owned())?;
+        let host = (!inquiry.host.is_empty()).then_some(inquiry.host.as_str());
+        let mut reply = Reply::default();
+        if inquiry.agents {
+            reply.agents = Some(Agents { agents: self.agents(host)? });
+        } else if inquiry.modules {
+            reply.modules = Some(Modules { modules: self.modules(host)? });
+        } else if inquiry.configuration {
+            reply.configuration = Some(self.configuration(&self.only_host(host)?)?);
+        } else if let Some(choice) = inquiry.chart {
+            reply.chart = Some(self.chart(&self.host_of(host, &choice.agent)?, &choice)?);
+        } else if let Some(change) = inquiry.change {
+            reply.changed = Some(self.change(&self.only_host(host)?, change)?);
+        } else {
+            return Err("nothing is asked".into());
+        }
+        Ok(reply.encode_to_vec())
+    }
+
+    /// The host of a query: the one that is named, or the only one with that agent.
+    fn host_of(&self, host: Option<&str>, agent: &str) -> Result<String, String> {
+        let having = |view: &HostStatus| view.agents.iter().any(|known| known.name == agent);
+        let mut hosts: Vec<String> =
+            self.host_statuses(host)?.into_iter().filter(having).map(|view| view.host).collect();
+        match (hosts.pop(), hosts.is_empty()) {
+            (Some(only), true) => Ok(only),
+            (None, _) => Err(format!("no agent is named `{agent}`")),
+            (Some(last), false) => {
+                Err(format!("`{agent}` is on several hosts: say which of {}, {last}", hosts.join(", ")))
+            }
+        }
+    }
+
+    /// The host of a query: the one that is named, or the only one.
+    fn only_host(&self, host: Option<&str>) -> Result<String, String> {
+        if let Some(host) = host {
+            return Ok(host.to_owned());
+        }
+        let hosts: Vec<String> = self.host_statuses(None)?.into_iter().map(|view| view.host).collect();
+        match &hosts[..] {
+            [only] => Ok(only.clone()),
+            [] => Err("the run has no host".into()),
+            several => Err(format!("there are several hosts: say which of {}", several.join(", "))),
+        }
+    }
+}
+
+/// Submits a request and waits for its reply.
+fn submit<T>(
+    inlet: &SyncSender<ExternalRequest>,
+    what: impl FnOnce(SyncSender<T>) -> ExternalRequest,
+) -> Result<T, String> {
+    let (answer, answered) = sync_channel(1);
+    inlet.try_send(what(answer)).map_err(|error| match error {
+        TrySendError::Full(_) => format!("{WAITING} messages from outside wait already"),
+        TrySendError::Disconnected(_) => "the run has ended".to_owned(),
+    })?;
+    answered.recv_timeout(PATIENCE).map_err(|error| match error {
+        RecvTimeoutError::Timeout => "the run stands still and takes nothing".to_owned(),
+        RecvTimeoutError::Disconnected => "the run has ended".to_owned(),
+    })
+}
+
+#[cfg(unix)]
+impl monas_link::control::ControlTarget for RunHandle {
+    fn hubs(&self) -> &[Hub] {
+        RunHandle::hubs(self)
+    }
+
+    fn now(&self) -> Timestamp {
+        RunHandle::now(self)
+    }
+
+    fn is_simulated(&self) -> bool {
+        RunHandle::is_simulated(self)
+    }
+
+    fn publish(&self, host: &str, path: &str, bytes: &[u8]) -> Result<(), String> {
+        RunHandle::publish(self, host, path, bytes)
+    }
+
+    fn manage(&self, inquiry: &[u8]) -> Result<Vec<u8>, String> {
+        RunHandle::manage(self, inquiry)
+    }
+}
+
+impl std::fmt::Debug for RunHandle {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Overview({} hubs at {})", self.hubs.len(), self.now())
+    }
+}

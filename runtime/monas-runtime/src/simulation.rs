@@ -1,0 +1,264 @@
+//! Runs in simulated time: one thread, exact nanoseconds, a defined order.
+
+mod simulated_host;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use narukom::{Hub, Timestamp};
+
+use super::Talws;
+use super::agent_instance::AgentInstance;
+use super::clock::RunClock;
+use super::links::RunningLink;
+use super::run_handle::{self, ExternalRequest, RequestQueue, RunHandle, SimulatedClock};
+use super::setup::{PreparedRun, WorldDriver};
+use super::stop_handle::StopHandle;
+use monas_core::activity_context::SimulatedTimeGuard;
+use monas_core::coverage::ChartCoverage;
+use monas_core::error::{Error, ErrorKind};
+use monas_core::records::{Change, Changed};
+use monas_core::statistics::Statistics;
+use monas_log::LogHosts;
+use monas_log::LogHostsGuard;
+
+use simulated_host::SimulatedHost;
+
+/// A run in simulated time.
+///
+/// Time jumps from one due time to the next. At each time the order is: the world advances; bodies
+/// sense; agents run; bodies act. Hosts are ordered by team and number (then name), agents of a
+/// host by name; an agent that is woken by a message runs at the same time, in its next turn.
+pub struct Simulation {
+    now: Timestamp,
+    /// The same time, for other threads.
+    shown: Arc<SimulatedClock>,
+    world: Option<WorldDriver>,
+    hosts: Vec<SimulatedHost>,
+    links: Vec<RunningLink>,
+    requests: RequestQueue,
+    /// Attributes log lines that are written during the simulation to its hosts.
+    hosting: LogHosts,
+    /// Scripted changes of agents, by time and the order in which they were added.
+    script: BTreeMap<(Timestamp, usize), (usize, Change)>,
+}
+
+impl Simulation {
+    pub(crate) fn new(talws: Talws, seed: u64) -> Result<Simulation, Error> {
+        let PreparedRun { world, stations, factory: crew } = PreparedRun::new(talws, seed)?;
+        let shown = Arc::new(SimulatedClock::default());
+        let mut links = Vec::new();
+        let hosts =
+            stations.into_iter().map(|station| SimulatedHost::new(station, &crew, &shown, &mut links));
+        let hosts = hosts.collect::<Result<Vec<SimulatedHost>, Error>>()?;
+        let hubs = world.iter().map(WorldDriver::hub).chain(hosts.iter().map(SimulatedHost::hub));
+        let hosting = LogHosts::simulated(hubs);
+        let (inlet, script) = (RequestQueue::new(), BTreeMap::new());
+        Ok(Simulation { now: Timestamp::ZERO, shown, world, hosts, links, requests: inlet, hosting, script })
+    }
+
+    /// Sets the simulated time and log hosts of this thread until the guards are dropped.
+    fn enter(&self) -> (SimulatedTimeGuard, LogHostsGuard) {
+        (SimulatedTimeGuard::begin(self.now), self.hosting.begin())
+    }
+
+    /// The time up to which the run is complete.
+    pub fn now(&self) -> Timestamp {
+        self.now
+    }
+
+    /// Executes everything that is due before `end`. What is due at `end` itself belongs to the
+    /// next call, so that an agent at 10 Hz runs ten times in the first second: at 0 ms, 100 ms and
+    /// so on to 900 ms.
+    ///
+    /// # Errors
+    /// The world or a body failed. Failures of agents are not errors: see
+    /// [`FailurePolicy`](monas_core::FailurePolicy).
+    pub fn run_until(&mut self, end: Timestamp) -> Result<(), Error> {
+        let _time = self.enter();
+        loop {
+            self.drain_requests();
+            let next = self.due();
+            if next >= end {
+                self.advance_clock(self.now.max(end));
+                return Ok(());
+            }
+            self.advance_clock(next);
+            self.follow_script();
+            self.run_moment(next)?;
+        }
+    }
+
+    /// As [`run_until`](Simulation::run_until), but no faster than real time, from the start of
+    /// this call. A stop handle ends it early.
+    ///
+    /// # Errors
+    /// As in [`run_until`](Simulation::run_until).
+    pub fn run_paced(&mut self, end: Timestamp, stopper: &StopHandle) -> Result<(), Error> {
+        let _time = self.enter();
+        let (clock, begun) = (RunClock::start(), self.now);
+        while self.due() < end {
+            self.drain_requests();
+            let next = self.due();
+            if !stopper.wait_until(Timestamp::ZERO + next.since(begun), &clock) {
+                return Ok(());
+            }
+            self.advance_clock(next);
+            self.follow_script();
+            self.run_moment(next)?;
+        }
+        self.run_until(end)
+    }
+
+    /// Applies a change to the agents of a host now, between two of their cycles; the change is
+    /// published like any request, and so is the reply.
+    ///
+    /// # Errors
+    /// There is no such host. The refusal of a change is part of the reply.
+    pub fn change(&mut self, host: &str, change: Change) -> Result<Changed, Error> {
+        let (place, now) = (self.place(host)?, self.now);
+        let _time = self.enter();
+        Ok(self.hosts[place].change(change, now))
+    }
+
+    /// Schedules a change that is applied at its time before anything else; the reply is published.
+    /// Equal scripts give equal runs.
+    ///
+    /// # Errors
+    /// There is no such host.
+    pub fn change_at(&mut self, moment: Timestamp, host: &str, change: Change) -> Result<(), Error> {
+        let place = self.place(host)?;
+        self.script.insert((moment.max(self.now), self.script.len()), (place, change));
+        Ok(())
+    }
+
+    fn place(&self, host: &str) -> Result<usize, Error> {
+        self.hosts.iter().position(|known| known.name() == host).ok_or_else(|| {
+            let known = self.hosts.iter().map(SimulatedHost::name);
+            Error::new(ErrorKind::UnknownHost, format!("no host is named `{host}`")).with_nearest(host, known)
+        })
+    }
+
+    fn follow_script(&mut self) {
+        while let Some(entry) = self.script.first_entry().filter(|entry| entry.key().0 <= self.now) {
+            let (host, change) = entry.remove();
+            self.hosts[host].change(change, self.now);
+        }
+    }
+
+    /// The statistics of the agents so far.
+    pub fn statistics(&self) -> Statistics {
+        let agents = self.hosts.iter().flat_map(SimulatedHost::statistics);
+        let links = self.links.iter().map(RunningLink::statistics).collect();
+        Statistics { agents: agents.collect(), links }
+    }
+
+    /// A handle for inspecting the run and publishing from outside. External messages are published
+    /// between two steps, while the run is being advanced.
+    pub fn run_handle(&self) -> RunHandle {
+        let world = self.world.iter().map(WorldDriver::hub);
+        let hubs = self.hosts.iter().map(SimulatedHost::hub).chain(world).cloned();
+        RunHandle::simulated(hubs.collect(), self.shown.clone(), &self.requests)
+    }
+
+    /// The hub of a host or of the world, for inspection.
+    pub fn hub(&self, host: &str) -> Option<&Hub> {
+        let world = self.world.iter().map(WorldDriver::hub);
+        let hosts = self.hosts.iter().map(SimulatedHost::hub);
+        world.chain(hosts).find(|hub| hub.host() == host)
+    }
+
+    /// Stops all agents and their activities.
+    pub fn stop(&mut self) {
+        let _time = self.enter();
+        self.hosts.iter_mut().for_each(|host| host.stop(self.now));
+    }
+
+    /// The coverage of the states and transitions of each chart.
+    pub fn coverage(&self) -> Vec<ChartCoverage> {
+        self.hosts.iter().flat_map(|host| host.instances().iter().flat_map(AgentInstance::coverage)).collect()
+    }
+
+    /// Raises an event in the charts of an agent for their next step; returns false if there is no
+    /// such agent, or none of its charts names the event.
+    pub fn raise(&mut self, host: &str, agent: &str, event: &str) -> bool {
+        let host = self.hosts.iter_mut().find(|known| known.name() == host);
+        host.is_some_and(|host| host.raise(agent, event))
+    }
+
+    fn due(&self) -> Timestamp {
+        let world = self.world.iter().map(WorldDriver::due);
+        let script = self.script.keys().next().map(|(moment, _)| *moment);
+        let hosts = self.hosts.iter().map(|host| host.due(self.now));
+        world.chain(script).chain(hosts).min().unwrap_or(Timestamp::MAX)
+    }
+
+    /// Advances the time of the run.
+    fn advance_clock(&mut self, now: Timestamp) {
+        SimulatedTimeGuard::pass(now);
+        self.now = now;
+        self.shown.set(now);
+    }
+
+    /// Processes the external requests since the last step, applies the requested changes, and
+    /// notifies agents of these and of messages from links.
+    fn drain_requests(&mut self) {
+        let now = self.now;
+        let mut any = !self.links.is_empty();
+        while let Some(handed_in) = self.requests.next() {
+            any = true;
+            self.handle_request(handed_in);
+        }
+        for host in &mut self.hosts {
+            host.apply_requests(now);
+            if any {
+                host.deliver_publications(now);
+            }
+        }
+    }
+
+    fn handle_request(&mut self, handed_in: ExternalRequest) {
+        let now = self.now;
+        // The requester may have timed out.
+        let _ = match handed_in {
+            ExternalRequest::Message { hub, path, bytes, answer } => {
+                answer.try_send(run_handle::publish(&hub, &path, &bytes, now)).is_ok()
+            }
+            ExternalRequest::Change { host, change, answer } => match self.change(&host, *change) {
+                Ok(changed) => answer.try_send(Ok(changed)).is_ok(),
+                Err(error) => answer.try_send(Err(error.to_string())).is_ok(),
+            },
+            ExternalRequest::Look { chart, answer } => {
+                let views = self.hosts.iter_mut().map(|host| host.status(chart.as_ref()));
+                answer.try_send(views.collect()).is_ok()
+            }
+        };
+    }
+
+    fn run_moment(&mut self, now: Timestamp) -> Result<(), Error> {
+        if let Some(world) = self.world.as_mut().filter(|world| world.due() <= now) {
+            world.advance(now)?;
+        }
+        for host in &mut self.hosts {
+            host.sense(now)?;
+        }
+        while self.run_agents(now)? {}
+        self.hosts.iter_mut().try_for_each(|host| host.act(now))
+    }
+
+    /// Gives each agent its turn; returns false if none had anything to do.
+    fn run_agents(&mut self, now: Timestamp) -> Result<bool, Error> {
+        let mut any = false;
+        for host in &mut self.hosts {
+            any |= host.run_agents(now)?;
+        }
+        Ok(any)
+    }
+}
+
+impl std::fmt::Debug for Simulation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let hosts: Vec<&str> = self.hosts.iter().map(SimulatedHost::name).collect();
+        f.debug_struct("Simulation").field("now", &self.now).field("hosts", &hosts).finish_non_exhaustive()
+    }
+}
