@@ -286,6 +286,7 @@ impl AttributeRule {
         self.key
     }
 
+    /// The kind of its values.
     pub fn kind(&self) -> &Kind {
         &self.kind
     }

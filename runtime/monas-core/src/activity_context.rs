@@ -11,8 +11,11 @@ use crate::memory::{Account, LeakDetector};
 /// An activity, as log lines name it.
 #[derive(Debug)]
 pub struct ActivityContext {
+    /// The host.
     pub robot: String,
+    /// The agent.
     pub agent: String,
+    /// The name of the activity.
     pub activity: String,
     /// The memory it holds, in real time.
     pub account: Account,
@@ -24,6 +27,7 @@ impl ActivityContext {
         &self.activity
     }
 
+    /// An activity of an agent of a host.
     pub fn new(robot: &str, agent: &str, activity: &str) -> Arc<ActivityContext> {
         let (robot, agent, activity) = (robot.into(), agent.into(), activity.into());
         Arc::new(ActivityContext { robot, agent, activity, account: Account::default() })
@@ -84,6 +88,7 @@ pub fn called(look: impl FnOnce(&ActivityContext, u64)) {
 pub struct SimulatedTimeGuard(Option<Timestamp>, PhantomData<*const ()>);
 
 impl SimulatedTimeGuard {
+    /// Runs this thread in simulated time, beginning at `now`.
     pub fn begin(now: Timestamp) -> SimulatedTimeGuard {
         SimulatedTimeGuard(SIMULATED.replace(Some(now)), PhantomData)
     }

@@ -66,9 +66,13 @@ impl FailurePolicy {
 /// assert_eq!(greeter.name(), "greeter");
 /// ```
 pub struct Agent {
+    /// The name.
     pub name: String,
+    /// How often the list is called; `None` without a list.
     pub frequency: Option<Frequency>,
+    /// The activities of the list, in the order of their calls.
     pub activities: Vec<ListedActivity>,
+    /// The statecharts.
     pub charts: Vec<Statechart>,
     /// The compiled form of each chart, by index, if it was compiled on loading.
     pub compiled: Vec<Option<CompiledModel>>,
@@ -76,17 +80,27 @@ pub struct Agent {
     pub own: Vec<ChartSettings>,
     /// Generated charts, by index among the charts.
     pub generated: BTreeMap<usize, GeneratedChart>,
+    /// The reaction to failing activities.
     pub policy: FailurePolicy,
+    /// Whether its threads request real-time scheduling.
     pub real_time: bool,
+    /// The priority of its threads, 1 to 99, higher values first.
     pub priority: i32,
+    /// Number of cycles after which times are logged; `None` for never.
     pub statistics_every: Option<u64>,
+    /// Number of threads for the activities of its charts in real time.
     pub workers: Option<NonZeroUsize>,
+    /// The semantics of its charts.
     pub semantics: Semantics,
+    /// Activities executed by another process.
     pub elsewhere: Vec<String>,
     /// The origin of each chart, by index.
     pub models: Vec<String>,
+    /// Numbers of the permitted cores; empty for any core.
     pub cores: Vec<usize>,
+    /// Duration after which a call counts as stuck.
     pub stuck_after: Option<Duration>,
+    /// Properties monitored on its only chart.
     pub property_sets: Vec<PropertySet>,
     /// In a replay: indices of the charts that are executed separately.
     pub absent: Vec<usize>,
@@ -94,11 +108,13 @@ pub struct Agent {
 
 /// An activity of a list.
 pub struct ListedActivity {
+    /// The name.
     pub name: String,
     /// The parameters with which it was configured.
     pub parameters: Parameters,
     /// Its failure policy, if it differs from the agent's.
     pub policy: Option<FailurePolicy>,
+    /// The activity.
     pub activity: Box<dyn Activity>,
 }
 
@@ -114,6 +130,7 @@ impl Agent {
         Agent::idle(name.into()).chart(chart)
     }
 
+    /// An agent without activities and charts.
     pub fn idle(name: String) -> Agent {
         Agent {
             name,
@@ -279,6 +296,7 @@ impl Agent {
         self.with_property_set(PropertySet { file: String::new(), properties, on_violation, source: None })
     }
 
+    /// Adds a set of properties to monitor on its only chart.
     pub fn with_property_set(mut self, rules: PropertySet) -> Agent {
         self.property_sets.push(rules);
         self

@@ -28,6 +28,7 @@ pub struct Binder<'a> {
 
 /// A chart ready to run: compiled, with an activity instance for each state that has one.
 pub struct BoundChart {
+    /// The compiled chart.
     pub chart: Arc<CompiledChart>,
     pub(crate) functions: Arc<[FunctionDeclaration]>,
     /// In the order of the compiled chart's activities.
@@ -38,6 +39,7 @@ pub struct BoundChart {
 /// reused whenever the chart is started.
 #[derive(Clone, Debug)]
 pub struct CompiledModel {
+    /// The compiled chart.
     pub chart: Arc<CompiledChart>,
     /// The functions that its expressions may call, by index.
     functions: Arc<[FunctionEntry]>,

@@ -28,6 +28,7 @@ pub enum CallFailure {
 pub struct ActivityCall {
     /// The activation at the time the call is prepared.
     pub activation: Activation,
+    /// The priority of the state: higher values are called first.
     pub priority: i32,
     /// How long the call takes in simulated time.
     pub duration: Duration,
@@ -49,7 +50,9 @@ pub struct ActivityCall {
 /// Duration of a call, and its CPU time if measured.
 #[derive(Clone, Copy, Debug)]
 pub struct CallTiming {
+    /// The duration.
     pub wall: Duration,
+    /// The CPU time, if it was measured.
     pub cpu: Option<Duration>,
 }
 
@@ -58,7 +61,9 @@ pub(crate) type CallResult = Result<Progress, CallFailure>;
 
 /// A completed call.
 pub struct FinishedCall {
+    /// The call, with its activity and blackboard.
     pub call: ActivityCall,
+    /// What the activity returned.
     pub result: CallResult,
     /// None where calls are not measured.
     pub timing: Option<CallTiming>,

@@ -108,7 +108,12 @@ pub enum Dispatch {
 pub enum ChartError {
     /// A macrostep does not terminate.
     #[error("chart `{chart}`: {error}")]
-    Step { chart: String, error: MachineError },
+    Step {
+        /// The chart.
+        chart: String,
+        /// Its error.
+        error: MachineError,
+    },
     /// The agent must stop.
     #[error("{0}")]
     Stop(String),
@@ -117,11 +122,15 @@ pub enum ChartError {
 /// The agent of a chart and the values for the creation of the chart.
 #[derive(Clone, Copy)]
 pub struct ChartContext<'a> {
+    /// The hub of the host.
     pub hub: &'a Hub,
+    /// The agent.
     pub agent: &'a str,
     /// Index of the chart among the charts of the agent.
     pub number: u32,
+    /// The seed of the run.
     pub seed: u64,
+    /// Receive every micro-step.
     pub listeners: &'a ListenerSet,
     /// The time of creation.
     pub now: Timestamp,
@@ -146,6 +155,10 @@ impl ChartContext<'_> {
 }
 
 impl ChartRunner {
+    /// A runner of a chart, before its first step.
+    ///
+    /// # Errors
+    /// A topic of the chart that the hub does not have.
     pub fn new(
         bound: BoundChart,
         own: ChartSettings,

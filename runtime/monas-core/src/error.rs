@@ -50,10 +50,12 @@ pub enum ErrorKind {
 }
 
 impl Error {
+    /// An error with a message.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Error {
         Error { kind, message: message.into(), hint: None, diagnostics: Vec::new(), source: None }
     }
 
+    /// Adds a remedy.
     pub fn with_hint(mut self, hint: impl Into<String>) -> Error {
         self.hint = Some(hint.into());
         self
@@ -67,15 +69,18 @@ impl Error {
         }
     }
 
+    /// Adds the cause.
     pub fn caused_by(mut self, source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Error {
         self.source = Some(source.into());
         self
     }
 
+    /// An error of a hub.
     pub fn hub(error: narukom::Error) -> Error {
         Error::new(ErrorKind::Hub, error.to_string()).caused_by(error)
     }
 
+    /// [`ErrorKind::Invalid`] with its diagnostics.
     pub fn invalid(diagnostics: Vec<Diagnostic>) -> Error {
         let count = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();
         let first = diagnostics.iter().find(|diagnostic| diagnostic.is_error());

@@ -56,6 +56,7 @@ pub struct ListenerSet {
 type SharedListener = Arc<Mutex<Vec<Box<dyn ChartListener>>>>;
 
 impl ListenerSet {
+    /// A set of listeners.
     pub fn new(listeners: Vec<Box<dyn ChartListener>>) -> ListenerSet {
         ListenerSet { shared: (!listeners.is_empty()).then(|| Arc::new(Mutex::new(listeners))) }
     }

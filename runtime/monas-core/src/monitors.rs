@@ -47,7 +47,9 @@ impl ViolationResponse {
 pub struct PropertySet {
     /// The file they were read from; empty if none.
     pub file: String,
+    /// The properties.
     pub properties: Vec<Property>,
+    /// The reaction to a violation.
     pub on_violation: ViolationResponse,
     /// The text of their spans, if known.
     pub source: Option<Arc<Source>>,

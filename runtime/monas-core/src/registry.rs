@@ -412,7 +412,8 @@ mod tests {
         let eyes = || Module::for_test("eyes", &["monas_core"]);
         let with = Registry::empty().with_module(eyes()).unwrap();
         assert!(
-            with.activity("RegistryTestStand").is_ok() && with.activity("monas_core::RegistryTestStand").is_ok()
+            with.activity("RegistryTestStand").is_ok()
+                && with.activity("monas_core::RegistryTestStand").is_ok()
         );
         assert_eq!(with.modules().map(Module::name).collect::<Vec<_>>(), ["eyes"]);
         assert!(with.with_module(eyes()).is_ok(), "it may come again");
@@ -430,6 +431,9 @@ mod tests {
         registry.functions.entry("abs".into()).or_default().push(twin);
         let error = registry.functions().err().unwrap();
         assert_eq!(error.kind(), ErrorKind::AmbiguousFunction);
-        assert_eq!(error.to_string(), "function `abs` is registered in monas_core::function and in elsewhere");
+        assert_eq!(
+            error.to_string(),
+            "function `abs` is registered in monas_core::function and in elsewhere"
+        );
     }
 }

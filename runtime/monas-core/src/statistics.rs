@@ -93,15 +93,18 @@ impl Timing {
         cpu.into_iter().for_each(|cpu| self.cpu.add(cpu));
     }
 
+    /// Durations of calls; `None` before the first.
     pub fn wall(&self) -> Option<MovingAverage> {
         let (average, _) = self.wall.policy();
         (average.count() > 0).then_some(*average)
     }
 
+    /// CPU times of calls; `None` if none was measured.
     pub fn cpu(&self) -> Option<MovingAverage> {
         (self.cpu.policy().count() > 0).then(|| *self.cpu.policy())
     }
 
+    /// Percentiles of the durations; `None` before the first call.
     pub fn percentiles(&self) -> Option<Percentiles> {
         let (_, histogram) = self.wall.policy();
         (histogram.count() > 0).then(|| Percentiles {

@@ -10,6 +10,7 @@ use yase::{CompiledChart, Diagnostic, Span};
 
 /// Sources that can reach a host.
 pub struct HostPublishers<'a> {
+    /// The hub of the host.
     pub hub: &'a Hub,
     /// Publishers on the host.
     pub publishers: &'a [String],

@@ -23,18 +23,25 @@ use crate::scheduling::Scheduling;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct ChartSettings {
+    /// The highest frequency of steps.
     pub frequency: Option<Frequency>,
+    /// The priority of the thread, 1 to 99, higher values first.
     pub priority: Option<i32>,
+    /// Whether the thread requests real-time scheduling.
     pub real_time: Option<bool>,
     /// An inner `None` means never.
     pub statistics_every: Option<Option<u64>>,
+    /// Number of threads for the activities of this chart.
     pub workers: Option<NonZeroUsize>,
+    /// Numbers of the permitted cores; empty for any core.
     pub cores: Option<Vec<usize>>,
+    /// The reaction to failing activities.
     pub policy: Option<FailurePolicy>,
     /// Settings of states' activities, by name of the activity.
     pub activities: Vec<ActivityProfile>,
     /// Activities executed by another process.
     pub elsewhere: Vec<String>,
+    /// Properties monitored on this chart.
     pub property_sets: Vec<PropertySet>,
 }
 
@@ -110,6 +117,7 @@ impl ChartSettings {
         self.with_property_set(PropertySet { file: String::new(), properties, on_violation, source: None })
     }
 
+    /// Adds a set of properties to monitor.
     pub fn with_property_set(mut self, rules: PropertySet) -> ChartSettings {
         self.property_sets.push(rules);
         self

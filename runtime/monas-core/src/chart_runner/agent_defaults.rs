@@ -12,8 +12,11 @@ use crate::scheduling::Scheduling;
 /// The settings of an agent for charts without their own.
 #[derive(Clone, Debug, Default)]
 pub struct AgentDefaults {
+    /// The highest frequency of steps.
     pub frequency: Option<Frequency>,
+    /// The reaction to failing activities.
     pub policy: FailurePolicy,
+    /// The scheduling of threads.
     pub scheduling: Scheduling,
     /// Number of steps after which times are logged.
     pub statistics_every: Option<u64>,

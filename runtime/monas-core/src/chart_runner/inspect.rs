@@ -29,10 +29,12 @@ impl ChartRunner {
         active.into_iter().filter(is_basic).map(|node| chart.short_path(node)).collect()
     }
 
+    /// Whether the chart has ended.
     pub fn is_over(&self) -> bool {
         matches!(self.machine.status(), Status::Finished | Status::Stopped)
     }
 
+    /// Whether the chart is paused.
     pub fn is_paused(&self) -> bool {
         self.is_paused
     }
@@ -81,14 +83,17 @@ impl ChartRunner {
         self.host.slots.longest_running()
     }
 
+    /// Number of micro-steps since the start.
     pub fn micro_steps(&self) -> u64 {
         self.micro_steps
     }
 
+    /// Statistics of each activity.
     pub fn activity_statistics(&self) -> impl Iterator<Item = ActivityStatistics> {
         self.host.slots.statistics(self.machine.chart())
     }
 
+    /// How often each state and transition was used.
     pub fn coverage(&self) -> ChartCoverage {
         self.host.coverage.table(self.machine.chart(), &self.host.host, &self.host.agent)
     }

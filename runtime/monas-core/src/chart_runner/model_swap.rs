@@ -13,9 +13,11 @@ use crate::monitors::Monitors;
 
 /// A new model for a running chart.
 pub struct ModelSwap {
+    /// The new chart.
     pub bound: BoundChart,
     /// Pairs of paths: a removed state, and the state of the new chart that continues it.
     pub states: Vec<(String, String)>,
+    /// Whether active states without a counterpart may be left.
     pub accepts_losses: bool,
     /// The properties of the agent on the new chart; their monitors start anew.
     pub monitors: Option<Monitors>,

@@ -52,6 +52,7 @@ impl Module {
         self.activities.iter().map(|activity| activity.name)
     }
 
+    /// Its activities.
     pub fn activities(&self) -> impl Iterator<Item = &ModuleActivity> {
         self.activities.iter()
     }

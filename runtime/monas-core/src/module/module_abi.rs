@@ -54,6 +54,7 @@ pub struct ModuleContents {
 /// An activity of a module.
 #[derive(Clone, Copy)]
 pub struct ModuleActivity {
+    /// The name under which it is registered.
     pub name: &'static str,
     /// The Rust module it was registered in.
     pub module: &'static str,

@@ -46,8 +46,11 @@ pub struct BuildFingerprint {
 /// A difference between two fingerprints.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct FingerprintMismatch {
+    /// The field that differs.
     pub field: String,
+    /// The value of this program.
     pub expected: String,
+    /// The value of the module.
     pub found: String,
 }
 
