@@ -24,8 +24,8 @@
 //! | `on_failure` | what happens when an activity fails: `restart`, `skip`, `stop-agent`, `safe-state` |
 //!
 //! `frequency` is an alias of `thread_frequency`. An `activity` may have `enable` and `on_failure`;
-//! all its other attributes are its [parameters](monas_core::Parameters). A `provider` is an agent with
-//! one activity of the same name. Files may contain any number of agents, inside an `<agents>`
+//! all its other attributes are its [parameters](monas_core::Parameters). A `provider` is an agent
+//! with one activity of the same name. Files may contain any number of agents, inside an `<agents>`
 //! element or not.
 //!
 //! A `<statechart elsewhere="Vision">` leaves the named activities to another process: their states
@@ -80,11 +80,11 @@
 //! | `name` | the name of this end; that of the host if it is not said |
 //! | `transport` | `local`, sockets of one computer; or `zenoh`, in programs that have it |
 //! | `folder` | of `local`: where the sockets are; `$XDG_RUNTIME_DIR/monas` if it is not said |
-//! | `beat` | how often the link says how far it is; 200 ms if it is not said |
+//! | `beat` | interval of the link's progress reports; default 200 ms |
 //! | `clock` | the name of the other end whose time the run takes for its own, for processes of one robot; in real time only |
-//! | `access` | a file that says who may publish what, see [`AccessList`](monas_link::AccessList); everybody if it is not said |
+//! | `access` | a file that lists who may publish what, see [`AccessList`](monas_link::AccessList); default everyone |
 //! | `guests` | `1` lets programs without a link of their own send |
-//! | `realm`, `scouting`, `shared_memory` | of `zenoh`: the first segment of keys; `1` looks for others without being told where; `0` keeps large messages out of shared memory |
+//! | `realm`, `scouting`, `shared_memory` | `zenoh` only: the first segment of keys; `1` discovers peers by multicast; `0` keeps large messages out of shared memory |
 //! | `enable` | `0` leaves it out |
 //!
 //! Links whose sockets are in one folder communicate, so each robot has a separate folder.

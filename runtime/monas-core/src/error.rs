@@ -107,3 +107,22 @@ impl Error {
         &self.diagnostics
     }
 }
+
+/// All values.
+///
+/// # Errors
+/// The first error that is not [`ErrorKind::Invalid`], otherwise all diagnostics.
+pub fn collect_all<T>(results: impl Iterator<Item = Result<T, Error>>) -> Result<Vec<T>, Error> {
+    let mut values = Vec::new();
+    let mut diagnostics = Vec::new();
+    for result in results {
+        match result {
+            Ok(value) => values.push(value),
+            Err(error) if error.kind() == ErrorKind::Invalid => {
+                diagnostics.extend_from_slice(error.diagnostics())
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    if diagnostics.is_empty() { Ok(values) } else { Err(Error::invalid(diagnostics)) }
+}

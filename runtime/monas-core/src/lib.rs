@@ -1,5 +1,5 @@
-//! Activities, agents, the registry of a program, and `ChartRunner`, which drives a chart of an agent:
-//! what runs on every host, without threads, files, sockets or a clock.
+//! Activities, agents, the registry of a program, and `ChartRunner`, which drives a chart of an
+//! agent: what runs on every host, without threads, files, sockets or a clock.
 //!
 //! The software of a robot consists of **activities**: units of behaviour with one task each, plain
 //! functions on a [`Blackboard`] or types that implement [`Activity`]. An [`Agent`] groups

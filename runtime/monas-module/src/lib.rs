@@ -1,8 +1,8 @@
 //! Loads modules, shared objects with activities, into a running program.
 //!
 //! [`ModuleFile::read`] reads a file and its build fingerprint without running code of it;
-//! [`ModuleFile::load`] compares the fingerprint with that of the program, loads a copy of the file,
-//! compares types, and returns the [`Module`](monas_core::Module) for a
+//! [`ModuleFile::load`] compares the fingerprint with that of the program, loads a copy of the
+//! file, compares types, and returns the [`Module`](monas_core::Module) for a
 //! [`Registry`](monas_core::Registry). The part that is compiled into modules is
 //! [`monas_core::module`], which also describes compatibility, state and lifetime.
 //!

@@ -8,13 +8,14 @@ use yase::Semantics;
 
 use super::cycle_recorder::CycleRecorder;
 use super::links::LinkedTopics;
-use super::replay::RecordedPublisher;
-use super::setup::{SharedObservers, collect_all};
+use super::observers::SharedObservers;
+use super::recorded_publisher::RecordedPublisher;
 use crate::list::ActivityList;
 use crate::remote_activity::RemoteActivity;
 use monas_core::agent::{Agent, AgentProfile, ChartSettings, FailurePolicy, ListedActivity};
 use monas_core::binder::{Binder, BoundChart};
 use monas_core::chart_runner::{ChartContext, ChartRunner};
+use monas_core::error::collect_all;
 use monas_core::error::{Error, ErrorKind};
 use monas_core::frequency::Frequency;
 use monas_core::listener::ListenerSet;

@@ -9,7 +9,7 @@ use std::time::Duration;
 use narukom::Timestamp;
 
 use super::agent_update::{AgentStatus, AgentUpdate, ChartStatus, STOPPED_BY_REQUEST, ThreadUpdate};
-use super::supervisor::SupervisorRequest;
+use super::supervisor_request::SupervisorRequest;
 use super::sync::Mailbox;
 use super::watchdog::{Watchdog, WatchedCall};
 use monas_core::chart_runner::FinishedCall;

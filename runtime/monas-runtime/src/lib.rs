@@ -1,10 +1,11 @@
 //! Talws, which runs the agents of one robot or of a whole team, in simulated or in real time.
 //!
-//! [`Talws`] holds hosts with their agents and bodies, and the world. [`Simulation`] advances time as
-//! fast as the run can be computed, on one thread and in a defined order; [`RealTimeRun`] uses a
+//! [`Talws`] holds hosts with their agents and bodies, and the world. [`Simulation`] advances time
+//! as fast as the run can be computed, on one thread and in a defined order; [`RealTimeRun`] uses a
 //! thread for each list of activities and each chart, and a pool for the activities of charts;
-//! [`replay`] executes agents again on recorded inputs. A [`RunHandle`] changes agents while they run.
-//! This is the only crate of the runtime that reads a clock, waits, or starts threads for agents.
+//! [`replay`] executes agents again on recorded inputs. A [`RunHandle`] changes agents while they
+//! run. This is the only crate of the runtime that reads a clock, waits, or starts threads for
+//! agents.
 //!
 //! All of them drive a chart by the one loop of
 //! [`ChartRunner`](monas_core::chart_runner::ChartRunner), as implementations of its trait
@@ -35,20 +36,25 @@ mod chart_thread;
 mod clock;
 mod cycle_recorder;
 mod deadlines;
+mod host_status;
 mod links;
 mod list;
 mod list_thread;
+mod observers;
 mod pool;
 mod real_time;
 mod real_time_host;
+mod recorded_publisher;
 mod remote_activity;
 pub mod replay;
 mod round_trip;
+mod run_config;
 mod run_handle;
 mod setup;
 mod simulation;
 mod stop_handle;
 mod supervisor;
+mod supervisor_request;
 mod sync;
 mod talws;
 mod thread_scheduling;
@@ -56,10 +62,11 @@ mod turn_record;
 mod watchdog;
 
 pub use real_time::RealTimeRun;
+pub use run_config::{HostConfig, World};
 pub use run_handle::RunHandle;
 pub use simulation::Simulation;
 pub use stop_handle::StopHandle;
-pub use talws::{HostConfig, Talws, World};
+pub use talws::Talws;
 
 pub(crate) use clock::{RunClock, cpu_time};
 pub(crate) use watchdog::Watchdog;

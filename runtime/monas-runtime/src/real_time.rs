@@ -9,16 +9,17 @@ use std::thread::JoinHandle;
 
 use narukom::Hub;
 
-use super::Talws;
 use super::agent_factory::AgentFactory;
 use super::body::BodyBridge;
 use super::clock::RunClock;
 use super::links::{RunningLink, time_of_other};
 use super::real_time_host::{HostSite, RealTimeHost, WakeCallback, spawn};
+use super::run_config::RunConfig;
 use super::run_handle::RunHandle;
 use super::setup::{PreparedHost, PreparedRun, WorldDriver, first_tick, tick};
 use super::stop_handle::StopHandle;
-use super::supervisor::{Supervisor, SupervisorHandle, SupervisorRequest, wake_on_stop};
+use super::supervisor::Supervisor;
+use super::supervisor_request::{SupervisorHandle, SupervisorRequest, wake_on_stop};
 use monas_core::error::{Error, ErrorKind};
 use monas_core::statistics::{AgentStatistics, Statistics};
 use monas_link::LinkStatistics;
@@ -38,8 +39,8 @@ pub struct RealTimeRun {
 
 impl RealTimeRun {
     /// Prepares all hosts, then starts the threads.
-    pub(crate) fn start(talws: Talws, seed: u64) -> Result<RealTimeRun, Error> {
-        let PreparedRun { world, stations, factory: crew } = PreparedRun::new(talws, seed)?;
+    pub(crate) fn start(config: RunConfig, seed: u64) -> Result<RealTimeRun, Error> {
+        let PreparedRun { world, stations, factory: crew } = PreparedRun::new(config, seed)?;
         let (line, events) = channel();
         let mut running = RealTimeRun {
             stopper: StopHandle::new(),

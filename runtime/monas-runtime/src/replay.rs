@@ -15,26 +15,13 @@ mod simulated;
 
 use narukom::Timestamp;
 
-use super::Talws;
+use super::recorded_publisher::RecordedPublisher;
+use super::run_config::RunConfig;
 use monas_core::activity_context::SimulatedTimeGuard;
 use monas_core::error::{Error, ErrorKind};
 
 use real_time::RealTimeReplay;
 use simulated::SimulatedReplay;
-
-/// A publisher of a recorded host.
-#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
-pub struct RecordedPublisher {
-    /// The host.
-    pub host: String,
-    /// The publisher's name.
-    pub publisher: String,
-    /// Whether it was an agent: whether it published records of its cycles.
-    pub is_agent: bool,
-    /// The last of the parts that published under this name, see
-    /// [`Header::part`](narukom::Header::part).
-    pub last_part: u16,
-}
 
 /// The common properties of the messages of one publisher on one topic.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -141,30 +128,23 @@ enum ReplayMode {
     RealTime(RealTimeReplay),
 }
 
-impl Talws {
-    /// Prepares a replay of the agents of these hosts, which need no bodies, on a recording of
-    /// simulated time. The seed is that of the recorded run; `company` lists all publishers of the
-    /// hosts.
-    ///
-    /// # Errors
-    /// As in [`simulate`](Talws::simulate).
-    pub fn replay(self, seed: u64, company: &[RecordedPublisher]) -> Result<Replay, Error> {
-        Ok(Replay {
-            course: ReplayMode::Simulated(SimulatedReplay::new(self, seed, company)?),
-            now: Timestamp::ZERO,
-        })
-    }
-
-    /// As [`replay`](Talws::replay), on a recording of real time.
-    ///
-    /// # Errors
-    /// As there, and if an agent has neither charts nor activities when the run begins.
-    pub fn replay_real_time(self, company: &[RecordedPublisher]) -> Result<Replay, Error> {
-        Ok(Replay { course: ReplayMode::RealTime(RealTimeReplay::new(self, company)?), now: Timestamp::ZERO })
-    }
-}
-
 impl Replay {
+    /// A replay of a recording of simulated time.
+    pub(crate) fn simulated(
+        config: RunConfig,
+        seed: u64,
+        publishers: &[RecordedPublisher],
+    ) -> Result<Replay, Error> {
+        let replay = SimulatedReplay::new(config, seed, publishers)?;
+        Ok(Replay { course: ReplayMode::Simulated(replay), now: Timestamp::ZERO })
+    }
+
+    /// A replay of a recording of real time.
+    pub(crate) fn real_time(config: RunConfig, publishers: &[RecordedPublisher]) -> Result<Replay, Error> {
+        let replay = RealTimeReplay::new(config, publishers)?;
+        Ok(Replay { course: ReplayMode::RealTime(replay), now: Timestamp::ZERO })
+    }
+
     /// Registers the messages of a publisher on a topic.
     ///
     /// # Errors
@@ -241,9 +221,4 @@ impl std::fmt::Debug for Replay {
 /// An input that does not belong to this replay.
 fn no_input() -> Error {
     Error::new(ErrorKind::Invalid, "no such input of this replay")
-}
-
-/// The names of the publishers of a host.
-pub(crate) fn names_on(company: &[RecordedPublisher], host: &str) -> impl Iterator<Item = String> {
-    company.iter().filter(move |one| one.host == host).map(|one| one.publisher.clone())
 }

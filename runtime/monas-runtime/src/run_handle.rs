@@ -10,14 +10,12 @@ use narukom::{Hub, Timestamp};
 use prost::Message;
 
 use super::clock::RunClock;
-use super::supervisor::SupervisorHandle;
+use super::host_status::{HostStatus, OUTSIDE};
+use super::supervisor_request::SupervisorHandle;
 use monas_core::records::{
     AgentEntry, Agents, Change, Changed, ChartChoice, ChartState, Configuration, Inquiry, ModuleEntry,
     Modules, Reply,
 };
-
-/// The publisher name of external messages.
-pub(crate) const OUTSIDE: &str = "outside";
 
 /// Maximum number of external requests that wait for the next step of a simulated run.
 const WAITING: usize = 64;
@@ -57,16 +55,6 @@ pub(crate) enum ExternalRequest {
     Message { hub: Hub, path: String, bytes: Vec<u8>, answer: SyncSender<Result<(), String>> },
     Change { host: String, change: Box<Change>, answer: SyncSender<Result<Changed, String>> },
     Look { chart: Option<ChartChoice>, answer: SyncSender<Vec<HostStatus>> },
-}
-
-/// The present state of a host.
-pub(crate) struct HostStatus {
-    pub(crate) host: String,
-    pub(crate) agents: Vec<AgentEntry>,
-    pub(crate) configuration: Configuration,
-    pub(crate) modules: Vec<ModuleEntry>,
-    /// The requested chart, or why it is not available.
-    pub(crate) chart: Option<Result<ChartState, String>>,
 }
 
 /// The external requests to a simulated run.
@@ -142,8 +130,8 @@ impl RunHandle {
         }
     }
 
-    /// Requests a change of the agents of a host through [`CHANGE`](monas_core::records::CHANGE). It is
-    /// applied between two of their cycles.
+    /// Requests a change of the agents of a host through [`CHANGE`](monas_core::records::CHANGE).
+    /// It is applied between two of their cycles.
     ///
     /// # Errors
     /// The request could not be delivered; the refusal of a change is part of the reply.

@@ -1,22 +1,23 @@
 //! Prepares the hosts of a run on their hubs, for simulated and real time.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use std::time::Duration;
 
 use monas_link::LinkSettings;
-use narukom::{Blackboard, Hub, Observer, Publication, Timestamp};
+use narukom::{Blackboard, Hub, Timestamp};
 
 use yase::Source;
 
 use super::agent_factory::{AgentFactory, HostContext, PreparedAgent};
 use super::body::BodyBridge;
 use super::links::LinkedTopics;
-use super::replay::names_on;
-use super::{HostConfig, Talws, World};
+use super::observers::SharedObservers;
+use super::recorded_publisher::names_on;
+use super::run_config::{HostConfig, RunConfig, World};
 use monas_core::activity::BoxError;
 use monas_core::agent::AgentProfile;
 use monas_core::binder::Binder;
-use monas_core::error::{Error, ErrorKind};
+use monas_core::error::{Error, ErrorKind, collect_all};
 use monas_core::listener::ListenerSet;
 use monas_core::records::{self, CHANGE, HOST};
 use monas_core::registry::Registry;
@@ -51,37 +52,18 @@ pub(crate) struct WorldDriver {
     ticks: u64,
 }
 
-/// The observers of all hubs, called one at a time.
-#[derive(Clone)]
-pub(crate) struct SharedObservers(Arc<Mutex<Vec<Box<dyn Observer>>>>);
-
-impl SharedObservers {
-    fn each(&self, act: impl FnMut(&mut Box<dyn Observer>)) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).iter_mut().for_each(act);
-    }
-}
-
-impl Observer for SharedObservers {
-    fn observe(&mut self, publication: Publication<'_>) {
-        self.each(|observer| observer.observe(publication));
-    }
-
-    fn observe_received(&mut self, publication: Publication<'_>) {
-        self.each(|observer| observer.observe_received(publication));
-    }
-}
-
 impl PreparedRun {
     /// Sorts hosts by team, number and name, agents by name, and binds all charts.
-    pub(crate) fn new(talws: Talws, seed: u64) -> Result<PreparedRun, Error> {
-        let Talws { registry, hosts: mut configs, world, observers, listeners, publishers: company } = talws;
+    pub(crate) fn new(config: RunConfig, seed: u64) -> Result<PreparedRun, Error> {
+        let RunConfig { registry, hosts: mut configs, world, observers, listeners, publishers: company } =
+            config;
         configs.sort_by(|a, b| (a.team, a.number, &a.name).cmp(&(b.team, b.number, &b.name)));
         let names = configs.iter().map(|host| host.name.as_str());
         distinct("hosts", names.chain(world.iter().map(|world| world.name())))?;
         let crew = AgentFactory {
             registry: with_modules(registry.unwrap_or_else(Registry::linked), &configs)?,
             listeners: ListenerSet::new(listeners),
-            observers: SharedObservers(Arc::new(Mutex::new(observers))),
+            observers: SharedObservers::new(observers),
             seed,
             publishers: company,
         };
@@ -230,22 +212,6 @@ fn publish_host_record(hub: &Hub, team: u32, number: u32) -> Result<(), Error> {
 
 fn world_failed(error: BoxError) -> Error {
     Error::new(ErrorKind::World, format!("the world failed: {error}")).caused_by(error)
-}
-
-/// All values, or all diagnostics of those that are invalid, or the first other error.
-pub(crate) fn collect_all<T>(results: impl Iterator<Item = Result<T, Error>>) -> Result<Vec<T>, Error> {
-    let mut values = Vec::new();
-    let mut diagnostics = Vec::new();
-    for result in results {
-        match result {
-            Ok(value) => values.push(value),
-            Err(error) if error.kind() == ErrorKind::Invalid => {
-                diagnostics.extend_from_slice(error.diagnostics())
-            }
-            Err(error) => return Err(error),
-        }
-    }
-    if diagnostics.is_empty() { Ok(values) } else { Err(Error::invalid(diagnostics)) }
 }
 
 /// Refuses duplicate names.

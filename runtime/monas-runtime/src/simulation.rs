@@ -7,10 +7,10 @@ use std::sync::Arc;
 
 use narukom::{Hub, Timestamp};
 
-use super::Talws;
 use super::agent_instance::AgentInstance;
 use super::clock::RunClock;
 use super::links::RunningLink;
+use super::run_config::RunConfig;
 use super::run_handle::{self, ExternalRequest, RequestQueue, RunHandle, SimulatedClock};
 use super::setup::{PreparedRun, WorldDriver};
 use super::stop_handle::StopHandle;
@@ -44,8 +44,8 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    pub(crate) fn new(talws: Talws, seed: u64) -> Result<Simulation, Error> {
-        let PreparedRun { world, stations, factory: crew } = PreparedRun::new(talws, seed)?;
+    pub(crate) fn new(config: RunConfig, seed: u64) -> Result<Simulation, Error> {
+        let PreparedRun { world, stations, factory: crew } = PreparedRun::new(config, seed)?;
         let shown = Arc::new(SimulatedClock::default());
         let mut links = Vec::new();
         let hosts =

@@ -1,84 +1,22 @@
 //! Talws: the hosts of a run, their agents and bodies, and the world.
 
 use std::path::Path;
-use std::sync::Arc;
-use std::time::Duration;
 
-use monas_core::activity::BoxError;
 use monas_core::agent::Agent;
 use monas_core::error::{Error, ErrorKind};
 use monas_core::listener::ChartListener;
-use monas_core::module::Module;
 use monas_core::registry::Registry;
 use monas_core::statistics::Statistics;
 use monas_link::LinkConfig;
-use monas_robot::Robot;
-use narukom::{Blackboard, Observer, Timestamp};
-use yase::{Diagnostic, Source, Span};
+use narukom::Observer;
+use yase::{Diagnostic, Span};
 
 use crate::real_time::RealTimeRun;
-use crate::replay::RecordedPublisher;
-use crate::setup;
+use crate::recorded_publisher::RecordedPublisher;
+use crate::replay::Replay;
+use crate::run_config::{HostConfig, REAL_TIME_SEED, RunConfig, World};
+use crate::setup::PreparedRun;
 use crate::simulation::Simulation;
-
-/// The seed of a run in real time. Such a run is not deterministic, so any seed will do.
-pub(crate) const REAL_TIME_SEED: u64 = 0;
-
-/// A host: a robot or a computer, with its hub, its agents, and its body if it has one.
-#[derive(Default)]
-pub struct HostConfig {
-    /// Its name, unique among all hosts.
-    pub name: String,
-    /// Its team's number.
-    pub team: u32,
-    /// Its number in the team.
-    pub number: u32,
-    /// Its body.
-    pub body: Option<Box<dyn Robot>>,
-    /// Its agents.
-    pub agents: Vec<Agent>,
-    /// Its links to other processes and hosts.
-    pub links: Vec<LinkConfig>,
-    /// The modules with activities of its agents. They are available to all agents of the run.
-    pub modules: Vec<Module>,
-    /// The text of its configuration, into which changes are saved.
-    pub configuration: Option<Arc<Source>>,
-}
-
-impl std::fmt::Debug for HostConfig {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("HostConfig")
-            .field("name", &self.name)
-            .field("team", &self.team)
-            .field("number", &self.number)
-            .field("body", &self.body.as_ref().map(|body| &body.anatomy().model))
-            .field("agents", &self.agents)
-            .field("links", &self.links)
-            .field("modules", &self.modules)
-            .finish()
-    }
-}
-
-/// The world of simulated bodies. It has its own hub, with the world's name, on which it may
-/// publish ground truth.
-pub trait World: Send {
-    /// The name of its hub.
-    fn name(&self) -> &str {
-        "world"
-    }
-
-    /// The period of its advances.
-    fn period(&self) -> Duration;
-
-    /// Publishes the initial ground truth.
-    fn start(&mut self, blackboard: &mut Blackboard) -> Result<(), BoxError> {
-        let _ = blackboard;
-        Ok(())
-    }
-
-    /// Advances by one period, to `now`.
-    fn advance(&mut self, now: Timestamp, blackboard: &mut Blackboard) -> Result<(), BoxError>;
-}
 
 /// The hosts of a run with their agents and bodies, and the world around them.
 ///
@@ -100,13 +38,7 @@ pub trait World: Send {
 /// ```
 #[derive(Default)]
 pub struct Talws {
-    pub(crate) registry: Option<Registry>,
-    pub(crate) hosts: Vec<HostConfig>,
-    pub(crate) world: Option<Box<dyn World>>,
-    pub(crate) observers: Vec<Box<dyn Observer>>,
-    pub(crate) listeners: Vec<Box<dyn ChartListener>>,
-    /// Recorded publishers of the hosts, beside their agents and bodies.
-    pub(crate) publishers: Vec<RecordedPublisher>,
+    config: RunConfig,
 }
 
 impl Talws {
@@ -122,8 +54,8 @@ impl Talws {
     /// Activities come from the given registry.
     ///
     /// # Errors
-    /// [`ErrorKind::Invalid`](monas_core::ErrorKind::Invalid) with every diagnostic of the file and of
-    /// the models that it names.
+    /// [`ErrorKind::Invalid`](monas_core::ErrorKind::Invalid) with every diagnostic of the file and
+    /// of the models that it names.
     pub fn from_config(path: impl AsRef<Path>, registry: Registry) -> Result<Talws, Error> {
         let (setup, diagnostics) = monas_config::load(path, &registry);
         if diagnostics.iter().any(|diagnostic| diagnostic.is_error()) {
@@ -147,7 +79,7 @@ impl Talws {
 
     /// Takes activities and functions from this registry instead of the linked ones.
     pub fn registry(mut self, registry: Registry) -> Talws {
-        self.registry = Some(registry);
+        self.config.registry = Some(registry);
         self
     }
 
@@ -164,35 +96,35 @@ impl Talws {
     }
 
     fn local(&mut self) -> &mut HostConfig {
-        let known = self.hosts.iter().position(|host| host.name == Talws::LOCAL);
+        let known = self.config.hosts.iter().position(|host| host.name == Talws::LOCAL);
         let place = known.unwrap_or_else(|| {
-            self.hosts.push(HostConfig { name: Talws::LOCAL.into(), ..HostConfig::default() });
-            self.hosts.len() - 1
+            self.config.hosts.push(HostConfig { name: Talws::LOCAL.into(), ..HostConfig::default() });
+            self.config.hosts.len() - 1
         });
-        &mut self.hosts[place]
+        &mut self.config.hosts[place]
     }
 
     /// Adds a host.
     pub fn host(&mut self, host: HostConfig) -> &mut Talws {
-        self.hosts.push(host);
+        self.config.hosts.push(host);
         self
     }
 
     /// Sets the world around the bodies and replaces a previous one.
     pub fn world(&mut self, world: Box<dyn World>) -> &mut Talws {
-        self.world = Some(world);
+        self.config.world = Some(world);
         self
     }
 
     /// Adds an observer of every message published on any host, in order of publication.
     pub fn observe(&mut self, observer: Box<dyn Observer>) -> &mut Talws {
-        self.observers.push(observer);
+        self.config.observers.push(observer);
         self
     }
 
     /// Adds a listener to every micro-step of every chart.
     pub fn listen(&mut self, listener: Box<dyn ChartListener>) -> &mut Talws {
-        self.listeners.push(listener);
+        self.config.listeners.push(listener);
         self
     }
 
@@ -201,15 +133,15 @@ impl Talws {
     ///
     /// # Errors
     /// Duplicate names of hosts, or of agents of one host; topics that contradict each other; every
-    /// diagnostic of every chart; and [`ErrorKind::Link`](monas_core::ErrorKind::Link) if a host has
-    /// links: other processes do not wait for simulated time.
+    /// diagnostic of every chart; and [`ErrorKind::Link`](monas_core::ErrorKind::Link) if a host
+    /// has links: other processes do not wait for simulated time.
     pub fn simulate(self, seed: u64) -> Result<Simulation, Error> {
-        if let Some(host) = self.hosts.iter().find(|host| !host.links.is_empty()) {
+        if let Some(host) = self.config.hosts.iter().find(|host| !host.links.is_empty()) {
             let message =
                 format!("`{}` has links, and other processes do not wait for simulated time", host.name);
             return Err(Error::new(ErrorKind::Link, message).with_hint("pace it, with `simulate_linked`"));
         }
-        Simulation::new(self, seed)
+        Simulation::new(self.config, seed)
     }
 
     /// As [`simulate`](Talws::simulate), with the links of all hosts. Messages of links arrive in
@@ -219,13 +151,13 @@ impl Talws {
     /// # Errors
     /// As in [`simulate`](Talws::simulate), and when a link cannot be opened.
     pub fn simulate_linked(self, seed: u64) -> Result<Simulation, Error> {
-        Simulation::new(self, seed)
+        Simulation::new(self.config, seed)
     }
 
     /// The diagnostics of a run before its start: charts that do not fit the program, sources
     /// without a publisher, duplicate names. Executes nothing and opens no link.
     pub fn check(self) -> Vec<Diagnostic> {
-        match setup::PreparedRun::new(self, 0) {
+        match PreparedRun::new(self.config, 0) {
             Ok(_) => Vec::new(),
             Err(error) if error.kind() == ErrorKind::Invalid => error.diagnostics().to_vec(),
             Err(error) => vec![refusal(&error)],
@@ -238,7 +170,25 @@ impl Talws {
     /// # Errors
     /// As in [`simulate`](Talws::simulate), and when a thread cannot be created.
     pub fn start(self) -> Result<RealTimeRun, Error> {
-        RealTimeRun::start(self, REAL_TIME_SEED)
+        RealTimeRun::start(self.config, REAL_TIME_SEED)
+    }
+
+    /// Prepares a replay of the agents of these hosts, which need no bodies, on a recording of
+    /// simulated time. The seed is that of the recorded run; `publishers` lists all publishers of
+    /// the hosts.
+    ///
+    /// # Errors
+    /// As in [`simulate`](Talws::simulate).
+    pub fn replay(self, seed: u64, publishers: &[RecordedPublisher]) -> Result<Replay, Error> {
+        Replay::simulated(self.config, seed, publishers)
+    }
+
+    /// As [`replay`](Talws::replay), on a recording of real time.
+    ///
+    /// # Errors
+    /// As there, and if an agent has neither charts nor activities when the run begins.
+    pub fn replay_real_time(self, publishers: &[RecordedPublisher]) -> Result<Replay, Error> {
+        Replay::real_time(self.config, publishers)
     }
 
     /// Runs in real time until the run is [stopped](StopHandle::stop).
@@ -252,7 +202,7 @@ impl Talws {
 
 impl std::fmt::Debug for Talws {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Talws").field("hosts", &self.hosts).finish_non_exhaustive()
+        f.debug_struct("Talws").field("hosts", &self.config.hosts).finish_non_exhaustive()
     }
 }
 

@@ -13,7 +13,7 @@ use super::save;
 use super::settings;
 use crate::agent_factory::{AgentFactory, HostContext};
 use crate::agent_update::{AgentUpdate, ChangeRef};
-use crate::run_handle::OUTSIDE;
+use crate::host_status::OUTSIDE;
 use monas_core::agent::AgentProfile;
 use monas_core::error::Error;
 use monas_core::records::{

@@ -12,8 +12,8 @@ use narukom::{Hub, RemoteHeader, Timestamp, TopicSlot};
 
 use super::super::agent_factory::part;
 use super::super::links::LinkedTopics;
+use super::super::run_config::{HostConfig, RunConfig};
 use super::super::setup::{PreparedHost, PreparedRun};
-use super::super::{HostConfig, Talws};
 use super::comparison::{ComparisonReport, MomentComparison};
 use super::recorded_changes::{RecordedChanges, ThreadPosition};
 use super::recorded_inputs::{ExternalMessage, InputEndpoint, OwnOutputTap, RecordedInputs};
@@ -22,7 +22,7 @@ use super::replayed_thread::ReplayedThread;
 use super::{
     ComparisonCounts, RecordedMessage, RecordedPublisher, RecordedStream, ReplayDifference, no_input,
 };
-use crate::talws::REAL_TIME_SEED;
+use crate::run_config::REAL_TIME_SEED;
 use monas_core::agent::AgentProfile;
 use monas_core::chart_runner::ReplayGuide as _;
 use monas_core::error::{Error, ErrorKind};
@@ -102,8 +102,8 @@ struct OwnMessage {
 }
 
 impl RealTimeReplay {
-    pub(crate) fn new(talws: Talws, company: &[RecordedPublisher]) -> Result<RealTimeReplay, Error> {
-        let Talws { registry, hosts, .. } = talws;
+    pub(crate) fn new(config: RunConfig, company: &[RecordedPublisher]) -> Result<RealTimeReplay, Error> {
+        let RunConfig { registry, hosts, .. } = config;
         let mut parts = Vec::new();
         for HostConfig { name, team, number, agents, links, modules, .. } in hosts {
             for agent in agents {
@@ -118,11 +118,14 @@ impl RealTimeReplay {
                 for (place, agent) in threads {
                     let (name, links, modules) = (name.clone(), links.clone(), modules.clone());
                     let agents = vec![agent];
-                    let mut alone = Talws { registry: registry.clone(), ..Talws::new() };
-                    alone.publishers = company.to_vec();
-                    let links_and_agents =
+                    let host =
                         HostConfig { name, team, number, agents, links, modules, ..HostConfig::default() };
-                    alone.host(links_and_agents);
+                    let alone = RunConfig {
+                        registry: registry.clone(),
+                        hosts: vec![host],
+                        publishers: company.to_vec(),
+                        ..RunConfig::default()
+                    };
                     parts.push(ThreadReplay::new(
                         alone,
                         profile.clone(),
@@ -300,11 +303,15 @@ fn arrival(message: &RecordedMessage<'_>) -> RemoteHeader {
 impl ThreadReplay {
     /// The replay of one thread of a host's only agent, built from its profile, with a separate
     /// hub.
-    fn new(mut talws: Talws, profile: AgentProfile, thread: ThreadPosition) -> Result<ThreadReplay, Error> {
+    fn new(
+        mut config: RunConfig,
+        profile: AgentProfile,
+        thread: ThreadPosition,
+    ) -> Result<ThreadReplay, Error> {
         let agent = profile.name.clone();
         let ear = OwnOutputTap::new(&agent, thread.part());
-        talws.observe(Box::new(ear.clone()));
-        let PreparedRun { mut stations, factory: crew, .. } = PreparedRun::new(talws, REAL_TIME_SEED)?;
+        config.observers.push(Box::new(ear.clone()));
+        let PreparedRun { mut stations, factory: crew, .. } = PreparedRun::new(config, REAL_TIME_SEED)?;
         let Some(PreparedHost { hub, agents: mut members, links, context: ground, .. }) = stations.pop()
         else {
             return Err(nothing_to_run(&agent));

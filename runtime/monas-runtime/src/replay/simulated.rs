@@ -3,9 +3,9 @@
 use narukom::prost::Message as _;
 use narukom::{AnyPublisher, Receiver, RemoteHeader, Timestamp, TopicSlot};
 
-use super::super::Talws;
 use super::super::admin::HOST_ITSELF;
-use super::super::run_handle::OUTSIDE;
+use super::super::host_status::OUTSIDE;
+use super::super::run_config::RunConfig;
 use super::super::setup::PreparedRun;
 use super::comparison::ComparisonReport;
 use super::replay_host::{OutputCapture, ReplayHost};
@@ -50,14 +50,14 @@ enum SimulatedRoute {
 
 impl SimulatedReplay {
     pub(crate) fn new(
-        mut talws: Talws,
+        mut config: RunConfig,
         seed: u64,
         company: &[RecordedPublisher],
     ) -> Result<SimulatedReplay, Error> {
         let spy = OutputCapture::default();
-        talws.observe(Box::new(spy.clone()));
-        talws.publishers = company.to_vec();
-        let PreparedRun { stations, factory: crew, .. } = PreparedRun::new(talws, seed)?;
+        config.observers.push(Box::new(spy.clone()));
+        config.publishers = company.to_vec();
+        let PreparedRun { stations, factory: crew, .. } = PreparedRun::new(config, seed)?;
         let scenes = stations.into_iter().map(|station| ReplayHost::new(station, &crew, company));
         let mut scenes = scenes.collect::<Result<Vec<ReplayHost>, Error>>()?;
         for produced in spy.take() {
