@@ -15,7 +15,7 @@ mod simulated;
 
 use narukom::Timestamp;
 
-use super::recorded_publisher::RecordedPublisher;
+pub use super::recorded_publisher::RecordedPublisher;
 use super::run_config::RunConfig;
 use monas_core::activity_context::SimulatedTimeGuard;
 use monas_core::error::{Error, ErrorKind};

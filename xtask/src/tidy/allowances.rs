@@ -60,7 +60,6 @@ const ALLOWANCES: &[Allowance] = &[
     allow("docs", Check::Words, 2),
     allow("monas-soccer", Check::Words, 1),
     allow("yase-reference", Check::Words, 1),
-    allow(".", Check::Columns, 1),
     allow("aseme", Check::Columns, 2),
     allow("aseme-codegen", Check::Columns, 7),
     allow("docs", Check::Columns, 11),
