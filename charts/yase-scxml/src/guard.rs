@@ -1,7 +1,7 @@
 //! Conditions that a chart can evaluate without a session: those made of `In()`.
 
 use super::language::{ActiveQuery, ScriptExpression as Script};
-use super::read::quoted;
+use super::lexical::quoted;
 use yase::diagnostic::Span;
 use yase::expression::{ActionKind, Expression, ExpressionKind, Name, Path, TextPosition};
 use yase::statechart::Statechart;

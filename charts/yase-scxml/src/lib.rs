@@ -90,6 +90,7 @@ mod document;
 mod grammar;
 mod guard;
 mod language;
+mod lexical;
 mod read;
 mod session;
 mod time;

@@ -6,8 +6,7 @@ mod invoke;
 mod states;
 mod targets;
 
-pub(crate) use content::{literal, quoted};
-pub(crate) use states::is_id;
+pub(crate) use content::literal;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

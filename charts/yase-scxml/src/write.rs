@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use super::content::ScriptSource;
 use super::document::{DataBinding, DataModel, Document};
 use super::guard::condition_text;
-use super::read::is_id;
+use super::lexical::is_id;
 use super::xml::{NAMESPACE, is_xml};
 use yase::diagnostic::{Diagnostic, Span};
 use yase::expression::{Action, ActionKind, Path, Trigger};

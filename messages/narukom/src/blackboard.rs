@@ -16,12 +16,13 @@ use crate::encoding::check_type;
 use crate::error::{Error, ErrorKind};
 use crate::history::SurroundingSamples;
 use crate::hub::Hub;
-use crate::hub_state::{HubState, OutgoingMessage, Sender};
+use crate::hub_state::{HubState, OutgoingMessage};
 use crate::inbox::{Delivery, DeliveryWindow, Inbox, ReaderView};
 use crate::message::{AnyMessage, Message};
 use crate::outbox::Outbox;
 use crate::random::Random;
 use crate::ring::WriterId;
+use crate::sample::Sender;
 use crate::sample::{AnySample, Channel, Header, HostId, Sample, TopicSlot};
 use crate::timestamp::Timestamp;
 use crate::topic::{self, Retention, Signal, Timed, Topic};
@@ -71,6 +72,16 @@ pub struct Blackboard {
 }
 
 /// Begin and end of a cycle.
+/// Constructors.
+impl Hub {
+    /// Creates a blackboard for an agent, or for a region of one, that publishes under the name
+    /// `publisher`. Several blackboards may share a name.
+    pub fn blackboard(&self, publisher: &str) -> Blackboard {
+        let number = self.next_blackboard();
+        Blackboard::new(self.clone(), self.sender(publisher), number)
+    }
+}
+
 impl Blackboard {
     pub(crate) fn new(hub: Hub, sender: Sender, number: u32) -> Blackboard {
         let places = hub.topics().iter().map(|_| TopicEntry::default()).collect();

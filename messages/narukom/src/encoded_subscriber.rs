@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::cursors::Cursors;
 use crate::encoding::EncodedMessage;
+use crate::error::Error;
 use crate::hub::Hub;
 use crate::ring::RingEntry;
 use crate::sample::{Channel, HostId, TopicSlot};
@@ -21,6 +22,14 @@ pub struct EncodedSubscriber {
     hub: Hub,
     cursors: Cursors,
     fetched: VecDeque<(u64, EncodedMessage)>,
+}
+
+/// Constructors.
+impl Hub {
+    /// Like [`subscriber`](Hub::subscriber), for encoded messages: for links and recorders.
+    pub fn encoded_subscriber(&self, pattern: &str) -> Result<EncodedSubscriber, Error> {
+        Ok(EncodedSubscriber::new(self.clone(), self.matching(pattern)?))
+    }
 }
 
 impl EncodedSubscriber {

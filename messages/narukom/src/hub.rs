@@ -4,25 +4,22 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::blackboard::Blackboard;
-use crate::encoded_subscriber::EncodedSubscriber;
 use crate::encoding::EncodingSlot;
-use crate::error::{Error, ErrorKind};
-use crate::hub_state::{HubState, OutgoingMessage, Sender};
+use crate::error::Error;
+use crate::hub_state::{HubState, OutgoingMessage};
 use crate::observer::{Observer, Publication, Waker};
 use crate::publication_index::{PublicationIndex, RecentChannels};
-use crate::publisher::{AnyPublisher, Publisher};
-use crate::receiver::Receiver;
-use crate::sample::{AnySample, Channel, HostId, PublisherId, TopicSlot};
-use crate::subscriber::{self, Subscriber};
+use crate::sample::{AnySample, Channel, HostId, PublisherId, Sender, TopicSlot};
 use crate::timestamp::Timestamp;
-use crate::topic::{Retention, TOPICS, Topic, TopicDeclaration};
+use crate::topic::{TOPICS, TopicDeclaration};
 use crate::topic_table::TopicTable;
 
 /// The hub of one host. Cloning it gives another handle to the same hub.
 ///
-/// All publishers and readers hold a handle: agents through a [`Blackboard`], other code through a
-/// [`Publisher`] or a [`Subscriber`], links through an [`EncodedSubscriber`] and a [`Receiver`].
+/// All publishers and readers hold a handle: agents through a [`Blackboard`](crate::Blackboard),
+/// other code through a [`Publisher`](crate::Publisher) or a [`Subscriber`](crate::Subscriber),
+/// links through an [`EncodedSubscriber`](crate::EncodedSubscriber) and a
+/// [`Receiver`](crate::Receiver).
 /// The hub holds a bounded ring of messages per topic; readers poll it, so a reader that never does
 /// slows down no publisher.
 #[derive(Clone)]
@@ -97,11 +94,6 @@ impl Hub {
         self.shared.catalogue.by_hash(hash)
     }
 
-    /// The topics that match a pattern, with the syntax of [`subscriber`](Hub::subscriber).
-    pub fn matching(&self, pattern: &str) -> Result<Vec<TopicSlot>, Error> {
-        subscriber::matching(&self.shared.catalogue, pattern)
-    }
-
     /// The declaration of a topic.
     pub fn declaration(&self, slot: TopicSlot) -> Option<&TopicDeclaration> {
         self.shared.catalogue.get(slot)
@@ -154,71 +146,8 @@ impl Hub {
     }
 }
 
-/// Publishers, readers and observers.
+/// Observers. The constructors of publishers and readers are in the modules of these.
 impl Hub {
-    /// Creates a blackboard for an agent, or for a region of one, that publishes under the name
-    /// `publisher`. Several blackboards may share a name.
-    pub fn blackboard(&self, publisher: &str) -> Blackboard {
-        let number = self.shared.blackboards.fetch_add(1, Ordering::Relaxed) + 1;
-        Blackboard::new(self.clone(), self.sender(publisher), number)
-    }
-
-    /// Creates a publisher on one topic under the name `publisher`, for code outside of agents.
-    pub fn publisher<K: Retention>(
-        &self,
-        topic: Topic<K>,
-        publisher: &str,
-    ) -> Result<Publisher<K::Message>, Error> {
-        let slot = self.shared.catalogue.checked(topic)?;
-        Ok(Publisher::new(self.clone(), self.sender(publisher), slot))
-    }
-
-    /// Like [`publisher`](Hub::publisher), for a topic known at run time: accepts messages of any
-    /// type, or bytes, and rejects those that do not have the topic's type.
-    pub fn publisher_by_name(&self, path: &str, publisher: &str) -> Result<AnyPublisher, Error> {
-        let slot = self.shared.catalogue.declared(path)?;
-        let declaration = self.shared.catalogue.topics()[slot.index()];
-        Ok(AnyPublisher::new(self.clone(), self.sender(publisher), slot, declaration))
-    }
-
-    /// Creates a receiver, used by links, for what `publisher` publishes at `path` on another host.
-    ///
-    /// # Errors
-    /// The topic is not declared here, `host` is this host, or there are too many hosts or
-    /// publishers.
-    pub fn receiver(&self, host: &str, publisher: &str, path: &str) -> Result<Receiver, Error> {
-        let slot = self.shared.catalogue.declared(path)?;
-        let declaration = self.shared.catalogue.topics()[slot.index()];
-        let mut exchange = self.state();
-        let id = exchange.host(host)?;
-        if id == HostId::LOCAL {
-            let text =
-                format!("`{path}` of `{publisher}` comes from elsewhere, but names this host, `{host}`");
-            return Err(Error::new(ErrorKind::OwnHost, text));
-        }
-        let sender = exchange.remote_sender(publisher)?;
-        let name = exchange.hosts()[id.index()].clone();
-        drop(exchange);
-        Ok(Receiver::new(self.clone(), (id, name), sender, slot, declaration))
-    }
-
-    /// Subscribes to one topic published on this host (`soccer/ball`), to those directly under a
-    /// path (`soccer/*`), or to all under it (`soccer/**`, `**`), for code outside of agents. A
-    /// pattern that matches no topic is an error.
-    pub fn subscriber(&self, pattern: &str) -> Result<Subscriber, Error> {
-        self.subscriber_of(HostId::LOCAL, pattern)
-    }
-
-    /// Like [`subscriber`](Hub::subscriber), for the messages of another host.
-    pub fn subscriber_of(&self, host: HostId, pattern: &str) -> Result<Subscriber, Error> {
-        Ok(Subscriber::new(self.clone(), host, self.matching(pattern)?))
-    }
-
-    /// Like [`subscriber`](Hub::subscriber), for encoded messages: for links and recorders.
-    pub fn encoded_subscriber(&self, pattern: &str) -> Result<EncodedSubscriber, Error> {
-        Ok(EncodedSubscriber::new(self.clone(), self.matching(pattern)?))
-    }
-
     /// Registers an observer for everything that is published from now on.
     pub fn observe(&self, observer: Box<dyn Observer>) {
         self.observers().all.push(observer);
@@ -284,7 +213,12 @@ impl Hub {
         self.shared.observers.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn sender(&self, name: &str) -> Sender {
+    /// A new number for a blackboard.
+    pub(crate) fn next_blackboard(&self) -> u32 {
+        self.shared.blackboards.fetch_add(1, Ordering::Relaxed) + 1
+    }
+
+    pub(crate) fn sender(&self, name: &str) -> Sender {
         self.state().sender(name)
     }
 

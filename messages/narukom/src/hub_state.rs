@@ -8,7 +8,7 @@ use crate::error::{Error, ErrorKind};
 use crate::message::AnyMessage;
 use crate::observer::Waker;
 use crate::ring::{Ring, RingEntry, WriterId};
-use crate::sample::{AnySample, Channel, Header, HostId, PublisherId, TopicSlot};
+use crate::sample::{AnySample, Channel, Header, HostId, PublisherId, Sender, TopicSlot};
 use crate::timestamp::Timestamp;
 use crate::topic::TopicDeclaration;
 
@@ -21,15 +21,6 @@ pub const HOST_LIMIT: usize = 256;
 
 /// The most names of publishers of other hosts that a hub numbers.
 pub const REMOTE_PUBLISHER_LIMIT: usize = 4096;
-
-/// A publisher.
-#[derive(Clone)]
-pub(crate) struct Sender {
-    pub(crate) publisher: PublisherId,
-    pub(crate) name: Arc<str>,
-    /// The part among the publishers that share the name.
-    pub(crate) part: u16,
-}
 
 /// A message on its way to the hub.
 pub(crate) struct OutgoingMessage {

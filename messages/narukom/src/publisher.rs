@@ -7,13 +7,14 @@ use std::sync::Arc;
 use crate::encoding::check_type;
 use crate::error::Error;
 use crate::hub::Hub;
-use crate::hub_state::{OutgoingMessage, Sender};
+use crate::hub_state::OutgoingMessage;
 use crate::message::{AnyMessage, Message};
 use crate::pool::MessagePool;
 use crate::ring::WriterId;
+use crate::sample::Sender;
 use crate::sample::{AnySample, Header, TopicSlot};
 use crate::timestamp::Timestamp;
-use crate::topic::TopicDeclaration;
+use crate::topic::{Retention, Topic, TopicDeclaration};
 
 /// Publishes messages of one type on one topic immediately, without a cycle: for bodies, links and
 /// other code outside of agents.
@@ -35,6 +36,27 @@ struct PublisherCore {
     sender: Sender,
     slot: TopicSlot,
     pool: MessagePool,
+}
+
+/// Constructors.
+impl Hub {
+    /// Creates a publisher on one topic under the name `publisher`, for code outside of agents.
+    pub fn publisher<K: Retention>(
+        &self,
+        topic: Topic<K>,
+        publisher: &str,
+    ) -> Result<Publisher<K::Message>, Error> {
+        let slot = self.topic_table().checked(topic)?;
+        Ok(Publisher::new(self.clone(), self.sender(publisher), slot))
+    }
+
+    /// Like [`publisher`](Hub::publisher), for a topic known at run time: accepts messages of any
+    /// type, or bytes, and rejects those that do not have the topic's type.
+    pub fn publisher_by_name(&self, path: &str, publisher: &str) -> Result<AnyPublisher, Error> {
+        let slot = self.topic_table().declared(path)?;
+        let declaration = self.topic_table().topics()[slot.index()];
+        Ok(AnyPublisher::new(self.clone(), self.sender(publisher), slot, declaration))
+    }
 }
 
 impl<M: Message> Publisher<M> {

@@ -4,12 +4,13 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::encoding::check_type;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::hub::Hub;
-use crate::hub_state::{OutgoingMessage, Sender};
+use crate::hub_state::OutgoingMessage;
 use crate::message::AnyMessage;
 use crate::pool::MessagePool;
 use crate::ring::WriterId;
+use crate::sample::Sender;
 use crate::sample::{AnySample, Header, HostId, TopicSlot};
 use crate::timestamp::Timestamp;
 use crate::topic::TopicDeclaration;
@@ -37,6 +38,30 @@ pub struct Receiver {
     slot: TopicSlot,
     topic: TopicDeclaration,
     pool: MessagePool,
+}
+
+/// Constructors.
+impl Hub {
+    /// Creates a receiver, used by links, for what `publisher` publishes at `path` on another host.
+    ///
+    /// # Errors
+    /// The topic is not declared here, `host` is this host, or there are too many hosts or
+    /// publishers.
+    pub fn receiver(&self, host: &str, publisher: &str, path: &str) -> Result<Receiver, Error> {
+        let slot = self.topic_table().declared(path)?;
+        let declaration = self.topic_table().topics()[slot.index()];
+        let mut exchange = self.state();
+        let id = exchange.host(host)?;
+        if id == HostId::LOCAL {
+            let text =
+                format!("`{path}` of `{publisher}` comes from elsewhere, but names this host, `{host}`");
+            return Err(Error::new(ErrorKind::OwnHost, text));
+        }
+        let sender = exchange.remote_sender(publisher)?;
+        let name = exchange.hosts()[id.index()].clone();
+        drop(exchange);
+        Ok(Receiver::new(self.clone(), (id, name), sender, slot, declaration))
+    }
 }
 
 impl Receiver {

@@ -3,9 +3,17 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
-use crate::hub_state::Sender;
 use crate::message::AnyMessage;
 use crate::timestamp::Timestamp;
+
+/// A publisher.
+#[derive(Clone)]
+pub(crate) struct Sender {
+    pub(crate) publisher: PublisherId,
+    pub(crate) name: Arc<str>,
+    /// The part among the publishers that share the name.
+    pub(crate) part: u16,
+}
 
 /// A host (a robot, a computer), numbered by a hub.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]

@@ -23,6 +23,26 @@ pub struct Subscriber {
     fetched: VecDeque<(u64, AnySample)>,
 }
 
+/// Constructors.
+impl Hub {
+    /// The topics that match a pattern, with the syntax of [`subscriber`](Hub::subscriber).
+    pub fn matching(&self, pattern: &str) -> Result<Vec<TopicSlot>, Error> {
+        matching(self.topic_table(), pattern)
+    }
+
+    /// Subscribes to one topic published on this host (`soccer/ball`), to those directly under a
+    /// path (`soccer/*`), or to all under it (`soccer/**`, `**`), for code outside of agents. A
+    /// pattern that matches no topic is an error.
+    pub fn subscriber(&self, pattern: &str) -> Result<Subscriber, Error> {
+        self.subscriber_of(HostId::LOCAL, pattern)
+    }
+
+    /// Like [`subscriber`](Hub::subscriber), for the messages of another host.
+    pub fn subscriber_of(&self, host: HostId, pattern: &str) -> Result<Subscriber, Error> {
+        Ok(Subscriber::new(self.clone(), host, self.matching(pattern)?))
+    }
+}
+
 impl Subscriber {
     pub(crate) fn new(hub: Hub, host: HostId, slots: Vec<TopicSlot>) -> Subscriber {
         let mut fetched = VecDeque::new();

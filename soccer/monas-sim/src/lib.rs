@@ -80,6 +80,7 @@
 
 mod arena;
 mod body;
+mod body_phase;
 mod camera;
 mod command;
 mod draw;
@@ -107,7 +108,7 @@ mod state;
 mod statistics;
 mod world;
 
-pub use body::{BodyPhase, Direction};
+pub use body_phase::{BodyPhase, Direction};
 pub use camera::{Percept, Sighting};
 pub use command::{Command, Motion};
 pub use draw::render_svg;

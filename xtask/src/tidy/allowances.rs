@@ -67,9 +67,6 @@ const ALLOWANCES: &[Allowance] = &[
     allow("yase", Check::Columns, 1),
     allow("yase-codegen", Check::Columns, 12),
     allow("yase-reference", Check::Columns, 6),
-    allow("monas-sim", Check::Circle, 4),
-    allow("narukom", Check::Circle, 7),
-    allow("yase-scxml", Check::Circle, 4),
 ];
 
 pub(crate) fn check(workspace: &Workspace) -> Vec<TidyFinding> {

@@ -1,5 +1,6 @@
 //! Executable content.
 
+use crate::lexical::quoted;
 use roxmltree::Node;
 
 use super::DocumentReader;
@@ -252,20 +253,4 @@ pub(crate) fn literal(text: &str) -> CompiledText<ScriptExpression> {
     }
     let words: Vec<&str> = text.split_whitespace().collect();
     CompiledText::expression(&quoted(&words.join(" ")))
-}
-
-/// A text as a literal of the language.
-pub(crate) fn quoted(text: &str) -> String {
-    let mut quoted = String::from("'");
-    for character in text.chars() {
-        match character {
-            '\'' => quoted.push_str("\\'"),
-            '\\' => quoted.push_str("\\\\"),
-            '\n' => quoted.push_str("\\n"),
-            '\r' => quoted.push_str("\\r"),
-            other => quoted.push(other),
-        }
-    }
-    quoted.push('\'');
-    quoted
 }

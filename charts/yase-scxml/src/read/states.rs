@@ -1,5 +1,6 @@
 //! States, histories and transitions.
 
+use crate::lexical::is_id;
 use roxmltree::Node as Element;
 
 use super::{DocumentReader, PendingTransition, TargetReference};
@@ -357,12 +358,6 @@ pub(crate) fn actions(block: &Block, span: Span) -> Vec<Action> {
         Some(actions) => actions,
         None => vec![Action { kind: ActionKind::Script(block_text(block)), place }],
     }
-}
-
-/// Whether a text can be the id of a state.
-pub(crate) fn is_id(text: &str) -> bool {
-    let part = |character: char| character.is_alphanumeric() || "_-.:".contains(character);
-    text.starts_with(|first: char| first.is_alphabetic() || first == '_') && text.chars().all(part)
 }
 
 fn is_state(element: Element<'_, '_>) -> bool {
