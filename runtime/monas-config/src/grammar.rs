@@ -5,7 +5,7 @@
 //! [`Grammar::agents`]:
 //!
 //! ```
-//! use monas::config::{AttributeRule, ElementRule, Grammar, Kind};
+//! use monas_config::{AttributeRule, ElementRule, Grammar, Kind};
 //!
 //! let lamp = ElementRule::new("lamp", "a lamp on a shelf")
 //!     .attribute(AttributeRule::new("watts", Kind::number_from(0.0), "how bright it is").or("5"));

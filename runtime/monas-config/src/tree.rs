@@ -15,7 +15,7 @@ use super::xml_config::{ValueError, attribute_value, type_name, value_of};
 /// before (Listing 4.13 of the thesis).
 ///
 /// ```
-/// use monas::config::{Xml, XmlNode};
+/// use monas_config::{Xml, XmlNode};
 /// use yase::Source;
 ///
 /// let text = "<leg side=left><joint min=-1.1 max=0.7>Hip</joint></leg>\n<leg side=right/>";

@@ -5,7 +5,7 @@
 //! location in the file.
 //!
 //! ```
-//! use monas::config::xml;
+//! use monas_config::xml;
 //! use yase::Source;
 //!
 //! let (elements, diagnostics) = xml::parse(&Source::new("agents.xml", "<agent Priority=1><name>Motion</nam></agent>"));

@@ -23,7 +23,7 @@ use super::xml_editor::{ElementContent, XmlEditor};
 ///
 /// ```
 /// use std::collections::BTreeMap;
-/// use monas::config::XmlConfig;
+/// use monas_config::XmlConfig;
 ///
 /// let mut config = XmlConfig::from_text("poses.xml", "<?xml version=\"1.0\" ?>\n<!-- kept -->\n<speed>0.3</speed>\n");
 /// assert_eq!(config.element::<f64>("speed")?, Some(0.3));

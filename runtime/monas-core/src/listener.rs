@@ -11,16 +11,16 @@ use yase::{CompiledChart, TraceRecord};
 ///
 /// ```
 /// use std::sync::{Arc, Mutex};
-/// use monas_core::{MicroStep, Talws};
+/// use monas_core::{ChartListener, MicroStep};
 ///
 /// let lines = Arc::new(Mutex::new(Vec::new()));
 /// let written = lines.clone();
-/// let mut talws = Talws::new();
-/// talws.listen(Box::new(move |step: MicroStep<'_>| {
+/// let listener: Box<dyn ChartListener> = Box::new(move |step: MicroStep<'_>| {
 ///     if let Ok(mut lines) = written.lock() {
 ///         lines.push(step.record.display(step.chart).to_string());
 ///     }
-/// }));
+/// });
+/// # drop(listener);
 /// ```
 pub trait ChartListener: Send {
     /// Called after each micro-step.

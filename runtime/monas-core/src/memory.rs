@@ -4,7 +4,7 @@
 //!
 //! ```
 //! #[global_allocator]
-//! static ALLOCATOR: monas::memory::CountingAllocator = monas_core::memory::CountingAllocator;
+//! static ALLOCATOR: monas_core::memory::CountingAllocator = monas_core::memory::CountingAllocator;
 //! # fn main() {}
 //! ```
 //!

@@ -14,13 +14,15 @@ use crate::records::LOG;
 /// settings. Clones share one hash.
 ///
 /// ```
-/// use monas_core::{RunHash, Talws};
+/// use monas_core::RunHash;
+/// use narukom::Hub;
 ///
 /// let hash = RunHash::new();
-/// let mut talws = Talws::new();
-/// talws.observe(Box::new(hash.clone()));
+/// let hub = Hub::with_linked_topics("local")?;
+/// hub.observe(Box::new(hash.clone()));
 /// let (digits, messages) = hash.finish();
 /// assert_eq!((digits.len(), messages), (64, 0));
+/// # Ok::<(), narukom::Error>(())
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct RunHash {

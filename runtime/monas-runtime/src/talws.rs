@@ -25,7 +25,8 @@ use crate::simulation::Simulation;
 /// [`start`](Talws::start) uses real time.
 ///
 /// ```
-/// use monas::{Agent, Blackboard, Hz, Talws, Timestamp};
+/// use monas_core::{Agent, Blackboard, Hz, Timestamp};
+/// use monas_runtime::Talws;
 ///
 /// fn hello(blackboard: &mut Blackboard) {
 ///     println!("hello at {}", blackboard.now());
@@ -34,7 +35,7 @@ use crate::simulation::Simulation;
 /// let mut simulation = talws.simulate(7)?;
 /// simulation.run_until(Timestamp::from_secs_f64(1.0))?;
 /// assert_eq!(simulation.statistics().calls("local", "hello"), 10);
-/// # Ok::<(), monas::Error>(())
+/// # Ok::<(), monas_core::Error>(())
 /// ```
 #[derive(Default)]
 pub struct Talws {

@@ -5,7 +5,7 @@
 //! two of a pair one after the other, and prints a line for each run. Other load of the computer
 //! affects both.
 
-#[path = "../tests/kit/changes.rs"]
+#[path = "../tests/monas/changes.rs"]
 mod changes;
 
 use std::process::ExitCode;

@@ -31,16 +31,16 @@
 //! use monas::{Agent, Blackboard, Talws, Timestamp};
 //! use yase::Source;
 //!
-//! fn look(_: &mut Blackboard) {}
+//! fn watch(_: &mut Blackboard) {}
 //! fn greet(_: &mut Blackboard) {}
-//! monas::activity!(fn look as "Look");
+//! monas::activity!(fn watch as "Watch");
 //! monas::activity!(fn greet as "Greet");
 //!
 //! let role = "
 //!     Liveness:
-//!     visitor = (Look . Greet)~
+//!     visitor = (Watch . Greet)~
 //!     Transitions:
-//!     Look -> Greet : [wait] / StartTimeout(wait, 500ms)
+//!     Watch -> Greet : [wait] / StartTimeout(wait, 500ms)
 //! ";
 //! let (chart, diagnostics) = aseme_models::statechart_of(&Source::new("visitor.srm", role));
 //! assert!(diagnostics.is_empty());

@@ -1,7 +1,7 @@
 //! Activities that leak are reported, others are not, with the counting allocator.
 #![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
 
-#[path = "kit/mod.rs"]
+#[path = "monas/kit.rs"]
 mod kit;
 
 use std::time::{Duration, Instant};

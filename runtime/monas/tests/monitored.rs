@@ -3,6 +3,7 @@
 
 #[path = "../../../messages/narukom/tests/counting/mod.rs"]
 mod counting;
+#[path = "monas/kit.rs"]
 mod kit;
 
 use kit::{BALL, Ball, at};

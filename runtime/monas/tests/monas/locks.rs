@@ -1,11 +1,8 @@
 //! Regions that are locked by running activities, in simulated time.
-#![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
-
-mod kit;
 
 use std::time::Duration;
 
-use kit::{BALL, Ball, NEWS, Recorder, at, recorder};
+use crate::kit::{BALL, Ball, NEWS, Recorder, at, recorder};
 use monas::{Activity, Agent, Blackboard, BoxError, Hz, Progress, Registry, Talws};
 use yase::{Semantics, Source, Statechart};
 

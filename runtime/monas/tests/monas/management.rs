@@ -1,12 +1,4 @@
 //! Agents that are changed while they run.
-#![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
-
-#[path = "../kit/changes.rs"]
-mod changes;
-#[path = "../kit/mod.rs"]
-mod kit;
-#[path = "../kit/taped.rs"]
-mod taped;
 
 mod charts;
 mod many;

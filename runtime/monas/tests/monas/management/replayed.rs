@@ -9,8 +9,8 @@ use narukom::prost::Message as _;
 use yase::{Source, Statechart};
 
 use crate::kit::{BALL, Ball, GAME, Game, NEWS, Phase, at};
+use crate::management::{change, made, settings};
 use crate::taped::{Kept, Outcome, Tape, replay, replay_simulated};
-use crate::{change, made, settings};
 
 /// Throws balls, further with each.
 #[derive(Default)]

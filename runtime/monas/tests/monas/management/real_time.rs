@@ -12,7 +12,7 @@ use monas::{
 use monas_link::{AccessList, LinkSettings, PublishAs, ReceiveRule};
 use yase::Source;
 
-use crate::{change, made, refused, settings, telling};
+use crate::management::{change, made, refused, settings, telling};
 
 const PATIENCE: Duration = Duration::from_secs(20);
 

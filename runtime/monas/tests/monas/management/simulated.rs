@@ -8,7 +8,7 @@ use narukom::{Observer, Publication};
 use yase::Source;
 
 use crate::kit::{Recorder, at, recorder};
-use crate::{change, made, refused, settings, telling};
+use crate::management::{change, made, refused, settings, telling};
 
 /// An agent `a` with the activities A and B at 10 Hz, and their records.
 fn simulation() -> (Simulation, Recorder<String>) {

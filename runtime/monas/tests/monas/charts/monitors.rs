@@ -11,9 +11,9 @@ use monas::{
 };
 use narukom::{Observer, Publication};
 
-use super::kit::at;
-use super::taped::{Tape, replay_simulated};
 use super::{balls, chart, noting};
+use crate::kit::at;
+use crate::taped::{Tape, replay_simulated};
 
 /// A loop that enters `A` at 0 ms, twice, and every 100 ms after.
 const LOOP: &str = "Liveness:\nm = A~\nTransitions:\nA -> A : [t] / StartTimeout(t, 100ms)";

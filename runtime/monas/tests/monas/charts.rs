@@ -1,19 +1,13 @@
 //! Statechart agents in simulated time: their wake-ups, the calls of their activities, and the
 //! messages these read and publish.
-#![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
 
-mod kit;
-#[path = "charts/monitors.rs"]
 mod monitors;
-#[path = "charts/sources.rs"]
 mod sources;
-#[path = "kit/taped.rs"]
-mod taped;
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use kit::{BALL, Ball, GAME, Game, NEWS, Phase, Recorder, at, recorder};
+use crate::kit::{BALL, Ball, GAME, Game, NEWS, Phase, Recorder, at, recorder};
 use monas::{
     Activity, Agent, Blackboard, BoxError, ErrorKind, FailurePolicy, Hz, MicroStep, Progress, Registry,
     RunHash, Simulation, Talws, Topics,

@@ -5,7 +5,7 @@ use monas::{Registry, Simulation, Talws};
 use yase::Source;
 
 use crate::kit::{at, recorder};
-use crate::{change, made, settings, telling};
+use crate::management::{change, made, settings, telling};
 
 fn registry() -> Registry {
     telling(&["A", "B", "C", "P"], recorder().1)

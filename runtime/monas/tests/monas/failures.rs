@@ -1,10 +1,7 @@
 //! Activities of a list that fail or panic are called again, skipped, or stop their agent, without
 //! effect on others.
-#![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
 
-mod kit;
-
-use kit::{at, recorder};
+use crate::kit::{BALL, Ball, at, recorder};
 use monas::{Activity, Agent, AgentStatistics, Blackboard, BoxError, FailurePolicy, Hz, Progress, Talws};
 
 /// Fails in these cycles of its agent, and records its calls.
@@ -121,11 +118,11 @@ fn a_panic_harms_neither_the_next_activity_nor_another_agent() {
 fn what_was_written_before_a_failure_is_published() {
     let (seen, note) = recorder();
     let writes = |b: &mut Blackboard| -> Result<(), BoxError> {
-        b.publish(kit::BALL, kit::Ball::default())?;
+        b.publish(BALL, Ball::default())?;
         Err("broken".into())
     };
     let agent = Agent::new("a", Hz(10)).activity(writes).on_failure(FailurePolicy::StopAgent);
-    let reads = Agent::new("b", Hz(10)).activity(move |b: &mut Blackboard| note(b.read(kit::BALL).is_some()));
+    let reads = Agent::new("b", Hz(10)).activity(move |b: &mut Blackboard| note(b.read(BALL).is_some()));
     Talws::new().agent(agent).agent(reads).simulate(1).unwrap().run_until(at(1)).unwrap();
     assert_eq!(seen.taken(), [true]);
 }

@@ -55,7 +55,7 @@ fn check_agent(attributes: &str, elements: &str, expected: &[&str]) {
 }
 
 /// Listing 4.17 of the thesis.
-const LISTING: &str = include_str!("../listings/4.17.xml");
+const LISTING: &str = include_str!("../../listings/4.17.xml");
 
 #[test]
 fn the_listing_of_the_thesis_is_read_as_it_stands() {

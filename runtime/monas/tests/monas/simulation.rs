@@ -1,13 +1,10 @@
 //! Agents in simulated time: their order of execution, their inputs, and equal runs for equal
 //! seeds.
-#![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
-
-mod kit;
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use kit::{BALL, Ball, NEWS, at, recorder};
+use crate::kit::{BALL, Ball, NEWS, at, recorder};
 use monas::{
     Agent, Blackboard, BoxError, ChartSettings, ErrorKind, FailurePolicy, HostConfig, Hz, Parameters,
     Progress, Registry, RunHash, Talws, Timestamp, World,

@@ -6,7 +6,7 @@ use monas::{Activity, Blackboard, BoxError, LinkTransport, Progress, Topics, con
 use monas_link::{PublishAs, Reliability, SendBudget};
 use yase::Source;
 
-use crate::agents::registry;
+use crate::configuration::agents::registry;
 use crate::kit;
 
 /// The links of a text read beside these files, and its diagnostics.

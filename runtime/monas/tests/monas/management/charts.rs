@@ -5,7 +5,7 @@ use monas::{Agent, Blackboard, Progress, Registry, Simulation, Talws};
 use yase::Source;
 
 use crate::kit::{Recorder, at, recorder};
-use crate::{change, made, settings};
+use crate::management::{change, made, settings};
 
 /// A chart whose activities record their calls: A is done at once, B continues every 100 ms.
 fn simulation(text: &str) -> (Simulation, Recorder<&'static str>) {

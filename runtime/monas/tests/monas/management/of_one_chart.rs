@@ -8,8 +8,8 @@ use monas::{Progress, Registry, Simulation, Talws};
 use tempfile::TempDir;
 
 use crate::kit::{Recorder, at, recorder};
+use crate::management::{change, made, refused, settings};
 use crate::taped::{Tape, replay_simulated};
-use crate::{change, made, refused, settings};
 
 const PATIENCE: Duration = Duration::from_secs(20);
 

@@ -1,5 +1,4 @@
 //! A typed chart in an agent behaves like the interpreted one, bit by bit.
-#![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
 
 use monas_robot::{Actuators, Sensors};
 use narukom::{FieldValue, Reflect};

@@ -1,18 +1,13 @@
 //! Agents in real time: threads, pools and clocks. The tests wait for events, never for time to
 //! pass.
-#![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
 
-mod kit;
-#[path = "real_time/replayed.rs"]
 mod replayed;
-#[path = "kit/taped.rs"]
-mod taped;
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Barrier, Mutex};
 use std::time::Duration;
 
-use kit::{BALL, Ball};
+use crate::kit::{BALL, Ball};
 use monas::records::Cycle;
 use monas::{
     Agent, Blackboard, BoxError, FailurePolicy, HostConfig, Hz, Progress, Registry, StopHandle, Talws,

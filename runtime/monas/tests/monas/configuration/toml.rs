@@ -6,7 +6,7 @@ use std::path::Path;
 use monas::config::{self, Grammar, Layers};
 use yase::{Diagnostic, Source};
 
-use crate::agents::registry;
+use crate::configuration::agents::registry;
 
 const XML: &str = r#"<agents>
   <agent IsRealTime="1" Priority="1" ThreadFrequency="10" StatsCycle="15">

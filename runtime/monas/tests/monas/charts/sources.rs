@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex};
 use monas::{Agent, Blackboard, BoxError, ErrorKind, Hz, LinkConfig, LinkTransport, Talws};
 use narukom::RemoteHeader;
 
+use crate::charts::{balls, chart, noting, simulate};
 use crate::kit::{BALL, Ball, GAME, Game, Phase, at};
-use crate::{balls, chart, noting, simulate};
 
 #[test]
 fn a_guard_that_names_a_publisher_reads_its_newest_message_whoever_publishes_after_it() {

@@ -1,7 +1,4 @@
 //! The pool of statechart agents in real time. The tests wait for events, never for time to pass.
-#![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
-
-mod kit;
 
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -9,7 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Barrier, Mutex};
 use std::time::Duration;
 
-use kit::{BALL, Ball, NEWS};
+use crate::kit::{BALL, Ball, NEWS};
 use monas::{
     Agent, Blackboard, BoxError, FailurePolicy, Hz, MicroStep, Progress, RealTimeRun, Registry, Talws,
 };

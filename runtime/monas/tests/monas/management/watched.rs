@@ -10,7 +10,7 @@ use monas_robot::{Actuators, Anatomy, Percepts, Robot};
 use narukom::Timestamp;
 
 use crate::kit::{BALL, Ball};
-use crate::{change, made, refused, settings};
+use crate::management::{change, made, refused, settings};
 
 const PATIENCE: Duration = Duration::from_secs(20);
 

@@ -12,8 +12,8 @@ use narukom::prost::Message as _;
 use yase::Statechart;
 
 use crate::kit::{BALL, Ball, GAME, Game, NEWS, Phase};
+use crate::real_time::{PATIENCE, chart, next};
 use crate::taped::{Kept, Tape, replay};
-use crate::{PATIENCE, chart, next};
 
 /// Throws balls to somewhere.
 fn throws(b: &mut Blackboard) -> Result<(), BoxError> {

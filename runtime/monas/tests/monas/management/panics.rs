@@ -8,7 +8,7 @@ use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Registry, Simu
 use yase::Source;
 
 use crate::kit::{Recorder, at, recorder};
-use crate::{change, made, refused, settings};
+use crate::management::{change, made, refused, settings};
 
 /// Panics at some speeds, and at any speed once it has started.
 struct Fragile<N> {

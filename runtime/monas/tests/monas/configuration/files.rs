@@ -8,8 +8,8 @@ use monas::config::{Xml, XmlConfig, XmlNode, xml};
 use proptest::prelude::*;
 use yase::Source;
 
-const LOGGER: &str = include_str!("../listings/4.5.xml");
-const POSES: &str = include_str!("../listings/4.10.xml");
+const LOGGER: &str = include_str!("../../listings/4.5.xml");
+const POSES: &str = include_str!("../../listings/4.10.xml");
 
 fn map<const N: usize>(values: [(&str, f64); N]) -> BTreeMap<String, f64> {
     values.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
