@@ -101,7 +101,7 @@ impl Logger {
     /// From now on, publishes messages of at least this severity on
     /// [`LOG`](monas_core::records::LOG) of the host they belong to, independent of the settings
     /// for file and console, so that they are recorded, cross links and are visible to tools. This
-    /// covers agents, their activities and the threads of a [`Talws`](monas_core::Talws); other
+    /// covers agents, their activities and the threads of a `Talws`; other
     /// messages of a program belong to no host. In simulated time they are published in the course
     /// of the simulation; a [`RunHash`](monas_core::RunHash) does not include them.
     pub fn publish(&self, least_grave: Severity) {

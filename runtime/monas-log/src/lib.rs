@@ -5,7 +5,7 @@
 //!
 //! | thesis | written with | shown as |
 //! |---|---|---|
-//! | `FatalError` | [`fatal!`](monas_core::fatal) | `FATAL` |
+//! | `FatalError` | [`fatal!`](crate::fatal) | `FATAL` |
 //! | `Error` | `tracing::error!` | `ERROR` |
 //! | `Info` | `tracing::info!`; also `tracing::warn!`, which the thesis does not know | `INFO`, `WARN` |
 //! | `ExtraInfo` | `tracing::debug!` | `DEBUG` |

@@ -192,7 +192,7 @@ impl Talws {
         Replay::real_time(self.config, publishers)
     }
 
-    /// Runs in real time until the run is [stopped](StopHandle::stop).
+    /// Runs in real time until the run is [stopped](crate::StopHandle::stop).
     ///
     /// # Errors
     /// As in [`start`](Talws::start).
