@@ -9,8 +9,8 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`activity`], [`agent`], [`parameters`], [`frequency`] | what users write |
-//! | [`registry`], [`function`], [`generated`], [`module`] | what programs register and modules export |
+//! | [`activity`](mod@activity), [`agent`], [`parameters`], [`frequency`] | what users write |
+//! | [`registry`], [`function`](mod@function), [`generated`], [`module`](mod@module) | what programs register and modules export |
 //! | [`binder`], [`vocabulary`], [`unreachable_sources`] | binds a chart to a program and checks it |
 //! | [`chart_runner`], [`call`] | drives one chart: the trait `ChartDriver`, activity slots, blackboards |
 //! | [`monitors`], [`coverage`], [`listener`], [`statistics`], [`records`] | observation |

@@ -14,7 +14,7 @@
 //! # fn main() {}
 //! ```
 //!
-//! [`Module::load`] loads it, and a [`Registry`](crate::Registry) [with
+//! `ModuleFile::load` of the crate `monas-module` loads it, and a [`Registry`](crate::Registry) [with
 //! it](crate::Registry::with_module) contains its activities. The element
 //! `<module>libeyes.so</module>` of a configuration and the command `monas module load libeyes.so`
 //! in a run do the same.

@@ -31,7 +31,7 @@ pub enum ViolationResponse {
     /// No reaction.
     #[default]
     Log,
-    /// Applies the agent's [`FailurePolicy`](crate::FailurePolicy). With `restart` and `skip` it
+    /// Applies the agent's [`FailurePolicy`]. With `restart` and `skip` it
     /// continues.
     Policy,
 }
