@@ -205,7 +205,7 @@ impl Seen<'_> {
 type Row = (&'static str, fn(&Seen<'_>) -> bool);
 
 /// Rows derived from lines, or from chart and lines together.
-const SEEN: [Row; 79] = [
+const SEEN: [Row; 88] = [
     ("R1 a chart rests at START", |it| it.says("  waits at")),
     ("R2 an AND is left from inside", |it| {
         it.any_exit(|line, node| {
@@ -291,7 +291,9 @@ const SEEN: [Row; 79] = [
         it.case.semantics.join == yase::JoinMode::Each && it.any_selected_through(&[NodeKind::Join])
     }),
     ("R12 JOIN, all have arrived", |it| {
-        it.any_fired(|transition, _| it.chart.node(transition.source).kind == NodeKind::Join)
+        let is_join = |name: &&str| it.kind(name) == Some(NodeKind::Join);
+        it.case.semantics.join == yase::JoinMode::Each
+            && selected(it, |_, names| names.iter().rev().skip(1).any(is_join))
     }),
     ("R13 TERMINATE behind CHOICE or START", |it| {
         it.lines
@@ -377,7 +379,66 @@ const SEEN: [Row; 79] = [
     ("R24 two activities start in one step", |it| {
         it.log.windows(2).any(|pair| pair.iter().all(|line| line.starts_with("  start ")))
     }),
+    ("R25 segments through a point", |it| {
+        it.case.semantics.firing == yase::Firing::EachSegment
+            && it.any_selected_through(&[NodeKind::EntryPoint, NodeKind::ExitPoint])
+    }),
+    ("R25 a region arrives at an exit point", |it| {
+        selected(it, |it, names| names.last().is_some_and(|name| it.kind(name) == Some(NodeKind::ExitPoint)))
+    }),
+    ("R25 all regions have arrived at an exit point", |it| {
+        let all = it.case.semantics.exit_points == yase::ExitPointArrival::All;
+        all && selected(it, |it, names| {
+            let point = names.iter().find(|name| it.kind(name) == Some(NodeKind::ExitPoint));
+            let owner = point.and_then(|name| it.chart.node(it.node(name)?).parent);
+            let is_and = owner.is_some_and(|owner| it.chart.node(owner).kind == NodeKind::And);
+            is_and && names.last() != point
+        })
+    }),
+    ("R26 deferred against transitions", |it| {
+        it.case.semantics.deferral == yase::Deferral::Innermost && it.says("; defer in")
+    }),
+    ("R27 TERMINATE exits its source", |it| {
+        let stops = |name: &&str| it.kind(name) == Some(NodeKind::Terminate);
+        it.case.semantics.terminate == yase::TerminateExit::Source
+            && it.lines.iter().any(|line| {
+                let mut names = line.selected.iter().flat_map(|compound| compound.split(" -> "));
+                !line.exits.is_empty() && names.any(|name| stops(&name))
+            })
+    }),
+    ("UML an entry point that leads nowhere", |it| {
+        it.case.semantics.structure == yase::StructureRules::Uml
+            && selected(it, |it, names| {
+                names.last().is_some_and(|name| it.kind(name) == Some(NodeKind::EntryPoint))
+            })
+    }),
+    ("UML a composite without START", |it| {
+        let lacks = |node: NodeId| {
+            let mut inside = it.chart.children(node).iter().map(|&child| it.chart.node(child).kind);
+            it.chart.node(node).kind == NodeKind::Or && inside.all(|kind| kind != NodeKind::Start)
+        };
+        it.lines.iter().any(|line| line.entries.iter().filter_map(|name| it.node(name)).any(lacks))
+    }),
+    ("UML an activity of a composite", |it| {
+        let is_composite = |name: &str| {
+            let mut nodes = it.chart.nodes().map(|(_, node)| node);
+            nodes.any(|node| node.activity.as_deref() == Some(name) && node.kind != NodeKind::Basic)
+        };
+        it.log.iter().filter_map(|line| line.strip_prefix("  start ")).any(is_composite)
+    }),
+    ("UML from a composite to its exit point", |it| {
+        it.any_fired(|transition, _| {
+            let target = it.chart.node(transition.target);
+            target.kind == NodeKind::ExitPoint && target.parent == Some(transition.source)
+        })
+    }),
 ];
+
+/// Whether a selected transition fits, given the names of the nodes on its path.
+fn selected(seen: &Seen<'_>, fits: impl Fn(&Seen<'_>, &[&str]) -> bool) -> bool {
+    let compounds = seen.lines.iter().flat_map(|line| &line.selected);
+    compounds.map(|compound| compound.split(" -> ").collect::<Vec<_>>()).any(|names| fits(seen, &names))
+}
 
 fn names(transition: &Transition, event: &str) -> bool {
     match &transition.expression.trigger {

@@ -7,7 +7,7 @@ mod wires;
 mod words;
 
 use yase::statechart::{NodeId, Statechart};
-use yase::{CompletionTrigger, EventMatching, Firing, Semantics, TopicId};
+use yase::{CompletionTrigger, EventMatching, Firing, Semantics, StructureRules, TopicId};
 
 use crate::chance::Freedom;
 use crate::script::{Input, Script};
@@ -125,6 +125,11 @@ impl Maker<'_, '_> {
     fn name(&mut self, prefix: &str) -> String {
         self.names += 1;
         format!("{prefix}{}", self.names)
+    }
+
+    /// Whether the forms that only UML allows may be made.
+    fn makes_uml(&self) -> bool {
+        self.semantics.structure == StructureRules::Uml
     }
 
     /// Charts that fire in phases have no CHOICE.

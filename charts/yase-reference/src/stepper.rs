@@ -2,6 +2,7 @@
 //! clones. Derived data is recomputed whenever it is needed.
 
 mod act;
+mod arrive;
 mod enter;
 mod fire;
 mod lines;
@@ -10,6 +11,7 @@ mod step;
 mod transitions;
 mod tree;
 mod truth;
+mod walk;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -98,7 +100,12 @@ pub(crate) struct Stepper<'c> {
     /// Timers started by the effects of the current compound transition, to be bound to its target.
     unbound: Vec<(ScopeId, String)>,
     records: BTreeMap<NodeId, Vec<NodeId>>,
-    arrivals: BTreeSet<TransitionId>,
+    /// The regions that have arrived, each at a JOIN or an exit point.
+    arrivals: BTreeSet<(NodeId, NodeId)>,
+    /// The transitions of this micro-step.
+    taken: Vec<Way>,
+    /// ANDs entered on the way to a target, whose other regions are entered last.
+    late: Vec<NodeId>,
     /// Composites whose active children were exited, which count as complete.
     vacated: BTreeSet<NodeId>,
     completions: Vec<NodeId>,
@@ -160,6 +167,8 @@ impl<'c> Stepper<'c> {
             unbound: vec![],
             records: BTreeMap::new(),
             arrivals: BTreeSet::new(),
+            taken: vec![],
+            late: vec![],
             vacated: BTreeSet::new(),
             completions: vec![],
             count: 0,

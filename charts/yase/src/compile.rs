@@ -12,6 +12,7 @@ mod node_roles;
 mod node_span;
 mod paths;
 mod scripts;
+mod segment_steps;
 mod segments;
 mod selection_order;
 mod selection_table;
@@ -51,6 +52,7 @@ pub struct CompiledChart {
     pub(crate) regions: Box<[Scope]>,
     pub(crate) branches: Box<[SegmentNode]>,
     pub(crate) triggers: Box<[EventFilter]>,
+    pub(crate) arrivals: Box<[ArrivalCondition]>,
     pub(crate) guards: Box<[ScopedGuard]>,
     pub(crate) weights: Box<[BranchWeight]>,
     /// The branch trees with a random choice behind a connector, by their first branch.
@@ -102,6 +104,8 @@ pub(crate) struct CompiledNode {
     pub(crate) done: Option<EventId>,
     /// The index of its activity.
     pub(crate) activity: Option<usize>,
+    /// The scope whose blackboard its activity uses: that of a composite has one of its own.
+    pub(crate) activity_region: ScopeId,
     pub(crate) entry: Box<[Effect]>,
     pub(crate) exit: Box<[Effect]>,
     pub(crate) defer: Box<[EventId]>,
@@ -152,12 +156,21 @@ pub(crate) enum EnablingCondition {
     NoStepInside,
     /// All sources of a JOIN have completed.
     AllCompleted(usize),
-    /// Its source has completed and has not yet arrived at a JOIN.
-    Arrives(usize),
-    /// All sources have arrived at a JOIN.
-    AllArrived(usize),
+    /// A region arrives where others do, by the index of the condition.
+    Arrival(usize),
     /// The event matches a trigger.
     Trigger(usize),
+}
+
+/// When a path takes its region to a JOIN, or to an exit point that joins several.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct ArrivalCondition {
+    /// The event matches this trigger; without one, the source has completed.
+    pub(crate) trigger: Option<usize>,
+    /// The region has not arrived yet, by the index of its arrival.
+    pub(crate) slot: usize,
+    /// Whether all others have arrived, or arrive in the same micro-step; otherwise some have not.
+    pub(crate) passes: bool,
 }
 
 /// A weighted segment, at one position in a branch tree.
@@ -204,22 +217,23 @@ pub(crate) struct HistoryNode {
     pub(crate) branches: BranchRange,
 }
 
-/// A JOIN.
+/// A JOIN, or an exit point that joins several regions.
 #[derive(Clone, Debug)]
 pub(crate) struct JoinNode {
-    /// The AND that contains its sources.
+    /// The AND whose regions it joins.
     pub(crate) around: NodeIndex,
-    /// The index of its first segment among all segments into JOINs; the others follow.
+    /// The index of the arrival of its first region; the others follow.
     pub(crate) first: usize,
+    /// The sources of a JOIN.
     pub(crate) sources: Box<[NodeIndex]>,
-    /// The region of each source.
+    /// Its regions, those of a JOIN in the order of its sources.
     pub(crate) regions: Box<[NodeIndex]>,
 }
 
 impl JoinNode {
-    /// The indices of its segments.
+    /// The indices of the arrivals of its regions.
     pub(crate) fn slots(&self) -> Range<usize> {
-        self.first..self.first + self.sources.len()
+        self.first..self.first + self.regions.len()
     }
 }
 
@@ -245,8 +259,9 @@ pub(crate) struct CompoundTransition {
     pub(crate) exits: Option<(NodeIndex, NodeIndex)>,
     /// The composite that remains without an active child.
     pub(crate) vacates: Option<NodeIndex>,
-    /// The index of the segment into a JOIN that it represents.
-    pub(crate) arrives: Option<usize>,
+    pub(crate) arrival: Option<Arrival>,
+    /// What it does segment by segment, if the semantics demands it.
+    pub(crate) steps: Box<[SegmentStep]>,
     pub(crate) leaves: Box<[TransitionTarget]>,
     pub(crate) entries: EntryPlan,
     /// The state that owns the timers it starts.
@@ -258,6 +273,11 @@ pub(crate) struct CompoundTransition {
 }
 
 impl CompoundTransition {
+    /// The arrival with which it ends, by index, if it does not go on from there.
+    pub(crate) fn arrives(&self) -> Option<usize> {
+        self.arrival.filter(|arrival| !arrival.passes).map(|arrival| arrival.slot)
+    }
+
     /// Its source states.
     #[inline]
     pub(crate) fn sources(&self) -> impl Iterator<Item = NodeIndex> {
@@ -275,9 +295,48 @@ impl CompoundTransition {
     #[inline]
     pub(crate) fn conflicts_with(&self, other: &CompoundTransition, active: &BitSet) -> bool {
         let (Some(a), Some(b)) = (self.exits, other.exits) else { return false };
+        // regions that arrive in one place do so together
+        if let (Some(a), Some(b)) = (self.arrival, other.arrival)
+            && a.join == b.join
+        {
+            return false;
+        }
         let (first, last) = (a.0.max(b.0), a.1.min(b.1));
         first <= last && active.any_in(first.index(), last.index())
     }
+}
+
+/// The arrival of a region where others arrive too.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct Arrival {
+    /// The JOIN or exit point, by index.
+    pub(crate) join: usize,
+    /// The index of the arrival.
+    pub(crate) slot: usize,
+    pub(crate) region: NodeIndex,
+    /// The index range of the nodes inside the region, if there are any.
+    pub(crate) inside: Option<(NodeIndex, NodeIndex)>,
+    /// The index of the segment that arrives.
+    pub(crate) segment: usize,
+    /// Whether the transition goes on if all others have arrived.
+    pub(crate) passes: bool,
+}
+
+/// What one segment does.
+#[derive(Clone, Debug)]
+pub(crate) struct SegmentStep {
+    /// The index range of the nodes it leaves, if active.
+    pub(crate) exits: Option<(NodeIndex, NodeIndex)>,
+    /// Whether it leads to an exit point of the composite around those nodes, so that their states
+    /// are the last ones of that composite.
+    pub(crate) empties: bool,
+    /// Its index among the segments with actions.
+    pub(crate) effects: Option<usize>,
+    /// The nodes around its target that are entered, if not active, outermost first, with the
+    /// target itself if that is a state. Regions that ANDs among them lack are entered last.
+    pub(crate) enters: Box<[NodeIndex]>,
+    /// Its target, if the path does not go on from there.
+    pub(crate) end: Option<TransitionTarget>,
 }
 
 /// Where a compound transition ends or continues.
@@ -346,7 +405,7 @@ pub(crate) struct ErrorEvents {
     pub(crate) activity: EventId,
 }
 
-/// The activity of a BASIC state.
+/// The activity of a state.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct ActivityEntry<'a> {
     /// The state.
@@ -439,7 +498,7 @@ impl CompiledChart {
         self.compounds.get(compound.0 as usize).map_or(&[], |compound| &compound.segments)
     }
 
-    /// All scopes: the root, then the regions in document order.
+    /// All scopes: the root, then the others in document order.
     pub fn regions(&self) -> impl ExactSizeIterator<Item = ScopeId> + use<> {
         (0..self.regions.len() as u32).map(ScopeId)
     }
@@ -454,17 +513,26 @@ impl CompiledChart {
         self.regions.get(region.index())?.parent
     }
 
-    /// The node of a scope: the root, or a region of an AND.
+    /// The scope whose node it is, if there is one: the inverse of
+    /// [`region_node`](CompiledChart::region_node).
+    pub fn region_at(&self, node: NodeId) -> Option<ScopeId> {
+        let place = self.layout.place(node)?;
+        let found = self.regions.iter().position(|region| region.root == place)?;
+        Some(ScopeId(found as u32))
+    }
+
+    /// The node of a scope: the root, a region of an AND, or a composite with an activity, which
+    /// has a blackboard of its own.
     pub fn region_node(&self, region: ScopeId) -> Option<NodeId> {
         self.regions.get(region.index()).map(|region| self.layout.node(region.root))
     }
 
-    /// Every BASIC state with an activity, in document order.
+    /// Every state with an activity, inner ones first, otherwise in document order.
     pub fn activities(&self) -> impl ExactSizeIterator<Item = ActivityEntry<'_>> {
         self.activities.iter().map(|&place| self.activity_entry(place))
     }
 
-    /// The activity of a BASIC state, if it has one.
+    /// The activity of a state, if it has one.
     pub fn activity(&self, node: NodeId) -> Option<ActivityEntry<'_>> {
         let place = self.layout.place(node)?;
         self.states[place.index()].activity?;
@@ -552,7 +620,7 @@ impl CompiledChart {
             name: node.activity.as_deref().unwrap_or_default(),
             priority: node.priority,
             duration: node.duration,
-            region: self.states[place.index()].region,
+            region: self.states[place.index()].activity_region,
         }
     }
 }

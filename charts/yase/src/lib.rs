@@ -120,9 +120,10 @@ pub use moment::Moment;
 pub use script::{ActiveStates, ScriptContext};
 pub use semantics::{
     ActivityOnExit, CompletionTrigger, ConflictResolution, Deferral, Delivery, EventMatching, EventPool,
-    ExitOrder, FailureEvents, Firing, InitialState, JoinMode, RootCompletion, SegmentOrder, Semantics,
-    TimerScope, TransitionToAncestor, WriteVisibility,
+    ExitOrder, ExitPointArrival, FailureEvents, Firing, InitialState, JoinMode, RootCompletion, SegmentOrder,
+    Semantics, StructureRules, TerminateExit, TimerScope, TransitionToAncestor, WriteVisibility,
 };
+
 pub use statechart::{Element, Node, NodeId, NodeKind, Statechart, Transition, TransitionId};
 pub use trace::{MicroStepCause, TraceRecord};
 pub use vocabulary::{FieldId, FunctionId, TopicId, TypeEnvironment, Value};

@@ -22,6 +22,7 @@ pub mod state_key;
 mod step;
 mod timers;
 mod view;
+mod walk;
 
 use std::sync::Arc;
 

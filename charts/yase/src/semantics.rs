@@ -15,18 +15,21 @@ use serde::{Deserialize, Serialize};
 /// | [`eventless`](Semantics::eventless) | as written, examined again | on completion, examined once | always |
 /// | [`start`](Semantics::start) | own micro-step | same step | same step |
 /// | [`order`](Semantics::order) | guarded first | as modelled | as modelled |
-/// | [`firing`](Semantics::firing) | each transition | each transition | phases |
+/// | [`firing`](Semantics::firing) | each transition | each segment | phases |
 /// | [`exits`](Semantics::exits) | forward | forward | reverse document |
 /// | [`pool`](Semantics::pool) | raised before arrived | one | raised before arrived |
 /// | [`matching`](Semantics::matching) | exact | exact | token prefix |
 /// | [`on_exit`](Semantics::on_exit) | blocks | interrupted | interrupted |
 /// | [`ancestor`](Semantics::ancestor) | left and entered again | completed | left and entered again |
 /// | [`join`](Semantics::join) | together | each | together |
-/// | [`deferral`](Semantics::deferral) | on | on | off |
+/// | [`exit_points`](Semantics::exit_points) | first arrival | all regions | first arrival |
+/// | [`terminate`](Semantics::terminate) | nothing is left | the source is left | nothing is left |
+/// | [`deferral`](Semantics::deferral) | on | innermost | off |
 /// | [`sharing`](Semantics::sharing) | next step | at once | at once |
 /// | [`root_end`](Semantics::root_end) | idle | idle | exits all |
 /// | [`completion_events`](Semantics::completion_events) | no | no | yes |
 /// | [`failures`](Semantics::failures) | by cause | by cause | every time |
+/// | [`structure`](Semantics::structure) | strict | UML | strict |
 ///
 /// [`delivery`](Semantics::delivery) (each step), [`timers`](Semantics::timers) (the chart's),
 /// [`conflict`](Semantics::conflict) (declared) and [`limit`](Semantics::limit) (1,000) are equal
@@ -55,6 +58,10 @@ pub struct Semantics {
     pub ancestor: TransitionToAncestor,
     /// How the transitions into a JOIN are taken.
     pub join: JoinMode,
+    /// When an exit point that several regions reach is passed.
+    pub exit_points: ExitPointArrival,
+    /// What a transition to TERMINATE leaves before the chart stops.
+    pub terminate: TerminateExit,
     /// When other blackboards show what an action writes.
     pub sharing: WriteVisibility,
     /// The effect of reaching the END of the root.
@@ -72,6 +79,8 @@ pub struct Semantics {
     pub delivery: Delivery,
     /// Whether states keep the events they defer.
     pub deferral: Deferral,
+    /// The forms of charts that are accepted.
+    pub structure: StructureRules,
     /// The limit for the micro-steps of a step, and for the steps with an effect at one time,
     /// beyond which the chart is stopped as a livelock. 1,000 by default; a chart that processes
     /// more events in one step needs more.
@@ -94,6 +103,8 @@ impl Semantics {
             on_exit: ActivityOnExit::Blocks,
             ancestor: TransitionToAncestor::Reentered,
             join: JoinMode::Together,
+            exit_points: ExitPointArrival::First,
+            terminate: TerminateExit::Nothing,
             sharing: WriteVisibility::NextStep,
             root_end: RootCompletion::Idle,
             timers: TimerScope::Chart,
@@ -102,6 +113,7 @@ impl Semantics {
             failures: FailureEvents::ByCause,
             delivery: Delivery::EachStep,
             deferral: Deferral::On,
+            structure: StructureRules::Strict,
             limit: THOUSAND,
         }
     }
@@ -112,11 +124,16 @@ impl Semantics {
             eventless: CompletionTrigger::Once,
             start: InitialState::SameStep,
             order: SegmentOrder::AsModelled,
+            firing: Firing::EachSegment,
             pool: EventPool::One,
             on_exit: ActivityOnExit::Interrupted,
             ancestor: TransitionToAncestor::Completed,
             join: JoinMode::Each,
+            exit_points: ExitPointArrival::All,
+            terminate: TerminateExit::Source,
             sharing: WriteVisibility::AtOnce,
+            deferral: Deferral::Innermost,
+            structure: StructureRules::Uml,
             ..Semantics::yase()
         }
     }
@@ -196,6 +213,11 @@ pub enum SegmentOrder {
 pub enum Firing {
     /// One after the other: each exits, executes its actions and enters before the next.
     EachTransition,
+    /// One after the other, and each segment by segment: the states up to the boundary that the
+    /// segment crosses are left, its actions are executed, the states around its target are
+    /// entered. So a composite is left after the actions of a segment to its exit point, and
+    /// entered before those of a segment out of its entry point.
+    EachSegment,
     /// All states are left, then all actions are executed, then all states are entered.
     Phases,
 }
@@ -264,9 +286,35 @@ pub enum TransitionToAncestor {
 pub enum JoinMode {
     /// As one transition, when all sources have completed.
     Together,
-    /// Each when its own source completes; the transition out of the JOIN follows when all have
-    /// arrived.
+    /// Each when its own source completes, which leaves its region without an active child; the
+    /// last one goes on through the JOIN.
     Each,
+}
+
+/// When an exit point of an AND that transitions from several of its regions reach is passed.
+///
+/// This concerns arrivals from states, directly or through static connectors. Behind a CHOICE, a
+/// FORK or another such exit point, the first arrival passes.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum ExitPointArrival {
+    /// By the first transition that reaches it.
+    First,
+    /// By the last: each region that has arrived remains without an active child until all have. A
+    /// transition without a trigger arrives when its source has completed.
+    All,
+}
+
+/// What a transition to TERMINATE leaves before the chart stops.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum TerminateExit {
+    /// Nothing.
+    Nothing,
+    /// What a transition to a state in the place of TERMINATE would leave.
+    Source,
 }
 
 /// When other blackboards show what an action writes.
@@ -345,6 +393,25 @@ pub enum Delivery {
 pub enum Deferral {
     /// An event that no transition takes is kept while an active state defers it.
     On,
+    /// An event that an active state defers is kept, unless a transition of that state or of one
+    /// inside it takes it; those of states around it and in other regions do not.
+    Innermost,
     /// An event that no transition takes is dropped.
     Off,
+}
+
+/// The forms of charts that are accepted.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum StructureRules {
+    /// Composites have a START, entry points lead into their composite, activities belong to BASIC
+    /// states, internal transitions stay inside their source.
+    Strict,
+    /// Also the forms of UML. A composite without START has no active child after its default
+    /// entry, and counts as complete. An entry point that leads nowhere stands for its composite. A
+    /// composite that is no region may run an activity beside its children, on a blackboard of its
+    /// own, and completes when both have. An internal (local) transition may lead to an exit point
+    /// of its source.
+    Uml,
 }

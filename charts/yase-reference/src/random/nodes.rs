@@ -13,7 +13,10 @@ const MANY: usize = 28;
 impl Maker<'_, '_> {
     /// The children of an OR.
     pub(crate) fn composite(&mut self, composite: NodeId, depth: usize) {
-        self.chart.add(composite, Node::new(NodeKind::Start, ""));
+        let without = depth > 0 && self.makes_uml() && self.choices.percent(12);
+        if !without {
+            self.chart.add(composite, Node::new(NodeKind::Start, ""));
+        }
         for _ in 0..2 + self.choices.below(3) {
             self.state(composite, depth);
         }
@@ -89,6 +92,12 @@ impl Maker<'_, '_> {
             let name = self.choices.pick(&["work", "work", "work", "ongoing", "failing"]);
             node.activity = Some(self.name(name));
             node.duration = Some(Duration::from_millis(self.choices.pick(&[20, 0, 10, 35])));
+        }
+        let is_composite = kind != NodeKind::Basic && self.chart.node(parent).kind != NodeKind::And;
+        if is_composite && self.makes_uml() && self.choices.percent(15) {
+            let name = self.choices.pick(&["work", "ongoing", "failing"]);
+            node.activity = Some(self.name(name));
+            node.duration = Some(Duration::from_millis(self.choices.pick(&[20, 0, 10])));
         }
         if self.choices.percent(15) {
             node.entry = parse_actions(&self.actions()).0;

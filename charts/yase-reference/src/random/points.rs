@@ -4,8 +4,8 @@ use std::num::NonZeroU32;
 
 use yase::{
     ActivityOnExit, CompletionTrigger, ConflictResolution, Deferral, Delivery, EventMatching, EventPool,
-    ExitOrder, FailureEvents, Firing, InitialState, JoinMode, RootCompletion, SegmentOrder, Semantics,
-    TimerScope, TransitionToAncestor, WriteVisibility,
+    ExitOrder, ExitPointArrival, FailureEvents, Firing, InitialState, JoinMode, RootCompletion, SegmentOrder,
+    Semantics, StructureRules, TerminateExit, TimerScope, TransitionToAncestor, WriteVisibility,
 };
 
 use super::Choices;
@@ -27,7 +27,7 @@ pub(crate) enum Variant {
 pub(crate) type Point = (&'static str, fn(&mut Semantics));
 
 /// All values of all points.
-pub(crate) const POINTS: [Point; 38] = [
+pub(crate) const POINTS: [Point; 46] = [
     ("eventless as written", |it| it.eventless = CompletionTrigger::AsWritten),
     ("eventless quiescent", |it| it.eventless = CompletionTrigger::Quiescent),
     ("eventless once", |it| it.eventless = CompletionTrigger::Once),
@@ -37,6 +37,7 @@ pub(crate) const POINTS: [Point; 38] = [
     ("guarded first", |it| it.order = SegmentOrder::GuardedFirst),
     ("segments as modelled", |it| it.order = SegmentOrder::AsModelled),
     ("firing each transition", |it| it.firing = Firing::EachTransition),
+    ("firing each segment", |it| it.firing = Firing::EachSegment),
     ("firing in phases", |it| it.firing = Firing::Phases),
     ("exits forward", |it| it.exits = ExitOrder::Forward),
     ("exits reverse", |it| it.exits = ExitOrder::ReverseDocument),
@@ -50,6 +51,10 @@ pub(crate) const POINTS: [Point; 38] = [
     ("ancestor completed", |it| it.ancestor = TransitionToAncestor::Completed),
     ("join together", |it| it.join = JoinMode::Together),
     ("join each", |it| it.join = JoinMode::Each),
+    ("exit point first", |it| it.exit_points = ExitPointArrival::First),
+    ("exit point all", |it| it.exit_points = ExitPointArrival::All),
+    ("TERMINATE exits nothing", |it| it.terminate = TerminateExit::Nothing),
+    ("TERMINATE exits its source", |it| it.terminate = TerminateExit::Source),
     ("seen next step", |it| it.sharing = WriteVisibility::NextStep),
     ("seen at once", |it| it.sharing = WriteVisibility::AtOnce),
     ("root END idle", |it| it.root_end = RootCompletion::Idle),
@@ -65,7 +70,10 @@ pub(crate) const POINTS: [Point; 38] = [
     ("failures by cause", |it| it.failures = FailureEvents::ByCause),
     ("failures every time", |it| it.failures = FailureEvents::EveryTime),
     ("deferral on", |it| it.deferral = Deferral::On),
+    ("deferral innermost", |it| it.deferral = Deferral::Innermost),
     ("deferral off", |it| it.deferral = Deferral::Off),
+    ("structure strict", |it| it.structure = StructureRules::Strict),
+    ("structure of UML", |it| it.structure = StructureRules::Uml),
 ];
 
 pub(crate) fn semantics(choices: &mut Choices<'_>) -> (Semantics, Variant) {

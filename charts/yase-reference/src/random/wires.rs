@@ -184,6 +184,9 @@ impl Maker<'_, '_> {
     }
 
     fn out_of_entry(&mut self, point: NodeId) {
+        if self.makes_uml() && self.choices.percent(25) {
+            return;
+        }
         let around = self.parent(point);
         if self.kind(around) == NodeKind::And && self.choices.percent(70) {
             return self.fork_regions(point, around);
@@ -196,6 +199,28 @@ impl Maker<'_, '_> {
         let around = self.parent(self.parent(point));
         let outside = self.children(around, |kind| is_state(kind) || kind == NodeKind::End);
         self.two_ways(point, &outside);
+        let owner = self.parent(point);
+        if self.kind(owner) == NodeKind::And && self.choices.percent(60) {
+            self.regions_to_exit(owner, point);
+        }
+        if self.makes_uml() && self.choices.percent(20) {
+            let text = format!("{} {}", self.trigger(), self.slash_actions(30));
+            let mut transition = Transition::new(owner, point);
+            transition.internal = self.choices.percent(70);
+            transition.expression = parse(&text);
+            self.chart.connect(transition);
+        }
+    }
+
+    /// From a state in each region of an AND, sometimes by an event.
+    fn regions_to_exit(&mut self, and: NodeId, point: NodeId) {
+        for region in self.children(and, is_state) {
+            let inside = self.inside(region, |kind| kind == NodeKind::Basic);
+            let source = if inside.is_empty() { region } else { self.choices.pick(&inside) };
+            let trigger = if self.choices.percent(50) { self.trigger() } else { String::new() };
+            let text = format!("{trigger} {}", self.slash_actions(30));
+            self.connect(source, point, &text);
+        }
     }
 
     fn two_ways(&mut self, source: NodeId, targets: &[NodeId]) {

@@ -103,7 +103,8 @@ impl Stepper<'_> {
     pub(crate) fn bind_timers(&mut self, target: Option<NodeId>) {
         let target = target.and_then(|node| match self.kind(node) {
             NodeKind::ShallowHistory | NodeKind::DeepHistory => Some(self.parent(node)),
-            NodeKind::Terminate | NodeKind::Join => None,
+            NodeKind::Terminate | NodeKind::Join | NodeKind::ExitPoint => None,
+            NodeKind::EntryPoint => Some(self.parent(node)),
             _ => Some(node),
         });
         for key in std::mem::take(&mut self.unbound) {
@@ -132,6 +133,13 @@ impl Stepper<'_> {
     }
 
     pub(crate) fn activation(&self, node: NodeId, number: u64) -> Activation {
-        Activation { node, region: self.region(node), number }
+        Activation { node, region: self.activity_region(node), number }
+    }
+
+    /// The blackboard of an activity: that of a composite has one of its own.
+    pub(crate) fn activity_region(&self, node: NodeId) -> ScopeId {
+        let own = self.tree.regions.iter().position(|&it| it == node).filter(|_| !self.is_region(node));
+        let composite = self.kind(node) != NodeKind::Basic;
+        own.filter(|_| composite).map_or(self.region(node), |index| ScopeId(index as u32))
     }
 }

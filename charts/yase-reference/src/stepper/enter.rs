@@ -1,6 +1,6 @@
 //! Entering: R10, R11, R14, and histories.
 
-use yase::statechart::{NodeId, NodeKind, TransitionId};
+use yase::statechart::{NodeId, NodeKind};
 use yase::{CompletionTrigger, Host, InitialState, RootCompletion, Statechart};
 
 use super::{Failure, Job, Phase, Stepper, Way};
@@ -55,7 +55,7 @@ impl Stepper<'_> {
 
     fn enter_regions(&mut self, and: NodeId, targets: &[NodeId], world: &mut World) -> Result<(), Failure> {
         for &child in self.chart.children(and) {
-            if self.is_region(child) {
+            if self.is_region(child) && !self.active.contains(&child) {
                 self.enter_whole(child, targets, world)?;
             }
         }
@@ -65,7 +65,11 @@ impl Stepper<'_> {
     /// Entering stops at START, or goes on at once.
     fn enter_start(&mut self, composite: NodeId, world: &mut World) -> Result<(), Failure> {
         let mut children = self.chart.children(composite).iter().copied();
-        let Some(start) = children.find(|&child| self.kind(child) == NodeKind::Start) else { return Ok(()) };
+        let Some(start) = children.find(|&child| self.kind(child) == NodeKind::Start) else {
+            self.vacated.insert(composite);
+            self.completed(composite);
+            return Ok(());
+        };
         if self.semantics.start == InitialState::SameStep
             && let Some(way) = self.open_way(start, world)
         {
@@ -96,6 +100,21 @@ impl Stepper<'_> {
         let outer = std::mem::take(&mut self.unbound);
         self.line.taken.extend(&way.segments);
         let region = self.region(composite);
+        if self.walks_segments() {
+            let base = self.late.len();
+            self.walk(way, None, region, start, world)?;
+            self.bind_rest(way, None);
+            self.enter_late(base, world)?;
+            self.unbound = outer;
+            if self.kind(composite) == NodeKind::And && !self.is_ended() {
+                self.enter_regions(composite, &[], world)?;
+            }
+            let stays = !self.is_ended() && self.active_inside(composite).is_empty();
+            if let Some(start) = start.filter(|&start| stays && self.parent(start) == composite) {
+                self.enter(start, world);
+            }
+            return Ok(());
+        }
         self.effects(&way.segments, region, world);
         let targets = self.choose(&way.ends, region, world)?;
         self.bind_timers(targets.first().copied());
@@ -106,7 +125,7 @@ impl Stepper<'_> {
         self.enter_below_from(composite, &targets, start, world)
     }
 
-    fn enter_remembered(
+    pub(crate) fn enter_remembered(
         &mut self,
         history: NodeId,
         start: Option<NodeId>,
@@ -143,15 +162,21 @@ impl Stepper<'_> {
         let actions = self.chart.node(node).entry.clone();
         let before = std::mem::take(&mut self.unbound);
         self.act(&actions, self.region(node), &format!("entry {}", self.name(node)), world);
+        let started = self.unbound.clone();
         self.bind_timers(Some(node));
         self.unbound = before;
+        self.unbound.retain(|key| !started.contains(key));
+        let runs = self.chart.node(node).activity.is_some();
+        if self.activity_region(node) != self.region(node) {
+            world.inherit(self.activity_region(node), self.region(node));
+        }
+        if runs {
+            self.job_count += 1;
+            let job = Job { phase: Phase::Queued, number: self.job_count, cancelled: false };
+            self.jobs.insert(node, job);
+        }
         match self.kind(node) {
-            NodeKind::Basic if self.chart.node(node).activity.is_some() => {
-                self.job_count += 1;
-                let job = Job { phase: Phase::Queued, number: self.job_count, cancelled: false };
-                self.jobs.insert(node, job);
-            }
-            NodeKind::Basic => self.completed(node),
+            NodeKind::Basic if !runs => self.completed(node),
             NodeKind::End => self.reached(node, world),
             _ => {}
         }
@@ -160,11 +185,8 @@ impl Stepper<'_> {
     /// A region that was vacated is active again: an arrival at a JOIN from it has to be repeated.
     fn occupy(&mut self, node: NodeId) {
         let Some(around) = self.chart.node(node).parent else { return };
-        let chart = self.chart;
         if self.vacated.remove(&around) && self.is_region(around) {
-            let from = |id: &TransitionId| chart.transition(*id).source;
-            let inside = |node: NodeId| node == around || chart.ancestors(node).any(|above| above == around);
-            self.arrivals.retain(|id| !inside(from(id)));
+            self.forget_arrivals(around);
         }
     }
 

@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 
 use yase::statechart::{NodeId, NodeKind, TransitionId};
-use yase::{ActivityOnExit, CompletionTrigger, Host, RootCompletion, ScopeId, Statechart};
+use yase::{ActivityOnExit, Host, RootCompletion, ScopeId, Statechart};
 
+use super::arrive::Arrival;
 use super::{Failure, Phase, Stepper, Way};
 use crate::world::World;
 
@@ -13,13 +14,20 @@ impl Stepper<'_> {
     /// even if it is active again.
     pub(crate) fn fire_each(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
         let mut fired = vec![];
-        for way in ways {
-            let left = way.sources.iter().any(|source| self.line.exits.contains(source));
-            if self.running_chart && !self.ended && !left {
+        let exits: Vec<BTreeSet<NodeId>> = ways.iter().map(|way| self.exit_set(way)).collect();
+        let mut left = BTreeSet::new();
+        self.taken = ways.clone();
+        for (way, exits) in ways.into_iter().zip(exits) {
+            let stays = |source: &NodeId| self.active.contains(source) && !left.contains(source);
+            if self.running_chart && !self.ended && way.sources.iter().all(stays) {
                 self.fire(&way, world)?;
+                left.extend(exits);
                 fired.push(way);
+            } else {
+                self.taken.retain(|other| *other != way);
             }
         }
+        self.taken.clear();
         Ok(fired)
     }
 
@@ -29,11 +37,19 @@ impl Stepper<'_> {
     }
 
     pub(crate) fn fire(&mut self, way: &Way, world: &mut World) -> Result<(), Failure> {
-        let exits = self.exit_set(way);
-        self.leave_all(&exits, world);
-        let targets = self.effects_and_targets(way, world)?;
-        if !self.terminates {
-            self.enter_targets(way, &targets, world)?;
+        let early = self.ends_early(way);
+        if self.walks_segments() {
+            self.walk_whole(way, early, world)?;
+        } else {
+            let exits = self.exits_of(way, early);
+            self.leave_all(&exits, world);
+            let targets = self.effects_and_targets(way, early, world)?;
+            if !self.is_ended() {
+                self.enter_targets(way, early, &targets, world)?;
+            }
+        }
+        if self.walks_segments() && !self.is_ended() {
+            self.settle(way, early);
         }
         self.halt_if_terminated(world);
         Ok(())
@@ -54,22 +70,26 @@ impl Stepper<'_> {
     /// All exits, then all effects, then all entries.
     pub(crate) fn fire_phases(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
         let ways = self.with_their_sources(ways);
-        let exits: BTreeSet<NodeId> = ways.iter().flat_map(|way| self.exit_set(way)).collect();
+        self.taken = ways.clone();
+        let early: Vec<Option<Arrival>> = ways.iter().map(|way| self.ends_early(way)).collect();
+        let exits: BTreeSet<NodeId> =
+            ways.iter().zip(&early).flat_map(|(way, early)| self.exits_of(way, *early)).collect();
         self.leave_all(&exits, world);
         let (mut entering, mut stops) = (vec![], false);
-        for way in &ways {
-            let targets = self.effects_and_targets(way, world)?;
+        for (way, early) in ways.iter().zip(early) {
+            let targets = self.effects_and_targets(way, early, world)?;
             match std::mem::take(&mut self.terminates) {
                 true => stops = true, // when what the others lead to has been entered
-                false => entering.push((way.clone(), targets)),
+                false => entering.push((way.clone(), early, targets)),
             }
         }
-        entering.sort_by_key(|(way, _)| self.position(self.scope(way)));
-        for (way, targets) in entering {
+        entering.sort_by_key(|(way, ..)| self.position(self.scope(way)));
+        for (way, early, targets) in entering {
             if !self.is_ended() {
-                self.enter_targets(&way, &targets, world)?;
+                self.enter_targets(&way, early, &targets, world)?;
             }
         }
+        self.taken.clear();
         self.terminates |= stops;
         self.halt_if_terminated(world);
         Ok(ways)
@@ -83,7 +103,7 @@ impl Stepper<'_> {
             let way = &ways[index];
             let stays = self.is_targetless(way)
                 || self.only_terminates(way)
-                || self.kind(way.ends[0]) == NodeKind::Join
+                || way.arrives().is_some()
                 || self.kind(self.scope(way)) == NodeKind::Basic; // nothing is in it that could be left
             let mut others = ways.iter().enumerate().filter(|(other, _)| *other != index);
             let is_left = others.any(|(_, other)| {
@@ -99,14 +119,22 @@ impl Stepper<'_> {
         ways
     }
 
-    fn leave_all(&mut self, exits: &BTreeSet<NodeId>, world: &mut World) {
+    /// What a way leaves.
+    fn exits_of(&self, way: &Way, early: Option<Arrival>) -> BTreeSet<NodeId> {
+        match early {
+            Some(arrival) => self.active_inside(arrival.region).into_iter().collect(),
+            None => self.exit_set(way),
+        }
+    }
+
+    pub(crate) fn leave_all(&mut self, exits: &BTreeSet<NodeId>, world: &mut World) {
         self.record_histories(exits);
         for node in self.in_order_of_exit(exits) {
             self.leave(node, world);
         }
     }
 
-    fn record_histories(&mut self, exits: &BTreeSet<NodeId>) {
+    pub(crate) fn record_histories(&mut self, exits: &BTreeSet<NodeId>) {
         for &owner in exits {
             for &child in self.chart.children(owner) {
                 let record = match self.kind(child) {
@@ -114,6 +142,10 @@ impl Stepper<'_> {
                     NodeKind::DeepHistory => self.active_inside(owner),
                     _ => continue,
                 };
+                let empty = self.active_inside(owner).is_empty();
+                if empty && !self.vacated.contains(&owner) {
+                    continue; // an exit point has emptied it
+                }
                 if record.is_empty() && self.kind(owner) == NodeKind::Or {
                     self.records.remove(&child); // it was vacated
                 } else {
@@ -134,9 +166,10 @@ impl Stepper<'_> {
             }
         }
         let actions = self.chart.node(node).exit.clone();
-        let before = self.unbound.clone();
+        let before = std::mem::take(&mut self.unbound);
         self.act(&actions, self.region(node), &format!("exit {}", self.name(node)), world);
-        self.unbound = before; // what an exit action starts belongs to no state
+        let started = std::mem::replace(&mut self.unbound, before); // belongs to no state
+        self.unbound.retain(|key| !started.contains(key));
         self.active.remove(&node);
         self.waiting.remove(&node);
         self.vacated.remove(&node);
@@ -146,20 +179,20 @@ impl Stepper<'_> {
         self.line.exits.push(node);
     }
 
-    /// An AND that is exited resets the arrivals at its JOINs, and a region that is exited its own.
-    fn forget_arrivals(&mut self, node: NodeId) {
-        let (chart, is_region) = (self.chart, self.is_region(node));
-        let from = |id: &TransitionId| chart.transition(*id).source;
-        let inside = |source: NodeId| chart.ancestors(source).any(|above| above == node);
-        if self.kind(node) == NodeKind::And || is_region {
-            self.arrivals.retain(|id| !(inside(from(id)) || is_region && from(id) == node));
-        }
-    }
-
     /// Executes the effects of the complete compound transition, with its CHOICEs evaluated on the
     /// way; returns its targets.
-    fn effects_and_targets(&mut self, way: &Way, world: &mut World) -> Result<Vec<NodeId>, Failure> {
+    fn effects_and_targets(
+        &mut self,
+        way: &Way,
+        early: Option<Arrival>,
+        world: &mut World,
+    ) -> Result<Vec<NodeId>, Failure> {
         let region = self.region(self.scope(way));
+        if let Some(arrival) = early {
+            self.effects(&way.segments[..=arrival.segment], region, world);
+            self.bind_timers(None);
+            return Ok(vec![]);
+        }
         self.effects(&way.segments, region, world);
         let targets = self.choose(&way.ends, region, world)?;
         self.bind_timers(targets.first().copied());
@@ -188,7 +221,7 @@ impl Stepper<'_> {
             }
             if self.kind(end) != NodeKind::Choice {
                 self.terminates = self.kind(end) == NodeKind::Terminate;
-                targets.push(end);
+                targets.push(if self.stands_for_composite(end) { self.parent(end) } else { end });
                 continue;
             }
             let out = self.outgoing(end);
@@ -202,9 +235,27 @@ impl Stepper<'_> {
         Ok(targets)
     }
 
-    fn enter_targets(&mut self, way: &Way, targets: &[NodeId], world: &mut World) -> Result<(), Failure> {
-        let vacated = self.vacates(way);
-        let arrives = self.kind(way.ends[0]) == NodeKind::Join;
+    fn enter_targets(
+        &mut self,
+        way: &Way,
+        early: Option<Arrival>,
+        targets: &[NodeId],
+        world: &mut World,
+    ) -> Result<(), Failure> {
+        self.settle(way, early);
+        if early.is_none() && self.vacates(way).is_empty() && !self.is_targetless(way) {
+            self.enter_below(self.scope(way), targets, world)?;
+        }
+        Ok(())
+    }
+
+    /// What a way leaves without an active child, and its arrival.
+    fn settle(&mut self, way: &Way, early: Option<Arrival>) {
+        let arrival = early.or(way.arrives());
+        let vacated = match early {
+            Some(arrival) => vec![arrival.region],
+            None => self.vacates(way),
+        };
         for &node in &vacated {
             let is_filled = self.chart.children(node).iter().any(|child| self.active.contains(child));
             if self.kind(node) == NodeKind::Basic || !self.active.contains(&node) || is_filled {
@@ -213,29 +264,13 @@ impl Stepper<'_> {
                 continue;
             }
             self.vacated.insert(node);
-            match arrives {
-                true => self.complete_around(node), // for the region it is no news
-                false => self.completed(node),
+            match arrival {
+                Some(_) => self.complete_around(node), // for the region it is no news
+                None => self.completed(node),
             }
         }
-        if arrives && self.joined_and(way.ends[0]).is_some_and(|and| self.active.contains(&and)) {
-            self.arrivals.extend(&way.segments);
-            self.arrived_at(way.ends[0]);
-        }
-        if vacated.is_empty() && !self.is_targetless(way) {
-            self.enter_below(self.scope(way), targets, world)?;
-        }
-        Ok(())
-    }
-
-    /// When all have arrived, their AND is offered once more.
-    fn arrived_at(&mut self, join: NodeId) {
-        let all = self.incoming(join).iter().all(|id| self.arrivals.contains(id));
-        if let Some(and) =
-            self.joined_and(join).filter(|_| all && self.semantics.eventless == CompletionTrigger::Once)
-            && !self.completions.contains(&and)
-        {
-            self.completions.push(and);
+        if let Some(arrival) = arrival.filter(|it| self.active.contains(&self.parent(it.region))) {
+            self.arrivals.insert((arrival.join, arrival.region));
         }
     }
 
@@ -256,7 +291,7 @@ impl Stepper<'_> {
 
     /// R13, and the remaining work when a chart ends.
     pub(crate) fn halt(&mut self, world: &mut World) {
-        for node in self.tree.document.clone() {
+        for node in self.in_order_from_within() {
             let Some(job) = self.jobs.get(&node).cloned() else { continue };
             match job.phase {
                 Phase::Running if !job.cancelled => world.cancel(self.activation(node, job.number)),

@@ -51,7 +51,7 @@ impl<'c> Stepper<'c> {
     }
 
     pub(crate) fn region_runs(&self, region: ScopeId) -> bool {
-        self.jobs.keys().any(|&node| self.runs(node) && self.region(node) == region)
+        self.jobs.keys().any(|&node| self.runs(node) && self.activity_region(node) == region)
     }
 
     /// Whether running activities block a path.
@@ -71,6 +71,7 @@ impl<'c> Stepper<'c> {
             return false;
         }
         match self.kind(node) {
+            _ if self.jobs.get(&node).is_some_and(|job| job.phase != Phase::Done) => false,
             _ if self.vacated.contains(&node) => true,
             NodeKind::And => {
                 let mut regions = self.chart.children(node).iter().filter(|&&child| self.is_region(child));
@@ -80,18 +81,20 @@ impl<'c> Stepper<'c> {
                 let inside = self.active_children(node);
                 inside.iter().any(|&child| self.kind(child) == NodeKind::End)
             }
-            _ => self.jobs.get(&node).is_none_or(|job| job.phase == Phase::Done),
+            _ => true,
         }
     }
 
     /// R15
     fn is_ready(&self, way: &Way, offer: Offer<'_>) -> bool {
         let source = way.sources[0];
-        if offer.event().is_some() || self.begins_at_join(way) {
-            return true;
+        if let Some(arrival) = way.arrival {
+            let due = offer.event().is_some() || self.is_complete(source);
+            let new = !self.arrivals.contains(&(arrival.join, arrival.region));
+            return due && new && self.others_arrive(arrival) == arrival.passes;
         }
-        if self.kind(way.ends[0]) == NodeKind::Join {
-            return self.is_complete(source) && !self.arrivals.contains(&way.segments[0]);
+        if offer.event().is_some() {
+            return true;
         }
         if way.sources.len() > 1 {
             let open = |source| self.leaves_in(source).is_disjoint(&self.closed);
@@ -131,21 +134,13 @@ impl<'c> Stepper<'c> {
         pending || !with_event && held
     }
 
-    /// Paths out of JOINs with all arrivals come first.
     pub(crate) fn judge_ways(&mut self, node: NodeId, offer: Offer<'_>, world: &mut World) -> Judgement {
         let event = offer.event();
         if event.is_none() && self.is_frozen(node, false) {
             return Judgement::default();
         }
-        let mut lists: Vec<Vec<TransitionId>> =
-            self.joins_behind(node).into_iter().map(|join| self.outgoing(join)).collect();
-        lists.push(self.outgoing(node));
         let mut judgement = Judgement::default();
-        for list in lists {
-            if judgement.found.is_none() {
-                self.judge_list(node, list, offer, &mut judgement, world);
-            }
-        }
+        self.judge_list(node, self.outgoing(node), offer, &mut judgement, world);
         judgement
     }
 
@@ -185,16 +180,6 @@ impl<'c> Stepper<'c> {
         let start = Way { sources: vec![node], ..Way::default() };
         self.transition(id).weight.is_none()
             || self.any_way(&start, &[id], &mut |me, way, _| me.is_ready(way, offer))
-    }
-
-    /// The JOINs behind an AND at which all have arrived, one by one.
-    fn joins_behind(&self, and: NodeId) -> Vec<NodeId> {
-        let joins = self.chart.nodes().map(|(id, _)| id).filter(|&id| self.kind(id) == NodeKind::Join);
-        let complete = |&join: &NodeId| {
-            let into = self.incoming(join);
-            self.joined_and(join) == Some(and) && into.iter().all(|id| self.arrivals.contains(id))
-        };
-        joins.filter(complete).collect()
     }
 
     /// The candidates, and the ways that wait for running activities.
@@ -301,8 +286,12 @@ impl<'c> Stepper<'c> {
     fn strongest(&mut self, mut candidates: Vec<Way>) -> (Vec<Way>, Vec<Way>) {
         self.sort_inner_first(&mut candidates);
         let (mut winners, losers) = self.remove_conflicting(candidates);
-        winners.sort_by_key(|way| (!self.is_internal(way), self.key(way)));
+        winners.sort_by_key(|way| (!self.stays_inside(way), self.key(way)));
         (winners, losers)
+    }
+
+    fn stays_inside(&self, way: &Way) -> bool {
+        self.is_internal(way) && self.scope(way) == way.sources[0]
     }
 
     /// Whether a later candidate wins against an earlier one: it is nested in it, or chosen.
@@ -314,7 +303,9 @@ impl<'c> Stepper<'c> {
     }
 
     fn conflict(&self, a: &Way, b: &Way) -> bool {
-        !self.exit_set(a).is_disjoint(&self.exit_set(b))
+        // regions that arrive in one place do so together
+        let together = a.arrival.zip(b.arrival).is_some_and(|(a, b)| a.join == b.join);
+        !together && !self.exit_set(a).is_disjoint(&self.exit_set(b))
     }
 
     /// SCXML's `removeConflictingTransitions`.

@@ -198,7 +198,9 @@ impl Stepper<'_> {
         self.admit()?;
         let (way, event) = self.pending.remove(index);
         self.begin_micro_step();
+        self.taken = vec![way.clone()];
         self.fire(&way, world)?;
+        self.taken.clear();
         let pending = std::mem::take(&mut self.pending);
         self.pending = pending.into_iter().filter(|(way, _)| self.may_fire(way)).collect();
         for held in &mut self.held {
@@ -243,6 +245,12 @@ impl Stepper<'_> {
         let (candidates, waiting) = self.candidates(Offer::Event(&occurrence), world);
         let event = occurrence.event.clone();
         let heading = Heading { event: Some(&event), ..Heading::default() };
+        let found = if candidates.is_empty() { &waiting } else { &candidates };
+        if let Some(claimant) = self.claimant(&event, found) {
+            self.defer(occurrence);
+            self.print(&Heading { deferring: Some(claimant), ..heading }, world);
+            return Ok(true);
+        }
         if !candidates.is_empty() {
             self.take(candidates, Some(&event), world)?;
         } else if !waiting.is_empty() {
@@ -252,28 +260,54 @@ impl Stepper<'_> {
         } else {
             let deferring = self.deferring(&event);
             if deferring.is_some() {
-                self.deferred.push(occurrence);
-                self.deferred.sort_by_key(|occurrence| occurrence.number);
+                self.defer(occurrence);
             }
             self.print(&Heading { deferring, ..heading }, world);
         }
         Ok(true)
     }
 
+    fn defer(&mut self, occurrence: Occurrence) {
+        self.deferred.push(occurrence);
+        self.deferred.sort_by_key(|occurrence| occurrence.number);
+    }
+
+    /// R26: the first state that defers an event though transitions were found for it, none of them
+    /// from inside that state or from itself.
+    fn claimant(&self, event: &str, found: &[Way]) -> Option<NodeId> {
+        if self.semantics.deferral != Deferral::Innermost {
+            return None;
+        }
+        let own = |node: NodeId, way: &Way| {
+            way.sources.iter().any(|&source| source == node || self.is_inside(source, node))
+        };
+        let all = self.in_order_from_within();
+        let mut deferring = all.into_iter().filter(|&node| self.defers(node, event));
+        deferring.find(|&node| !found.iter().any(|way| own(node, way)))
+    }
+
+    fn defers(&self, node: NodeId, event: &str) -> bool {
+        let named = self.chart.node(node).defer.iter().any(|name| self.matches(name, event));
+        self.active.contains(&node) && named
+    }
+
+    /// All nodes, children before their parents.
+    pub(crate) fn in_order_from_within(&self) -> Vec<NodeId> {
+        fn visit(stepper: &Stepper<'_>, node: NodeId, out: &mut Vec<NodeId>) {
+            for &child in stepper.chart.children(node) {
+                visit(stepper, child, out);
+            }
+            out.push(node);
+        }
+        let mut out = vec![];
+        visit(self, Statechart::ROOT, &mut out);
+        out
+    }
+
     /// The innermost active state that defers an event; of several, the first of the document.
     fn deferring(&self, event: &str) -> Option<NodeId> {
-        fn visit(stepper: &Stepper<'_>, node: NodeId, event: &str) -> Option<NodeId> {
-            let inside = stepper.chart.children(node).iter().find_map(|&child| visit(stepper, child, event));
-            let itself = || {
-                let defers = stepper.chart.node(node).defer.iter().any(|name| stepper.matches(name, event));
-                (stepper.active.contains(&node) && defers).then_some(node)
-            };
-            inside.or_else(itself)
-        }
-        match self.semantics.deferral {
-            Deferral::On => visit(self, Statechart::ROOT, event),
-            _ => None,
-        }
+        let mut all = self.in_order_from_within().into_iter();
+        all.find(|&node| self.semantics.deferral != Deferral::Off && self.defers(node, event))
     }
 
     fn take(&mut self, candidates: Vec<Way>, event: Option<&str>, world: &mut World) -> Result<(), Failure> {
@@ -281,7 +315,7 @@ impl Stepper<'_> {
         let (mut now, mut later) = (vec![], vec![]);
         for way in winners {
             if self.leaves_running(&way) {
-                for node in self.active_in_document_order() {
+                for node in self.in_order_from_within() {
                     if self.would_leave(&way, node) {
                         self.cancel(node, world);
                     }
@@ -317,7 +351,7 @@ impl Stepper<'_> {
         for region in std::mem::take(&mut self.written) {
             world.publish_all(region);
         }
-        for node in self.tree.document.clone() {
+        for node in self.in_order_from_within() {
             let Some(job) = self.jobs.get_mut(&node) else { continue };
             if job.phase == Phase::Queued {
                 job.phase = Phase::Running;

@@ -3,9 +3,12 @@
 use std::collections::BTreeSet;
 
 use yase::statechart::{NodeId, NodeKind, Transition, TransitionId};
-use yase::{CompletionTrigger, ExitOrder, JoinMode, TransitionToAncestor};
+use yase::{
+    CompletionTrigger, ExitOrder, Firing, JoinMode, StructureRules, TerminateExit, TransitionToAncestor,
+};
 
 use super::Stepper;
+use super::arrive::Arrival;
 
 /// The static part of a compound transition: everything up to the first CHOICE, HISTORY or state on
 /// each of its paths.
@@ -15,6 +18,8 @@ pub(crate) struct Way {
     /// In the order of their effects.
     pub segments: Vec<TransitionId>,
     pub ends: Vec<NodeId>,
+    /// Where its region arrives by itself.
+    pub arrival: Option<Arrival>,
 }
 
 /// Role of a node in a compound transition.
@@ -40,6 +45,7 @@ impl<'c> Stepper<'c> {
     fn role(&self, node: NodeId) -> Role {
         match self.kind(node) {
             NodeKind::Condition | NodeKind::Junction | NodeKind::ExitPoint => Role::Branch,
+            NodeKind::EntryPoint if self.outgoing(node).is_empty() => Role::End,
             NodeKind::EntryPoint if self.is_fork(node) => Role::Fork,
             NodeKind::EntryPoint => Role::Branch,
             NodeKind::Fork => Role::Fork,
@@ -120,6 +126,11 @@ impl<'c> Stepper<'c> {
         let mut way = way.clone();
         way.segments.push(segment);
         let target = self.transition(segment).target;
+        if let Some(arrival) = self.arrival(&way, target, rest) {
+            let stopping = Way { ends: vec![target], arrival: Some(arrival), ..way.clone() };
+            way.arrival = Some(Arrival { passes: true, ..arrival });
+            return accept(self, &stopping, None) || self.branch(&way, target, rest, accept);
+        }
         match self.role(target) {
             Role::Branch => self.branch(&way, target, rest, accept),
             Role::Fork => {
@@ -204,16 +215,10 @@ impl<'c> Stepper<'c> {
             || sources.min_by_key(|&node| self.position(node)) == Some(source)
     }
 
-    /// Whether it is the way out of a JOIN at which all have arrived; its source is their AND.
-    pub(crate) fn begins_at_join(&self, way: &Way) -> bool {
-        self.kind(self.transition(way.segments[0]).source) == NodeKind::Join
-    }
-
     /// The AND that JOINs' sources lie in.
-    pub(crate) fn joined_and(&self, join: NodeId) -> Option<NodeId> {
+    pub(crate) fn joined_and(&self, join: NodeId) -> NodeId {
         let sources: Vec<NodeId> = self.incoming(join).iter().map(|&id| self.transition(id).source).collect();
-        let together = self.semantics.join == JoinMode::Together;
-        (!together && !sources.is_empty()).then(|| self.lowest_around(&sources, |kind| kind == NodeKind::And))
+        self.lowest_around(&sources, |kind| kind == NodeKind::And)
     }
 
     pub(crate) fn incoming(&self, node: NodeId) -> Vec<TransitionId> {
@@ -221,12 +226,30 @@ impl<'c> Stepper<'c> {
         into.map(|(id, _)| id).collect()
     }
 
+    /// In UML only the segment out of a state can be internal, and a path that leads out through an
+    /// exit point is not.
     pub(crate) fn is_internal(&self, way: &Way) -> bool {
-        way.segments.iter().any(|&id| self.transition(id).internal)
+        let internal = |id: &TransitionId| self.transition(*id).internal;
+        if self.semantics.structure == StructureRules::Strict {
+            return way.segments.iter().any(internal);
+        }
+        let from_source = |id: &TransitionId| way.sources.contains(&self.transition(*id).source);
+        let source = way.sources[0];
+        let inside = |node: NodeId| node == source || self.is_inside(node, source);
+        let passed = way.segments.iter().map(|&id| self.transition(id).target);
+        let passed = passed.filter(|_| self.walks_segments());
+        way.segments.iter().any(|id| from_source(id) && internal(id))
+            && way.sources.len() == 1
+            && self.possible_targets(way).into_iter().chain(passed).all(inside)
     }
 
     pub(crate) fn is_targetless(&self, way: &Way) -> bool {
-        self.is_internal(way) && way.ends == way.sources
+        let direct = !self.walks_segments() || way.segments.len() == 1;
+        self.is_internal(way) && way.ends == way.sources && direct
+    }
+
+    pub(crate) fn walks_segments(&self) -> bool {
+        self.semantics.firing == Firing::EachSegment
     }
 
     pub(crate) fn interrupts(&self, way: &Way) -> bool {
@@ -241,9 +264,14 @@ impl<'c> Stepper<'c> {
             | NodeKind::Junction
             | NodeKind::Fork
             | NodeKind::EntryPoint
-            | NodeKind::ExitPoint => {
+            | NodeKind::ExitPoint
+                if !self.outgoing(node).is_empty() =>
+            {
                 let out = self.outgoing(node);
-                out.into_iter().flat_map(|id| self.final_targets(self.transition(id).target)).collect()
+                let own = self.walks_segments().then_some(node);
+                own.into_iter()
+                    .chain(out.into_iter().flat_map(|id| self.final_targets(self.transition(id).target)))
+                    .collect()
             }
             _ => vec![node],
         }
@@ -257,22 +285,60 @@ impl<'c> Stepper<'c> {
         if let [vacated] = self.vacates(way)[..] {
             return vacated;
         }
-        let targets: Vec<NodeId> = way.ends.iter().flat_map(|&end| self.final_targets(end)).collect();
-        let ending = self.only_terminates(way);
-        let counts = |target: &NodeId| ending || self.kind(*target) != NodeKind::Terminate;
-        let all: Vec<NodeId> =
-            way.sources.iter().copied().chain(targets.into_iter().filter(counts)).collect();
+        let mut all = way.sources.clone();
+        all.extend(self.possible_targets(way));
+        if self.walks_segments() {
+            let passed = way.segments.iter().map(|&id| self.transition(id).target);
+            all.extend(passed.filter(|&node| self.is_passed(node)));
+        }
+        all.extend(way.arrival.map(|arrival| self.parent(arrival.region)));
         self.lowest_around(&all, |kind| kind == NodeKind::Or)
     }
 
-    /// R13: a way all of whose possible ends are TERMINATE leaves and enters nothing; where it may
-    /// also lead elsewhere, its scope is that of the other ends.
-    pub(crate) fn only_terminates(&self, way: &Way) -> bool {
-        let mut targets = way.ends.iter().flat_map(|&end| self.final_targets(end));
-        targets.all(|target| self.kind(target) == NodeKind::Terminate)
+    /// Whether a path goes on from a node.
+    fn is_passed(&self, node: NodeId) -> bool {
+        let state = matches!(
+            self.kind(node),
+            NodeKind::Or | NodeKind::And | NodeKind::Basic | NodeKind::End | NodeKind::Start
+        );
+        !state && self.kind(node) != NodeKind::Terminate && !self.stands_for_composite(node)
     }
 
-    fn lowest_around(&self, nodes: &[NodeId], wanted: impl Fn(NodeKind) -> bool) -> NodeId {
+    /// An entry point that leads nowhere.
+    pub(crate) fn stands_for_composite(&self, node: NodeId) -> bool {
+        self.kind(node) == NodeKind::EntryPoint && self.outgoing(node).is_empty()
+    }
+
+    /// Where a path may lead, with the connectors on its ways. A TERMINATE at which nothing is
+    /// exited counts only if there is nothing else.
+    fn possible_targets(&self, way: &Way) -> Vec<NodeId> {
+        let counts = |target: &NodeId| {
+            self.semantics.terminate == TerminateExit::Source || self.kind(*target) != NodeKind::Terminate
+        };
+        let behind = |&end: &NodeId| {
+            let targets = self.final_targets(end);
+            let some: Vec<NodeId> = targets.iter().copied().filter(counts).collect();
+            let connectors_only = some.iter().all(|&node| self.is_passed(node) && !self.is_history(node));
+            if connectors_only { targets.into_iter().filter(|node| !counts(node)).collect() } else { some }
+        };
+        way.ends.iter().flat_map(behind).collect()
+    }
+
+    fn is_history(&self, node: NodeId) -> bool {
+        matches!(self.kind(node), NodeKind::ShallowHistory | NodeKind::DeepHistory)
+    }
+
+    /// R13: a way all of whose possible ends are TERMINATE leaves and enters nothing, unless its
+    /// source is exited; where it may also lead elsewhere, its scope is that of the other ends.
+    pub(crate) fn only_terminates(&self, way: &Way) -> bool {
+        let targets = way.ends.iter().flat_map(|&end| self.final_targets(end));
+        let mut ends = targets.filter(|&node| !self.is_passed(node) || self.is_history(node));
+        self.semantics.terminate == TerminateExit::Nothing
+            && way.arrives().is_none()
+            && ends.all(|target| self.kind(target) == NodeKind::Terminate)
+    }
+
+    pub(crate) fn lowest_around(&self, nodes: &[NodeId], wanted: impl Fn(NodeKind) -> bool) -> NodeId {
         let around = |outer: &NodeId| nodes.iter().all(|&node| self.is_inside(node, *outer));
         self.chart.ancestors(nodes[0]).find(|outer| wanted(self.kind(*outer)) && around(outer)).unwrap()
     }
@@ -281,13 +347,13 @@ impl<'c> Stepper<'c> {
     /// way to an active ancestor.
     pub(crate) fn vacates(&self, way: &Way) -> Vec<NodeId> {
         let [end] = way.ends[..] else { return vec![] };
-        let around = if self.kind(end) == NodeKind::Join {
-            self.joined_and(end).unwrap()
-        } else if self.completes_ancestor(way, end) {
-            end
-        } else {
+        if let Some(arrival) = way.arrives() {
+            return vec![arrival.region];
+        }
+        if !self.completes_ancestor(way, end) {
             return vec![];
-        };
+        }
+        let around = end;
         match self.kind(around) {
             NodeKind::And => way.sources.iter().map(|&source| self.child_towards(around, source)).collect(),
             _ => vec![around],
@@ -300,6 +366,17 @@ impl<'c> Stepper<'c> {
             && matches!(self.kind(end), NodeKind::Or | NodeKind::And)
             && way.sources.len() == 1
             && self.is_inside(way.sources[0], end)
+            && (!self.walks_segments() || self.stays_beside(way, end))
+    }
+
+    /// Whether the connectors of a path lie in the composite that it completes.
+    fn stays_beside(&self, way: &Way, end: NodeId) -> bool {
+        let vacated = match self.kind(end) {
+            NodeKind::And => self.child_towards(end, way.sources[0]),
+            _ => end,
+        };
+        let passed = way.segments.iter().map(|&id| self.transition(id).target);
+        passed.filter(|&node| node != end).all(|node| self.is_inside(node, vacated))
     }
 
     pub(crate) fn child_towards(&self, outer: NodeId, inner: NodeId) -> NodeId {

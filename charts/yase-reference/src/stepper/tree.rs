@@ -37,8 +37,8 @@ impl Tree {
         let regions: Vec<NodeId> =
             document.iter().copied().filter(|&node| owns_blackboard(chart, node)).collect();
         let owner = |node: NodeId| {
-            let found =
-                std::iter::once(node).chain(chart.ancestors(node)).find(|node| regions.contains(node));
+            let shared = |node: &NodeId| *node == Statechart::ROOT || is_region(chart, *node);
+            let found = std::iter::once(node).chain(chart.ancestors(node)).find(shared);
             regions.iter().position(|&region| Some(region) == found).unwrap()
         };
         let region = chart.nodes().map(|(id, _)| ScopeId(owner(id) as u32)).collect();
@@ -63,8 +63,11 @@ fn document(chart: &Statechart) -> Vec<NodeId> {
     out
 }
 
+/// The root and regions, whose content shares it, and composites with an activity.
 fn owns_blackboard(chart: &Statechart, node: NodeId) -> bool {
-    node == Statechart::ROOT || is_region(chart, node)
+    let it = chart.node(node);
+    let runs = it.activity.is_some() && it.kind != NodeKind::Basic;
+    node == Statechart::ROOT || is_region(chart, node) || runs
 }
 
 /// A child of an AND that is a state.

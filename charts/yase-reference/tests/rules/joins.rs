@@ -390,8 +390,7 @@ fn r12_a_region_without_states_that_is_left_has_to_arrive_again() {
         0.003 s -: both/one/START -> both/one/A; exit both/one/START; enter both/one/A
         0.004 s f: both/one/A -> both/one/END; exit both/one/A; enter both/one/END
         0.004 s -: both/one -> j; exit both/one/END
-        0.005 s -: both/r -> j
-        0.005 s -: j -> E; exit both/one, both/r, both; enter E
+        0.005 s -: both/r -> j -> E; exit both/one, both/r, both; enter E
         ",
     );
 }
@@ -452,8 +451,7 @@ fn r12_a_join_of_some_regions_is_looked_at_when_the_last_of_them_arrives() {
             0.002 s g: both/two/B -> both/two/END; exit both/two/B; enter both/two/END
             0.002 s -: both/two -> j; exit both/two/END
             0.003 s h: both/four/D -> both/four/END; exit both/four/D; enter both/four/END
-            0.003 s -: both/four -> j; exit both/four/END
-            0.003 s -: j -> E; exit both/one, both/two, both/three/C, both/three, both/four, both; enter E
+            0.003 s -: both/four -> j -> E; exit both/one, both/two, both/three/C, both/three, both/four/END, both/four, both; enter E
             ",
         );
     }

@@ -4,3 +4,4 @@
 mod entering;
 mod events;
 mod leaving;
+mod segments;

@@ -160,7 +160,7 @@ fn what_has_not_arrived_has_a_child() {
     assert_eq!(
         wrong(&|snapshot| snapshot.vacated.clear()),
         "configuration: `c/both/one` is active, but nothing in it\n\
-         joined: `c/both/one` has arrived at a JOIN, but was not vacated"
+         joined: `c/both/one` has arrived where regions are joined, but was not vacated"
     );
     assert_eq!(
         wrong(&|snapshot| snapshot.vacated.push("c/both/two".into())),
@@ -173,7 +173,7 @@ fn what_has_not_arrived_has_a_child() {
     );
     assert_eq!(
         wrong(&|snapshot| snapshot.joined.push(vec!["c/both/one/A -> c/both/one/B".into()])),
-        "joined[1]: `c/both/one/A -> c/both/one/B` leads to no JOIN"
+        "joined[1]: `c/both/one/A -> c/both/one/B` leads to nothing that joins regions"
     );
 }
 

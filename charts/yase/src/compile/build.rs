@@ -10,9 +10,9 @@ use crate::compile::node_roles::{NodeRoles, is_state};
 use crate::compile::paths::PathIndex;
 use crate::compile::segments::CompiledSegment;
 use crate::compile::{
-    BranchRange, BranchWeight, CandidatePath, ChoiceNode, CompiledChart, CompiledNode, CompoundTransition,
-    ErrorEvents, EventFilter, HistoryNode, JoinNode, LateDrawTree, NodeIndex, NodeOrder, NodeSets, Scope,
-    ScopedGuard, ScopedTimer, SegmentNode, entries, events, node_span, scripts, selection_order,
+    ArrivalCondition, BranchRange, BranchWeight, CandidatePath, ChoiceNode, CompiledChart, CompiledNode,
+    CompoundTransition, ErrorEvents, EventFilter, HistoryNode, JoinNode, LateDrawTree, NodeIndex, NodeOrder,
+    NodeSets, Scope, ScopedGuard, ScopedTimer, SegmentNode, entries, events, scripts, selection_order,
     selection_table,
 };
 use crate::diagnostic::Diagnostic;
@@ -33,13 +33,13 @@ pub(crate) fn build(
     semantics: Semantics,
     program: Option<&NativeProgram>,
 ) -> Result<CompiledChart, Vec<Diagnostic>> {
-    let mut found = chart.check();
+    let mut found = chart.check_for(&semantics);
     found.retain(Diagnostic::is_error);
     if !found.is_empty() {
         return Err(found);
     }
     let layout = NodeOrder::new(chart);
-    let roles = NodeRoles::new(chart, &layout);
+    let roles = NodeRoles::new(chart, &layout, &semantics);
     let (region_of, regions) = regions(chart, &layout);
     let ways = compound_transitions::find(chart, &layout, &roles, &region_of, &semantics)?;
     let timer_names = timer_names(chart, &ways, &region_of, regions.len());
@@ -60,6 +60,7 @@ pub(crate) fn build(
         segments: BTreeMap::new(),
         branches: Vec::with_capacity(count),
         triggers: Vec::with_capacity(segments().filter(|segment| segment.trigger.is_some()).count()),
+        arrivals: Vec::new(),
         guards: Vec::with_capacity(segments().filter(|segment| segment.guard.is_some()).count()),
         weights: Vec::new(),
         deep: Vec::new(),
@@ -80,12 +81,21 @@ fn regions(chart: &Statechart, layout: &NodeOrder) -> (Vec<ScopeId>, Vec<Scope>)
         let Some(parent) = chart.node(node).parent else { continue };
         let around = region_of[parent.0 as usize];
         region_of[node.0 as usize] = around;
-        if chart.node(parent).kind == NodeKind::And && is_state(chart.node(node).kind) {
+        let is_region = chart.node(parent).kind == NodeKind::And && is_state(chart.node(node).kind);
+        if is_region {
             region_of[node.0 as usize] = ScopeId(regions.len() as u32);
+        }
+        if is_region || has_own_blackboard(chart, node) {
             regions.push(Scope { root: layout.place_of(node), parent: Some(around), timers: 0 });
         }
     }
     (region_of, regions)
+}
+
+/// Whether a node is a composite with an activity, which runs beside those of its children.
+fn has_own_blackboard(chart: &Statechart, node: NodeId) -> bool {
+    let node = chart.node(node);
+    node.activity.is_some() && node.kind != NodeKind::Basic
 }
 
 /// The timers started in each scope, in alphabetical order.
@@ -139,6 +149,7 @@ pub(crate) struct ChartCompiler<'a> {
     pub(crate) segments: BTreeMap<(TransitionId, ScopeId), CompiledSegment>,
     pub(crate) branches: Vec<SegmentNode>,
     pub(crate) triggers: Vec<CompiledTrigger>,
+    pub(crate) arrivals: Vec<ArrivalCondition>,
     pub(crate) guards: Vec<ScopedGuard>,
     pub(crate) weights: Vec<BranchWeight>,
     pub(crate) deep: Vec<LateDrawTree>,
@@ -155,7 +166,7 @@ impl ChartCompiler<'_> {
     ) -> Result<CompiledChart, Vec<Diagnostic>> {
         let errors = self.error_events();
         let unnamed = self.events.intern("?");
-        let mut states = self.states(&ways.of);
+        let mut states = self.states(&ways.of, &regions);
         let choices = ways.choices.iter().map(|late| self.choice(late)).collect();
         let histories = self.histories(&ways.histories, &mut states);
         let unreached = unreached(self.chart, ways).into_iter().map(|id| {
@@ -191,6 +202,7 @@ impl ChartCompiler<'_> {
             regions: regions.into(),
             branches: self.branches.into(),
             triggers,
+            arrivals: self.arrivals.into(),
             guards: self.guards.into(),
             weights: self.weights.into(),
             late_draw_trees: self.deep.into(),
@@ -232,16 +244,17 @@ impl ChartCompiler<'_> {
 
     fn joins(&self, ways: &[compound_transitions::JoinSources]) -> Box<[JoinNode]> {
         let mut first = 0;
+        let places = |nodes: &[NodeId]| nodes.iter().map(|&node| self.layout.place_of(node)).collect();
         let join = |join: &compound_transitions::JoinSources| {
-            let region = |&source: &NodeId| {
-                node_span::child_towards(self.chart, join.around, source).unwrap_or(source)
-            };
-            let regions = join.sources.iter().map(region).map(|node| self.layout.place_of(node)).collect();
-            let sources: Box<[NodeIndex]> =
-                join.sources.iter().map(|&node| self.layout.place_of(node)).collect();
+            let regions: Box<[NodeIndex]> = places(&join.regions);
             let start = first;
-            first += sources.len();
-            JoinNode { around: self.layout.place_of(join.around), first: start, sources, regions }
+            first += regions.len();
+            JoinNode {
+                around: self.layout.place_of(join.around),
+                first: start,
+                sources: places(&join.sources),
+                regions,
+            }
         };
         ways.iter().map(join).collect()
     }
@@ -290,7 +303,7 @@ impl ChartCompiler<'_> {
     }
 
     /// The nodes by index, with the paths out of each as branches.
-    fn states(&mut self, ways: &[Vec<CompoundPath>]) -> Vec<CompiledNode> {
+    fn states(&mut self, ways: &[Vec<CompoundPath>], regions: &[Scope]) -> Vec<CompiledNode> {
         let mut activities = 0;
         let places: Vec<NodeIndex> = self.layout.places().collect();
         let mut states = Vec::with_capacity(places.len());
@@ -299,6 +312,10 @@ impl ChartCompiler<'_> {
             if self.chart.node(self.layout.node(place)).activity.is_some() {
                 state.activity = Some(activities);
                 activities += 1;
+            }
+            if has_own_blackboard(self.chart, self.layout.node(place)) {
+                let own = regions.iter().position(|scope| scope.root == place);
+                state.activity_region = own.map_or(state.region, |index| ScopeId(index as u32));
             }
             let ways = &ways[self.layout.node(place).0 as usize];
             state.eventless = self.tree(ways, true);
@@ -323,6 +340,7 @@ impl ChartCompiler<'_> {
             finishes: node.kind == NodeKind::End && node.parent == Some(Statechart::ROOT),
             is_region: node.parent.is_some_and(|parent| chart.node(parent).kind == NodeKind::And),
             activity: None,
+            activity_region: region,
             parent: node.parent.map(|parent| self.layout.place_of(parent)),
             start: self.starts[id.0 as usize].map(|start| self.layout.place_of(start)),
             parts: self.parts(id),
@@ -425,16 +443,18 @@ fn awaited_events(states: &[CompiledNode], triggers: &[EventFilter]) -> BTreeSet
     deferred.chain(named).collect()
 }
 
-/// A BASIC state has at most one activity; an OR as many as the child with the most, an AND the sum
-/// of its regions.
+/// A state has at most one activity of its own; an OR runs as many inside as the child with the
+/// most, an AND the sum of its regions.
 fn max_activities(states: &[CompiledNode]) -> usize {
-    let mut most: Vec<usize> = states.iter().map(|state| usize::from(state.activity.is_some())).collect();
+    let mut inside = vec![0; states.len()];
+    let mut most = 0;
     for (place, state) in states.iter().enumerate() {
+        most = inside[place] + usize::from(state.activity.is_some());
         let Some(parent) = state.parent.map(NodeIndex::index) else { continue };
-        most[parent] = match states[parent].kind {
-            NodeKind::And => most[parent] + most[place],
-            _ => most[parent].max(most[place]),
+        inside[parent] = match states[parent].kind {
+            NodeKind::And => inside[parent] + most,
+            _ => inside[parent].max(most),
         };
     }
-    most.last().copied().unwrap_or(0)
+    most
 }

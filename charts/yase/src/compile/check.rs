@@ -6,6 +6,7 @@ mod transitions;
 use crate::compile::NodeOrder;
 use crate::compile::node_roles::{NodeRoles, is_state};
 use crate::diagnostic::{Diagnostic, Span};
+use crate::semantics::{Semantics, StructureRules};
 use crate::statechart::{Element, NodeId, NodeKind, Statechart};
 
 impl Statechart {
@@ -24,28 +25,42 @@ impl Statechart {
     /// | `E0503` | an activity of a node that is not a BASIC state |
     /// | `E0504` | a root that is not an OR; a node whose parent is not the node that contains it |
     ///
+    /// These are the rules of [`StructureRules::Strict`]. [`check_for`](Statechart::check_for)
+    /// checks a chart for any semantics.
+    ///
     /// Two errors that require the enumeration of all paths through connectors are found by
     /// [`compile`](Statechart::compile) only: invalid targets of a FORK behind further connectors,
     /// and too many combinations of connectors.
     pub fn check(&self) -> Vec<Diagnostic> {
-        self.check_elements().into_iter().map(|(diagnostic, _)| diagnostic).collect()
+        self.check_for(&Semantics::yase())
     }
 
-    /// The diagnostics of [`check`](Statechart::check), each with the node or transition that it
-    /// concerns, so that the caller can add its location in a file.
-    pub fn check_elements(&self) -> Vec<(Diagnostic, Option<Element>)> {
+    /// Checks the structure for a semantics.
+    pub fn check_for(&self, semantics: &Semantics) -> Vec<Diagnostic> {
+        self.check_elements(semantics).into_iter().map(|(diagnostic, _)| diagnostic).collect()
+    }
+
+    /// The diagnostics of [`check_for`](Statechart::check_for), each with the node or transition
+    /// that it concerns, so that the caller can add its location in a file.
+    pub fn check_elements(&self, semantics: &Semantics) -> Vec<(Diagnostic, Option<Element>)> {
         let found = tree(self);
         if !found.is_empty() {
             return found.into_iter().map(|diagnostic| (diagnostic, None)).collect();
         }
         let layout = NodeOrder::new(self);
-        let mut check = ChartValidator { chart: self, layout: &layout, found: Vec::new(), about: None };
+        let mut check = ChartValidator {
+            chart: self,
+            layout: &layout,
+            is_strict: semantics.structure == StructureRules::Strict,
+            found: Vec::new(),
+            about: None,
+        };
         check.nodes();
         if check.ends_exist() {
             check.transitions();
         }
         if check.found.is_empty() {
-            let roles = NodeRoles::new(self, &layout);
+            let roles = NodeRoles::new(self, &layout, semantics);
             check.connectors(&roles);
         }
         check.found
@@ -55,6 +70,8 @@ impl Statechart {
 struct ChartValidator<'a> {
     chart: &'a Statechart,
     layout: &'a NodeOrder,
+    /// Whether the forms that only UML allows are errors.
+    is_strict: bool,
     found: Vec<(Diagnostic, Option<Element>)>,
     /// The element under examination.
     about: Option<Element>,
@@ -123,7 +140,14 @@ impl ChartValidator<'_> {
                 }
                 _ => {}
             }
-            if node.activity.is_some() && node.kind != NodeKind::Basic {
+            let may_run = match node.kind {
+                NodeKind::Or | NodeKind::And => {
+                    let parent = node.parent.map(|parent| self.kind(parent));
+                    !self.is_strict && parent.is_some_and(|kind| kind != NodeKind::And)
+                }
+                kind => kind == NodeKind::Basic,
+            };
+            if node.activity.is_some() && !may_run {
                 let message =
                     format!("`{}` is a {} and cannot have an activity", self.path(id), kind_name(node.kind));
                 self.error("E0503", message);
@@ -134,7 +158,7 @@ impl ChartValidator<'_> {
     fn composite(&mut self, id: NodeId) {
         let starts =
             self.chart.children(id).iter().filter(|&&child| self.kind(child) == NodeKind::Start).count();
-        if starts != 1 {
+        if starts != 1 && (self.is_strict || starts > 1) {
             let message = match starts {
                 0 => format!("composite `{}` has no START", self.path(id)),
                 _ => format!("composite `{}` has {starts} STARTs", self.path(id)),

@@ -1,7 +1,10 @@
 //! Enumerates the compound transitions: all complete paths out of each state, and out of each
 //! connector that is decided dynamically, in the order in which they are tried.
 
-use std::collections::{BTreeMap, BTreeSet};
+mod arrivals;
+mod scope;
+
+use std::collections::BTreeMap;
 
 use smallvec::{SmallVec, smallvec};
 
@@ -10,7 +13,7 @@ use crate::compile::node_span::{self, NodeSpan};
 use crate::compile::{EnablingCondition, NodeOrder};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::ids::ScopeId;
-use crate::semantics::{CompletionTrigger, JoinMode, SegmentOrder, Semantics, TransitionToAncestor};
+use crate::semantics::{CompletionTrigger, JoinMode, SegmentOrder, Semantics};
 use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 
 /// The maximum number of compound transitions of a chart: connectors that fan out and in again
@@ -36,6 +39,22 @@ pub(crate) struct CompoundPath {
     pub(crate) condition: Option<EnablingCondition>,
     /// Its effect on the configuration.
     pub(crate) change: ConfigurationChange,
+    /// The JOIN or exit point at which its region arrives by itself.
+    pub(crate) arrival: Option<PathArrival>,
+}
+
+/// The arrival of one region at a JOIN, or at an exit point that joins several regions.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct PathArrival {
+    /// The JOIN or exit point, by index.
+    pub(crate) join: usize,
+    /// The index of the region among all regions that arrive somewhere.
+    pub(crate) slot: usize,
+    pub(crate) region: NodeId,
+    /// The index of the segment that arrives.
+    pub(crate) segment: usize,
+    /// Whether the path goes on, since all other regions have arrived.
+    pub(crate) passes: bool,
 }
 
 /// Where a path ends, or continues after its actions.
@@ -50,7 +69,8 @@ pub(crate) enum PathEnd {
 
 /// The effect of a path on the configuration.
 ///
-/// A path whose possible ends are all TERMINATE leaves and enters nothing. A path that may also
+/// A path whose possible ends are all TERMINATE leaves and enters nothing, unless the semantics has
+/// its source left. A path that may also
 /// lead elsewhere has the scope of its other ends, and leaves the states in it before its end is
 /// known.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -60,9 +80,8 @@ pub(crate) enum ConfigurationChange {
     None,
     /// Its scope is left and entered.
     Scope,
-    /// The states in its scope are left; the scope itself remains, without an active child. For a
-    /// JOIN, the segment into it that this path represents.
-    Vacates(Option<usize>),
+    /// The states in its scope are left; the scope itself remains, without an active child.
+    Vacates,
 }
 
 /// The paths of a chart.
@@ -81,10 +100,13 @@ pub(crate) struct DynamicBranches {
     pub(crate) ways: Vec<CompoundPath>,
 }
 
-/// A JOIN and its sources, in the order of the segments into it.
+/// A JOIN or an exit point, with the AND whose regions it joins.
 #[derive(Clone, Debug)]
 pub(crate) struct JoinSources {
     pub(crate) around: NodeId,
+    /// The regions, for a JOIN in the order of the segments into it.
+    pub(crate) regions: Vec<NodeId>,
+    /// The sources of a JOIN, in the same order.
     pub(crate) sources: Vec<NodeId>,
 }
 
@@ -116,6 +138,7 @@ pub(crate) fn find(
         joins: Vec::new(),
         join_numbers: BTreeMap::new(),
         hulls: BTreeMap::new(),
+        terminates: BTreeMap::new(),
         count: 0,
         errors: Vec::new(),
     };
@@ -165,6 +188,8 @@ struct CompoundPathSearch<'a> {
     join_numbers: BTreeMap<NodeId, usize>,
     /// The span of all nodes to which a CHOICE may lead; none if it leads to TERMINATE only.
     hulls: BTreeMap<NodeId, Option<NodeSpan>>,
+    /// Whether a node leads to nothing but TERMINATEs.
+    terminates: BTreeMap<NodeId, bool>,
     count: usize,
     errors: Vec<Diagnostic>,
 }
@@ -184,6 +209,7 @@ struct PartialPath {
     ends: PathVec<NodeId>,
     /// The items still to be followed, the next one last.
     open: PathVec<Frontier>,
+    arrival: Option<PathArrival>,
 }
 
 /// The start of a path.
@@ -196,38 +222,25 @@ enum PathStart<'s> {
 }
 
 impl CompoundPathSearch<'_> {
-    fn number_joins(&mut self) {
-        for (id, _) in self.chart.nodes().filter(|(id, _)| self.roles.of(*id) == NodeRole::Join) {
-            let incoming = &self.roles.incoming[id.0 as usize];
-            let sources: Vec<NodeId> = incoming.iter().map(|&id| self.chart.transition(id).source).collect();
-            let hull =
-                sources.iter().map(|&node| NodeSpan::of(self.layout.place_of(node))).reduce(NodeSpan::with);
-            let Some(hull) = hull else { continue };
-            self.join_numbers.insert(id, self.joins.len());
-            self.joins
-                .push(JoinSources { around: node_span::lowest_node(self.chart, self.layout, hull), sources });
-        }
-    }
-
     fn out_of_state(&mut self, state: NodeId, ways: &mut Vec<CompoundPath>) {
-        if self.semantics.join == JoinMode::Each {
-            self.out_of_joins(state, ways);
-        }
         for index in 0..self.outgoing[state.0 as usize].len() {
             let id = self.outgoing[state.0 as usize][index];
             let target = self.chart.transition(id).target;
             match self.join_numbers.get(&target) {
-                Some(&join) if self.semantics.join == JoinMode::Each => {
-                    self.path_into_join(state, id, join, ways)
+                Some(&join) if self.roles.of(target) == NodeRole::Join && self.takes_together() => {
+                    self.path_through_join(state, target, join, ways)
                 }
-                Some(&join) => self.path_through_join(state, target, join, ways),
-                None => {
+                _ => {
                     let mut trail =
                         PartialPath { open: smallvec![Frontier::Segment(id)], ..PartialPath::default() };
                     self.follow(PathStart::States(state, &[], None), &mut trail, ways);
                 }
             }
         }
+    }
+
+    fn takes_together(&self) -> bool {
+        self.semantics.join == JoinMode::Together
     }
 
     /// The path through a JOIN as one transition: it belongs to its first source in document order.
@@ -245,52 +258,6 @@ impl CompoundPathSearch<'_> {
             PartialPath { segments, open: smallvec![Frontier::Node(node)], ..PartialPath::default() };
         let begin = PathStart::States(first, others, Some(EnablingCondition::AllCompleted(join)));
         self.follow(begin, &mut trail, ways);
-    }
-
-    /// A segment into a JOIN that is taken individually.
-    fn path_into_join(
-        &mut self,
-        state: NodeId,
-        segment: TransitionId,
-        join: usize,
-        ways: &mut Vec<CompoundPath>,
-    ) {
-        let JoinSources { around, sources } = &self.joins[join];
-        let slot = sources.iter().position(|&source| source == state);
-        let (Some(region), Some(slot)) = (node_span::child_towards(self.chart, *around, state), slot) else {
-            return;
-        };
-        let slot = self.joins[..join].iter().map(|join| join.sources.len()).sum::<usize>() + slot;
-        self.count += 1;
-        ways.push(CompoundPath {
-            segments: smallvec![segment],
-            source: state,
-            others: Vec::new(),
-            scope: region,
-            leaves: PathVec::new(),
-            region: self.regions[region.0 as usize],
-            condition: Some(EnablingCondition::Arrives(slot)),
-            change: ConfigurationChange::Vacates(Some(slot)),
-        });
-    }
-
-    /// The paths out of the JOINs of an AND, which are taken when all sources have arrived.
-    fn out_of_joins(&mut self, and: NodeId, ways: &mut Vec<CompoundPath>) {
-        let joins: Vec<(NodeId, usize)> = match self.chart.node(and).kind {
-            NodeKind::And => {
-                let joins = self.join_numbers.iter().map(|(&node, &join)| (node, join));
-                joins.filter(|&(_, join)| self.joins[join].around == and).collect()
-            }
-            _ => return,
-        };
-        for (node, join) in joins {
-            let mut trail = PartialPath { open: smallvec![Frontier::Node(node)], ..PartialPath::default() };
-            self.follow(
-                PathStart::States(and, &[], Some(EnablingCondition::AllArrived(join))),
-                &mut trail,
-                ways,
-            );
-        }
     }
 
     /// The paths out of each HISTORY, used when there is no record.
@@ -354,8 +321,13 @@ impl CompoundPathSearch<'_> {
         let target = self.chart.transition(id).target;
         let (open, ends) = (trail.open.len(), trail.ends.len());
         trail.segments.push(id);
+        let arrival = self.arrival(begin, target, trail);
+        if let Some(arrival) = arrival {
+            ways.extend(self.path_that_arrives(begin, arrival, trail));
+            trail.arrival = Some(PathArrival { passes: true, ..arrival });
+        }
         match self.roles.of(target) {
-            NodeRole::Branch => trail.open.push(Frontier::Node(target)),
+            NodeRole::Branch | NodeRole::Join => trail.open.push(Frontier::Node(target)),
             NodeRole::Fork => {
                 let segments = self.outgoing[target.0 as usize].iter().rev();
                 trail.open.extend(segments.map(|&id| Frontier::Segment(id)));
@@ -366,6 +338,9 @@ impl CompoundPathSearch<'_> {
         trail.segments.pop();
         trail.open.truncate(open);
         trail.ends.truncate(ends);
+        if arrival.is_some() {
+            trail.arrival = None;
+        }
     }
 
     fn complete(&mut self, begin: PathStart<'_>, trail: &PartialPath, ways: &mut Vec<CompoundPath>) {
@@ -377,7 +352,7 @@ impl CompoundPathSearch<'_> {
             let path = self.chart.path(source);
             let message = format!("more than {MAX_WAYS} compound transitions, up to those out of `{path}`");
             self.errors.push(Diagnostic::error("M06", Span::default(), message));
-        } else if trail.ends.len() > 1 && trail.ends.iter().any(|&end| self.ends_in_terminate(end)) {
+        } else if trail.ends.len() > 1 && trail.ends.iter().any(|&end| self.leads_to_terminate(end)) {
             self.refuse_fork_that_stops(trail);
         } else if trail.ends.len() > 1 && !self.are_orthogonal(&trail.ends) {
             self.refuse_fork(trail);
@@ -402,6 +377,7 @@ impl CompoundPathSearch<'_> {
             region,
             condition: None,
             change: ConfigurationChange::None,
+            arrival: None,
         }
     }
 
@@ -412,12 +388,15 @@ impl CompoundPathSearch<'_> {
         condition: Option<EnablingCondition>,
         trail: &PartialPath,
     ) -> Option<CompoundPath> {
-        let is_internal = trail.segments.iter().any(|&id| self.chart.transition(id).internal);
-        let Some((scope, change)) = self.scope(source, others, trail, is_internal) else {
+        let Some((scope, change)) = self.scope(source, others, trail) else {
             self.refuse(source, trail);
             return None;
         };
         let region = self.regions[scope.0 as usize];
+        let condition = match trail.arrival {
+            Some(_) => self.arrival_condition(trail),
+            None => condition.or_else(|| self.condition(source, trail)),
+        };
         Some(CompoundPath {
             segments: trail.segments.clone(),
             source,
@@ -425,8 +404,9 @@ impl CompoundPathSearch<'_> {
             scope,
             leaves: self.leaves(&trail.ends, region),
             region,
-            condition: condition.or_else(|| self.condition(source, trail)),
+            condition,
             change,
+            arrival: trail.arrival,
         })
     }
 
@@ -440,99 +420,13 @@ impl CompoundPathSearch<'_> {
                 }))
             }
             NodeRole::Terminate => PathEnd::Terminate,
+            // an entry point that leads nowhere
+            _ if self.chart.node(end).kind == NodeKind::EntryPoint => {
+                PathEnd::Node(self.chart.node(end).parent.unwrap_or(end))
+            }
             _ => PathEnd::Node(end),
         };
         ends.iter().map(leaf).collect()
-    }
-
-    /// The node inside which states are left and entered.
-    fn scope(
-        &mut self,
-        source: NodeId,
-        others: &[NodeId],
-        trail: &PartialPath,
-        is_internal: bool,
-    ) -> Option<(NodeId, ConfigurationChange)> {
-        let stops = trail.ends.iter().all(|&end| self.ends_in_terminate(end));
-        let mut hull = NodeSpan::of(self.layout.place_of(source));
-        for &node in others {
-            hull = hull.with(NodeSpan::of(self.layout.place_of(node)));
-        }
-        for &end in &trail.ends {
-            // only if there is no other end: this search can be long
-            hull = hull.with(self.target_span(end).unwrap_or_else(|| self.terminate_span(end)));
-        }
-        if is_internal {
-            let inside = node_span::lowest_node(self.chart, self.layout, hull) == source;
-            let still = stops || trail.ends[..] == [source];
-            return inside.then_some((
-                source,
-                if still { ConfigurationChange::None } else { ConfigurationChange::Scope },
-            ));
-        }
-        if let Some(vacated) = self.completes_ancestor(source, others, trail) {
-            return Some((vacated, ConfigurationChange::Vacates(None)));
-        }
-        let scope = node_span::lowest_or(self.chart, self.layout, source, hull)?;
-        Some((scope, if stops { ConfigurationChange::None } else { ConfigurationChange::Scope }))
-    }
-
-    /// The composite that remains without an active child when the target is an ancestor of the
-    /// source that then counts as complete.
-    fn completes_ancestor(&self, source: NodeId, others: &[NodeId], trail: &PartialPath) -> Option<NodeId> {
-        let (&[target], TransitionToAncestor::Completed) = (trail.ends.as_slice(), self.semantics.ancestor)
-        else {
-            return None;
-        };
-        if !others.is_empty() || !self.chart.ancestors(source).any(|ancestor| ancestor == target) {
-            return None;
-        }
-        match self.chart.node(target).kind {
-            NodeKind::And => node_span::child_towards(self.chart, target, source),
-            _ => Some(target),
-        }
-    }
-
-    /// The span of all possible ends of a path behind a node, except TERMINATE.
-    fn target_span(&mut self, end: NodeId) -> Option<NodeSpan> {
-        match self.roles.of(end) {
-            NodeRole::Terminate => None,
-            NodeRole::State | NodeRole::History => Some(NodeSpan::of(self.layout.place_of(end))),
-            _ => {
-                if let Some(&hull) = self.hulls.get(&end) {
-                    return hull;
-                }
-                let mut hull: Option<NodeSpan> = None;
-                for index in 0..self.roles.outgoing[end.0 as usize].len() {
-                    let target = self.chart.transition(self.roles.outgoing[end.0 as usize][index]).target;
-                    let behind = self.target_span(target);
-                    hull = hull.into_iter().chain(behind).reduce(NodeSpan::with);
-                }
-                self.hulls.insert(end, hull);
-                hull
-            }
-        }
-    }
-
-    /// The span of all TERMINATEs behind a node that leads to nothing else: its targets, as there
-    /// are no others.
-    fn terminate_span(&self, end: NodeId) -> NodeSpan {
-        let mut hull: Option<NodeSpan> = None;
-        let (mut open, mut seen) = (vec![end], BTreeSet::new());
-        while let Some(node) = open.pop() {
-            if self.roles.of(node) == NodeRole::Terminate {
-                hull =
-                    hull.into_iter().chain([NodeSpan::of(self.layout.place_of(node))]).reduce(NodeSpan::with);
-            } else if seen.insert(node) {
-                let outgoing = &self.roles.outgoing[node.0 as usize];
-                open.extend(outgoing.iter().map(|&id| self.chart.transition(id).target));
-            }
-        }
-        hull.unwrap_or(NodeSpan::of(self.layout.place_of(end)))
-    }
-
-    fn ends_in_terminate(&mut self, end: NodeId) -> bool {
-        self.target_span(end).is_none()
     }
 
     /// Whether the ends of the branches of a FORK lie in different regions, for every outcome of
@@ -550,7 +444,7 @@ impl CompoundPathSearch<'_> {
     }
 
     fn refuse_fork_that_stops(&mut self, trail: &PartialPath) {
-        let stops = trail.ends.iter().copied().find(|&end| self.ends_in_terminate(end));
+        let stops = trail.ends.iter().copied().find(|&end| self.leads_to_terminate(end));
         let message = format!(
             "a FORK leads to `{}`, which stops the chart",
             self.chart.path(stops.unwrap_or(Statechart::ROOT))

@@ -25,7 +25,7 @@ pub(crate) fn starts(chart: &Statechart) -> Vec<Option<NodeId>> {
 
 /// The nodes to be entered, outermost first, from a scope to a target inside it: where the path
 /// enters an AND, all its other regions are entered too; at its end, composites are entered up to
-/// their START. `None` if the list is too long.
+/// their START. `None` if the list is too long, or a composite has no START.
 pub(crate) fn between(
     chart: &Statechart,
     layout: &NodeOrder,
@@ -45,6 +45,9 @@ pub(crate) fn between(
         }
         entered.push(layout.place_of(node));
         let next = if on_way { way.pop() } else { None };
+        if next.is_none() && chart.node(node).kind == NodeKind::Or && starts[node.0 as usize].is_none() {
+            return None;
+        }
         push_children(chart, starts, node, next, &mut open);
     }
     Some(entered)

@@ -1,12 +1,14 @@
 //! The roles of nodes in transitions.
 
 use crate::compile::NodeOrder;
+use crate::semantics::{Semantics, StructureRules};
 use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 
 /// The role of a node in a transition.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum NodeRole {
-    /// A state: transitions begin and end there.
+    /// A state: transitions begin and end there. So they end at an entry point that leads nowhere,
+    /// which stands for its composite.
     State,
     /// One of its outgoing segments is taken, selected before any action.
     Branch,
@@ -34,21 +36,25 @@ pub(crate) struct NodeRoles {
     roles: Vec<NodeRole>,
     /// The outgoing segments of each node, in the order of the model.
     pub(crate) outgoing: Vec<Vec<TransitionId>>,
-    /// The incoming segments of each JOIN, in the order of the model.
+    /// The incoming segments of each JOIN and exit point, in the order of the model.
     pub(crate) incoming: Vec<Vec<TransitionId>>,
 }
 
 impl NodeRoles {
-    pub(crate) fn new(chart: &Statechart, layout: &NodeOrder) -> NodeRoles {
+    pub(crate) fn new(chart: &Statechart, layout: &NodeOrder, semantics: &Semantics) -> NodeRoles {
         let count = chart.nodes().len();
         let (mut outgoing, mut incoming) = (vec![Vec::new(); count], vec![Vec::new(); count]);
         for (id, transition) in chart.transitions() {
             outgoing[transition.source.0 as usize].push(id);
-            if chart.node(transition.target).kind == NodeKind::Join {
+            if matches!(chart.node(transition.target).kind, NodeKind::Join | NodeKind::ExitPoint) {
                 incoming[transition.target.0 as usize].push(id);
             }
         }
-        let roles = chart.nodes().map(|(id, _)| role(chart, layout, id, &outgoing[id.0 as usize])).collect();
+        let role = |id: NodeId| match (chart.node(id).kind, outgoing[id.0 as usize].as_slice()) {
+            (NodeKind::EntryPoint, []) if semantics.structure == StructureRules::Uml => NodeRole::State,
+            (_, outgoing) => role(chart, layout, id, outgoing),
+        };
+        let roles = chart.nodes().map(|(id, _)| role(id)).collect();
         NodeRoles { roles, outgoing, incoming }
     }
 

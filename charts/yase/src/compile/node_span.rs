@@ -11,6 +11,14 @@ pub(crate) struct NodeSpan {
 }
 
 impl NodeSpan {
+    pub(crate) fn first(self) -> NodeIndex {
+        self.first
+    }
+
+    pub(crate) fn last(self) -> NodeIndex {
+        self.last
+    }
+
     pub(crate) fn of(place: NodeIndex) -> NodeSpan {
         NodeSpan { first: place, last: place }
     }

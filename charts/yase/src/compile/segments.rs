@@ -1,15 +1,16 @@
 //! Compiles segments for the scopes in which they are taken, and builds branch trees.
 
 use crate::compile::build::ChartCompiler;
-use crate::compile::compound_transitions::{CompoundPath, ConfigurationChange, PathEnd as End};
+use crate::compile::compound_transitions::{CompoundPath, ConfigurationChange, PathArrival, PathEnd as End};
 use crate::compile::{
-    BranchRange, BranchWeight, CandidatePath, CompoundTransition, EnablingCondition, EntryPlan, LateDrawTree,
-    NodeIndex, Owner, ScopedGuard, SegmentNode, TransitionTarget, entries,
+    Arrival, ArrivalCondition, BranchRange, BranchWeight, CandidatePath, CompoundTransition,
+    EnablingCondition, EntryPlan, LateDrawTree, NodeIndex, Owner, ScopedGuard, SegmentNode, TransitionTarget,
+    entries,
 };
 use crate::diagnostic::Diagnostic;
 use crate::expression::{CompiledTransition, Effect, NameScope};
 use crate::ids::{ActionLocation, CompoundTransitionId, ScopeId};
-use crate::semantics::InitialState;
+use crate::semantics::{Firing, InitialState};
 use crate::statechart::{NodeId, NodeKind, TransitionId};
 
 /// A segment compiled for one scope.
@@ -45,11 +46,11 @@ impl ChartCompiler<'_> {
         for (index, way) in ways.iter().enumerate() {
             let segments: Vec<CompiledSegment> =
                 way.segments.iter().map(|&id| self.segment(id, way.region)).collect();
-            let trigger =
-                segments.first().and_then(|segment| segment.trigger).map(EnablingCondition::Trigger);
+            let trigger = segments.first().and_then(|segment| segment.trigger);
+            let condition = self.condition(way, trigger);
             self.rows.push(CandidatePath {
                 compound: CompoundTransitionId((first + index) as u32),
-                condition: way.condition.or(trigger).unwrap_or(EnablingCondition::None),
+                condition,
                 guards: segments.iter().map(|segment| segment.guard).collect(),
             });
         }
@@ -59,7 +60,8 @@ impl ChartCompiler<'_> {
     /// Adjacent paths in one scope with equal first segments share branches.
     fn grow(&mut self, ways: &[&CompoundPath], depth: usize) -> BranchRange {
         let alike = |a: &&CompoundPath, b: &&CompoundPath| {
-            (a.segments[depth], a.region, a.condition) == (b.segments[depth], b.region, b.condition)
+            (a.segments[depth], a.region, a.condition, a.arrival)
+                == (b.segments[depth], b.region, b.condition, b.arrival)
         };
         let start = self.branches.len();
         let mut weighted = Vec::new();
@@ -82,9 +84,8 @@ impl ChartCompiler<'_> {
     fn branch(&mut self, way: &CompoundPath, depth: usize) -> SegmentNode {
         let id = way.segments[depth];
         let segment = self.segment(id, way.region);
-        let condition = match (depth, way.condition, segment.trigger) {
-            (0, Some(condition), _) => condition,
-            (0, None, Some(trigger)) => EnablingCondition::Trigger(trigger),
+        let condition = match depth {
+            0 => self.condition(way, segment.trigger),
             _ => EnablingCondition::None,
         };
         let weight = self.chart.transition(id).weight.map(|value| {
@@ -94,6 +95,16 @@ impl ChartCompiler<'_> {
         let is_last = way.segments.len() == depth + 1;
         let compound = is_last.then(|| self.compound(way));
         SegmentNode { condition, guard: segment.guard, weight, compound, skip: 0 }
+    }
+
+    /// The condition of a path besides its guards.
+    fn condition(&mut self, way: &CompoundPath, trigger: Option<usize>) -> EnablingCondition {
+        if let Some(PathArrival { slot, passes, .. }) = way.arrival {
+            let condition = ArrivalCondition { trigger, slot, passes };
+            return EnablingCondition::Arrival(number(&mut self.arrivals, condition));
+        }
+        let trigger = trigger.map(EnablingCondition::Trigger);
+        way.condition.or(trigger).unwrap_or(EnablingCondition::None)
     }
 
     /// A segment in a scope, compiled on first use.
@@ -157,26 +168,34 @@ impl ChartCompiler<'_> {
             }
         }
         let (source, scope) = (self.layout.place_of(way.source), self.layout.place_of(way.scope));
-        let first = self.layout.first(scope);
         let transitions = || way.segments.iter().map(|&id| self.chart.transition(id));
-        let is_internal = transitions().any(|transition| transition.internal);
+        let is_internal = way.change != ConfigurationChange::Vacates
+            && way.scope == way.source
+            && transitions().any(|transition| transition.internal);
         let compound = CompoundTransition {
             source,
             others: way.others.iter().map(|&node| self.layout.place_of(node)).collect(),
             region: way.region,
             scope,
-            exits: (way.change != ConfigurationChange::None && first < scope)
-                .then(|| (first, NodeIndex(scope.0 - 1))),
+            exits: self.inside(scope).filter(|_| way.change != ConfigurationChange::None),
             vacates: match way.change {
-                ConfigurationChange::Vacates(_) if self.chart.node(way.scope).kind != NodeKind::Basic => {
+                ConfigurationChange::Vacates if self.chart.node(way.scope).kind != NodeKind::Basic => {
                     Some(scope)
                 }
                 _ => None,
             },
-            arrives: match way.change {
-                ConfigurationChange::Vacates(slot) => slot,
-                _ => None,
-            },
+            arrival: way.arrival.map(|arrival| {
+                let region = self.layout.place_of(arrival.region);
+                Arrival {
+                    join: arrival.join,
+                    slot: arrival.slot,
+                    region,
+                    inside: self.inside(region),
+                    segment: arrival.segment,
+                    passes: arrival.passes,
+                }
+            }),
+            steps: self.steps(way, &effects),
             leaves: self.leaves(way),
             entries: self.entries(way),
             owner: self.owner(way),
@@ -192,13 +211,19 @@ impl ChartCompiler<'_> {
     fn leaves(&self, way: &CompoundPath) -> Box<[TransitionTarget]> {
         let stays = match way.change {
             ConfigurationChange::None => way.leaves[..] == [End::Node(way.source)],
-            ConfigurationChange::Vacates(_) => true,
+            ConfigurationChange::Vacates => true,
             ConfigurationChange::Scope => false,
         };
         if stays { Box::default() } else { way.leaves.iter().map(|&leaf| self.leaf(leaf)).collect() }
     }
 
-    fn leaf(&self, leaf: End) -> TransitionTarget {
+    /// The index range of the nodes inside a node, if there are any.
+    pub(crate) fn inside(&self, place: NodeIndex) -> Option<(NodeIndex, NodeIndex)> {
+        let first = self.layout.first(place);
+        (first < place).then(|| (first, NodeIndex(place.0 - 1)))
+    }
+
+    pub(crate) fn leaf(&self, leaf: End) -> TransitionTarget {
         match leaf {
             End::Node(node) => TransitionTarget::Node(self.layout.place_of(node)),
             End::Choice(number) => TransitionTarget::Choice(number),
@@ -209,7 +234,7 @@ impl ChartCompiler<'_> {
     /// The entered nodes are known in advance if there is one target, which is a state, and no
     /// START is left in the same step.
     fn entries(&self, way: &CompoundPath) -> EntryPlan {
-        if way.change != ConfigurationChange::Scope {
+        if way.change != ConfigurationChange::Scope || self.semantics.firing == Firing::EachSegment {
             return EntryPlan::None;
         }
         let [End::Node(target)] = way.leaves[..] else { return EntryPlan::Found };

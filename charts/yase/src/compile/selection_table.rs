@@ -55,7 +55,7 @@ fn gate(state: &CompiledNode, branches: &[SegmentNode]) -> CompletionGate {
     }
     match (state.kind, state.activity, &*state.parts) {
         (NodeKind::Basic, Some(activity), _) => CompletionGate::Returned(activity),
-        (NodeKind::Or, _, &[end]) => CompletionGate::End(end),
+        (NodeKind::Or, None, &[end]) => CompletionGate::End(end),
         _ => CompletionGate::Open,
     }
 }

@@ -101,6 +101,7 @@ impl<H: Host> Macrostep<'_, H> {
         }
         self.run.timer_changed(self.chart, timer);
         if self.semantics().timers == TimerScope::State {
+            self.run.unbound_timers.retain(|&other| other != timer);
             match scene.owner {
                 Owner::None => {}
                 Owner::State(state) => self.run.timers.bind(timer, state),

@@ -94,13 +94,13 @@ impl MachineState {
     #[inline]
     pub(crate) fn lock(&mut self, chart: &CompiledChart, place: NodeIndex) {
         self.running.insert(place.index());
-        self.running_regions.insert(chart.states[place.index()].region.index());
+        self.running_regions.insert(chart.states[place.index()].activity_region.index());
     }
 
     #[inline]
     pub(crate) fn unlock(&mut self, chart: &CompiledChart, place: NodeIndex) {
         self.running.remove(place.index());
-        self.running_regions.remove(chart.states[place.index()].region.index());
+        self.running_regions.remove(chart.states[place.index()].activity_region.index());
     }
 
     #[inline]
@@ -110,7 +110,7 @@ impl MachineState {
         place: NodeIndex,
         slot: ActivityState,
     ) -> Activation {
-        let region = chart.states[place.index()].region;
+        let region = chart.states[place.index()].activity_region;
         Activation { node: chart.layout.node(place), region, number: slot.number }
     }
 
@@ -154,7 +154,7 @@ impl MachineState {
 
     /// Offers the events again that were held because of this activity.
     fn release_held(&mut self, chart: &CompiledChart, place: NodeIndex) {
-        let region = chart.states[place.index()].region;
+        let region = chart.states[place.index()].activity_region;
         self.queues.release(|compound| {
             let compound = &chart.compounds[compound.0 as usize];
             let mut sources = compound.sources();

@@ -2,7 +2,9 @@
 
 use smallvec::SmallVec;
 
-use crate::compile::{BranchRange, BranchWeight, CandidatePath, EnablingCondition, NodeIndex, SegmentNode};
+use crate::compile::{
+    ArrivalCondition, BranchRange, BranchWeight, CandidatePath, EnablingCondition, NodeIndex, SegmentNode,
+};
 use crate::host::Host;
 use crate::ids::CompoundTransitionId;
 use crate::machine::queues::PoppedEvent;
@@ -113,19 +115,30 @@ impl<H: Host> Macrostep<'_, H> {
             EnablingCondition::Trigger(trigger) => {
                 occurrence.is_some_and(|occurrence| matches(&chart.triggers[trigger], occurrence))
             }
+            EnablingCondition::Arrival(index) => self.may_arrive(&chart.arrivals[index], place, occurrence),
             _ if occurrence.is_some() => false,
             EnablingCondition::Always => true,
             EnablingCondition::Completed => search.is_complete || self.run.is_complete(chart, place),
             EnablingCondition::Quiescent => !self.has_running_inside(place) && !self.can_step_inside(place),
             EnablingCondition::NoStepInside => !self.can_step_inside(place),
             EnablingCondition::AllCompleted(join) => self.can_join(join),
-            EnablingCondition::Arrives(slot) => {
-                !self.run.arrived.contains(slot) && self.run.is_complete(chart, place)
-            }
-            EnablingCondition::AllArrived(join) => {
-                chart.joins[join].slots().all(|slot| self.run.arrived.contains(slot))
-            }
         }
+    }
+
+    fn may_arrive(
+        &self,
+        condition: &ArrivalCondition,
+        place: NodeIndex,
+        occurrence: Option<&PoppedEvent>,
+    ) -> bool {
+        let is_due = match (condition.trigger, occurrence) {
+            (Some(trigger), Some(occurrence)) => matches(&self.chart.triggers[trigger], occurrence),
+            (None, None) => self.run.is_complete(self.chart, place),
+            _ => false,
+        };
+        is_due
+            && !self.run.arrived.contains(condition.slot)
+            && self.others_arrive(condition.slot) == condition.passes
     }
 
     /// Chooses among the weighted branches if the given one is the first of them that matches; the
@@ -273,8 +286,9 @@ impl<H: Host> Macrostep<'_, H> {
         if row.guards.len() > depth + 1 {
             return self.scan_rows(rows, depth + 1, search);
         }
-        (self.prefix_is_open(row, depth + 1, search) && self.accepts(row.compound, search))
-            .then_some(row.compound)
+        (self.prefix_is_open(row, row.guards.len().min(depth + 1), search)
+            && self.accepts(row.compound, search))
+        .then_some(row.compound)
     }
 
     /// Whether the first `segments` segments of a path are enabled.

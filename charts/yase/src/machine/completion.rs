@@ -1,6 +1,6 @@
 //! The completion of states, and its consequences.
 
-use crate::compile::{CompiledChart, CompoundTransition, NodeIndex};
+use crate::compile::{Arrival, CompiledChart, NodeIndex};
 use crate::machine::activities::InvocationPhase;
 use crate::machine::machine_state::MachineState;
 use crate::semantics::CompletionTrigger;
@@ -11,6 +11,12 @@ impl MachineState {
     #[inline]
     pub(crate) fn is_complete(&self, chart: &CompiledChart, place: NodeIndex) -> bool {
         let state = &chart.states[place.index()];
+        if state
+            .activity
+            .is_some_and(|activity| self.activities.slot(activity).phase != InvocationPhase::Done)
+        {
+            return false;
+        }
         if self.vacated.contains(place.index()) {
             return true;
         }
@@ -19,9 +25,7 @@ impl MachineState {
                 state.parts.iter().all(|&region| self.is_active(region) && self.is_complete(chart, region))
             }
             NodeKind::Or => state.parts.iter().any(|&end| self.is_active(end)),
-            _ => state
-                .activity
-                .is_none_or(|activity| self.activities.slot(activity).phase == InvocationPhase::Done),
+            _ => true,
         }
     }
 
@@ -125,20 +129,13 @@ impl MachineState {
         }
     }
 
-    /// Records that a segment into a JOIN has been taken individually. When all have, the path out
-    /// of the JOIN is examined.
+    /// Records that a region has arrived where others do.
     #[inline]
-    pub(crate) fn arrive_at_join(&mut self, chart: &CompiledChart, compound: &CompoundTransition) {
-        let Some(slot) = compound.arrives else { return };
-        let joined = chart.joins.iter().find(|join| join.slots().contains(&slot));
+    pub(crate) fn arrive(&mut self, chart: &CompiledChart, arrival: Arrival) {
+        let joined = chart.joins.iter().find(|join| join.slots().contains(&arrival.slot));
         // in phases another transition may have left the AND before
-        let Some(join) = joined.filter(|join| self.is_active(join.around)) else { return };
-        self.arrived.insert(slot);
-        if join.slots().all(|slot| self.arrived.contains(slot))
-            && chart.semantics_ref().eventless == CompletionTrigger::Once
-            && !self.completions.contains(&join.around)
-        {
-            self.completions.push_back(join.around);
+        if joined.is_some_and(|join| self.is_active(join.around)) {
+            self.arrived.insert(arrival.slot);
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::machine::Status;
 use crate::machine::actions::ActionContext;
 use crate::machine::errors::StepError;
 use crate::machine::step::Macrostep;
-use crate::semantics::{InitialState, RootCompletion};
+use crate::semantics::{Firing, InitialState, RootCompletion};
 use crate::statechart::NodeKind;
 
 impl<H: Host> Macrostep<'_, H> {
@@ -36,8 +36,11 @@ impl<H: Host> Macrostep<'_, H> {
 
     /// Enters the marked nodes inside a scope, and those entered with them.
     pub(crate) fn enter_inside(&mut self, scope: NodeIndex) -> Result<(), StepError> {
+        let base = self.run.entering.len();
         self.expand_targets(scope)?;
-        while let Some(place) = self.run.entering.pop() {
+        while self.run.entering.len() > base
+            && let Some(place) = self.run.entering.pop()
+        {
             if self.run.status != Status::Running || self.run.terminates {
                 self.run.entering.clear();
                 break;
@@ -56,10 +59,14 @@ impl<H: Host> Macrostep<'_, H> {
         match state.kind {
             NodeKind::And => {
                 self.resolve_histories(place)?;
-                self.run.entering.extend(state.parts.iter().rev());
+                let run = &mut *self.run;
+                let regions = state.parts.iter().rev().filter(|region| !run.active.contains(region.index()));
+                run.entering.extend(regions);
             }
             NodeKind::Or => {
-                self.resolve_histories(place)?;
+                if self.resolve_histories(place)? && self.has_active_inside(place) {
+                    return Ok(());
+                }
                 let child = match self.marked_child(place) {
                     None if !self.run.terminates => self.enter_start(place)?,
                     child => child,
@@ -82,15 +89,42 @@ impl<H: Host> Macrostep<'_, H> {
     /// Returns START, or its target if it is left in the same step.
     fn enter_start(&mut self, place: NodeIndex) -> Result<Option<NodeIndex>, StepError> {
         let start = self.chart.states[place.index()].start;
-        let Some(begin) = start.filter(|_| self.semantics().start == InitialState::SameStep) else {
-            return Ok(start);
+        let Some(begin) = start else {
+            self.run.mark_vacated(self.chart, place, false);
+            return Ok(None);
         };
+        if self.semantics().start == InitialState::Place {
+            return Ok(start);
+        }
+        if self.semantics().firing == Firing::EachSegment {
+            return self.leave_start(begin, place);
+        }
         if !self.follow(self.chart.states[begin.index()].eventless, place)? {
             return Ok(start);
         }
         self.resolve_histories(place)?;
         // the composite remains in START if a HISTORY leads nowhere
         Ok(self.marked_child(place).or(start))
+    }
+
+    /// Takes the segments out of START. The composite remains in START if none is enabled, or if
+    /// they lead to a HISTORY that leads nowhere.
+    fn leave_start(&mut self, start: NodeIndex, place: NodeIndex) -> Result<Option<NodeIndex>, StepError> {
+        if self.run.starting == Some(place) {
+            return Ok(None);
+        }
+        let outer = self.run.starting.replace(place);
+        let goes_on = self.follow_segments(self.chart.states[start.index()].eventless, true);
+        self.run.starting = outer;
+        goes_on?;
+        let stays =
+            !self.run.terminates && self.run.status == Status::Running && !self.has_active_inside(place);
+        Ok(stays.then_some(start))
+    }
+
+    fn has_active_inside(&self, place: NodeIndex) -> bool {
+        let first = self.chart.layout.first(place).index();
+        place.index() > first && self.run.active.any_in(first, place.index() - 1)
     }
 
     /// Continues, behind executed actions, on a path that is selected now. Returns false if none is
@@ -137,7 +171,7 @@ impl<H: Host> Macrostep<'_, H> {
     }
 
     /// Binds timers that were started before the first target was known to that target.
-    fn bind_timers(&mut self, target: NodeIndex) {
+    pub(crate) fn bind_timers(&mut self, target: NodeIndex) {
         if self.run.unbound_timers.is_empty() {
             return;
         }
@@ -168,6 +202,9 @@ impl<H: Host> Macrostep<'_, H> {
             owner: Owner::State(place),
         };
         self.perform(&state.entry, scene);
+        if state.activity_region != state.region {
+            self.host.inherit(state.activity_region, state.region);
+        }
         if let Some(activity) = state.activity {
             self.run.enqueue_activity(self.chart, place, activity);
         }

@@ -1,6 +1,6 @@
 //! The execution of a micro-step: exits, actions, entries.
 
-use crate::compile::{CompoundTransition, EntryPlan, NodeIndex};
+use crate::compile::{Arrival, CompoundTransition, EntryPlan, NodeIndex, Owner};
 use crate::host::Host;
 use crate::ids::{ActionLocation, CompoundTransitionId};
 use crate::machine::Status;
@@ -63,7 +63,7 @@ impl<H: Host> Macrostep<'_, H> {
             self.run.previous_configuration.copy_from(&self.run.active);
         }
         let fired = match self.semantics().firing {
-            Firing::EachTransition => self.fire_each(),
+            Firing::EachTransition | Firing::EachSegment => self.fire_each(),
             Firing::Phases => self.fire_phases(),
         };
         if fired.is_err() {
@@ -99,13 +99,52 @@ impl<H: Host> Macrostep<'_, H> {
     fn fire(&mut self, id: CompoundTransitionId) -> Result<(), StepError> {
         let compound = &self.chart.compounds[id.0 as usize];
         self.count_fired(id);
-        if let Some((first, last)) = compound.exits {
-            self.leave_between(first, last);
+        let ends_early = self.ends_early(compound);
+        if self.semantics().firing == Firing::EachSegment {
+            self.walk_segments(compound, ends_early)?;
+        } else {
+            if let Some((first, last)) = self.exits_of(compound, ends_early) {
+                self.leave_between(first, last);
+            }
+            self.execute_effects(compound, ends_early)?;
         }
-        self.execute_effects(compound)?;
-        self.enter_targets(compound)?;
+        self.enter_targets(compound, ends_early)?;
         self.stop_if_terminated();
         Ok(())
+    }
+
+    /// Whether a transition that was to pass where all regions have arrived ends there, since
+    /// another one that was to arrive in this micro-step was not taken.
+    #[inline]
+    fn ends_early(&self, compound: &CompoundTransition) -> Option<Arrival> {
+        compound.arrival.filter(|arrival| arrival.passes && !self.others_arrive(arrival.slot))
+    }
+
+    /// Whether all other regions have arrived where one does, or arrive in this micro-step.
+    pub(crate) fn others_arrive(&self, slot: usize) -> bool {
+        let selection = &self.run.selection;
+        let arriving = |other: usize| {
+            let taken =
+                if selection.selected.is_empty() { &selection.candidates } else { &selection.selected };
+            taken.iter().any(|&id| self.compound(id).arrives() == Some(other))
+        };
+        let join = self.chart.joins.iter().find(|join| join.slots().contains(&slot));
+        join.is_some_and(|join| {
+            join.slots().all(|other| other == slot || self.run.arrived.contains(other) || arriving(other))
+        })
+    }
+
+    /// The index range of the nodes that a transition leaves, if active.
+    #[inline]
+    fn exits_of(
+        &self,
+        compound: &CompoundTransition,
+        ends_early: Option<Arrival>,
+    ) -> Option<(NodeIndex, NodeIndex)> {
+        match ends_early {
+            None => compound.exits,
+            Some(arrival) => arrival.inside,
+        }
     }
 
     #[inline]
@@ -115,7 +154,15 @@ impl<H: Host> Macrostep<'_, H> {
     }
 
     /// Executes the actions of a transition, and determines its targets.
-    fn execute_effects(&mut self, way: &CompoundTransition) -> Result<(), StepError> {
+    fn execute_effects(
+        &mut self,
+        way: &CompoundTransition,
+        ends_early: Option<Arrival>,
+    ) -> Result<(), StepError> {
+        if let Some(arrival) = ends_early {
+            self.do_actions_up_to(way, arrival);
+            return Ok(());
+        }
         self.do_actions(way);
         match way.entries {
             EntryPlan::Listed(_) => Ok(()),
@@ -136,8 +183,21 @@ impl<H: Host> Macrostep<'_, H> {
         }
     }
 
+    /// Executes the actions of the segments up to an arrival.
+    fn do_actions_up_to(&mut self, way: &CompoundTransition, arrival: Arrival) {
+        let taken = &way.segments[..=arrival.segment];
+        for (segment, effects) in way.effects.iter().filter(|(segment, _)| taken.contains(segment)) {
+            let place = ActionLocation::Transition(*segment);
+            self.perform(effects, ActionContext { place, region: way.region, owner: Owner::None });
+        }
+    }
+
     /// Enters the targets of a transition, unless the chart has reached its end.
-    fn enter_targets(&mut self, compound: &CompoundTransition) -> Result<(), StepError> {
+    fn enter_targets(
+        &mut self,
+        compound: &CompoundTransition,
+        ends_early: Option<Arrival>,
+    ) -> Result<(), StepError> {
         if self.run.terminates || self.run.status != Status::Running {
             return Ok(());
         }
@@ -147,10 +207,20 @@ impl<H: Host> Macrostep<'_, H> {
             let first = self.chart.layout.first(place).index();
             self.run.active.next(first, place.index()) == Some(place.index())
         };
-        if let Some(place) = compound.vacates.filter(|&place| is_empty(place)) {
-            self.run.mark_vacated(self.chart, place, compound.arrives.is_some());
+        let arrival = ends_early.or(compound.arrival.filter(|arrival| !arrival.passes));
+        let vacated = match ends_early {
+            Some(arrival) => arrival.inside.map(|_| arrival.region),
+            None => compound.vacates,
+        };
+        if let Some(place) = vacated.filter(|&place| is_empty(place)) {
+            self.run.mark_vacated(self.chart, place, arrival.is_some());
         }
-        self.run.arrive_at_join(self.chart, compound);
+        if let Some(arrival) = arrival {
+            self.run.arrive(self.chart, arrival);
+        }
+        if ends_early.is_some() {
+            return Ok(());
+        }
         match &compound.entries {
             EntryPlan::None => {}
             EntryPlan::Listed(list) => list.iter().for_each(|&place| self.enter(place)),
@@ -173,9 +243,16 @@ impl<H: Host> Macrostep<'_, H> {
         let chart = self.chart;
         let compound = |id: CompoundTransitionId| &chart.compounds[id.0 as usize];
         self.drop_transitions_without_source();
+        self.run.ending_early.clear();
+        self.each_selected(|step, id| {
+            if step.ends_early(compound(id)).is_some() {
+                step.run.ending_early.push(id);
+            }
+            Ok(())
+        })?;
         self.each_selected(|step, id| {
             step.count_fired(id);
-            if let Some((first, last)) = compound(id).exits {
+            if let Some((first, last)) = step.exits_of(compound(id), step.noted_early(id)) {
                 step.run.record_histories(chart, first, last);
                 step.collect_between(first, last);
             }
@@ -185,7 +262,7 @@ impl<H: Host> Macrostep<'_, H> {
         self.run.document_order.clear();
         let mut stops = false;
         self.each_selected(|step, id| {
-            step.execute_effects(compound(id))?;
+            step.execute_effects(compound(id), step.noted_early(id))?;
             match std::mem::take(&mut step.run.terminates) {
                 true => stops = true,
                 false => step.run.document_order.push(id),
@@ -195,12 +272,16 @@ impl<H: Host> Macrostep<'_, H> {
         self.run.document_order.sort_by_key(|&id| chart.layout.rank(compound(id).scope));
         let mut index = 0;
         while let Some(&id) = self.run.document_order.get(index) {
-            self.enter_targets(compound(id))?;
+            self.enter_targets(compound(id), self.noted_early(id))?;
             index += 1;
         }
         self.run.terminates |= stops;
         self.stop_if_terminated();
         Ok(())
+    }
+
+    fn noted_early(&self, id: CompoundTransitionId) -> Option<Arrival> {
+        self.compound(id).arrival.filter(|_| self.run.ending_early.contains(&id))
     }
 
     /// A transition out of a composite without active children leaves nothing, and so conflicts
@@ -213,7 +294,7 @@ impl<H: Host> Macrostep<'_, H> {
             let is_left = |source: NodeIndex| {
                 others.iter().any(|&other| other != id && self.compound(other).leaves(source))
             };
-            if way.exits.is_some() && way.arrives.is_none() && way.sources().any(is_left) {
+            if way.exits.is_some() && way.arrives().is_none() && way.sources().any(is_left) {
                 self.run.selection.selected.remove(index);
             } else {
                 index += 1;

@@ -5,6 +5,7 @@ use crate::host::Host;
 use crate::machine::errors::StepError;
 use crate::machine::machine_state::MachineState;
 use crate::machine::step::Macrostep;
+use crate::semantics::Firing;
 use crate::statechart::NodeKind;
 
 /// The nodes that were active in a composite when it was left last.
@@ -34,6 +35,11 @@ impl MachineState {
     fn record(&mut self, chart: &CompiledChart, number: usize, history: &HistoryNode) {
         let (first, last) =
             (chart.layout.first(history.owner).index(), history.owner.index().saturating_sub(1));
+        // an exit point has emptied it before it is left: that was recorded
+        let is_empty = first > last || !self.active.any_in(first, last);
+        if is_empty && !self.vacated.contains(history.owner.index()) {
+            return;
+        }
         let record = &mut self.records[number];
         record.places.clear();
         if history.is_deep {
@@ -52,20 +58,26 @@ impl MachineState {
 }
 
 impl<H: Host> Macrostep<'_, H> {
-    /// Replaces the marks on the HISTORYs of a composite by marks on their values.
-    pub(crate) fn resolve_histories(&mut self, owner: NodeIndex) -> Result<(), StepError> {
+    /// Replaces the marks on the HISTORYs of a composite by marks on their values, or takes the
+    /// path out of one without a value. Returns whether there were marks.
+    pub(crate) fn resolve_histories(&mut self, owner: NodeIndex) -> Result<bool, StepError> {
+        let mut is_marked = false;
         let numbers = self.chart.states[owner.index()].histories.clone();
         while let Some(number) = self.marked_history(numbers.clone()) {
             let history = &self.chart.histories[number];
+            is_marked = true;
             self.run.marked.remove(history.place.index());
             if !self.run.records[number].is_known {
-                self.follow(history.branches, owner)?;
+                match self.semantics().firing {
+                    Firing::EachSegment => self.follow_segments(history.branches, true)?,
+                    _ => self.follow(history.branches, owner)?,
+                };
                 continue;
             }
             let run = &mut *self.run;
             run.records[number].places.iter().for_each(|place| run.marked.insert(place.index()));
         }
-        Ok(())
+        Ok(is_marked)
     }
 
     fn marked_history(&self, mut numbers: std::ops::Range<usize>) -> Option<usize> {

@@ -46,6 +46,8 @@ impl<H: Host> Macrostep<'_, H> {
                 self.run.leaving.sort_unstable_by_key(|&place| Reverse(layout.rank(place)));
             }
         }
+        // transitions that arrive in one place may leave the same states
+        self.run.leaving.dedup();
         let mut index = 0;
         while let Some(&place) = self.run.leaving.get(index) {
             self.leave(place);

@@ -74,6 +74,12 @@ pub(crate) struct MachineState {
     pub(crate) marked: BitSet,
     /// The nodes to be entered next, the first one last.
     pub(crate) entering: Vec<NodeIndex>,
+    /// The ANDs that were entered on the way to a target, and whose other regions are not yet.
+    pub(crate) incomplete: Vec<NodeIndex>,
+    /// The transitions of a micro-step in phases that end where they arrive.
+    pub(crate) ending_early: Vec<CompoundTransitionId>,
+    /// The composite whose START is being left.
+    pub(crate) starting: Option<NodeIndex>,
     /// The nodes to be left.
     pub(crate) leaving: Vec<NodeIndex>,
     /// The selected transitions that enter a node, in the document order of their scopes.
@@ -198,6 +204,9 @@ impl MachineState {
             previous_configuration: BitSet::new(places),
             marked: BitSet::new(places),
             entering: Vec::new(),
+            incomplete: Vec::new(),
+            ending_early: Vec::new(),
+            starting: None,
             leaving: Vec::new(),
             document_order: Vec::new(),
             unbound_timers: Vec::new(),
@@ -251,6 +260,9 @@ impl MachineState {
             previous_configuration: before,
             marked,
             entering,
+            incomplete: _,
+            ending_early: _,
+            starting: _,
             leaving,
             document_order: in_document,
             unbound_timers: unbound,
@@ -342,6 +354,7 @@ impl MachineState {
         self.completions.clear();
         self.marked.clear();
         self.entering.clear();
+        self.incomplete.clear();
         self.unbound_timers.clear();
     }
 

@@ -97,7 +97,7 @@ impl<H: Host> Macrostep<'_, H> {
     /// which they were found.
     fn add_candidate(&mut self, found: CompoundTransitionId, place: NodeIndex) {
         let found_for = match self.chart.semantics_ref().firing {
-            Firing::EachTransition => place,
+            Firing::EachTransition | Firing::EachSegment => place,
             Firing::Phases => {
                 let (run, first) = (&*self.run, self.chart.layout.first(place).index());
                 let leaf = run.active_leaves.next_without(&run.selection.closed, first, place.index());
@@ -268,7 +268,7 @@ impl<H: Host> Macrostep<'_, H> {
             }
         }
         let (chart, selected) = (self.chart, &mut self.run.selection.selected);
-        if selected.len() > 1 && self.chart.semantics_ref().firing == Firing::EachTransition {
+        if selected.len() > 1 && self.chart.semantics_ref().firing != Firing::Phases {
             selected.sort_by_key(|&id| chart.compounds[id.0 as usize].key);
         }
     }

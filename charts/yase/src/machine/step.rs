@@ -165,7 +165,7 @@ impl<'a, H: Host> Macrostep<'a, H> {
     fn offer_next(&mut self) -> Result<bool, StepError> {
         if self.run.queues.has_deferred() {
             let (chart, active) = (self.chart, &self.run.active);
-            self.run.queues.recall_deferred(|event| deferring(chart, active, event).is_some());
+            self.run.queues.recall_deferred(|event| deferring(chart, active, event, |_| true).is_some());
         }
         if let Some(occurrence) = self.run.queues.next_raised() {
             return self.offer(occurrence);
@@ -182,6 +182,12 @@ impl<'a, H: Host> Macrostep<'a, H> {
         self.host.event_taken_from_queue(occurrence.event, occurrence.is_known, occurrence.token);
         self.select(Some(&occurrence));
         let occasion = MicroStepCause::Event(occurrence.event);
+        if let Some(place) = self.claimant(occurrence.event) {
+            self.run.selection.clear();
+            self.run.queues.defer(occurrence);
+            self.emit_trace(occasion, Some(place));
+            return Ok(true);
+        }
         if !self.run.selection.candidates.is_empty() {
             self.take(occasion)?;
         } else {
@@ -189,6 +195,21 @@ impl<'a, H: Host> Macrostep<'a, H> {
             self.emit_trace(occasion, deferred);
         }
         Ok(true)
+    }
+
+    /// The innermost active state that defers an event and keeps it from the transitions that were
+    /// found: none of them is its own or of a state inside it.
+    #[inline]
+    fn claimant(&self, event: EventId) -> Option<NodeIndex> {
+        if self.semantics().deferral != Deferral::Innermost {
+            return None;
+        }
+        let (chart, selection) = (self.chart, &self.run.selection);
+        let found = if selection.candidates.is_empty() { &selection.held } else { &selection.candidates };
+        deferring(chart, &self.run.active, event, |place| {
+            let own = |source| chart.layout.contains(place, source);
+            !found.iter().any(|&id| self.compound(id).sources().any(own))
+        })
     }
 
     /// An event that no transition takes is held, deferred (by the state that is returned) or
@@ -204,7 +225,7 @@ impl<'a, H: Host> Macrostep<'a, H> {
         if deferral == Deferral::Off {
             return None;
         }
-        let place = deferring(self.chart, &run.active, occurrence.event)?;
+        let place = deferring(self.chart, &run.active, occurrence.event, |_| true)?;
         run.queues.defer(occurrence);
         Some(place)
     }
@@ -353,17 +374,23 @@ impl<'a, H: Host> Macrostep<'a, H> {
         self.run.completions.clear();
         self.run.marked.clear();
         self.run.entering.clear();
+        self.run.incomplete.clear();
         self.run.unbound_timers.clear();
         self.run.status = status;
     }
 }
 
-/// The first active state, inner before outer, that defers an event.
-fn deferring(chart: &CompiledChart, active: &BitSet, event: EventId) -> Option<NodeIndex> {
+/// The first active state, inner before outer, that defers an event and fits.
+fn deferring(
+    chart: &CompiledChart,
+    active: &BitSet,
+    event: EventId,
+    fits: impl Fn(NodeIndex) -> bool,
+) -> Option<NodeIndex> {
     let last = chart.layout.len();
     let mut next = active.next_common(&chart.node_sets.deferring, 0, last);
     while let Some(index) = next {
-        if chart.states[index].defer.contains(&event) {
+        if chart.states[index].defer.contains(&event) && fits(NodeIndex(index as u32)) {
             return Some(NodeIndex(index as u32));
         }
         next = active.next_common(&chart.node_sets.deferring, index + 1, last);

@@ -101,8 +101,7 @@ impl NodeMapping {
 
     /// The scope that continues a scope of the old chart, if there is one.
     pub(crate) fn region(&self, old: ScopeId) -> Option<ScopeId> {
-        let node = self.node(self.old.region_node(old)?)?;
-        self.new.region_of(node).filter(|&region| self.new.region_node(region) == Some(node))
+        self.new.region_at(self.node(self.old.region_node(old)?)?)
     }
 
     pub(crate) fn verdict(&self, old: NodeId) -> Disposition {

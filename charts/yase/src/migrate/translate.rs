@@ -69,9 +69,8 @@ impl<'a> SnapshotTranslator<'a> {
 
     fn region(&self, path: &str) -> Option<String> {
         let (_, node) = self.node(path)?;
-        let region = self.chart.region_of(node)?;
-        let found = self.chart.region_node(region) == Some(node);
-        found.then(|| self.plan.new_paths.node(node).to_owned())
+        self.chart.region_at(node)?;
+        Some(self.plan.new_paths.node(node).to_owned())
     }
 
     /// The counterparts of all active nodes, with their ancestors.
@@ -119,6 +118,9 @@ impl<'a> SnapshotTranslator<'a> {
             if is_vacated || !active.contains(&parent) {
                 continue;
             } else if !active.contains(&node) {
+                if chart.region_of(node) != Some(region) {
+                    continue; // the blackboard of a composite that is not active
+                }
                 self.report.to_enter.push(path.clone());
                 new.to_enter.push(path);
             } else if !known.contains(&region) {
@@ -196,12 +198,12 @@ impl<'a> SnapshotTranslator<'a> {
     fn joined(&mut self, way: &TransitionPath) -> Option<TransitionPath> {
         let found = self.way(way).filter(|found| {
             let compound = self.plan.new_paths.find_way(&self.ways, found);
-            compound.is_some_and(|compound| self.chart.compounds[compound.0 as usize].arrives.is_some())
+            compound.is_some_and(|compound| self.chart.compounds[compound.0 as usize].arrives().is_some())
         });
         let verdict = match &found {
             Some(found) if found == way => Disposition::Kept,
             Some(found) => Disposition::Moved(found.join(", ")),
-            None => Disposition::Lost("it leads to no JOIN now"),
+            None => Disposition::Lost("it leads to nothing that joins regions now"),
         };
         self.report.add(MigratedItem::Arrival, way.join(", "), verdict);
         found

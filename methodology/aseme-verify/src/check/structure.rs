@@ -8,7 +8,7 @@ use crate::checked_model::CheckedModel;
 
 /// The structural findings. After a structural error no other check is run.
 pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
-    let elements = subject.chart.check_elements().into_iter();
+    let elements = subject.chart.check_elements(&subject.semantics).into_iter();
     // what may have no open way is judged by what the guards say
     let errors = elements.filter(|(diagnostic, _)| diagnostic.is_error());
     let place = |(diagnostic, about): (Diagnostic, _)| {

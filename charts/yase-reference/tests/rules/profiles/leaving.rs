@@ -193,8 +193,7 @@ fn r12_join_each_vacates_regions_until_all_have_arrived() {
         0.000 s y: dropped
         start A
         A returns Done
-        0.020 s -: both/one/A -> j; exit both/one/A; do raise(x) (both/one/A -> j)
-        0.020 s -: j -> done; exit both/one, both/two, both; do raise(z) (j -> done); enter done
+        0.020 s -: both/one/A -> j -> done; exit both/one/A, both/one, both/two, both; do raise(x) (both/one/A -> j), raise(z) (j -> done); enter done
         0.020 s x: dropped
         0.020 s z: dropped
         ",
@@ -238,8 +237,7 @@ fn r12_join_each_forgets_arrivals_when_the_and_is_left() {
         0.002 s -: both/two/B -> j; exit both/two/B
         start A
         A returns Done
-        0.022 s -: both/one/A -> j; exit both/one/A
-        0.022 s -: j -> done; exit both/one, both/two, both; enter done
+        0.022 s -: both/one/A -> j -> done; exit both/one/A, both/one, both/two, both; enter done
         ",
     );
 }

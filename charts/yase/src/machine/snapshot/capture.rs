@@ -1,5 +1,7 @@
 //! Captures a machine as a snapshot.
 
+use std::collections::BTreeSet;
+
 use crate::bits::BitSet;
 use crate::compile::{CompiledChart, NodeIndex};
 use crate::expression::EventId;
@@ -116,11 +118,11 @@ impl Capture<'_> {
 
     fn joined(&self) -> Vec<TransitionPath> {
         let ids = (0..self.chart.compounds.len() as u32).map(CompoundTransitionId);
-        let has_arrived = |id: &CompoundTransitionId| {
-            let slot = self.chart.compounds[id.0 as usize].arrives;
-            slot.is_some_and(|slot| self.run.arrived.contains(slot))
-        };
-        ids.filter(has_arrived).map(|id| self.way(id)).collect()
+        let arriving = ids.filter_map(|id| Some((self.chart.compounds[id.0 as usize].arrives()?, id)));
+        // of several ways from one region, the first stands for all
+        let mut seen = BTreeSet::new();
+        let arrived = arriving.filter(|&(slot, _)| self.run.arrived.contains(slot) && seen.insert(slot));
+        arrived.map(|(_, id)| self.way(id)).collect()
     }
 
     fn history(&self) -> Vec<HistoryRecord> {

@@ -49,8 +49,7 @@ impl PathTable {
     }
 
     pub(crate) fn find_region(&self, chart: &CompiledChart, path: &str) -> Option<ScopeId> {
-        let node = self.find_node(path)?;
-        chart.region_of(node).filter(|&region| chart.region_node(region) == Some(node))
+        chart.region_at(self.find_node(path)?)
     }
 
     pub(crate) fn segment(&self, segment: TransitionId) -> &str {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::compile::{CompiledChart, HistoryNode, NodeIndex};
-use crate::semantics::{JoinMode, TransitionToAncestor};
+use crate::semantics::{ExitPointArrival, JoinMode, StructureRules, TransitionToAncestor};
 use crate::statechart::NodeKind;
 
 /// Whether these nodes can have been active in the HISTORY's composite: the child, or, for a deep
@@ -53,7 +53,10 @@ fn is_filled(chart: &CompiledChart, place: NodeIndex, is_there: impl Fn(NodeInde
 /// Whether transitions may leave a composite without an active child.
 fn can_be_vacated(chart: &CompiledChart) -> bool {
     let semantics = chart.semantics_ref();
-    semantics.join == JoinMode::Each || semantics.ancestor == TransitionToAncestor::Completed
+    semantics.join == JoinMode::Each
+        || semantics.exit_points == ExitPointArrival::All
+        || semantics.ancestor == TransitionToAncestor::Completed
+        || semantics.structure == StructureRules::Uml
 }
 
 fn is_state(kind: NodeKind) -> bool {

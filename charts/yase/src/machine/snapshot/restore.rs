@@ -132,11 +132,11 @@ impl<'a> SnapshotRestorer<'a> {
         for (index, way) in snapshot.joined.iter().enumerate() {
             let field = format!("joined[{index}]");
             let Some(compound) = self.way(&field, way) else { continue };
-            let Some(slot) = self.chart.compounds[compound.0 as usize].arrives else {
+            let Some(slot) = self.chart.compounds[compound.0 as usize].arrives() else {
                 self.report_issue(
                     RestoreIssueKind::Unknown,
                     field,
-                    format!("`{}` leads to no JOIN", way.join(", ")),
+                    format!("`{}` leads to nothing that joins regions", way.join(", ")),
                 );
                 continue;
             };

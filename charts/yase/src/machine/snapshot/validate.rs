@@ -148,12 +148,15 @@ impl SnapshotRestorer<'_> {
     fn joined_regions_are_vacated(&mut self) {
         let chart = self.chart;
         for join in &chart.joins {
-            let ends = join.sources.iter().zip(&join.regions);
-            for (slot, (source, &region)) in join.slots().zip(ends) {
-                // a region that is itself the source has nothing inside that was left
-                let has_left = self.run.vacated.contains(region.index()) || *source == region;
+            for (slot, &region) in join.slots().zip(&join.regions) {
+                // a BASIC region has nothing inside that was left
+                let is_basic = chart.states[region.index()].kind == NodeKind::Basic;
+                let has_left = self.run.vacated.contains(region.index()) || is_basic;
                 if self.run.arrived.contains(slot) && !has_left {
-                    let text = format!("`{}` has arrived at a JOIN, but was not vacated", self.path(region));
+                    let text = format!(
+                        "`{}` has arrived where regions are joined, but was not vacated",
+                        self.path(region)
+                    );
                     self.report_contradiction("joined", text);
                 }
             }

@@ -1,0 +1,308 @@
+//! Taking a compound transition segment by segment: R25, R27.
+
+use std::collections::BTreeSet;
+
+use yase::statechart::{NodeId, NodeKind};
+use yase::{ScopeId, TerminateExit};
+
+use super::arrive::Arrival;
+use super::{Failure, Stepper, Way};
+use crate::world::World;
+
+impl Stepper<'_> {
+    /// Takes a way from a state, and then enters the regions to which nothing has led.
+    pub(crate) fn walk_whole(
+        &mut self,
+        way: &Way,
+        early: Option<Arrival>,
+        world: &mut World,
+    ) -> Result<(), Failure> {
+        let region = self.region(self.scope(way));
+        let base = self.late.len();
+        self.walk(way, early, region, None, world)?;
+        self.bind_rest(way, early);
+        self.enter_late(base, world)
+    }
+
+    /// Timers that were started after the last target was entered belong to the first one.
+    pub(crate) fn bind_rest(&mut self, way: &Way, early: Option<Arrival>) {
+        let first =
+            way.ends.first().copied().filter(|&end| early.is_none() && self.kind(end) != NodeKind::Choice);
+        self.bind_timers(first);
+    }
+
+    /// The other regions of the ANDs that were entered on the way.
+    pub(crate) fn enter_late(&mut self, base: usize, world: &mut World) -> Result<(), Failure> {
+        let late = self.late.split_off(base);
+        for and in late {
+            for &region in self.chart.children(and) {
+                let missing = self.is_region(region) && !self.active.contains(&region);
+                if missing && self.active.contains(&and) && !self.is_ended() {
+                    self.enter(region, world);
+                    self.enter_below(region, &[], world)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes the segments of a way; `start` is the START of the current path.
+    pub(crate) fn walk(
+        &mut self,
+        way: &Way,
+        early: Option<Arrival>,
+        region: ScopeId,
+        start: Option<NodeId>,
+        world: &mut World,
+    ) -> Result<(), Failure> {
+        let count = early.map_or(way.segments.len(), |arrival| arrival.segment + 1);
+        for index in 0..count {
+            self.leave_by_segment(way, index, early, world);
+            self.effects(&way.segments[index..=index], region, world);
+            let stops = early.is_some_and(|arrival| arrival.segment == index);
+            if !stops {
+                self.enter_by_segment(way, index, region, start, world)?;
+            }
+            if self.is_ended() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn ends_of(&self, way: &Way, index: usize) -> (NodeId, NodeId) {
+        let transition = self.transition(way.segments[index]);
+        (transition.source, transition.target)
+    }
+
+    /// Where a path stands at a node: in the composite on whose border it is, else in an OR.
+    fn stand(&self, node: NodeId) -> NodeId {
+        match self.is_point(node) {
+            true => self.parent(node),
+            false => self.lowest_around(&[node], |kind| kind == NodeKind::Or),
+        }
+    }
+
+    fn is_state(&self, node: NodeId) -> bool {
+        use NodeKind::{And, Basic, End, Or, Start};
+        matches!(self.kind(node), Or | And | Basic | End | Start)
+    }
+
+    /// The AND whose regions come together on a way.
+    fn joined_on(&self, way: &Way) -> Option<NodeId> {
+        let together = || self.lowest_around(&way.sources, |kind| kind == NodeKind::And);
+        let arrival = way.arrival.map(|arrival| self.parent(arrival.region));
+        arrival.or_else(|| (way.sources.len() > 1).then(together))
+    }
+
+    /// The composite inside which a segment leaves and enters.
+    fn border(&self, way: &Way, index: usize) -> NodeId {
+        let (source, target) = self.ends_of(way, index);
+        let local = self.transition(way.segments[index]).internal;
+        if index == 0 && local && self.is_state(source) && self.is_inside(target, source) {
+            return source;
+        }
+        let around = self.parent(target);
+        if self.kind(target) == NodeKind::ExitPoint && (self.is_inside(source, around)) {
+            return around;
+        }
+        let mut all = vec![source];
+        all.extend(self.beside(way, source, target));
+        if self.kind(source) == NodeKind::Join || self.kind(target) == NodeKind::Join {
+            all.extend(self.joined_on(way));
+        }
+        let stand = self.stand(source);
+        let holds = |outer: NodeId| all.iter().all(|&node| self.is_inside(node, outer));
+        if self.is_point(source) && holds(stand) {
+            return stand;
+        }
+        self.lowest_around(&all, |kind| kind == NodeKind::Or)
+    }
+
+    /// The targets of the segments that a path takes out of one node.
+    fn beside(&self, way: &Way, source: NodeId, target: NodeId) -> Vec<NodeId> {
+        let all = way.segments.iter().map(|&id| self.transition(id));
+        let forks = [NodeKind::Fork, NodeKind::EntryPoint].contains(&self.kind(source));
+        match forks {
+            true => all.filter(|other| other.source == source).map(|other| other.target).collect(),
+            false => vec![target],
+        }
+    }
+
+    fn leave_by_segment(&mut self, way: &Way, index: usize, early: Option<Arrival>, world: &mut World) {
+        let exits = self.exits_by_segment(way, index, early);
+        let (_, target) = self.ends_of(way, index);
+        let arrival = early.or(way.arrives()).filter(|arrival| arrival.segment == index);
+        if self.kind(target) == NodeKind::ExitPoint && arrival.is_none() && !exits.is_empty() {
+            self.record_histories(&BTreeSet::from([self.parent(target)]));
+        }
+        self.leave_all(&exits, world);
+    }
+
+    fn exits_by_segment(&self, way: &Way, index: usize, early: Option<Arrival>) -> BTreeSet<NodeId> {
+        let (source, target) = self.ends_of(way, index);
+        let inside = |node: NodeId| self.active_inside(node).into_iter().collect::<BTreeSet<_>>();
+        if let Some(arrival) = early.or(way.arrives()).filter(|arrival| arrival.segment == index) {
+            return inside(arrival.region);
+        }
+        if let [vacated] = self.vacates(way)[..]
+            && index + 1 == way.segments.len()
+        {
+            return inside(vacated);
+        }
+        if self.is_targetless(way) {
+            return BTreeSet::new();
+        }
+        let incoming = way.segments.iter().filter(|&&id| self.transition(id).target == target).count();
+        if self.kind(target) == NodeKind::Join && way.sources.len() > 1 && index + 1 < incoming {
+            let and = self.joined_on(way).unwrap();
+            return inside(self.child_towards(and, source));
+        }
+        if self.kind(target) == NodeKind::Terminate && self.semantics.terminate == TerminateExit::Nothing {
+            return BTreeSet::new();
+        }
+        let point_out = self.kind(source) == NodeKind::EntryPoint && self.parent(source) == target;
+        if point_out {
+            return BTreeSet::new();
+        }
+        let border = self.border(way, index);
+        if self.kind(target) == NodeKind::ExitPoint && self.parent(target) == border {
+            let on_border = source == border || self.is_point(source) && self.parent(source) == border;
+            return if on_border { BTreeSet::new() } else { inside(border) };
+        }
+        if border == source {
+            return inside(source);
+        }
+        let first = self.beside(way, source, target)[0];
+        if first != target || !self.is_state(source) && self.stand(source) == border {
+            return BTreeSet::new();
+        }
+        let branch = self.child_towards(border, source);
+        let active = self.active.iter().copied();
+        active.filter(|&node| node == branch || self.is_inside(node, branch)).collect()
+    }
+
+    fn is_point(&self, node: NodeId) -> bool {
+        use NodeKind::{DeepHistory, EntryPoint, ExitPoint, ShallowHistory};
+        matches!(self.kind(node), EntryPoint | ExitPoint | ShallowHistory | DeepHistory)
+    }
+
+    /// Enters what is around the target of a segment, and the target if the path ends there.
+    fn enter_by_segment(
+        &mut self,
+        way: &Way,
+        index: usize,
+        region: ScopeId,
+        start: Option<NodeId>,
+        world: &mut World,
+    ) -> Result<(), Failure> {
+        let (source, target) = self.ends_of(way, index);
+        let last = index + 1 == way.segments.len();
+        let arrives = way.arrives().is_some_and(|arrival| arrival.segment == index);
+        if arrives || self.is_targetless(way) || last && !self.vacates(way).is_empty() {
+            return Ok(());
+        }
+        if self.kind(source) == NodeKind::EntryPoint && self.parent(source) == target {
+            return Ok(());
+        }
+        let border = self.border(way, index);
+        match self.kind(target) {
+            NodeKind::Terminate => {
+                if self.semantics.terminate == TerminateExit::Source {
+                    self.enter_down(border, self.stand(target), world);
+                }
+                self.terminates = true;
+                Ok(())
+            }
+            NodeKind::Join => {
+                if !self.joined_on(way).is_some_and(|and| self.is_inside(target, and)) {
+                    self.enter_down(border, self.stand(target), world);
+                }
+                Ok(())
+            }
+            NodeKind::ExitPoint => {
+                let above = self.lowest_around(&[self.parent(target)], |kind| kind == NodeKind::Or);
+                self.enter_down(border, above, world);
+                Ok(())
+            }
+            NodeKind::EntryPoint if self.stands_for_composite(target) => {
+                self.enter_target(border, self.parent(target), world)
+            }
+            NodeKind::EntryPoint if !self.leads_inside(way, index) => {
+                self.enter_target(border, self.parent(target), world)
+            }
+            NodeKind::ShallowHistory | NodeKind::DeepHistory => {
+                let owner = self.parent(target);
+                self.enter_down(border, owner, world);
+                self.bind_timers(Some(target));
+                if self.is_ended() {
+                    return Ok(());
+                }
+                self.enter_remembered(target, start.filter(|&start| self.parent(start) == owner), world)
+            }
+            NodeKind::Choice => {
+                self.enter_down(border, self.stand(target), world);
+                self.choose_segment(target, region, start, world)
+            }
+            _ if self.is_state(target) => self.enter_target(border, target, world),
+            _ => {
+                self.enter_down(border, self.stand(target), world);
+                Ok(())
+            }
+        }
+    }
+
+    fn leads_inside(&self, way: &Way, index: usize) -> bool {
+        let point = self.ends_of(way, index).1;
+        let Some(&next) = way.segments.get(index + 1) else { return true };
+        let (source, target) = (self.transition(next).source, self.transition(next).target);
+        let exit = self.kind(target) == NodeKind::ExitPoint && self.parent(target) == self.parent(point);
+        source != point || self.is_inside(target, self.parent(point)) && !exit
+    }
+
+    fn choose_segment(
+        &mut self,
+        choice: NodeId,
+        region: ScopeId,
+        start: Option<NodeId>,
+        world: &mut World,
+    ) -> Result<(), Failure> {
+        if self.is_ended() {
+            return Ok(());
+        }
+        let out = self.outgoing(choice);
+        let found =
+            self.first_way(choice, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, world));
+        let Some(way) = found else { return Err(Failure::NoBranch(choice)) };
+        self.line.taken.extend(&way.segments);
+        self.walk(&way, None, region, start, world)
+    }
+
+    fn enter_target(&mut self, border: NodeId, target: NodeId, world: &mut World) -> Result<(), Failure> {
+        self.bind_timers(Some(target));
+        self.enter_down(border, target, world);
+        if self.is_ended() {
+            return Ok(());
+        }
+        self.enter_below(target, &[], world)
+    }
+
+    /// Enters what is not active on the way down from inside a composite to a node.
+    fn enter_down(&mut self, border: NodeId, node: NodeId, world: &mut World) {
+        let mut path = self.outward(node);
+        path.retain(|&it| self.is_inside(it, border));
+        path.reverse();
+        if self.kind(border) == NodeKind::And && !path.is_empty() {
+            self.late.push(border); // its regions may all have been left
+        }
+        for it in path {
+            if self.active.contains(&it) || self.is_ended() {
+                continue;
+            }
+            self.enter(it, world);
+            if self.kind(it) == NodeKind::And {
+                self.late.push(it);
+            }
+        }
+    }
+}
