@@ -269,7 +269,7 @@ impl Host for World {
 
     fn trace(&mut self, chart: &CompiledChart, record: &TraceRecord<'_>) {
         let record = if self.reads { *record } else { TraceRecord { guards: &[], ..*record } };
-        self.say(record.display(chart).to_string());
+        self.say(record.display_with(chart, |node| chart.short_path(node)).to_string());
     }
 
     fn report(&mut self, chart: &CompiledChart, report: Notice<'_>) {

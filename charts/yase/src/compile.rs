@@ -18,6 +18,7 @@ mod selection_order;
 mod selection_table;
 
 use std::ops::Range;
+use std::sync::OnceLock;
 use std::time::Duration;
 
 use crate::bits::BitSet;
@@ -28,7 +29,7 @@ use crate::expression::{
 use crate::ids::{ActionLocation, CompoundTransitionId, ScopeId};
 use crate::native::NativeProgram;
 use crate::semantics::{EventMatching, Semantics};
-use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
+use crate::statechart::{NodeId, NodeKind, StateNames, Statechart, TransitionId};
 use crate::vocabulary::{TopicId, TypeEnvironment};
 
 pub(crate) use events::EventFilter;
@@ -75,6 +76,8 @@ pub struct CompiledChart {
     pub(crate) unnamed: EventId,
     /// The actions of segments that no path contains.
     unreached: Box<[UnreachableSegment]>,
+    /// The short names of its states, computed on first use.
+    names: OnceLock<StateNames>,
     reads: Box<[TopicId]>,
     sources: Box<[MessageSource]>,
     max_activities: usize,
@@ -603,7 +606,12 @@ impl CompiledChart {
         })
     }
 
-    /// A node's path without the root's name, as traces show it; the root's own name for the root.
+    /// The short names of its states.
+    pub fn names(&self) -> &StateNames {
+        self.names.get_or_init(|| StateNames::of(&self.statechart))
+    }
+
+    /// A node's path without the root's name; the root's own name for the root.
     pub fn short_path(&self, node: NodeId) -> String {
         let path = self.statechart.path(node);
         match path.split_once('/') {

@@ -124,7 +124,9 @@ pub use semantics::{
     Semantics, StructureRules, TerminateExit, TimerScope, TransitionToAncestor, WriteVisibility,
 };
 
-pub use statechart::{Element, Node, NodeId, NodeKind, Statechart, Transition, TransitionId};
+pub use statechart::{
+    Element, Node, NodeId, NodeKind, StateNames, Statechart, Transition, TransitionId, UnknownState,
+};
 pub use trace::{MicroStepCause, TraceRecord};
 pub use vocabulary::{FieldId, FunctionId, TopicId, TypeEnvironment, Value};
 /// Transition expressions: the crate `yase-expression`.

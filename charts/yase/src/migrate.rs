@@ -114,7 +114,9 @@ use crate::semantics::Semantics;
 use translate::SnapshotTranslator;
 
 pub use plan::{NodeMapping, UnknownPath};
-pub use report::{Conflict, Disposition, MigratedItem, MigrationError, MigrationFinding, MigrationReport};
+pub use report::{
+    Conflict, Disposition, MigratedItem, MigrationError, MigrationFinding, MigrationReport, brief_lines,
+};
 
 /// Maps the nodes of an old chart to those of a new one.
 pub fn plan(old: &Arc<CompiledChart>, new: &Arc<CompiledChart>) -> NodeMapping {

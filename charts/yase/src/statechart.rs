@@ -4,11 +4,13 @@
 //! read it. It holds parsed expressions, not compiled ones, and has no behaviour.
 
 mod layout;
+mod state_names;
 
 use std::sync::Arc;
 use std::time::Duration;
 
 pub use layout::{Frame, Layout, Point};
+pub use state_names::{StateNames, UnknownState};
 
 pub use crate::expression::{Constant, ConstantValue, NodeId};
 

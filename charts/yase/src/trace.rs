@@ -56,9 +56,9 @@ pub enum MicroStepCause {
 }
 
 impl<'a> TraceRecord<'a> {
-    /// The record in one line, with the names of its chart.
+    /// The record in one line, with the short names of its chart.
     pub fn display(&self, chart: &'a CompiledChart) -> impl fmt::Display + 'a {
-        self.display_with(chart, |node| chart.short_path(node))
+        self.display_with(chart, |node| chart.names().name(node).to_owned())
     }
 
     /// The record in one line, with node names supplied by the caller.

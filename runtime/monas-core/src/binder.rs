@@ -148,7 +148,7 @@ impl<'a> Binder<'a> {
             let message = format!(
                 "no activity `{}` was generated for the state `{}`",
                 entry.name,
-                chart.short_path(entry.node)
+                chart.names().name(entry.node)
             );
             Diagnostic::error("E0318", Span::default(), message).with_hint("generate the chart again")
         };

@@ -1,6 +1,6 @@
 //! The line of a micro-step: R23.
 
-use yase::statechart::{NodeId, TransitionId};
+use yase::statechart::{NodeId, StateNames, TransitionId};
 
 use super::{Failure, Line, Stepper, Way, topic};
 use crate::world::World;
@@ -96,7 +96,10 @@ impl Stepper<'_> {
 
     pub(crate) fn describe(&self, failure: &Failure) -> String {
         match failure {
-            Failure::NoBranch(choice) => format!("no way out of CHOICE `{}` is open", self.name(*choice)),
+            Failure::NoBranch(choice) => {
+                let names = StateNames::of(self.chart);
+                format!("no way out of CHOICE `{}` is open", names.name(*choice))
+            }
             Failure::Endless => "endless".to_owned(),
         }
     }

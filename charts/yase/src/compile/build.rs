@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use crate::bits::BitSet;
 use crate::compile::compound_transitions::{self, CompoundPath, CompoundPaths, DynamicBranches};
@@ -193,6 +194,7 @@ impl ChartCompiler<'_> {
             selection_order: selection_order::order(&self.layout, &joins, &self.semantics),
             joins,
             unreached,
+            names: OnceLock::new(),
             statechart: self.chart.clone(),
             semantics: self.semantics,
             scripts: self.scripts,

@@ -31,7 +31,7 @@ impl MachineError {
                 MachineError::endless(MachineErrorKind::NeverAdvances, &what, chart, cycle)
             }
             StepError::NoBranch(node) => {
-                let text = format!("no way out of CHOICE `{}` is open", chart.short_path(node));
+                let text = format!("no way out of CHOICE `{}` is open", chart.names().name(node));
                 let kind = MachineErrorKind::NoBranch;
                 MachineError(Box::new(ErrorDetails { kind, cycle: Box::default(), node: Some(node), text }))
             }
@@ -54,5 +54,5 @@ impl MachineError {
 
 fn name(chart: &CompiledChart, segment: TransitionId) -> String {
     let transition = chart.statechart().transition(segment);
-    format!("`{}` -> `{}`", chart.short_path(transition.source), chart.short_path(transition.target))
+    format!("`{}` -> `{}`", chart.names().name(transition.source), chart.names().name(transition.target))
 }

@@ -9,7 +9,7 @@ use crate::machine::Machine;
 use crate::machine::snapshot::PathTable;
 use crate::migrate::Disposition;
 use crate::migrate::matching::{self, MismatchReason, NamedChart, NodeMatch};
-use crate::statechart::{NodeId, Statechart, TransitionId};
+use crate::statechart::{NodeId, TransitionId, UnknownState};
 
 /// Maps the nodes of an old chart to those of a new one. [`plan`](super::plan()) creates it; the
 /// caller may add replacements.
@@ -26,12 +26,12 @@ pub struct NodeMapping {
     pub(crate) is_same: bool,
 }
 
-/// A path that names no node of a chart, or several.
+/// A text that names no node of a chart, or several.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("the {chart} chart has no single node `{path}`")]
+#[error("in the {chart} chart: {unknown}")]
 pub struct UnknownPath {
     chart: &'static str,
-    path: String,
+    unknown: UnknownState,
 }
 
 impl NodeMapping {
@@ -52,10 +52,11 @@ impl NodeMapping {
 
     /// Replaces a node of the old chart by one of the new chart: for a state that was removed or
     /// renamed, or is to be replaced by another. Nodes inside the old one are then matched inside
-    /// the new one. Paths are complete (`chart/outer/inner`), or a suffix that identifies one node.
+    /// the new one. Both are named by their paths (`chart/outer/inner`), by their short names, or by
+    /// as much of the end of either as identifies one node.
     ///
     /// # Errors
-    /// If a path names no node or several.
+    /// If a name fits no node or several.
     pub fn with_replacement(mut self, old: &str, new: &str) -> Result<NodeMapping, UnknownPath> {
         let old = find(&self.old, &self.old_paths, "old", old)?;
         let new = find(&self.new, &self.new_paths, "new", new)?;
@@ -138,7 +139,6 @@ fn find(
     which: &'static str,
     path: &str,
 ) -> Result<NodeId, UnknownPath> {
-    let statechart: &Statechart = chart.statechart();
-    let found = paths.find_node(path).or_else(|| statechart.find(path));
-    found.ok_or_else(|| UnknownPath { chart: which, path: path.to_owned() })
+    let found = paths.find_node(path).map_or_else(|| chart.names().find(path), Ok);
+    found.map_err(|unknown| UnknownPath { chart: which, unknown })
 }

@@ -1,7 +1,9 @@
 //! The result of a migration, or the reasons for its rejection.
 
-use crate::ids::{Activation, ScopeId};
 use std::fmt;
+
+use crate::ids::{Activation, ScopeId};
+use crate::statechart::StateNames;
 
 /// The result of a migration.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
@@ -136,6 +138,32 @@ pub enum Conflict {
     Loss(MigrationFinding),
 }
 
+/// Findings and conflicts as text, with the short names of states instead of their paths.
+pub fn brief_lines(lines: &[&str]) -> Vec<String> {
+    // what a line is about belongs to one chart; what follows may belong to the other
+    let names = StateNames::from_some(lines.iter().filter_map(|line| quoted_paths(line).next()));
+    let brief = |line: &&str| {
+        let mut text = (*line).to_owned();
+        for (index, path) in quoted_paths(line).enumerate() {
+            let name = if index == 0 { names.short(path).to_owned() } else { StateNames::brief(path) };
+            text = text.replacen(path, &name, 1);
+        }
+        text
+    };
+    lines.iter().map(brief).collect()
+}
+
+/// The paths of states between backquotes. Other texts there may look like paths, such as topics:
+/// these have no operators of formulas, and stand in other lines.
+fn quoted_paths(line: &str) -> impl Iterator<Item = &str> {
+    let is_finding = ["state `", "activity `", "history `", "arrival `", "timer `", "pending transition `"]
+        .iter()
+        .any(|word| line.starts_with(word));
+    let items = line.split('`').skip(1).step_by(2).flat_map(|quoted| quoted.split(" -> "));
+    let paths = items.map(|item| item.split_once(": ").map_or(item, |(path, _)| path));
+    paths.filter(move |path| path.contains('/') && (is_finding || path.contains(['~', '|', '('])))
+}
+
 impl MigrationError {
     pub(crate) fn of(reasons: Vec<Conflict>) -> MigrationError {
         MigrationError { reasons: reasons.into() }
@@ -190,5 +218,31 @@ impl fmt::Display for MigrationFinding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let lost = if matches!(self.verdict, Disposition::Lost(_)) { "lost, " } else { "" };
         write!(f, "{} `{}`: {lost}{}", self.subject, self.name, self.verdict)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::brief_lines;
+
+    #[test]
+    fn brief_lines_name_states_by_the_words_of_the_role() {
+        let lines = [
+            "state `player`: kept",
+            "state `player/(Led~||active)/2/active/(Search|kick)/Search`: moved to `player/active/Search`",
+            "timer `player/(Led~||active)/2: led_timeout`: kept",
+            "`player/(Led~||active)/1/Led~/Led` is active, and there is nothing like it: say what replaces it",
+            "the topic `monas/change` is not a path",
+        ];
+        assert_eq!(
+            brief_lines(&lines),
+            [
+                "state `player`: kept",
+                "state `active/Search`: moved to `active/Search`",
+                "timer `1/2: led_timeout`: kept",
+                "`Led` is active, and there is nothing like it: say what replaces it",
+                "the topic `monas/change` is not a path",
+            ]
+        );
     }
 }

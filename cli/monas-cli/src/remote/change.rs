@@ -30,8 +30,11 @@ pub(crate) fn print_outcome(
             writeln!(console.out, "{object}")?;
         }
         Format::Text => {
-            for finding in &changed.findings {
-                writeln!(console.err, "{}", line(finding))?;
+            let messages: Vec<&str> =
+                changed.findings.iter().map(|finding| finding.message.as_str()).collect();
+            let brief = yase::migrate::brief_lines(&messages);
+            for (finding, message) in changed.findings.iter().zip(&brief) {
+                writeln!(console.err, "{}", line(finding, message))?;
             }
             if changed.done {
                 writeln!(console.out, "{sentence}")?;
@@ -46,8 +49,8 @@ pub(crate) fn print_outcome(
     })
 }
 
-fn line(finding: &Finding) -> String {
-    let Finding { code, message, hint, file, line, column, .. } = finding;
+fn line(finding: &Finding, message: &str) -> String {
+    let Finding { code, hint, file, line, column, .. } = finding;
     let place = match (file.is_empty(), line) {
         (true, _) => String::new(),
         (false, 0) => format!("{file}: "),

@@ -19,18 +19,18 @@ pub(crate) fn of_numbers<Row: IntoIterator<Item = String>>(
     table
 }
 
-/// The last two segments of a state's path: paths in charts made from formulas are long.
-pub(crate) fn short_path(path: &str) -> &str {
-    path.rmatch_indices('/').nth(1).map_or(path, |(place, _)| &path[place + 1..])
+/// The short name of a state, by its path without the root; empty for none.
+pub(crate) fn state_name(path: &str) -> String {
+    if path.is_empty() { String::new() } else { yase::StateNames::brief(&format!("/{path}")) }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::short_path;
+    use super::state_name;
 
     #[test]
-    fn a_short_path_has_the_last_two_states() {
-        let paths = ["", "A", "a/A", "b/a/A", "a||(b/c)/d/A"];
-        assert_eq!(paths.map(short_path), ["", "A", "a/A", "a/A", "d/A"]);
+    fn a_state_is_named_by_the_words_of_its_role() {
+        let paths = ["", "A", "a/A", "b/a/A", "(a~||b)/2/b/(A|c)/A", "(a~||b)/1/a~"];
+        assert_eq!(paths.map(state_name), ["", "A", "a/A", "a/A", "b/A", "1/1/a~"]);
     }
 }

@@ -85,7 +85,7 @@ impl TeamTrace {
         for (robot, trace) in self.traces.iter().enumerate() {
             let mut own = std::collections::VecDeque::new();
             let result = replay(trace, |machine, step, records| {
-                let name = |node| machine.chart().short_path(node);
+                let name = |node| machine.chart().names().name(node).to_owned();
                 let active = machine.configuration().into_iter().map(name).collect();
                 own.push_back(PlayedStep {
                     robot,

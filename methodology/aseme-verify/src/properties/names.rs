@@ -82,6 +82,9 @@ pub(crate) fn state(name: &Name, chart: &CompiledChart) -> Result<NodeId, Diagno
     match fitting.as_slice() {
         [one] => Ok(*one),
         [] => {
+            if let Some(named) = chart.names().find(&name.text).ok().filter(|&node| is_state(node)) {
+                return Ok(named);
+            }
             let message = format!("the chart `{}` has no state `{}`", statechart.name, name.text);
             let names =
                 states.iter().map(|&id| statechart.node(id).name.as_str()).filter(|it| !it.is_empty());

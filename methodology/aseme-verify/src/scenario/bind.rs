@@ -291,7 +291,7 @@ impl ScenarioBinder<'_> {
 
     fn no_timer(&self, span: Span, name: &str, fitting: &[NodeId]) -> Diagnostic {
         let boards: Vec<String> =
-            fitting.iter().map(|&node| format!("`{} {name}`", self.chart.short_path(node))).collect();
+            fitting.iter().map(|&node| format!("`{} {name}`", self.chart.names().name(node))).collect();
         if !boards.is_empty() {
             let message = format!("`{}` does not say which timer is meant", self.text(span));
             let wrong = Diagnostic::error("E0895", span, message);

@@ -216,7 +216,7 @@ impl Host for ChartHost {
                 tracing::error!(%robot, %agent, ?place, action = index + 1, "action failed: {error}");
             }
             Notice::StartWaits { start } => {
-                tracing::debug!(%robot, %agent, start = %chart.short_path(start), "no way out of this START is open");
+                tracing::debug!(%robot, %agent, start = %chart.names().name(start), "no way out of this START is open");
             }
             _ => {}
         }

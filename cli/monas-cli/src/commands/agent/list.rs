@@ -106,7 +106,7 @@ fn activity((activity, place): (&ActivityEntry, usize)) -> [String; 9] {
         place,
         activity.name.clone(),
         parameters.join(" "),
-        table::short_path(&activity.state).to_owned(),
+        table::state_name(&activity.state),
         activity.calls.to_string(),
         activity.failures.to_string(),
         millis(times.map(|times| times.mean)),

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use monas::records::{ChartChoice, ChartState, Inquiry};
 use serde_json::{Value, json};
+use yase::StateNames;
 use yase::snapshot::{ActivityPhase, EventName, OccurrenceRecord, Snapshot};
 
 use crate::remote::{RunSelector, request, unexpected_reply};
@@ -46,6 +47,8 @@ pub(crate) fn execute(
 /// The state of a chart as text.
 fn lines(state: &ChartState, snapshot: &Snapshot) -> Vec<String> {
     let ChartState { host, agent, model, state, .. } = state;
+    let remembered = snapshot.history.iter().flat_map(|one| one.nodes.iter().chain([&one.history]));
+    let names = StateNames::from_some(snapshot.configuration.iter().chain(remembered).map(String::as_str));
     let seconds = |moment: yase::Moment| moment.as_nanos() as f64 / 1e9;
     let now = seconds(snapshot.now);
     let mut lines =
@@ -55,7 +58,7 @@ fn lines(state: &ChartState, snapshot: &Snapshot) -> Vec<String> {
             let asked = if activity.cancelled { ", asked to return" } else { "" };
             format!(": {} {}{asked}", activity.activity, phase(activity.phase))
         });
-        format!("  in {path}{}", activity.unwrap_or_default())
+        format!("  in {}{}", names.short(path), activity.unwrap_or_default())
     }));
     lines.extend(snapshot.timers.iter().map(|timer| {
         let deadline = seconds(timer.deadline);
@@ -63,11 +66,12 @@ fn lines(state: &ChartState, snapshot: &Snapshot) -> Vec<String> {
             true => format!("expired at {deadline:.3} s"),
             false => format!("expires at {deadline:.3} s"),
         };
-        format!("  timer {} of {} {when}", timer.timer.name, timer.timer.region)
+        format!("  timer {} of {} {when}", timer.timer.name, names.short(&timer.timer.region))
     }));
-    lines.extend(
-        snapshot.history.iter().map(|one| format!("  {} remembers {}", one.history, one.nodes.join(", "))),
-    );
+    lines.extend(snapshot.history.iter().map(|one| {
+        let nodes: Vec<&str> = one.nodes.iter().map(|node| names.short(node)).collect();
+        format!("  {} remembers {}", names.short(&one.history), nodes.join(", "))
+    }));
     for (what, events) in
         [("raised", &snapshot.raised), ("arrived", &snapshot.arrived), ("deferred", &snapshot.deferred)]
     {

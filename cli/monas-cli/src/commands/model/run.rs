@@ -138,8 +138,11 @@ fn trace_step_text(
     format: Format,
 ) -> String {
     let cause = trace.text_of(step);
-    let active: Vec<String> =
-        machine.configuration().into_iter().map(|node| chart.short_path(node)).collect();
+    let name = |node| match format {
+        Format::Text => chart.names().name(node).to_owned(),
+        Format::Json => chart.short_path(node),
+    };
+    let active: Vec<String> = machine.configuration().into_iter().map(name).collect();
     step_text(None, &cause, records, &active, format)
 }
 

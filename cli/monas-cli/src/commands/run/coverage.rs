@@ -1,10 +1,10 @@
 //! Coverage of states and transitions by role, over all robots that play it.
 
-use std::collections::BTreeSet;
 use std::io::{self, Write};
 
 use monas::ChartCoverage;
 use serde_json::{Value, json};
+use yase::StateNames;
 
 /// The coverage of each role, in order of first occurrence.
 pub(crate) fn by_role(charts: &[ChartCoverage]) -> Vec<ChartCoverage> {
@@ -33,38 +33,18 @@ pub(crate) fn write(out: &mut dyn Write, role: &ChartCoverage) -> io::Result<()>
         "{}: {} of {} states were active, {} of {} transitions fired",
         role.model, counts.states_met, counts.states, counts.transitions_met, counts.transitions
     )?;
-    let paths = PathShortener::of(role);
-    role.states_missed().try_for_each(|path| writeln!(out, "  never active: {}", paths.short(path)))?;
+    let names = names(role);
+    role.states_missed().try_for_each(|path| writeln!(out, "  never active: {}", names.short(path)))?;
     role.transitions_missed()
-        .try_for_each(|name| writeln!(out, "  never fired: {}", paths.short_transition(name)))
+        .try_for_each(|name| writeln!(out, "  never fired: {}", names.short_transition(name)))
 }
 
-/// All paths in a role's chart, to find unambiguous short forms.
-struct PathShortener<'a>(BTreeSet<&'a str>);
-
-/// Separates source and target in a transition's name.
-const ARROW: &str = " -> ";
-
-impl<'a> PathShortener<'a> {
-    fn of(role: &'a ChartCoverage) -> PathShortener<'a> {
-        let ends = role.transitions.iter().flat_map(|transition| transition.name.split(ARROW));
-        PathShortener(role.states.iter().map(|state| state.path.as_str()).chain(ends).collect())
-    }
-
-    /// The shortest unambiguous suffix of a path, in whole segments.
-    fn short<'p>(&self, path: &'p str) -> &'p str {
-        let starts = path.rmatch_indices('/').map(|(index, _)| index + 1);
-        let mut ends = starts.map(|start| &path[start..]);
-        ends.find(|end| self.0.iter().filter(|other| ends_with(other, end)).count() == 1).unwrap_or(path)
-    }
-
-    fn short_transition(&self, name: &str) -> String {
-        name.split(ARROW).map(|path| self.short(path)).collect::<Vec<_>>().join(ARROW)
-    }
-}
-
-fn ends_with(path: &str, end: &str) -> bool {
-    path.strip_suffix(end).is_some_and(|before| before.is_empty() || before.ends_with('/'))
+/// The short names of a role's states, by their paths, which are without the root.
+fn names(role: &ChartCoverage) -> StateNames {
+    let ends = role.transitions.iter().flat_map(|transition| transition.name.split(" -> "));
+    let below_root = role.states.iter().map(|state| state.path.as_str()).chain(ends);
+    let paths: Vec<String> = below_root.map(|path| format!("/{path}")).collect();
+    StateNames::from_some(paths.iter().map(String::as_str))
 }
 
 /// A role's coverage as JSON.
@@ -131,14 +111,6 @@ mod tests {
             "goalie: 1 of 2 states were active, 1 of 2 transitions fired\n  never active: state 1\n  never fired: a -> 1\n\
              player: 2 of 2 states were active, 2 of 2 transitions fired\n"
         );
-    }
-
-    #[test]
-    fn paths_are_as_short_as_they_can_be() {
-        let paths = PathShortener(["a/b/END", "a/c/END", "a/b", "a/b/kick", "d/c"].into());
-        let short = ["a/b/END", "a/b/kick", "a/c/END", "d/c", "a/b"].map(|path| paths.short(path));
-        assert_eq!(short, ["b/END", "kick", "c/END", "c", "b"]);
-        assert_eq!(paths.short_transition("a/b/kick -> a/b/END"), "kick -> b/END");
     }
 
     #[test]

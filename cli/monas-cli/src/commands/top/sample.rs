@@ -70,7 +70,7 @@ pub(crate) fn activity(activity: &ActivityFigures) -> [String; 9] {
     let times = entry.call_time.as_ref();
     [
         entry.name.clone(),
-        table::short_path(&entry.state).to_owned(),
+        table::state_name(&entry.state),
         remark.map_or_else(String::new, |remark| remark.name().into()),
         number(*hz),
         share(*load),

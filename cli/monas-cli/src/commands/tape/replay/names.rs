@@ -6,6 +6,7 @@ use monas::records::{CHART, CYCLE, MODEL, Model};
 use monas::replay::ReplayDifference;
 use monas_tape::{Recording, Value};
 use narukom::prost::Message as _;
+use yase::StateNames;
 
 use crate::commands::tape::value_text::plain;
 
@@ -14,7 +15,7 @@ use crate::commands::tape::value_text::plain;
 pub(crate) struct AgentNames {
     /// The topics that were published, by hash.
     topics: BTreeMap<u64, String>,
-    models: Vec<Model>,
+    models: Vec<(Model, StateNames)>,
 }
 
 impl AgentNames {
@@ -32,7 +33,11 @@ impl AgentNames {
                 continue;
             }
             if channel.topic == MODEL.path() && channel.publisher == difference.agent {
-                names.models.extend(Model::decode(message.bytes));
+                let model = Model::decode(message.bytes);
+                names.models.extend(model.map(|model| {
+                    let short = StateNames::from_paths(model.nodes.iter().map(String::as_str));
+                    (model, short)
+                }));
             }
         }
         names
@@ -44,7 +49,7 @@ impl AgentNames {
         let name = self.name(path, chart, *number);
         match path.ends_with(".topic") {
             true => name.map_or_else(|| number.to_string(), str::to_owned),
-            false => name.map_or_else(|| number.to_string(), short),
+            false => name.map_or_else(|| number.to_string(), |name| self.short(chart, name)),
         }
     }
 
@@ -54,7 +59,7 @@ impl AgentNames {
             return path.ends_with(".topic").then(|| self.topics.get(&number)).flatten().map(String::as_str);
         }
         let place = usize::try_from(number).ok()?;
-        let model = self.models.iter().find(|model| u64::from(model.chart) == chart)?;
+        let (model, _) = self.models.iter().find(|(model, _)| u64::from(model.chart) == chart)?;
         let name = match field {
             "exits" | "entries" => model.nodes.get(place),
             "selected" | "preempted" | "held" | "taken" => model.transitions.get(place),
@@ -65,32 +70,10 @@ impl AgentNames {
         };
         name.map(String::as_str)
     }
-}
 
-/// The name of a node without the path to it, of a transition with those of both ends.
-fn short(name: &str) -> String {
-    let ends: Vec<&str> = name.split(" -> ").map(short_path).collect();
-    ends.join(" -> ")
-}
-
-/// The last segment of a path; for a connector also the one before, since several states may have a
-/// connector of the same kind.
-fn short_path(path: &str) -> &str {
-    let last = path.rfind('/').map_or(0, |slash| slash + 1);
-    let is_connector = ["START", "END", "CONDITION"].contains(&&path[last..]);
-    let outer = path[..last.saturating_sub(1)].rfind('/').map_or(0, |slash| slash + 1);
-    &path[if is_connector { outer } else { last }..]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::short;
-
-    #[test]
-    fn names_are_short() {
-        assert_eq!(short("player/(A.B)/takeAction/kick"), "kick");
-        assert_eq!(short("player/(A.B)/kick/START"), "kick/START");
-        assert_eq!(short("x/(A|B)/CONDITION -> x/(A|B)/A"), "(A|B)/CONDITION -> A");
-        assert_eq!([short("kick"), short("START"), short("topic")], ["kick", "START", "topic"]);
+    /// The short name of a state, or of a transition by those of both ends.
+    fn short(&self, chart: u64, name: &str) -> String {
+        let found = self.models.iter().find(|(model, _)| u64::from(model.chart) == chart);
+        found.map_or_else(|| name.to_owned(), |(_, names)| names.short_transition(name))
     }
 }
