@@ -184,7 +184,7 @@ fn everything_is_told_at_once() {
 fn a_replacement_with_a_path_of_no_node() {
     let stage = Stage::new(TWO, &[]);
     let error = stage.plan(TWO).with_replacement("a", "nowhere").unwrap_err();
-    assert_eq!(error.to_string(), "the new chart has no single node `nowhere`");
+    assert_eq!(error.to_string(), "in the new chart: there is no state `nowhere`");
     let error = stage.plan(TWO).with_replacement("x", "b").unwrap_err();
-    assert_eq!(error.to_string(), "the old chart has no single node `x`");
+    assert_eq!(error.to_string(), "in the old chart: there is no state `x`");
 }
