@@ -116,8 +116,8 @@ impl<H: Host> Macrostep<'_, H> {
     /// Whether a transition that was to pass where all regions have arrived ends there, since
     /// another one that was to arrive in this micro-step was not taken.
     #[inline]
-    fn ends_early(&self, compound: &CompoundTransition) -> Option<Arrival> {
-        compound.arrival.filter(|arrival| arrival.passes && !self.others_arrive(arrival.slot))
+    fn ends_early<'c>(&self, compound: &'c CompoundTransition) -> Option<&'c Arrival> {
+        compound.arrival.as_ref().filter(|arrival| arrival.passes && !self.others_arrive(arrival.slot))
     }
 
     /// Whether all other regions have arrived where one does, or arrive in this micro-step.
@@ -139,7 +139,7 @@ impl<H: Host> Macrostep<'_, H> {
     fn exits_of(
         &self,
         compound: &CompoundTransition,
-        ends_early: Option<Arrival>,
+        ends_early: Option<&Arrival>,
     ) -> Option<(NodeIndex, NodeIndex)> {
         match ends_early {
             None => compound.exits,
@@ -157,7 +157,7 @@ impl<H: Host> Macrostep<'_, H> {
     fn execute_effects(
         &mut self,
         way: &CompoundTransition,
-        ends_early: Option<Arrival>,
+        ends_early: Option<&Arrival>,
     ) -> Result<(), StepError> {
         if let Some(arrival) = ends_early {
             self.do_actions_up_to(way, arrival);
@@ -184,7 +184,7 @@ impl<H: Host> Macrostep<'_, H> {
     }
 
     /// Executes the actions of the segments up to an arrival.
-    fn do_actions_up_to(&mut self, way: &CompoundTransition, arrival: Arrival) {
+    fn do_actions_up_to(&mut self, way: &CompoundTransition, arrival: &Arrival) {
         let taken = &way.segments[..=arrival.segment];
         for (segment, effects) in way.effects.iter().filter(|(segment, _)| taken.contains(segment)) {
             let place = ActionLocation::Transition(*segment);
@@ -196,7 +196,7 @@ impl<H: Host> Macrostep<'_, H> {
     fn enter_targets(
         &mut self,
         compound: &CompoundTransition,
-        ends_early: Option<Arrival>,
+        ends_early: Option<&Arrival>,
     ) -> Result<(), StepError> {
         if self.run.terminates || self.run.status != Status::Running {
             return Ok(());
@@ -207,7 +207,7 @@ impl<H: Host> Macrostep<'_, H> {
             let first = self.chart.layout.first(place).index();
             self.run.active.next(first, place.index()) == Some(place.index())
         };
-        let arrival = ends_early.or(compound.arrival.filter(|arrival| !arrival.passes));
+        let arrival = ends_early.or(compound.arrival.as_ref().filter(|arrival| !arrival.passes));
         let vacated = match ends_early {
             Some(arrival) => arrival.inside.map(|_| arrival.region),
             None => compound.vacates,
@@ -216,7 +216,7 @@ impl<H: Host> Macrostep<'_, H> {
             self.run.mark_vacated(self.chart, place, arrival.is_some());
         }
         if let Some(arrival) = arrival {
-            self.run.arrive(self.chart, arrival);
+            self.run.arrive(self.chart, *arrival);
         }
         if ends_early.is_some() {
             return Ok(());
@@ -252,7 +252,7 @@ impl<H: Host> Macrostep<'_, H> {
         })?;
         self.each_selected(|step, id| {
             step.count_fired(id);
-            if let Some((first, last)) = step.exits_of(compound(id), step.noted_early(id)) {
+            if let Some((first, last)) = step.exits_of(compound(id), step.noted_early(id, compound(id))) {
                 step.run.record_histories(chart, first, last);
                 step.collect_between(first, last);
             }
@@ -262,7 +262,7 @@ impl<H: Host> Macrostep<'_, H> {
         self.run.document_order.clear();
         let mut stops = false;
         self.each_selected(|step, id| {
-            step.execute_effects(compound(id), step.noted_early(id))?;
+            step.execute_effects(compound(id), step.noted_early(id, compound(id)))?;
             match std::mem::take(&mut step.run.terminates) {
                 true => stops = true,
                 false => step.run.document_order.push(id),
@@ -272,7 +272,7 @@ impl<H: Host> Macrostep<'_, H> {
         self.run.document_order.sort_by_key(|&id| chart.layout.rank(compound(id).scope));
         let mut index = 0;
         while let Some(&id) = self.run.document_order.get(index) {
-            self.enter_targets(compound(id), self.noted_early(id))?;
+            self.enter_targets(compound(id), self.noted_early(id, compound(id)))?;
             index += 1;
         }
         self.run.terminates |= stops;
@@ -280,8 +280,12 @@ impl<H: Host> Macrostep<'_, H> {
         Ok(())
     }
 
-    fn noted_early(&self, id: CompoundTransitionId) -> Option<Arrival> {
-        self.compound(id).arrival.filter(|_| self.run.ending_early.contains(&id))
+    fn noted_early<'c>(
+        &self,
+        id: CompoundTransitionId,
+        compound: &'c CompoundTransition,
+    ) -> Option<&'c Arrival> {
+        compound.arrival.as_ref().filter(|_| self.run.ending_early.contains(&id))
     }
 
     /// A transition out of a composite without active children leaves nothing, and so conflicts

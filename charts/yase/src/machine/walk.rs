@@ -19,7 +19,7 @@ impl<H: Host> Macrostep<'_, H> {
     pub(crate) fn walk_segments(
         &mut self,
         way: &CompoundTransition,
-        ends_early: Option<Arrival>,
+        ends_early: Option<&Arrival>,
     ) -> Result<(), StepError> {
         let base = self.run.incomplete.len();
         self.take_segments(way, ends_early)?;
@@ -49,7 +49,7 @@ impl<H: Host> Macrostep<'_, H> {
     fn take_segments(
         &mut self,
         way: &CompoundTransition,
-        ends_early: Option<Arrival>,
+        ends_early: Option<&Arrival>,
     ) -> Result<(), StepError> {
         let count = ends_early.map_or(way.steps.len(), |arrival| arrival.segment);
         for step in &way.steps[..count] {
@@ -70,7 +70,7 @@ impl<H: Host> Macrostep<'_, H> {
     }
 
     /// Binds the timers that were started after the last target was entered to the first one.
-    fn bind_other_timers(&mut self, way: &CompoundTransition, ends_early: Option<Arrival>) {
+    fn bind_other_timers(&mut self, way: &CompoundTransition, ends_early: Option<&Arrival>) {
         while let Some(timer) = self.run.unbound_timers.pop() {
             if let (Owner::State(state), None) = (way.owner, ends_early) {
                 self.run.timers.bind(timer, state);
