@@ -52,8 +52,8 @@ impl NodeMapping {
 
     /// Replaces a node of the old chart by one of the new chart: for a state that was removed or
     /// renamed, or is to be replaced by another. Nodes inside the old one are then matched inside
-    /// the new one. Both are named by their paths (`chart/outer/inner`), by their short names, or by
-    /// as much of the end of either as identifies one node.
+    /// the new one. Both are named by their paths (`chart/outer/inner`), by their short names, or
+    /// by as much of the end of either as identifies one node.
     ///
     /// # Errors
     /// If a name fits no node or several.
