@@ -37,13 +37,14 @@ use crate::terminal::{CommandFailure, CommandOutput, Exit};
 #[derive(Subcommand, Debug)]
 pub(crate) enum ModelCommand {
     /// Transform a model into another model of the method; without --to, into the statechart it
-    /// describes.
+    /// describes: an outline to be read, or with --as or an extension of models a file of that
+    /// format.
     #[command(after_help = "Example: monas model transform models/goalie.srm")]
     Transform(TransformArguments),
     /// Convert a model to another format of its kind.
     ///
     /// Losses are listed, and nothing is written unless --lossy is given.
-    #[command(after_help = "Example: monas model convert models/goalie.srm goalie.scxml")]
+    #[command(after_help = "Example: monas model convert models/goalie.srm goalie.scxml --lossy")]
     Convert(ConvertArguments),
     /// Draw the statechart of a model as SVG.
     #[command(after_help = "Example: monas model draw models/goalie.srm -o goalie.svg")]
