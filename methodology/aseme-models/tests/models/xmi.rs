@@ -12,13 +12,23 @@ fn attributes_come_in_any_order_and_references_in_any_form() {
   <nodes name="r" label="0" type="OR"><Children name="0.1" label="0.1" type="START"/><Children name="a" label="0.2" type="BASIC"/></nodes>
   <transitions TE="[x &amp;&amp; y &lt; 2]" name="0.1TOa" source="//@nodes.0/@Children.0" target="//@nodes.0/@Children.1"/>
 </statechart:Model>"#;
-    let varied = r##"<?xml version="1.0"?><!DOCTYPE m [<!ENTITY both "&#38;&#38;">]>
+    let varied = r##"<?xml version="1.0"?>
 <!-- a comment --><x:Model xmlns:x="http://statechart/1.0" xmlns:xmi="http://www.omg.org/XMI" name="m" xmi:version="2.0">
   <transitions target="#b" source="#//@nodes/@Children.0" name="0.1TOa"
-    TE="[x &both; y &#60; 2]"/>
+    TE="[x &#38;&#x26; y &#60; 2]"/>
   <nodes type="OR" label="0" name="r"><Children type="START" label="0.1" name="0.1" activity="null"/><Children xmi:id="b" type="BASIC" label="0.2" name="a" activity=""/></nodes>
 </x:Model>"##;
     assert_eq!(clean(varied), clean(plain));
+}
+
+/// Entities that consist of entities ask for any amount of memory.
+#[test]
+fn a_document_type_is_refused() {
+    let text = "<!DOCTYPE m [<!ENTITY a \"xx\"><!ENTITY b \"&a;&a;\">]>\n<Model name=\"&b;\"/>";
+    let found = aseme_models::convert::read(&yase::Source::new("m.stct", text)).1;
+    let codes: Vec<&str> = found.iter().map(|found| found.code).collect();
+    assert_eq!(codes, ["E0246"], "{found:?}");
+    assert!(found[0].hint.as_deref().is_some_and(|hint| hint.contains("`<!DOCTYPE`")), "{found:?}");
 }
 
 #[test]
