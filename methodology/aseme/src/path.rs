@@ -81,7 +81,7 @@ impl Path {
     }
 
     /// The names in the path that no node of the chart has.
-    pub(crate) fn unknown_names<'a>(&'a self, chart: &'a Statechart) -> impl Iterator<Item = &'a str> {
+    pub fn unknown_names<'a>(&'a self, chart: &'a Statechart) -> impl Iterator<Item = &'a str> {
         let names = self.segments.iter().filter_map(|segment| match &segment.pattern {
             SegmentPattern::Name(name) => Some((segment, name.as_str())),
             _ => None,
