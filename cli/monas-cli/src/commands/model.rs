@@ -47,7 +47,7 @@ pub(crate) enum ModelCommand {
     #[command(after_help = "Example: monas model convert models/goalie.srm goalie.scxml --lossy")]
     Convert(ConvertArguments),
     /// Draw the statechart of a model as SVG.
-    #[command(after_help = "Example: monas model draw models/goalie.srm -o goalie.svg")]
+    #[command(after_help = "Example: monas model draw models/goalie.srm --compact -o goalie.svg")]
     Draw(DrawArguments),
     /// Derive the messages of a chart as a `.proto` file: the names of its variables, and the
     /// fields that its expressions use.
