@@ -108,8 +108,8 @@ pub fn refine_states(chart: &mut Statechart, entries: &[StateEntry]) -> Vec<Unma
     unmatched
 }
 
-/// So many entries that fit nothing are compared with everything that they may have meant.
-const COMPARED: usize = 100;
+/// So many names are compared for hints about entries that fit nothing.
+const COMPARISONS: usize = 1_000_000;
 
 /// A chart in which entries are looked up.
 struct Lookup<'a> {
@@ -121,7 +121,8 @@ struct Lookup<'a> {
 
 impl<'a> Lookup<'a> {
     fn new(chart: &'a Statechart) -> Lookup<'a> {
-        Lookup { chart, index: PathIndex::new(chart), left: Cell::new(COMPARED) }
+        let left = Cell::new(COMPARISONS / chart.nodes().len().max(1));
+        Lookup { chart, index: PathIndex::new(chart), left }
     }
 
     /// Whether one more comparison with the whole chart is made.

@@ -1,14 +1,14 @@
 //! Checks across formulas that are each syntactically correct.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use yase::diagnostic::nearest;
 use yase::{Diagnostic, Span};
 
 use super::{Formula, Liveness};
 
-/// So many formulas that nothing reaches are compared with the names in the others.
-const COMPARED: usize = 100;
+/// So many names are compared to find out what a formula that nothing reaches may be.
+const COMPARISONS: usize = 1_000_000;
 
 /// Shorter names than this resemble each other by chance.
 const SHORTEST_MISSPELT: usize = 4;
@@ -130,7 +130,7 @@ fn misspelt(
             names.entry(name).or_insert(span);
         }
     }
-    let unreached = unreached(liveness, by_name, reached).take(COMPARED);
+    let unreached = unreached(liveness, by_name, reached).take(COMPARISONS / names.len().max(1));
     unreached
         .filter(|(_, formula)| formula.name.len() >= SHORTEST_MISSPELT)
         .filter_map(|(index, formula)| {
@@ -144,18 +144,19 @@ fn misspelt(
 }
 
 fn unused(liveness: &Liveness, by_name: &BTreeMap<&str, usize>, reached: &[bool]) -> Vec<Diagnostic> {
-    let unused = unreached(liveness, by_name, reached).enumerate();
+    let used = liveness.formulas().iter().flat_map(|formula| liveness.names(formula)).map(|(name, _)| name);
+    let activities: BTreeSet<&str> = used.filter(|name| !by_name.contains_key(name)).collect();
+    let compared = COMPARISONS / activities.len().max(1);
     let root = liveness.formulas().first().map_or("", |formula| formula.name.as_str());
-    unused
+    unreached(liveness, by_name, reached)
+        .enumerate()
         .map(|(number, (_, formula))| {
             let message = format!("`{}` is not part of `{root}`", formula.name);
             let finding = Diagnostic::warning("E0215", formula.name_span, message);
-            if number >= COMPARED {
-                return finding;
+            match number < compared {
+                true => finding.with_nearest(&formula.name, activities.iter().copied()),
+                false => finding,
             }
-            let used =
-                liveness.formulas().iter().flat_map(|formula| liveness.names(formula)).map(|(name, _)| name);
-            finding.with_nearest(&formula.name, used.filter(|name| !by_name.contains_key(name)))
         })
         .collect()
 }
