@@ -205,7 +205,11 @@ pub fn check(source: &Arc<Source>, settings: &CheckSettings) -> CheckReport {
         }
         Some((model, _)) if !read.iter().any(Diagnostic::is_error) => {
             let what = format!("a model of the kind {}", model.kind());
-            CheckReport { what: Some(what), findings: findings(read, roles::check(&model)), explored: None }
+            CheckReport {
+                what: Some(what),
+                findings: findings(read, roles::check(&model, settings.world.as_ref())),
+                explored: None,
+            }
         }
         Some(_) => unreadable(read),
     };

@@ -223,3 +223,20 @@ fn a_misspelt_name_is_the_only_finding() {
     let found: Vec<&str> = report.findings.iter().map(|it| it.diagnostic.code).collect();
     assert_eq!(found, ["E0217"]);
 }
+
+/// The rules and outcomes of a protocol are held against the messages of the program.
+#[test]
+fn rules_and_outcomes_read_what_the_program_has() {
+    let text = "AIP:\nParticipant: a\n  engaging_rules = [Ball.fuond && Ball.distance < 2]\n  outcomes = [News.good] or [Ball.]\nParticipant: b\nProtocol: p\n  participants = a, b\n";
+    let found = |world: Option<ProgramSymbols>| -> Vec<String> {
+        let mut settings = CheckSettings::default();
+        settings.world = world;
+        check(&Source::new("p.aip", text), &settings).findings.iter().map(ToString::to_string).collect()
+    };
+    let linked = found(Some(world("p")));
+    let unknown = "p.aip:2:1: error[M17]: in `[Ball.fuond && Ball.distance < 2]` of `a`: the message `Ball` has no field `fuond` (did you mean `found`?)";
+    assert!(linked.iter().any(|it| it == unknown), "{linked:?}");
+    let unreadable = |it: &String| it.contains("error[E0838]: `[Ball.` of `a` is no condition");
+    assert_eq!(linked.iter().filter(|it| unreadable(it)).count(), 1, "{linked:?}");
+    assert_eq!(found(None).iter().filter(|it| it.contains("M17")).count(), 0);
+}
