@@ -59,7 +59,7 @@ const EXPRESSIONS: [(&str, &str); 4] = [
          Juggle -> Throw !2 interrupts : go | Message.Applause [Act.place.x > high + Act.type / 2 - 1 && Act.title != word || In(Watch)] / Act.type = Act.type + 1; Act.title = \"end\"; Act.mood = WILD; Act.place.x = -Act.height * 2; raise(go)\n\
          Throw -> Announce : not stop [abs(Act.height) >= 1 && !(Act.ready == loud) && Act.mood != CALM && Pins != NULL] / Act.ready = Act.type > 3; Act.count = 7; Act.width = high; Pins.held = Pins.count; publish.Act; publish_all\n\
          Announce -> Clap : * [pause && TimeoutCheck(rest) && Juggle.Act.ready] / StartTimeout(pause, 100ms), StartTimeout(rest, 1s); process_messages\n\
-         Watch -> Watch : [other.circus.State.Act.height <= high || Act == NULL]\n\
+         Watch -> Watch : [other.act.State.Act.height <= high || Act == NULL]\n\
          States:\nClap : priority = 2, entry = Greeting.number = 7, exit = Greeting.text = word, defer = stop, duration = 10ms\n",
     ),
     ("roles/usher.srm", "usher = (Announce . Clap)~\n"),

@@ -291,6 +291,9 @@ fn enclose(chart: &mut Iac, part: usize) -> usize {
         let IacTransition { source, target, .. } = chart.transitions[index];
         let is_at_border = !chart.transitions[index].refinement.internal;
         let (leaves, enters) = (source == part, target == part);
+        if (leaves || enters) && chart.transitions[index].name == chart.usual_name(source, target) {
+            chart.transitions[index].name.clear(); // to be named again by its new ends
+        }
         if leaves && is_at_border && !is_inside(chart, target, part) {
             chart.transitions[index].source = around;
         }

@@ -93,6 +93,7 @@ fn three_roles_conform_to_two_protocols_merged_in_any_order() {
             let text = Model::Chart(player.clone()).to_text();
             let (_, found) = convert::read(&Source::new("player.iac", text));
             assert_eq!(found, [], "labels and names");
+            assert!(!Model::Chart(player.clone()).to_text().contains("    name = "), "names of transitions");
             let (chart, found) = player.to_statechart();
             assert_eq!(found, []);
             chart.compile(&yase::TypeEnvironment::default()).map(drop).unwrap_or_else(only_unknown_messages);
