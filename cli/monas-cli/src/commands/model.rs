@@ -37,8 +37,10 @@ use crate::terminal::{CommandFailure, CommandOutput, Exit};
 #[derive(Subcommand, Debug)]
 pub(crate) enum ModelCommand {
     /// Transform a model into another model of the method; without --to, into the statechart it
-    /// describes: an outline to be read, or with --as or an extension of models a file of that
-    /// format.
+    /// describes.
+    ///
+    /// The statechart is an outline to be read; with --as, or with an output file that has an
+    /// extension of models, it is a file of that format.
     #[command(after_help = "Example: monas model transform models/goalie.srm")]
     Transform(TransformArguments),
     /// Convert a model to another format of its kind.
