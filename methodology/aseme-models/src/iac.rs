@@ -291,9 +291,9 @@ impl Iac {
             }
             node.label = label;
         }
-        for index in 0..self.transitions.len() {
+        for (index, is_usual) in usual.into_iter().enumerate() {
             let IacTransition { source, target, .. } = self.transitions[index];
-            if usual[index] && (within[source] || within[target]) {
+            if is_usual && (within[source] || within[target]) {
                 self.transitions[index].name = self.usual_name(source, target);
             }
         }

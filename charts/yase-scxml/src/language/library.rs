@@ -41,8 +41,11 @@ pub(crate) enum LibraryFunction {
     IsFinite,
 }
 
+/// A name and a function of one number.
+type NamedFunction = (&'static str, fn(f64) -> f64);
+
 /// The functions of `Math` of one number.
-const OF_ONE: [(&str, fn(f64) -> f64); 27] = [
+const OF_ONE: [NamedFunction; 27] = [
     ("abs", f64::abs),
     ("acos", libm::acos),
     ("acosh", libm::acosh),

@@ -60,16 +60,18 @@ impl<'a> PathIndex<'a> {
         let at = |path: &Path, ends: &[Vec<TransitionId>]| -> Vec<TransitionId> {
             self.nodes(path).into_iter().flat_map(|id| ends[id.0 as usize].iter().copied()).collect()
         };
-        let (mut found, other): (_, fn(&Self, TransitionId, &Path, &Path) -> bool) =
-            match (target.last_name(), source.last_name()) {
-                (None, Some(_)) => (at(source, &self.out), |index, id, _, target| {
-                    target.matches(index.chart, index.chart.transition(id).target)
-                }),
-                _ => (at(target, &self.into), |index, id, source, _| {
-                    source.matches(index.chart, index.chart.transition(id).source)
-                }),
-            };
-        found.retain(|&id| other(self, id, source, target));
+        let is_named_by_source = target.last_name().is_none() && source.last_name().is_some();
+        let mut found = match is_named_by_source {
+            true => at(source, &self.out),
+            false => at(target, &self.into),
+        };
+        found.retain(|&id| {
+            let transition = self.chart.transition(id);
+            match is_named_by_source {
+                true => target.matches(self.chart, transition.target),
+                false => source.matches(self.chart, transition.source),
+            }
+        });
         found.sort_unstable();
         found
     }
