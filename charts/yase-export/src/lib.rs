@@ -1,9 +1,10 @@
 //! Charts as drawings, and as text for other tools.
 //!
 //! [`to_svg`] draws a chart, [`to_svg_marked`] with highlighted parts; [`compact`] leaves out what
-//! only formulas need. The other functions write it for a tool: [`to_xstate`] for XState and compatible libraries, [`to_mermaid`] and
-//! [`to_plantuml`] for documents, [`to_dot`] for Graphviz. [`Exported::lost`] lists everything that
-//! the tool cannot express, by node and transition: nothing is omitted silently.
+//! only formulas need. The other functions write it for a tool: [`to_xstate`] for XState and
+//! compatible libraries, [`to_mermaid`] and [`to_plantuml`] for documents, [`to_dot`] for Graphviz.
+//! [`Exported::lost`] lists everything that the tool cannot express, by node and transition:
+//! nothing is omitted silently.
 //!
 //! All functions accept any chart, even an invalid one, and give equal texts for equal charts.
 //!

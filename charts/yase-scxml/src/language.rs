@@ -25,7 +25,8 @@
 //! ```
 //!
 //! Arrays have `length`, `concat`, `join`, `push` and `slice`; texts have `length`, `slice` and
-//! `concat`. `Math` has all but `random`, `imul` and `clz32`. Functions access their parameters, their own variables and those of the document.
+//! `concat`. `Math` has all but `random`, `imul` and `clz32`. Functions access their parameters,
+//! their own variables and those of the document.
 
 mod convert;
 mod evaluate;

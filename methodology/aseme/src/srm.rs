@@ -28,8 +28,9 @@
 //!   `scope/a -> scope/b`. A line without `->` continues the entry above it. `also` adds a
 //!   transition parallel to the one referred to, such as an exit that the formulas do not have.
 //! - **States**: `path : key = value, ...` with the keys `activity` (`""` for none), `priority`,
-//!   `entry`, `exit`, `defer`, `duration` and, for composites, `history`: with `shallow` or `deep` a composite that
-//!   is entered again resumes where it was left. A line without `:` continues the entry above it.
+//!   `entry`, `exit`, `defer`, `duration` and, for composites, `history`: with `shallow` or `deep`
+//!   a composite that is entered again resumes where it was left. A line without `:` continues the
+//!   entry above it.
 //! - **Layout**: positions in drawings, for elements that are not laid out automatically.
 //!   `path : at = right down, size = width height` for states and connectors,
 //!   `[scope:] source -> target [also [number]] : via = right down, ...` for the corners of a

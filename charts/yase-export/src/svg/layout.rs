@@ -14,8 +14,8 @@ use yase::statechart::{Node, NodeId, NodeKind, Point, Statechart, Transition};
 const PADDING: f64 = 14.0;
 /// Minimum width at which titles wrap.
 const TITLE_WIDTH: f64 = 200.0;
-/// So many regions from the first on begin a run of neighbours that gives the length of shelves, and
-/// so many are in one.
+/// So many regions from the first on begin a run of neighbours that gives the length of shelves,
+/// and so many are in one.
 const MOST_RUNS: usize = 16;
 /// Margin of the drawing.
 pub(crate) const MARGIN: f64 = 16.0;
