@@ -1,9 +1,10 @@
 //! Charts as drawings, and as text for other tools.
 //!
-//! [`to_svg`] draws a chart, [`to_svg_marked`] with highlighted parts. The other functions write it
-//! for a tool: [`to_xstate`] for XState and compatible libraries, [`to_mermaid`] and
-//! [`to_plantuml`] for documents, [`to_dot`] for Graphviz. [`Exported::lost`] lists everything that
-//! the tool cannot express, by node and transition: nothing is omitted silently.
+//! [`to_svg`] draws a chart, [`to_svg_marked`] with highlighted parts; [`compact`] leaves out what
+//! only formulas need. The other functions write it for a tool: [`to_xstate`] for XState and
+//! compatible libraries, [`to_mermaid`] and [`to_plantuml`] for documents, [`to_dot`] for Graphviz.
+//! [`Exported::lost`] lists everything that the tool cannot express, by node and transition:
+//! nothing is omitted silently.
 //!
 //! All functions accept any chart, even an invalid one, and give equal texts for equal charts.
 //!
@@ -45,6 +46,7 @@
 //! | E0707 | the moment at which a transition happens; it may happen earlier, later or otherwise |
 //! | E0708 | the chart at all: its tree is broken, and there is no text (an error) |
 
+mod compact;
 mod dot;
 mod highlights;
 mod ids;
@@ -57,6 +59,7 @@ mod plantuml;
 mod svg;
 mod xstate;
 
+pub use compact::compact;
 pub use dot::{to_dot, to_dot_marked};
 pub use highlights::{Highlights, Mark};
 pub use mermaid::to_mermaid;

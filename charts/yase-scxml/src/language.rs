@@ -2,8 +2,8 @@
 //!
 //! Values are those of ECMAScript (undefined, null, booleans, numbers, texts, arrays, objects,
 //! functions), with its conversions; objects are passed by reference. Features that need a complete
-//! engine are not supported: loops, classes, prototypes, exceptions, regular expressions, the
-//! library. They are [refused](Refusal::Unsupported) when a document is read. Text that is not
+//! engine are not supported: loops, classes, prototypes, exceptions, regular expressions, most of
+//! the library. They are [refused](Refusal::Unsupported) when a document is read. Text that is not
 //! ECMAScript is not refused: by the recommendation it raises `error.execution` when it is
 //! executed.
 //!
@@ -20,16 +20,20 @@
 //! unary      = ("!" | "-" | "+" | "typeof") unary | operand { "." name | "[" expression "]" | "(" expressions ")" }
 //! operand    = number | text | "true" | "false" | "null" | "undefined" | name | "[" expressions "]" | "{" members "}"
 //!            | "function" "(" names ")" block | "(" expression ")" | "In(" expression ")" | "String(" expression ")"
+//!            | "Math." name [ "(" expressions ")" ] | "JSON.stringify(" expressions ")"
+//!            | ("isNaN" | "isFinite") "(" expression ")"
 //! ```
 //!
 //! Arrays have `length`, `concat`, `join`, `push` and `slice`; texts have `length`, `slice` and
-//! `concat`. Functions access their parameters, their own variables and those of the document.
+//! `concat`. `Math` has all but `random`, `imul` and `clz32`. Functions access their parameters,
+//! their own variables and those of the document.
 
 mod convert;
 mod evaluate;
 mod execute;
 mod heap;
 mod lexer;
+mod library;
 mod memory;
 mod methods;
 mod parser;

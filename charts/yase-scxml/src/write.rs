@@ -378,9 +378,11 @@ impl<'a> DocumentWriter<'a> {
         let mut names = Vec::new();
         for target in targets {
             let node = self.node(target);
-            if !is_named(node.kind) || node.name.is_empty() {
-                let path = self.chart.path(target);
-                self.refuse(format!("`{path}` cannot be the target of a transition in SCXML"));
+            let path = || self.chart.path(target);
+            if !is_named(node.kind) {
+                self.refuse(format!("`{}` cannot be the target of a transition in SCXML", path()));
+            } else if node.name.is_empty() {
+                self.refuse(format!("`{}` has no name, by which SCXML refers to a target", path()));
             }
             names.push(node.name.as_str());
         }

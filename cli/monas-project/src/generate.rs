@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use aseme_codegen::generate::{self, CrateFiles, RustBindings, SKELETONS};
+use aseme_codegen::generate::{self, CrateFiles, RustActivity, RustBindings, SKELETONS};
 use aseme_models::convert::{self, Model};
 use aseme_models::ontology;
 use monas::{Registry, config, generated};
@@ -50,10 +50,15 @@ pub fn generate_crate(
         words.subjects = ontology::subjects(&chart);
     }
     remove_own_entries(&mut words, &name);
+    add_skeletons(&mut words, &folder, project)?;
     let files = generate::generate(chart, &words).map_err(Error::invalid)?;
     let (files, is_formatted) =
         formatted(files, project).map_err(|error| Error::new(ErrorKind::File, error.to_string()))?;
-    let manifest = project.manifest_of(&name, model, &crates(&files, &words))?;
+    let crates = crates(&files, &words);
+    if let Some(other) = crates.iter().find(|other| project.depends_on(other, &name)) {
+        return Err(circle(&name, other));
+    }
+    let manifest = project.manifest_of(&name, model, &crates)?;
     let mut writer = FileWriter { folder: &folder, changed: Vec::new() };
     writer.write("Cargo.toml", &manifest)?;
     for (path, text) in &files {
@@ -108,6 +113,53 @@ fn remove_own_entries(words: &mut RustBindings, name: &str) {
     words.activities.retain(|_, activity| !activity.path.starts_with(&own));
 }
 
+/// Adds the skeletons of the project's other generated crates that this program does not have yet:
+/// roles that share an activity have one skeleton of it.
+fn add_skeletons(words: &mut RustBindings, folder: &Path, project: &Project) -> Result<(), Error> {
+    let own = registered_in(&folder.join(SKELETONS))?;
+    for name in project.generated()? {
+        let other = project.statecharts().join(&name);
+        if other == folder {
+            continue;
+        }
+        for (activity, rust, is_function) in registered_in(&other.join(SKELETONS))? {
+            if !own.iter().any(|(known, ..)| *known == activity) {
+                let path = format!("{name}::activities::{rust}");
+                words.activities.entry(activity).or_insert(RustActivity { path, is_function });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The activities that the files of a folder register: the name, that in Rust, and whether it is a
+/// function.
+fn registered_in(folder: &Path) -> Result<Vec<(String, String, bool)>, Error> {
+    let Ok(entries) = fs::read_dir(folder) else { return Ok(Vec::new()) };
+    let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    files.sort_unstable(); // independent of the file system's order
+    let mut found = Vec::new();
+    for file in files.iter().filter(|file| file.extension().is_some_and(|ending| ending == "rs")) {
+        let text = fs::read_to_string(file).map_err(|error| Error::file("read", file, &error))?;
+        let registered = text.lines().filter_map(|line| {
+            let declaration = line.trim().strip_prefix("monas::activity!(")?.strip_suffix(");")?;
+            let (rust, name) = declaration.split_once(" as ").unwrap_or((declaration, declaration));
+            let function = rust.strip_prefix("fn ");
+            let name = name.trim().trim_matches('"').trim_start_matches("fn ").to_owned();
+            Some((name, function.unwrap_or(rust).trim().to_owned(), function.is_some()))
+        });
+        found.extend(registered);
+    }
+    Ok(found)
+}
+
+/// Two crates that would each use an activity of the other.
+fn circle(name: &str, other: &str) -> Error {
+    let message = format!("`{name}` uses an activity of `{other}`, which uses one of `{name}`");
+    let hint = "move the file of the activity that both use to a crate of activities";
+    Error::invalid(vec![Diagnostic::error("E0924", 0..0, message).with_hint(hint)])
+}
+
 /// The crates of messages and activities that the code refers to.
 fn crates(files: &CrateFiles, words: &RustBindings) -> BTreeSet<String> {
     let activities = words.activities.values().map(|activity| &activity.path);
@@ -116,7 +168,9 @@ fn crates(files: &CrateFiles, words: &RustBindings) -> BTreeSet<String> {
     let is_named = |name: &str| {
         let path = format!("{name}::");
         let begins = |text: &str, at: usize| {
-            text[..at].chars().next_back().is_none_or(|c| !c.is_alphanumeric() && !matches!(c, '_' | ':'))
+            // the paths of generated code begin with `::`, those of skeletons with the crate
+            let before = text[..at].strip_suffix("::").unwrap_or(&text[..at]);
+            before.chars().next_back().is_none_or(|c| !c.is_alphanumeric() && !matches!(c, '_' | ':' | '>'))
         };
         files.values().any(|text| text.match_indices(&path).any(|(at, _)| begins(text, at)))
     };

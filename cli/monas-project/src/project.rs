@@ -121,6 +121,24 @@ impl Project {
         ))
     }
 
+    /// Whether a generated crate uses another, itself or by way of others.
+    pub(crate) fn depends_on(&self, name: &str, wanted: &str) -> bool {
+        let (mut open, mut seen) = (vec![name.to_owned()], BTreeSet::new());
+        while let Some(name) = open.pop() {
+            if name == wanted {
+                return true;
+            }
+            let manifest = fs::read_to_string(self.statecharts().join(&name).join("Cargo.toml"));
+            if let Some(dependencies) =
+                manifest.ok().as_deref().and_then(|text| table(text, "[dependencies]"))
+            {
+                let names = dependencies.lines().filter_map(|line| line.split(['.', ' ', '=']).next());
+                open.extend(names.filter(|name| seen.insert((*name).to_owned())).map(str::to_owned));
+            }
+        }
+        false
+    }
+
     /// The model of a generated crate, if the file exists.
     pub(crate) fn model_of(&self, name: &str) -> Option<PathBuf> {
         let manifest = fs::read_to_string(self.statecharts().join(name).join("Cargo.toml")).ok()?;

@@ -110,6 +110,7 @@ pub const SKELETONS: &str = "src/activities/";
 /// said in Rust.
 pub fn generate(chart: &Statechart, words: &RustBindings) -> Result<CrateFiles, Vec<Diagnostic>> {
     let compiled = chart.compile_with(&words.vocabulary, Semantics::yase())?;
+    let words = &with_absolute_paths(words);
     let states = states::GeneratedStates::new(chart);
     let mut glossary = name_table::NameTable::new(chart, words);
     let functions = expressions::functions(&compiled, &states, &mut glossary)?;
@@ -125,6 +126,20 @@ pub fn generate(chart: &Statechart, words: &RustBindings) -> Result<CrateFiles, 
         files.extend(files::activities(chart, &states, words)?);
     }
     Ok(files)
+}
+
+/// The bindings with absolute paths: a crate called `messages` is not the module of that name that
+/// the generated crate has itself.
+fn with_absolute_paths(words: &RustBindings) -> RustBindings {
+    let mut words = words.clone();
+    words.runtime = names::absolute(&words.runtime);
+    for path in words.messages.values_mut() {
+        *path = names::absolute(path);
+    }
+    for activity in words.activities.values_mut() {
+        activity.path = names::absolute(&activity.path);
+    }
+    words
 }
 
 /// Something that Rust has no word for.

@@ -6,7 +6,7 @@
 //! | SAG, SUC, AIP | text, XMI |
 //! | SRM | text, XMI, and for one role the text that is refined and run |
 //! | FT | text |
-//! | EAC, IAC | text, XMI in four dialects, SCXML; Rust, which is only written |
+//! | EAC, IAC, the statechart of a role | text, XMI in four dialects, SCXML; Rust, which is only written |
 //!
 //! Only the text form stores where a chart is drawn: the original editors keep layouts in diagram
 //! files beside the models.

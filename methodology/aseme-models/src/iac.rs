@@ -239,6 +239,13 @@ impl Iac {
     /// them has them.
     pub(crate) fn in_order(mut self) -> Iac {
         let children = self.children();
+        self.arrange(&children);
+        self
+    }
+
+    /// Puts every node before its children, given in their order, and these together. Returns the
+    /// new place of each node; one that lies in no root is left out.
+    pub(crate) fn arrange(&mut self, children: &[Vec<usize>]) -> Vec<usize> {
         let roots = (0..self.nodes.len()).filter(|&index| self.nodes[index].parent.is_none());
         let mut open: Vec<usize> = roots.collect();
         open.reverse();
@@ -249,7 +256,7 @@ impl Iac {
         }
         let mut places = vec![usize::MAX; self.nodes.len()];
         order.iter().enumerate().for_each(|(new, &old)| places[old] = new);
-        self.nodes = order.iter().map(|&old| self.nodes[old].clone()).collect();
+        self.nodes = order.iter().map(|&old| std::mem::take(&mut self.nodes[old])).collect();
         for node in &mut self.nodes {
             node.parent = node.parent.map(|parent| places[parent]);
         }
@@ -257,7 +264,39 @@ impl Iac {
         for transition in &mut self.transitions {
             (transition.source, transition.target) = (places[transition.source], places[transition.target]);
         }
-        self
+        places
+    }
+
+    /// Gives a node and those in it the labels of their places, and the names that follow from
+    /// labels.
+    pub(crate) fn relabel(&mut self, top: usize) {
+        let labels = self.labels();
+        let is_within = |mut node: usize| loop {
+            match self.nodes[node].parent {
+                _ if node == top => return true,
+                Some(parent) => node = parent,
+                None => return false,
+            }
+        };
+        let within: Vec<bool> = (0..self.nodes.len()).map(is_within).collect();
+        let usual: Vec<bool> = self
+            .transitions
+            .iter()
+            .map(|it| it.name.is_empty() || it.name == self.usual_name(it.source, it.target))
+            .collect();
+        for (index, label) in labels.into_iter().enumerate().filter(|(index, _)| within[*index]) {
+            let node = &mut self.nodes[index];
+            if node.name == node.label {
+                node.name.clone_from(&label);
+            }
+            node.label = label;
+        }
+        for (index, is_usual) in usual.into_iter().enumerate() {
+            let IacTransition { source, target, .. } = self.transitions[index];
+            if is_usual && (within[source] || within[target]) {
+                self.transitions[index].name = self.usual_name(source, target);
+            }
+        }
     }
 
     /// The name that a transition between two nodes usually has.

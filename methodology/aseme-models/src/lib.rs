@@ -36,8 +36,10 @@
 
 pub mod aip;
 pub mod convert;
+pub mod diagram;
 pub mod diff;
 mod document;
+mod drawing;
 pub mod functionality;
 pub mod iac;
 mod meta;
@@ -50,6 +52,7 @@ pub mod transformations;
 mod xmi;
 
 pub use aip::Aip;
+pub use drawing::drawable_chart_of;
 pub use functionality::FunctionalityTable;
 pub use iac::Iac;
 pub use roles::SystemRoles;

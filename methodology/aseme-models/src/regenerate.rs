@@ -1,14 +1,16 @@
 //! Preservation of refinements when formulas are edited.
 //!
 //! Entries of a role refer to states by paths. [`comment_out_refinements`] processes a role whose
-//! formulas were edited: entries that still match stay unchanged; each other entry becomes a
-//! comment in its place, with the reason and likely candidates. [`apply_refinements`] applies the
+//! formulas were edited: entries that still match stay unchanged; entries about a composite whose
+//! text was edited follow it; each other entry becomes a comment in its place, with the reason and
+//! likely candidates. [`apply_refinements`] applies the
 //! entries of another model (an older role, a chart that was refined in an editor) to a role;
 //! [`transfer_refinements`] copies what only a model file can represent (functionalities,
 //! variables, metadata) from an older chart to a newer one.
 
 mod charts;
 mod entries;
+mod renamed;
 
 use yase::statechart::Layout;
 use yase::{Diagnostic, NodeId, NodeKind, Statechart, Transition, TransitionId};
@@ -31,6 +33,8 @@ pub struct RegeneratedRole {
     pub kept: usize,
     /// The entries that no longer match, in order.
     pub lost: Vec<UnmatchedEntry>,
+    /// The entries that are about a composite with another name now (E0256).
+    pub renamed: Vec<Diagnostic>,
 }
 
 /// The role with every entry that no longer fits as a comment in its place.
@@ -38,15 +42,14 @@ pub struct RegeneratedRole {
 /// # Errors
 /// The formulas themselves cannot be expanded, or the file is XMI, which has no comments.
 pub fn comment_out_refinements(file: &SrmFile) -> Result<RegeneratedRole, Vec<Diagnostic>> {
-    let (mut chart, found) = liveness_to_statechart(&file.srm().liveness);
+    let (chart, found) = liveness_to_statechart(&file.srm().liveness);
     if found.iter().any(Diagnostic::is_error) {
         return Err(found);
     }
-    let srm = file.srm();
-    let mut lost = refine::refine(&mut chart, &srm.transitions);
-    lost.extend(refine::refine_layout(&mut chart, &srm.layout));
-    lost.extend(refine::refine_states(&mut chart, &srm.states));
+    let original: Vec<SrmEntry> = file.entries().iter().copied().filter(is_refinement).collect();
+    let (file, renamed) = with_new_names(file, &original, &chart);
     let entries: Vec<SrmEntry> = file.entries().iter().copied().filter(is_refinement).collect();
+    let mut lost = unmatched(&file, chart);
     let mut text = file.text().to_owned();
     let mut count = 0;
     // from the end, so that places before stay true
@@ -56,7 +59,44 @@ pub fn comment_out_refinements(file: &SrmFile) -> Result<RegeneratedRole, Vec<Di
             count += 1;
         }
     }
-    Ok(RegeneratedRole { text, kept: entries.len() - count, lost })
+    // positions are those of the file as it was given
+    for unmatched in &mut lost {
+        let number = entries.iter().position(|entry| entry.span == unmatched.diagnostic.span);
+        if let Some(entry) = number.and_then(|number| original.get(number)) {
+            unmatched.diagnostic.span = entry.span;
+        }
+    }
+    Ok(RegeneratedRole { text, kept: entries.len() - count, lost, renamed })
+}
+
+/// The entries of a role that do not fit the chart of its formulas.
+fn unmatched(file: &SrmFile, mut chart: Statechart) -> Vec<UnmatchedEntry> {
+    let srm = file.srm();
+    let mut lost = refine::refine(&mut chart, &srm.transitions);
+    lost.extend(refine::refine_layout(&mut chart, &srm.layout));
+    lost.extend(refine::refine_states(&mut chart, &srm.states));
+    lost
+}
+
+/// The role with the present names of composites in entries that fit nothing by the names they had,
+/// and what was changed.
+fn with_new_names(file: &SrmFile, entries: &[SrmEntry], chart: &Statechart) -> (SrmFile, Vec<Diagnostic>) {
+    let lost = unmatched(file, chart.clone());
+    let is_lost = |entry: &&SrmEntry| {
+        lost.iter().any(|it| it.diagnostic.code == "E0250" && it.diagnostic.span == entry.span)
+    };
+    let mut text = file.text().to_owned();
+    let mut found = Vec::new();
+    // from the end, so that places before stay true
+    for entry in entries.iter().rev().filter(is_lost) {
+        if let Some(new) = renamed::with_new_names(file, entry, chart) {
+            let place = entry.span.start..entry.span.end;
+            found.push(renamed::renamed(entry, &text[place.clone()], &new));
+            text.replace_range(place, &new);
+        }
+    }
+    found.reverse();
+    (SrmFile::parse(text).0, found)
 }
 
 fn is_refinement(entry: &SrmEntry) -> bool {
@@ -114,7 +154,7 @@ pub fn apply_refinements(
         let gap = if text.ends_with('\n') { "" } else { "\n" };
         text = format!("{text}{gap}{}\n", comment(&unmatched.text, &unmatched.diagnostic));
     }
-    Ok(RegeneratedRole { text, kept, lost })
+    Ok(RegeneratedRole { text, kept, lost, renamed: Vec::new() })
 }
 
 struct RefinementTransfer {

@@ -35,9 +35,7 @@ pub use suc_to_srm::suc_to_srm;
 
 use crate::suc::{RoleKind, Suc, UseCase};
 use aseme::liveness::Liveness;
-
-/// Placeholder in a formula for an operator that is to be chosen.
-pub const OPEN_OPERATOR: &str = "?OP?";
+pub use aseme::liveness::OPEN_OPERATOR;
 
 /// Names with operators between that are to be chosen.
 fn joined<'a>(names: impl IntoIterator<Item = &'a str>) -> String {

@@ -197,6 +197,7 @@ pub fn check(source: &Arc<Source>, settings: &CheckSettings) -> CheckReport {
     let (found, read) = convert::read(source);
     let mut report = match found {
         None => unreadable(read),
+        Some((Model::Role(_), _)) if aseme::have_formula_errors(&read) => unreadable(read),
         Some((Model::Role(file), _)) => about(checked_model::of_role(file.srm()), &[], read, settings),
         Some((Model::Chart(_), convert::Format::Scxml)) => scxml(source, settings),
         Some((Model::Chart(chart), _)) => {
@@ -204,7 +205,11 @@ pub fn check(source: &Arc<Source>, settings: &CheckSettings) -> CheckReport {
         }
         Some((model, _)) if !read.iter().any(Diagnostic::is_error) => {
             let what = format!("a model of the kind {}", model.kind());
-            CheckReport { what: Some(what), findings: findings(read, roles::check(&model)), explored: None }
+            CheckReport {
+                what: Some(what),
+                findings: findings(read, roles::check(&model, settings.world.as_ref())),
+                explored: None,
+            }
         }
         Some(_) => unreadable(read),
     };
@@ -264,7 +269,10 @@ fn charted(
         found.extend(guards::check(&subject));
         found.extend(profiles::check(&subject));
         found.extend(messages::same_step(&subject));
-        found.extend(settings.world.iter().flat_map(|world| messages::names(&subject, world)));
+        match &settings.world {
+            Some(world) => found.extend(messages::names(&subject, world)),
+            None => found.extend(messages::names_like_formulas(&subject)),
+        }
         found.extend(settings.world.iter().flat_map(|world| topics::unmet(&subject, world)));
     }
     let can_be_explored = settings.states > 0 && is_ours(&subject) && !found.iter().any(Diagnostic::is_error);

@@ -106,6 +106,7 @@ pub(crate) fn chart_and_places(source: &Arc<Source>) -> Result<(Statechart, Vec<
 pub(crate) fn subject_of(source: &Arc<Source>) -> Result<CheckedModel, Vec<Diagnostic>> {
     let (found, mut read) = convert::read(source);
     let (subject, made) = match found {
+        Some((Model::Role(_), _)) if aseme::have_formula_errors(&read) => return Err(placed(source, read)),
         Some((Model::Role(file), _)) => of_role(file.srm()),
         Some((Model::Chart(chart), _)) => of_chart(&chart),
         Some((model, _)) => {

@@ -173,7 +173,8 @@ fn chart_part(
     part::guarded(eac, node, found);
 }
 
-/// The transitions that lead into a composite and out of it.
+/// The transitions that lead into a composite and out of it; one from the composite to itself
+/// enters it again.
 struct BoundaryTransitions<'a> {
     into: Vec<&'a IacTransition>,
     out: Vec<&'a IacTransition>,
@@ -182,7 +183,9 @@ struct BoundaryTransitions<'a> {
 impl BoundaryTransitions<'_> {
     fn of(chart: &Iac, node: usize) -> BoundaryTransitions<'_> {
         let inside = |at: usize| part::is_inside(chart, at, node);
-        let crossing = |it: &&IacTransition| inside(it.source) != inside(it.target);
+        let is_repetition =
+            |it: &IacTransition| (it.source, it.target) == (node, node) && !it.refinement.internal;
+        let crossing = |it: &&IacTransition| inside(it.source) != inside(it.target) || is_repetition(it);
         let (into, out) =
             chart.transitions.iter().filter(crossing).partition(|it: &&IacTransition| inside(it.target));
         BoundaryTransitions { into, out }

@@ -93,7 +93,7 @@ use yase::{Diagnostic, Source, Statechart};
 /// known.
 pub fn statechart_of_role(source: &Arc<Source>) -> (Statechart, Vec<Diagnostic>) {
     let (file, mut diagnostics) = SrmFile::parse(source.text.as_str());
-    let (chart, findings) = match diagnostics.iter().any(is_about_formulas) {
+    let (chart, findings) = match have_formula_errors(&diagnostics) {
         true => liveness_to_statechart(&file.srm().liveness),
         false => role_to_statechart(file.srm()),
     };
@@ -102,6 +102,8 @@ pub fn statechart_of_role(source: &Arc<Source>) -> (Statechart, Vec<Diagnostic>)
     (chart, diagnostics.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect())
 }
 
-fn is_about_formulas(diagnostic: &Diagnostic) -> bool {
-    diagnostic.is_error() && ("E0200".."E0220").contains(&diagnostic.code)
+/// Whether findings about a role include errors of its formulas, from which more would follow: the
+/// states that its refinements refer to are not known.
+pub fn have_formula_errors(findings: &[Diagnostic]) -> bool {
+    findings.iter().any(|finding| finding.is_error() && ("E0200".."E0220").contains(&finding.code))
 }

@@ -31,6 +31,8 @@ mod lexer;
 mod parser;
 mod print;
 
+pub use lexer::OPEN_OPERATOR;
+
 use std::collections::BTreeMap;
 use std::ops::Range;
 

@@ -13,11 +13,15 @@
 //! 5. `*` is any state, `*~` any state that repeats forever (one without END), `*||*` any AND
 //!    state.
 
+mod index;
+
 use std::fmt;
 
 use yase::{Diagnostic, NodeId, NodeKind, Span, Statechart, Transition, TransitionId};
 
 use crate::text::{canonical_name, is_name_character, trimmed};
+
+pub use index::PathIndex;
 
 /// A way down to a state, to be found in a chart.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -80,8 +84,16 @@ impl Path {
         ends_with(chart, node, &self.segments)
     }
 
+    /// The name of the node itself, unless it is known by its kind or number.
+    fn last_name(&self) -> Option<&str> {
+        match &self.segments.last()?.pattern {
+            SegmentPattern::Name(name) if !name.bytes().all(|byte| byte.is_ascii_digit()) => Some(name),
+            _ => None,
+        }
+    }
+
     /// The names in the path that no node of the chart has.
-    pub(crate) fn unknown_names<'a>(&'a self, chart: &'a Statechart) -> impl Iterator<Item = &'a str> {
+    pub fn unknown_names<'a>(&'a self, chart: &'a Statechart) -> impl Iterator<Item = &'a str> {
         let names = self.segments.iter().filter_map(|segment| match &segment.pattern {
             SegmentPattern::Name(name) => Some((segment, name.as_str())),
             _ => None,
@@ -191,7 +203,9 @@ impl SegmentPattern {
     fn matches(&self, chart: &Statechart, id: NodeId) -> bool {
         let node = chart.node(id);
         match self {
-            SegmentPattern::Name(name) if is_region(chart, id) => name.parse() == Ok(place(chart, id)),
+            SegmentPattern::Name(name) if is_region(chart, id) => {
+                name.parse().is_ok_and(|number: usize| number == place(chart, id))
+            }
             SegmentPattern::Name(name) => node.name == *name,
             SegmentPattern::Connector(kind) => node.kind == *kind,
             SegmentPattern::AnyState => !node.name.is_empty(),

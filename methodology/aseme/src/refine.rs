@@ -10,12 +10,13 @@
 
 mod layout;
 
+use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use yase::diagnostic::nearest;
 use yase::{Diagnostic, NodeId, NodeKind, Span, Statechart, Transition, TransitionId};
 
-use crate::path::{self, Path};
+use crate::path::{self, Path, PathIndex};
 use crate::srm::{StateEntry, TransitionEntry};
 
 pub use layout::{place_among_twins, refine_layout};
@@ -45,16 +46,18 @@ pub fn refine_placed(
     entries: &[TransitionEntry],
 ) -> (BTreeMap<TransitionId, usize>, Vec<UnmatchedEntry>) {
     let (besides, own): (Vec<usize>, Vec<usize>) = (0..entries.len()).partition(|&index| entries[index].also);
+    let plain = chart.clone();
+    let lookup = Lookup::new(&plain);
     let wishes: Vec<RefinementTarget<TransitionId>> =
-        own.iter().map(|&index| transitions_of(chart, &entries[index])).collect();
-    let (chosen, mut unmatched) = assign_entries(&wishes, |id| path::shortest_transition(chart, *id));
+        own.iter().map(|&index| transitions_of(&lookup, &entries[index])).collect();
+    let (chosen, mut unmatched) = assign_entries(&wishes, |id| lookup.transition_text(*id));
     let mut chosen: BTreeMap<TransitionId, usize> =
         chosen.into_iter().map(|(id, wish)| (id, own[wish])).collect();
     for (&id, &index) in &chosen {
         entries[index].apply(chart, id);
     }
     for index in besides {
-        match apply_to_transitions(chart, &entries[index]) {
+        match apply_to_transitions(chart, &lookup, &entries[index]) {
             Ok(added) => chosen.extend(added.into_iter().map(|id| (id, index))),
             Err(misfit) => unmatched.push(*misfit),
         }
@@ -66,11 +69,12 @@ pub fn refine_placed(
 /// Adds a transition parallel to each one that an entry refers to.
 fn apply_to_transitions(
     chart: &mut Statechart,
+    lookup: &Lookup<'_>,
     entry: &TransitionEntry,
 ) -> Result<Vec<TransitionId>, Box<UnmatchedEntry>> {
-    let wish = transitions_of(chart, entry);
+    let wish = transitions_of(lookup, entry);
     if wish.is_ambiguous_or_unmatched() {
-        return Err(Box::new(unmatched_entry(&wish, |id| path::shortest_transition(chart, *id))));
+        return Err(Box::new(unmatched_entry(&wish, |id| lookup.transition_text(*id))));
     }
     let add = |id: TransitionId| {
         let Transition { source, target, .. } = *chart.transition(id);
@@ -83,8 +87,11 @@ fn apply_to_transitions(
 
 /// Applies entries to the states of a chart; entries that do not match are returned, in order.
 pub fn refine_states(chart: &mut Statechart, entries: &[StateEntry]) -> Vec<UnmatchedEntry> {
-    let wishes: Vec<RefinementTarget<NodeId>> = entries.iter().map(|entry| states_of(chart, entry)).collect();
-    let (chosen, mut unmatched) = assign_entries(&wishes, |id| path::shortest_path(chart, *id));
+    let plain = chart.clone();
+    let lookup = Lookup::new(&plain);
+    let wishes: Vec<RefinementTarget<NodeId>> =
+        entries.iter().map(|entry| states_of(&lookup, entry)).collect();
+    let (chosen, mut unmatched) = assign_entries(&wishes, |id| lookup.node_text(*id));
     for (id, index) in chosen {
         let misfit: Option<fn(&RefinementTarget<'_, NodeId>, String) -> UnmatchedEntry> =
             match chart.node(id).kind {
@@ -99,6 +106,43 @@ pub fn refine_states(chart: &mut Statechart, entries: &[StateEntry]) -> Vec<Unma
     }
     unmatched.sort_by_key(|unmatched| unmatched.diagnostic.span);
     unmatched
+}
+
+/// So many names are compared for hints about entries that fit nothing.
+const COMPARISONS: usize = 1_000_000;
+
+/// A chart in which entries are looked up.
+struct Lookup<'a> {
+    chart: &'a Statechart,
+    index: PathIndex<'a>,
+    /// The comparisons that are left.
+    left: Cell<usize>,
+}
+
+impl<'a> Lookup<'a> {
+    fn new(chart: &'a Statechart) -> Lookup<'a> {
+        let left = Cell::new(COMPARISONS / chart.nodes().len().max(1));
+        Lookup { chart, index: PathIndex::new(chart), left }
+    }
+
+    /// Whether one more comparison with the whole chart is made.
+    fn may_compare(&self) -> bool {
+        let left = self.left.get();
+        self.left.set(left.saturating_sub(1));
+        left > 0
+    }
+
+    fn transition_text(&self, id: TransitionId) -> String {
+        if self.may_compare() {
+            return path::shortest_transition(self.chart, id);
+        }
+        let Transition { source, target, .. } = *self.chart.transition(id);
+        format!("{} -> {}", self.chart.path(source), self.chart.path(target))
+    }
+
+    fn node_text(&self, id: NodeId) -> String {
+        if self.may_compare() { path::shortest_path(self.chart, id) } else { self.chart.path(id) }
+    }
 }
 
 /// What one entry names.
@@ -119,7 +163,8 @@ impl<Id> RefinementTarget<'_, Id> {
     }
 }
 
-fn transitions_of<'a>(chart: &Statechart, entry: &'a TransitionEntry) -> RefinementTarget<'a, TransitionId> {
+fn transitions_of<'a>(lookup: &Lookup<'_>, entry: &'a TransitionEntry) -> RefinementTarget<'a, TransitionId> {
+    let chart = lookup.chart;
     // of several between the same two ends the first is the formula's, the others stand beside it
     let mut ends = BTreeSet::new();
     let is_first = |id: &TransitionId| {
@@ -127,18 +172,25 @@ fn transitions_of<'a>(chart: &Statechart, entry: &'a TransitionEntry) -> Refinem
         ends.insert((source, target))
     };
     let named: Vec<TransitionId> =
-        path::transitions(chart, &entry.source, &entry.target).filter(is_first).collect();
-    let near =
-        if named.is_empty() { similar_transitions(chart, &entry.source, &entry.target) } else { Vec::new() };
+        lookup.index.transitions(&entry.source, &entry.target).into_iter().filter(is_first).collect();
+    let near = match named.is_empty() && lookup.may_compare() {
+        true => similar_transitions(chart, &entry.source, &entry.target),
+        false => Vec::new(),
+    };
     let has_wildcard = entry.has_wildcard();
     RefinementTarget { text: &entry.text, span: entry.span, thing: "transition", has_wildcard, named, near }
 }
 
-fn states_of<'a>(chart: &Statechart, entry: &'a StateEntry) -> RefinementTarget<'a, NodeId> {
+fn states_of<'a>(lookup: &Lookup<'_>, entry: &'a StateEntry) -> RefinementTarget<'a, NodeId> {
+    let chart = lookup.chart;
     let is_state = |kind| matches!(kind, NodeKind::Or | NodeKind::And | NodeKind::Basic | NodeKind::End);
-    let states = chart.nodes().filter(|(_, node)| is_state(node.kind)).map(|(id, _)| id);
-    let named: Vec<NodeId> = states.filter(|&id| entry.path.matches(chart, id)).collect();
-    let near = if named.is_empty() { near_names(chart, &entry.path).collect() } else { Vec::new() };
+    let mut named = lookup.index.nodes(&entry.path);
+    named.retain(|&id| is_state(chart.node(id).kind));
+    let near = if named.is_empty() && lookup.may_compare() {
+        near_names(chart, &entry.path).collect()
+    } else {
+        Vec::new()
+    };
     RefinementTarget {
         text: &entry.text,
         span: entry.span,

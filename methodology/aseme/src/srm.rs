@@ -27,9 +27,10 @@
 //!   Paths are described in [`path`](crate::path); `scope: a -> b` is short for
 //!   `scope/a -> scope/b`. A line without `->` continues the entry above it. `also` adds a
 //!   transition parallel to the one referred to, such as an exit that the formulas do not have.
-//! - **States**: `path : key = value, ...` with the keys `activity`, `priority`, `entry`, `exit`,
-//!   `defer`, `duration` and, for composites, `history`: with `shallow` or `deep` a composite that
-//!   is entered again resumes where it was left. A line without `:` continues the entry above it.
+//! - **States**: `path : key = value, ...` with the keys `activity` (`""` for none), `priority`,
+//!   `entry`, `exit`, `defer`, `duration` and, for composites, `history`: with `shallow` or `deep`
+//!   a composite that is entered again resumes where it was left. A line without `:` continues the
+//!   entry above it.
 //! - **Layout**: positions in drawings, for elements that are not laid out automatically.
 //!   `path : at = right down, size = width height` for states and connectors,
 //!   `[scope:] source -> target [also [number]] : via = right down, ...` for the corners of a
@@ -132,7 +133,7 @@ impl TransitionEntry {
 pub struct StateEntry {
     /// The state.
     pub path: Path,
-    /// The activity it runs.
+    /// The activity it runs; empty for none at all.
     pub activity: Option<String>,
     /// The priority of its activity.
     pub priority: Option<i32>,
@@ -160,7 +161,7 @@ impl StateEntry {
 
     pub(crate) fn apply(&self, chart: &mut Statechart, id: NodeId) {
         let node = chart.node_mut(id);
-        node.activity = self.activity.clone().or(node.activity.take());
+        node.activity = self.activity.clone().or(node.activity.take()).filter(|name| !name.is_empty());
         node.priority = self.priority.unwrap_or(node.priority);
         node.duration = self.duration.or(node.duration);
         for (said, place) in [(&self.entry, &mut node.entry), (&self.exit, &mut node.exit)] {

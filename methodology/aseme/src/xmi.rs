@@ -13,12 +13,20 @@ pub fn is_xml(text: &str) -> bool {
     text.trim_start_matches('\u{feff}').trim_start().starts_with('<')
 }
 
-/// Parses a text as XML, or returns the error (E0246).
+/// Parses a text as XML, or returns the error (E0246). A document type is refused: no tool of the
+/// method writes one, and its entities can ask for any amount of memory.
 pub fn parse(text: &str) -> Result<Document<'_>, Diagnostic> {
-    let options = ParsingOptions { allow_dtd: true, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    Document::parse_with_options(text, options).map_err(|error| {
-        let message = format!("this is not well-formed XML: {error}");
-        Diagnostic::error("E0246", place(text, error.pos()), message)
+    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    Document::parse_with_options(text, options).map_err(|error| match error {
+        roxmltree::Error::DtdDetected => {
+            let at = text.find("<!DOCTYPE").unwrap_or_default();
+            Diagnostic::error("E0246", Span::new(at, at), "models have no document type")
+                .with_hint("write what its entities stand for, and take `<!DOCTYPE` away")
+        }
+        error => {
+            let message = format!("this is not well-formed XML: {error}");
+            Diagnostic::error("E0246", place(text, error.pos()), message)
+        }
     })
 }
 

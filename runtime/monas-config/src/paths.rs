@@ -1,19 +1,42 @@
 //! Files named by a file.
 
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use yase::diagnostic::nearest;
 use yase::{Diagnostic, Source};
 
+/// The largest file that is read, in bytes, unless [`LIMIT`] says another number.
+const LARGEST: u64 = 64 << 20;
+
+/// The environment variable with the size of the largest file that is read, in MiB.
+const LIMIT: &str = "MONAS_DOCUMENT_LIMIT";
+
 /// The text of a file.
 ///
 /// # Errors
-/// A diagnostic that names the file.
+/// A diagnostic that names the file. Files of more than 64 MiB, or what the environment variable
+/// `MONAS_DOCUMENT_LIMIT` says in MiB, are refused (E0317).
 pub fn read(path: &Path) -> Result<Arc<Source>, Box<Diagnostic>> {
+    let set = std::env::var(LIMIT).ok().and_then(|text| text.parse().ok());
+    read_up_to(path, set.map_or(LARGEST, |mebibytes: u64| mebibytes.saturating_mul(1 << 20)))
+}
+
+fn read_up_to(path: &Path, largest: u64) -> Result<Arc<Source>, Box<Diagnostic>> {
     let name = path.display().to_string();
-    match fs::read(path) {
+    let bytes = || -> std::io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        fs::File::open(path)?.take(largest.saturating_add(1)).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    };
+    match bytes() {
+        Ok(bytes) if bytes.len() as u64 > largest => {
+            let message = format!("`{name}` has more than {} MiB", largest >> 20);
+            let hint = format!("set the environment variable {LIMIT} to a larger number of MiB");
+            Err(Box::new(unreadable("E0317", &name, message).with_hint(hint)))
+        }
         Ok(bytes) => match String::from_utf8(bytes) {
             Ok(text) => Ok(Source::new(name, text)),
             Err(error) => {
@@ -64,4 +87,20 @@ fn neighbour(path: &Path) -> Option<PathBuf> {
     // The order of a directory listing is unspecified.
     names.sort_unstable();
     nearest(name, names.iter().map(String::as_str)).map(|found| folder.join(found))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_is_too_large_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("large.srm");
+        fs::write(&path, "r = A").unwrap();
+        assert_eq!(read_up_to(&path, 5).unwrap().text, "r = A");
+        let refused = read_up_to(&path, 4).unwrap_err();
+        assert_eq!(refused.code, "E0317");
+        assert!(refused.hint.as_deref().unwrap_or_default().contains(LIMIT));
+    }
 }

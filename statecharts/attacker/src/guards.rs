@@ -2,7 +2,7 @@
 
 #![allow(non_snake_case)] // the names are those of states
 
-use monas::generated::{
+use ::monas::generated::{
     GuardResult, World, all, any, at_least, at_most, equal, given, holds, less, minus, more,
 };
 

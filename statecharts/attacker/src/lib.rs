@@ -5,7 +5,7 @@
 //! [`State`] lists its states; the modules `chart` and `transitions` say how they hang together, `guards` what the guards ask and
 //! what is assigned, `words` what these speak of.
 
-mod activities;
+pub mod activities;
 mod chart;
 mod guards;
 mod states;
@@ -15,4 +15,4 @@ mod words;
 pub use chart::chart;
 pub use states::State;
 
-monas::statechart!("attacker" = chart, activities::instances);
+::monas::statechart!("attacker" = chart, activities::instances);

@@ -16,7 +16,7 @@ pub(crate) mod constants {
 /// The functions that expressions call.
 #[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
 pub(crate) mod functions {
-    use monas::generated::Function;
+    use ::monas::generated::Function;
 
     /// `abs`
     pub(crate) const abs: Function = Function(0);
@@ -25,18 +25,18 @@ pub(crate) mod functions {
 /// The messages that are read and written.
 #[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
 pub(crate) mod messages {
-    use monas::generated::Source;
+    use ::monas::generated::Source;
 
     /// `soccer/game_state`
-    pub(crate) const GAME_STATE: Source<monas_soccer::GameState> = Source::new(0);
+    pub(crate) const GAME_STATE: Source<::monas_soccer::GameState> = Source::new(0);
     /// `soccer/ball`
-    pub(crate) const BALL: Source<monas_soccer::Ball> = Source::new(1);
+    pub(crate) const BALL: Source<::monas_soccer::Ball> = Source::new(1);
 }
 
 /// The timers.
 #[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
 pub(crate) mod timers {
-    use monas::generated::Timer;
+    use ::monas::generated::Timer;
 
     /// `robot_timeout`
     pub(crate) const robot_timeout: Timer = Timer(0);

@@ -1,7 +1,7 @@
 //! The activities of the states. One that is not there is an error here.
 
-use monas::generated::Instance;
-use monas_soccer::activities::{
+use ::monas::generated::Instance;
+use ::monas_soccer::activities::{
     AlignWithBall, BringBallToPass, BringBallToShoot, LedHandler, LeftKick, MotionController, PassBall,
     RightKick, RobotController, SearchBall, SendCalibration, Sensors, Stand, TrackBall, Vision,
     WaitForBallMessage, WalkTowardsBall, WalkTowardsGoal,

@@ -1,6 +1,6 @@
 //! The states.
 
-use monas::generated::NodeId;
+use ::monas::generated::NodeId;
 
 /// The nodes of the chart, in its order. Each is called after the end of its path, from itself outwards, that no other has.
 #[allow(non_camel_case_types, clippy::upper_case_acronyms)] // the names are the model's

@@ -1,7 +1,7 @@
 //! The activities of the states. One that is not there is an error here.
 
-use monas::generated::Instance;
-use monas_soccer::activities::{
+use ::monas::generated::Instance;
+use ::monas_soccer::activities::{
     LedHandler, LeftDive, LeftFall, MotionController, RightDive, RightFall, RobotController, SearchBall,
     SendCalibration, Sensors, Stand, TrackBall, Vision, WaitForBallMessage,
 };

@@ -1,6 +1,6 @@
 //! The structure of the chart.
 
-use monas::generated::{Diagnostic, NodeKind, SourceDeclaration, TypedChart, TypedChartBuilder};
+use ::monas::generated::{Diagnostic, NodeKind, SourceDeclaration, TypedChart, TypedChartBuilder};
 
 use super::states::State;
 use super::transitions::transitions;

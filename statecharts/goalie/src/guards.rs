@@ -2,7 +2,7 @@
 
 #![allow(non_snake_case)] // the names are those of states
 
-use monas::generated::{GuardResult, World, all, at_least, at_most, equal, given, holds, less, more};
+use ::monas::generated::{GuardResult, World, all, at_least, at_most, equal, given, holds, less, more};
 
 use super::words::{constants, functions, messages, timers, values};
 

@@ -1,6 +1,6 @@
 //! How one comes from one state of the chart to another.
 
-use monas::generated::TypedChartBuilder;
+use ::monas::generated::TypedChartBuilder;
 
 use super::guards;
 use super::states::State;

@@ -133,6 +133,18 @@ struct FlowEdge {
     at_target: bool,
     /// Distance of its label or loop from the box; several are stacked.
     offset: f64,
+    /// Its number among the edges between the same two children, and how many these are.
+    twin: (usize, usize),
+}
+
+impl FlowEdge {
+    /// How far from the axis of a box it begins or ends, so that edges between the same two boxes
+    /// are lines of their own.
+    fn aside(&self, cell: &FlowCell) -> f64 {
+        let (number, count) = self.twin;
+        let gap = END_GAP.min((cell.size.0 - 2.0) / count as f64);
+        gap * (number as f64 - (count - 1) as f64 / 2.0)
+    }
 }
 
 struct RoutedEdge {
@@ -175,9 +187,14 @@ impl Flow {
             FlowCell { size, row, left, right, height: size.1, grows, ..FlowCell::default() }
         };
         let cells = children.iter().zip(row_of).map(cell).collect();
+        let mut twins: BTreeMap<(usize, usize), (usize, usize)> = BTreeMap::new();
+        ends.iter().take(transitions.len()).for_each(|ends| twins.entry(*ends).or_default().1 += 1);
         let edge =
             |((&transition, &(source, target)), course): ((&&Transition, &(usize, usize)), EdgeCourse)| {
+                let twin = twins.entry((source, target)).or_default();
+                twin.0 += 1;
                 FlowEdge {
+                    twin: (twin.0 - 1, twin.1),
                     source,
                     target,
                     course,
@@ -269,13 +286,9 @@ impl Flow {
     fn draw_down(&self, edge: &FlowEdge) -> RoutedEdge {
         let (source, target) = (&self.cells[edge.source], &self.cells[edge.target]);
         let turn = self.turns[source.row];
-        let mut points = vec![
-            (source.axis, source.bottom()),
-            (source.axis, turn),
-            (target.axis, turn),
-            (target.axis, target.top),
-        ];
-        if source.axis == target.axis {
+        let (from, to) = (source.axis + edge.aside(source), target.axis + edge.aside(target));
+        let mut points = vec![(from, source.bottom()), (from, turn), (to, turn), (to, target.top)];
+        if from == to {
             points.drain(1..3);
         }
         let half = edge.label.size().1 / 2.0;

@@ -1,5 +1,7 @@
 //! Layout: sizes of boxes from the inside out, then positions from the outside in.
 
+use std::ops::Range;
+
 use super::drawing_layout::{DrawingLayout, LABEL_WIDTH, Shape, content_origin, moved};
 use super::lettering::{LABEL_LINE, LABEL_SIZE, NAME_LINE, NAME_SIZE, formula_text, widest, wrap};
 use super::{flow, placed, route};
@@ -12,8 +14,9 @@ use yase::statechart::{Node, NodeId, NodeKind, Point, Statechart, Transition};
 const PADDING: f64 = 14.0;
 /// Minimum width at which titles wrap.
 const TITLE_WIDTH: f64 = 200.0;
-/// Regions may share a shelf of this width even if each of them is narrower.
-const SHELF_WIDTH: f64 = 700.0;
+/// So many regions from the first on begin a run of neighbours that gives the length of shelves,
+/// and so many are in one.
+const MOST_RUNS: usize = 16;
 /// Margin of the drawing.
 pub(crate) const MARGIN: f64 = 16.0;
 
@@ -31,7 +34,7 @@ pub(crate) fn layout<'m>(chart: &Statechart, marks: &'m Highlights) -> DrawingLa
                 enclose(chart, id, content, &mut layout);
             }
             NodeKind::And => {
-                let content = shelves(chart, id, &mut layout);
+                let content = regions(chart, id, &mut layout);
                 enclose(chart, id, content, &mut layout);
             }
             kind => {
@@ -125,50 +128,91 @@ fn enclose(chart: &Statechart, id: NodeId, content: Point, layout: &mut DrawingL
     shape.inset = (PADDING + aside, head + PADDING);
 }
 
-/// Places regions on shelves: a region is placed beside another while the shelf is no wider than
-/// the widest region or [`SHELF_WIDTH`]. Returns the total size.
-fn shelves(chart: &Statechart, id: NodeId, layout: &mut DrawingLayout) -> Point {
-    let regions = chart.children(id);
-    let widths = regions.iter().map(|&region| layout.shape(region).size.0);
-    let widest = widths.clone().fold(0.0, f64::max).max(widths.sum::<f64>().min(SHELF_WIDTH));
-    let mut shelves: Vec<RegionRow> = Vec::new();
-    for &region in regions {
-        let size = layout.shape(region).size;
-        match shelves.last_mut() {
-            Some(shelf) if shelf.size.0 + size.0 <= widest => shelf.add(region, size),
-            _ => shelves.push(RegionRow { size, regions: vec![region] }),
-        }
-    }
+/// Places regions side by side and below each other, in their order: on shelves, or in columns, of
+/// the length that gives the smallest drawing. Returns the total size.
+fn regions(chart: &Statechart, id: NodeId, layout: &mut DrawingLayout) -> Point {
+    let sizes: Vec<Point> = chart.children(id).iter().map(|&region| layout.shape(region).size).collect();
+    let packings = [false, true].into_iter().flat_map(|is_column| {
+        let sizes = sizes.iter().map(|&size| turned(size, is_column)).collect::<Vec<_>>();
+        let limits = limits(&sizes);
+        limits.into_iter().map(move |limit| RegionPacking::new(&sizes, limit, is_column))
+    });
+    let best = packings.min_by(|a, b| a.extent().total_cmp(&b.extent()));
+    let Some(RegionPacking { rows, size, is_column }) = best else { return (0.0, 0.0) };
     let mut top = 0.0;
-    for shelf in shelves {
-        fill(chart, &shelf, top, widest, layout);
-        top += shelf.size.1;
+    for RegionRow { size: row, regions } in rows {
+        let extra = (size.0 - row.0) / regions.len() as f64;
+        let mut left = 0.0;
+        for &region in &chart.children(id)[regions] {
+            let shape = layout.shape_mut(region);
+            let before = shape.size;
+            let own = turned(before, is_column);
+            shape.at = turned((left, top), is_column);
+            shape.size = turned((own.0 + extra, row.1), is_column);
+            if !placed::holds_placed(chart, region) {
+                shape.inset.0 += (shape.size.0 - before.0) / 2.0;
+            }
+            left += own.0 + extra;
+        }
+        top += row.1;
     }
-    (widest, top)
+    turned(size, is_column)
+}
+
+/// The lengths of shelves that are tried: those that a run of neighbours fills.
+fn limits(sizes: &[Point]) -> Vec<f64> {
+    let longest = sizes.iter().fold(0.0, |longest, size| size.0.max(longest));
+    let runs = (0..sizes.len().min(MOST_RUNS)).flat_map(|first| {
+        sizes[first..].iter().take(MOST_RUNS).scan(0.0, |length, size| {
+            *length += size.0;
+            Some(*length)
+        })
+    });
+    let mut limits: Vec<f64> = runs.filter(|length| *length > longest).collect();
+    limits.push(longest);
+    limits.sort_by(f64::total_cmp);
+    limits.dedup();
+    limits
+}
+
+/// A point, with right and down exchanged for columns.
+fn turned(point: Point, is_column: bool) -> Point {
+    if is_column { (point.1, point.0) } else { point }
+}
+
+/// Regions on shelves; columns are shelves with right and down exchanged.
+struct RegionPacking {
+    rows: Vec<RegionRow>,
+    size: Point,
+    is_column: bool,
 }
 
 struct RegionRow {
     size: Point,
-    regions: Vec<NodeId>,
+    regions: Range<usize>,
 }
 
-impl RegionRow {
-    fn add(&mut self, region: NodeId, size: Point) {
-        self.regions.push(region);
-        self.size = (self.size.0 + size.0, self.size.1.max(size.1));
+impl RegionPacking {
+    fn new(sizes: &[Point], limit: f64, is_column: bool) -> RegionPacking {
+        let mut rows: Vec<RegionRow> = Vec::new();
+        for (index, &size) in sizes.iter().enumerate() {
+            match rows.last_mut() {
+                Some(row) if row.size.0 + size.0 <= limit => {
+                    row.size = (row.size.0 + size.0, row.size.1.max(size.1));
+                    row.regions.end = index + 1;
+                }
+                _ => rows.push(RegionRow { size, regions: index..index + 1 }),
+            }
+        }
+        let width = rows.iter().fold(0.0, |width, row| row.size.0.max(width));
+        let height = rows.iter().map(|row| row.size.1).sum();
+        RegionPacking { rows, size: (width, height), is_column }
     }
-}
 
-/// Stretches the regions of a shelf to fill it.
-fn fill(chart: &Statechart, shelf: &RegionRow, top: f64, width: f64, layout: &mut DrawingLayout) {
-    let extra = (width - shelf.size.0) / shelf.regions.len() as f64;
-    let mut left = 0.0;
-    for &region in &shelf.regions {
-        let shape = layout.shape_mut(region);
-        shape.at = (left, top);
-        shape.inset.0 += if placed::holds_placed(chart, region) { 0.0 } else { extra / 2.0 };
-        shape.size = (shape.size.0 + extra, shelf.size.1);
-        left += shape.size.0;
+    /// What is to be small: the longer side, of equals the shorter.
+    fn extent(&self) -> f64 {
+        let (longer, shorter) = (self.size.0.max(self.size.1), self.size.0.min(self.size.1));
+        longer + shorter / 1000.0
     }
 }
 

@@ -7,7 +7,7 @@ use yase_export::to_svg;
 use super::golden::input;
 
 /// Left, top, right and bottom.
-type Area = (f64, f64, f64, f64);
+pub(crate) type Area = (f64, f64, f64, f64);
 
 fn number(node: Node<'_, '_>, name: &str) -> Option<f64> {
     node.attribute(name)?.parse().ok()
@@ -27,7 +27,7 @@ fn areas(document: &Document<'_>, class: &str) -> Vec<Area> {
 }
 
 /// The straight parts of all arrows, as areas without width or height.
-fn lines(document: &Document<'_>) -> Vec<Area> {
+pub(crate) fn lines(document: &Document<'_>) -> Vec<Area> {
     let mut lines = Vec::new();
     for arrow in of_class(document, "arrow").chain(of_class(document, "unused")) {
         let points = arrow.attribute("points").unwrap().split(' ');
@@ -59,8 +59,12 @@ fn runs_through(line: &Area, area: &Area) -> bool {
 
 #[track_caller]
 fn check(name: &str) {
-    let chart = input(name);
-    let svg = to_svg(&chart);
+    readable(name, &input(name));
+}
+
+#[track_caller]
+pub(crate) fn readable(name: &str, chart: &Statechart) {
+    let svg = to_svg(chart);
     let document = Document::parse(&svg).unwrap();
     let labels = areas(&document, "ground");
     let boxes: Vec<Area> =

@@ -3,6 +3,7 @@
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // the functions around the tests are tests too
 
+mod compact;
 mod drawing;
 mod golden;
 mod placed;

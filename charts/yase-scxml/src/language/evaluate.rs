@@ -72,6 +72,10 @@ impl<'a> Evaluator<'a> {
             }
             ScriptExpression::Access(base, path) => self.access(base, path),
             ScriptExpression::Builtin(builtin, argument) => self.builtin(*builtin, argument),
+            ScriptExpression::Library(function, arguments) => {
+                let arguments = self.values(arguments)?;
+                self.library(*function, &arguments)
+            }
         }
     }
 

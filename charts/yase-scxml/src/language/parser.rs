@@ -5,6 +5,7 @@ mod statement;
 use std::sync::Arc;
 
 use super::lexer::{Token, TokenKind, tokens};
+use super::library::{self, LibraryFunction};
 use super::reserved_words::{FOREIGN_OBJECTS, FOREIGN_WORDS, is_reserved};
 use super::syntax::{
     Access, Binary, Builtin, Location, Method, ScriptExpression, ScriptFunction, ScriptProgram, Statement,
@@ -345,9 +346,13 @@ impl<'a> Parser<'a> {
             _ => {}
         }
         let name = self.name()?;
+        if let Some(function) = LibraryFunction::find("", &name) {
+            return Ok(ScriptExpression::Library(function, self.arguments()?));
+        }
         let builtin = match &*name {
             "In" => Builtin::In,
             "String" => Builtin::String,
+            "Math" | "JSON" => return self.library(&name, span),
             foreign if FOREIGN_OBJECTS.contains(&foreign) => return self.unsupported(span, foreign),
             _ => return Ok(ScriptExpression::Variable(name)),
         };
@@ -358,6 +363,24 @@ impl<'a> Parser<'a> {
                 let message = format!("`{name}` takes one argument");
                 Err(Unsupported { refusal: ScriptErrorKind::Malformed, span, message })
             }
+        }
+    }
+
+    /// A constant or a call of a function of the library: its objects are no values.
+    fn library(&mut self, object: &str, span: Span) -> Parsed<ScriptExpression> {
+        if !self.accept(".") {
+            return self.unsupported(span, object);
+        }
+        let (member, end) = (self.written(), self.here().span);
+        if let Some(number) = library::constant(object, member) {
+            return self.literal(ScriptValue::Number(number));
+        }
+        match LibraryFunction::find(object, member) {
+            Some(function) => {
+                self.at += 1;
+                Ok(ScriptExpression::Library(function, self.arguments()?))
+            }
+            None => self.unsupported(span.to(end), &format!("{object}.{member}")),
         }
     }
 

@@ -48,16 +48,14 @@ pub(crate) const FOREIGN_WORDS: [&str; 43] = [
 ];
 
 /// Objects and functions of ECMAScript and its usual environments that are not provided.
-pub(crate) const FOREIGN_OBJECTS: [&str; 32] = [
+pub(crate) const FOREIGN_OBJECTS: [&str; 28] = [
     "Array",
     "ArrayBuffer",
     "Boolean",
     "Date",
     "Error",
     "Function",
-    "JSON",
     "Map",
-    "Math",
     "Number",
     "Object",
     "Promise",
@@ -74,8 +72,6 @@ pub(crate) const FOREIGN_OBJECTS: [&str; 32] = [
     "encodeURI",
     "eval",
     "globalThis",
-    "isFinite",
-    "isNaN",
     "parseFloat",
     "parseInt",
     "require",

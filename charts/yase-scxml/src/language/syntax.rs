@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::library::LibraryFunction;
 use super::value::ScriptValue;
 
 /// An expression.
@@ -31,6 +32,8 @@ pub(crate) enum ScriptExpression {
     Access(Box<ScriptExpression>, Vec<Access>),
     /// `In(state)` or `String(value)`.
     Builtin(Builtin, Box<ScriptExpression>),
+    /// `Math.max(a, b)` or `JSON.stringify(a)`.
+    Library(LibraryFunction, Vec<ScriptExpression>),
 }
 
 /// A unary operator.

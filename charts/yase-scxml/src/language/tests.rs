@@ -174,7 +174,9 @@ fn what_is_no_ecmascript_is_told_from_what_is_not_understood() {
     for (text, span) in [
         ("for (;;) {}", 0..3),
         ("x = new Date()", 4..7),
-        ("x = Math.pow(2, 3)", 4..8),
+        ("x = Math.random()", 4..15),
+        ("x = Math", 4..8),
+        ("x = JSON.parse('1')", 4..14),
         ("x = y.toUpperCase()", 6..17),
         ("x = /a+/", 4..5),
         ("x = a => a", 6..8),
@@ -186,6 +188,47 @@ fn what_is_no_ecmascript_is_told_from_what_is_not_understood() {
         let refused = refusal(text);
         assert_eq!((refused.refusal, refused.span), (ScriptErrorKind::Unsupported, span.into()), "{text}");
     }
+}
+
+#[test]
+fn numbers_are_computed_by_the_library() {
+    for (written, worth) in [
+        ("Math.pow(2, 10) + Math.abs(-1)", "1025"),
+        ("[Math.max(), Math.max(1, '7', 3), Math.min(2, 1)]", "[-Infinity,7,1]"),
+        ("[Math.round(2.5), Math.round(-2.5), Math.round(0.49999999999999994)]", "[3,-2,0]"),
+        ("[Math.sign(-3), Math.trunc(-1.5), Math.hypot(3, 4), Math.sqrt(2) == Math.SQRT2]", "[-1,-1,5,true]"),
+        (
+            "[Math.pow(1, NaN), Math.max(1, NaN), Math.floor(), Math.atan2(0, -1) == Math.PI]",
+            "[NaN,NaN,NaN,true]",
+        ),
+        ("Math.sin(1)", "0.8414709848078965"),
+        ("[isNaN('a'), isNaN(1), isFinite(1 / 0), isFinite('3')]", "[true,false,false,true]"),
+    ] {
+        assert_eq!(value(written), worth, "{written}");
+    }
+}
+
+#[test]
+fn values_are_written_as_json() {
+    for (written, json) in [
+        (
+            "JSON.stringify({a: [1, undefined, NaN, null], b: undefined, 'c d': 'e\\n\\u0001'})",
+            r#"{"a":[1,null,null,null],"c d":"e\n\u0001"}"#,
+        ),
+        (
+            "JSON.stringify({a: [1, {}], b: []}, null, 2)",
+            "{\n  \"a\": [\n    1,\n    {}\n  ],\n  \"b\": []\n}",
+        ),
+        ("JSON.stringify('a')", "\"a\""),
+    ] {
+        let text = DataValue::Text(json.into()).to_string();
+        assert_eq!(value(written), text, "{written}");
+    }
+    assert_eq!(value("JSON.stringify(undefined)"), "undefined");
+    assert_eq!(value("typeof JSON.stringify(function () {})"), "\"undefined\"");
+    let cycle = fault("a = {}; a.a = a", "JSON.stringify(a)");
+    assert_eq!(cycle, "the value lies in itself, or is nested too deeply for JSON");
+    assert!(fault("", "JSON.stringify({}, ['a'])").contains("no replacer"));
 }
 
 #[test]

@@ -83,7 +83,8 @@ impl Display for DataValue {
     }
 }
 
-fn quoted(f: &mut Formatter<'_>, text: &str) -> fmt::Result {
+/// Writes a text as JSON.
+pub(crate) fn quoted(f: &mut impl Write, text: &str) -> fmt::Result {
     f.write_char('"')?;
     for character in text.chars() {
         match character {
@@ -92,6 +93,8 @@ fn quoted(f: &mut Formatter<'_>, text: &str) -> fmt::Result {
             '\n' => f.write_str("\\n")?,
             '\r' => f.write_str("\\r")?,
             '\t' => f.write_str("\\t")?,
+            '\u{8}' => f.write_str("\\b")?,
+            '\u{c}' => f.write_str("\\f")?,
             control if u32::from(control) < 0x20 => write!(f, "\\u{:04x}", u32::from(control))?,
             other => f.write_char(other)?,
         }

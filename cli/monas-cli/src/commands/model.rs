@@ -38,15 +38,18 @@ use crate::terminal::{CommandFailure, CommandOutput, Exit};
 pub(crate) enum ModelCommand {
     /// Transform a model into another model of the method; without --to, into the statechart it
     /// describes.
+    ///
+    /// The statechart is an outline to be read; with --as, or with an output file that has an
+    /// extension of models, it is a file of that format.
     #[command(after_help = "Example: monas model transform models/goalie.srm")]
     Transform(TransformArguments),
     /// Convert a model to another format of its kind.
     ///
     /// Losses are listed, and nothing is written unless --lossy is given.
-    #[command(after_help = "Example: monas model convert models/goalie.srm goalie.scxml")]
+    #[command(after_help = "Example: monas model convert models/goalie.srm goalie.scxml --lossy")]
     Convert(ConvertArguments),
     /// Draw the statechart of a model as SVG.
-    #[command(after_help = "Example: monas model draw models/goalie.srm -o goalie.svg")]
+    #[command(after_help = "Example: monas model draw models/goalie.srm --compact -o goalie.svg")]
     Draw(DrawArguments),
     /// Derive the messages of a chart as a `.proto` file: the names of its variables, and the
     /// fields that its expressions use.

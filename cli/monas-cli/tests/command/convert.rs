@@ -159,3 +159,39 @@ fn every_kind_of_model_is_checked() {
     assert!(answer.out.contains("in.sag: a model of the kind SAG, no errors"), "{}", answer.out);
     assert!(answer.out.contains("in.eac: 36 nodes"), "{}", answer.out);
 }
+
+/// The example of the help; what SCXML cannot say is never taken, instead of always.
+#[test]
+fn a_role_goes_to_scxml_without_guards_that_would_be_open() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = folder.path().join("goalie.scxml").display().to_string();
+    let answer = monas(&["model", "convert", "models/goalie.srm", &output]);
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    let help = monas(&["model", "convert", "--help"]);
+    assert!(help.out.contains("Example: monas model convert models/goalie.srm goalie.scxml --lossy"));
+    let answer = monas(&["model", "convert", "models/goalie.srm", &output, "--lossy"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert!(answer.err.contains("the guard `!Ball.found` cannot be said in SCXML"), "{}", answer.err);
+    assert!(!answer.err.contains("target"), "END is `<final>`: {}", answer.err);
+    let text = fs::read_to_string(&output).expect("written");
+    assert!(text.contains("<transition cond=\"false\" target=\"SearchBall\""), "{text}");
+    assert!(text.contains("<transition cond=\"false\" target=\"Vision\""), "{text}");
+    assert!(text.contains("<final id=\"END_"), "{text}");
+    let answer = monas(&["model", "check", &output]);
+    assert_eq!(answer.code, Some(0), "it reads back: {}", answer.err);
+}
+
+/// What is written for tools is read back as the same model.
+#[test]
+fn a_chart_in_a_file_of_models_can_be_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let role = file(folder.path(), "r.srm", "r = A . (B | C)");
+    let first = monas(&["model", "transform", &role]).out;
+    for name in ["r.stct", "r.model", "r.iac", "r.xmi"] {
+        let output = folder.path().join(name).display().to_string();
+        let answer = monas(&["model", "transform", &role, "-o", &output]);
+        assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""), "{name}");
+        let again = monas(&["model", "transform", &output]);
+        assert_eq!((again.code, again.out.as_str()), (Some(0), first.as_str()), "{name}: {}", again.err);
+    }
+}

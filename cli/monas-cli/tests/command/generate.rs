@@ -100,11 +100,35 @@ fn a_new_role_is_linked_and_its_skeletons_are_left_alone() {
     assert!(read(folder, skeleton).contains("monas::activity!(LookAround as \"lookAround\");"));
     let activities = read(folder, "statecharts/scout/src/activities.rs");
     assert!(activities.contains("Instance::of::<LookAround>(State::lookAround)"), "{activities}");
-    assert!(activities.contains("use monas_soccer::activities::Vision;"), "{activities}");
+    assert!(activities.contains("use ::monas_soccer::activities::Vision;"), "{activities}");
 
     fs::write(folder.join(skeleton), "// filled in\n").expect("it takes files");
     assert_eq!(generate(folder, "models/scout.srm").1, "nothing has changed\n");
     assert_eq!(read(folder, skeleton), "// filled in\n");
+}
+
+/// Roles that share an activity which is still to be written have one skeleton of it.
+#[test]
+fn a_skeleton_is_shared() {
+    let project = project();
+    let folder = project.path();
+    fs::write(folder.join("models/scout.srm"), "scout = (Vision . lookAround)~").expect("it takes files");
+    fs::write(folder.join("models/guard.srm"), "guard = (lookAround . wait)~").expect("it takes files");
+    for model in ["models/scout.srm", "models/guard.srm"] {
+        let (code, _, err) = generate(folder, model);
+        assert_eq!(code, Some(0), "{err}");
+    }
+    assert!(!folder.join("statecharts/guard/src/activities/look_around.rs").exists());
+    assert!(read(folder, "statecharts/scout/src/lib.rs").contains("pub mod activities;"));
+    assert!(read(folder, "statecharts/scout/src/activities.rs").contains("pub use look_around::LookAround;"));
+    let activities = read(folder, "statecharts/guard/src/activities.rs");
+    assert!(activities.contains("use ::scout::activities::LookAround;"), "{activities}");
+    assert!(read(folder, "statecharts/guard/Cargo.toml").contains("scout.workspace = true\n"));
+    assert_eq!(generate(folder, "models/guard.srm").1, "nothing has changed\n");
+
+    fs::write(folder.join("models/scout.srm"), "scout = (wait . lookAround)~").expect("it takes files");
+    let (code, _, err) = generate(folder, "models/scout.srm");
+    assert!(code == Some(3) && err.contains("E0924") && err.contains("which uses one of `scout`"), "{err}");
 }
 
 #[test]

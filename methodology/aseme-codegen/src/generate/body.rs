@@ -98,7 +98,7 @@ impl GeneratedFunctions {
         };
         self.text.push(format!(
             "/// Sets {}.\n{head}\n    {}\n}}\n",
-            quoted(&format!("{}.{}", body.rust, body.field)),
+            quoted(&format!("{}.{}", body.rust.trim_start_matches("::"), body.field)),
             body.put.laid_out(4, 4, 0)
         ));
         self.puts.insert((body.target.clone(), body.field.clone()), name.clone());

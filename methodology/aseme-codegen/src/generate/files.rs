@@ -21,9 +21,9 @@ pub(crate) fn library(chart: &Statechart, words: &RustBindings) -> String {
     };
     let name = if words.name.is_empty() { &chart.name } else { &words.name };
     let transitions = if chart.transitions().len() > 0 { "mod transitions;\n" } else { "" };
-    let activities = if words.registers { "mod activities;\n" } else { "" };
+    let activities = if words.registers { "pub mod activities;\n" } else { "" };
     let registration = match words.registers {
-        true => format!("\nmonas::statechart!({} = chart, activities::instances);\n", literal(name)),
+        true => format!("\n::monas::statechart!({} = chart, activities::instances);\n", literal(name)),
         false => String::new(),
     };
     format!(
@@ -53,7 +53,7 @@ pub(crate) fn activities(
     if !made.found.is_empty() {
         return Err(made.found);
     }
-    made.imported.entry("monas::generated".into()).or_default().push("Instance".into());
+    made.imported.entry("::monas::generated".into()).or_default().push("Instance".into());
     let instances = chart.nodes().filter_map(|(id, node)| {
         let activity = made.called.get(node.activity.as_deref()?)?;
         let state = RustCode::Plain(format!("State::{}", states.variant(id)));
@@ -124,11 +124,13 @@ impl ActivityFiles {
         if modules.is_empty() { modules } else { format!("{modules}\n") }
     }
 
+    /// Other generated crates may use the skeletons.
     fn imports(&self) -> String {
         let import = |(module, names): (&String, &Vec<String>)| {
             let mut names: Vec<&str> = names.iter().map(String::as_str).collect();
             names.sort_unstable();
-            import(module, &names)
+            let visibility = if self.own.contains(module) { "pub " } else { "" };
+            format!("{visibility}{}", import(module, &names))
         };
         self.imported.iter().map(import).collect()
     }

@@ -115,6 +115,14 @@ const KEYWORDS: [&str; 54] = [
     "virtual", "where", "while", "yield", "raw",
 ];
 
+/// A path from the root of all crates. Paths within the crate and single names stay as they are.
+pub(crate) fn absolute(path: &str) -> String {
+    match path.split_once("::") {
+        Some(("" | "crate" | "self" | "super" | "Self" | "$crate", _)) | None => path.to_owned(),
+        Some(_) => format!("::{path}"),
+    }
+}
+
 /// The field of a message in Rust, as prost calls it.
 pub(crate) fn field(name: &str) -> String {
     match name {

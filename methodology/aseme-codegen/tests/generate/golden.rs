@@ -84,3 +84,16 @@ fn rustfmt_leaves_them_as_they_are() {
         Err(error) => println!("skipped: no rustfmt ({error})"),
     }
 }
+
+/// A project's messages are in a crate that is called like a module of the generated crate.
+#[test]
+fn a_crate_of_messages_is_not_the_module_of_messages() {
+    let types = ["Ball", "GameState"].map(|name| (name.to_owned(), format!("messages::{name}")));
+    let words = RustBindings { messages: types.into(), ..soccer() };
+    let model = "Role: r\nLiveness:\nr = a . b\nTransitions:\na -> b : / Ball.type = 7\n";
+    let files = generate(&chart("r.srm", model), &words).expect("it can be written");
+    let function = "fn set_ball_type(message: &mut ::messages::Ball, value: Value<'_>)";
+    assert!(files["src/guards.rs"].contains(function), "{}", files["src/guards.rs"]);
+    let source = "const BALL: Source<::messages::Ball> = Source::new(0);";
+    assert!(files["src/words.rs"].contains(source), "{}", files["src/words.rs"]);
+}

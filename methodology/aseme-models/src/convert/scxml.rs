@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use yase::expression::{Action, Expression, TransitionExpression};
+use yase::expression::{Action, Expression, ExpressionKind, TransitionExpression};
 use yase::{Diagnostic, Node, NodeId, NodeKind, Statechart, Transition};
 
 use super::WrittenModel;
@@ -21,7 +21,7 @@ pub(crate) fn write(model: &Iac) -> Result<WrittenModel, Vec<Diagnostic>> {
         return Err(findings);
     }
     let mut lost = beside_the_chart(model, &chart);
-    match yase_scxml::write(&chart) {
+    match yase_scxml::write(&with_ids(&chart)) {
         Ok(text) => Ok(WrittenModel { text, lost }),
         Err(refused) => {
             lost.extend(refused);
@@ -79,8 +79,22 @@ fn beside_the_chart(model: &Iac, chart: &Statechart) -> Vec<Diagnostic> {
     lost
 }
 
+/// The chart with a name for each state that has none: transitions refer to their targets by ids.
+fn with_ids(chart: &Statechart) -> Statechart {
+    use NodeKind::{And, Basic, DeepHistory, End, Or, ShallowHistory};
+    let mut named = chart.clone();
+    for ((id, node), name) in chart.nodes().skip(1).zip(ids(chart).into_iter().skip(1)) {
+        if node.name.is_empty() && matches!(node.kind, And | Basic | DeepHistory | End | Or | ShallowHistory)
+        {
+            named.node_mut(id).name = name;
+        }
+    }
+    named
+}
+
 /// The chart without what SCXML cannot say: connectors that branch are states that are left at
-/// once, names are ids, and activities, guards and actions that it has no words for are gone.
+/// once, names are ids, and activities and actions that it has no words for are gone. A guard that
+/// it has no words for is `false`: what would be taken only sometimes is not taken always.
 fn nearest(chart: &Statechart) -> Statechart {
     let mut plain = Statechart::new(chart.name.clone());
     let (names, labels) = (ids(chart), chart.labels());
@@ -145,7 +159,10 @@ fn plain_node(node: &Node, name: &str) -> Node {
 fn plain_expression(expression: &TransitionExpression) -> TransitionExpression {
     TransitionExpression {
         trigger: expression.trigger.clone(),
-        guard: expression.guard.clone().filter(can_say_guard),
+        guard: expression.guard.clone().map(|guard| match can_say_guard(&guard) {
+            true => guard,
+            false => Expression { kind: ExpressionKind::Bool(false), ..guard },
+        }),
         actions: expression.actions.iter().filter(|action| can_say_action(action)).cloned().collect(),
     }
 }
@@ -175,7 +192,9 @@ fn ids(chart: &Statechart) -> Vec<String> {
         let encoded = encode(&node.name);
         let mut id: String =
             encoded.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' }).collect();
-        if id.is_empty() || id.starts_with(|letter: char| letter.is_ascii_digit()) {
+        if node.kind == NodeKind::End && node.name.is_empty() {
+            id.push_str("END");
+        } else if id.is_empty() || id.starts_with(|letter: char| letter.is_ascii_digit()) {
             id.insert(0, 's');
         }
         if node.name.is_empty() || seen.contains_key(&id) {

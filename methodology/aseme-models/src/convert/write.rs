@@ -9,6 +9,7 @@ use crate::iac::{self, Dialect};
 use crate::meta::{TypedModel, to_text, to_xmi};
 use crate::roles::SystemRoles;
 use crate::xmi;
+use aseme::srm::SrmFile;
 use aseme::text;
 
 /// Charts with more states are not written as flat Rust: the code would be unreadable.
@@ -47,6 +48,9 @@ impl Model {
                 let (roles, lost) = SystemRoles::from_role(role.srm());
                 WrittenModel { lost, ..xmi(&roles)? }
             }
+            (Model::Role(role), Format::Scxml | Format::Rust | Format::Statechart(_)) => {
+                return chart_of_role(role)?.write(format, original);
+            }
             (Model::Srm(roles), Format::Role) => {
                 roles.to_role().map(|(text, lost)| WrittenModel { text, lost })?
             }
@@ -69,7 +73,8 @@ impl Model {
         let message = format!("there is no {} of the kind {}", format.word(), self.kind());
         let formats = match self {
             Model::Sag(_) | Model::Suc(_) | Model::Aip(_) => "text and xmi",
-            Model::Srm(_) | Model::Role(_) => "text, role and xmi",
+            Model::Srm(_) => "text, role and xmi",
+            Model::Role(_) => "text, role, xmi, and those of its statechart",
             Model::Ft(_) => "text",
             Model::Chart(_) => "text, xmi, xmi-2010, xmi-flat, xmi-2012, xmi-2018, scxml and rust",
         };
@@ -101,6 +106,15 @@ impl Model {
 impl WrittenModel {
     fn of(text: &str) -> WrittenModel {
         WrittenModel { text: text.into(), lost: Vec::new() }
+    }
+}
+
+/// The statechart that a role describes.
+fn chart_of_role(role: &SrmFile) -> Result<Model, Vec<Diagnostic>> {
+    let (chart, findings) = aseme::role_to_statechart(role.srm());
+    match findings.iter().any(Diagnostic::is_error) {
+        true => Err(findings),
+        false => Ok(Model::Chart(iac::Iac::from_statechart(&chart, iac::ChartKind::Intra))),
     }
 }
 

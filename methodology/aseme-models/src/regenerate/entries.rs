@@ -93,7 +93,10 @@ fn history_of(chart: &Statechart, id: NodeId) -> Option<NodeId> {
 }
 
 fn state(chart: &Statechart, id: NodeId) -> Option<String> {
-    let mut said = refinements(chart.node(id));
+    let node = chart.node(id);
+    let is_idle = node.kind == NodeKind::Basic && node.activity.is_none();
+    let mut said: Vec<String> = is_idle.then(|| "activity = \"\"".to_owned()).into_iter().collect();
+    said.extend(refinements(node));
     let histories = chart.children(id).iter().filter_map(|&child| match chart.node(child).kind {
         NodeKind::ShallowHistory => Some("history = shallow".to_owned()),
         NodeKind::DeepHistory => Some("history = deep".to_owned()),

@@ -2,36 +2,52 @@
 
 use std::collections::BTreeMap;
 
+use aseme::names::encode;
+use yase::expression::{Action, Expression, ExpressionKind, parse_transition};
 use yase::{Diagnostic, Span};
 
-use crate::iac::{Iac, IacTransition};
+use crate::iac::{Iac, IacNode, IacTransition};
 
 /// Puts what is written on a protocol's chart onto the chart of a role: wherever the role has a
 /// composite called as a participant is, its states and transitions get the variables and
 /// refinements of those at the same place in the participant.
 ///
+/// The rule of the protocol becomes a guard on each way into the part, beside the guard that the
+/// role has there, and each outcome an exit. A part that the role repeats directly (`part~`), or
+/// that follows another composite, is enclosed in a composite `(part)`, as if the formula were
+/// `(part)~`: its START waits for the rule and its END is where the outcomes lead, so that neither
+/// what comes before is left nor the part entered again without them. Charts of several protocols
+/// are merged one after the other, in any order.
+///
 /// Returns the paths, by label, of the composites that were found. One that is not built as the
 /// participant is stays as it is, and that is an error (E0835): the role would not do what the
-/// protocol asks for. Where the role says another thing than the protocol, the protocol holds, and
-/// that is said (E0836). A protocol of which nothing is found is reported (E0837).
+/// protocol asks for. Where the role says another thing than the protocol inside the part, the
+/// protocol holds, and that is said (E0836). A protocol of which nothing is found is reported
+/// (E0837), and a part whose rule or outcomes have no place (E0839).
 pub fn merge_eac(iac: &mut Iac, eac: &Iac) -> (Vec<String>, Vec<Diagnostic>) {
     let mut merging = ChartMerge {
         variables: shared_variables(iac, eac),
         iac,
         eac,
-        merged: Vec::new(),
+        refused: Vec::new(),
         diagnostics: Vec::new(),
     };
     merging.constants();
     let participants = participants(eac);
     for &participant in &participants {
-        let name = &eac.nodes[participant].name;
-        let places: Vec<usize> = (0..merging.iac.nodes.len())
-            .filter(|&node| merging.iac.nodes[node].kind == "OR" && merging.iac.nodes[node].name == *name)
-            .collect();
-        places.into_iter().for_each(|place| merging.composite(participant, place));
+        // merging one of them may move the others
+        for number in 0.. {
+            let Some(place) = merging.places(participant).nth(number) else { break };
+            merging.composite(participant, place);
+        }
     }
-    let (merged, mut diagnostics) = (merging.merged, merging.diagnostics);
+    let merged: Vec<String> = participants
+        .iter()
+        .flat_map(|&participant| merging.places(participant))
+        .map(|place| merging.iac.nodes[place].label.clone())
+        .collect();
+    let merged: Vec<String> = merged.into_iter().filter(|label| !merging.refused.contains(label)).collect();
+    let mut diagnostics = merging.diagnostics;
     if merged.is_empty() && diagnostics.is_empty() {
         let names = participants
             .iter()
@@ -67,11 +83,19 @@ struct ChartMerge<'a> {
     iac: &'a mut Iac,
     eac: &'a Iac,
     variables: Vec<usize>,
-    merged: Vec<String>,
+    /// The labels of composites that are not built as the participant is.
+    refused: Vec<String>,
     diagnostics: Vec<Diagnostic>,
 }
 
 impl ChartMerge<'_> {
+    /// The composites of the role that are called as a participant is.
+    fn places(&self, participant: usize) -> impl Iterator<Item = usize> {
+        let name = &self.eac.nodes[participant].name;
+        let nodes = self.iac.nodes.iter().enumerate();
+        nodes.filter(move |(_, node)| node.kind == "OR" && node.name == *name).map(|(index, _)| index)
+    }
+
     fn constants(&mut self) {
         for constant in &self.eac.constants {
             match self.iac.constants.iter().find(|own| own.name == constant.name) {
@@ -92,7 +116,10 @@ impl ChartMerge<'_> {
     fn composite(&mut self, participant: usize, place: usize) {
         let pairs = match same_shape(self.eac, participant, self.iac, place, ShapeMatch::Refined) {
             Ok(pairs) => pairs,
-            Err((wanted, found)) => return self.mismatch(participant, place, &wanted, &found),
+            Err((wanted, found)) => {
+                self.refused.push(self.iac.nodes[place].label.clone());
+                return self.mismatch(participant, place, &wanted, &found);
+            }
         };
         for (&theirs, &own) in pairs.iter().skip(1) {
             let theirs = &self.eac.nodes[theirs];
@@ -108,9 +135,13 @@ impl ChartMerge<'_> {
             }
         }
         self.transitions(&pairs);
-        self.ways_in(participant, place);
-        self.ways_out(participant, place);
-        self.merged.push(self.iac.nodes[place].label.clone());
+        let borders = Borders::of(self.eac, participant);
+        let place = match borders.need_enclosure(self.iac, place) {
+            true => enclose(self.iac, place),
+            false => place,
+        };
+        self.ways_in(&borders, place);
+        self.ways_out(&borders, place);
     }
 
     fn mismatch(&mut self, participant: usize, place: usize, wanted: &str, found: &str) {
@@ -125,49 +156,59 @@ impl ChartMerge<'_> {
     }
 
     /// What the protocol asks of those who engage in a part, wherever the role does.
-    fn ways_in(&mut self, participant: usize, place: usize) {
-        let rule = |it: &&IacTransition| it.target == participant && it.source != participant;
-        let Some(theirs) = self.eac.transitions.iter().find(rule) else { return };
-        let own = self.iac.transitions.iter_mut().filter(|it| it.target == place && it.source != place);
-        for own in own {
-            // how the role chooses among its ways stays its own
-            let refinement = std::mem::take(&mut own.refinement);
-            self.diagnostics.extend(copy_refinement(theirs, own));
-            own.refinement = refinement;
+    fn ways_in(&mut self, borders: &Borders<'_>, place: usize) {
+        let Some(rule) = borders.rule else { return };
+        let mut is_guarded = false;
+        for own in self.iac.transitions.iter_mut().filter(|it| it.target == place && it.source != place) {
+            is_guarded = true;
+            match with_guard(&own.te, &rule.te) {
+                Some(te) => own.te = te,
+                None => {
+                    // how the role chooses among its ways stays its own
+                    let refinement = std::mem::take(&mut own.refinement);
+                    self.diagnostics.extend(copy_refinement(rule, own));
+                    own.refinement = refinement;
+                }
+            }
+        }
+        if !is_guarded {
+            self.without_place(place, "rule", "nothing leads into it");
         }
     }
 
     /// The exits of a part lead where the role goes on after it.
-    fn ways_out(&mut self, participant: usize, place: usize) {
-        let theirs: Vec<&IacTransition> = self
-            .eac
-            .transitions
-            .iter()
-            .filter(|it| it.source == participant && it.target != participant)
-            .collect();
-        let own: Vec<usize> = (0..self.iac.transitions.len())
-            .filter(|&index| {
-                self.iac.transitions[index].source == place && self.iac.transitions[index].target != place
-            })
-            .collect();
-        for (number, theirs) in theirs.into_iter().enumerate() {
-            match own.get(number) {
-                Some(&own) => {
-                    self.diagnostics.extend(copy_refinement(theirs, &mut self.iac.transitions[own]))
-                }
+    fn ways_out(&mut self, borders: &Borders<'_>, place: usize) {
+        let leads_out = |it: &IacTransition| it.source == place && it.target != place;
+        let Some(target) = self.iac.transitions.iter().find(|it| leads_out(it)).map(|it| it.target) else {
+            if borders.exits.iter().any(|exit| has_content(exit)) {
+                self.without_place(place, "outcomes", "nothing leads out of it");
+            }
+            return;
+        };
+        let may_complete = borders.exits.iter().any(|exit| !has_content(exit));
+        for exit in borders.exits.iter().filter(|exit| has_content(exit)) {
+            let name = self.iac.usual_name(place, target);
+            let is_same = |own: &IacTransition| (&own.te, &own.refinement) == (&exit.te, &exit.refinement);
+            if self.iac.transitions.iter().any(|own| leads_out(own) && is_same(own)) {
+                continue;
+            }
+            let mut own = self.iac.transitions.iter_mut().filter(|it| leads_out(it));
+            match own.find(|own| !may_complete && !has_content(own)) {
+                Some(own) => (own.te, own.refinement) = (exit.te.clone(), exit.refinement.clone()),
                 None => {
-                    let Some(&first) = own.first() else { return };
-                    let target = self.iac.transitions[first].target;
-                    let name = self.iac.usual_name(place, target);
-                    self.iac.transitions.push(IacTransition {
-                        source: place,
-                        target,
-                        name,
-                        ..theirs.clone()
-                    });
+                    let added = IacTransition { source: place, target, name, ..(*exit).clone() };
+                    self.iac.transitions.push(added);
                 }
             }
         }
+    }
+
+    fn without_place(&mut self, place: usize, what: &str, why: &str) {
+        let (part, role) = (self.iac.nodes[place].written(), &self.iac.name);
+        let message = format!("the {what} of the part `{part}` have no place in `{role}`: {why}");
+        let hint = format!("the role does the part as one of its states, as in `role = {part}`");
+        let span = self.iac.nodes[place].place.0;
+        self.diagnostics.push(Diagnostic::error("E0839", span, message).with_hint(hint));
     }
 
     /// Those with both ends inside; several between the same two ends are matched in order.
@@ -191,15 +232,126 @@ impl ChartMerge<'_> {
     }
 }
 
+/// What a protocol says at the borders of a part.
+struct Borders<'a> {
+    rule: Option<&'a IacTransition>,
+    exits: Vec<&'a IacTransition>,
+}
+
+impl<'a> Borders<'a> {
+    fn of(eac: &'a Iac, participant: usize) -> Borders<'a> {
+        let (source, target) =
+            (|it: &IacTransition| it.source == participant, |it: &IacTransition| it.target == participant);
+        let rule = eac.transitions.iter().find(|it| target(it) && !source(it) && !it.te.is_empty());
+        let exits = eac.transitions.iter().filter(|it| source(it) && !target(it)).collect();
+        Borders { rule, exits }
+    }
+
+    /// Whether the part has to be enclosed: the role repeats it without anything between, or comes
+    /// to it from a composite, which a guarded transition would leave before it has completed.
+    fn need_enclosure(&self, role: &Iac, place: usize) -> bool {
+        let mut into = role.transitions.iter().filter(|it| it.target == place && !it.refinement.internal);
+        let is_composite = |node: usize| matches!(role.nodes[node].kind.as_str(), "OR" | "AND");
+        let has_outcomes = self.exits.iter().any(|exit| has_content(exit));
+        into.any(|way| match way.source == place {
+            true => self.rule.is_some() || has_outcomes,
+            false => self.rule.is_some() && is_composite(way.source) && !is_inside(role, way.source, place),
+        })
+    }
+}
+
+/// Whether a node lies in another.
+fn is_inside(chart: &Iac, node: usize, outer: usize) -> bool {
+    std::iter::successors(chart.nodes[node].parent, |&node| chart.nodes[node].parent)
+        .any(|node| node == outer)
+}
+
+/// Encloses a composite in one of its own, with START and END, which takes its place: the chart of
+/// `(part)`. Returns where the part is then.
+fn enclose(chart: &mut Iac, part: usize) -> usize {
+    let first = chart.nodes.len();
+    let [around, start, end] = [first, first + 1, first + 2];
+    let mut children = chart.children();
+    if let Some(siblings) = chart.nodes[part].parent.and_then(|parent| children.get_mut(parent)) {
+        siblings.iter_mut().filter(|child| **child == part).for_each(|child| *child = around);
+    }
+    children.extend([vec![start, part, end], Vec::new(), Vec::new()]);
+    let name = encode(&format!("({})", chart.nodes[part].written()));
+    let node = |name: &str, kind: &str, parent| IacNode {
+        name: name.into(),
+        kind: kind.into(),
+        parent,
+        ..IacNode::default()
+    };
+    let (parent, frame) = (chart.nodes[part].parent, std::mem::take(&mut chart.nodes[part].frame));
+    chart.nodes.push(IacNode { frame, ..node(&name, "OR", parent) });
+    chart.nodes.extend(["START", "END"].map(|kind| node("", kind, Some(around))));
+    chart.nodes[part].parent = Some(around);
+    for index in 0..chart.transitions.len() {
+        let IacTransition { source, target, .. } = chart.transitions[index];
+        let is_at_border = !chart.transitions[index].refinement.internal;
+        let (leaves, enters) = (source == part, target == part);
+        if (leaves || enters) && chart.transitions[index].name == chart.usual_name(source, target) {
+            chart.transitions[index].name.clear(); // to be named again by its new ends
+        }
+        if leaves && is_at_border && !is_inside(chart, target, part) {
+            chart.transitions[index].source = around;
+        }
+        if enters && is_at_border && !is_inside(chart, source, part) {
+            chart.transitions[index].target = around;
+        }
+    }
+    for (source, target) in [(start, part), (part, end)] {
+        chart.transitions.push(IacTransition { source, target, ..IacTransition::default() });
+    }
+    let places = chart.arrange(&children);
+    chart.relabel(places[around]);
+    places[part]
+}
+
+/// An expression with another guard beside its own, and with the other's trigger and actions where
+/// it has none; none if one of the two cannot be read.
+fn with_guard(own: &str, other: &str) -> Option<String> {
+    let read = |text: &str| {
+        let (expression, findings) = parse_transition(text);
+        (!findings.iter().any(Diagnostic::is_error)).then_some(expression)
+    };
+    let (mut expression, other) = (read(own)?, read(other)?);
+    expression.guard = match (expression.guard, other.guard) {
+        (Some(own), Some(other)) => {
+            let missing: Vec<String> =
+                conjuncts(&other).into_iter().filter(|part| !conjuncts(&own).contains(part)).collect();
+            let missing = missing.iter().map(|part| format!(" && ({part})"));
+            read(&format!("[({own}){}]", missing.collect::<String>()))?.guard
+        }
+        (own, other) => own.or(other),
+    };
+    expression.trigger = expression.trigger.or(other.trigger);
+    let added = other.actions.into_iter().filter(|action| !expression.actions.contains(action));
+    let added: Vec<Action> = added.collect();
+    expression.actions.extend(added);
+    Some(expression.to_string())
+}
+
+/// The conditions that all have to hold.
+fn conjuncts(guard: &Expression) -> Vec<String> {
+    match &guard.kind {
+        ExpressionKind::And(parts) => parts.iter().flat_map(conjuncts).collect(),
+        _ => vec![guard.to_string()],
+    }
+}
+
+/// Whether a transition has more than its ends.
+fn has_content(transition: &IacTransition) -> bool {
+    !transition.te.is_empty() || transition.refinement != crate::iac::TransitionRefinement::default()
+}
+
 /// The protocol holds wherever it says something.
 fn copy_refinement(theirs: &IacTransition, own: &mut IacTransition) -> Option<Diagnostic> {
-    let says = |transition: &IacTransition| {
-        !transition.te.is_empty() || transition.refinement != crate::iac::TransitionRefinement::default()
-    };
-    if !says(theirs) {
+    if !has_content(theirs) {
         return None;
     }
-    let differs = says(own) && (&own.te, &own.refinement) != (&theirs.te, &theirs.refinement);
+    let differs = has_content(own) && (&own.te, &own.refinement) != (&theirs.te, &theirs.refinement);
     let found = differs.then(|| {
         let message =
             format!("`{}` was on `{}` of the role; the protocol has `{}`", own.te, own.name, theirs.te);

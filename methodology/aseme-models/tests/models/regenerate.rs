@@ -304,3 +304,53 @@ fn a_newer_model_file_keeps_the_places_of_an_older_one() {
     assert_eq!(lost.len(), 1, "{lost:?}");
     assert!(lost[0].message.contains("than `at = 10 20, size = 100 40`"), "{}", lost[0].message);
 }
+
+#[test]
+fn a_state_without_an_activity_is_carried() {
+    let text = "IAC: r\n\nStates:\n  r OR\n    START\n    wait BASIC\n      activity = \"\"\n    END\n\nTransitions:\n  START -> wait\n  wait -> END\n";
+    let (waiting, found) = aseme_models::statechart_of(&yase::Source::new("r.iac", text));
+    assert_eq!(found, []);
+    let entries = entries_of_chart(&waiting);
+    assert_eq!(entries.iter().map(|(_, line)| line.as_str()).collect::<Vec<_>>(), ["wait : activity = \"\""]);
+    let made = apply_refinements(&file("Role: r\nLiveness:\nr = wait\n"), &entries).unwrap();
+    assert_eq!((made.kept, made.lost.len()), (1, 0));
+    let refined = chart(&made.text);
+    assert_eq!(refined.node(refined.find("wait").unwrap()).activity, None);
+}
+
+#[test]
+fn entries_follow_a_composite_whose_text_was_edited() {
+    let role = "\
+Role: r
+Liveness:
+r = A . ( B | C )ω . [D . F]
+Transitions:
+A -> ( B | C )ω : [Ball.found]   # go
+(B|C) ω/(B|C): CONDITION -> C !2 : [!In((B|C))]
+(B|C)~ -> [D.F] : [false]
+States:
+(B|C)~ : entry = raise(begun)
+(B|C) : exit = raise(done)
+";
+    let edited = role.replace("= A . ( B | C )ω", "= A . ( B | C | E )ω");
+    let made = comment_out_refinements(&file(&edited)).unwrap();
+    assert_eq!((made.kept, made.lost.len(), made.renamed.len()), (5, 0, 5), "{}", made.text);
+    for line in [
+        "A -> (B|C|E)~ : [Ball.found]   # go",
+        "(B|C|E)~/(B|C|E): CONDITION -> C !2 : [!In((B|C|E))]",
+        "(B|C|E)~ -> [D.F] : [false]",
+        "(B|C|E)~ : entry = raise(begun)",
+        "(B|C|E) : exit = raise(done)",
+    ] {
+        assert!(made.text.lines().any(|it| it == line), "{line}\nis not in\n{}", made.text);
+    }
+    let said = "`(B|C)~ -> [D.F] : [false]` is now `(B|C|E)~ -> [D.F] : [false]`: the formula was edited";
+    assert!(made.renamed.iter().any(|it| it.code == "E0256" && it.message == said), "{:?}", made.renamed);
+
+    // what may be one of two, or is another operator, stays to the developer
+    for edit in ["= A . (( B | C | E ) || (B | C | G))ω", "= A . ( B . C )ω", "= A . ( B | G | E | H )ω"] {
+        let edited = role.replace("= A . ( B | C )ω", edit);
+        let made = comment_out_refinements(&file(&edited)).unwrap();
+        assert!(made.renamed.is_empty() && !made.lost.is_empty(), "{}", made.text);
+    }
+}

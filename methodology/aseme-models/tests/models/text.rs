@@ -1,6 +1,7 @@
 //! The text form of each kind of model, beside its XMI.
 
 use aseme_models::convert::Format;
+use yase::Diagnostic;
 
 use crate::kit::{clean, read, told, whole};
 
@@ -222,4 +223,28 @@ fn formulas_in_a_model_are_judged_where_they_stand() {
     let open = SRM.replace("player=Stand.search", "player=Stand ?OP? search");
     let (.., findings) = read(&open);
     assert_eq!(findings.iter().map(|it| it.code).collect::<Vec<_>>(), ["E0219"]);
+}
+
+/// What cannot be run yet can be looked at.
+#[test]
+fn charts_with_unfinished_expressions_are_drawn() {
+    let chart = "IAC: m\n\nStates:\n  m OR\n    START\n    A BASIC\n    END\n\nTransitions:\n  START -> A\n  A -> A : [y g 0`]/timeout\n  A -> END : [x]\n";
+    let role = "Role: m\nLiveness:\nm = A+\nTransitions:\nA -> A : [y g 0`]/timeout\nA -> END : [x]\n";
+    for text in [chart, role] {
+        let source = yase::Source::new("m", text);
+        assert!(aseme_models::statechart_of(&source).1.iter().any(Diagnostic::is_error));
+        let (chart, found) = aseme_models::drawable_chart_of(&source, None);
+        assert!(
+            !found.is_empty() && found.iter().all(|it| it.severity == yase::Severity::Warning),
+            "{found:?}"
+        );
+        let chart = chart.expect("a chart to be drawn");
+        let labels: Vec<String> = chart.transitions().map(|(_, it)| it.expression.to_string()).collect();
+        assert!(
+            labels.contains(&"`[y g 0']/timeout`".into()) && labels.contains(&"[x]".into()),
+            "{labels:?}"
+        );
+    }
+    let wrong = yase::Source::new("m", "m = A . . B");
+    assert_eq!(aseme_models::drawable_chart_of(&wrong, None).0, None);
 }

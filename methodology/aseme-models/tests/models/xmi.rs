@@ -12,13 +12,23 @@ fn attributes_come_in_any_order_and_references_in_any_form() {
   <nodes name="r" label="0" type="OR"><Children name="0.1" label="0.1" type="START"/><Children name="a" label="0.2" type="BASIC"/></nodes>
   <transitions TE="[x &amp;&amp; y &lt; 2]" name="0.1TOa" source="//@nodes.0/@Children.0" target="//@nodes.0/@Children.1"/>
 </statechart:Model>"#;
-    let varied = r##"<?xml version="1.0"?><!DOCTYPE m [<!ENTITY both "&#38;&#38;">]>
+    let varied = r##"<?xml version="1.0"?>
 <!-- a comment --><x:Model xmlns:x="http://statechart/1.0" xmlns:xmi="http://www.omg.org/XMI" name="m" xmi:version="2.0">
   <transitions target="#b" source="#//@nodes/@Children.0" name="0.1TOa"
-    TE="[x &both; y &#60; 2]"/>
+    TE="[x &#38;&#x26; y &#60; 2]"/>
   <nodes type="OR" label="0" name="r"><Children type="START" label="0.1" name="0.1" activity="null"/><Children xmi:id="b" type="BASIC" label="0.2" name="a" activity=""/></nodes>
 </x:Model>"##;
     assert_eq!(clean(varied), clean(plain));
+}
+
+/// Entities that consist of entities ask for any amount of memory.
+#[test]
+fn a_document_type_is_refused() {
+    let text = "<!DOCTYPE m [<!ENTITY a \"xx\"><!ENTITY b \"&a;&a;\">]>\n<Model name=\"&b;\"/>";
+    let found = aseme_models::convert::read(&yase::Source::new("m.stct", text)).1;
+    let codes: Vec<&str> = found.iter().map(|found| found.code).collect();
+    assert_eq!(codes, ["E0246"], "{found:?}");
+    assert!(found[0].hint.as_deref().is_some_and(|hint| hint.contains("`<!DOCTYPE`")), "{found:?}");
 }
 
 #[test]
@@ -146,4 +156,34 @@ fn what_no_dialect_can_say_is_listed_thing_by_thing() {
     ] {
         assert!(lost.iter().any(|it| it.contains(what)), "{what} is not in\n{}", lost.join("\n"));
     }
+}
+
+/// The notation of the editors places the nodes of a model file.
+#[test]
+fn nodes_are_where_a_diagram_has_them() {
+    let model = r#"<statechart:Model xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:statechart="http://statechart/1.0" name="m">
+  <nodes name="r" label="0" type="OR"><Children name="0.1" label="0.1" type="START"/><Children name="a" label="0.2" type="BASIC"/></nodes>
+  <transitions name="0.1TOa" source="//@nodes.0/@Children.0" target="//@nodes.0/@Children.1"/>
+</statechart:Model>"#;
+    let diagram = r#"<notation:Diagram xmlns:xmi="http://www.omg.org/XMI" xmlns:notation="http://www.eclipse.org/gmf/runtime/1.0.2/notation" type="Statechart">
+  <children type="2001">
+    <children type="7001">
+      <children type="3001"><element href="m.stct#//@nodes.0/@Children.1"/><layoutConstraint x="40" y="25" width="90" height="-1"/></children>
+      <children type="3002"><element href="m.stct#//@nodes.0/@Children.0"/><layoutConstraint y="10"/></children>
+    </children>
+    <element href="m.stct#//@nodes.0"/><layoutConstraint x="5" y="5" width="300" height="200"/>
+  </children>
+  <edges source="a" target="b"><bendpoints points="[0, 0, 1, 1]"/></edges>
+</notation:Diagram>"#;
+    let source = yase::Source::new("m.stct", model);
+    let (chart, found) = aseme_models::drawable_chart_of(&source, Some(&yase::Source::new("m.kse", diagram)));
+    assert_eq!(found, []);
+    let chart = chart.expect("a chart");
+    let frame = |name: &str| chart.layout.frames[&chart.find(name).expect("a node")];
+    assert_eq!((frame("a").at, frame("a").size), (Some((40.0, 25.0)), None));
+    assert_eq!(frame("START").at, Some((0.0, 10.0)));
+    assert_eq!(chart.layout.frames[&yase::Statechart::ROOT].size, Some((300.0, 200.0)));
+    let other = yase::Source::new("n.kse", diagram.replace("@nodes.0", "@nodes.7"));
+    let found = aseme_models::drawable_chart_of(&source, Some(&other)).1;
+    assert_eq!(found[0].code, "E0819");
 }

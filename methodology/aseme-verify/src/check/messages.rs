@@ -61,6 +61,29 @@ fn activities(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagnostic>
     found
 }
 
+/// M21 without a program to ask: names in formulas that begin with a small letter, as formulas do,
+/// while the other activities of the role begin with a capital.
+pub(crate) fn names_like_formulas(subject: &CheckedModel) -> Vec<Diagnostic> {
+    if subject.liveness.is_none() {
+        return Vec::new();
+    }
+    let states = || subject.chart.nodes().filter(|(_, node)| node.activity.as_ref() == Some(&node.name));
+    let begins =
+        |name: &str, test: fn(&char) -> bool| name.chars().next().is_some_and(|letter| test(&letter));
+    if !states().any(|(_, node)| begins(&node.name, char::is_ascii_uppercase)) {
+        return Vec::new();
+    }
+    let mut seen = BTreeSet::new();
+    states()
+        .filter(|(_, node)| begins(&node.name, char::is_ascii_lowercase) && seen.insert(node.name.as_str()))
+        .map(|(id, node)| {
+            let message = format!("`{}` has no formula and is taken for an activity", node.name);
+            let hint = "write its formula, or check the role with the program that has the activity";
+            Diagnostic::warning("M21", subject.places.node(id), message).with_hint(hint)
+        })
+        .collect()
+}
+
 /// M11: a transition of one region writes what one of another region may read in the same step, and
 /// does not see yet.
 pub(crate) fn same_step(subject: &CheckedModel) -> Vec<Diagnostic> {

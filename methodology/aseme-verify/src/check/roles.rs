@@ -1,21 +1,61 @@
-//! Checks of models of roles (S01 to S03, S05) and of protocols (S04).
+//! Checks of models of roles (S01 to S03, S05) and of protocols (S04; M17 for what their rules and
+//! outcomes read).
 
 use std::collections::BTreeSet;
 
+use yase::expression::{EventInterner, NameScope, ScriptInterner, TransitionExpression};
 use yase::{Diagnostic, Span};
 
+use crate::program_symbols::ProgramSymbols;
 use aseme::liveness;
-use aseme_models::aip::Aip;
+use aseme_models::aip::{Aip, Participant};
 use aseme_models::convert::Model;
 use aseme_models::roles::{Role, SystemRoles};
+use aseme_models::transformations::{aip_to_eac, conditions};
 
 /// The findings about a model that is not a chart.
-pub(crate) fn check(model: &Model) -> Vec<Diagnostic> {
+pub(crate) fn check(model: &Model, world: Option<&ProgramSymbols>) -> Vec<Diagnostic> {
     match model {
         Model::Srm(system) => system_roles(system),
-        Model::Aip(protocols) => participants(protocols),
+        Model::Aip(protocols) => {
+            let mut found = participants(protocols);
+            found.extend(unreadable_conditions(protocols));
+            let names = |world| protocols.participants.iter().flat_map(move |it| unknown_fields(it, world));
+            found.extend(world.into_iter().flat_map(names));
+            found
+        }
         _ => Vec::new(),
     }
+}
+
+/// E0838: rules and outcomes that are no conditions.
+fn unreadable_conditions(protocols: &Aip) -> impl Iterator<Item = Diagnostic> {
+    let (_, found) = aip_to_eac(protocols);
+    found.into_iter().filter(|found| found.code == "E0838")
+}
+
+/// M17: what the rules and outcomes of a participant read and the program does not have.
+fn unknown_fields(participant: &Participant, world: &ProgramSymbols) -> Vec<Diagnostic> {
+    let texts = [&participant.engaging_rules, &participant.outcomes];
+    let conditions = texts.into_iter().filter_map(|text| conditions(text)).flatten();
+    let mut found = Vec::new();
+    for condition in conditions {
+        let expression =
+            TransitionExpression { guard: Some(condition.clone()), ..TransitionExpression::default() };
+        let compiled = expression.compile(&mut NameScope {
+            vocabulary: &world.vocabulary,
+            constants: &[],
+            timers: &[],
+            events: &mut EventInterner::new(),
+            scripts: &mut ScriptInterner::new(),
+            states: &|_| None,
+        });
+        for wrong in compiled.err().unwrap_or_default() {
+            let message = format!("in `[{condition}]` of `{}`: {}", participant.name, wrong.message);
+            found.push(Diagnostic { code: "M17", span: participant.place.0, message, ..wrong });
+        }
+    }
+    found
 }
 
 fn system_roles(system: &SystemRoles) -> Vec<Diagnostic> {

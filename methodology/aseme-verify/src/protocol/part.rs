@@ -73,6 +73,7 @@ pub(crate) fn contained(player: &Iac, place: usize, eac: &Iac, part: usize, foun
 /// The transitions of the part, which are to be the player's, and no others.
 fn inside(player: &Iac, eac: &Iac, pairs: &BTreeMap<usize, usize>, found: &mut Conformance) {
     let own: BTreeSet<usize> = pairs.values().copied().collect();
+    let is_top = |node: usize| player.nodes[node].parent.is_none_or(|parent| !own.contains(&parent));
     let mut there: Vec<&IacTransition> =
         player.transitions.iter().filter(|it| own.contains(&it.source) && own.contains(&it.target)).collect();
     let words = |it: &IacTransition| yase::expression::parse_transition(&it.te).0.to_string();
@@ -100,7 +101,8 @@ fn inside(player: &Iac, eac: &Iac, pairs: &BTreeMap<usize, usize>, found: &mut C
             }
         }
     }
-    for more in there {
+    // one from the part to itself is a way into it
+    for more in there.into_iter().filter(|it| !(it.source == it.target && is_top(it.source))) {
         let (from, to) = (player.nodes[more.source].written(), player.nodes[more.target].written());
         let message = format!("the player has `{from} -> {to} : {}`, and the protocol does not", more.te);
         found.report("E0867", more.place.0, message, "merge the protocol's chart again");

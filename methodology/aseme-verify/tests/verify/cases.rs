@@ -195,6 +195,48 @@ fn the_projects_own_roles_are_without_findings_that_matter() {
         println!("{name}: {:?}", report.explored);
         let findings = report.findings.iter().filter(|it| it.diagnostic.severity > Severity::Information);
         let findings: Vec<String> = findings.map(ToString::to_string).collect();
+        // two activities of the thesis begin with a small letter, and no program is there to ask
+        let is_about_letters = |it: &String| it.contains("warning[M21]: `passBall` has no formula");
+        let findings: Vec<&String> = findings.iter().filter(|it| !is_about_letters(it)).collect();
         assert_eq!(findings, [""; 0], "{name}");
     }
+}
+
+/// Names in a formula that only look like formulas are reported where they stand.
+#[test]
+fn a_name_like_that_of_a_formula_is_reported() {
+    let about_names = |text: &str| -> Vec<String> {
+        let report = check(&Source::new("r.srm", text), &CheckSettings::default());
+        report.findings.iter().filter(|it| it.diagnostic.code == "M21").map(ToString::to_string).collect()
+    };
+    let expected = "r.srm:1:9: warning[M21]: `b` has no formula and is taken for an activity (write its formula, or check the role with the program that has the activity)";
+    assert_eq!(about_names("r = A . b . (c | b)\nc = D"), [expected]);
+    assert_eq!(about_names("r = a . b"), [""; 0]);
+}
+
+/// What follows from a misspelt name is not reported beside it.
+#[test]
+fn a_misspelt_name_is_the_only_finding() {
+    let text = "Role: r\nLiveness:\nr = Stand . acton\naction = (Search | chase)~\nchase = Walk\n\
+                Transitions:\nCONDITION -> Search : [!Ball.found]\nCONDITION -> chase : [Ball.found]\n";
+    let report = check(&Source::new("r.srm", text), &CheckSettings::default());
+    let found: Vec<&str> = report.findings.iter().map(|it| it.diagnostic.code).collect();
+    assert_eq!(found, ["E0217"]);
+}
+
+/// The rules and outcomes of a protocol are held against the messages of the program.
+#[test]
+fn rules_and_outcomes_read_what_the_program_has() {
+    let text = "AIP:\nParticipant: a\n  engaging_rules = [Ball.fuond && Ball.distance < 2]\n  outcomes = [News.good] or [Ball.]\nParticipant: b\nProtocol: p\n  participants = a, b\n";
+    let found = |world: Option<ProgramSymbols>| -> Vec<String> {
+        let mut settings = CheckSettings::default();
+        settings.world = world;
+        check(&Source::new("p.aip", text), &settings).findings.iter().map(ToString::to_string).collect()
+    };
+    let linked = found(Some(world("p")));
+    let unknown = "p.aip:2:1: error[M17]: in `[Ball.fuond && Ball.distance < 2]` of `a`: the message `Ball` has no field `fuond` (did you mean `found`?)";
+    assert!(linked.iter().any(|it| it == unknown), "{linked:?}");
+    let unreadable = |it: &String| it.contains("error[E0838]: `[Ball.` of `a` is no condition");
+    assert_eq!(linked.iter().filter(|it| unreadable(it)).count(), 1, "{linked:?}");
+    assert_eq!(found(None).iter().filter(|it| it.contains("M17")).count(), 0);
 }

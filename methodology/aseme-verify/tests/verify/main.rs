@@ -15,6 +15,7 @@ mod logic;
 mod properties;
 mod property_language;
 mod protocol;
+mod several_protocols;
 mod shared;
 mod speed;
 mod traces;

@@ -1,13 +1,20 @@
 //! Checks across formulas that are each syntactically correct.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
+use yase::diagnostic::nearest;
 use yase::{Diagnostic, Span};
 
-use super::Liveness;
+use super::{Formula, Liveness};
 
-/// Formulas given twice, formulas that refine themselves, formulas that nothing reaches, and slips
-/// of case.
+/// So many names are compared to find out what a formula that nothing reaches may be.
+const COMPARISONS: usize = 1_000_000;
+
+/// Shorter names than this resemble each other by chance.
+const SHORTEST_MISSPELT: usize = 4;
+
+/// Formulas given twice, formulas that refine themselves, names that are misspelt, formulas that
+/// nothing reaches, and slips of case.
 pub(crate) fn check(liveness: &Liveness) -> Vec<Diagnostic> {
     let by_name = liveness.by_name();
     let uses = uses(liveness, &by_name);
@@ -20,8 +27,12 @@ pub(crate) fn check(liveness: &Liveness) -> Vec<Diagnostic> {
     };
     search.visit(0);
     let reached: Vec<bool> = search.states.iter().map(|state| *state != FormulaVisit::New).collect();
+    let misspelt = misspelt(liveness, &by_name, &reached);
+    misspelt.iter().for_each(|(formula, _)| search.visit(*formula));
+    let reached: Vec<bool> = search.states.iter().map(|state| *state != FormulaVisit::New).collect();
     (0..uses.len()).for_each(|formula| search.visit(formula));
     diagnostics.append(&mut search.diagnostics);
+    diagnostics.extend(misspelt.into_iter().map(|(_, diagnostic)| diagnostic));
     diagnostics.extend(unused(liveness, &by_name, &reached));
     diagnostics.extend(slips_of_case(liveness, &by_name));
     diagnostics
@@ -96,18 +107,56 @@ impl CycleDetector<'_> {
     }
 }
 
-fn unused(liveness: &Liveness, by_name: &BTreeMap<&str, usize>, reached: &[bool]) -> Vec<Diagnostic> {
+/// The formulas that nothing reaches, of those with the same left-hand side the first.
+fn unreached<'a>(
+    liveness: &'a Liveness,
+    by_name: &BTreeMap<&str, usize>,
+    reached: &[bool],
+) -> impl Iterator<Item = (usize, &'a Formula)> {
     let formulas = liveness.formulas().iter().enumerate();
-    let unused = formulas
-        .filter(|(index, formula)| !reached[*index] && by_name.get(formula.name.as_str()) == Some(index));
+    formulas.filter(|(index, formula)| !reached[*index] && by_name.get(formula.name.as_str()) == Some(index))
+}
+
+/// Names in formulas that have none and are almost that of a formula which nothing reaches, with
+/// that formula: each once, where it stands first.
+fn misspelt(
+    liveness: &Liveness,
+    by_name: &BTreeMap<&str, usize>,
+    reached: &[bool],
+) -> Vec<(usize, Diagnostic)> {
+    let mut names: BTreeMap<&str, Span> = BTreeMap::new();
+    for (_, formula) in liveness.formulas().iter().enumerate().filter(|(index, _)| reached[*index]) {
+        for (name, span) in liveness.names(formula).filter(|(name, _)| !by_name.contains_key(name)) {
+            names.entry(name).or_insert(span);
+        }
+    }
+    let unreached = unreached(liveness, by_name, reached).take(COMPARISONS / names.len().max(1));
+    unreached
+        .filter(|(_, formula)| formula.name.len() >= SHORTEST_MISSPELT)
+        .filter_map(|(index, formula)| {
+            let is_other_case = |name: &&str| !name.eq_ignore_ascii_case(&formula.name);
+            let name = nearest(&formula.name, names.keys().copied().filter(is_other_case))?;
+            let message = format!("`{name}` has no formula, and nothing refers to `{}`", formula.name);
+            let hint = format!("did you mean `{}`?", formula.name);
+            Some((index, Diagnostic::error("E0217", names[name], message).with_hint(hint)))
+        })
+        .collect()
+}
+
+fn unused(liveness: &Liveness, by_name: &BTreeMap<&str, usize>, reached: &[bool]) -> Vec<Diagnostic> {
+    let used = liveness.formulas().iter().flat_map(|formula| liveness.names(formula)).map(|(name, _)| name);
+    let activities: BTreeSet<&str> = used.filter(|name| !by_name.contains_key(name)).collect();
+    let compared = COMPARISONS / activities.len().max(1);
     let root = liveness.formulas().first().map_or("", |formula| formula.name.as_str());
-    unused
-        .map(|(_, formula)| {
+    unreached(liveness, by_name, reached)
+        .enumerate()
+        .map(|(number, (_, formula))| {
             let message = format!("`{}` is not part of `{root}`", formula.name);
-            let used =
-                liveness.formulas().iter().flat_map(|formula| liveness.names(formula)).map(|(name, _)| name);
-            let activities = used.filter(|name| !by_name.contains_key(name));
-            Diagnostic::warning("E0215", formula.name_span, message).with_nearest(&formula.name, activities)
+            let finding = Diagnostic::warning("E0215", formula.name_span, message);
+            match number < compared {
+                true => finding.with_nearest(&formula.name, activities.iter().copied()),
+                false => finding,
+            }
         })
         .collect()
 }

@@ -4,6 +4,9 @@ use yase::{Diagnostic, Span};
 
 use crate::text::{is_forever, is_name_character};
 
+/// Stands between operands whose operator the analyst has yet to choose.
+pub const OPEN_OPERATOR: &str = "?OP?";
+
 /// What a token is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum FormulaTokenKind {
@@ -33,6 +36,15 @@ pub(crate) fn tokens(text: &str, part: Span, diagnostics: &mut Vec<Diagnostic>) 
     let mut at = part.start;
     while let Some(character) = text[at..part.end].chars().next() {
         let rest = &text[at..part.end];
+        if rest.starts_with(OPEN_OPERATOR) {
+            let span = Span::new(at, at + OPEN_OPERATOR.len());
+            let message = format!("`{OPEN_OPERATOR}` stands for an operator that is to be chosen");
+            let hint = "`.` for one after the other, `|` for one of them, `||` for both together";
+            diagnostics.push(Diagnostic::error("E0219", span, message).with_hint(hint));
+            tokens.push(Token { kind: FormulaTokenKind::Dot, span });
+            at = span.end;
+            continue;
+        }
         let (kind, length) = recognize(rest, character);
         let span = Span::new(at, at + length);
         match kind {

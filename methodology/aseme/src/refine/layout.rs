@@ -1,10 +1,12 @@
 //! Refinement of layouts.
 
+use std::collections::BTreeMap;
+
 use yase::statechart::Frame;
 use yase::{NodeId, Statechart, Transition, TransitionId};
 
-use super::{RefinementTarget, UnmatchedEntry, assign_entries, near_names, similar_transitions};
-use crate::path::{self, Path};
+use super::{Lookup, RefinementTarget, UnmatchedEntry, assign_entries, near_names, similar_transitions};
+use crate::path::Path;
 use crate::srm::{LayoutEntry, LayoutTarget};
 
 /// Applies layout entries to a chart; entries that do not match are returned, in order. Parallel
@@ -17,24 +19,29 @@ pub fn refine_layout(chart: &mut Statechart, entries: &[LayoutEntry]) -> Vec<Unm
 }
 
 fn states(chart: &mut Statechart, entries: &[LayoutEntry]) -> Vec<UnmatchedEntry> {
+    let plain = chart.clone();
+    let lookup = Lookup::new(&plain);
     let of_states: Vec<(RefinementTarget<'_, NodeId>, Frame)> = entries
         .iter()
         .filter_map(|entry| match &entry.of {
-            LayoutTarget::State(path) => Some((node_wish(chart, path, entry), entry.frame)),
+            LayoutTarget::State(path) => Some((node_wish(&lookup, path, entry), entry.frame)),
             LayoutTarget::Transition { .. } => None,
         })
         .collect();
     let (wishes, frames): (Vec<_>, Vec<_>) = of_states.into_iter().unzip();
-    let (chosen, unmatched) = assign_entries(&wishes, |id| path::shortest_path(chart, *id));
+    let (chosen, unmatched) = assign_entries(&wishes, |id| lookup.node_text(*id));
     for (id, index) in chosen {
         chart.layout.frames.insert(id, frames[index]);
     }
     unmatched
 }
 
-fn node_wish<'a>(chart: &Statechart, path: &Path, entry: &'a LayoutEntry) -> RefinementTarget<'a, NodeId> {
-    let named: Vec<NodeId> = chart.nodes().map(|(id, _)| id).filter(|&id| path.matches(chart, id)).collect();
-    let near = if named.is_empty() { near_names(chart, path).collect() } else { Vec::new() };
+fn node_wish<'a>(lookup: &Lookup<'_>, path: &Path, entry: &'a LayoutEntry) -> RefinementTarget<'a, NodeId> {
+    let named = lookup.index.nodes(path);
+    let near = match named.is_empty() && lookup.may_compare() {
+        true => near_names(lookup.chart, path).collect(),
+        false => Vec::new(),
+    };
     RefinementTarget {
         text: &entry.text,
         span: entry.span,
@@ -46,17 +53,20 @@ fn node_wish<'a>(chart: &Statechart, path: &Path, entry: &'a LayoutEntry) -> Ref
 }
 
 fn transitions(chart: &mut Statechart, entries: &[LayoutEntry]) -> Vec<UnmatchedEntry> {
+    let plain = chart.clone();
+    let lookup = Lookup::new(&plain);
+    let twins = places_among_twins(&plain);
     let of_transitions: Vec<(RefinementTarget<'_, TransitionId>, &LayoutEntry)> = entries
         .iter()
         .filter_map(|entry| match &entry.of {
             LayoutTarget::Transition { source, target, beside } => {
-                Some((transition_wish(chart, (source, target), *beside, entry), entry))
+                Some((transition_wish(&lookup, &twins, (source, target), *beside, entry), entry))
             }
             LayoutTarget::State(_) => None,
         })
         .collect();
     let (wishes, entries): (Vec<_>, Vec<_>) = of_transitions.into_iter().unzip();
-    let (chosen, unmatched) = assign_entries(&wishes, |id| path::shortest_transition(chart, *id));
+    let (chosen, unmatched) = assign_entries(&wishes, |id| lookup.transition_text(*id));
     for (id, index) in chosen {
         chart.layout.bends.insert(id, entries[index].bends.clone());
     }
@@ -65,14 +75,18 @@ fn transitions(chart: &mut Statechart, entries: &[LayoutEntry]) -> Vec<Unmatched
 
 /// Of the transitions between the same two ends the one with this number.
 fn transition_wish<'a>(
-    chart: &Statechart,
+    lookup: &Lookup<'_>,
+    twins: &[usize],
     (source, target): (&Path, &Path),
     beside: usize,
     entry: &'a LayoutEntry,
 ) -> RefinementTarget<'a, TransitionId> {
-    let is_it = |id: &TransitionId| place_among_twins(chart, *id) == beside;
-    let named: Vec<TransitionId> = path::transitions(chart, source, target).filter(is_it).collect();
-    let near = if named.is_empty() { similar_transitions(chart, source, target) } else { Vec::new() };
+    let mut named = lookup.index.transitions(source, target);
+    named.retain(|id| twins[id.0 as usize] == beside);
+    let near = match named.is_empty() && lookup.may_compare() {
+        true => similar_transitions(lookup.chart, source, target),
+        false => Vec::new(),
+    };
     let has_wildcard = source.has_wildcard() || target.has_wildcard();
     RefinementTarget { text: &entry.text, span: entry.span, thing: "transition", has_wildcard, named, near }
 }
@@ -82,4 +96,15 @@ pub fn place_among_twins(chart: &Statechart, id: TransitionId) -> usize {
     let Transition { source, target, .. } = *chart.transition(id);
     let before = chart.transitions().take(id.0 as usize);
     before.filter(|(_, other)| (other.source, other.target) == (source, target)).count()
+}
+
+/// The same for all transitions.
+fn places_among_twins(chart: &Statechart) -> Vec<usize> {
+    let mut counts: BTreeMap<(NodeId, NodeId), usize> = BTreeMap::new();
+    let place = |transition: &Transition| {
+        let count = counts.entry((transition.source, transition.target)).or_default();
+        *count += 1;
+        *count - 1
+    };
+    chart.transitions().map(|(_, transition)| transition).map(place).collect()
 }

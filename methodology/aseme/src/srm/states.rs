@@ -73,6 +73,8 @@ impl Reader {
     fn setting(&mut self, blanked: &str, key: Span, value: Span, settings: &mut StateSettings) {
         let (name, text) = (&blanked[key.start..key.end], &blanked[value.start..value.end]);
         let understood = match name {
+            // `""`: none at all
+            "activity" if text == "\"\"" => set(&mut settings.activity, Some(String::new())),
             "activity" => set(&mut settings.activity, text::is_name(text).then(|| text.into())),
             "priority" => set(&mut settings.priority, text.parse().ok()),
             "defer" => set(&mut settings.defer, events(text)),

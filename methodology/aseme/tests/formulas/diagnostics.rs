@@ -79,7 +79,23 @@ fn formulas_fit_together() {
     check("a = b\nb = c\nc = x . a", "E0214", "a", "a -> b -> c -> a");
     check("a = a", "E0214", "a", "a -> a");
     check("a = b\nc = d", "E0215", "c", "not part of `a`");
-    check("play = takeAction\ntakeAktion = x", "E0215", "takeAktion", "did you mean `takeAction`?");
+}
+
+/// The name that is misspelt is reported, not what is missing because of it.
+#[test]
+fn a_misspelt_name_is_reported_once() {
+    check("play = takeAction\ntakeAktion = x", "E0217", "takeAction", "did you mean `takeAktion`?");
+    let role = "Role: r\nLiveness:\nr = Stand . acton . acton\naction = (Search | chase)~\nchase = Walk\n\
+                Transitions:\nCONDITION -> Search : [!Ball.found]\nCONDITION -> chase : [Ball.found]\n\
+                Walk -> END : [false]\nStates:\nWalk : priority = 3\n";
+    check(role, "E0217", "acton", "did you mean `action`?");
+    // short names resemble each other by chance
+    check("r = ab\nac = b", "E0215", "ac", "not part of `r`");
+}
+
+#[test]
+fn an_operator_that_is_to_be_chosen_is_no_name() {
+    check("r = Walk ?OP? Kick", "E0219", "?OP?", "`|` for one of them");
 }
 
 #[test]

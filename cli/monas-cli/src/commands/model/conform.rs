@@ -6,7 +6,7 @@ use std::sync::Arc;
 use aseme_models::convert::Model;
 use aseme_models::iac::ChartKind;
 use aseme_models::{Aip, Iac, transformations};
-use aseme_verify::protocol::{Conformance, chart_conforms, player_conforms};
+use aseme_verify::protocol::{Conformance, chart_conforms, parts_taken, player_conforms};
 use clap::{Args, ValueHint};
 use serde_json::json;
 use yase::{Diagnostic, Source};
@@ -44,14 +44,12 @@ pub(crate) fn conform(
         is_given &= report_conformance(path, source, &chart_conforms(chart, &models.aip), format, console)?;
     }
     for (path, source, player) in &models.players {
-        for (_, _, chart) in &charts {
-            is_given &= report_conformance(
-                path,
-                source,
-                &player_conforms(player, chart, &models.aip),
-                format,
-                console,
-            )?;
+        let takes_part = |chart: &Iac| parts_taken(player, chart).iter().any(|(_, is_taken)| *is_taken);
+        let has_part = charts.iter().any(|(_, _, chart)| takes_part(chart));
+        // of several protocols a player takes part in some
+        for (_, _, chart) in charts.iter().filter(|(_, _, chart)| takes_part(chart) || !has_part) {
+            let found = player_conforms(player, chart, &models.aip);
+            is_given &= report_conformance(path, source, &found, format, console)?;
         }
     }
     Ok(if is_given { Exit::Success } else { Exit::Diverged })

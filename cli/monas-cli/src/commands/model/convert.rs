@@ -53,9 +53,8 @@ fn by_ending(output: &Path, model: &Model, read_as: ModelFormat) -> Result<Model
         return Ok(format);
     }
     match (ending, read_as, model) {
-        ("iac" | "eac", ModelFormat::Text | ModelFormat::Scxml, Model::Chart(_)) => {
-            Ok(ModelFormat::Statechart(aseme_models::iac::Dialect::Flat))
-        }
+        ("iac" | "eac", ModelFormat::Text | ModelFormat::Scxml, Model::Chart(_))
+        | ("iac" | "eac", _, Model::Role(_)) => Ok(ModelFormat::Statechart(aseme_models::iac::Dialect::Flat)),
         ("iac" | "eac" | "sag" | "suc" | "aip" | "srm" | "ft", ModelFormat::Text | ModelFormat::Role, _) => {
             Ok(ModelFormat::Xmi)
         }

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
+use monas::config;
 use yase::statechart::Layout;
 
-use crate::input::valid_chart;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, write_text};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, report, write_text};
 
 /// Arguments of `monas model draw`.
 #[derive(Args, Debug)]
@@ -20,6 +20,13 @@ pub(crate) struct DrawArguments {
     /// Ignore the layout that the model gives for its states and transitions.
     #[arg(long)]
     pub(crate) no_layout: bool,
+    /// A diagram of the original editors (.kse, .iacd) for a model in XMI: its nodes are where that
+    /// has them.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "no_layout")]
+    pub(crate) diagram: Option<PathBuf>,
+    /// Leave out what is never taken (`[false]`), and boxes that only enclose another box.
+    #[arg(long)]
+    pub(crate) compact: bool,
     #[command(flatten)]
     pub(crate) format: FormatArgument,
 }
@@ -29,9 +36,18 @@ pub(crate) fn execute(
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
     let format = arguments.format.value;
-    let mut chart = valid_chart(&arguments.file, format, console)?;
+    let read = |path: &PathBuf| {
+        config::read_file(path).map_err(|unread| CommandFailure::Invalid(format, vec![*unread]))
+    };
+    let diagram = arguments.diagram.as_ref().map(read).transpose()?;
+    let (chart, findings) = aseme_models::drawable_chart_of(&read(&arguments.file)?, diagram.as_ref());
+    let Some(mut chart) = chart else { return Err(CommandFailure::Invalid(format, findings)) };
+    report::write(console, format, &findings)?;
     if arguments.no_layout {
         chart.layout = Layout::default();
+    }
+    if arguments.compact {
+        chart = yase_export::compact(&chart);
     }
     write_text(arguments.output.as_deref(), &yase_export::to_svg(&chart), format, console)
 }

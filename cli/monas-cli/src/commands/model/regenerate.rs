@@ -65,8 +65,8 @@ pub(crate) fn execute(
         (made.text, made.kept) = (carried.text, made.kept + carried.kept);
         made.lost.extend(carried.lost);
     }
-    let lost: Vec<Diagnostic> = made.lost.iter().map(warning).collect();
-    report::write(console, format, &placed(lost))?;
+    let found = made.renamed.iter().cloned().chain(made.lost.iter().map(warning)).collect();
+    report::write(console, format, &placed(found))?;
     let written = write_text(arguments.output.as_deref(), &made.text, format, console)?;
     if arguments.output.is_some() && format == Format::Text {
         writeln!(console.out, "{} kept, {} lost", made.kept, made.lost.len())?;

@@ -53,7 +53,8 @@ pub(crate) struct TransformArguments {
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
     /// The format of the result: a format of `model convert`, or for a functionality table `table`,
-    /// `html` or `csv`.
+    /// `html` or `csv`. If not given, it follows from the extension of the output file (.iac, .eac,
+    /// .stct, .model, .xmi, .scxml, .rs).
     #[arg(long = "as", value_name = "FORMAT")]
     pub(crate) written: Option<String>,
     /// Write the file even if the format cannot represent all of the model.
@@ -67,9 +68,26 @@ pub(crate) fn execute(
     arguments: &TransformArguments,
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
-    match arguments.to {
+    let kind = arguments.to.or(arguments.model_format()?.map(|_| Kind::Iac));
+    match kind {
         None => chart(arguments, console),
         Some(kind) => Transformation { arguments, format: arguments.format.value, console }.execute(kind),
+    }
+}
+
+impl TransformArguments {
+    /// The format of models that --as or the extension of the output asks for; none for the outline
+    /// of a statechart.
+    fn model_format(&self) -> Result<Option<ModelFormat>, CommandFailure> {
+        if let Some(word) = self.written.as_deref().filter(|_| self.to != Some(Kind::Ft)) {
+            return named(word).map(Some);
+        }
+        let ending = self.output.as_ref().and_then(|path| path.extension()?.to_str());
+        Ok(ending.and_then(|ending| match ending {
+            "iac" | "eac" => Some(ModelFormat::Text),
+            "txt" => None,
+            ending => ModelFormat::of_ending(ending),
+        }))
     }
 }
 
@@ -172,9 +190,12 @@ impl Transformation<'_, '_> {
                 Model::Chart(eac) => eac,
                 other => return Err(wrong_kind(path, &other, "EAC")),
             };
-            for chart in &mut charts {
-                findings.extend(transformations::merge_eac(chart, &eac).1);
-            }
+            let merged: Vec<_> =
+                charts.iter_mut().map(|chart| transformations::merge_eac(chart, &eac)).collect();
+            // of several roles some take part in a protocol
+            let is_taken = merged.iter().any(|(places, _)| !places.is_empty());
+            let found = merged.into_iter().flat_map(|(_, found)| found);
+            findings.extend(found.filter(|finding| !(is_taken && finding.code == "E0837")));
         }
         Ok((charts.into_iter().map(Model::Chart).collect(), findings))
     }
@@ -212,7 +233,7 @@ impl Transformation<'_, '_> {
     }
 
     fn write(&mut self, made: Vec<Model>, source: &Arc<Source>) -> Result<Exit, CommandFailure> {
-        let wanted = self.arguments.written.as_deref().map_or(Ok(ModelFormat::Text), named)?;
+        let wanted = self.arguments.model_format()?.unwrap_or(ModelFormat::Text);
         let made = self.selected(made)?;
         let mut texts = Vec::new();
         // Comments belong to the source model and are not copied.

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use yase_codegen::typed::{Diagnostic, NodeKind, SourceDeclaration, TypedChart, TypedChartBuilder};
+use ::yase_codegen::typed::{Diagnostic, NodeKind, SourceDeclaration, TypedChart, TypedChartBuilder};
 
 use super::guards;
 use super::states::State;

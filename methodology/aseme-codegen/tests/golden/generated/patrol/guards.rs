@@ -2,7 +2,7 @@
 
 #![allow(non_snake_case)] // the names are those of states
 
-use yase_codegen::typed::{
+use ::yase_codegen::typed::{
     CallError, Computed, GuardResult, Value, World, all, any, at_most, attempt, differ, given, holds, inside,
     inside_mut, more, negative, over, plus, set,
 };
@@ -48,7 +48,7 @@ pub(crate) fn ball_place_x<'a>(world: &World<'a>) -> Computed<'a> {
 }
 
 /// Sets `soccer::Ball.place_x`.
-pub(crate) fn set_ball_place_x(message: &mut soccer::Ball, value: Value<'_>) -> Result<(), CallError> {
+pub(crate) fn set_ball_place_x(message: &mut ::soccer::Ball, value: Value<'_>) -> Result<(), CallError> {
     set(&mut inside_mut(&mut message.place).x, value, "x")
 }
 
@@ -58,7 +58,7 @@ pub(crate) fn ball_colour<'a>(_: &World<'a>) -> Computed<'a> {
 }
 
 /// Sets `soccer::Ball.colour`.
-pub(crate) fn set_ball_colour(message: &mut soccer::Ball, value: Value<'_>) -> Result<(), CallError> {
+pub(crate) fn set_ball_colour(message: &mut ::soccer::Ball, value: Value<'_>) -> Result<(), CallError> {
     set(&mut message.colour, value, "colour")
 }
 
@@ -69,7 +69,7 @@ pub(crate) fn game_state_player_state<'a>(_: &World<'a>) -> Computed<'a> {
 
 /// Sets `soccer::GameState.player_state`.
 pub(crate) fn set_game_state_player_state(
-    message: &mut soccer::GameState,
+    message: &mut ::soccer::GameState,
     value: Value<'_>,
 ) -> Result<(), CallError> {
     set(&mut message.player_state, value, "player_state")

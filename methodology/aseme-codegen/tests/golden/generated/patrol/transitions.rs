@@ -1,6 +1,6 @@
 //! How one comes from one state of the chart to another.
 
-use yase_codegen::typed::TypedChartBuilder;
+use ::yase_codegen::typed::TypedChartBuilder;
 
 use super::guards;
 use super::states::State;

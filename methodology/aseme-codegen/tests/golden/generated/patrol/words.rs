@@ -12,7 +12,7 @@ pub(crate) mod constants {
 /// The functions that expressions call.
 #[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
 pub(crate) mod functions {
-    use yase_codegen::typed::Function;
+    use ::yase_codegen::typed::Function;
 
     /// `abs`
     pub(crate) const abs: Function = Function(0);
@@ -21,20 +21,20 @@ pub(crate) mod functions {
 /// The messages that are read and written.
 #[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
 pub(crate) mod messages {
-    use yase_codegen::typed::Source;
+    use ::yase_codegen::typed::Source;
 
     /// `soccer/ball`
-    pub(crate) const BALL: Source<soccer::Ball> = Source::new(0);
+    pub(crate) const BALL: Source<::soccer::Ball> = Source::new(0);
     /// `soccer/ball`
-    pub(crate) const VISION_BALL: Source<soccer::Ball> = Source::new(1);
+    pub(crate) const VISION_BALL: Source<::soccer::Ball> = Source::new(1);
     /// `soccer/game_state`
-    pub(crate) const GAME_STATE: Source<soccer::GameState> = Source::new(2);
+    pub(crate) const GAME_STATE: Source<::soccer::GameState> = Source::new(2);
 }
 
 /// The timers.
 #[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
 pub(crate) mod timers {
-    use yase_codegen::typed::Timer;
+    use ::yase_codegen::typed::Timer;
 
     /// `watch_timeout`
     pub(crate) const watch_timeout: Timer = Timer(0);

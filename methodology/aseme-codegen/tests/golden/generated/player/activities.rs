@@ -2,9 +2,9 @@
 
 mod pass_ball;
 
-use monas::generated::Instance;
-use pass_ball::PassBall;
-use team::{Kick, look};
+use ::monas::generated::Instance;
+use ::team::{Kick, look};
+pub use pass_ball::PassBall;
 
 use super::states::State;
 
