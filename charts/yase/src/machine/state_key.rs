@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use crate::bits::BitSet;
 use crate::compile::CompiledChart;
+use crate::expression::EventId;
 use crate::ids::{Activation, CompoundTransitionId};
 use crate::machine::activities::{ActivityState, InvocationPhase};
 use crate::machine::queues::PoppedEvent;
@@ -163,6 +164,37 @@ impl Machine {
     pub fn is_waiting(&self, name: &str) -> bool {
         let event = self.chart.event(name).0;
         self.run.queues.all().any(|occurrence| occurrence.event == event)
+    }
+
+    /// Keeps the oldest `most` waiting occurrences of each event and discards the others; returns
+    /// the events of which it has discarded any. For explorations, which would otherwise find a new
+    /// state each time that an event is raised and not taken.
+    pub fn limit_queues(&mut self, most: usize) -> Vec<EventId> {
+        let queues = &mut self.run.queues;
+        if queues.all().nth(most).is_none() {
+            return Vec::new();
+        }
+        let mut waiting: Vec<(EventId, u64)> = queues.all().map(|it| (it.event, it.number)).collect();
+        waiting.sort_unstable();
+        let cut: Vec<(EventId, u64)> = waiting
+            .chunk_by(|one, other| one.0 == other.0)
+            .flat_map(|same| same.iter().skip(most))
+            .copied()
+            .collect();
+        if !cut.is_empty() {
+            queues.discard(|it| cut.binary_search(&(it.event, it.number)).is_ok());
+        }
+        let mut events: Vec<EventId> = cut.into_iter().map(|(event, _)| event).collect();
+        events.dedup();
+        events
+    }
+
+    /// The memory of a machine of this chart, in bytes, roughly.
+    pub fn estimated_bytes(&self) -> usize {
+        let sets = 12 * self.run.active.words().count() * size_of::<u64>();
+        let slots = size_of_val(self.run.activities.slots()) + size_of_val(&*self.run.timers.slots);
+        let records: usize = self.run.records.iter().map(|it| 32 + 8 * it.places.len()).sum();
+        size_of::<Machine>() + sets + slots + records + 64 * self.run.queues.all().count()
     }
 
     /// The activity of a state, if it is running.

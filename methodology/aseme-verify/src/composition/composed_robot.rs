@@ -147,7 +147,8 @@ impl ComposedRobot {
             pace: None,
             letter: Box::new(letter),
         };
-        let found = explore_labelled(&self.abstraction.chart, &mut surroundings, &mut asked, settings.states);
+        let found =
+            explore_labelled(&self.abstraction.chart, &mut surroundings, &mut asked, settings.limits());
         drop((asked, surroundings));
         Behaviour::new(found, deeds, &self.waits)
     }

@@ -35,15 +35,15 @@ fn is_explored_to_the_end(name: &str, configurations: usize) {
 
 #[test]
 fn the_goalie_is_explored_to_the_end() {
-    is_explored_to_the_end("goalie.srm", 42);
+    is_explored_to_the_end("goalie.srm", 12);
 }
 
 #[test]
 fn the_attacker_is_explored_to_the_end() {
-    is_explored_to_the_end("attacker.srm", 46);
+    is_explored_to_the_end("attacker.srm", 14);
 }
 
 #[test]
 fn the_extended_attacker_is_explored_to_the_end() {
-    is_explored_to_the_end("extended_attacker.srm", 78);
+    is_explored_to_the_end("extended_attacker.srm", 21);
 }
