@@ -273,39 +273,37 @@ impl ConformanceComparison<'_> {
         let start =
             (internal_closure(graph, graph.initial.iter().copied().collect()), ResidualSet::from([all]));
         let mut seen = BTreeSet::from([start.clone()]);
-        let mut open = VecDeque::from([(start, Vec::new())]);
+        let mut open = VecDeque::from([(start, None)]);
         let mut points = FormulaPoints::default();
         let mut work = 0;
-        while let Some(((states, rests), before)) = open.pop_front() {
+        while let Some(((states, rests), trace)) = open.pop_front() {
             work += states.len() * (1 + rests.len());
             if work > MOST || self.language.is_too_large() || (self.is_stopped)() {
                 return InclusionResult::Unknown;
             }
             let may_end = rests.iter().any(|&rest| self.language.may_end(rest));
             let ends = states.iter().any(|&state| graph.ends[state]);
-            let point = points.visit(&rests, &before);
             if may_end {
-                point.follow(None, ends);
+                points.visit(&rests, trace).follow(None, ends);
             }
-            for letter in 0..self.language.letters().len() as Symbol {
+            for letter in self.language.first_letters(&rests) {
                 let after = self.language.derivative_of_any(&rests, letter);
-                if after.is_empty() {
-                    continue;
-                }
                 let reached = reached(graph, &states, letter);
-                points.visit(&rests, &before).follow(Some(letter), !reached.is_empty());
+                points.visit(&rests, trace).follow(Some(letter), !reached.is_empty());
                 let next = (internal_closure(graph, reached), after);
                 if !next.0.is_empty() && seen.insert(next.clone()) {
-                    open.push_back((next, [before.as_slice(), &[letter]].concat()));
+                    open.push_back((next, Some(points.extend(trace, letter))));
                 }
             }
         }
         match points.never_followed() {
             Some((Some(letter), before)) => {
                 let name = self.language.letters()[letter as usize].clone();
-                InclusionResult::Differs(self.missing(DifferenceKind::NeverDone(name), before))
+                InclusionResult::Differs(self.missing(DifferenceKind::NeverDone(name), &before))
             }
-            Some((None, before)) => InclusionResult::Differs(self.missing(DifferenceKind::NeverEnds, before)),
+            Some((None, before)) => {
+                InclusionResult::Differs(self.missing(DifferenceKind::NeverEnds, &before))
+            }
             None => InclusionResult::Same,
         }
     }

@@ -10,7 +10,7 @@
 mod blackboards;
 mod evaluation;
 
-use yase::expression::Expression;
+use yase::expression::{Expression, Path};
 use yase::{Machine, NodeId};
 use yase_explore::{StepCause, TraceStep, advance_and_step};
 
@@ -61,6 +61,16 @@ impl<'a> RunReplay<'a> {
             Err(error) => Err(error.to_string()),
             Ok(()) => self.host.end(),
         }
+    }
+
+    /// A message arrives before the next step, of which something is known.
+    pub(crate) fn receive(&mut self, message: &Path, known: &[Expression]) {
+        self.host.receive(message, known);
+    }
+
+    /// Something is known of messages before the first step.
+    pub(crate) fn assume(&mut self, known: &[Expression]) {
+        self.host.assume(known);
     }
 
     /// The active nodes.

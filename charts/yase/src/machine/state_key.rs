@@ -67,13 +67,28 @@ impl Machine {
         let run = &self.run;
         key.clear();
         key.push(run.status as u32 * 2 + u32::from(run.root_is_final));
+        // most of a large chart is inactive: of sets and slots only those parts are written that are
+        // not empty, behind their places
         for set in [&run.active, &run.vacated, &run.arrived, &run.running_regions] {
-            key.extend(set.words().flat_map(|word| [word as u32, (word >> 32) as u32]));
+            for (place, word) in set.words().enumerate().filter(|(_, word)| *word != 0) {
+                key.extend([place as u32, word as u32, (word >> 32) as u32]);
+            }
+            key.push(u32::MAX);
         }
-        let slots = run.activities.slots();
-        key.extend(slots.chunks(8).map(|slots| slots.iter().fold(0, |word, slot| word << 4 | phase(slot))));
-        let slots = run.timers.slots.iter().enumerate();
-        key.extend(slots.map(|(timer, slot)| self.timer_key(timer, *slot, sight)));
+        for (place, slots) in run.activities.slots().chunks(8).enumerate() {
+            let word = slots.iter().fold(0, |word, slot| word << 4 | phase(slot));
+            if word != 0 {
+                key.extend([place as u32, word]);
+            }
+        }
+        key.push(u32::MAX);
+        for (timer, slot) in run.timers.slots.iter().enumerate() {
+            let word = self.timer_key(timer, *slot, sight);
+            if word != 0 {
+                key.extend([timer as u32, word]);
+            }
+        }
+        key.push(u32::MAX);
         self.write_queues(key);
         key.extend(run.completions.iter().map(|place| place.0));
         for record in &run.records {

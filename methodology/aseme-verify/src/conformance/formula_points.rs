@@ -9,11 +9,16 @@ use crate::conformance::derivatives::{Residual, Symbol};
 pub(crate) struct FormulaPoints {
     numbers: BTreeMap<BTreeSet<Residual>, usize>,
     points: Vec<FormulaPoint>,
+    /// Traces, each as a shorter one and its last activity.
+    traces: Vec<(Option<TraceId>, Symbol)>,
 }
+
+/// A trace, by its index; none is the empty one.
+pub(crate) type TraceId = usize;
 
 pub(crate) struct FormulaPoint {
     /// The first trace that leads there.
-    before: Vec<Symbol>,
+    before: Option<TraceId>,
     /// What may follow, `None` being the end, and whether it does after some trace.
     follows: BTreeMap<Option<Symbol>, bool>,
 }
@@ -25,24 +30,40 @@ impl FormulaPoint {
 }
 
 impl FormulaPoints {
-    pub(crate) fn visit(&mut self, rests: &BTreeSet<Residual>, before: &[Symbol]) -> &mut FormulaPoint {
+    pub(crate) fn visit(&mut self, rests: &BTreeSet<Residual>, before: Option<TraceId>) -> &mut FormulaPoint {
         let next = self.points.len();
         let number = match self.numbers.get(rests) {
             Some(&number) => number,
             None => {
                 self.numbers.insert(rests.clone(), next);
-                self.points.push(FormulaPoint { before: before.to_vec(), follows: BTreeMap::new() });
+                self.points.push(FormulaPoint { before, follows: BTreeMap::new() });
                 next
             }
         };
         &mut self.points[number]
     }
 
+    /// A trace with one more activity.
+    pub(crate) fn extend(&mut self, trace: Option<TraceId>, letter: Symbol) -> TraceId {
+        self.traces.push((trace, letter));
+        self.traces.len() - 1
+    }
+
+    fn letters_of(&self, mut trace: Option<TraceId>) -> Vec<Symbol> {
+        let mut letters = Vec::new();
+        while let Some((before, letter)) = trace.and_then(|trace| self.traces.get(trace)) {
+            letters.push(*letter);
+            trace = *before;
+        }
+        letters.reverse();
+        letters
+    }
+
     /// The first that never follows, and the trace before it.
-    pub(crate) fn never_followed(&self) -> Option<(Option<Symbol>, &[Symbol])> {
+    pub(crate) fn never_followed(&self) -> Option<(Option<Symbol>, Vec<Symbol>)> {
         self.points.iter().find_map(|point| {
             let (letter, _) = point.follows.iter().find(|(_, is_done)| !**is_done)?;
-            Some((*letter, point.before.as_slice()))
+            Some((*letter, self.letters_of(point.before)))
         })
     }
 }

@@ -145,6 +145,30 @@ impl<'a> ReplayHost<'a> {
         self.steps
     }
 
+    /// An announced message arrives with the next delivery.
+    pub(super) fn receive(&mut self, message: &Path, known: &[Expression]) {
+        self.arrivals.push((message.clone(), self.delivery + 1));
+        self.claim_of_delivery(self.delivery + 1, known);
+    }
+
+    /// What is so of the messages before the first step.
+    pub(super) fn assume(&mut self, known: &[Expression]) {
+        self.claim_of_delivery(0, known);
+    }
+
+    fn claim_of_delivery(&mut self, delivery: u32, known: &[Expression]) {
+        let board = ReplayBoard { delivery, written: Vec::new() };
+        for condition in known {
+            let claim = RunClaim {
+                written: condition.clone(),
+                condition: self.versioned(condition, &board),
+                holds: true,
+                step: self.steps,
+            };
+            self.log.get_mut().claims.push(claim);
+        }
+    }
+
     /// What is so after a step on the blackboard of the root, with the newest messages.
     pub(super) fn claim_of_root(&mut self, condition: &Expression, holds: bool) {
         let root = &self.boards[ScopeId::ROOT.index()];

@@ -21,8 +21,8 @@ use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgumen
 /// Arguments of `monas model compose`.
 #[derive(Args, Debug)]
 pub(crate) struct ComposeArguments {
-    /// The model of each robot, as `NAME=FILE` if the robot is not named after its file; and the
-    /// models of a protocol.
+    /// The model of each robot, as `NAME=FILE` if the robot is not named after its file, as
+    /// `ROBOT/AGENT=FILE` if it is one of several agents of a robot; and the models of a protocol.
     #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) files: Vec<PathBuf>,
     /// The capacity of the channel from one robot to another, in messages; when it is full the
@@ -162,6 +162,10 @@ fn text(found: &Composition, console: &mut CommandOutput<'_>) -> Result<(), Comm
         report::write(console, Format::Text, std::slice::from_ref(&finding.diagnostic))?;
         finding::way_there(finding, console)?;
     }
+    if found.is_one_process {
+        let note = "no chart reads a message by the name of a robot: these are agents of one process";
+        writeln!(console.out, "{note}")?;
+    }
     for (from, to, message) in &found.passing {
         writeln!(console.out, "`{message}` passes from {from} to {to}")?;
     }
@@ -187,6 +191,10 @@ fn objects(found: &Composition, console: &mut CommandOutput<'_>) -> Result<(), C
     for (name, states) in &found.robots {
         writeln!(console.out, "{}", json!({"robot": name, "states": states}))?;
     }
-    writeln!(console.out, "{}", json!({"states": found.states, "finished": found.is_finished}))?;
+    writeln!(
+        console.out,
+        "{}",
+        json!({"states": found.states, "finished": found.is_finished, "one_process": found.is_one_process})
+    )?;
     Ok(())
 }
