@@ -229,9 +229,7 @@ fn agents_of_one_process_are_composed_like_robots() {
         |text: &str| format!("Role: answerer\nLiveness:\nanswerer = Listen . Say\nTransitions:\n{text}");
     let good = answerer("Listen -> Say : question.Signal.Question / publish.answer.Signal.Answer\n");
     let bad = answerer("Listen -> Say : hint.Signal.Hint / publish.answer.Signal.Answer\n");
-    let asker = ASKER
-        .replace("Wait -> Use : answer", "Wait -> Use : answer")
-        .replace("answer.Signal.Answer\n", "answer.Signal.Answer / publish.hint.Signal.Hint\n");
+    let asker = ASKER.replace("answer.Signal.Answer\n", "answer.Signal.Answer / publish.hint.Signal.Hint\n");
     let both = |other: &str| of_texts(&[("asker", &asker), ("answerer", other)]);
     let found = compose(&both(&good), Channels::default(), &CheckSettings::default()).unwrap();
     assert!(found.is_one_process && !found.has_errors() && found.is_finished, "{}", text(&found));
