@@ -41,8 +41,8 @@ pub enum ExplorationStop {
     Queues,
 }
 
-/// So many waiting occurrences of one event are told apart; more are taken for so many. Otherwise a
-/// queue that grows without bound would make each state a new one.
+/// So many waiting occurrences of one event are distinguished; more are taken for so many.
+/// Otherwise a queue that grows without bound would make each state a new one.
 pub const QUEUED: usize = 3;
 
 impl From<usize> for ExplorationLimits<'static> {

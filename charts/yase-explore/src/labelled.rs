@@ -136,7 +136,7 @@ impl LabelledGraph {
         self.stop
     }
 
-    /// The names of the events of which more may wait than are told apart ([`QUEUED`]).
+    /// The names of the events of which more may wait than are distinguished ([`QUEUED`]).
     pub fn overflowing(&self) -> Vec<&str> {
         self.overflowing.iter().map(|&event| self.chart.events().name(event)).collect()
     }

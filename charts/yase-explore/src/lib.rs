@@ -30,18 +30,18 @@
 //! let open = door.add(Statechart::ROOT, Node::new(NodeKind::Basic, "open"));
 //! let broken = door.add(Statechart::ROOT, Node::new(NodeKind::Basic, "broken"));
 //! for (source, target, text) in
-//!     [(start, shut, ""), (shut, open, "push / raise(creak)"), (open, shut, "creak"), (open, broken, "creak")]
-//! {
+//!     [(start, shut, ""), (shut, open, "push / raise(creak)"), (open, shut, "creak"), (open,
+//! broken, "creak")] {
 //!     let expression = parse_transition(text).0;
 //!     door.connect(Transition { expression, ..Transition::new(source, target) });
 //! }
 //! let chart = Arc::new(door.compile(&TypeEnvironment::default()).expect("the chart is in order"));
 //!
-//! let found = explore(&chart, &mut Environment { events: vec!["push".into()], ..Environment::default() }, 1_000);
-//! assert!(found.is_finished());
-//! assert!(found.was_entered(open) && !found.was_entered(broken), "the first of the two always wins");
-//! let way = found.trace_to(found.first(|state| state.is_active(shut)).expect("it is reached"));
-//! assert_eq!(way.to_string(), "start\n");
+//! let found = explore(&chart, &mut Environment { events: vec!["push".into()],
+//! ..Environment::default() }, 1_000); assert!(found.is_finished());
+//! assert!(found.was_entered(open) && !found.was_entered(broken), "the first of the two always
+//! wins"); let way = found.trace_to(found.first(|state| state.is_active(shut)).expect("it is
+//! reached")); assert_eq!(way.to_string(), "start\n");
 //! ```
 
 mod constraint_cache;
@@ -71,8 +71,8 @@ pub use row_interner::RowInterner;
 pub use search::{advance_and_step, explore};
 pub use trace::{ParseError, StepCause, Trace, TraceStep, replay};
 
-/// Whether a condition may have a value, given the values of others in the same step and the actions
-/// whose effects stand.
+/// Whether a condition may have a value, given the values of others in the same step and the
+/// actions whose effects stand.
 pub type ConditionConstraint<'a> = dyn FnMut(ScriptId, bool, &[(ScriptId, bool)]) -> bool + 'a;
 
 /// What the actions in the host's language do to the data that conditions read.
@@ -80,7 +80,8 @@ pub type ConditionConstraint<'a> = dyn FnMut(ScriptId, bool, &[(ScriptId, bool)]
 /// An action that was executed is a fact like a condition that holds: until another one changes it,
 /// it stands among the conditions that are known, as true.
 pub struct WriteEffects<'a> {
-    /// Whether an action may change the value of a condition, or what an earlier action has written.
+    /// Whether an action may change the value of a condition, or what an earlier action has
+    /// written.
     pub changes: Box<dyn Fn(ScriptId, ScriptId) -> bool + 'a>,
     /// Whether the blackboard of a region that is entered shows what the action has written on the
     /// one around it.
@@ -203,7 +204,7 @@ impl Exploration {
         self.stop
     }
 
-    /// The names of the events of which more may wait than are told apart ([`QUEUED`]).
+    /// The names of the events of which more may wait than are distinguished ([`QUEUED`]).
     pub fn overflowing(&self) -> Vec<&str> {
         self.overflowing.iter().map(|&event| self.chart.events().name(event)).collect()
     }

@@ -89,8 +89,8 @@ impl Abstraction {
         surroundings
     }
 
-    /// Whether values of conditions are possible together, some more conditions standing behind those
-    /// of the chart.
+    /// Whether values of conditions are possible together, some more conditions standing behind
+    /// those of the chart.
     pub(crate) fn satisfiable<'a>(
         &'a self,
         more: &[&'a Expression],

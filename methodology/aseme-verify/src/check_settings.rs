@@ -30,8 +30,8 @@ pub struct CheckSettings {
     pub recorded: Vec<RecordedCoverage>,
 }
 
-/// Follows the progress of a check: called again and again with how far it has come; it may stop it,
-/// which then gives what is known. A check reads no clock: its caller does.
+/// Follows the progress of a check: called again and again with how far it has come; it may stop
+/// it, which then gives what is known. A check reads no clock: its caller does.
 #[derive(Clone)]
 pub struct ProgressObserver(Arc<Observe>);
 

@@ -1,17 +1,17 @@
 //! Exploration of several robots together: deadlocks and lost messages.
 //!
-//! Each model is one robot, or with a name `robot/agent` one agent of a robot. A message passes from
-//! one robot to another if the sender's chart writes or publishes it and the receiver's chart reads
-//! it by the sender's name (`receiver.news.Signal.Ready`), and between agents of one robot without a
-//! name (`news.Signal.Ready`). If nothing is read by a robot's name, all models are agents of one
-//! process. It passes through a channel, which holds a bounded number of
+//! Each model is one robot, or with a name `robot/agent` one agent of a robot. A message passes
+//! from one robot to another if the sender's chart writes or publishes it and the receiver's chart
+//! reads it by the sender's name (`receiver.news.Signal.Ready`), and between agents of one robot
+//! without a name (`news.Signal.Ready`). If nothing is read by a robot's name, all models are
+//! agents of one process. It passes through a channel, which holds a bounded number of
 //! messages and drops the oldest when it is full, as a link does; a channel may lose any message,
 //! if requested. Messages from a chart to itself pass the same way. A chart that has ended, or that
 //! TERMINATE has stopped, neither sends nor waits. All other conditions are free inputs, activities
 //! return and timers expire in any order.
 //!
-//! The findings are deadlocks to which the robots come on their machines (E0930; E0937 if that is not
-//! confirmed), messages that arrive where no state reads them (E0931) and
+//! The findings are deadlocks to which the robots come on their machines (E0930; E0937 if that is
+//! not confirmed), messages that arrive where no state reads them (E0931) and
 //! channels that are too small (E0932). Each has a trace, which [`TeamTrace`] replays. If the
 //! search reaches its limit, the result is undecided and reported so (E0933).
 //!

@@ -17,7 +17,7 @@ pub struct ExplorationExtent {
     pub is_finished: bool,
     /// Why it is not.
     pub stop: Option<ExplorationStop>,
-    /// The events of which more may wait than are told apart.
+    /// The events of which more may wait than are distinguished.
     pub overflowing: Vec<String>,
 }
 

@@ -5,9 +5,9 @@
 //! difference bounds, texts and enumeration values by equality, the rest as booleans. Numbers are
 //! real numbers; `abs`, `min` and `max` are one or the other of two operands.
 //!
-//! Terms outside this theory (other functions, products and sums of several fields, scripts) are treated
-//! as opaque values; only terms with equal text are known to be equal. *No* is therefore reliable,
-//! and where *yes* would depend on an opaque value, the answer is *unknown*.
+//! Terms outside this theory (other functions, products and sums of several fields, scripts) are
+//! treated as opaque values; only terms with equal text are known to be equal. *No* is therefore
+//! reliable, and where *yes* would depend on an opaque value, the answer is *unknown*.
 //!
 //! Guards are three-valued: one that reads a message that has not arrived is unknown and does not
 //! fire. A [`Claim`] states which value is meant.
@@ -17,12 +17,14 @@
 //! use yase::expression::parse_condition;
 //!
 //! let condition = |text| parse_condition(text).0.expect("a condition");
-//! let (near, far) = (condition("Ball.distance < 1 && Ball.found"), condition("Ball.distance > 2 || !Ball.found"));
-//! let logic = GuardSolver::default();
+//! let (near, far) = (condition("Ball.distance < 1 && Ball.found"), condition("Ball.distance > 2 ||
+//! !Ball.found")); let logic = GuardSolver::default();
 //! assert_eq!(logic.together(&[Claim::Holds(&near), Claim::Holds(&far)]), Satisfiability::No);
-//! let Satisfiability::Yes(example) = logic.together(&[Claim::IsFalse(&near), Claim::IsFalse(&far)]) else { panic!() };
-//! assert_eq!(example.to_string(), "`Ball.distance` is 1 and `Ball.found` is true");
-//! assert_eq!(logic.together(&[Claim::Holds(&condition("seen(Ball.x)"))]), Satisfiability::Unknown);
+//! let Satisfiability::Yes(example) = logic.together(&[Claim::IsFalse(&near),
+//! Claim::IsFalse(&far)]) else { panic!() }; assert_eq!(example.to_string(), "`Ball.distance` is 1
+//! and `Ball.found` is true");
+//! assert_eq!(logic.together(&[Claim::Holds(&condition("seen(Ball.x)"))]),
+//! Satisfiability::Unknown);
 //! ```
 
 mod bounds;

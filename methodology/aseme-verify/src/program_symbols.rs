@@ -19,8 +19,8 @@ pub struct ProgramSymbols {
 }
 
 impl ProgramSymbols {
-    /// Whether an activity, a body or the runtime may publish the message that a path names, or one of
-    /// whose fields it is. An activity that does not say what it publishes may.
+    /// Whether an activity, a body or the runtime may publish the message that a path names, or one
+    /// of whose fields it is. An activity that does not say what it publishes may.
     pub(crate) fn may_publish(&self, path: &Path) -> bool {
         let named = |name: &str| path.segments.iter().any(|it| it.text.rsplit('/').next() == Some(name));
         let is_meant = |topic: &&yase::vocabulary::TopicEntry| {

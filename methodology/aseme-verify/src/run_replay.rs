@@ -1,9 +1,9 @@
 //! Replay of a run that an exploration has found, with values for all that it leaves open.
 //!
 //! An exploration decides the conditions of a chart step by step: that the data of a run can be so
-//! throughout is not known yet. A [`RunReplay`] executes the run once more on the machine, and keeps
-//! for each condition what it reads there: which delivery of a message, or which assignment. Then it
-//! looks for values with which all conditions come out as in the run, and evaluates them.
+//! throughout is not known yet. A [`RunReplay`] executes the run once more on the machine, and
+//! keeps for each condition what it reads there: which delivery of a message, or which assignment.
+//! Then it looks for values with which all conditions come out as in the run, and evaluates them.
 //!
 //! A run that is not played may still be one: the reason says what is missing.
 
@@ -35,7 +35,8 @@ pub(crate) struct RunReplay<'a> {
 }
 
 impl<'a> RunReplay<'a> {
-    /// A chart before its start; with the blackboards, by index, of regions that the run leaves out.
+    /// A chart before its start; with the blackboards, by index, of regions that the run leaves
+    /// out.
     pub(crate) fn new(
         abstraction: &'a Abstraction,
         idle: Vec<bool>,

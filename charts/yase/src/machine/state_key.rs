@@ -67,8 +67,8 @@ impl Machine {
         let run = &self.run;
         key.clear();
         key.push(run.status as u32 * 2 + u32::from(run.root_is_final));
-        // most of a large chart is inactive: of sets and slots only those parts are written that are
-        // not empty, behind their places
+        // most of a large chart is inactive: of sets and slots only those parts are written that
+        // are not empty, behind their places
         for set in [&run.active, &run.vacated, &run.arrived, &run.running_regions] {
             for (place, word) in set.words().enumerate().filter(|(_, word)| *word != 0) {
                 key.extend([place as u32, word as u32, (word >> 32) as u32]);

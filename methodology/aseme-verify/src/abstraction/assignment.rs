@@ -92,8 +92,8 @@ pub(crate) fn same_message(one: &Path, other: &Path) -> bool {
         && one.segments.iter().zip(&other.segments).rev().skip(1).all(|(one, other)| one == other)
 }
 
-/// Whether two paths may mean one message, or fields of one: they name it alike, or one by its topic
-/// and the other by its type.
+/// Whether two paths may mean one message, or fields of one: they name it alike, or one by its
+/// topic and the other by its type.
 pub(crate) fn may_be_one_message(one: &Path, other: &Path) -> bool {
     let names = |path: &Path| -> Vec<String> {
         let texts = path.segments.iter().map(|name| name.text.rsplit('/').next().unwrap_or("").to_owned());

@@ -407,7 +407,7 @@ impl ExplorationCheck<'_> {
         left.map(|(_, transition)| self.subject.chart.node(transition.source).name.clone()).collect()
     }
 
-    /// M28: events of which more may wait than are told apart.
+    /// M28: events of which more may wait than are distinguished.
     fn crowded_queues(&self) -> Vec<Finding> {
         let raises = |event: &str| {
             self.subject.chart.transitions().map(|(id, _)| id).find(|&id| {

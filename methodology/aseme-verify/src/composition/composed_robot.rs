@@ -309,8 +309,8 @@ impl<'a> MessageFilter<'a> {
         MessageFilter { neighbourhood, sent: said.collect(), world }
     }
 
-    /// The message that a condition reads: of a named host, or without a name of another agent on the
-    /// own one. Its own are what has been read before, whatever it is.
+    /// The message that a condition reads: of a named host, or without a name of another agent on
+    /// the own one. Its own are what has been read before, whatever it is.
     fn read(&self, path: &yase::expression::Path) -> Option<MessageReference> {
         let of_host = message_reference(path, self.neighbourhood.hosts.iter().copied(), self.world);
         of_host.or_else(|| self.without_host(path, &self.neighbourhood.beside))

@@ -149,8 +149,8 @@ impl ConditionReader<'_> {
         or_unknown(whole, wanted, NegationNormalForm::Any(bounds.collect()))
     }
 
-    /// A comparison with `abs`, `min` or `max` in it, by the cases in which they are one or the other
-    /// of two operands.
+    /// A comparison with `abs`, `min` or `max` in it, by the cases in which they are one or the
+    /// other of two operands.
     fn cases(
         &self,
         left: &Expression,

@@ -55,8 +55,8 @@ impl SatisfiabilitySearch {
     }
 
     /// Values with which a formula may hold, terms that are outside of the theory being names of
-    /// their own. None if there are none, or if not all alternatives were looked at: then the second
-    /// is false.
+    /// their own. None if there are none, or if not all alternatives were looked at: then the
+    /// second is false.
     pub(crate) fn candidate(mut self, formula: &NegationNormalForm) -> (Option<GuardModel>, bool) {
         self.takes_inexact = true;
         let found = self.first(formula).map(Assumptions::model);

@@ -45,8 +45,8 @@ pub enum PropertyOutcome {
 
 /// Checks the properties in a file against a model. Returns the result of each property that can be
 /// explored, and the findings: errors of the file, properties that do not hold, each with a
-/// violating run that the machine has executed (E0870), and undecided properties: with more states than
-/// the limit (E0871), or with a violating run of the exploration only (E0872).
+/// violating run that the machine has executed (E0870), and undecided properties: with more states
+/// than the limit (E0871), or with a violating run of the exploration only (E0872).
 ///
 /// # Errors
 /// The errors that prevent exploring the model.

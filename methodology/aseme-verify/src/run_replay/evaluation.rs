@@ -5,8 +5,8 @@ use yase::statechart::{Constant, ConstantValue};
 
 use crate::logic::GuardModel;
 
-/// Whether a condition holds; none if the values do not decide that. Without values those conditions
-/// are decided that read nothing.
+/// Whether a condition holds; none if the values do not decide that. Without values those
+/// conditions are decided that read nothing.
 pub(super) fn holds(
     condition: &Expression,
     model: Option<&GuardModel>,

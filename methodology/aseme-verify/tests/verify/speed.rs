@@ -60,7 +60,8 @@ fn a_long_sequence_is_checked_to_the_end() {
     assert!(explored.is_finished && explored.states == 3_001, "{explored:?}");
 }
 
-/// An exploration ends where its caller, its memory or its number of states ends it, and says which.
+/// An exploration ends where its caller, its memory or its number of states ends it, and says
+/// which.
 #[test]
 fn an_exploration_says_why_it_ended() {
     use aseme_verify::ProgressObserver;

@@ -11,8 +11,11 @@ use yase_explore::{ExplorationProgress, ExplorationStop};
 
 use crate::terminal::{CommandFailure, CommandOutput, Format, Interrupt, WallClock};
 
-/// The time after which progress is shown first.
+/// The time after which progress is shown first, if standard error is a terminal.
 const QUIET: Duration = Duration::from_secs(1);
+
+/// The time between two updates of it.
+const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Limits of an exploration.
 #[derive(Args, Debug)]
@@ -44,7 +47,6 @@ impl ExplorationArguments {
         (settings.states, settings.bytes) = (self.states, self.memory.saturating_mul(1 << 20));
         let display = ProgressDisplay {
             bar: console.bars.as_ref().map(|bars| bars.add(ProgressBar::new_spinner())),
-            is_shown: console.catches_signals,
             next: Mutex::new(QUIET),
         };
         let (clock, limit) = (WallClock::start(), Duration::from_secs(self.seconds));
@@ -63,7 +65,6 @@ impl ExplorationArguments {
 
 struct ProgressDisplay {
     bar: Option<ProgressBar>,
-    is_shown: bool,
     /// The time of the next line.
     next: Mutex<Duration>,
 }
@@ -71,7 +72,7 @@ struct ProgressDisplay {
 impl ProgressDisplay {
     fn show(&self, elapsed: Duration, progress: ExplorationProgress) {
         let Ok(mut next) = self.next.lock() else { return };
-        if !self.is_shown || elapsed < *next {
+        if self.bar.is_none() || elapsed < *next {
             return;
         }
         let ExplorationProgress { states, open, bytes, .. } = progress;
@@ -80,17 +81,11 @@ impl ProgressDisplay {
             elapsed.as_secs(),
             bytes >> 20
         );
-        match &self.bar {
-            Some(bar) => {
-                bar.set_message(line);
-                bar.tick();
-                *next = elapsed + Duration::from_millis(200);
-            }
-            None => {
-                eprintln!("{line}");
-                *next = elapsed * 2;
-            }
-        }
+        self.bar.iter().for_each(|bar| {
+            bar.set_message(line.clone());
+            bar.tick();
+        });
+        *next = elapsed + INTERVAL;
     }
 }
 

@@ -33,8 +33,8 @@ pub(crate) fn check(subject: &CheckedModel, found: &Exploration) -> Vec<Diagnost
     composites.into_iter().map(|composite| finding(subject, composite)).collect()
 }
 
-/// Removes returns of activities some outcome of which leaves the loop: what is read decides then how
-/// long it goes on. Returns whether there were any.
+/// Removes returns of activities some outcome of which leaves the loop: what is read decides then
+/// how long it goes on. Returns whether there were any.
 fn retain_loops(next: &mut [Vec<(usize, NodeId)>], components: &[usize]) -> bool {
     let mut has_removed = false;
     for (from, steps) in next.iter_mut().enumerate() {
@@ -46,8 +46,8 @@ fn retain_loops(next: &mut [Vec<(usize, NodeId)>], components: &[usize]) -> bool
     has_removed
 }
 
-/// The steps out of each state in which an activity without a duration returns, and in none of whose
-/// outcomes the chart waits for something else where the activity was.
+/// The steps out of each state in which an activity without a duration returns, and in none of
+/// whose outcomes the chart waits for something else where the activity was.
 fn restless_steps(subject: &CheckedModel, found: &Exploration) -> Vec<Vec<(usize, NodeId)>> {
     let states = found.states();
     let mut waits: BTreeSet<(usize, NodeId)> = BTreeSet::new();
