@@ -9,8 +9,8 @@ use yase::{ActiveStates, ScriptContext};
 use yase::{CompiledChart, ScopeId};
 use yase::{MicroStepCause, TraceRecord};
 
-use super::ConditionConstraint;
 use super::constraint_cache::ConstraintCache;
+use super::{ConditionConstraint, WriteEffects};
 
 /// Stands for the blackboard of conditions that only the caller reads.
 const BESIDE: ScopeId = ScopeId(u32::MAX);
@@ -26,21 +26,24 @@ pub(crate) struct ChoosingHost<'s, 'a> {
 
 struct Decisions<'s, 'a> {
     permits: ConstraintCache<'s, 'a>,
+    effects: &'s WriteEffects<'a>,
     /// The planned values of the first conditions.
     planned: Vec<bool>,
     /// The decisions: their values, and whether the other value was possible.
     log: Vec<Decision>,
     /// The known values of conditions on each blackboard in this step.
     known: Vec<(ScopeId, ScriptId, bool)>,
-    /// The known values on one of them.
+    /// What is so on each blackboard: values of conditions, and actions, which are true. Unlike a
+    /// known value, it is not lost when an action writes something else.
+    facts: Vec<(ScopeId, ScriptId, bool)>,
+    /// The actions of this step that have written to a blackboard.
+    written: Vec<(ScopeId, ScriptId)>,
+    /// What is so on one blackboard.
     on_board: Vec<(ScriptId, bool)>,
     /// The blackboards on which no condition holds, by index.
     idle: &'s [bool],
     /// The blackboards to which the newest messages were delivered.
     delivered: Vec<ScopeId>,
-    /// Whether the chart has written to the blackboard of its root, which then differs from the
-    /// others until the next step.
-    is_root_written: bool,
 }
 
 /// The decided value of a condition.
@@ -67,16 +70,21 @@ pub(crate) struct StepNotes {
 }
 
 impl<'s, 'a> ChoosingHost<'s, 'a> {
-    pub(crate) fn new(allows: &'s mut ConditionConstraint<'a>) -> ChoosingHost<'s, 'a> {
+    pub(crate) fn new(
+        allows: &'s mut ConditionConstraint<'a>,
+        effects: &'s WriteEffects<'a>,
+    ) -> ChoosingHost<'s, 'a> {
         let decisions = Decisions {
             permits: ConstraintCache::new(allows),
+            effects,
             planned: Vec::new(),
             log: Vec::new(),
             known: Vec::new(),
+            facts: Vec::new(),
+            written: Vec::new(),
             on_board: Vec::new(),
             idle: &[],
             delivered: Vec::new(),
-            is_root_written: false,
         };
         ChoosingHost { decisions: RefCell::new(decisions), notes: StepNotes::default() }
     }
@@ -94,8 +102,9 @@ impl<'s, 'a> ChoosingHost<'s, 'a> {
         decisions.planned.extend_from_slice(planned);
         decisions.log.clear();
         decisions.known.clear();
+        decisions.facts.clear();
+        decisions.written.clear();
         decisions.delivered.clear();
-        decisions.is_root_written = false;
         self.notes.clear();
     }
 
@@ -135,16 +144,46 @@ impl Decisions<'_, '_> {
         let value = match self.is_idle(region) {
             true => self.log_idle(script),
             false => {
-                let mut known = std::mem::take(&mut self.on_board);
-                known.clear();
-                known.extend(self.known.iter().filter(on_board).map(|&(_, script, value)| (script, value)));
-                let value = self.choose(script, &known);
-                self.on_board = known;
+                let value = self.choose_among(region, script);
+                self.facts.push((region, script, value));
                 value
             }
         };
         self.known.push((region, script, value));
         value
+    }
+
+    /// Chooses a value that is possible with all that is known of a blackboard.
+    fn choose_among(&mut self, region: ScopeId, script: ScriptId) -> bool {
+        let mut known = std::mem::take(&mut self.on_board);
+        known.clear();
+        let of_board = self.facts.iter().filter(|(board, fact, _)| self.is_shared(*board, *fact, region));
+        known.extend(of_board.map(|&(_, script, value)| (script, value)));
+        known.sort_unstable();
+        known.dedup();
+        let value = self.choose(script, &known);
+        self.on_board = known;
+        value
+    }
+
+    /// Whether a fact of one blackboard is one of another: both have the newest messages, and
+    /// neither was written since as far as the fact is concerned.
+    fn is_shared(&self, board: ScopeId, fact: ScriptId, region: ScopeId) -> bool {
+        match (board, region) {
+            _ if board == region => true,
+            (ROOT, BESIDE) => self.delivered.contains(&ROOT),
+            (_, BESIDE) => self.is_newest(board, fact) && self.is_unwritten(ROOT, fact),
+            _ => self.is_newest(board, fact) && self.is_newest(region, fact),
+        }
+    }
+
+    fn is_newest(&self, board: ScopeId, fact: ScriptId) -> bool {
+        self.delivered.contains(&board) && !self.is_idle(board) && self.is_unwritten(board, fact)
+    }
+
+    fn is_unwritten(&self, board: ScopeId, fact: ScriptId) -> bool {
+        let mut of_board = self.written.iter().filter(|(written, _)| *written == board);
+        of_board.all(|&(_, action)| action != fact && !(self.effects.changes)(action, fact))
     }
 
     fn is_idle(&self, region: ScopeId) -> bool {
@@ -158,17 +197,33 @@ impl Decisions<'_, '_> {
     }
 
     fn decide_after_step(&mut self, script: ScriptId) -> bool {
-        let is_alike = |region: ScopeId| region == ROOT || !self.is_root_written;
-        let is_new =
-            |region: ScopeId| self.delivered.contains(&region) && !self.is_idle(region) && is_alike(region);
-        let mut known: Vec<(ScriptId, bool)> = Vec::new();
-        let of_boards = self.known.iter().filter(|(region, ..)| is_new(*region) || *region == BESIDE);
-        known.extend(of_boards.map(|&(_, script, value)| (script, value)));
-        known.sort_unstable();
-        known.dedup();
-        let value = self.choose(script, &known);
-        self.known.push((BESIDE, script, value));
+        let value = self.choose_among(BESIDE, script);
+        self.facts.push((BESIDE, script, value));
         value
+    }
+
+    /// A region takes over what is so on another blackboard, and what was written there and can be
+    /// seen. One that inherits the newest messages has the newest messages.
+    fn inherit(&mut self, region: ScopeId, from: ScopeId) {
+        self.known.retain(|(board, ..)| *board != region);
+        self.facts.retain(|(board, ..)| *board != region);
+        self.written.retain(|(board, _)| *board != region);
+        self.delivered.retain(|board| *board != region);
+        if self.delivered.contains(&from) {
+            self.delivered.push(region);
+        }
+        let is_inherited = |action: ScriptId| (self.effects.is_inherited)(action);
+        let seen = self.written.iter().filter(|(board, action)| *board == from && is_inherited(*action));
+        let seen: Vec<(ScopeId, ScriptId)> = seen.map(|&(_, action)| (region, action)).collect();
+        let remains = |fact: ScriptId| {
+            let mut hidden =
+                self.written.iter().filter(|(board, action)| *board == from && !is_inherited(*action));
+            hidden.all(|&(_, action)| action != fact && !(self.effects.changes)(action, fact))
+        };
+        let facts = self.facts.iter().filter(|(board, fact, _)| *board == from && remains(*fact));
+        let facts: Vec<_> = facts.map(|&(_, fact, value)| (region, fact, value)).collect();
+        self.written.extend(seen);
+        self.facts.extend(facts);
     }
 
     fn choose(&mut self, script: ScriptId, known: &[(ScriptId, bool)]) -> bool {
@@ -192,19 +247,23 @@ impl Host for ChoosingHost<'_, '_> {
         self.decisions.get_mut().delivered.push(region);
     }
 
-    /// A region that inherits the newest messages has the newest messages.
     fn inherit(&mut self, region: ScopeId, from: ScopeId) {
-        let decisions = self.decisions.get_mut();
-        if decisions.delivered.contains(&from) {
-            decisions.delivered.push(region);
-        }
+        self.decisions.get_mut().inherit(region, from);
     }
 
     /// Data written to a blackboard may change the conditions read there.
-    fn perform(&mut self, _: ScriptId, region: ScopeId, _: &mut ScriptContext<'_>) -> Result<(), CallError> {
+    fn perform(
+        &mut self,
+        action: ScriptId,
+        region: ScopeId,
+        _: &mut ScriptContext<'_>,
+    ) -> Result<(), CallError> {
         let decisions = self.decisions.get_mut();
         decisions.known.retain(|(board, ..)| *board != region);
-        decisions.is_root_written |= region == ROOT;
+        let changes = &decisions.effects.changes;
+        decisions.facts.retain(|&(board, fact, _)| board != region || !changes(action, fact));
+        decisions.facts.push((region, action, true));
+        decisions.written.push((region, action));
         self.notes.wrote = true;
         Ok(())
     }

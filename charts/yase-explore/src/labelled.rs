@@ -14,15 +14,16 @@
 //!   timer expires when it is due, both before time advances; events and messages occur at any
 //!   time. Time advances in ticks, which is exact if every delay is a multiple of a tick.
 
-use std::collections::BTreeMap;
-use std::collections::VecDeque;
 use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 use std::time::Duration;
 
 use super::host::ChoosingHost;
 use super::search::advance_and_step;
-use super::{Environment, StepCause, Trace, TraceStep};
+use super::{
+    Environment, ExplorationLimits, ExplorationProgress, ExplorationStop, QUEUED, StepCause, Trace, TraceStep,
+};
 use yase::CompiledChart;
 use yase::expression::{EventId, ScriptId};
 use yase::state_key::{RelevantState, StateKey};
@@ -117,7 +118,8 @@ pub struct LabelledStep {
 #[derive(Clone, Debug)]
 pub struct LabelledGraph {
     chart: Arc<CompiledChart>,
-    is_finished: bool,
+    stop: Option<ExplorationStop>,
+    overflowing: BTreeSet<EventId>,
     states: Vec<LabelledState>,
     steps: Vec<LabelledStep>,
     texts: Vec<TraceStep>,
@@ -126,7 +128,17 @@ pub struct LabelledGraph {
 impl LabelledGraph {
     /// Whether the exploration is complete.
     pub fn is_finished(&self) -> bool {
-        self.is_finished
+        self.stop.is_none()
+    }
+
+    /// Why it is not complete.
+    pub fn stop(&self) -> Option<ExplorationStop> {
+        self.stop
+    }
+
+    /// The names of the events of which more may wait than are distinguished ([`QUEUED`]).
+    pub fn overflowing(&self) -> Vec<&str> {
+        self.overflowing.iter().map(|&event| self.chart.events().name(event)).collect()
     }
 
     /// The states in the order of their discovery.
@@ -151,18 +163,20 @@ impl LabelledGraph {
     }
 }
 
-/// Explores a chart in an environment and records the observations of each step, up to `limit`
-/// states.
-pub fn explore_labelled(
+/// Explores a chart in an environment and records the observations of each step, within limits; a
+/// number is one of states.
+pub fn explore_labelled<'l>(
     chart: &Arc<CompiledChart>,
     surroundings: &mut Environment<'_>,
     watch: &mut StepLabeler<'_>,
-    limit: usize,
+    limits: impl Into<ExplorationLimits<'l>>,
 ) -> LabelledGraph {
+    let limits = limits.into();
     let idle = idle_regions(chart, &watch.idle);
     let found = LabelledGraph {
         chart: chart.clone(),
-        is_finished: true,
+        stop: None,
+        overflowing: BTreeSet::new(),
         states: Vec::new(),
         steps: Vec::new(),
         texts: Vec::new(),
@@ -170,7 +184,7 @@ pub fn explore_labelled(
     let mut search = LabelledSearch {
         environment: surroundings,
         labeler: watch,
-        limit,
+        limit: limits.states,
         relevance: RelevantState::new(chart),
         idle,
         found,
@@ -178,10 +192,15 @@ pub fn explore_labelled(
         texts: BTreeMap::new(),
         known: BTreeMap::new(),
         open: VecDeque::new(),
+        bytes: 0,
     };
     let start = TimedState { number: None, machine: Machine::new(chart.clone()), clocks: Vec::new() };
     search.steps(&start, &StepCause::Start, 0);
     while let Some(place) = search.open.pop_front() {
+        if let Some(stop) = limits.stop(search.progress()) {
+            search.found.stop = Some(stop);
+            break;
+        }
         search.known.clear();
         for (cause, elapsed) in search.possible_causes(&place) {
             search.steps(&place, &cause, elapsed);
@@ -190,8 +209,8 @@ pub fn explore_labelled(
     search.found
 }
 
-/// Whether a blackboard is idle, by index.
-fn idle_regions(chart: &CompiledChart, idle: &[NodeId]) -> Vec<bool> {
+/// Whether each blackboard lies in one of some composites, by index.
+pub fn idle_regions(chart: &CompiledChart, idle: &[NodeId]) -> Vec<bool> {
     let is_idle = |node: NodeId| {
         idle.contains(&node) || chart.statechart().ancestors(node).any(|outer| idle.contains(&outer))
     };
@@ -211,6 +230,8 @@ struct LabelledSearch<'s, 'a, 'w> {
     /// The steps of the state that is being expanded.
     known: BTreeMap<(usize, u64, u64, Option<PendingEvent>), usize>,
     open: VecDeque<TimedState>,
+    /// The estimated memory of the states that were found, in bytes.
+    bytes: usize,
 }
 
 /// A state that has not been expanded.
@@ -237,6 +258,16 @@ struct LabelledChoicePlan {
 }
 
 impl LabelledSearch<'_, '_, '_> {
+    fn progress(&self) -> ExplorationProgress {
+        let steps = self.found.steps.len() * size_of::<LabelledStep>();
+        let frontier = self.open.front().map_or(0, |place| place.machine.estimated_bytes());
+        ExplorationProgress {
+            states: self.found.states.len(),
+            open: self.open.len(),
+            bytes: self.bytes + steps + frontier * self.open.len(),
+        }
+    }
+
     /// The possible causes of the next step, with the time until they occur.
     fn possible_causes(&self, place: &TimedState) -> Vec<(StepCause, u64)> {
         let machine = &place.machine;
@@ -263,7 +294,7 @@ impl LabelledSearch<'_, '_, '_> {
         let mut tried = 0;
         while let Some(plan) = plans.pop() {
             if tried == WAYS {
-                self.found.is_finished = false;
+                self.found.stop = Some(ExplorationStop::Alternatives);
                 return;
             }
             tried += 1;
@@ -280,7 +311,8 @@ impl LabelledSearch<'_, '_, '_> {
         plans: &mut Vec<LabelledChoicePlan>,
     ) {
         let mut machine = from.machine.clone();
-        let mut host = ChoosingHost::new(&mut *self.environment.allows).with_idle(&self.idle);
+        let Environment { allows, effects, .. } = &mut *self.environment;
+        let mut host = ChoosingHost::new(&mut **allows, effects).with_idle(&self.idle);
         host.begin(&plan.decisions);
         let result = advance_and_step(&mut machine, cause, plan.choices.clone(), &mut host);
         let own = host.step_decisions().len();
@@ -300,6 +332,11 @@ impl LabelledSearch<'_, '_, '_> {
         if result.is_err() {
             // A step that does not become stable leads to no state; `explore` reports it.
             return;
+        }
+        let cut = machine.limit_queues(QUEUED);
+        if !cut.is_empty() {
+            self.found.overflowing.extend(cut);
+            self.found.stop.get_or_insert(ExplorationStop::Queues);
         }
         let started = machine.timers_started();
         machine.postpone_timers();
@@ -372,15 +409,18 @@ impl LabelledSearch<'_, '_, '_> {
             None => Box::default(),
         };
         let count = self.found.states.len();
-        let to = match self.numbers.entry((machine.key(&self.relevance), left)) {
+        let key = machine.key(&self.relevance);
+        let bytes = size_of_val(&*key) + size_of_val(&*left) + size_of::<LabelledState>() + 64;
+        let to = match self.numbers.entry((key, left)) {
             Entry::Occupied(known) => *known.get(),
             Entry::Vacant(_) if count >= self.limit => {
-                self.found.is_finished = false;
+                self.found.stop = Some(ExplorationStop::States);
                 return;
             }
             Entry::Vacant(place) => {
                 place.insert(count);
-                let pending = clocks.iter().map(|clock| clock.of).collect();
+                let pending: Vec<PendingEvent> = clocks.iter().map(|clock| clock.of).collect();
+                self.bytes += bytes + size_of_val(&*configuration) + size_of_val(&*pending);
                 self.found.states.push(LabelledState { status: machine.status(), configuration, pending });
                 self.open.push_back(TimedState { number: Some(count), machine, clocks });
                 count

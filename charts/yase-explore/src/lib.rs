@@ -14,8 +14,9 @@
 //! Time is ignored: any timer that is set may expire next, regardless of its delay. The result is
 //! therefore an over-approximation: a chart may do less.
 //!
-//! An exploration is bounded. If it is incomplete ([`Exploration::is_finished`]), further behaviour
-//! may exist.
+//! An exploration is bounded in states, in memory and by its caller ([`ExplorationLimits`]), and
+//! takes more than [`QUEUED`] waiting occurrences of an event for so many. If it is incomplete
+//! ([`Exploration::is_finished`]), further behaviour may exist.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -29,21 +30,22 @@
 //! let open = door.add(Statechart::ROOT, Node::new(NodeKind::Basic, "open"));
 //! let broken = door.add(Statechart::ROOT, Node::new(NodeKind::Basic, "broken"));
 //! for (source, target, text) in
-//!     [(start, shut, ""), (shut, open, "push / raise(creak)"), (open, shut, "creak"), (open, broken, "creak")]
-//! {
+//!     [(start, shut, ""), (shut, open, "push / raise(creak)"), (open, shut, "creak"), (open,
+//! broken, "creak")] {
 //!     let expression = parse_transition(text).0;
 //!     door.connect(Transition { expression, ..Transition::new(source, target) });
 //! }
 //! let chart = Arc::new(door.compile(&TypeEnvironment::default()).expect("the chart is in order"));
 //!
-//! let found = explore(&chart, &mut Environment { events: vec!["push".into()], ..Environment::default() }, 1_000);
-//! assert!(found.is_finished());
-//! assert!(found.was_entered(open) && !found.was_entered(broken), "the first of the two always wins");
-//! let way = found.trace_to(found.first(|state| state.is_active(shut)).expect("it is reached"));
-//! assert_eq!(way.to_string(), "start\n");
+//! let found = explore(&chart, &mut Environment { events: vec!["push".into()],
+//! ..Environment::default() }, 1_000); assert!(found.is_finished());
+//! assert!(found.was_entered(open) && !found.was_entered(broken), "the first of the two always
+//! wins"); let way = found.trace_to(found.first(|state| state.is_active(shut)).expect("it is
+//! reached")); assert_eq!(way.to_string(), "start\n");
 //! ```
 
 mod constraint_cache;
+mod exploration_limits;
 mod host;
 mod labelled;
 mod row_interner;
@@ -56,20 +58,42 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use yase::CompiledChart;
-use yase::expression::ScriptId;
+use yase::expression::{EventId, ScriptId};
 use yase::statechart::{NodeId, TransitionId};
 use yase::{MachineErrorKind, Status};
 
+pub use exploration_limits::{ExplorationLimits, ExplorationProgress, ExplorationStop, QUEUED};
 pub use labelled::{
     ClockModel, LabelledGraph, LabelledState, LabelledStep, PendingEvent, StepLabeler, StepObservation,
-    explore_labelled,
+    explore_labelled, idle_regions,
 };
 pub use row_interner::RowInterner;
 pub use search::{advance_and_step, explore};
 pub use trace::{ParseError, StepCause, Trace, TraceStep, replay};
 
-/// Whether a condition may have a value, given the values of others in the same step.
+/// Whether a condition may have a value, given the values of others in the same step and the
+/// actions whose effects stand.
 pub type ConditionConstraint<'a> = dyn FnMut(ScriptId, bool, &[(ScriptId, bool)]) -> bool + 'a;
+
+/// What the actions in the host's language do to the data that conditions read.
+///
+/// An action that was executed is a fact like a condition that holds: until another one changes it,
+/// it stands among the conditions that are known, as true.
+pub struct WriteEffects<'a> {
+    /// Whether an action may change the value of a condition, or what an earlier action has
+    /// written.
+    pub changes: Box<dyn Fn(ScriptId, ScriptId) -> bool + 'a>,
+    /// Whether the blackboard of a region that is entered shows what the action has written on the
+    /// one around it.
+    pub is_inherited: Box<dyn Fn(ScriptId) -> bool + 'a>,
+}
+
+impl Default for WriteEffects<'_> {
+    /// Any action may change anything.
+    fn default() -> Self {
+        WriteEffects { changes: Box::new(|_, _| true), is_inherited: Box::new(|_| false) }
+    }
+}
 
 /// The possible behaviour of a chart's environment.
 pub struct Environment<'a> {
@@ -80,11 +104,18 @@ pub struct Environment<'a> {
     /// Whether a condition may have a value, given others; called once per combination. The default
     /// allows all values.
     pub allows: Box<ConditionConstraint<'a>>,
+    /// What actions write.
+    pub effects: WriteEffects<'a>,
 }
 
 impl Default for Environment<'_> {
     fn default() -> Self {
-        Environment { events: Vec::new(), messages: false, allows: Box::new(|_, _, _| true) }
+        Environment {
+            events: Vec::new(),
+            messages: false,
+            allows: Box::new(|_, _, _| true),
+            effects: WriteEffects::default(),
+        }
     }
 }
 
@@ -97,6 +128,8 @@ pub struct ExploredState {
     pub status: Status,
     /// The states whose activities are running.
     pub running: Vec<NodeId>,
+    /// Whether the trace to it leads there exactly: on the way no queue was cut short.
+    pub is_exact: bool,
     /// The step that reached this state first, by index, and its source; `None` for the initial
     /// step.
     predecessor: (Option<usize>, usize),
@@ -140,7 +173,8 @@ pub struct FailedStep {
 #[derive(Clone, Debug)]
 pub struct Exploration {
     chart: Arc<CompiledChart>,
-    is_finished: bool,
+    stop: Option<ExplorationStop>,
+    overflowing: BTreeSet<EventId>,
     states: Vec<ExploredState>,
     initial: BTreeSet<usize>,
     edges: Vec<Edge>,
@@ -162,7 +196,17 @@ struct Coverage {
 impl Exploration {
     /// Whether the exploration is complete.
     pub fn is_finished(&self) -> bool {
-        self.is_finished
+        self.stop.is_none()
+    }
+
+    /// Why it is not complete.
+    pub fn stop(&self) -> Option<ExplorationStop> {
+        self.stop
+    }
+
+    /// The names of the events of which more may wait than are distinguished ([`QUEUED`]).
+    pub fn overflowing(&self) -> Vec<&str> {
+        self.overflowing.iter().map(|&event| self.chart.events().name(event)).collect()
     }
 
     /// The states in the order of their discovery; the first is the one after the start.

@@ -39,6 +39,11 @@ impl RowInterner {
         }
     }
 
+    /// The memory that the rows and their table take, in bytes.
+    pub fn bytes(&self) -> usize {
+        4 * (self.words.capacity() + self.slots.capacity()) + size_of::<usize>() * self.ends.capacity()
+    }
+
     fn row(&self, number: usize) -> &[u32] {
         let begin = number.checked_sub(1).map_or(0, |before| self.ends[before]);
         &self.words[begin..self.ends[number]]

@@ -1,49 +1,64 @@
 //! Breadth-first search.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use super::host::ChoosingHost;
 use super::row_interner::RowInterner;
-use super::{Coverage, Edge, Environment, Exploration, ExploredState, FailedStep, StepCause, TraceStep};
+use super::{
+    Coverage, Edge, Environment, Exploration, ExplorationLimits, ExplorationProgress, ExplorationStop,
+    ExploredState, FailedStep, QUEUED, StepCause, TraceStep,
+};
 use yase::CompiledChart;
 use yase::state_key::RelevantState;
+use yase::statechart::NodeId;
 use yase::{Chooser, Machine, MachineError, Status};
 use yase::{Host, Outcome};
 
 /// Maximum number of alternatives of one step.
 const WAYS: usize = 2_048;
 
-/// Explores a chart in an environment, up to `limit` states.
-pub fn explore(chart: &Arc<CompiledChart>, surroundings: &mut Environment<'_>, limit: usize) -> Exploration {
-    explore_relevant(chart, surroundings, limit, RelevantState::new(chart))
+/// Explores a chart in an environment, within limits; a number is one of states.
+pub fn explore<'l>(
+    chart: &Arc<CompiledChart>,
+    surroundings: &mut Environment<'_>,
+    limits: impl Into<ExplorationLimits<'l>>,
+) -> Exploration {
+    explore_relevant(chart, surroundings, &limits.into(), RelevantState::new(chart))
 }
 
 /// The same with a given relevance of distinctions.
 pub(crate) fn explore_relevant(
     chart: &Arc<CompiledChart>,
     surroundings: &mut Environment<'_>,
-    limit: usize,
+    limits: &ExplorationLimits<'_>,
     sight: RelevantState,
 ) -> Exploration {
-    let Environment { events, messages, allows } = surroundings;
+    let Environment { events, messages, allows, effects } = surroundings;
     let machine = Machine::new(chart.clone());
     let mut search = StateSpaceSearch {
         events,
         messages: *messages,
-        limit,
+        limit: limits.states,
         relevance: sight,
         found: empty_exploration(chart),
-        host: ChoosingHost::new(&mut **allows),
+        host: ChoosingHost::new(&mut **allows, effects),
         next: machine.clone(),
         numbers: RowInterner::default(),
         steps: RowInterner::default(),
         row: Vec::new(),
         choices: Vec::new(),
+        known_edges: BTreeMap::new(),
         open: VecDeque::new(),
+        bytes: 0,
     };
     search.step(None, &machine, (0, &StepCause::Start));
     while let Some((number, machine)) = search.open.pop_front() {
+        if let Some(stop) = limits.stop(search.progress()) {
+            search.found.stop = Some(stop);
+            break;
+        }
+        search.known_edges.clear();
         for (cause, one) in search.moves(&machine) {
             search.step(Some(number), &machine, (cause, &one));
         }
@@ -56,7 +71,8 @@ fn empty_exploration(chart: &Arc<CompiledChart>) -> Exploration {
     let transitions = vec![false; chart.statechart().transitions().len()].into_boxed_slice();
     Exploration {
         chart: chart.clone(),
-        is_finished: true,
+        stop: None,
+        overflowing: Default::default(),
         states: Vec::new(),
         initial: Default::default(),
         edges: Vec::new(),
@@ -88,8 +104,12 @@ struct StateSpaceSearch<'s, 'a> {
     row: Vec<u32>,
     /// The options that the last step took, and their numbers.
     choices: Vec<(u32, u32)>,
+    /// The edges out of the state that is being expanded, by target and activity that returned.
+    known_edges: BTreeMap<(usize, Option<NodeId>), usize>,
     /// The frontier: discovered states that have not been expanded.
     open: VecDeque<(usize, Machine)>,
+    /// The estimated memory of the states that were found, in bytes.
+    bytes: usize,
 }
 
 /// The choices of one step.
@@ -103,6 +123,20 @@ struct ChoicePlan {
 type NumberedCause<'c> = (u32, &'c StepCause);
 
 impl StateSpaceSearch<'_, '_> {
+    fn progress(&self) -> ExplorationProgress {
+        let edges = self.found.edges.len() * size_of::<Edge>();
+        let frontier = self.open.front().map_or(0, |(_, machine)| machine.estimated_bytes());
+        ExplorationProgress {
+            states: self.found.states.len(),
+            open: self.open.len(),
+            bytes: self.bytes
+                + edges
+                + frontier * self.open.len()
+                + self.numbers.bytes()
+                + 2 * self.steps.bytes(),
+        }
+    }
+
     /// The possible causes of the next step, each with its number.
     fn moves(&self, machine: &Machine) -> Vec<(u32, StepCause)> {
         if machine.status() != Status::Running {
@@ -127,7 +161,7 @@ impl StateSpaceSearch<'_, '_> {
         let mut tried = 0;
         while let Some(plan) = plans.pop() {
             if tried == WAYS {
-                self.found.is_finished = false;
+                self.found.stop = Some(ExplorationStop::Alternatives);
                 return;
             }
             tried += 1;
@@ -170,16 +204,22 @@ impl StateSpaceSearch<'_, '_> {
         if let Err(error) = result {
             return self.fail(from, cause.1, &error);
         }
+        let cut = self.next.limit_queues(QUEUED);
+        let is_exact = cut.is_empty() && from.is_none_or(|from| self.found.states[from].is_exact);
+        if !cut.is_empty() {
+            self.found.overflowing.extend(cut);
+            self.found.stop.get_or_insert(ExplorationStop::Queues);
+        }
         self.next.write_key(&self.relevance, &mut self.row);
         let known = self.numbers.find(&self.row);
         if known.is_none() && self.found.states.len() >= self.limit {
-            self.found.is_finished = false;
+            self.found.stop = Some(ExplorationStop::States);
             return;
         }
         let to = self.numbers.number(&self.row);
         let step = self.number_of_step(cause);
         if known.is_none() {
-            self.add((from, step));
+            self.add((from, step), is_exact);
         }
         let returned = match cause.1 {
             StepCause::Return(node) => Some(*node),
@@ -209,11 +249,10 @@ impl StateSpaceSearch<'_, '_> {
         if edge.from == edge.to && !edge.does_something && edge.returned.is_none() {
             return;
         }
-        let before = self.found.edges.iter_mut().rev().take_while(|other| other.from == edge.from);
-        let same = before.into_iter().find(|other| other.to == edge.to && other.returned == edge.returned);
-        match same {
-            Some(same) => same.does_something |= edge.does_something,
-            None => self.found.edges.push(edge),
+        let next = self.found.edges.len();
+        match *self.known_edges.entry((edge.to, edge.returned)).or_insert(next) {
+            place if place == next => self.found.edges.push(edge),
+            place => self.found.edges[place].does_something |= edge.does_something,
         }
     }
 
@@ -240,14 +279,18 @@ impl StateSpaceSearch<'_, '_> {
         }
     }
 
-    fn add(&mut self, came: (Option<usize>, usize)) {
+    fn add(&mut self, came: (Option<usize>, usize), is_exact: bool) {
         let machine = self.next.clone();
-        self.found.states.push(ExploredState {
+        let state = ExploredState {
             configuration: machine.configuration(),
             status: machine.status(),
             running: machine.running().into_iter().map(|activation| activation.node).collect(),
+            is_exact,
             predecessor: came,
-        });
+        };
+        let nodes = state.configuration.len() + state.running.len();
+        self.bytes += size_of::<ExploredState>() + nodes * size_of::<NodeId>();
+        self.found.states.push(state);
         self.open.push_back((self.found.states.len() - 1, machine));
     }
 

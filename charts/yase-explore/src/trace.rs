@@ -20,6 +20,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use super::WriteEffects;
 use super::host::ChoosingHost;
 use super::search::take_step;
 use yase::CompiledChart;
@@ -194,7 +195,8 @@ pub fn replay(
 ) -> Result<Machine, MachineError> {
     let mut machine = Machine::new(trace.chart.clone());
     let mut allows = |_: ScriptId, _: bool, _: &[(ScriptId, bool)]| true;
-    let mut host = ChoosingHost::new(&mut allows);
+    let effects = WriteEffects::default();
+    let mut host = ChoosingHost::new(&mut allows, &effects);
     host.notes.lines = Some(Vec::new());
     for step in &trace.steps {
         let values: Vec<bool> = step.decisions.iter().map(|&(_, value)| value).collect();

@@ -153,6 +153,38 @@ impl Expression {
         }
     }
 
+    /// The expression with parts replaced: those for which the closure has another one, outermost
+    /// first. What it has is not looked into again.
+    pub fn replaced(&self, other: &mut dyn FnMut(&Expression) -> Option<Expression>) -> Expression {
+        if let Some(other) = other(self) {
+            return other;
+        }
+        let mut one = |operand: &Expression| operand.replaced(other);
+        let kind = match &self.kind {
+            ExpressionKind::Or(parts) => ExpressionKind::Or(parts.iter().map(one).collect()),
+            ExpressionKind::And(parts) => ExpressionKind::And(parts.iter().map(one).collect()),
+            ExpressionKind::Call(name, parts) => {
+                ExpressionKind::Call(name.clone(), parts.iter().map(one).collect())
+            }
+            ExpressionKind::Not(operand) => ExpressionKind::Not(Box::new(one(operand))),
+            ExpressionKind::Negative(operand) => ExpressionKind::Negative(Box::new(one(operand))),
+            ExpressionKind::Compare(left, comparison, right) => {
+                ExpressionKind::Compare(Box::new(one(left)), *comparison, Box::new(one(right)))
+            }
+            ExpressionKind::Sum(first, rest) => {
+                let first = Box::new(one(first));
+                ExpressionKind::Sum(first, rest.iter().map(|(sign, operand)| (*sign, one(operand))).collect())
+            }
+            ExpressionKind::Product(first, rest) => {
+                let first = Box::new(one(first));
+                let rest = rest.iter().map(|(operator, operand)| (*operator, one(operand)));
+                ExpressionKind::Product(first, rest.collect())
+            }
+            leaf => leaf.clone(),
+        };
+        Expression { kind, place: self.place }
+    }
+
     /// The first result of the closure in a pre-order walk of the expression.
     pub fn find_map<'a, T>(&'a self, told: &mut dyn FnMut(&'a Expression) -> Option<T>) -> Option<T> {
         if let Some(found) = told(self) {

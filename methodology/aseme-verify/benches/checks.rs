@@ -29,7 +29,7 @@ fn check_role(bencher: Bencher<'_, '_>, name: &str) {
     let source = Source::new(format!("{name}.srm"), std::fs::read_to_string(path).unwrap());
     bencher.bench_local(|| {
         let report = check(&source, &CheckSettings::default());
-        assert!(report.explored.is_some_and(|explored| explored.is_finished));
+        assert!(report.explored.as_ref().is_some_and(|explored| explored.is_finished));
         report
     });
 }

@@ -1,8 +1,11 @@
 //! Abstraction of a chart from its program, so that it can be explored alone.
 //!
 //! Conditions on messages and functions become free inputs, as far as [`logic`](crate::logic) finds
-//! them satisfiable together; timers and states keep their meaning. Actions that write become one
-//! that may change anything its blackboard shows, and arrivals of messages become events.
+//! them satisfiable together; timers and states keep their meaning. What an assignment writes is
+//! known until the next messages are delivered; other actions may change anything that their
+//! blackboard shows. Arrivals of messages become events.
+
+mod assignment;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -12,17 +15,24 @@ use yase::expression::{
 };
 use yase::statechart::Constant;
 use yase::{CompiledChart, Diagnostic, Source, Statechart, TypeEnvironment};
-use yase_explore::Environment;
+use yase_explore::{Environment, WriteEffects};
 
 use crate::checked_model::timers;
 use crate::checked_model::{CheckedModel, placed, subject_of};
 use crate::logic::{Claim, GuardSolver};
+pub(crate) use assignment::{Assignment, may_be_one_message, same_message};
 
 /// A chart to be explored, and the meaning of its conditions.
 pub(crate) struct Abstraction {
     pub(crate) chart: Arc<CompiledChart>,
     /// The condition that each script stands for.
     pub(crate) conditions: Vec<Option<Expression>>,
+    /// The assignment that each script stands for.
+    pub(crate) assignments: Vec<Option<Assignment>>,
+    /// What is so once it was executed.
+    facts: Vec<Option<Expression>>,
+    /// What triggers wait for, as written.
+    pub(crate) awaited: Vec<Path>,
     pub(crate) constants: Vec<Constant>,
     /// The events that come from outside.
     events: Vec<String>,
@@ -34,6 +44,7 @@ impl Abstraction {
         let mut making = AbstractionBuilder {
             timers: timers::started(subject).into_keys().collect(),
             conditions: BTreeMap::new(),
+            assignments: BTreeMap::new(),
         };
         let mut chart = subject.chart.clone();
         let ids: Vec<_> = chart.transitions().map(|(id, _)| id).collect();
@@ -45,14 +56,19 @@ impl Abstraction {
         let ids: Vec<_> = chart.nodes().map(|(id, _)| id).collect();
         for id in ids {
             let node = chart.node_mut(id);
-            node.entry = actions(&node.entry);
-            node.exit = actions(&node.exit);
+            node.entry = making.actions(&node.entry);
+            node.exit = making.actions(&node.exit);
         }
         let vocabulary = TypeEnvironment { scripts: true, ..TypeEnvironment::default() };
         let compiled = chart.compile_with(&vocabulary, subject.semantics)?;
         let conditions = compiled.scripts().map(|entry| making.conditions.get(entry.text).cloned()).collect();
-        let events = outside(&chart);
-        Ok(Abstraction { chart: Arc::new(compiled), conditions, constants: chart.constants.clone(), events })
+        let assigned = |entry: yase::ScriptEntry<'_>| making.assignments.get(entry.text).cloned();
+        let assignments: Vec<Option<Assignment>> = compiled.scripts().map(assigned).collect();
+        let constants = chart.constants.clone();
+        let facts = assignments.iter().map(|it| it.as_ref()?.fact(&constants)).collect();
+        let (events, awaited) = (outside(&chart), awaited(&subject.chart));
+        let chart = Arc::new(compiled);
+        Ok(Abstraction { chart, conditions, assignments, facts, awaited, constants, events })
     }
 
     /// The same with more events that come from outside: those that the chart knows.
@@ -68,29 +84,77 @@ impl Abstraction {
         let mut surroundings = Environment::default();
         surroundings.events.clone_from(&self.events);
         surroundings.messages = self.conditions.iter().any(Option::is_some);
-        let mut known = BTreeMap::new();
-        surroundings.allows = Box::new(move |script, value, decided| {
-            let mut together: Vec<(ScriptId, bool)> = decided.to_vec();
-            together.sort_unstable();
-            together.push((script, value));
-            *known.entry(together).or_insert_with_key(|together| {
-                !self.claims(together, &GuardSolver::new(&self.constants)).is_no()
-            })
-        });
+        surroundings.allows = Box::new(self.satisfiable(&[]));
+        surroundings.effects = self.effects(&[]);
         surroundings
+    }
+
+    /// Whether values of conditions are possible together, some more conditions standing behind
+    /// those of the chart.
+    pub(crate) fn satisfiable<'a>(
+        &'a self,
+        more: &[&'a Expression],
+    ) -> impl FnMut(ScriptId, bool, &[(ScriptId, bool)]) -> bool + 'a {
+        let more = more.to_vec();
+        let mut known = BTreeMap::new();
+        let logic = GuardSolver::new(&self.constants);
+        move |script, value, decided| {
+            let mut together: Vec<(ScriptId, bool)> = decided.to_vec();
+            together.push((script, value));
+            together.sort_unstable();
+            together.dedup();
+            *known.entry(together).or_insert_with_key(|together| {
+                let claims = together.iter().filter_map(|&(script, value)| self.claim(script, value, &more));
+                !logic.together(&claims.collect::<Vec<_>>()).is_no()
+            })
+        }
+    }
+
+    /// What actions write, some more conditions standing behind those of the chart.
+    pub(crate) fn effects<'a>(&'a self, more: &[&'a Expression]) -> WriteEffects<'a> {
+        let more = more.to_vec();
+        let changes = move |action: ScriptId, fact: ScriptId| {
+            let Some(assignment) = self.assignment(action) else { return true };
+            match (self.condition(fact, &more), self.assignment(fact)) {
+                (Some(condition), _) => assignment.may_change(condition),
+                (None, Some(other)) => assignment.may_overwrite(other),
+                (None, None) => true,
+            }
+        };
+        let is_inherited = |action| self.assignment(action).is_some_and(|it| !it.is_of_signal());
+        WriteEffects { changes: Box::new(changes), is_inherited: Box::new(is_inherited) }
+    }
+
+    pub(crate) fn assignment(&self, script: ScriptId) -> Option<&Assignment> {
+        self.assignments.get(script.0 as usize)?.as_ref()
+    }
+
+    /// Whether the chart may assign fields of the message of a path.
+    pub(crate) fn is_assigned(&self, path: &Path) -> bool {
+        self.assignments.iter().flatten().any(|it| may_be_one_message(&it.target, path))
+    }
+
+    fn condition<'a>(&'a self, script: ScriptId, more: &[&'a Expression]) -> Option<&'a Expression> {
+        let place = script.0 as usize;
+        match place.checked_sub(self.conditions.len()) {
+            Some(place) => more.get(place).copied(),
+            None => self.conditions[place].as_ref(),
+        }
+    }
+
+    /// What a value of a condition says, or that an action was executed.
+    fn claim<'a>(&'a self, script: ScriptId, value: bool, more: &[&'a Expression]) -> Option<Claim<'a>> {
+        match self.condition(script, more) {
+            Some(condition) if value => Some(Claim::Holds(condition)),
+            Some(condition) => Some(Claim::DoesNotHold(condition)),
+            None => self.facts.get(script.0 as usize)?.as_ref().map(Claim::Holds),
+        }
     }
 
     /// Whether conditions can have such values at one moment.
     pub(crate) fn can_be(&self, decided: &[(ScriptId, bool)]) -> crate::logic::Satisfiability {
-        self.claims(decided, &GuardSolver::new(&self.constants))
-    }
-
-    fn claims(&self, decided: &[(ScriptId, bool)], logic: &GuardSolver<'_>) -> crate::logic::Satisfiability {
-        let claims = decided.iter().filter_map(|&(script, value)| {
-            let condition = self.conditions.get(script.0 as usize)?.as_ref()?;
-            Some(if value { Claim::Holds(condition) } else { Claim::DoesNotHold(condition) })
-        });
-        logic.together(&claims.collect::<Vec<_>>())
+        let claims = decided.iter().filter_map(|&(script, value)| self.claim(script, value, &[]));
+        GuardSolver::new(&self.constants).together(&claims.collect::<Vec<_>>())
     }
 }
 
@@ -114,6 +178,8 @@ struct AbstractionBuilder {
     timers: BTreeSet<timers::TimerKey>,
     /// What the text of each condition says.
     conditions: BTreeMap<String, Expression>,
+    /// What the text of each assignment says.
+    assignments: BTreeMap<String, Assignment>,
 }
 
 impl AbstractionBuilder {
@@ -121,7 +187,7 @@ impl AbstractionBuilder {
         TransitionExpression {
             trigger: expression.trigger.as_ref().map(trigger),
             guard: expression.guard.as_ref().map(|guard| self.guard(guard, board)),
-            actions: actions(&expression.actions),
+            actions: self.actions(&expression.actions),
         }
     }
 
@@ -156,6 +222,25 @@ impl AbstractionBuilder {
             }
         });
         parts
+    }
+
+    fn actions(&mut self, actions: &[Action]) -> Vec<Action> {
+        let made = actions.iter().filter_map(|action| {
+            let kind = match &action.kind {
+                ActionKind::StartTimeout { .. } => action.kind.clone(),
+                ActionKind::Raise(event) => ActionKind::Raise(plain(event)),
+                ActionKind::Publish(_) | ActionKind::PublishAll => return None,
+                ActionKind::Assign { target, value } => {
+                    let text = action.to_string();
+                    let assignment = Assignment { target: target.clone(), value: value.clone() };
+                    self.assignments.entry(text.clone()).or_insert(assignment);
+                    ActionKind::Script(text)
+                }
+                ActionKind::ProcessMessages | ActionKind::Script(_) => ActionKind::Script(action.to_string()),
+            };
+            Some(Action { kind, place: action.place })
+        });
+        made.collect()
     }
 
     fn condition(&mut self, condition: &Expression) -> Expression {
@@ -197,19 +282,13 @@ fn plain(event: &Path) -> Path {
     Path { segments: vec![Name { text: event.text(), place: event.place }], place: event.place }
 }
 
-fn actions(actions: &[Action]) -> Vec<Action> {
-    let made = actions.iter().filter_map(|action| {
-        let kind = match &action.kind {
-            ActionKind::StartTimeout { .. } => action.kind.clone(),
-            ActionKind::Raise(event) => ActionKind::Raise(plain(event)),
-            ActionKind::Publish(_) | ActionKind::PublishAll => return None,
-            ActionKind::Assign { .. } | ActionKind::ProcessMessages | ActionKind::Script(_) => {
-                ActionKind::Script(action.to_string())
-            }
-        };
-        Some(Action { kind, place: action.place })
+/// The paths that triggers name.
+fn awaited(chart: &Statechart) -> Vec<Path> {
+    let triggers = chart.transitions().filter_map(|(_, it)| match &it.expression.trigger {
+        Some(Trigger::OneOf(events)) => Some(events),
+        _ => None,
     });
-    made.collect()
+    triggers.flatten().cloned().collect()
 }
 
 /// The events that triggers name and nothing in the chart makes.

@@ -154,6 +154,8 @@ pub const CHECKS: &[Check] = {
         of("M24", Exploration, Error, "a chart that does other than its formulas say"),
         of("M25", Structure, Information, "what other engines read in another way"),
         of("M26", Exploration, Information, "how large the chart is"),
+        of("M27", Exploration, Warning, "a loop in which nothing waits"),
+        of("M28", Exploration, Warning, "an event that may wait any number of times"),
         of("S01", Roles, Warning, "an activity without a functionality"),
         of("S02", Roles, Warning, "a functionality that no activity uses"),
         of("S03", Roles, Warning, "an activity in no formula"),

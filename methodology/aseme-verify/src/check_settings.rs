@@ -1,8 +1,12 @@
 //! Settings of checks: the environment of a chart and the limits of exploration.
 
 use std::collections::BTreeSet;
+use std::fmt;
+use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use yase::Statechart;
+use yase_explore::{ExplorationLimits, ExplorationProgress};
 
 use crate::program_symbols::ProgramSymbols;
 
@@ -14,12 +18,57 @@ pub struct CheckSettings {
     pub events: BTreeSet<String>,
     /// Limit of explored states; 0 disables exploration.
     pub states: usize,
+    /// Limit of the memory of explored states, in bytes, as far as it can be estimated.
+    pub bytes: usize,
+    /// Follows the progress of explorations and may stop them.
+    pub observer: ProgressObserver,
     /// The number of activities that the agent's pool runs at once; 12 by default.
     pub pool: Option<usize>,
     /// The program's messages, functions and activities; names are not checked without them.
     pub world: Option<ProgramSymbols>,
     /// Coverage of charts in recordings.
     pub recorded: Vec<RecordedCoverage>,
+}
+
+/// Follows the progress of a check: called again and again with how far it has come; it may stop
+/// it, which then gives what is known. A check reads no clock: its caller does.
+#[derive(Clone)]
+pub struct ProgressObserver(Arc<Observe>);
+
+type Observe = dyn Fn(ExplorationProgress) -> ControlFlow<()> + Send + Sync;
+
+impl ProgressObserver {
+    /// An observer that calls a function.
+    pub fn new(
+        observe: impl Fn(ExplorationProgress) -> ControlFlow<()> + Send + Sync + 'static,
+    ) -> ProgressObserver {
+        ProgressObserver(Arc::new(observe))
+    }
+
+    /// Whether the check has to stop.
+    pub(crate) fn stops(&self, progress: ExplorationProgress) -> bool {
+        (self.0)(progress).is_break()
+    }
+}
+
+impl Default for ProgressObserver {
+    /// One that never stops a check.
+    fn default() -> ProgressObserver {
+        ProgressObserver::new(|_| ControlFlow::Continue(()))
+    }
+}
+
+impl fmt::Debug for ProgressObserver {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("ProgressObserver")
+    }
+}
+
+impl CheckSettings {
+    /// The limits of an exploration.
+    pub(crate) fn limits(&self) -> ExplorationLimits<'_> {
+        ExplorationLimits { states: self.states, bytes: self.bytes, observe: &*self.observer.0 }
+    }
 }
 
 /// Coverage of a chart in recorded runs.
@@ -38,6 +87,8 @@ impl Default for CheckSettings {
         CheckSettings {
             events: BTreeSet::new(),
             states: 100_000,
+            bytes: 1 << 30,
+            observer: ProgressObserver::default(),
             pool: None,
             world: None,
             recorded: Vec::new(),

@@ -1,14 +1,17 @@
 //! Exploration of several robots together: deadlocks and lost messages.
 //!
-//! Each model is one robot. A message passes from one robot to another if the sender's chart writes
-//! or publishes it and the receiver's chart reads it by the sender's name
-//! (`receiver.news.Signal.Ready`). It passes through a channel, which holds a bounded number of
+//! Each model is one robot, or with a name `robot/agent` one agent of a robot. A message passes
+//! from one robot to another if the sender's chart writes or publishes it and the receiver's chart
+//! reads it by the sender's name (`receiver.news.Signal.Ready`), and between agents of one robot
+//! without a name (`news.Signal.Ready`). If nothing is read by a robot's name, all models are
+//! agents of one process. It passes through a channel, which holds a bounded number of
 //! messages and drops the oldest when it is full, as a link does; a channel may lose any message,
 //! if requested. Messages from a chart to itself pass the same way. A chart that has ended, or that
 //! TERMINATE has stopped, neither sends nor waits. All other conditions are free inputs, activities
 //! return and timers expire in any order.
 //!
-//! The findings are deadlocks (E0930), messages that arrive where no state reads them (E0931) and
+//! The findings are deadlocks to which the robots come on their machines (E0930; E0937 if that is
+//! not confirmed), messages that arrive where no state reads them (E0931) and
 //! channels that are too small (E0932). Each has a trace, which [`TeamTrace`] replays. If the
 //! search reaches its limit, the result is undecided and reported so (E0933).
 //!
@@ -16,6 +19,7 @@
 //! they are published when the activity returns.
 
 mod composed_robot;
+mod confirmation;
 mod content_table;
 mod deadlock;
 mod message_names;
@@ -29,7 +33,7 @@ use yase::{Diagnostic, Source, Span};
 use crate::abstraction::Abstraction;
 use crate::check_settings::CheckSettings;
 use crate::finding::Finding;
-use composed_robot::{Behaviour, ComposedRobot, ReceivedMessage};
+use composed_robot::{Behaviour, ComposedRobot, Neighbourhood, ReceivedMessage, SentMessage};
 use deadlock::Deadlock;
 use message_names::MessageUse;
 use product::{GlobalProduct, MessageRoute};
@@ -67,6 +71,9 @@ pub struct Composition {
     pub states: usize,
     /// Whether these are all.
     pub is_finished: bool,
+    /// Whether the robots are taken for agents of one process: none reads a message by the name of
+    /// another, and some read messages that others publish.
+    pub is_one_process: bool,
 }
 
 impl Composition {
@@ -85,10 +92,22 @@ pub fn compose(
     channels: Channels,
     settings: &CheckSettings,
 ) -> Result<Composition, Vec<Diagnostic>> {
-    let robots = robots(models, settings)?;
-    let passages = product::passages(&robots);
+    let by_name: Vec<&str> = models.iter().map(|(name, _)| host_of(name)).collect();
+    let mut robots = robots(models, &by_name, settings)?;
+    let mut passages = product::passages(&robots);
+    let is_alone = |passages: &[MessageRoute]| passages.iter().all(|route| route.from == route.to);
+    let is_one_process = models.len() > 1 && is_alone(&passages) && all_differ(&by_name) && {
+        let together = self::robots(models, &vec![""; models.len()], settings)?;
+        let routes = product::passages(&together);
+        let passes = !is_alone(&routes);
+        if passes {
+            (robots, passages) = (together, routes);
+        }
+        passes
+    };
     let mut found = Composition {
         passing: passages.iter().map(|passage| route_names(&robots, passage)).collect(),
+        is_one_process,
         ..Composition::default()
     };
     found.findings.extend(robots.iter().filter_map(unexplorable).map(Finding::from));
@@ -99,9 +118,10 @@ pub fn compose(
     let behaviours = behaviours(&robots, &passages, settings);
     let counts = behaviours.iter().map(|it| it.found.states().len());
     found.robots = robots.iter().map(|robot| robot.name.clone()).zip(counts).collect();
-    let product = product::product(&robots, &behaviours, &passages, channels, settings.states);
+    let product = product::product(&robots, &behaviours, &passages, channels, settings);
     (found.states, found.is_finished) = (product.states.len(), product.is_finished());
-    found.findings.extend(deadlock::deadlocks(&product).iter().map(|it| deadlock_finding(&product, it)));
+    let deadlocks = deadlock::deadlocks(&product);
+    found.findings.extend(deadlocks.iter().map(|it| deadlock_finding(&product, it, settings)));
     found.findings.extend(product.dropped.iter().map(|(&passage, &edge)| dropped(&product, passage, edge)));
     found.findings.extend(
         product.overflows.iter().map(|(&passage, &edge)| channel_overflow(&product, passage, edge, channels)),
@@ -110,22 +130,40 @@ pub fn compose(
     Ok(found)
 }
 
+/// The host of a robot: what stands before the name of its agent, `robot/agent`.
+fn host_of(name: &str) -> &str {
+    name.split_once('/').map_or(name, |(host, _)| host)
+}
+
+fn all_differ(hosts: &[&str]) -> bool {
+    hosts.iter().enumerate().all(|(number, host)| !hosts[..number].contains(host))
+}
+
 fn robots(
     models: &[(String, Arc<Source>)],
+    hosts: &[&str],
     settings: &CheckSettings,
 ) -> Result<Vec<ComposedRobot>, Vec<Diagnostic>> {
-    let hosts: Vec<&str> = models.iter().map(|(name, _)| name.as_str()).collect();
-    let mut wrong = Vec::new();
-    let mut robots = Vec::new();
-    for (name, source) in models {
+    let world = settings.world.as_ref();
+    let (mut wrong, mut charts) = (Vec::new(), Vec::new());
+    for (_, source) in models {
         match prepare(source, settings) {
-            Ok(chart) => {
-                robots.push(ComposedRobot::new(name, source, chart, &hosts, settings.world.as_ref()))
-            }
+            Ok(chart) => charts.push(chart),
             Err(found) => wrong.extend(found),
         }
     }
-    if wrong.is_empty() { Ok(robots) } else { Err(wrong) }
+    if !wrong.is_empty() {
+        return Err(wrong);
+    }
+    let said = charts.iter().map(|(subject, _)| composed_robot::messages_to_send(&subject.chart, world));
+    let said: Vec<Vec<SentMessage>> = said.collect();
+    let robots = models.iter().zip(charts).enumerate().map(|(number, ((name, source), chart))| {
+        let beside = (0..models.len()).filter(|&other| other != number && hosts[other] == hosts[number]);
+        let beside = beside.flat_map(|other| said[other].iter().map(|it| it.word.clone())).collect();
+        let neighbourhood = Neighbourhood { host: hosts[number], hosts, beside };
+        ComposedRobot::new(name, source, chart, neighbourhood, world)
+    });
+    Ok(robots.collect())
 }
 
 fn prepare(
@@ -195,7 +233,27 @@ fn no_sender(robot: &ComposedRobot, hearing: &ReceivedMessage) -> Diagnostic {
     found.with_hint("with `--linked` the program says what activities publish").in_source(&robot.source)
 }
 
-fn deadlock_finding(product: &GlobalProduct<'_>, found: &Deadlock) -> Finding {
+/// A deadlock to which the robots can come, or why that is not known.
+fn deadlock_finding(product: &GlobalProduct<'_>, found: &Deadlock, settings: &CheckSettings) -> Finding {
+    let mut unconfirmed = None;
+    for &state in &found.states {
+        match confirmation::confirm(product, state, settings) {
+            Ok(()) => return confirmed_deadlock(product, found, state),
+            Err(why) => {
+                unconfirmed.get_or_insert((state, why));
+            }
+        }
+    }
+    let (state, why) = unconfirmed.unwrap_or_default();
+    let Finding { diagnostic, trace } = confirmed_deadlock(product, found, state);
+    let message =
+        format!("not decided, since the way there is not confirmed: {} ({why})", diagnostic.message);
+    let hint =
+        "the trace shows what the exploration has found; with `--linked` the program says who publishes what";
+    Finding { diagnostic: Diagnostic { code: "E0937", message, ..diagnostic }.with_hint(hint), trace }
+}
+
+fn confirmed_deadlock(product: &GlobalProduct<'_>, found: &Deadlock, state: usize) -> Finding {
     let waits: Vec<String> = found
         .waits
         .iter()
@@ -204,7 +262,8 @@ fn deadlock_finding(product: &GlobalProduct<'_>, found: &Deadlock) -> Finding {
             let wait = &robot.waits[wait];
             let called = &robot.received[wait.received_message].called;
             let (name, path) = (&robot.name, robot.subject.path(wait.node));
-            format!("`{name}` waits in `{path}` for `{}` of `{}`", called.word.name(), called.host)
+            let of = if called.host.is_empty() { String::new() } else { format!(" of `{}`", called.host) };
+            format!("`{name}` waits in `{path}` for `{}`{of}", called.word.name())
         })
         .collect();
     let message = match waits.as_slice() {
@@ -218,7 +277,7 @@ fn deadlock_finding(product: &GlobalProduct<'_>, found: &Deadlock) -> Finding {
     let diagnostic = Diagnostic::error("E0930", place, message)
         .with_hint("let one of them go on by itself: say its message first, or wait no longer than a timer")
         .in_source(&robot.source);
-    Finding { diagnostic, trace: Some(product.trace_text(&product.path_to(found.state))) }
+    Finding { diagnostic, trace: Some(product.trace_text(&product.path_to(state))) }
 }
 
 /// The way to an edge, and that.

@@ -6,6 +6,7 @@
 //! ([`infinite_traces`]).
 
 pub(crate) mod derivatives;
+mod formula_points;
 pub(crate) mod graph;
 mod infinite_traces;
 
@@ -16,6 +17,7 @@ use yase_explore::{Edge, Exploration, Trace};
 
 use crate::conformance::derivatives::{Language, Residual, Symbol};
 use aseme::liveness::Liveness;
+use formula_points::FormulaPoints;
 use graph::{Graph, Observable};
 use infinite_traces::{InfiniteTraceResult, endlessly};
 
@@ -62,8 +64,9 @@ pub(crate) fn differences(
     chart: &Statechart,
     found: &Exploration,
     liveness: &Liveness,
+    is_stopped: &dyn Fn() -> bool,
 ) -> (Vec<ConformanceDifference>, bool) {
-    compared(chart, found, Language::new(liveness), false)
+    compared(chart, found, Language::new(liveness), false, is_stopped)
 }
 
 /// The first thing that the chart does and formulas do not allow, even if composites may be left
@@ -76,7 +79,8 @@ pub(crate) fn difference_beyond(
 ) -> Option<ConformanceDifference> {
     let (language, all) = Language::with_cut(liveness, cut)?;
     let full = Graph::of(found, |edge| shows(&language, chart, &found.edges()[edge]));
-    let mut comparison = ConformanceComparison { chart, found, language, may_end_early: false };
+    let mut comparison =
+        ConformanceComparison { chart, found, language, may_end_early: false, is_stopped: &|| false };
     comparison.follow_chart(&full, all).0.difference()
 }
 
@@ -87,7 +91,7 @@ pub(crate) fn differences_of_what_is_left_early(
     found: &Exploration,
     liveness: &Liveness,
 ) -> (Vec<ConformanceDifference>, bool) {
-    compared(chart, found, Language::new(liveness), true)
+    compared(chart, found, Language::new(liveness), true, &|| false)
 }
 
 fn compared(
@@ -95,10 +99,11 @@ fn compared(
     found: &Exploration,
     language: Option<(Language, Residual)>,
     may_end_early: bool,
+    is_stopped: &dyn Fn() -> bool,
 ) -> (Vec<ConformanceDifference>, bool) {
     let Some((language, all)) = language else { return (Vec::new(), false) };
     let full = Graph::of(found, |edge| shows(&language, chart, &found.edges()[edge]));
-    let mut comparison = ConformanceComparison { chart, found, language, may_end_early };
+    let mut comparison = ConformanceComparison { chart, found, language, may_end_early, is_stopped };
     let small = full.collapsed();
     let (does, cannot) = comparison.check_both_directions(small.as_ref().unwrap_or(&full), all);
     // classes tell that there is a difference, and only states the way there
@@ -125,6 +130,8 @@ struct ConformanceComparison<'a> {
     language: Language,
     /// Whether it may end where the formulas go on.
     may_end_early: bool,
+    /// Whether the caller wants it to end.
+    is_stopped: &'a dyn Fn() -> bool,
 }
 
 /// What is known in one direction.
@@ -209,7 +216,7 @@ impl ConformanceComparison<'_> {
         let mut open = 0;
         while let Some(at) = came.order.get(open).cloned() {
             open += 1;
-            if came.order.len() > MOST || self.language.is_too_large() {
+            if came.order.len() > MOST || self.language.is_too_large() || (self.is_stopped)() {
                 return (InclusionResult::Unknown, came);
             }
             let may_end = self.may_end_early || at.1.iter().any(|&rest| self.language.may_end(rest));
@@ -258,38 +265,47 @@ impl ConformanceComparison<'_> {
     }
 
     /// Follows the formulas, with all the states in which the chart may be after the same trace.
+    ///
+    /// A guard decides which of the alternatives is taken, and may do so by what has been: a timer,
+    /// an assignment. What the formulas allow at some point the chart must therefore do there after
+    /// one of the traces that lead to that point, not after each.
     fn formulas_included(&mut self, graph: &Graph, all: Residual) -> InclusionResult {
         let start =
             (internal_closure(graph, graph.initial.iter().copied().collect()), ResidualSet::from([all]));
         let mut seen = BTreeSet::from([start.clone()]);
-        let mut open = VecDeque::from([(start, Vec::new())]);
+        let mut open = VecDeque::from([(start, None)]);
+        let mut points = FormulaPoints::default();
         let mut work = 0;
-        while let Some(((states, rests), before)) = open.pop_front() {
+        while let Some(((states, rests), trace)) = open.pop_front() {
             work += states.len() * (1 + rests.len());
-            if work > MOST || self.language.is_too_large() {
+            if work > MOST || self.language.is_too_large() || (self.is_stopped)() {
                 return InclusionResult::Unknown;
             }
             let may_end = rests.iter().any(|&rest| self.language.may_end(rest));
-            if may_end && !states.iter().any(|&state| graph.ends[state]) {
-                return InclusionResult::Differs(self.missing(DifferenceKind::NeverEnds, &before));
+            let ends = states.iter().any(|&state| graph.ends[state]);
+            if may_end {
+                points.visit(&rests, trace).follow(None, ends);
             }
-            for letter in 0..self.language.letters().len() as Symbol {
+            for letter in self.language.first_letters(&rests) {
                 let after = self.language.derivative_of_any(&rests, letter);
-                if after.is_empty() {
-                    continue;
-                }
                 let reached = reached(graph, &states, letter);
-                if reached.is_empty() {
-                    let name = self.language.letters()[letter as usize].clone();
-                    return InclusionResult::Differs(self.missing(DifferenceKind::NeverDone(name), &before));
-                }
+                points.visit(&rests, trace).follow(Some(letter), !reached.is_empty());
                 let next = (internal_closure(graph, reached), after);
-                if seen.insert(next.clone()) {
-                    open.push_back((next, [before.as_slice(), &[letter]].concat()));
+                if !next.0.is_empty() && seen.insert(next.clone()) {
+                    open.push_back((next, Some(points.extend(trace, letter))));
                 }
             }
         }
-        InclusionResult::Same
+        match points.never_followed() {
+            Some((Some(letter), before)) => {
+                let name = self.language.letters()[letter as usize].clone();
+                InclusionResult::Differs(self.missing(DifferenceKind::NeverDone(name), &before))
+            }
+            Some((None, before)) => {
+                InclusionResult::Differs(self.missing(DifferenceKind::NeverEnds, &before))
+            }
+            None => InclusionResult::Same,
+        }
     }
 
     fn missing(&self, kind: DifferenceKind, before: &[Symbol]) -> ConformanceDifference {
@@ -398,8 +414,13 @@ mod tests {
         let compiled = Arc::new(chart.compile(&vocabulary).unwrap());
         let mut surroundings = Environment { messages: true, ..Environment::default() };
         let found = explore(&compiled, &mut surroundings, 1_500);
-        let kinds =
-            || differences(chart, &found, liveness).0.into_iter().map(|difference| difference.kind).collect();
+        let kinds = || {
+            differences(chart, &found, liveness, &|| false)
+                .0
+                .into_iter()
+                .map(|difference| difference.kind)
+                .collect()
+        };
         found.is_finished().then(kinds)
     }
 
@@ -448,8 +469,13 @@ mod tests {
             let (language, all) = Language::new(&liveness).unwrap();
             let full = Graph::of(&found, |edge| shows(&language, &chart, &found.edges()[edge]));
             let small = full.collapsed().unwrap();
-            let mut comparison =
-                ConformanceComparison { chart: &chart, found: &found, language, may_end_early: false };
+            let mut comparison = ConformanceComparison {
+                chart: &chart,
+                found: &found,
+                language,
+                may_end_early: false,
+                is_stopped: &|| false,
+            };
             let mut kinds = |graph: &Graph| {
                 let (does, cannot) = comparison.check_both_directions(graph, all);
                 [does, cannot].map(|verdict| verdict.difference().map(|it| (it.before.len(), it.kind)))
@@ -517,9 +543,7 @@ mod tests {
             set_guard(chart, way, "In(b)");
         };
         let ceases = kinds("r = a~ || b", until);
-        let [DifferenceKind::Starves(names), DifferenceKind::NeverDone(_)] = &ceases[..] else {
-            panic!("{ceases:?}")
-        };
+        let [DifferenceKind::Starves(names)] = &ceases[..] else { panic!("{ceases:?}") };
         assert_eq!(names, &["a~"]);
     }
 }

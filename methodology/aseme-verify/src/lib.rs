@@ -53,11 +53,12 @@ pub mod mutation;
 mod program_symbols;
 pub mod properties;
 pub mod protocol;
+mod run_replay;
 pub mod scenario;
 mod strongly_connected_components;
 
 pub use abstraction::explorable;
-pub use check_settings::{CheckSettings, RecordedCoverage};
+pub use check_settings::{CheckSettings, ProgressObserver, RecordedCoverage};
 pub use exploration_extent::ExplorationExtent;
 pub use finding::Finding;
 pub use program_symbols::ProgramSymbols;

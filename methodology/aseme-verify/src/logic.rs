@@ -3,11 +3,11 @@
 //! A guard is a quantifier-free combination of comparisons. A query is expanded into its
 //! alternatives, up to a bound, and each is decided by the kind of its values: numbers by
 //! difference bounds, texts and enumeration values by equality, the rest as booleans. Numbers are
-//! real numbers.
+//! real numbers; `abs`, `min` and `max` are one or the other of two operands.
 //!
-//! Terms outside this theory (functions, products and sums of several fields, scripts) are treated
-//! as opaque values; only terms with equal text are known to be equal. *No* is therefore reliable,
-//! and where *yes* would depend on an opaque value, the answer is *unknown*.
+//! Terms outside this theory (other functions, products and sums of several fields, scripts) are
+//! treated as opaque values; only terms with equal text are known to be equal. *No* is therefore
+//! reliable, and where *yes* would depend on an opaque value, the answer is *unknown*.
 //!
 //! Guards are three-valued: one that reads a message that has not arrived is unknown and does not
 //! fire. A [`Claim`] states which value is meant.
@@ -17,12 +17,14 @@
 //! use yase::expression::parse_condition;
 //!
 //! let condition = |text| parse_condition(text).0.expect("a condition");
-//! let (near, far) = (condition("Ball.distance < 1 && Ball.found"), condition("Ball.distance > 2 || !Ball.found"));
-//! let logic = GuardSolver::default();
+//! let (near, far) = (condition("Ball.distance < 1 && Ball.found"), condition("Ball.distance > 2 ||
+//! !Ball.found")); let logic = GuardSolver::default();
 //! assert_eq!(logic.together(&[Claim::Holds(&near), Claim::Holds(&far)]), Satisfiability::No);
-//! let Satisfiability::Yes(example) = logic.together(&[Claim::IsFalse(&near), Claim::IsFalse(&far)]) else { panic!() };
-//! assert_eq!(example.to_string(), "`Ball.distance` is 1 and `Ball.found` is true");
-//! assert_eq!(logic.together(&[Claim::Holds(&condition("seen(Ball.x)"))]), Satisfiability::Unknown);
+//! let Satisfiability::Yes(example) = logic.together(&[Claim::IsFalse(&near),
+//! Claim::IsFalse(&far)]) else { panic!() }; assert_eq!(example.to_string(), "`Ball.distance` is 1
+//! and `Ball.found` is true");
+//! assert_eq!(logic.together(&[Claim::Holds(&condition("seen(Ball.x)"))]),
+//! Satisfiability::Unknown);
 //! ```
 
 mod bounds;
@@ -37,10 +39,14 @@ use yase::statechart::Constant;
 
 pub(crate) use formula::messages;
 use formula::{ConditionReader, NegationNormalForm, Polarity};
+pub(crate) use search::GuardModel;
 use search::SatisfiabilitySearch;
 
 /// How many alternatives are looked at before the answer is that it is unknown.
 const ALTERNATIVES: usize = 500;
+
+/// The same for the conditions of a whole run.
+const MANY_ALTERNATIVES: usize = 20_000;
 
 /// What is asked of a condition.
 #[derive(Clone, Copy, Debug)]
@@ -111,13 +117,23 @@ impl<'a> GuardSolver<'a> {
 
     /// Whether all of this can be so at one moment, on one blackboard.
     pub fn together(&self, claims: &[Claim<'_>]) -> Satisfiability {
+        SatisfiabilitySearch::new(ALTERNATIVES).answer(self.all(claims))
+    }
+
+    /// Values with which all of this may be so, terms that cannot be judged having any value; or
+    /// none, and whether there surely are none.
+    pub(crate) fn candidate(&self, claims: &[Claim<'_>]) -> (Option<GuardModel>, bool) {
+        SatisfiabilitySearch::new(MANY_ALTERNATIVES).candidate(&self.all(claims))
+    }
+
+    fn all(&self, claims: &[Claim<'_>]) -> NegationNormalForm {
         let reading = ConditionReader { constants: self.constants };
         let formulas = claims.iter().map(|claim| match claim {
             Claim::Holds(condition) => reading.formula(condition, Polarity::True),
             Claim::IsFalse(condition) => reading.formula(condition, Polarity::False),
             Claim::DoesNotHold(condition) => reading.formula(condition, Polarity::NotTrue),
         });
-        SatisfiabilitySearch::new(ALTERNATIVES).answer(NegationNormalForm::All(formulas.collect()))
+        NegationNormalForm::All(formulas.collect())
     }
 
     /// Whether one condition holds only when another does: yes, or it is not known to.

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use yase::TypeEnvironment;
+use yase::expression::Path;
 
 /// The words of a program and its activities.
 #[derive(Clone, Debug, Default)]
@@ -15,4 +16,21 @@ pub struct ProgramSymbols {
     pub readers: BTreeMap<String, Option<BTreeSet<String>>>,
     /// The paths of the topics that others than activities publish or read: bodies, the runtime.
     pub elsewhere: BTreeSet<String>,
+}
+
+impl ProgramSymbols {
+    /// Whether an activity, a body or the runtime may publish the message that a path names, or one
+    /// of whose fields it is. An activity that does not say what it publishes may.
+    pub(crate) fn may_publish(&self, path: &Path) -> bool {
+        let named = |name: &str| path.segments.iter().any(|it| it.text.rsplit('/').next() == Some(name));
+        let is_meant = |topic: &&yase::vocabulary::TopicEntry| {
+            named(&topic.message) || topic.path.rsplit('/').next().is_some_and(named)
+        };
+        self.vocabulary.topics.iter().filter(is_meant).any(|topic| {
+            let publishes = |topics: &Option<BTreeSet<String>>| {
+                topics.as_ref().is_none_or(|topics| topics.contains(&topic.path))
+            };
+            self.elsewhere.contains(&topic.path) || self.activities.values().any(publishes)
+        })
+    }
 }

@@ -65,9 +65,12 @@
 //! time is counted: activities take the duration in the model (none if it has none), timers are
 //! exact, and both happen before time passes; messages and events arrive at any time. A running
 //! activity returns eventually, and a timer that is started expires; messages may never arrive. The
-//! values of messages are free at each step, as far as guards and conditions of the step are
-//! consistent: a property that relies on a message staying as it was at an earlier step is reported
-//! as violated. Regions that cannot influence the property are not explored.
+//! values of messages are free at each step, as far as guards, conditions and assignments of the
+//! step are consistent. Regions that cannot influence the property are not explored.
+//!
+//! A violating run is executed on the machine before it is reported, with values for all that it
+//! reads: a message that has come stays, and what the chart has assigned stays unless the program
+//! has another publisher of it. A run that is not confirmed so leaves the property undecided.
 
 mod check;
 mod clause;

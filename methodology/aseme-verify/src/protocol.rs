@@ -241,14 +241,9 @@ fn traces(chart: &Iac, liveness: &Liveness, name: &str, found: &mut Conformance)
     let mut surroundings = abstraction.surroundings();
     let explored = explore(&abstraction.chart, &mut surroundings, STATES);
     drop(surroundings);
-    let extent = ExplorationExtent {
-        states: explored.states().len(),
-        configurations: explored.configurations(),
-        is_finished: explored.is_finished(),
-    };
-    found.explored.push((name.to_owned(), extent));
+    found.explored.push((name.to_owned(), ExplorationExtent::of(&explored)));
     let (differences, is_whole) = differences_of_what_is_left_early(&subject.chart, &explored, liveness);
-    if !extent.is_finished || !is_whole {
+    if !explored.is_finished() || !is_whole {
         let message = format!("`{name}` is too large: not all of its traces are known");
         return found.report("E0869", Span::default(), message, "make parts of it protocols of their own");
     }

@@ -10,7 +10,7 @@ use proptest::test_runner::TestRunner;
 use super::super::host::ChoosingHost;
 use super::super::search::take_step;
 use super::{ChartSketch, events};
-use crate::{Environment, StepCause, explore};
+use crate::{Environment, StepCause, WriteEffects, explore};
 use yase::expression::ScriptId;
 use yase::state_key::RelevantState;
 use yase::statechart::TransitionId;
@@ -87,7 +87,8 @@ fn steps(machine: &Machine, cause: &StepCause, found: &mut ReferenceExploration)
     while let Some((values, options)) = plans.pop() {
         let mut next = machine.clone();
         let mut allows = |_: ScriptId, _: bool, _: &[(ScriptId, bool)]| true;
-        let mut host = ChoosingHost::new(&mut allows);
+        let effects = WriteEffects::default();
+        let mut host = ChoosingHost::new(&mut allows, &effects);
         host.begin(&values);
         let result = take_step(&mut next, cause, options.clone(), &mut host);
         let made = next.chooser().choices().to_vec();

@@ -145,7 +145,13 @@ impl EventQueues {
 
     /// Discards the expiry of a timer that is set again.
     pub(crate) fn withdraw(&mut self, timer: usize) {
-        let other = |occurrence: &PoppedEvent| occurrence.expiry != Some(timer as u32);
+        self.discard(|occurrence| occurrence.expiry == Some(timer as u32));
+    }
+
+    /// Discards waiting occurrences.
+    pub(crate) fn discard(&mut self, is_meant: impl Fn(&PoppedEvent) -> bool) {
+        let other = |occurrence: &PoppedEvent| !is_meant(occurrence);
+        self.raised.retain(other);
         self.arrived.retain(other);
         self.deferred.retain(other);
         self.held.retain(|held| other(&held.occurrence));

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use crate::bits::BitSet;
 use crate::compile::CompiledChart;
+use crate::expression::EventId;
 use crate::ids::{Activation, CompoundTransitionId};
 use crate::machine::activities::{ActivityState, InvocationPhase};
 use crate::machine::queues::PoppedEvent;
@@ -66,13 +67,28 @@ impl Machine {
         let run = &self.run;
         key.clear();
         key.push(run.status as u32 * 2 + u32::from(run.root_is_final));
+        // most of a large chart is inactive: of sets and slots only those parts are written that
+        // are not empty, behind their places
         for set in [&run.active, &run.vacated, &run.arrived, &run.running_regions] {
-            key.extend(set.words().flat_map(|word| [word as u32, (word >> 32) as u32]));
+            for (place, word) in set.words().enumerate().filter(|(_, word)| *word != 0) {
+                key.extend([place as u32, word as u32, (word >> 32) as u32]);
+            }
+            key.push(u32::MAX);
         }
-        let slots = run.activities.slots();
-        key.extend(slots.chunks(8).map(|slots| slots.iter().fold(0, |word, slot| word << 4 | phase(slot))));
-        let slots = run.timers.slots.iter().enumerate();
-        key.extend(slots.map(|(timer, slot)| self.timer_key(timer, *slot, sight)));
+        for (place, slots) in run.activities.slots().chunks(8).enumerate() {
+            let word = slots.iter().fold(0, |word, slot| word << 4 | phase(slot));
+            if word != 0 {
+                key.extend([place as u32, word]);
+            }
+        }
+        key.push(u32::MAX);
+        for (timer, slot) in run.timers.slots.iter().enumerate() {
+            let word = self.timer_key(timer, *slot, sight);
+            if word != 0 {
+                key.extend([timer as u32, word]);
+            }
+        }
+        key.push(u32::MAX);
         self.write_queues(key);
         key.extend(run.completions.iter().map(|place| place.0));
         for record in &run.records {
@@ -163,6 +179,37 @@ impl Machine {
     pub fn is_waiting(&self, name: &str) -> bool {
         let event = self.chart.event(name).0;
         self.run.queues.all().any(|occurrence| occurrence.event == event)
+    }
+
+    /// Keeps the oldest `most` waiting occurrences of each event and discards the others; returns
+    /// the events of which it has discarded any. For explorations, which would otherwise find a new
+    /// state each time that an event is raised and not taken.
+    pub fn limit_queues(&mut self, most: usize) -> Vec<EventId> {
+        let queues = &mut self.run.queues;
+        if queues.all().nth(most).is_none() {
+            return Vec::new();
+        }
+        let mut waiting: Vec<(EventId, u64)> = queues.all().map(|it| (it.event, it.number)).collect();
+        waiting.sort_unstable();
+        let cut: Vec<(EventId, u64)> = waiting
+            .chunk_by(|one, other| one.0 == other.0)
+            .flat_map(|same| same.iter().skip(most))
+            .copied()
+            .collect();
+        if !cut.is_empty() {
+            queues.discard(|it| cut.binary_search(&(it.event, it.number)).is_ok());
+        }
+        let mut events: Vec<EventId> = cut.into_iter().map(|(event, _)| event).collect();
+        events.dedup();
+        events
+    }
+
+    /// The memory of a machine of this chart, in bytes, roughly.
+    pub fn estimated_bytes(&self) -> usize {
+        let sets = 12 * self.run.active.words().count() * size_of::<u64>();
+        let slots = size_of_val(self.run.activities.slots()) + size_of_val(&*self.run.timers.slots);
+        let records: usize = self.run.records.iter().map(|it| 32 + 8 * it.places.len()).sum();
+        size_of::<Machine>() + sets + slots + records + 64 * self.run.queues.all().count()
     }
 
     /// The activity of a state, if it is running.

@@ -7,6 +7,7 @@ mod convert;
 mod coverage;
 mod diff;
 mod draw;
+mod exploration;
 mod finding;
 mod model_format;
 mod mutate;

@@ -1,4 +1,4 @@
-//! Checks by exploration ([`yase_explore`]): M04 for JOIN, M12 to M15, M21, M22 and M26.
+//! Checks by exploration ([`yase_explore`]): M04 for JOIN, M12 to M15, M21, M22 and M26 to M28.
 //!
 //! Guards on data are free inputs as far as they are satisfiable together; activities return,
 //! events arrive and timers expire at any time. What is found unreachable is therefore unreachable
@@ -7,13 +7,15 @@
 
 mod completion;
 mod dead_by_design;
+mod restless_loops;
 
 use std::collections::BTreeSet;
 
+use yase::expression::ActionKind;
 use yase::{
     Diagnostic, MachineErrorKind, NodeId, NodeKind, Severity, Span, Statechart, Status, TransitionId,
 };
-use yase_explore::{Exploration, FailedStep, Trace, explore};
+use yase_explore::{Exploration, ExplorationProgress, FailedStep, QUEUED, Trace, explore};
 
 use super::messages;
 use crate::abstraction::Abstraction;
@@ -42,7 +44,7 @@ pub(crate) fn check(
         }
     };
     let mut surroundings = abstraction.surroundings();
-    let found = explore(&abstraction.chart, &mut surroundings, settings.states);
+    let found = explore(&abstraction.chart, &mut surroundings, settings.limits());
     drop(surroundings);
     let checks = ExplorationCheck {
         subject,
@@ -52,11 +54,7 @@ pub(crate) fn check(
         blamed: known.iter().map(|diagnostic| diagnostic.span).collect(),
         is_whole: known.iter().all(|diagnostic| diagnostic.severity == Severity::Information),
     };
-    let explored = ExplorationExtent {
-        states: found.states().len(),
-        configurations: found.configurations(),
-        is_finished: found.is_finished(),
-    };
+    let explored = ExplorationExtent::of(&found);
     (checks.all(settings, &explored), Some(explored))
 }
 
@@ -108,8 +106,10 @@ impl ExplorationCheck<'_> {
             findings.extend(messages::concurrent_publishers(self.subject, world, self.found));
         }
         if findings.is_empty() && self.is_whole {
-            findings.extend(self.differences());
+            findings.extend(self.differences(settings));
         }
+        findings.extend(self.crowded_queues());
+        findings.extend(restless_loops::check(self.subject, self.found).into_iter().map(Finding::from));
         findings.extend(self.pool(settings));
         findings.push(self.metrics(explored, settings).into());
         findings
@@ -121,7 +121,9 @@ impl ExplorationCheck<'_> {
 
     /// M13: a step that never comes to rest. It is proven if what it asks of data can be.
     fn livelocks(&self) -> Vec<Finding> {
+        let is_exact = |it: &&FailedStep| it.from.is_none_or(|from| self.found.states()[from].is_exact);
         let failures = self.found.failures().iter().filter(|it| it.kind == MachineErrorKind::NeverRests);
+        let failures = failures.filter(is_exact);
         failures
             .map(|failure| Self::with_trace(self.livelock(failure), &self.found.trace_of(failure)))
             .collect()
@@ -321,10 +323,13 @@ impl ExplorationCheck<'_> {
     }
 
     /// M24. Where something else is wrong, what follows from it is not said again.
-    fn differences(&self) -> Vec<Finding> {
+    fn differences(&self, settings: &CheckSettings) -> Vec<Finding> {
         let Some(liveness) = &self.subject.liveness else { return Vec::new() };
         let chart = &self.subject.chart;
-        let (differences, is_whole) = conformance::differences(chart, self.found, liveness);
+        let states = self.found.states().len();
+        let is_stopped =
+            || settings.observer.stops(ExplorationProgress { states, ..ExplorationProgress::default() });
+        let (differences, is_whole) = conformance::differences(chart, self.found, liveness, &is_stopped);
         let undecided = !is_whole && self.found.is_finished() && differences.is_empty();
         let cut = self.cut_short();
         let found = differences.into_iter().map(|difference| {
@@ -402,10 +407,30 @@ impl ExplorationCheck<'_> {
         left.map(|(_, transition)| self.subject.chart.node(transition.source).name.clone()).collect()
     }
 
+    /// M28: events of which more may wait than are distinguished.
+    fn crowded_queues(&self) -> Vec<Finding> {
+        let raises = |event: &str| {
+            self.subject.chart.transitions().map(|(id, _)| id).find(|&id| {
+                let mut actions = self.subject.transition(id).expression.actions.iter();
+                actions.any(|action| matches!(&action.kind, ActionKind::Raise(path) if path.text() == event))
+            })
+        };
+        let found = self.found.overflowing().into_iter().map(|event| {
+            let message =
+                format!("more than {QUEUED} `{event}` may wait to be taken: nothing bounds their number");
+            let hint = "raise it only where it is waited for, or take it faster than it is raised";
+            match raises(event) {
+                Some(id) => self.subject.warn_of("M28", id, message).with_hint(hint).into(),
+                None => self.subject.warn("M28", Statechart::ROOT, message).with_hint(hint).into(),
+            }
+        });
+        found.collect()
+    }
+
     /// M21: more activities at once than the pool runs.
     fn pool(&self, settings: &CheckSettings) -> Option<Finding> {
         let size = settings.pool.unwrap_or(POOL);
-        let state = self.found.first(|state| state.running.len() > size)?;
+        let state = self.found.first(|state| state.is_exact && state.running.len() > size)?;
         let most = self.found.states().iter().map(|state| state.running.len()).max()?;
         let message = format!("up to {most} activities run at once, and the pool runs {size}");
         let found = self.subject.warn("M21", Statechart::ROOT, message);

@@ -88,18 +88,20 @@ pub(crate) fn names_like_formulas(subject: &CheckedModel) -> Vec<Diagnostic> {
 /// does not see yet.
 pub(crate) fn same_step(subject: &CheckedModel) -> Vec<Diagnostic> {
     let mut found = Vec::new();
+    let mut readers: BTreeMap<String, Vec<TransitionId>> = BTreeMap::new();
+    for (id, transition) in subject.chart.transitions() {
+        for message in transition.expression.guard.iter().flat_map(logic::messages) {
+            readers.entry(message).or_default().push(id);
+        }
+    }
     for (writing, transition) in subject.chart.transitions() {
         let written = transition.expression.actions.iter().filter_map(|action| match &action.kind {
             ActionKind::Assign { target, .. } => message_of(target),
             _ => None,
         });
         for message in written.collect::<BTreeSet<String>>() {
-            let readers = subject
-                .chart
-                .transitions()
-                .map(|(id, _)| id)
-                .filter(|&id| may_fire_together(subject, writing, id));
-            let reader = readers.into_iter().find(|&id| reads(subject, id, &message));
+            let mut of_message = readers.get(&message).into_iter().flatten().copied();
+            let reader = of_message.find(|&id| may_fire_together(subject, writing, id));
             found.extend(reader.map(|reading| written_in_same_step(subject, writing, reading, &message)));
         }
     }
@@ -116,11 +118,6 @@ fn may_fire_together(subject: &CheckedModel, one: TransitionId, other: Transitio
         _ => false,
     };
     apart && on_one_occasion && timers::blackboard(subject, one) != timers::blackboard(subject, other)
-}
-
-fn reads(subject: &CheckedModel, id: TransitionId, message: &str) -> bool {
-    let guard = subject.transition(id).expression.guard.as_ref();
-    guard.is_some_and(|guard| logic::messages(guard).iter().any(|it| it == message))
 }
 
 fn message_of(field: &Path) -> Option<String> {

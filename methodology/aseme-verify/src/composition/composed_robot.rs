@@ -77,6 +77,8 @@ pub(crate) struct SentMessage {
 /// A robot that is ready to be put beside others.
 pub(crate) struct ComposedRobot {
     pub(crate) name: String,
+    /// The host on which its agent runs; empty if all robots are agents of one process.
+    pub(crate) host: String,
     pub(crate) source: Arc<Source>,
     pub(crate) subject: CheckedModel,
     pub(crate) abstraction: Abstraction,
@@ -86,20 +88,22 @@ pub(crate) struct ComposedRobot {
 }
 
 impl ComposedRobot {
-    /// A robot among others, by their names.
+    /// A robot among others.
     pub(crate) fn new(
         name: &str,
         source: &Arc<Source>,
         (subject, abstraction): (CheckedModel, Abstraction),
-        hosts: &[&str],
+        neighbourhood: Neighbourhood<'_>,
         world: Option<&ProgramSymbols>,
     ) -> ComposedRobot {
-        let ears = MessageFilter::new(name, hosts, &subject.chart, world);
+        let host = neighbourhood.host.to_owned();
+        let ears = MessageFilter::new(neighbourhood, &subject.chart, world);
         let hearings = received_messages(&subject.chart, &ears);
         let waits = waits(&subject, &hearings, &ears);
         let sayings = messages_to_send(&subject.chart, world);
         ComposedRobot {
             name: name.into(),
+            host,
             source: source.clone(),
             subject,
             abstraction,
@@ -147,9 +151,11 @@ impl ComposedRobot {
             pace: None,
             letter: Box::new(letter),
         };
-        let found = explore_labelled(&self.abstraction.chart, &mut surroundings, &mut asked, settings.states);
+        let idle = yase_explore::idle_regions(&self.abstraction.chart, &asked.idle);
+        let found =
+            explore_labelled(&self.abstraction.chart, &mut surroundings, &mut asked, settings.limits());
         drop((asked, surroundings));
-        Behaviour::new(found, deeds, &self.waits)
+        Behaviour { idle, ..Behaviour::new(found, deeds, &self.waits) }
     }
 
     /// The regions that neither speak nor listen to others, nor to those that do.
@@ -275,10 +281,18 @@ fn literal(value: &Expression, constants: &[Constant]) -> Option<String> {
     }
 }
 
+/// Where the agent of a robot runs, and beside which others.
+pub(crate) struct Neighbourhood<'a> {
+    pub(crate) host: &'a str,
+    /// The hosts of all robots.
+    pub(crate) hosts: &'a [&'a str],
+    /// What other agents on the same host say.
+    pub(crate) beside: Vec<MessageName>,
+}
+
 /// What a chart's paths may be about: messages of robots, itself among them.
 struct MessageFilter<'a> {
-    own: &'a str,
-    hosts: &'a [&'a str],
+    neighbourhood: Neighbourhood<'a>,
     /// What its actions say.
     sent: Vec<MessageName>,
     world: Option<&'a ProgramSymbols>,
@@ -286,29 +300,31 @@ struct MessageFilter<'a> {
 
 impl<'a> MessageFilter<'a> {
     fn new(
-        own: &'a str,
-        hosts: &'a [&'a str],
+        neighbourhood: Neighbourhood<'a>,
         chart: &Statechart,
         world: Option<&'a ProgramSymbols>,
     ) -> MessageFilter<'a> {
         let said = actions(chart)
             .filter_map(|(_, action)| message_names::message_written(action, world).map(|(word, _)| word));
-        MessageFilter { own, hosts, sent: said.collect(), world }
+        MessageFilter { neighbourhood, sent: said.collect(), world }
     }
 
-    /// The message that a condition reads. Its own are what has been read before, whatever it is.
+    /// The message that a condition reads: of a named host, or without a name of another agent on
+    /// the own one. Its own are what has been read before, whatever it is.
     fn read(&self, path: &yase::expression::Path) -> Option<MessageReference> {
-        message_reference(path, self.hosts.iter().copied(), self.world)
+        let of_host = message_reference(path, self.neighbourhood.hosts.iter().copied(), self.world);
+        of_host.or_else(|| self.without_host(path, &self.neighbourhood.beside))
     }
 
     /// The message that a trigger waits for: also one that the chart says to itself, without a name
     /// in front.
     fn awaited_message(&self, path: &yase::expression::Path) -> Option<MessageReference> {
-        let own = || {
-            let called = message_names::own(path, self.own, self.world)?;
-            self.sent.iter().any(|said| said.means(&called.word)).then_some(called)
-        };
-        self.read(path).or_else(own)
+        self.read(path).or_else(|| self.without_host(path, &self.sent))
+    }
+
+    fn without_host(&self, path: &yase::expression::Path, said: &[MessageName]) -> Option<MessageReference> {
+        let called = message_names::own(path, self.neighbourhood.host, self.world)?;
+        said.iter().any(|said| said.means(&called.word)).then_some(called)
     }
 }
 
@@ -329,7 +345,7 @@ fn received_messages(chart: &Statechart, ears: &MessageFilter<'_>) -> Vec<Receiv
     found
 }
 
-fn messages_to_send(chart: &Statechart, world: Option<&ProgramSymbols>) -> Vec<SentMessage> {
+pub(crate) fn messages_to_send(chart: &Statechart, world: Option<&ProgramSymbols>) -> Vec<SentMessage> {
     let mut found: Vec<SentMessage> = Vec::new();
     let by_actions = actions(chart).filter_map(|(place, action)| {
         message_names::message_written(action, world).map(|(word, _)| (place, word))
@@ -402,6 +418,8 @@ pub(crate) fn wildcard_trigger(chart: &Statechart) -> Option<TransitionId> {
 /// graph is that before the start.
 pub(crate) struct Behaviour {
     pub(crate) found: LabelledGraph,
+    /// The blackboards of regions that were left out, by index.
+    pub(crate) idle: Vec<bool>,
     pub(crate) step_interfaces: Vec<StepInterface>,
     /// All states.
     full: Graph,
@@ -449,7 +467,8 @@ impl Behaviour {
             by_class[class].clone_from(&waiting[state]);
         }
         let may_end = (0..waits.len()).map(|wait| wait_end_classes(&graph, &deeds, wait)).collect();
-        Behaviour { found, step_interfaces: deeds, full, classes, graph, waiting: by_class, may_end }
+        let idle = Vec::new();
+        Behaviour { found, idle, step_interfaces: deeds, full, classes, graph, waiting: by_class, may_end }
     }
 
     /// The class before the start.

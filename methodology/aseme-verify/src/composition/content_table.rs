@@ -95,6 +95,13 @@ impl<'a> ContentTable<'a> {
         facts
     }
 
+    /// What is known of a message that a robot hears, by its content.
+    pub(crate) fn facts_of(&self, prefix: &Path, content: u32) -> Vec<Expression> {
+        let mut facts = Vec::new();
+        self.add_facts(prefix, content, &mut facts);
+        facts
+    }
+
     fn add_facts(&self, prefix: &Path, content: u32, facts: &mut Vec<Expression>) {
         if content == MISSING {
             return facts.push(expression_of(ExpressionKind::Absent(prefix.clone())));

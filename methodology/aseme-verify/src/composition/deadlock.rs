@@ -3,9 +3,13 @@
 use super::product::{GlobalEvent, GlobalProduct, ProductEdge};
 use crate::conformance::graph::LabelledEdge;
 
-/// A state in which some robots wait forever.
+/// So many other states of a deadlock are looked at if the way to the first is not confirmed.
+const OTHERS: usize = 32;
+
+/// States in which some robots wait forever.
 pub(crate) struct Deadlock {
-    pub(crate) state: usize,
+    /// States in which they do, the one where most robots take part first.
+    pub(crate) states: Vec<usize>,
     /// Robots and their waits.
     pub(crate) waits: Vec<(usize, usize)>,
 }
@@ -35,7 +39,10 @@ pub(crate) fn deadlocks(product: &GlobalProduct<'_>) -> Vec<Deadlock> {
         let stuck = stuck_in(worst);
         stuck.iter().for_each(|&number| told[number] = true);
         (0..waits.len()).filter(|&it| is_stuck(it, state)).for_each(|number| told[number] = true);
-        found.push(Deadlock { state: worst, waits: stuck.into_iter().map(|it| waits[it]).collect() });
+        let also = (0..product.states.len())
+            .filter(|&it| it != worst && stuck.iter().all(|&number| is_stuck(number, it)));
+        let states = std::iter::once(worst).chain(also.take(OTHERS)).collect();
+        found.push(Deadlock { states, waits: stuck.into_iter().map(|it| waits[it]).collect() });
     }
     found
 }

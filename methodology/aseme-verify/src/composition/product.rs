@@ -4,11 +4,12 @@
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, VecDeque};
 
-use yase_explore::{StepCause, Trace};
+use yase_explore::{ExplorationProgress, StepCause, Trace};
 
 use super::Channels;
 use super::composed_robot::{Behaviour, ComposedRobot, FieldSetting};
 use super::content_table::{ContentTable, MISSING};
+use crate::check_settings::CheckSettings;
 use crate::conformance::graph::{LabelledEdge, Observable};
 
 /// A message that passes from one robot to another.
@@ -35,7 +36,7 @@ pub(crate) fn passages(robots: &[ComposedRobot]) -> Vec<MessageRoute> {
             for (saying, said) in speaker.sent.iter().enumerate() {
                 let hears = |&hearing: &usize| {
                     let called = &hearer.received[hearing].called;
-                    called.host == speaker.name && called.word.means(&said.word)
+                    called.host == speaker.host && called.word.means(&said.word)
                 };
                 let hearings: Vec<usize> = (0..hearer.received.len()).filter(hears).collect();
                 if hearings.is_empty() {
@@ -66,7 +67,7 @@ pub(crate) struct GlobalState {
     /// The class of each robot.
     pub(crate) classes: Vec<usize>,
     /// What each has heard last, by passage.
-    newest: Vec<u32>,
+    pub(crate) newest: Vec<u32>,
     /// What was said last, by passage.
     last_sent: Vec<u32>,
     /// What is on its way, by channel: passages and contents.
@@ -98,6 +99,7 @@ pub(crate) struct GlobalProduct<'a> {
     pub(crate) behaviours: &'a [Behaviour],
     pub(crate) passages: &'a [MessageRoute],
     channels: Channels,
+    pub(crate) contents: ContentTable<'a>,
     pub(crate) states: Vec<GlobalState>,
     pub(crate) edges: Vec<ProductEdge>,
     /// Where each state was reached from.
@@ -110,19 +112,20 @@ pub(crate) struct GlobalProduct<'a> {
     pub(crate) overflows: BTreeMap<usize, usize>,
 }
 
-/// Finds out what robots do together, looking at no more than `limit` states.
+/// Finds out what robots do together, within the limits of the settings.
 pub(crate) fn product<'a>(
     robots: &'a [ComposedRobot],
     behaviours: &'a [Behaviour],
     passages: &'a [MessageRoute],
     channels: Channels,
-    limit: usize,
+    settings: &'a CheckSettings,
 ) -> GlobalProduct<'a> {
     let found = GlobalProduct {
         robots,
         behaviours,
         passages,
         channels,
+        contents: ContentTable::new(robots, passages),
         states: Vec::new(),
         edges: Vec::new(),
         predecessor: Vec::new(),
@@ -130,23 +133,16 @@ pub(crate) fn product<'a>(
         dropped: BTreeMap::new(),
         overflows: BTreeMap::new(),
     };
-    let mut search = CompositionSearch {
-        found,
-        contents: ContentTable::new(robots, passages),
-        numbers: BTreeMap::new(),
-        open: VecDeque::new(),
-        limit,
-    };
+    let mut search = CompositionSearch { found, numbers: BTreeMap::new(), open: VecDeque::new(), settings };
     search.run();
     search.found
 }
 
 struct CompositionSearch<'a> {
     found: GlobalProduct<'a>,
-    contents: ContentTable<'a>,
     numbers: BTreeMap<GlobalState, usize>,
     open: VecDeque<usize>,
-    limit: usize,
+    settings: &'a CheckSettings,
 }
 
 /// A successor: what leads there, and what was lost on the way because a channel was full.
@@ -169,10 +165,31 @@ impl<'a> CompositionSearch<'a> {
         };
         self.number(begin, None);
         while let Some(state) = self.open.pop_front() {
+            let progress = self.progress();
+            if progress.bytes > self.settings.bytes || self.settings.observer.stops(progress) {
+                // of what was not looked at nothing bad is believed
+                self.found.open_ended.push(state);
+                self.found.open_ended.extend(self.open.drain(..));
+                return;
+            }
             for next in self.successors(&self.found.states[state].clone()) {
                 self.arrive(state, next);
             }
         }
+    }
+
+    fn progress(&self) -> ExplorationProgress {
+        let of_state = |state: &GlobalState| {
+            let on_way: usize = state.channels.iter().map(Vec::len).sum();
+            size_of::<GlobalState>()
+                + 8 * (state.classes.len() + state.newest.len())
+                + 24 * (state.channels.len() + on_way)
+        };
+        let states = self.found.states.len();
+        // each state is kept twice: in order, and by its content
+        let bytes = self.found.states.last().map_or(0, of_state) * 2 * states
+            + self.found.edges.len() * size_of::<ProductEdge>();
+        ExplorationProgress { states, open: self.open.len(), bytes }
     }
 
     fn arrive(&mut self, from: usize, next: GlobalSuccessor) {
@@ -196,7 +213,7 @@ impl<'a> CompositionSearch<'a> {
         let count = self.found.states.len();
         match self.numbers.entry(global) {
             Entry::Occupied(known) => Some(*known.get()),
-            Entry::Vacant(_) if count >= self.limit => None,
+            Entry::Vacant(_) if count >= self.settings.states => None,
             Entry::Vacant(place) => {
                 self.found.states.push(place.key().clone());
                 place.insert(count);
@@ -226,7 +243,7 @@ impl<'a> CompositionSearch<'a> {
         for &way in &behaviours[robot].graph.ways[global.classes[robot]] {
             let deed = behaviours[robot].deed(&way);
             let comes_by_channel = deed.receives.is_some_and(|hearing| self.is_routed(robot, hearing));
-            if comes_by_channel || !self.contents.allow(robot, &deed.conditions, &global.newest) {
+            if comes_by_channel || !self.found.contents.allow(robot, &deed.conditions, &global.newest) {
                 continue;
             }
             let (global, crowded) = self.apply_step(global.clone(), robot, way);
@@ -251,7 +268,7 @@ impl<'a> CompositionSearch<'a> {
         let Some(place) = global.channels[channel].iter().position(arrives) else { return };
         let mut there = global.clone();
         let (passage, content) = there.channels[channel].remove(place);
-        if self.found.channels.may_lose {
+        if self.found.channels.may_lose && !self.found.is_local(passage) {
             let (global, by) = (there.clone(), GlobalEvent::Loss { passage });
             found.push(GlobalSuccessor { global, by, is_dropped: false, crowded: None });
         }
@@ -265,7 +282,7 @@ impl<'a> CompositionSearch<'a> {
         let (behaviours, to) = (self.found.behaviours, self.found.passages[passage].to);
         for way in ways {
             let deed = behaviours[to].deed(&way);
-            if self.contents.allow(to, &deed.conditions, &there.newest) {
+            if self.found.contents.allow(to, &deed.conditions, &there.newest) {
                 let (global, crowded) = self.apply_step(there.clone(), to, way);
                 let by = GlobalEvent::Arrival { passage, way: Some(way) };
                 found.push(GlobalSuccessor { global, by, is_dropped: deed.drops, crowded });
@@ -317,7 +334,7 @@ impl<'a> CompositionSearch<'a> {
         let passages = self.found.passages;
         let meant = |it: &(usize, &MessageRoute)| it.1.from == robot && it.1.sent_message == saying;
         for (number, passage) in passages.iter().enumerate().filter(meant) {
-            let content = self.contents.changed(global.last_sent[number], settings);
+            let content = self.found.contents.changed(global.last_sent[number], settings);
             global.last_sent[number] = content;
             let channel = &mut global.channels[passage.channel];
             let waiting = channel.iter_mut().find(|(other, _)| *other == number);
@@ -336,16 +353,27 @@ impl<'a> CompositionSearch<'a> {
 }
 
 impl GlobalProduct<'_> {
+    /// Whether a message stays within a process.
+    fn is_local(&self, passage: usize) -> bool {
+        let MessageRoute { from, to, .. } = self.passages[passage];
+        from != to && self.robots[from].host == self.robots[to].host
+    }
+
     /// Whether everything was found.
     pub(crate) fn is_finished(&self) -> bool {
         self.open_ended.is_empty() && self.behaviours.iter().all(|it| it.found.is_finished())
     }
 
     /// What happens on the shortest way to a state.
-    pub(crate) fn path_to(&self, mut state: usize) -> Vec<GlobalEvent> {
+    pub(crate) fn path_to(&self, state: usize) -> Vec<GlobalEvent> {
+        self.steps_to(state).into_iter().map(|(by, _)| by).collect()
+    }
+
+    /// What happens on the shortest way to a state, and to which states that leads.
+    pub(crate) fn steps_to(&self, mut state: usize) -> Vec<(GlobalEvent, usize)> {
         let mut way = Vec::new();
         while let Some(Some((before, by))) = self.predecessor.get(state) {
-            way.push(*by);
+            way.push((*by, state));
             state = *before;
         }
         way.reverse();

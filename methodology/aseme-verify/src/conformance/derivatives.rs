@@ -273,6 +273,34 @@ impl Language {
         self.nullable.get(rest.0 as usize).copied().unwrap_or(false)
     }
 
+    /// The activities that may return next, in the order of the letters.
+    pub(crate) fn first_letters(&self, rests: &BTreeSet<Residual>) -> BTreeSet<Symbol> {
+        let (mut letters, mut seen) = (BTreeSet::new(), BTreeSet::new());
+        let mut open: Vec<Residual> = rests.iter().copied().collect();
+        while let Some(rest) = open.pop() {
+            if !seen.insert(rest) {
+                continue;
+            }
+            match self.expressions[rest.0 as usize] {
+                LanguageTerm::Done => {}
+                LanguageTerm::Name(letter) => {
+                    letters.insert(letter);
+                }
+                LanguageTerm::Sequence(first, then) | LanguageTerm::Turn(first, then) => {
+                    open.push(first);
+                    open.extend(self.may_end(first).then_some(then));
+                }
+                LanguageTerm::Either(one, other) | LanguageTerm::Shuffle(one, other) => {
+                    open.extend([one, other]);
+                }
+                LanguageTerm::Star(inner) | LanguageTerm::Forever(inner, _) | LanguageTerm::Cut(inner) => {
+                    open.push(inner)
+                }
+            }
+        }
+        letters
+    }
+
     /// What is left when an activity has returned; nothing if it may not.
     pub(crate) fn derivative(&mut self, rest: Residual, letter: Symbol) -> BTreeSet<Residual> {
         if let Some(known) = self.derivatives.get(&(rest, letter)) {

@@ -45,6 +45,10 @@ type Signature = Vec<u64>;
 /// Limit of equivalence classes; minimising a chart with more gains little.
 const MOST_CLASSES: usize = 2_000;
 
+/// Limit of the rounds in which classes are split: each takes as long as there are states, and a
+/// chart that needs more of them is mostly one long sequence, which does not become smaller.
+const MOST_ROUNDS: usize = 200;
+
 impl Graph {
     /// All that was found.
     pub(crate) fn of(found: &Exploration, shows: impl Fn(usize) -> Observable) -> Graph {
@@ -72,10 +76,10 @@ impl Graph {
     }
 
     /// Refines an initial partition into bisimulation classes: the class of each state and the
-    /// number of classes. None if there are too many.
+    /// number of classes. None if there are too many, or too many rounds.
     pub(crate) fn classes(&self, mut classes: Vec<usize>) -> Option<(Vec<usize>, usize)> {
         let mut count = 0;
-        loop {
+        for _ in 0..MOST_ROUNDS {
             let mut numbers = BTreeMap::new();
             let mut next = Vec::with_capacity(classes.len());
             for state in classes.iter().copied().zip(self.signatures(&classes)) {
@@ -88,6 +92,7 @@ impl Graph {
                 more => (classes, count) = (next, more),
             }
         }
+        None
     }
 
     fn signatures(&self, classes: &[usize]) -> Vec<Signature> {

@@ -134,6 +134,9 @@ impl ConditionReader<'_> {
             };
             return known(whole, wanted, vec![(says, is_equality)]);
         }
+        if let Some(cases) = self.cases(left, comparison, right, wanted.is_positive()) {
+            return or_unknown(whole, wanted, cases);
+        }
         let difference = LinearForm::of(left, self).minus(&LinearForm::of(right, self));
         let comparison = if wanted.is_positive() { comparison } else { comparison.contrary() };
         // two fields that are compared for equality may be of any type
@@ -144,6 +147,33 @@ impl ConditionReader<'_> {
             )
         });
         or_unknown(whole, wanted, NegationNormalForm::Any(bounds.collect()))
+    }
+
+    /// A comparison with `abs`, `min` or `max` in it, by the cases in which they are one or the
+    /// other of two operands.
+    fn cases(
+        &self,
+        left: &Expression,
+        comparison: Comparison,
+        right: &Expression,
+        holds: bool,
+    ) -> Option<NegationNormalForm> {
+        let piecewise = [left, right].into_iter().find_map(|side| side.find_map(&mut PiecewiseCall::of))?;
+        let wanted = if holds { Polarity::True } else { Polarity::False };
+        let case = |is_first: bool, value: &Expression| {
+            let replaced = |side: &Expression| {
+                side.replaced(&mut |part| (*part == *piecewise.whole).then(|| value.clone()))
+            };
+            let condition = if is_first { Polarity::True } else { Polarity::False };
+            let kind =
+                ExpressionKind::Compare(Box::new(replaced(left)), comparison, Box::new(replaced(right)));
+            let rest = Expression { kind, place: left.place };
+            NegationNormalForm::All(vec![
+                self.formula(&piecewise.is_first, condition),
+                self.formula(&rest, wanted),
+            ])
+        };
+        Some(NegationNormalForm::Any(vec![case(true, &piecewise.first), case(false, &piecewise.second)]))
     }
 
     /// Two conditions are compared.
@@ -179,6 +209,37 @@ impl ConditionReader<'_> {
             _ => return None,
         };
         (path.segments.len() > 1).then(|| (path.text(), value))
+    }
+}
+
+/// A call of `abs`, `min` or `max`: one of two operands.
+struct PiecewiseCall<'e> {
+    whole: &'e Expression,
+    /// Whether it is the first one.
+    is_first: Expression,
+    first: Expression,
+    second: Expression,
+}
+
+impl<'e> PiecewiseCall<'e> {
+    fn of(part: &'e Expression) -> Option<PiecewiseCall<'e>> {
+        let ExpressionKind::Call(name, arguments) = &part.kind else { return None };
+        let made = |kind| Expression { kind, place: part.place };
+        let (first, comparison, second) = match (name.text.as_str(), arguments.as_slice()) {
+            ("abs", [operand]) => {
+                let negative = made(ExpressionKind::Negative(Box::new(operand.clone())));
+                (operand.clone(), Comparison::GreaterOrEqual, negative)
+            }
+            ("min", [one, other]) => (one.clone(), Comparison::LessOrEqual, other.clone()),
+            ("max", [one, other]) => (one.clone(), Comparison::GreaterOrEqual, other.clone()),
+            _ => return None,
+        };
+        let to = match name.text.as_str() {
+            "abs" => made(ExpressionKind::Integer(0)),
+            _ => second.clone(),
+        };
+        let is_first = made(ExpressionKind::Compare(Box::new(first.clone()), comparison, Box::new(to)));
+        Some(PiecewiseCall { whole: part, is_first, first, second })
     }
 }
 

@@ -12,6 +12,21 @@ pub(crate) struct SatisfiabilitySearch {
     left: usize,
     /// Whether an alternative may be, of which not all is known, or was not looked at.
     is_open: bool,
+    /// Whether values will do of which not all is known.
+    takes_inexact: bool,
+}
+
+/// Values of names, as far as they matter.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub(crate) struct GuardModel {
+    pub(crate) flags: BTreeMap<String, bool>,
+    /// Texts and values of enumerations.
+    pub(crate) symbols: BTreeMap<String, String>,
+    /// What names are not.
+    pub(crate) differs: BTreeSet<(String, String)>,
+    pub(crate) numbers: BTreeMap<String, f64>,
+    /// The messages that have not arrived.
+    pub(crate) missing: BTreeSet<String>,
 }
 
 /// What is known in one alternative.
@@ -28,10 +43,27 @@ struct Assumptions {
 
 impl SatisfiabilitySearch {
     pub(crate) fn new(alternatives: usize) -> SatisfiabilitySearch {
-        SatisfiabilitySearch { left: alternatives, is_open: false }
+        SatisfiabilitySearch { left: alternatives, is_open: false, takes_inexact: false }
     }
 
     pub(crate) fn answer(mut self, formula: NegationNormalForm) -> Satisfiability {
+        match self.first(&formula) {
+            Some(facts) => Satisfiability::Yes(facts.example()),
+            None if self.is_open => Satisfiability::Unknown,
+            None => Satisfiability::No,
+        }
+    }
+
+    /// Values with which a formula may hold, terms that are outside of the theory being names of
+    /// their own. None if there are none, or if not all alternatives were looked at: then the
+    /// second is false.
+    pub(crate) fn candidate(mut self, formula: &NegationNormalForm) -> (Option<GuardModel>, bool) {
+        self.takes_inexact = true;
+        let found = self.first(formula).map(Assumptions::model);
+        (found, !self.is_open)
+    }
+
+    fn first(&mut self, formula: &NegationNormalForm) -> Option<Assumptions> {
         let facts = Assumptions {
             flags: BTreeMap::new(),
             equals: BTreeMap::new(),
@@ -41,11 +73,7 @@ impl SatisfiabilitySearch {
             present: BTreeSet::new(),
             is_exact: true,
         };
-        match self.solve(facts, vec![&formula], Vec::new()) {
-            Some(example) => Satisfiability::Yes(example),
-            None if self.is_open => Satisfiability::Unknown,
-            None => Satisfiability::No,
-        }
+        self.solve(facts, vec![formula], Vec::new())
     }
 
     /// What is certain comes first; then one of the alternatives that are left to be chosen from.
@@ -54,7 +82,7 @@ impl SatisfiabilitySearch {
         mut facts: Assumptions,
         mut certain: Vec<&'f NegationNormalForm>,
         mut choices: Vec<&'f [NegationNormalForm]>,
-    ) -> Option<Example> {
+    ) -> Option<Assumptions> {
         while let Some(formula) = certain.pop() {
             match formula {
                 NegationNormalForm::All(parts) => certain.extend(parts),
@@ -73,8 +101,8 @@ impl SatisfiabilitySearch {
                 return None;
             }
             self.left -= 1;
-            if let Some(example) = self.solve(facts.clone(), vec![alternative], choices.clone()) {
-                return Some(example);
+            if let Some(found) = self.solve(facts.clone(), vec![alternative], choices.clone()) {
+                return Some(found);
             }
         }
         None
@@ -94,9 +122,9 @@ impl SatisfiabilitySearch {
         }
     }
 
-    fn model_found(&mut self, facts: Assumptions) -> Option<Example> {
-        if facts.is_exact {
-            return Some(facts.example());
+    fn model_found(&mut self, facts: Assumptions) -> Option<Assumptions> {
+        if facts.is_exact || self.takes_inexact {
+            return Some(facts);
         }
         self.is_open = true;
         None
@@ -146,6 +174,16 @@ impl Assumptions {
         };
         let meets = |one: &str| self.present.iter().any(|other| within(one, other) || within(other, one));
         self.missing.iter().any(|message| meets(message))
+    }
+
+    fn model(self) -> GuardModel {
+        GuardModel {
+            flags: self.flags,
+            symbols: self.equals,
+            differs: self.differs,
+            numbers: self.bounds.example().into_iter().collect(),
+            missing: self.missing,
+        }
     }
 
     fn example(self) -> Example {

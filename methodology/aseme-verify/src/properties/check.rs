@@ -34,15 +34,19 @@ pub struct PropertyResult {
 pub enum PropertyOutcome {
     /// It does.
     Holds,
-    /// There is a run that violates it.
+    /// There is a run that violates it: the machine has executed it, with values for all that it
+    /// reads.
     Violated,
+    /// The exploration has found a run that violates it, which the machine is not known to make.
+    NotConfirmed,
     /// There are more states than were looked at, and none of those that were violates it.
     NotDecided,
 }
 
 /// Checks the properties in a file against a model. Returns the result of each property that can be
 /// explored, and the findings: errors of the file, properties that do not hold, each with a
-/// violating run (E0870), and undecided properties (E0871).
+/// violating run that the machine has executed (E0870), and undecided properties: with more states
+/// than the limit (E0871), or with a violating run of the exploration only (E0872).
 ///
 /// # Errors
 /// The errors that prevent exploring the model.
@@ -59,7 +63,7 @@ pub fn check(
         match bound(property, &abstraction, settings) {
             Ok((bound, doubts)) => {
                 findings.extend(doubts.into_iter().map(Finding::from));
-                let (judgement, finding) = judged(property, &abstraction, &bound, settings.states);
+                let (judgement, finding) = judged(property, &abstraction, &bound, settings);
                 judgements.push(judgement);
                 findings.extend(finding);
             }
@@ -93,10 +97,10 @@ fn judged(
     property: &Property,
     abstraction: &Abstraction,
     bound: &BoundProperty,
-    limit: usize,
+    settings: &CheckSettings,
 ) -> (PropertyResult, Option<Finding>) {
     let name = &property.name;
-    let (answer, states) = explored(abstraction, bound, limit);
+    let (answer, states) = explored(abstraction, bound, settings);
     let judgement = |outcome| PropertyResult { name: name.clone(), outcome, states };
     let place = property.formula.span();
     match answer {
@@ -109,6 +113,13 @@ fn judged(
             };
             let diagnostic = Diagnostic::error("E0870", place, message).with_hint(hint);
             (judgement(PropertyOutcome::Violated), Some(Finding { diagnostic, trace: Some(trace) }))
+        }
+        ExplorationVerdict::NotConfirmed(trace, why) => {
+            let message =
+                format!("the property `{name}` is not decided: a run against it is not confirmed: {why}");
+            let hint = "the trace shows what the exploration has found; with `--linked` the program says who publishes what";
+            let diagnostic = Diagnostic::error("E0872", place, message).with_hint(hint);
+            (judgement(PropertyOutcome::NotConfirmed), Some(Finding { diagnostic, trace: Some(trace) }))
         }
         ExplorationVerdict::NotDecided => {
             let message =

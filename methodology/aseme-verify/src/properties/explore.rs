@@ -1,18 +1,21 @@
 //! Explores a chart for a violation of a property.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
-use yase::expression::{Action, ActionKind, Expression, ScriptId};
+use yase::expression::{Action, ActionKind, Expression, Path};
 use yase::{CompiledChart, NodeId, Statechart};
-use yase_explore::{ClockModel, Environment, LabelledGraph, StepLabeler, StepObservation, explore_labelled};
+use yase_explore::{
+    ClockModel, Environment, LabelledGraph, StepLabeler, StepObservation, Trace, TraceStep, explore_labelled,
+};
 
 use super::compiled_property::{AtomicProposition, CompiledProperty};
 use super::names::BoundProperty;
 use super::product::{self, SearchOutcome, Violation};
 use crate::abstraction::Abstraction;
+use crate::check_settings::CheckSettings;
 use crate::cone_of_influence;
-use crate::logic::{Claim, GuardSolver};
+use crate::program_symbols::ProgramSymbols;
+use crate::run_replay::{MessageSources, RunReplay, Unconfirmed};
 use aseme::path::shortest_path;
 
 /// What an exploration says of a property.
@@ -22,6 +25,8 @@ pub(crate) enum ExplorationVerdict {
     /// A run that violates it, as text that [`yase_explore::Trace::parse`] reads; and whether it
     /// goes round in a circle.
     Violated(String, bool),
+    /// The exploration has such a run, but the machine is not known to make it: why.
+    NotConfirmed(String, String),
     /// There was more than was looked at.
     NotDecided,
 }
@@ -30,8 +35,9 @@ pub(crate) enum ExplorationVerdict {
 pub(crate) fn explored(
     abstraction: &Abstraction,
     bound: &BoundProperty,
-    limit: usize,
+    settings: &CheckSettings,
 ) -> (ExplorationVerdict, usize) {
+    let limit = settings.states;
     let plan = &*bound.plan;
     let chart = abstraction.chart.clone();
     let idle = idle(chart.statechart(), plan);
@@ -44,23 +50,83 @@ pub(crate) fn explored(
         pace,
         letter: Box::new(|seen: &StepObservation<'_>| letter(plan, seen)),
     };
-    let found = explore_labelled(&chart, &mut surroundings, &mut asked, limit);
+    let found = explore_labelled(&chart, &mut surroundings, &mut asked, settings.limits());
     let tick = pace.map_or(1, |pace| nanoseconds(pace.tick));
     let contrary = bound.contrary.clone().in_units(tick);
     let states = found.states().len();
-    let answer =
-        match product::violation(&found, &contrary, pace.is_some(), has_idle, limit.saturating_mul(4)) {
-            SearchOutcome::Violation(violation) => {
-                let is_circle = !violation.cycle.is_empty();
-                ExplorationVerdict::Violated(
-                    trace_text(&found, &violation, plan, chart.as_ref(), pace),
-                    is_circle,
-                )
-            }
-            SearchOutcome::Nothing if found.is_finished() => ExplorationVerdict::Holds,
-            SearchOutcome::Nothing | SearchOutcome::TooMuch => ExplorationVerdict::NotDecided,
-        };
+    let mut confirm = |run: &Violation| confirmed(abstraction, plan, &found, run, settings);
+    let (is_timed, most) = (pace.is_some(), limit.saturating_mul(4));
+    let text = |violation: &Violation| trace_text(&found, violation, plan, chart.as_ref(), pace);
+    let answer = match product::violation(&found, &contrary, is_timed, has_idle, most, &mut confirm) {
+        SearchOutcome::Violation(violation) => {
+            ExplorationVerdict::Violated(text(&violation), !violation.cycle.is_empty())
+        }
+        SearchOutcome::NotConfirmed(violation, why) => {
+            ExplorationVerdict::NotConfirmed(text(&violation), why)
+        }
+        SearchOutcome::Nothing if found.is_finished() => ExplorationVerdict::Holds,
+        SearchOutcome::Nothing | SearchOutcome::TooMuch => ExplorationVerdict::NotDecided,
+    };
     (answer, states)
+}
+
+/// Executes a run of the graph on the machine: first as if nothing else published what the chart
+/// assigns itself, then with messages of others. A circle is executed twice.
+fn confirmed(
+    abstraction: &Abstraction,
+    plan: &CompiledProperty,
+    found: &LabelledGraph,
+    run: &Violation,
+    settings: &CheckSettings,
+) -> Result<(), Unconfirmed> {
+    let way: Vec<usize> = run.prefix.iter().chain(&run.cycle).chain(&run.cycle).copied().collect();
+    let replayed = |sources| replayed(abstraction, plan, found, &way, sources);
+    let is_own = |path: &Path| abstraction.is_assigned(path);
+    let alone = replayed(MessageSources { is_own: &is_own, announced: abstraction.awaited.clone() });
+    if alone.is_ok() || abstraction.assignments.iter().all(Option::is_none) {
+        return alone;
+    }
+    let is_own = |path: &Path| is_own(path) && !others_publish(path, settings.world.as_ref());
+    replayed(MessageSources { is_own: &is_own, announced: abstraction.awaited.clone() })
+}
+
+fn replayed(
+    abstraction: &Abstraction,
+    plan: &CompiledProperty,
+    found: &LabelledGraph,
+    way: &[usize],
+    sources: MessageSources<'_>,
+) -> Result<(), Unconfirmed> {
+    let chart = &abstraction.chart;
+    let idle = yase_explore::idle_regions(chart, &idle(chart.statechart(), plan));
+    let mut replay = RunReplay::new(abstraction, idle, sources);
+    let trace = found.trace_along(way);
+    for ((number, step), &place) in trace.steps().iter().enumerate().zip(way) {
+        let at = |why: String| {
+            let reason = format!("at step {}, `{}`: {why}", number + 1, first_line(&trace, step));
+            Unconfirmed { step: number, reason }
+        };
+        replay.step(step).map_err(at)?;
+        let known = &found.steps()[place];
+        if replay.configuration() != found.states()[known.to].configuration {
+            return Err(at("the machine comes to other states".into()));
+        }
+        for (bit, atom) in plan.atoms().iter().enumerate() {
+            if let AtomicProposition::Condition(condition) = atom {
+                replay.claim(condition, known.letter & (1 << bit) != 0);
+            }
+        }
+    }
+    replay.verdict()
+}
+
+fn first_line(trace: &Trace, step: &TraceStep) -> String {
+    trace.text_of(step).lines().next().unwrap_or_default().to_owned()
+}
+
+/// Whether others than the chart may publish the message of a field, as far as the program says.
+fn others_publish(path: &Path, world: Option<&ProgramSymbols>) -> bool {
+    world.is_some_and(|world| world.may_publish(path))
 }
 
 fn conditions(plan: &CompiledProperty) -> impl Iterator<Item = &Expression> {
@@ -92,30 +158,12 @@ fn surroundings<'a>(
     plan: &'a CompiledProperty,
     has_idle: bool,
 ) -> Environment<'a> {
-    let own = abstraction.conditions.len();
     let asked: Vec<&Expression> = conditions(plan).collect();
     let mut surroundings = abstraction.surroundings();
     // a step of a part that is left to do nothing looks like one in which messages come
     surroundings.messages |= has_idle || !asked.is_empty();
-    let logic = GuardSolver::new(&abstraction.constants);
-    let mut known: BTreeMap<Vec<(ScriptId, bool)>, bool> = BTreeMap::new();
-    surroundings.allows = Box::new(move |script, value, decided| {
-        let mut together: Vec<(ScriptId, bool)> = decided.to_vec();
-        together.push((script, value));
-        together.sort_unstable();
-        together.dedup();
-        *known.entry(together).or_insert_with_key(|together| {
-            let claims = together.iter().filter_map(|&(script, value)| {
-                let place = script.0 as usize;
-                let condition = match place.checked_sub(own) {
-                    Some(place) => *asked.get(place)?,
-                    None => abstraction.conditions[place].as_ref()?,
-                };
-                Some(if value { Claim::Holds(condition) } else { Claim::DoesNotHold(condition) })
-            });
-            !logic.together(&claims.collect::<Vec<_>>()).is_no()
-        })
-    });
+    surroundings.allows = Box::new(abstraction.satisfiable(&asked));
+    surroundings.effects = abstraction.effects(&asked);
     surroundings
 }
 

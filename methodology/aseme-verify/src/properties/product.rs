@@ -14,6 +14,7 @@ use yase_explore::{LabelledGraph, LabelledStep, PendingEvent};
 
 use super::clause::{Clause, Scratch, TimedLetter};
 use super::compiled_property::{CompiledProperty, Subformula};
+use crate::run_replay::Unconfirmed;
 use crate::strongly_connected_components::strongly_connected_components;
 
 /// A run that violates a property, by its steps.
@@ -28,20 +29,31 @@ pub(crate) struct Violation {
 /// What came of the search.
 pub(crate) enum SearchOutcome {
     Violation(Violation),
+    /// Runs of the graph violate the property, but none of those that were tried is confirmed to be
+    /// a run of the chart: the first one, and why not.
+    NotConfirmed(Violation, String),
     Nothing,
     /// There was more than was looked at.
     TooMuch,
 }
 
+/// So many runs are tried.
+const TRIED: usize = 256;
+
+/// Confirms that a run of the graph is one of the chart, or says why it is not known to be.
+pub(crate) type Confirmation<'c> = dyn FnMut(&Violation) -> Result<(), Unconfirmed> + 'c;
+
 /// Looks for a run that meets the contrary of a property, looking at no more than `limit` places.
-/// Bounds are in ticks.
+/// Bounds are in ticks. Runs that are not confirmed are passed over.
 pub(crate) fn violation(
     found: &LabelledGraph,
     contrary: &CompiledProperty,
     is_timed: bool,
     has_idle: bool,
     limit: usize,
+    confirm: &mut Confirmation<'_>,
 ) -> SearchOutcome {
+    let mut candidates = Candidates { confirm, tried: 0, first: None };
     let (from, begin) = outgoing(found);
     let mut search = ProductSearch {
         found,
@@ -54,14 +66,51 @@ pub(crate) fn violation(
         limit,
         is_whole: true,
     };
-    if let Some(violation) = search.reached(begin) {
+    if let Some(violation) = search.reached(begin, &mut candidates) {
         return SearchOutcome::Violation(violation);
     }
     let circles = CycleSearch { search: &search, is_timed };
-    match circles.find() {
-        Some(violation) => SearchOutcome::Violation(violation),
-        None if search.is_whole => SearchOutcome::Nothing,
-        None => SearchOutcome::TooMuch,
+    match (circles.find(&mut candidates), candidates.first) {
+        (Some(violation), _) => SearchOutcome::Violation(violation),
+        (None, Some((violation, why))) => SearchOutcome::NotConfirmed(violation, why),
+        (None, None) if search.is_whole => SearchOutcome::Nothing,
+        (None, None) => SearchOutcome::TooMuch,
+    }
+}
+
+/// Runs of the graph that violate the property.
+struct Candidates<'c, 'f> {
+    confirm: &'c mut Confirmation<'f>,
+    tried: usize,
+    /// The first that is not confirmed, and why.
+    first: Option<(Violation, String)>,
+}
+
+impl Candidates<'_, '_> {
+    /// The run, or one that differs from it only in what it reads, if it is confirmed. At each step
+    /// are given the steps that lead between the same places.
+    fn confirmed(&mut self, run: Violation, alternatives: &[Vec<usize>]) -> Option<Violation> {
+        let mut chosen = vec![0; alternatives.len()];
+        let mut candidate = run.clone();
+        while self.tried < TRIED {
+            self.tried += 1;
+            let Err(unconfirmed) = (self.confirm)(&candidate) else { return Some(candidate) };
+            self.first.get_or_insert_with(|| (run.clone(), unconfirmed.reason));
+            // the second turn of a circle is made of the same steps
+            let place = match unconfirmed.step {
+                step if step < chosen.len() => step,
+                step => step.saturating_sub(run.cycle.len()).min(chosen.len().checked_sub(1)?),
+            };
+            let has_more = |&place: &usize| chosen[place] + 1 < alternatives[place].len();
+            let place = (0..=place).rev().find(has_more)?;
+            chosen[place] += 1;
+            chosen[place + 1..].fill(0);
+            let steps = candidate.prefix.iter_mut().chain(&mut candidate.cycle);
+            for (step, (alternatives, chosen)) in steps.zip(alternatives.iter().zip(&chosen)) {
+                *step = alternatives[*chosen];
+            }
+        }
+        None
     }
 }
 
@@ -105,27 +154,31 @@ impl<'a> ProductSearch<'a> {
     }
 
     /// The shortest run at whose end the property is violated.
-    fn reached(&mut self, begin: Vec<usize>) -> Option<Violation> {
+    fn reached(&mut self, begin: Vec<usize>, candidates: &mut Candidates<'_, '_>) -> Option<Violation> {
         let mut stack = Scratch::new();
         let mut open = VecDeque::new();
         for step in begin {
             let at = TimedLetter { letter: self.step(step).letter, now: 0 };
             let result = stack.begin(self.contrary, at);
             self.is_whole &= result.is_ok();
-            if let Some(way) = self.arrive(None, step, &stack, &mut open) {
+            if let Some(way) = self.arrive(None, step, &stack, &mut open, candidates) {
                 return Some(way);
             }
         }
         while let Some(place) = open.pop_front() {
             let ProductPosition { state, clause, .. } = self.places[place];
             if self.may_end(state) && !clause.awaits(self.contrary) {
-                return Some(Violation { prefix: self.path_to(Some(place)), cycle: Vec::new() });
+                let run = Violation { prefix: self.path_to(Some(place)), cycle: Vec::new() };
+                let alternatives = self.alternatives_to(Some(place));
+                if let Some(run) = candidates.confirmed(run, &alternatives) {
+                    return Some(run);
+                }
             }
             for step in self.from[state].clone() {
                 let at = TimedLetter { letter: self.step(step).letter, now: self.step(step).elapsed };
                 let result = stack.step(self.contrary, &[clause], at);
                 self.is_whole &= result.is_ok();
-                if let Some(way) = self.arrive(Some(place), step, &stack, &mut open) {
+                if let Some(way) = self.arrive(Some(place), step, &stack, &mut open, candidates) {
                     return Some(way);
                 }
             }
@@ -145,13 +198,19 @@ impl<'a> ProductSearch<'a> {
         step: usize,
         stack: &Scratch,
         open: &mut VecDeque<usize>,
+        candidates: &mut Candidates<'_, '_>,
     ) -> Option<Violation> {
         let LabelledStep { to, elapsed, .. } = *self.step(step);
         for clause in stack.clauses() {
             if clause.is_true() {
                 let mut way = self.path_to(from);
                 way.push(step);
-                return Some(Violation { prefix: way, cycle: Vec::new() });
+                let mut alternatives = self.alternatives_to(from);
+                alternatives.push(vec![step]);
+                match candidates.confirmed(Violation { prefix: way, cycle: Vec::new() }, &alternatives) {
+                    Some(run) => return Some(run),
+                    None => continue,
+                }
             }
             let clause = clause.shifted(elapsed, self.contrary);
             let count = self.places.len();
@@ -176,6 +235,27 @@ impl<'a> ProductSearch<'a> {
         None
     }
 
+    /// The steps between two places that take the same time and end the same, a given one first.
+    fn alternatives(&self, from: usize, to: usize, first: usize) -> Vec<usize> {
+        let like = self.step(first);
+        let others = self.next[from].iter().filter(|(it, step)| *it == to && *step != first);
+        let is_alike =
+            |step: &usize| (self.step(*step).elapsed, self.step(*step).ends) == (like.elapsed, like.ends);
+        std::iter::once(first).chain(others.map(|(_, step)| *step).filter(is_alike)).collect()
+    }
+
+    /// The alternatives at each step of the path to a place.
+    fn alternatives_to(&self, mut place: Option<usize>) -> Vec<Vec<usize>> {
+        let mut found = Vec::new();
+        while let Some(at) = place {
+            let (before, step) = self.places[at].predecessor;
+            found.push(before.map_or_else(|| vec![step], |before| self.alternatives(before, at, step)));
+            place = before;
+        }
+        found.reverse();
+        found
+    }
+
     fn path_to(&self, mut place: Option<usize>) -> Vec<usize> {
         let mut way = Vec::new();
         while let Some(at) = place {
@@ -195,7 +275,7 @@ struct CycleSearch<'a> {
 }
 
 impl CycleSearch<'_> {
-    fn find(&self) -> Option<Violation> {
+    fn find(&self, runs: &mut Candidates<'_, '_>) -> Option<Violation> {
         let components = strongly_connected_components(&self.search.next);
         let mut members: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (place, &component) in components.iter().enumerate() {
@@ -208,7 +288,15 @@ impl CycleSearch<'_> {
             let inside: BTreeSet<usize> = members.into_iter().collect();
             let stops = self.stops(&inside)?;
             let circle = self.find_cycle(first, &stops, &inside)?;
-            Some(Violation { prefix: self.search.path_to(Some(first)), cycle: circle })
+            let mut alternatives = self.search.alternatives_to(Some(first));
+            let mut at = first;
+            for &step in &circle {
+                let to = self.search.next[at].iter().find(|(_, it)| *it == step)?.0;
+                alternatives.push(self.search.alternatives(at, to, step));
+                at = to;
+            }
+            let prefix = self.search.path_to(Some(first));
+            runs.confirmed(Violation { prefix, cycle: circle }, &alternatives)
         })
     }
 

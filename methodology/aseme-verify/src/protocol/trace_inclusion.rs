@@ -47,14 +47,8 @@ pub(crate) fn in_whole(
     let shown = ProtocolAlphabet::new(player, eac, place, &pairs, &language);
     let explored = shown.explored(&abstraction);
     let name = &player.nodes[place].name;
-    let states = explored.states().len();
-    let configurations: BTreeSet<&[NodeId]> =
-        explored.states().iter().map(|state| state.configuration.as_slice()).collect();
-    let extent = ExplorationExtent {
-        states,
-        configurations: configurations.len(),
-        is_finished: explored.is_finished(),
-    };
+    let extent = ExplorationExtent::of_labelled(&explored);
+    let states = extent.states;
     found.explored.push((format!("{name} in all that {} does", player.name), extent));
     let message = match first_beyond(&explored, language, all) {
         TraceInclusion::Nothing if explored.is_finished() => return,

@@ -217,3 +217,64 @@ fn who_waits_for_a_robot_that_was_stopped_waits_for_ever() {
     assert!(!said.contains("`receiver` waits"), "it has stopped: {said}");
     assert!(found.is_finished);
 }
+
+const ASKER: &str = "Role: asker\nLiveness:\nasker = Ask . Wait . Use\nTransitions:\n\
+    Ask -> Wait : / publish.question.Signal.Question\nWait -> Use : answer.Signal.Answer\n";
+
+/// Agents of one process read each other's messages without a name: those that wait for each other
+/// stand still as robots do.
+#[test]
+fn agents_of_one_process_are_composed_like_robots() {
+    let answerer =
+        |text: &str| format!("Role: answerer\nLiveness:\nanswerer = Listen . Say\nTransitions:\n{text}");
+    let good = answerer("Listen -> Say : question.Signal.Question / publish.answer.Signal.Answer\n");
+    let bad = answerer("Listen -> Say : hint.Signal.Hint / publish.answer.Signal.Answer\n");
+    let asker = ASKER.replace("answer.Signal.Answer\n", "answer.Signal.Answer / publish.hint.Signal.Hint\n");
+    let both = |other: &str| of_texts(&[("asker", &asker), ("answerer", other)]);
+    let found = compose(&both(&good), Channels::default(), &CheckSettings::default()).unwrap();
+    assert!(found.is_one_process && !found.has_errors() && found.is_finished, "{}", text(&found));
+    assert_eq!(found.passing.len(), 2, "{}", text(&found));
+    let found = compose(&both(&bad), Channels::default(), &CheckSettings::default()).unwrap();
+    assert!(codes(&found).contains(&"E0930"), "{}", text(&found));
+    let said = &found.findings[0].diagnostic.message;
+    assert!(
+        said.contains("`asker` waits in `Wait` for `Answer`")
+            && said.contains("`answerer` waits in `Listen` for `Hint`"),
+        "{said}"
+    );
+    // the same with their robot named: what is said of one robot is not heard on another
+    let on = |hosts: [&str; 2]| {
+        let models = [(hosts[0], asker.as_str()), (hosts[1], bad.as_str())];
+        compose(&of_texts(&models), Channels::default(), &CheckSettings::default()).unwrap()
+    };
+    let found = on(["nao/asker", "nao/answerer"]);
+    assert!(!found.is_one_process && codes(&found).contains(&"E0930"), "{}", text(&found));
+    let mut channels = Channels::default();
+    channels.may_lose = true;
+    let found = compose(&both(&good), channels, &CheckSettings::default()).unwrap();
+    assert!(!found.has_errors(), "nothing is lost within a process: {}", text(&found));
+}
+
+/// A way to a deadlock that the data of a robot do not allow is not called one.
+#[test]
+fn a_deadlock_is_confirmed_by_the_machines() {
+    let receiver = "Role: receiver\nLiveness:\nreceiver = Listen . Take\nTransitions:\n\
+        Listen -> Take : passer.passed.Signal.Passed\n";
+    let passer = |value: &str| {
+        format!(
+            "Role: passer\nLiveness:\npasser = Aim . Turn . (Pass | Hold)\nTransitions:\n\
+            Aim -> Turn : / Ball.found = {value}\nCONDITION -> Pass : [Ball.found]\nCONDITION -> Hold : [!Ball.found]\n\
+            Pass -> END : / publish.passed.Signal.Passed\n"
+        )
+    };
+    let composed = |value: &str| {
+        let models = of_texts(&[("passer", &passer(value)), ("receiver", receiver)]);
+        compose(&models, Channels::default(), &CheckSettings::default()).unwrap()
+    };
+    let found = composed("false");
+    assert!(codes(&found).contains(&"E0930"), "{}", text(&found));
+    let found = composed("true");
+    assert!(codes(&found).contains(&"E0937") && !codes(&found).contains(&"E0930"), "{}", text(&found));
+    let said = found.findings.iter().find(|it| it.diagnostic.code == "E0937").unwrap();
+    assert!(said.diagnostic.message.contains("`Ball.found` cannot be false"), "{}", said.diagnostic.message);
+}

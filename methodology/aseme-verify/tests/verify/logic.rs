@@ -136,10 +136,27 @@ fn what_is_outside_is_unknown_unless_its_text_alone_decides() {
     assert_eq!(holds(&["seen(Ball.x)"]), Satisfiability::Unknown);
     assert_eq!(holds(&["seen(Ball.x) && !seen(Ball.x)"]), Satisfiability::No);
     assert_eq!(holds(&["abs(Ball.x) > 2", "abs(Ball.x) <= 2"]), Satisfiability::No);
-    assert_eq!(holds(&["abs(Ball.x) < 0 - 1"]), Satisfiability::Unknown);
     assert_eq!(holds(&["Ball.x * Ball.y > 2", "Ball.x * Ball.y < 1"]), Satisfiability::No);
     assert_eq!(holds(&["Ball.x + Ball.y > 2", "2 * Ball.x + 2 * Ball.y < 4"]), Satisfiability::No);
     assert_eq!(holds(&["In(walk)"]), Satisfiability::Unknown);
+}
+
+#[test]
+fn abs_min_and_max_are_one_of_their_operands() {
+    assert_eq!(holds(&["abs(Ball.x) < 0 - 1"]), Satisfiability::No);
+    let Satisfiability::Yes(gap) = holds(&["!(abs(Ball.x) > 1)", "!(abs(Ball.x) < 1)"]) else { panic!() };
+    assert!(["`Ball.x` is 1", "`Ball.x` is -1"].contains(&gap.to_string().as_str()), "{gap}");
+    assert_eq!(holds(&["abs(Ball.x - 3) < 1", "Ball.x > 4"]), Satisfiability::No);
+    assert!(holds(&["abs(abs(Ball.y) - 2) <= 1", "Ball.y < 0"]).is_yes());
+    assert_eq!(holds(&["abs(abs(Ball.y) - 2) <= 1", "Ball.y > 3"]), Satisfiability::No);
+    assert_eq!(holds(&["min(Ball.x, Ball.y) > 2", "Ball.y <= 2"]), Satisfiability::No);
+    assert!(holds(&["max(Ball.x, Ball.y) > 2", "Ball.y <= 2"]).is_yes());
+    assert_eq!(holds(&["max(Ball.x, 1) < 1"]), Satisfiability::No);
+    let (far, near) = (condition("abs(Ball.x) > 1"), condition("abs(Ball.x) <= 1"));
+    let logic = GuardSolver::default();
+    let neither = [Claim::DoesNotHold(&far), Claim::DoesNotHold(&near)];
+    assert!(logic.together(&neither).is_yes(), "the ball may be missing");
+    assert_eq!(logic.together(&[Claim::IsFalse(&far), Claim::IsFalse(&near)]), Satisfiability::No);
 }
 
 #[test]

@@ -10,6 +10,7 @@
 mod allocation;
 mod cases;
 mod composition;
+mod counterexamples;
 mod large;
 mod logic;
 mod properties;

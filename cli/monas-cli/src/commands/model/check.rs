@@ -10,6 +10,7 @@ use clap::{Args, ValueEnum, ValueHint};
 use monas::config;
 use yase::Severity;
 
+use super::exploration::{ExplorationArguments, extent};
 use super::{finding, program};
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 use properties::CheckedProperty;
@@ -34,9 +35,8 @@ pub(crate) struct CheckArguments {
     /// An external event, raised by an activity, another agent or a person.
     #[arg(long = "event", value_name = "NAME")]
     pub(crate) events: Vec<String>,
-    /// The largest number of states of a chart to explore; 0 for none.
-    #[arg(long, value_name = "NUMBER", default_value_t = 100_000)]
-    pub(crate) states: usize,
+    #[command(flatten)]
+    pub(crate) exploration: ExplorationArguments,
     /// The number of activities that the agent's pool runs at once; 12 if not given.
     #[arg(long, value_name = "NUMBER")]
     pub(crate) pool: Option<usize>,
@@ -67,7 +67,8 @@ pub(crate) fn execute(
 ) -> Result<Exit, CommandFailure> {
     let mut settings = CheckSettings::default();
     settings.events.extend(arguments.events.iter().cloned());
-    (settings.states, settings.pool) = (arguments.states, arguments.pool);
+    settings.pool = arguments.pool;
+    let interrupt = arguments.exploration.apply(&mut settings, console)?;
     settings.world = arguments.linked.then(program::linked).transpose()?;
     settings.recorded = super::coverage::recorded(&arguments.tapes)?;
     let (mut reports, mut judged): (Vec<(&Path, CheckReport)>, Vec<CheckedProperty>) =
@@ -96,7 +97,7 @@ pub(crate) fn execute(
             writeln!(console.out, "{:#}", sarif::document(findings))?;
         }
     }
-    Ok(verdict(&reports))
+    Ok(if interrupt.is_requested() { Exit::Interrupted } else { verdict(&reports) })
 }
 
 /// An unreadable model outweighs one with errors.
@@ -131,19 +132,15 @@ fn text(
             finding::way_there(finding, console)?;
         }
         if let Some(what) = report.what.as_ref().filter(|_| is_told && !report.has_errors()) {
-            writeln!(console.out, "{}: {what}{}, no errors", path.display(), extent(report))?;
+            writeln!(
+                console.out,
+                "{}: {what}{}, no errors",
+                path.display(),
+                extent(report.explored.as_ref())
+            )?;
         }
     }
     Ok(())
-}
-
-/// The size of an exploration.
-fn extent(report: &CheckReport) -> String {
-    match report.explored {
-        Some(explored) if explored.is_finished => format!(", {} states explored", explored.states),
-        Some(explored) => format!(", exploration not finished: {} states", explored.states),
-        None => String::new(),
-    }
 }
 
 /// One object per line; a finding with a trace has it as `trace`.

@@ -12,6 +12,7 @@ use clap::{Args, ValueHint};
 use serde_json::json;
 use yase::Source;
 
+use super::exploration::ExplorationArguments;
 use super::robot_file::{name_of, named};
 use super::{conform, finding, program};
 use crate::input::{valid_chart, valid_model};
@@ -20,8 +21,8 @@ use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgumen
 /// Arguments of `monas model compose`.
 #[derive(Args, Debug)]
 pub(crate) struct ComposeArguments {
-    /// The model of each robot, as `NAME=FILE` if the robot is not named after its file; and the
-    /// models of a protocol.
+    /// The model of each robot, as `NAME=FILE` if the robot is not named after its file, as
+    /// `ROBOT/AGENT=FILE` if it is one of several agents of a robot; and the models of a protocol.
     #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) files: Vec<PathBuf>,
     /// The capacity of the channel from one robot to another, in messages; when it is full the
@@ -34,9 +35,8 @@ pub(crate) struct ComposeArguments {
     /// An external event, raised by an activity or a person.
     #[arg(long = "event", value_name = "NAME")]
     pub(crate) events: Vec<String>,
-    /// The largest number of states to explore, of each robot and of the composition.
-    #[arg(long, value_name = "NUMBER", default_value_t = 100_000)]
-    pub(crate) states: usize,
+    #[command(flatten)]
+    pub(crate) exploration: ExplorationArguments,
     /// Use the topics that the activities of this program declare; they are assumed to publish when
     /// they return.
     #[arg(long)]
@@ -57,7 +57,7 @@ pub(crate) fn execute(
     let conforms = cast.conforms(format, console)?;
     let mut settings = CheckSettings::default();
     settings.events.extend(arguments.events.iter().cloned());
-    settings.states = arguments.states;
+    let interrupt = arguments.exploration.apply(&mut settings, console)?;
     settings.world = arguments.linked.then(program::linked).transpose()?;
     let mut channels = Channels::default();
     (channels.capacity, channels.may_lose) = (arguments.channel, arguments.lose);
@@ -71,7 +71,11 @@ pub(crate) fn execute(
         Format::Text => text(&found, console)?,
         Format::Json => objects(&found, console)?,
     }
-    Ok(if conforms && !found.has_errors() { Exit::Success } else { Exit::Diverged })
+    Ok(match conforms && !found.has_errors() {
+        _ if interrupt.is_requested() => Exit::Interrupted,
+        true => Exit::Success,
+        false => Exit::Diverged,
+    })
 }
 
 /// The robots, and the files of their protocol.
@@ -158,6 +162,10 @@ fn text(found: &Composition, console: &mut CommandOutput<'_>) -> Result<(), Comm
         report::write(console, Format::Text, std::slice::from_ref(&finding.diagnostic))?;
         finding::way_there(finding, console)?;
     }
+    if found.is_one_process {
+        let note = "no chart reads a message by the name of a robot: these are agents of one process";
+        writeln!(console.out, "{note}")?;
+    }
     for (from, to, message) in &found.passing {
         writeln!(console.out, "`{message}` passes from {from} to {to}")?;
     }
@@ -183,6 +191,10 @@ fn objects(found: &Composition, console: &mut CommandOutput<'_>) -> Result<(), C
     for (name, states) in &found.robots {
         writeln!(console.out, "{}", json!({"robot": name, "states": states}))?;
     }
-    writeln!(console.out, "{}", json!({"states": found.states, "finished": found.is_finished}))?;
+    writeln!(
+        console.out,
+        "{}",
+        json!({"states": found.states, "finished": found.is_finished, "one_process": found.is_one_process})
+    )?;
     Ok(())
 }

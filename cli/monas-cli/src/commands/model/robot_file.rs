@@ -1,4 +1,5 @@
-//! Arguments `NAME=FILE`: the model of a robot, and the robot's name.
+//! Arguments `NAME=FILE`: the model of a robot, and the robot's name; `ROBOT/AGENT=FILE` for one of
+//! several agents.
 
 use std::path::{Path, PathBuf};
 
@@ -20,10 +21,14 @@ pub(crate) fn named(files: &[PathBuf]) -> Result<Vec<(String, PathBuf)>, Command
     Ok(found)
 }
 
-/// The robot's name and the path of its model.
+/// The robot's name, or `robot/agent`, and the path of its model.
 pub(crate) fn name_of(file: &Path) -> (String, PathBuf) {
     let text = file.to_string_lossy();
-    match text.split_once('=').filter(|(name, _)| !name.is_empty() && !name.contains(['/', '\\', '.'])) {
+    let is_name = |name: &str| {
+        let mut parts = name.split('/');
+        parts.clone().count() <= 2 && parts.all(|part| !part.is_empty() && !part.contains(['\\', '.']))
+    };
+    match text.split_once('=').filter(|(name, _)| is_name(name) && !file.exists()) {
         Some((name, path)) => (name.to_owned(), PathBuf::from(path)),
         None => (file.file_stem().unwrap_or_default().to_string_lossy().into_owned(), file.to_path_buf()),
     }

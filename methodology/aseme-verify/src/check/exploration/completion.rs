@@ -9,7 +9,9 @@ pub(crate) fn check(subject: &CheckedModel) -> Vec<(TransitionId, Diagnostic)> {
     let completes = completes(subject);
     let in_vain = |&id: &TransitionId| {
         let source = subject.transition(id).source;
-        waits(subject, id) && !completes[source.0 as usize] && !is_forever(subject, source)
+        let transition = subject.transition(id);
+        let goes_on = is_forever(subject, source) && transition.source == transition.target;
+        waits(subject, id) && !completes[source.0 as usize] && !goes_on && !is_generated_exit(subject, id)
     };
     let waiting = subject.chart.transitions().map(|(id, _)| id).filter(in_vain);
     waiting
@@ -39,6 +41,24 @@ pub(crate) fn is_forever(subject: &CheckedModel, node: NodeId) -> bool {
     let children = subject.chart.children(node);
     let has_end = children.iter().any(|&child| subject.kind(child) == NodeKind::End);
     subject.kind(node) == NodeKind::Or && !has_end && subject.chart.node(node).name.ends_with('~')
+}
+
+/// Whether a transition to an END is only there since the rest of a formula has one: the formulas
+/// generate it, and nothing is written of it.
+fn is_generated_exit(subject: &CheckedModel, id: TransitionId) -> bool {
+    let transition = subject.transition(id);
+    let is_of_formula = subject.liveness.is_some() || is_forever(subject, transition.source);
+    transition.expression.is_empty() && subject.kind(transition.target) == NodeKind::End && is_of_formula
+}
+
+/// The generated exits of composites that never complete.
+pub(crate) fn never_taken(subject: &CheckedModel) -> Vec<TransitionId> {
+    let completes = completes(subject);
+    let is_meant = |&id: &TransitionId| {
+        let source = subject.transition(id).source;
+        waits(subject, id) && !completes[source.0 as usize] && is_generated_exit(subject, id)
+    };
+    subject.chart.transitions().map(|(id, _)| id).filter(is_meant).collect()
 }
 
 /// Whether each node can complete, by what its transitions lead to, whatever their guards say.

@@ -29,6 +29,10 @@ impl DeadByDesign {
                 open.push(transition.target);
             }
         }
+        for id in completion::never_taken(subject) {
+            intended.never[id.0 as usize] = true;
+            open.push(subject.transition(id).target);
+        }
         while let Some(node) = open.pop() {
             if !std::mem::replace(&mut intended.cut_off[node.0 as usize], true) {
                 intended.follow(subject, node, &mut open);

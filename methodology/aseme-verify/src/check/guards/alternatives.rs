@@ -1,6 +1,6 @@
 //! Overlap of the guards of transitions from one node: M07, M08 and, across regions, M10.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use yase::expression::Trigger;
 use yase::{Diagnostic, NodeId, NodeKind, TransitionId};
@@ -10,6 +10,9 @@ use crate::logic::Claim;
 
 /// Of more ways than this out of one node, only neighbours are compared.
 const MOST: usize = 64;
+
+/// So many conflicts of one transition with other regions are reported.
+const CONFLICTS: usize = 3;
 
 impl GuardCheck<'_> {
     /// M07 and M08.
@@ -128,12 +131,40 @@ impl GuardCheck<'_> {
         let with_trigger = |id: &TransitionId| self.subject.trigger(*id).is_some();
         let waiting: Vec<TransitionId> =
             self.subject.chart.transitions().map(|(id, _)| id).filter(with_trigger).collect();
+        // those that may meet: of the same event, or of whatever comes
+        let mut by_event: BTreeMap<String, Vec<TransitionId>> = BTreeMap::new();
+        let mut of_any: Vec<TransitionId> = Vec::new();
+        for &id in &waiting {
+            match self.subject.trigger(id).and_then(names) {
+                Some(names) => names.into_iter().for_each(|name| by_event.entry(name).or_default().push(id)),
+                None => of_any.push(id),
+            }
+        }
         let mut found = Vec::new();
-        for &leaving in &waiting {
-            let others = waiting.iter().filter(|&&other| other != leaving);
-            found.extend(others.filter_map(|&staying| self.conflicting_pair(leaving, staying)));
+        for &leaving in waiting.iter().filter(|&&id| self.leaves_and(id)) {
+            let others: BTreeSet<TransitionId> = match self.subject.trigger(leaving).and_then(names) {
+                Some(names) => names
+                    .iter()
+                    .filter_map(|name| by_event.get(name))
+                    .flatten()
+                    .chain(&of_any)
+                    .copied()
+                    .collect(),
+                None => waiting.iter().copied().collect(),
+            };
+            let others = others.into_iter().filter(|&other| other != leaving);
+            found
+                .extend(others.filter_map(|staying| self.conflicting_pair(leaving, staying)).take(CONFLICTS));
         }
         found
+    }
+
+    /// Whether a transition leaves an AND around its source.
+    fn leaves_and(&self, id: TransitionId) -> bool {
+        let transition = self.subject.transition(id);
+        let mut around = self.subject.chart.ancestors(transition.source);
+        around
+            .any(|it| self.subject.kind(it) == NodeKind::And && !self.subject.contains(it, transition.target))
     }
 
     fn conflicting_pair(&self, leaving: TransitionId, staying: TransitionId) -> Option<Diagnostic> {

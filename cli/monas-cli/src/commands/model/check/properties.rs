@@ -57,7 +57,7 @@ fn add(
 ) -> bool {
     match properties::check(model, source, settings) {
         Ok((judgements, findings)) => {
-            let is_verdict = |code: &str| matches!(code, "E0870" | "E0871");
+            let is_verdict = |code: &str| matches!(code, "E0870" | "E0871" | "E0872");
             let is_understood =
                 findings.iter().all(|it| !it.diagnostic.is_error() || is_verdict(it.diagnostic.code));
             report.findings.extend(findings);
@@ -78,6 +78,7 @@ fn word(outcome: PropertyOutcome) -> &'static str {
     match outcome {
         PropertyOutcome::Holds => "holds",
         PropertyOutcome::Violated => "does not hold",
+        PropertyOutcome::NotConfirmed => "is not decided: a run against it is not confirmed",
         _ => "is not decided",
     }
 }

@@ -1,0 +1,143 @@
+//! Confirms a way to a deadlock: each robot makes its steps on the machine.
+
+use yase::expression::Path;
+use yase_explore::TraceStep;
+
+use super::composed_robot::{Behaviour, ComposedRobot};
+use super::content_table::MISSING;
+use super::product::{GlobalEvent, GlobalProduct, MessageRoute};
+use crate::check_settings::CheckSettings;
+use crate::conformance::graph::LabelledEdge;
+use crate::run_replay::{MessageSources, RunReplay};
+
+/// Whether the robots can make the steps on the way to a state, with values for all that they read:
+/// first as if nothing else published what they assign, then with messages of others.
+///
+/// # Errors
+/// Why that is not known.
+pub(crate) fn confirm(
+    product: &GlobalProduct<'_>,
+    state: usize,
+    settings: &CheckSettings,
+) -> Result<(), String> {
+    (0..product.robots.len()).try_for_each(|robot| {
+        let (robot_name, abstraction) = (&product.robots[robot].name, &product.robots[robot].abstraction);
+        let is_heard = |path: &Path| {
+            let heard = product.robots[robot].received.iter();
+            heard.map(|it| &it.called.prefix).any(|it| crate::abstraction::may_be_one_message(it, path))
+        };
+        let is_own = |path: &Path| abstraction.is_assigned(path) && !is_heard(path);
+        let others = |path: &Path| settings.world.as_ref().is_some_and(|world| world.may_publish(path));
+        let alone = replayed(product, state, robot, &is_own);
+        let with_others = || replayed(product, state, robot, &|path| is_own(path) && !others(path));
+        alone.or_else(|_| with_others()).map_err(|why| format!("{robot_name}: {why}"))
+    })
+}
+
+/// The steps of one robot on the way to a state.
+fn replayed(
+    product: &GlobalProduct<'_>,
+    state: usize,
+    robot: usize,
+    is_own: &dyn Fn(&Path) -> bool,
+) -> Result<(), String> {
+    let (own, behaviour) = (&product.robots[robot], &product.behaviours[robot]);
+    let mut announced = own.abstraction.awaited.clone();
+    announced.extend(routes_to(product, robot).flat_map(|(_, route)| prefixes(own, route)));
+    let sources = MessageSources { is_own, announced };
+    let mut steps = RobotSteps {
+        behaviour,
+        replay: RunReplay::new(&own.abstraction, behaviour.idle.clone(), sources),
+        at: behaviour.first_state(),
+    };
+    for (number, route) in routes_to(product, robot) {
+        if is_only_route(product, robot, number) {
+            for prefix in prefixes(own, route) {
+                steps.replay.assume(&product.contents.facts_of(&prefix, MISSING));
+            }
+        }
+    }
+    for (event, to) in product.steps_to(state) {
+        match event {
+            GlobalEvent::Step { robot: it, way } if it == robot => steps.go(way, &[])?,
+            GlobalEvent::Arrival { passage, way } if product.passages[passage].to == robot => {
+                let content = product.states[to].newest[passage];
+                let is_known = is_only_route(product, robot, passage);
+                let messages = prefixes(own, &product.passages[passage]).map(|prefix| {
+                    let facts =
+                        if is_known { product.contents.facts_of(&prefix, content) } else { Vec::new() };
+                    (prefix, facts)
+                });
+                let messages: Vec<_> = messages.collect();
+                match way {
+                    Some(way) => steps.go(way, &messages)?,
+                    None => steps.receive(&messages),
+                }
+            }
+            _ => {}
+        }
+    }
+    steps.replay.verdict().map_err(|unconfirmed| unconfirmed.reason)
+}
+
+fn routes_to<'p>(
+    product: &'p GlobalProduct<'_>,
+    robot: usize,
+) -> impl Iterator<Item = (usize, &'p MessageRoute)> {
+    product.passages.iter().enumerate().filter(move |(_, route)| route.to == robot)
+}
+
+/// Of two messages under one name it is not known which came last.
+fn is_only_route(product: &GlobalProduct<'_>, robot: usize, number: usize) -> bool {
+    let heard = &product.passages[number].received_messages;
+    let others = routes_to(product, robot).filter(|(other, _)| *other != number);
+    others.into_iter().all(|(_, route)| route.received_messages.iter().all(|it| !heard.contains(it)))
+}
+
+/// What a robot calls the message of a route.
+fn prefixes(robot: &ComposedRobot, route: &MessageRoute) -> impl Iterator<Item = Path> {
+    let heard = route.received_messages.iter();
+    heard.map(|&it| robot.received[it].called.prefix.clone()).collect::<Vec<_>>().into_iter()
+}
+
+/// A message that arrives, and what is known of it.
+type ArrivingMessage = (Path, Vec<yase::expression::Expression>);
+
+/// A robot on its way.
+struct RobotSteps<'p> {
+    behaviour: &'p Behaviour,
+    replay: RunReplay<'p>,
+    at: usize,
+}
+
+impl RobotSteps<'_> {
+    /// Makes the steps of a way; messages arrive before the last one.
+    fn go(&mut self, way: LabelledEdge, messages: &[ArrivingMessage]) -> Result<(), String> {
+        let (steps, to) = self.behaviour.steps(self.at, way.observable, way.to);
+        self.at = to;
+        let last = steps.len().saturating_sub(1);
+        for (number, place) in steps.into_iter().enumerate() {
+            let found = &self.behaviour.found;
+            let (Some(step), Some(known)) = (found.step(place), found.steps().get(place)) else { continue };
+            if number == last {
+                self.receive(messages);
+            }
+            self.step(step, known.to)?;
+        }
+        Ok(())
+    }
+
+    fn receive(&mut self, messages: &[ArrivingMessage]) {
+        for (message, facts) in messages {
+            self.replay.receive(message, facts);
+        }
+    }
+
+    fn step(&mut self, step: &TraceStep, to: usize) -> Result<(), String> {
+        self.replay.step(step)?;
+        match self.replay.configuration() == self.behaviour.found.states()[to].configuration {
+            true => Ok(()),
+            false => Err("the machine comes to other states".into()),
+        }
+    }
+}
