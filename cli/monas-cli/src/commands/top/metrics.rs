@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use monas::records::{ActivityEntry, AgentEntry, Times};
+use monas::records::{ActivityEntry, AgentEntry, OpenCallEntry, Times};
 use monas_link::control::messages::TopicEntry;
 
 use super::RunSample;
@@ -119,6 +119,16 @@ fn agent(entry: &AgentEntry, before: Option<&AgentEntry>, rate: &impl Fn(u64) ->
             activity(one, rate(since(one.calls, calls)), since(one.failures, failures), stuck)
         })
         .collect();
+    // A call that has not returned since the last sample is in no mean.
+    let open = open_load(entry, before);
+    let activities: Vec<ActivityFigures> = activities
+        .into_iter()
+        .map(|one| match open.iter().find(|(name, _)| **name == one.entry.name) {
+            Some((_, load)) => one.with_open_call(*load),
+            None => one,
+        })
+        .collect();
+    let open: f64 = open.iter().map(|(_, load)| load).sum();
     // Activities of states run beside the steps of their chart, those of a list within the agent's
     // cycles.
     let beside = activities.iter().filter(|one| !one.entry.state.is_empty()).filter_map(|one| one.load);
@@ -131,7 +141,11 @@ fn agent(entry: &AgentEntry, before: Option<&AgentEntry>, rate: &impl Fn(u64) ->
     });
     AgentFigures {
         hz,
-        load: each.map(|each| hz * each + beside.sum::<f64>()),
+        load: match each {
+            Some(each) => Some(hz * each + beside.sum::<f64>()),
+            None if open > 0.0 => Some(open),
+            None => None,
+        },
         overruns: since(entry.overruns, before.map(|before| before.overruns)),
         activities,
         entry: entry.clone(),
@@ -151,6 +165,28 @@ fn activity(entry: &ActivityEntry, hz: f64, failures: u64, stuck: &str) -> Activ
         _ => None,
     };
     ActivityFigures { entry: entry.clone(), hz, load, remark }
+}
+
+/// The load of the calls that lasted from one sample to the next, by activity.
+fn open_load<'a>(entry: &'a AgentEntry, before: Option<&AgentEntry>) -> Vec<(&'a str, f64)> {
+    let earlier = |call: &OpenCallEntry| {
+        let calls = before.into_iter().flat_map(|before| &before.open_calls);
+        calls.into_iter().find(|known| (known.number, &known.activity) == (call.number, &call.activity))
+    };
+    let load = |call: &'a OpenCallEntry| {
+        let known = earlier(call)?;
+        let (seconds, cpu) = (call.seconds - known.seconds, call.cpu_seconds? - known.cpu_seconds?);
+        (seconds > 0.0).then(|| (call.activity.as_str(), (cpu / seconds).min(1.0)))
+    };
+    entry.open_calls.iter().filter_map(load).collect()
+}
+
+impl ActivityFigures {
+    /// The same with the load of a call that has not returned.
+    fn with_open_call(self, open: f64) -> ActivityFigures {
+        let remark = self.remark.or((open >= BURNS).then_some(ActivityRemark::Burns));
+        ActivityFigures { load: Some(self.load.unwrap_or_default() + open), remark, ..self }
+    }
 }
 
 /// The mean processor time of a call, if measured, s.
@@ -240,6 +276,32 @@ mod tests {
             "those of states beside it"
         );
         assert_eq!((figures.topics[0].hz, c.activities[0].hz), (10.0, 50.0));
+    }
+
+    #[test]
+    fn a_call_that_spins_is_a_busy_core() {
+        let agent = |seconds: f64, cpu_seconds: f64, number: u64| AgentEntry {
+            state: "stuck".into(),
+            reason: "activity `A` is stuck in cycle 3".into(),
+            activities: vec![activity("A", "", 1, 0, None), activity("B", "", 1, 0, None)],
+            open_calls: vec![OpenCallEntry {
+                activity: "A".into(),
+                number,
+                seconds,
+                cpu_seconds: Some(cpu_seconds),
+                ..OpenCallEntry::default()
+            }],
+            ..AgentEntry::default()
+        };
+        // In simulated time the time of the run stands still meanwhile.
+        let (before, same) = (sample(1, vec![agent(2.0, 7.0, 5)], 0), sample(1, vec![agent(4.0, 8.9, 5)], 0));
+        let figures = Metrics::between(&before, &same);
+        assert_eq!(figures.agents[0].load, Some(0.95));
+        let [spins, other] = figures.agents[0].activities.as_slice() else { panic!("two activities") };
+        assert_eq!((spins.load, spins.remark), (Some(0.95), Some(ActivityRemark::Stuck)));
+        assert_eq!(other.load, None);
+        let another = sample(1, vec![agent(4.0, 8.9, 6)], 0);
+        assert_eq!(Metrics::between(&before, &another).agents[0].load, None, "it is another call");
     }
 
     #[test]
