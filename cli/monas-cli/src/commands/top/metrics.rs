@@ -43,6 +43,8 @@ pub(crate) struct ActivityFigures {
     pub(crate) hz: f64,
     /// Load, in cores; none if not measured.
     pub(crate) load: Option<f64>,
+    /// The part of it of a call that has not returned since the last sample.
+    pub(crate) open_load: f64,
     pub(crate) remark: Option<ActivityRemark>,
 }
 
@@ -119,19 +121,20 @@ fn agent(entry: &AgentEntry, before: Option<&AgentEntry>, rate: &impl Fn(u64) ->
             activity(one, rate(since(one.calls, calls)), since(one.failures, failures), stuck)
         })
         .collect();
-    // A call that has not returned since the last sample is in no mean.
-    let open = open_load(entry, before);
-    let activities: Vec<ActivityFigures> = activities
-        .into_iter()
-        .map(|one| match open.iter().find(|(name, _)| **name == one.entry.name) {
-            Some((_, load)) => one.with_open_call(*load),
+    let mut open = open_load(entry, before);
+    let with_open_call =
+        |one: ActivityFigures| match open.iter().position(|(name, _)| *name == one.entry.name) {
+            Some(place) => one.with_open_call(open.remove(place).1),
             None => one,
-        })
-        .collect();
-    let open: f64 = open.iter().map(|(_, load)| load).sum();
+        };
+    let activities: Vec<ActivityFigures> = activities.into_iter().map(with_open_call).collect();
     // Activities of states run beside the steps of their chart, those of a list within the agent's
-    // cycles.
-    let beside = activities.iter().filter(|one| !one.entry.state.is_empty()).filter_map(|one| one.load);
+    // cycles, unless their call has not returned.
+    let beside = activities.iter().map(|one| match one.entry.state.is_empty() {
+        true => one.open_load,
+        false => one.load.unwrap_or_default(),
+    });
+    let beside: f64 = beside.sum();
     // Steps of charts are measured in processor time. Where it is not measured, the load of a
     // list's cycles is unknown.
     let has_list = activities.iter().any(|one| one.entry.state.is_empty());
@@ -142,9 +145,8 @@ fn agent(entry: &AgentEntry, before: Option<&AgentEntry>, rate: &impl Fn(u64) ->
     AgentFigures {
         hz,
         load: match each {
-            Some(each) => Some(hz * each + beside.sum::<f64>()),
-            None if open > 0.0 => Some(open),
-            None => None,
+            Some(each) => Some(hz * each + beside),
+            None => activities.iter().any(|one| one.open_load > 0.0).then_some(beside),
         },
         overruns: since(entry.overruns, before.map(|before| before.overruns)),
         activities,
@@ -164,7 +166,7 @@ fn activity(entry: &ActivityEntry, hz: f64, failures: u64, stuck: &str) -> Activ
         (Some(load), Some(called)) if called >= LONG && load < IDLE * called => Some(ActivityRemark::Blocks),
         _ => None,
     };
-    ActivityFigures { entry: entry.clone(), hz, load, remark }
+    ActivityFigures { entry: entry.clone(), hz, load, open_load: 0.0, remark }
 }
 
 /// The load of the calls that lasted from one sample to the next, by activity.
@@ -185,7 +187,7 @@ impl ActivityFigures {
     /// The same with the load of a call that has not returned.
     fn with_open_call(self, open: f64) -> ActivityFigures {
         let remark = self.remark.or((open >= BURNS).then_some(ActivityRemark::Burns));
-        ActivityFigures { load: Some(self.load.unwrap_or_default() + open), remark, ..self }
+        ActivityFigures { load: Some(self.load.unwrap_or_default() + open), open_load: open, remark, ..self }
     }
 }
 
