@@ -163,6 +163,16 @@ impl Hub {
     pub fn set_waker(&self, waker: Arc<dyn Waker>) {
         self.state().waker = Some(waker);
     }
+
+    /// Sets the waker, and returns the publications with numbers after `since` of which it is not
+    /// notified: number, topic and host of each, in order. Of the last 1024 publications none is
+    /// missing.
+    pub fn set_waker_since(&self, since: u64, waker: Arc<dyn Waker>) -> Vec<(u64, TopicSlot, HostId)> {
+        let mut state = self.state();
+        state.waker = Some(waker);
+        let numbered = state.numbered_journal().filter(|(number, _)| *number > since);
+        numbered.map(|(number, channel)| (number, channel.topic, channel.host)).collect()
+    }
 }
 
 /// Internal access.

@@ -238,6 +238,11 @@ impl HubState {
         self.order
     }
 
+    /// The remembered publications with their numbers, in order.
+    pub(crate) fn numbered_journal(&self) -> impl Iterator<Item = (u64, Channel)> {
+        (self.order + 1 - self.journal.len() as u64..).zip(self.journal.iter().copied())
+    }
+
     /// The channels of the publications with numbers after `order`, if that many are remembered.
     #[inline]
     pub(crate) fn channels_since(&self, order: u64) -> Option<impl Iterator<Item = Channel>> {

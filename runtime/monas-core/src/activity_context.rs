@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use narukom::Timestamp;
 
+use crate::call_slot::CallMark;
 use crate::memory::{Account, LeakDetector};
 
 /// An activity, as log lines name it.
@@ -59,6 +60,7 @@ impl ActivityContext {
 
 /// Calls an activity; lines written meanwhile are attributed to it.
 pub fn calling<T>(caller: &Arc<ActivityContext>, cycle: u64, call: impl FnOnce() -> T) -> T {
+    let _mark = CallMark::begin(caller);
     let _before = ContextGuard(CALLED.replace(Some(CalledActivity { caller: caller.clone(), cycle })));
     call()
 }

@@ -15,6 +15,7 @@ use crate::activity::Activity;
 use crate::binder::CompiledModel;
 use crate::frequency::Frequency;
 use crate::generated::GeneratedChart;
+use crate::guarded_activity::GuardedActivity;
 use crate::monitors::{PropertySet, ViolationResponse};
 use crate::parameters::Parameters;
 
@@ -157,8 +158,9 @@ impl Agent {
 
     /// Adds an activity at the end of the list.
     pub fn activity(self, activity: impl Activity + 'static) -> Agent {
+        let activity = GuardedActivity::of(Box::new(activity));
         let name = activity.name().to_owned();
-        self.named_activity(name, Box::new(activity))
+        self.listed(ListedActivity { name, parameters: Parameters::new(), policy: None, activity })
     }
 
     /// Adds an activity at the end of the list, under its registered name.
@@ -167,7 +169,7 @@ impl Agent {
             name: name.into(),
             parameters: Parameters::new(),
             policy: None,
-            activity,
+            activity: GuardedActivity::of(activity),
         })
     }
 

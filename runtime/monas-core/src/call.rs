@@ -11,14 +11,15 @@ use yase::Activation;
 use crate::activity::{Activity, BoxError, Progress};
 use crate::activity_context::ActivityContext;
 use crate::activity_context::calling;
+use crate::call_slot::{self, ActivityFunction};
 use crate::parameters::Parameters;
 
 /// Failure of a call of an activity.
 #[derive(Debug, thiserror::Error)]
 pub enum CallFailure {
-    /// It returned an error.
+    /// It returned an error, which this describes.
     #[error("{0}")]
-    Error(BoxError),
+    Error(String),
     /// It panicked.
     #[error("panicked: {0}")]
     Panic(String),
@@ -113,16 +114,19 @@ impl ActivityCall {
 
 /// Calls `start`.
 pub fn start(activity: &mut dyn Activity, blackboard: &mut Blackboard) -> Result<(), CallFailure> {
+    call_slot::calls(ActivityFunction::Start);
     guarded(|| activity.start(blackboard))
 }
 
 /// Calls `execute`.
 pub fn execute(activity: &mut dyn Activity, blackboard: &mut Blackboard) -> Result<Progress, CallFailure> {
+    call_slot::calls(ActivityFunction::Execute);
     guarded(|| activity.execute(blackboard))
 }
 
 /// Calls `stop`.
 pub fn stop(activity: &mut dyn Activity, blackboard: &mut Blackboard) -> Result<(), CallFailure> {
+    call_slot::calls(ActivityFunction::Stop);
     guarded(|| {
         activity.stop(blackboard);
         Ok(())
@@ -148,11 +152,22 @@ pub fn configure_again(name: &str, activity: &mut dyn Activity, parameters: &Par
 /// before its next call, or never called again. The blackboard is always consistent, since its
 /// operations do not panic.
 fn guarded<T>(call: impl FnOnce() -> Result<T, BoxError>) -> Result<T, CallFailure> {
-    caught(call)?.map_err(CallFailure::Error)
+    caught(call)?.map_err(|error| CallFailure::Error(description(error)))
+}
+
+/// The description of an error, which is code of the activity too.
+fn description(error: BoxError) -> String {
+    let described = caught(|| error.to_string());
+    let dropped = caught(|| drop(error));
+    match (described, dropped) {
+        (Ok(text), Ok(())) => text,
+        (Ok(text), Err(failure)) => format!("{text} (the end of this error {failure})"),
+        (Err(failure), _) => format!("it returned an error whose description {failure}"),
+    }
 }
 
 /// Runs code of an activity and catches its panic.
-pub(crate) fn caught<T>(act: impl FnOnce() -> T) -> Result<T, CallFailure> {
+pub fn caught<T>(act: impl FnOnce() -> T) -> Result<T, CallFailure> {
     catch_unwind(AssertUnwindSafe(act)).map_err(|payload| CallFailure::Panic(take_panic_message(payload)))
 }
 

@@ -22,6 +22,7 @@ use narukom::{HostId, Hub, Timestamp, TopicSlot};
 use yase::{Activation, Chooser, Machine, MachineError, NodeId, Outcome, Status, TopicId};
 
 use crate::activity::{Activity, Progress};
+use crate::activity_context::calling;
 use crate::agent::{ChartSettings, FailurePolicy};
 use crate::binder::BoundChart;
 use crate::call::{self, CallFailure};
@@ -428,10 +429,11 @@ impl ChartRunner {
         while let Some(activation) = self.host.exited.pop() {
             let ChartHost { blackboards, slots, host, agent, .. } = &mut self.host;
             let blackboard = blackboards.reclaim_mut(activation.region, now);
-            let (Some(blackboard), Some(activity)) = (blackboard, slots.end_exited(activation)) else {
+            let (Some(blackboard), Some((context, activity))) = (blackboard, slots.end_exited(activation))
+            else {
                 continue;
             };
-            if let Err(failure) = call::stop(activity, blackboard) {
+            if let Err(failure) = calling(&context, 0, || call::stop(activity, blackboard)) {
                 tracing::error!(robot = %host, agent = %agent, "activity failed to stop: {failure}");
             }
             blackboards.publish_all(activation.region, now);
@@ -485,14 +487,15 @@ impl ChartRunner {
     /// call, is stopped; the new one is started before it is called.
     pub fn replace_instances(&mut self, instances: Vec<(NodeId, Box<dyn Activity>)>, now: Timestamp) {
         for (node, activity) in instances {
-            let Some((mut old, activation)) = self.host.slots.replace_instance(node, activity, &self.hub)
+            let Some((context, mut old, activation)) =
+                self.host.slots.replace_instance(node, activity, &self.hub)
             else {
                 continue;
             };
             let Some(blackboard) = self.host.blackboards.reclaim_mut(activation.region, now) else {
                 continue;
             };
-            if let Err(failure) = call::stop(old.as_mut(), blackboard) {
+            if let Err(failure) = calling(&context, 0, || call::stop(old.as_mut(), blackboard)) {
                 tracing::error!(robot = %self.host.host, agent = %self.host.agent, "activity failed to stop: {failure}");
             }
             self.host.blackboards.publish_all(activation.region, now);

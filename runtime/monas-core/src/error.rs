@@ -47,6 +47,8 @@ pub enum ErrorKind {
     Link,
     /// The system could not create a thread.
     Thread,
+    /// An activity did not return within a limit.
+    Stuck,
 }
 
 impl Error {

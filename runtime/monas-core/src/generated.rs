@@ -19,6 +19,7 @@ pub use yase_codegen::typed::*;
 use yase::Statechart;
 
 use crate::activity::Activity;
+use crate::guarded_activity::GuardedActivity;
 
 /// The activity of a state.
 pub struct Instance {
@@ -29,7 +30,7 @@ pub struct Instance {
 impl Instance {
     /// An activity for a state.
     pub fn new(state: impl Into<NodeId>, activity: impl Activity + 'static) -> Instance {
-        Instance { node: state.into(), activity: Box::new(activity) }
+        Instance { node: state.into(), activity: GuardedActivity::of(Box::new(activity)) }
     }
 
     /// An activity of type `A` for a state.

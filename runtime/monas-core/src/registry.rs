@@ -10,6 +10,7 @@ use crate::call;
 use crate::error::{Error, ErrorKind};
 use crate::function::{self, FUNCTIONS, FunctionDeclaration};
 use crate::generated::{CHARTS, ChartDeclaration, GeneratedChart};
+use crate::guarded_activity::GuardedActivity;
 use crate::module::Module;
 
 /// An activity as [`activity!`](crate::activity!) registers it.
@@ -243,10 +244,16 @@ impl Registry {
     ///
     /// # Errors
     /// [`ErrorKind::AmbiguousChart`] if two crates register that name; [`ErrorKind::Invalid`] if
-    /// its code is inconsistent.
+    /// its code is inconsistent or panics.
     pub fn chart(&self, name: &str) -> Option<Result<GeneratedChart, Error>> {
         match self.charts.get(name)?.as_slice() {
-            [only] => Some((only.make)().map_err(Error::invalid)),
+            [only] => Some(match call::caught(|| (only.make)()) {
+                Ok(made) => made.map_err(Error::invalid),
+                Err(failure) => {
+                    let message = format!("the statechart `{name}` cannot be made: {failure}");
+                    Err(Error::new(ErrorKind::Invalid, message))
+                }
+            }),
             several => {
                 let modules: Vec<&str> = several.iter().map(|chart| chart.module).collect();
                 let message =
@@ -302,7 +309,8 @@ impl Registry {
 
 /// A new activity, or why it cannot be constructed.
 fn made(make: &ActivityConstructor) -> Result<Box<dyn Activity>, String> {
-    call::caught(|| make()).map_err(|failure| failure.to_string()).flatten()
+    let made = call::caught(|| make()).map_err(|failure| failure.to_string()).flatten();
+    made.and_then(GuardedActivity::made)
 }
 
 impl std::fmt::Debug for Registry {

@@ -9,6 +9,7 @@ use std::time::Duration;
 use narukom::Timestamp;
 
 use super::agent_update::{AgentStatus, AgentUpdate, ChartStatus, STOPPED_BY_REQUEST, ThreadUpdate};
+use super::observed_thread::{LastingCall, ObservedThreads};
 use super::supervisor_request::SupervisorRequest;
 use super::sync::Mailbox;
 use super::watchdog::{Watchdog, WatchedCall};
@@ -35,6 +36,10 @@ pub(crate) struct AgentShared {
     is_stuck: AtomicBool,
     /// Makes the refused scheduling be reported only once.
     was_reported: AtomicBool,
+    /// The threads that call its activities.
+    observed: Arc<ObservedThreads>,
+    /// Whether the run ends without waiting for its threads.
+    is_abandoned: AtomicBool,
 }
 
 #[derive(Clone, Default)]
@@ -154,6 +159,8 @@ impl AgentShared {
             stuck: Mutex::default(),
             is_stuck: AtomicBool::new(false),
             was_reported: AtomicBool::new(false),
+            observed: Arc::default(),
+            is_abandoned: AtomicBool::new(false),
         }
     }
 
@@ -242,9 +249,32 @@ impl AgentShared {
         refused
     }
 
+    /// The threads that call its activities.
+    pub(crate) fn observed(&self) -> &Arc<ObservedThreads> {
+        &self.observed
+    }
+
+    /// Gives up threads that do not end, and names the calls that do not return.
+    pub(crate) fn abandon(&self, now: Timestamp) {
+        let calls: Vec<String> = self.observed.open_calls(now).iter().map(LastingCall::to_string).collect();
+        let reason = match calls.is_empty() {
+            true => "its threads have not ended".to_owned(),
+            false => calls.join("; "),
+        };
+        tracing::error!(agent = %self.name, "abandoned at the end of the run: {reason}");
+        *locked(&self.stuck) = Some(format!("abandoned at the end of the run: {reason}"));
+        self.is_abandoned.store(true, Ordering::SeqCst);
+    }
+
+    pub(crate) fn is_abandoned(&self) -> bool {
+        self.is_abandoned.load(Ordering::SeqCst)
+    }
+
     /// Checks whether a call or cycle of a thread does not return, and abandons a list that is
     /// stuck. Returns true if this was not known before.
     pub(crate) fn check_watchdog(&self, now: Timestamp, list_limit: Duration, chart_limit: Duration) -> bool {
+        // Notes since when calls last.
+        self.observed.open_calls(now);
         let SharedThreads { list, charts } = locked(&self.parts).clone();
         let is_stuck = |part: &Arc<ThreadShared>, limit| {
             part.watchdog.current_call(now).filter(|under_way| under_way.since > limit)

@@ -10,9 +10,11 @@ use super::agent_shared::{AgentShared, PendingCommands, ThreadShared};
 use super::agent_update::{AgentCommand, AgentStatus, AgentUpdate, ChartStatus, STOPPED_BY_REQUEST};
 use super::clock::RunClock;
 use super::cycle_recorder::{self, CycleRecorder};
+use super::free_loop::{FreeLoop, LoopReport};
 use super::pool::ActivityPool;
 use super::sync::Wakeups;
 use super::turn_record::{TurnRecord, TurnRecorder};
+use monas_core::call::{self, CallFailure};
 use monas_core::chart_runner::{ActivityCall, ChartDriver, ChartRunner, Dispatch, FinishedCall};
 use monas_core::monitors::PropertyViolation;
 use monas_core::records::{Delivery, Turn};
@@ -46,10 +48,12 @@ pub(crate) struct PoolDriver {
     run_ends: bool,
     steps: u64,
     timing: Timing,
+    free_loop: FreeLoop,
 }
 
 impl ChartDriver for PoolDriver {
     fn call(&mut self, call: ActivityCall, _: Timestamp) -> Dispatch {
+        self.free_loop.called(call.activation.node);
         match self.pool.submit(call, &self.thread.mailbox) {
             Ok(()) => Dispatch::Submitted,
             Err(error) => Dispatch::Refused(None, error.to_string()),
@@ -105,6 +109,7 @@ impl PoolDriver {
             run_ends: false,
             steps: 0,
             timing: Timing::default(),
+            free_loop: FreeLoop::default(),
         }
     }
 
@@ -165,13 +170,29 @@ impl ChartThread {
 
     /// Executes turns until the run ends.
     pub(crate) fn run(mut self) -> AgentStatistics {
+        self.driver.agent.observed().add_this_thread();
         self.driver.agent.schedule(&self.runner.scheduling(), &Scheduling::default());
-        self.begin();
+        if let Err(failure) = call::caught(|| self.begin()) {
+            self.fail(&failure);
+        }
         while !self.driver.run_ends {
-            self.turn();
+            if let Err(failure) = call::caught(|| self.turn()) {
+                self.fail(&failure);
+            }
         }
         self.end();
         self.driver.statistics(&self.runner)
+    }
+
+    /// Stops the agent after a panic outside of its activities, for example in a listener. It can
+    /// be started again, with charts in their initial state.
+    fn fail(&mut self, failure: &CallFailure) {
+        self.driver.thread.watchdog.end_cycle();
+        (self.driver.wakeups, self.has_ended) = (Wakeups::default(), true);
+        self.runner.cancel_all();
+        self.driver.agent.fail(&format!("its thread {failure}"), false);
+        self.driver.agent.mark_finished(&self.driver.thread, false);
+        self.publish_status(true);
     }
 
     fn begin(&mut self) {
@@ -220,7 +241,10 @@ impl ChartThread {
         let due = || self.runner.due(self.driver.last_time);
         let until = if is_inactive { Timestamp::MAX } else { due() };
         self.driver.wait(until);
-        self.driver.read_clock();
+        let now = self.driver.read_clock();
+        let Wakeups { messages, returned, nudge, .. } = &self.driver.wakeups;
+        let is_free = messages.is_empty() && !returned.is_empty() && !nudge && now < until;
+        self.driver.free_loop.begin_turn(is_free);
         if self.driver.run_ends {
             return;
         }
@@ -254,7 +278,21 @@ impl ChartThread {
         }
         self.driver.update_watchdog(&self.runner);
         self.record_turn(turn, now);
+        if let Some(report) = self.driver.free_loop.end_turn(now) {
+            self.warn_of_loop(&report);
+        }
         result.map_err(|error| error.to_string())
+    }
+
+    fn warn_of_loop(&self, report: &LoopReport) {
+        let states: Vec<String> = report.states.iter().map(|node| self.runner.state_name(*node)).collect();
+        let (robot, agent) = (self.runner.host(), &self.driver.agent.name);
+        let (chart, states, rate) = (self.runner.name(), states.join(" -> "), report.rate);
+        tracing::warn!(
+            %robot, %agent,
+            "`{chart}` loops without a wait: {states}, {rate:.0} calls a second; let an activity return `Ongoing`, or \
+             wait in a transition for a message, an event or a timer"
+        );
     }
 
     /// Records a finished turn, if a recording is being made.

@@ -1,6 +1,7 @@
-//! The only clock of a run: real time since the run began, or since the run of another process
-//! began.
+//! The clocks of a run: real time since the run began, or since the run of another process began;
+//! and simulated time.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use narukom::Timestamp;
@@ -50,5 +51,19 @@ impl RunClock {
     /// The present time.
     pub(crate) fn now(&self) -> Timestamp {
         self.begin + self.start.elapsed()
+    }
+}
+
+/// The time of a simulated run, shared between threads.
+#[derive(Default)]
+pub(crate) struct SimulatedClock(AtomicU64);
+
+impl SimulatedClock {
+    pub(crate) fn set(&self, moment: Timestamp) {
+        self.0.store(moment.as_nanos(), Ordering::Release);
+    }
+
+    pub(crate) fn get(&self) -> Timestamp {
+        Timestamp::from_nanos(self.0.load(Ordering::Acquire))
     }
 }

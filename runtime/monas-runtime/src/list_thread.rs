@@ -15,6 +15,7 @@ use super::sync::Wakeups;
 use crate::list::ActivityList;
 use crate::list::CycleOutcome;
 use crate::list::CycleTimer;
+use monas_core::call::{self, CallFailure};
 use monas_core::chart_runner::FinishedCall;
 use monas_core::records::Delivery;
 use monas_core::scheduling::Scheduling;
@@ -49,6 +50,7 @@ impl ListThread {
     /// Executes cycles until the run ends.
     pub(crate) fn run(mut self) -> AgentStatistics {
         let mut mail = Wakeups::<FinishedCall>::default();
+        self.agent.observed().add_this_thread();
         self.agent.schedule(&self.scheduling, &Scheduling::default());
         self.publish_status(true);
         loop {
@@ -56,13 +58,32 @@ impl ListThread {
             if mail.stop {
                 break;
             }
-            self.apply_pending_commands();
-            if !self.is_inactive() && self.deadlines.next() <= self.clock.now() {
-                self.cycle();
+            if let Err(failure) = call::caught(|| self.serve()) {
+                self.fail(&failure);
             }
         }
         self.list.stop(ENDED);
         self.statistics()
+    }
+
+    /// Applies commands, and executes a cycle if one is due.
+    fn serve(&mut self) {
+        self.apply_pending_commands();
+        if !self.is_inactive() && self.deadlines.next() <= self.clock.now() {
+            self.cycle();
+        }
+    }
+
+    /// Stops the agent after a panic outside of its activities, for example in an observer. It can
+    /// be started again.
+    fn fail(&mut self, failure: &CallFailure) {
+        self.thread.watchdog.end_cycle();
+        self.has_ended = true;
+        let reason = format!("its thread {failure}");
+        self.list.stop(&reason);
+        self.agent.fail(&reason, false);
+        self.agent.mark_finished(&self.thread, false);
+        self.publish_status(true);
     }
 
     /// Waits for the next cycle, or for a wake-up.

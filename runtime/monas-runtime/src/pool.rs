@@ -11,6 +11,7 @@ use std::thread::{self, JoinHandle};
 use narukom::Hub;
 
 use super::clock::{CPU_EVERY, RunClock, cpu_time};
+use super::observed_thread::ObservedThreads;
 use super::sync::{Mailbox, WorkQueue};
 use monas_core::chart_runner::{ActivityCall, CallTiming, FinishedCall};
 use monas_core::error::{Error, ErrorKind};
@@ -23,6 +24,7 @@ const MOST_WORKERS: usize = 12;
 pub(crate) struct ActivityPool {
     name: String,
     clock: RunClock,
+    observed: Arc<ObservedThreads>,
     hub: Hub,
     work: Arc<WorkQueue<CallJob>>,
     workers: Mutex<Vec<JoinHandle<()>>>,
@@ -42,9 +44,15 @@ pub(crate) fn workers(set: Option<NonZeroUsize>, useful: usize) -> usize {
 
 impl ActivityPool {
     /// A pool with a maximum number of threads, none of which exists yet.
-    pub(crate) fn new(name: &str, most: usize, clock: RunClock, hub: &Hub) -> ActivityPool {
+    pub(crate) fn new(
+        name: &str,
+        most: usize,
+        clock: RunClock,
+        observed: Arc<ObservedThreads>,
+        hub: &Hub,
+    ) -> ActivityPool {
         let work = Arc::new(WorkQueue::new(most));
-        ActivityPool { name: name.into(), clock, hub: hub.clone(), work, workers: Mutex::default() }
+        ActivityPool { name: name.into(), clock, observed, hub: hub.clone(), work, workers: Mutex::default() }
     }
 
     /// Submits the call of an activity; its result is sent to the mailbox.
@@ -65,10 +73,13 @@ impl ActivityPool {
 
     fn spawn_workers(&self) -> Result<(), Error> {
         let mut workers = self.workers.lock().unwrap_or_else(PoisonError::into_inner);
-        let (work, clock) = (self.work.clone(), self.clock);
+        let (work, clock, observed) = (self.work.clone(), self.clock, self.observed.clone());
         let name = format!("{} {}", self.name, workers.len() + 1);
         let hosting = LogHosts::real([&self.hub], move || clock.now());
-        match thread::Builder::new().name(name).spawn(move || hosting.during(|| run(&work, clock))) {
+        match thread::Builder::new().name(name).spawn(move || {
+            observed.add_this_thread();
+            hosting.during(|| run(&work, clock));
+        }) {
             Ok(worker) => workers.push(worker),
             Err(error) if self.work.release_worker() => {
                 tracing::warn!(agent = %self.name, "no further thread for activities: {error}");

@@ -13,7 +13,7 @@ use super::agent_factory::AgentFactory;
 use super::body::BodyBridge;
 use super::clock::RunClock;
 use super::links::{RunningLink, time_of_other};
-use super::real_time_host::{HostSite, RealTimeHost, WakeCallback, spawn};
+use super::real_time_host::{ConnectedAgent, HostSite, RealTimeHost, WakeCallback, spawn};
 use super::run_config::RunConfig;
 use super::run_handle::RunHandle;
 use super::setup::{PreparedHost, PreparedRun, WorldDriver, first_tick, tick};
@@ -37,6 +37,13 @@ pub struct RealTimeRun {
     hubs: Vec<Hub>,
 }
 
+/// A host whose agents receive messages and whose threads have not been started.
+struct ConnectedHost {
+    agents: Vec<ConnectedAgent>,
+    body: Option<(BodyBridge, Hub)>,
+    safe_state: Arc<AtomicBool>,
+}
+
 impl RealTimeRun {
     /// Prepares all hosts, then starts the threads.
     pub(crate) fn start(config: RunConfig, seed: u64) -> Result<RealTimeRun, Error> {
@@ -52,10 +59,7 @@ impl RealTimeRun {
             hubs: world.iter().map(|world| world.hub().clone()).collect(),
         };
         let mut hosts = Vec::new();
-        let mut launched = world.map_or(Ok(()), |world| running.launch_world(world));
-        for station in stations {
-            launched = launched.and_then(|()| running.launch_host(station, &crew, &mut hosts));
-        }
+        let launched = running.launch(world, stations, &crew, &mut hosts);
         wake_on_stop(&running.line, &running.stopper);
         let supervisor = Supervisor { hosts, events, stopper: running.stopper.clone(), clock: running.clock };
         if launched.is_err() {
@@ -139,27 +143,46 @@ impl RealTimeRun {
         Ok(())
     }
 
-    fn launch_host(
+    /// Starts everything. All subscriptions stand before the first thread publishes.
+    fn launch(
+        &mut self,
+        world: Option<WorldDriver>,
+        stations: Vec<PreparedHost>,
+        crew: &Arc<AgentFactory>,
+        hosts: &mut Vec<RealTimeHost>,
+    ) -> Result<(), Error> {
+        let connected = stations.into_iter().map(|station| self.connect_host(station, crew, hosts));
+        let connected = connected.collect::<Result<Vec<ConnectedHost>, Error>>()?;
+        world.map_or(Ok(()), |world| self.launch_world(world))?;
+        for (host, ConnectedHost { agents, body, safe_state }) in hosts.iter_mut().zip(connected) {
+            host.start(agents)?;
+            body.map_or(Ok(()), |(body, hub)| self.launch_body(body, &hub, safe_state))?;
+        }
+        Ok(())
+    }
+
+    /// Subscribes the agents of a host, then its links, which bring messages at once.
+    fn connect_host(
         &mut self,
         station: PreparedHost,
         crew: &Arc<AgentFactory>,
         hosts: &mut Vec<RealTimeHost>,
-    ) -> Result<(), Error> {
+    ) -> Result<ConnectedHost, Error> {
         let PreparedHost { hub, body, agents: members, links, context: ground, profiles, configuration } =
             station;
         self.hubs.push(hub.clone());
         let clock = self.clock;
-        let links = links.into_iter().map(|link| RunningLink::start(&hub, link, move || clock.now()));
-        let links = links.collect::<Result<Vec<_>, Error>>()?;
-        let rests = Arc::new(AtomicBool::new(false));
-        let linked = links.iter().map(|link| Arc::new(link.waker()) as WakeCallback).collect();
-        self.links.extend(links);
+        let safe_state = Arc::new(AtomicBool::new(false));
         let (place, line) = (hosts.len(), self.line.clone());
         let site =
-            HostSite { hub: hub.clone(), place, clock, safe_state: rests.clone(), linked, supervisor: line };
+            HostSite { hub: hub.clone(), place, clock, safe_state: safe_state.clone(), supervisor: line };
         hosts.push(RealTimeHost::new(site, crew.clone(), ground, profiles, configuration)?);
-        hosts[place].launch(members)?;
-        body.map_or(Ok(()), |body| self.launch_body(body, &hub, rests))
+        let agents = hosts[place].connect(members)?;
+        let links = links.into_iter().map(|link| RunningLink::start(&hub, link, move || clock.now()));
+        let links = links.collect::<Result<Vec<_>, Error>>()?;
+        hosts[place].connect_links(links.iter().map(|link| Arc::new(link.waker()) as WakeCallback));
+        self.links.extend(links);
+        Ok(ConnectedHost { agents, body: body.map(|body| (body, hub)), safe_state })
     }
 
     /// Forwards the newest commands to a body and publishes what it senses, in each of its cycles.

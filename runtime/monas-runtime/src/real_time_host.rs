@@ -7,7 +7,7 @@ use std::sync::mpsc::Sender;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use narukom::{HostId, Hub, Timestamp, TopicSlot};
+use narukom::{HostId, Hub, Timestamp, TopicSlot, Waker};
 
 use super::admin::{AgentControl, HostAdmin};
 use super::agent_entry;
@@ -20,6 +20,7 @@ use super::cycle_recorder::CycleRecorder;
 use super::deadlines::Deadlines;
 use super::host_status::HostStatus;
 use super::list_thread::ListThread;
+use super::observed_thread::LastingCall;
 use super::pool::{self, ActivityPool};
 use super::supervisor_request::{SupervisorRequest, request_notifier};
 use super::sync::Mailbox;
@@ -42,6 +43,9 @@ const STUCK_LIST: Duration = Duration::from_secs(1);
 
 /// A call of a chart's activity, which may legitimately take long, is reported after this time.
 const STUCK_CALL: Duration = Duration::from_secs(10);
+
+/// How long the end of a run waits for calls of activities, unless an agent sets another limit.
+const SHUTDOWN: Duration = Duration::from_secs(3);
 
 /// Polling interval while threads end.
 const NAP: Duration = Duration::from_millis(2);
@@ -86,6 +90,14 @@ struct AgentHandle {
     recorder: CycleRecorder,
 }
 
+/// An agent that receives messages and whose threads have not been started.
+pub(crate) struct ConnectedAgent {
+    member: PreparedAgent,
+    shared: Arc<AgentShared>,
+    list: Option<Arc<ThreadShared>>,
+    charts: Vec<Arc<ThreadShared>>,
+}
+
 /// The environment of a host's agents.
 pub(crate) struct HostSite {
     pub(crate) hub: Hub,
@@ -93,7 +105,6 @@ pub(crate) struct HostSite {
     pub(crate) place: usize,
     pub(crate) clock: RunClock,
     pub(crate) safe_state: Arc<AtomicBool>,
-    pub(crate) linked: Vec<WakeCallback>,
     pub(crate) supervisor: Sender<SupervisorRequest>,
 }
 
@@ -106,13 +117,13 @@ impl RealTimeHost {
         profiles: Vec<AgentProfile>,
         configuration: Option<Arc<yase::Source>>,
     ) -> Result<RealTimeHost, Error> {
-        let HostSite { hub, place, clock, safe_state: rests, linked, supervisor: line } = site;
+        let HostSite { hub, place, clock, safe_state: rests, supervisor: line } = site;
         let team = AgentThreads {
             hub,
             place,
             clock,
             safe_state: rests,
-            linked,
+            linked: Vec::new(),
             supervisor: line,
             handles: Vec::new(),
             removed: Vec::new(),
@@ -120,10 +131,20 @@ impl RealTimeHost {
         Ok(RealTimeHost { admin: HostAdmin::new(ground, crew, profiles, configuration)?, agents: team })
     }
 
-    /// Starts agents. All are known to the hub before the first one runs, so that none misses a
-    /// message.
-    pub(crate) fn launch(&mut self, members: Vec<PreparedAgent>) -> Result<(), Error> {
-        self.agents.launch_all(members)
+    /// Subscribes agents: their charts are notified of messages from now on.
+    pub(crate) fn connect(&mut self, members: Vec<PreparedAgent>) -> Result<Vec<ConnectedAgent>, Error> {
+        self.agents.connect(members)
+    }
+
+    /// Adds the links of the host to those that are notified of messages.
+    pub(crate) fn connect_links(&mut self, linked: impl IntoIterator<Item = WakeCallback>) {
+        self.agents.linked.extend(linked);
+        self.agents.set_waker();
+    }
+
+    /// Starts the threads of agents that are connected.
+    pub(crate) fn start(&mut self, members: Vec<ConnectedAgent>) -> Result<(), Error> {
+        self.agents.start(members)
     }
 
     pub(crate) fn name(&self) -> &str {
@@ -183,6 +204,15 @@ impl RealTimeHost {
         self.agents.handles.iter().for_each(AgentHandle::end);
     }
 
+    /// Gives up the threads that have not ended by now; the run was asked to end at `asked`.
+    pub(crate) fn abandon(&self, asked: Timestamp, now: Timestamp) {
+        let late = |worker: &&AgentHandle| {
+            let limit = worker.stuck_after.unwrap_or(SHUTDOWN);
+            !worker.is_finished() && now >= asked + limit
+        };
+        self.agents.handles.iter().filter(late).for_each(|worker| worker.shared.abandon(now));
+    }
+
     /// Waits for every thread and returns the statistics of the agents.
     pub(crate) fn join(self) -> Vec<AgentStatistics> {
         let mut all = self.agents.removed;
@@ -192,19 +222,24 @@ impl RealTimeHost {
 }
 
 impl AgentThreads {
-    fn launch_all(&mut self, members: Vec<PreparedAgent>) -> Result<(), Error> {
-        let mut ready = Vec::new();
+    /// Subscribes agents before any of their threads runs: whatever one of them publishes reaches
+    /// the others, however late their threads begin.
+    fn connect(&mut self, members: Vec<PreparedAgent>) -> Result<Vec<ConnectedAgent>, Error> {
+        let mut connected = Vec::new();
         for member in members {
             let part = || Arc::new(ThreadShared::new(self.hub.topics().len()));
             let list = member.list.as_ref().map(|_| part());
             let charts: Vec<Arc<ThreadShared>> = member.charts.iter().map(|_| part()).collect();
+            for (runner, part) in member.charts.iter().zip(&charts) {
+                runner.topics_of_guards().into_iter().for_each(|topic| _ = part.mailbox.follow(topic));
+            }
             let (rests, line) = (self.safe_state.clone(), self.supervisor.clone());
-            let unit = Arc::new(AgentShared::new(&member.name, list.clone(), charts.clone(), rests, line));
+            let shared = Arc::new(AgentShared::new(&member.name, list.clone(), charts.clone(), rests, line));
             let place = self.handles.partition_point(|known| known.shared.name < member.name);
             self.handles.insert(
                 place,
                 AgentHandle {
-                    shared: unit.clone(),
+                    shared: shared.clone(),
                     threads: Vec::new(),
                     frequency: member.frequency,
                     statistics_every: member.statistics_every,
@@ -213,33 +248,47 @@ impl AgentThreads {
                     recorder: member.recorder.of_part(0)?,
                 },
             );
-            ready.push((member, unit, list, charts));
+            connected.push(ConnectedAgent { member, shared, list, charts });
         }
-        self.set_waker();
-        for (member, unit, list, charts) in ready {
-            let threads = self.threads(member, &unit, list, charts)?;
-            if let Some(worker) = self.handles.iter_mut().find(|worker| worker.shared.name == unit.name) {
+        // Their blackboards exist since the agents were prepared, and see what came since then.
+        let charts = || connected.iter().flat_map(|agent| agent.member.charts.iter().zip(&agent.charts));
+        let since = charts().map(|(runner, _)| runner.position()).min().unwrap_or(u64::MAX);
+        for (number, topic, host) in self.hub.set_waker_since(since, self.waker()) {
+            let readers = charts().filter(|(runner, _)| runner.position() < number);
+            readers.for_each(|(_, part)| part.mailbox.message(topic, host));
+        }
+        Ok(connected)
+    }
+
+    fn start(&mut self, connected: Vec<ConnectedAgent>) -> Result<(), Error> {
+        for ConnectedAgent { member, shared, list, charts } in connected {
+            let threads = self.threads(member, &shared, list, charts)?;
+            if let Some(worker) = self.handles.iter_mut().find(|worker| worker.shared.name == shared.name) {
                 worker.threads = threads;
             }
         }
         Ok(())
     }
 
-    /// Connects every mailbox to the publications of the hub, and the supervisor to changes.
     fn set_waker(&self) {
+        self.hub.set_waker(self.waker());
+    }
+
+    /// Connects every mailbox to the publications of the hub, and the supervisor to changes.
+    fn waker(&self) -> Arc<dyn Waker> {
         let mut mailboxes: Vec<Arc<Mailbox<FinishedCall>>> = Vec::new();
         for worker in &self.handles {
             worker.shared.for_each_thread(|part| mailboxes.push(part.mailbox.clone()));
         }
         let (linked, change) = (self.linked.clone(), self.hub.topic(CHANGE.path()));
         let asked = request_notifier(&self.supervisor, self.place);
-        self.hub.set_waker(Arc::new(move |topic, host| {
+        Arc::new(move |topic, host| {
             mailboxes.iter().for_each(|mailbox| mailbox.message(topic, host));
             linked.iter().for_each(|wake| wake(topic, host));
             if Some(topic) == change {
                 asked();
             }
-        }));
+        })
     }
 
     fn threads(
@@ -253,13 +302,19 @@ impl AgentThreads {
         let (statistics_every, scheduling) = (member.statistics_every, member.scheduling);
         let sharing = charts.iter().filter(|runner| runner.own().workers.is_none());
         let useful = sharing.map(ChartRunner::max_activities).sum();
-        let pool = Arc::new(ActivityPool::new(&name, pool::workers(workers, useful), self.clock, &self.hub));
+        let pool = Arc::new(ActivityPool::new(
+            &name,
+            pool::workers(workers, useful),
+            self.clock,
+            unit.observed().clone(),
+            &self.hub,
+        ));
         let mut threads = Vec::new();
         let of_agent = AgentDefaults { frequency, policy, scheduling: scheduling.clone(), statistics_every };
         for (runner, part) in charts.into_iter().zip(chart_parts) {
             let own_pool = |workers| {
                 let name = format!("{name} {}", runner.place() + 1);
-                Arc::new(ActivityPool::new(&name, workers, self.clock, &self.hub))
+                Arc::new(ActivityPool::new(&name, workers, self.clock, unit.observed().clone(), &self.hub))
             };
             let own_pool = runner.own().workers.map(|workers| own_pool(workers.get()));
             let (unit, pool) = (unit.clone(), own_pool.unwrap_or_else(|| pool.clone()));
@@ -395,12 +450,13 @@ impl AgentHandle {
 
     /// Whether all its threads have ended, apart from stuck ones.
     fn is_finished(&self) -> bool {
-        self.shared.is_stuck() || self.threads.iter().all(JoinHandle::is_finished)
+        let is_given_up = self.shared.is_stuck() || self.shared.is_abandoned();
+        is_given_up || self.threads.iter().all(JoinHandle::is_finished)
     }
 
     /// Joins its threads and returns their statistics. A stuck thread is detached.
     fn join(self) -> Option<AgentStatistics> {
-        if self.shared.is_stuck() {
+        if self.shared.is_stuck() || self.shared.is_abandoned() {
             return Some(self.shared.statuses().0);
         }
         let mut all: Option<AgentStatistics> = None;
@@ -470,7 +526,7 @@ impl AgentControl for AgentThreads {
         if let Some(asked) = asked {
             self.record_change_request(&member, asked).map_err(|error| error.to_string())?;
         }
-        self.launch_all(vec![member]).map_err(|error| {
+        self.connect(vec![member]).and_then(|connected| self.start(connected)).map_err(|error| {
             // The existing threads end, so that no agent remains with only some of its threads.
             if let Some(place) = self.handles.iter().position(|worker| worker.shared.name == name) {
                 self.handles.remove(place).end();
@@ -507,7 +563,9 @@ impl AgentControl for AgentThreads {
         let Some(worker) = self.agent_handle(&profile.name) else { return AgentEntry::default() };
         let (mut statistics, charts) = worker.shared.statuses();
         statistics.cycles = worker.recorder.number();
-        agent_entry::of(profile, worker.shared.status(), &statistics, charts)
+        let open_calls =
+            worker.shared.observed().open_calls(self.clock.now()).iter().map(LastingCall::entry).collect();
+        AgentEntry { open_calls, ..agent_entry::of(profile, worker.shared.status(), &statistics, charts) }
     }
 }
 
@@ -522,4 +580,73 @@ pub(crate) fn spawn<T: Send + 'static>(
     thread::Builder::new().name(name.into()).spawn(work).map_err(|error| {
         Error::new(ErrorKind::Thread, format!("no thread for `{name}`: {error}")).caused_by(error)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::channel;
+
+    use narukom::example::Ball;
+    use narukom::{Signal, topic};
+
+    use super::*;
+    use crate::run_config::{HostConfig, RunConfig};
+    use crate::setup::{PreparedHost, PreparedRun};
+    use monas_core::agent::Agent;
+    use monas_core::registry::Registry;
+
+    topic! {
+        /// A request that is made once.
+        REQUEST: Signal<Ball> = "test/real_time_host/request";
+    }
+
+    /// When the only request is published.
+    #[derive(Clone, Copy, Debug)]
+    enum Published {
+        BeforeConnection,
+        BeforeThreads,
+    }
+
+    /// Whether a chart that waits for a request gets one that precedes its thread.
+    fn is_answered(published: Published) -> bool {
+        let (sender, answers) = channel();
+        let registry = Registry::linked().with("Wait", || |_: &mut narukom::Blackboard| {}).with("Answer", {
+            move || {
+                let sender = sender.clone();
+                move |_: &mut narukom::Blackboard| _ = sender.send(())
+            }
+        });
+        let text = "Liveness:\nm = Wait . Answer\nTransitions:\nWait -> Answer : request";
+        let (chart, diagnostics) = aseme_models::statechart_of(&yase::Source::new("m.srm", text));
+        assert_eq!(diagnostics, []);
+        let agents = vec![Agent::statechart("m", chart)];
+        let host = HostConfig { name: "local".into(), agents, ..HostConfig::default() };
+        let config = RunConfig { registry: Some(registry), hosts: vec![host], ..RunConfig::default() };
+        let PreparedRun { mut stations, factory, .. } = PreparedRun::new(config, 0).unwrap();
+        let PreparedHost { hub, agents, context, profiles, configuration, .. } = stations.remove(0);
+        let (supervisor, _events) = channel();
+        let safe_state = Arc::new(AtomicBool::new(false));
+        let site = HostSite { hub: hub.clone(), place: 0, clock: RunClock::start(), safe_state, supervisor };
+        let mut host = RealTimeHost::new(site, factory, context, profiles, configuration).unwrap();
+        let publish = || hub.publisher(REQUEST, "test").unwrap().publish(Ball::default(), Timestamp::ZERO);
+        if matches!(published, Published::BeforeConnection) {
+            publish();
+        }
+        let connected = host.connect(agents).unwrap();
+        if matches!(published, Published::BeforeThreads) {
+            publish();
+        }
+        host.start(connected).unwrap();
+        let is_answered = answers.recv_timeout(Duration::from_secs(20)).is_ok();
+        host.end();
+        host.join();
+        is_answered
+    }
+
+    #[test]
+    fn a_chart_gets_what_is_published_before_its_thread_begins() {
+        for published in [Published::BeforeConnection, Published::BeforeThreads] {
+            assert!(is_answered(published), "{published:?}");
+        }
+    }
 }

@@ -44,7 +44,7 @@ impl RoundTrip {
         runner.start(Timestamp::ZERO);
         // The first step is within any limits of the chart.
         let assignment = runner.step(Timestamp::ZERO).ok().and_then(|()| runner.next_started());
-        let pool = ActivityPool::new("bench", 1, RunClock::start(), &hub);
+        let pool = ActivityPool::new("bench", 1, RunClock::start(), Arc::default(), &hub);
         Ok(RoundTrip {
             pool,
             mailbox: Arc::new(Mailbox::new(0)),

@@ -1,7 +1,6 @@
 //! A run as seen from outside: its hubs, its time, and the entry point for external publications.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::time::Duration;
 
@@ -9,8 +8,9 @@ use narukom::{Hub, Timestamp};
 
 use prost::Message;
 
-use super::clock::RunClock;
+use super::clock::{RunClock, SimulatedClock};
 use super::host_status::{HostStatus, OUTSIDE};
+use super::stall_watchdog::WatchedRun;
 use super::supervisor_request::SupervisorHandle;
 use monas_core::records::{
     AgentEntry, Agents, Change, Changed, ChartChoice, ChartState, Configuration, Inquiry, ModuleEntry,
@@ -33,21 +33,14 @@ pub struct RunHandle {
 #[derive(Clone)]
 enum RunTime {
     Real(RunClock, SupervisorHandle),
-    Simulated(Arc<SimulatedClock>, SyncSender<ExternalRequest>),
+    Simulated(Arc<SimulatedClock>, ExternalRequests),
 }
 
-/// The time of a simulated run, shared between threads.
-#[derive(Default)]
-pub(crate) struct SimulatedClock(AtomicU64);
-
-impl SimulatedClock {
-    pub(crate) fn set(&self, moment: Timestamp) {
-        self.0.store(moment.as_nanos(), Ordering::Release);
-    }
-
-    pub(crate) fn get(&self) -> Timestamp {
-        Timestamp::from_nanos(self.0.load(Ordering::Acquire))
-    }
+/// Requests to a simulated run, and why it does not answer them.
+#[derive(Clone)]
+struct ExternalRequests {
+    sender: SyncSender<ExternalRequest>,
+    watched: Arc<WatchedRun>,
 }
 
 /// A request that waits for the next step of a run.
@@ -90,8 +83,14 @@ impl RunHandle {
         RunHandle { hubs, time: RunTime::Real(clock, supervisor) }
     }
 
-    pub(crate) fn simulated(hubs: Vec<Hub>, shown: Arc<SimulatedClock>, inlet: &RequestQueue) -> RunHandle {
-        RunHandle { hubs, time: RunTime::Simulated(shown, inlet.sender()) }
+    pub(crate) fn simulated(
+        hubs: Vec<Hub>,
+        shown: Arc<SimulatedClock>,
+        inlet: &RequestQueue,
+        watched: Arc<WatchedRun>,
+    ) -> RunHandle {
+        let requests = ExternalRequests { sender: inlet.sender(), watched };
+        RunHandle { hubs, time: RunTime::Simulated(shown, requests) }
     }
 
     /// The hubs of its hosts, and of the world if there is one.
@@ -125,7 +124,7 @@ impl RunHandle {
             RunTime::Real(clock, _) => publish(hub, path, bytes, clock.now()),
             RunTime::Simulated(_, inlet) => {
                 let (path, bytes) = (path.into(), bytes.into());
-                submit(inlet, |answer| ExternalRequest::Message { hub: hub.clone(), path, bytes, answer })?
+                inlet.submit(|answer| ExternalRequest::Message { hub: hub.clone(), path, bytes, answer })?
             }
         }
     }
@@ -140,7 +139,7 @@ impl RunHandle {
             RunTime::Real(_, supervisor) => supervisor.change(host, change),
             RunTime::Simulated(_, inlet) => {
                 let (host, change) = (host.into(), Box::new(change));
-                submit(inlet, |answer| ExternalRequest::Change { host, change, answer })?
+                inlet.submit(|answer| ExternalRequest::Change { host, change, answer })?
             }
         }
     }
@@ -192,7 +191,11 @@ impl RunHandle {
         let chart = chart.cloned();
         let mut views = match &self.time {
             RunTime::Real(_, supervisor) => supervisor.host_statuses(chart)?,
-            RunTime::Simulated(_, inlet) => submit(inlet, |answer| ExternalRequest::Look { chart, answer })?,
+            RunTime::Simulated(_, inlet) => match inlet.watched.stuck_agent() {
+                // The run does not answer, but why is known.
+                Some(agent) if chart.is_none() => vec![stuck_host(agent)],
+                _ => inlet.submit(|answer| ExternalRequest::Look { chart, answer })?,
+            },
         };
         if let Some(host) = host {
             let known: Vec<String> = views.iter().map(|view| format!("`{}`", view.host)).collect();
@@ -256,20 +259,31 @@ impl RunHandle {
     }
 }
 
-/// Submits a request and waits for its reply.
-fn submit<T>(
-    inlet: &SyncSender<ExternalRequest>,
-    what: impl FnOnce(SyncSender<T>) -> ExternalRequest,
-) -> Result<T, String> {
-    let (answer, answered) = sync_channel(1);
-    inlet.try_send(what(answer)).map_err(|error| match error {
-        TrySendError::Full(_) => format!("{WAITING} messages from outside wait already"),
-        TrySendError::Disconnected(_) => "the run has ended".to_owned(),
-    })?;
-    answered.recv_timeout(PATIENCE).map_err(|error| match error {
-        RecvTimeoutError::Timeout => "the run stands still and takes nothing".to_owned(),
-        RecvTimeoutError::Disconnected => "the run has ended".to_owned(),
-    })
+/// The status of a host whose agent does not return.
+fn stuck_host(agent: AgentEntry) -> HostStatus {
+    HostStatus {
+        host: agent.host.clone(),
+        agents: vec![agent],
+        configuration: Configuration::default(),
+        modules: Vec::new(),
+        chart: None,
+    }
+}
+
+impl ExternalRequests {
+    /// Submits a request and waits for its reply.
+    fn submit<T>(&self, what: impl FnOnce(SyncSender<T>) -> ExternalRequest) -> Result<T, String> {
+        let (answer, answered) = sync_channel(1);
+        self.sender.try_send(what(answer)).map_err(|error| match error {
+            TrySendError::Full(_) => format!("{WAITING} messages from outside wait already"),
+            TrySendError::Disconnected(_) => "the run has ended".to_owned(),
+        })?;
+        answered.recv_timeout(PATIENCE).map_err(|error| match (error, self.watched.stalled()) {
+            (RecvTimeoutError::Timeout, Some(call)) => format!("the run stands still: {call}"),
+            (RecvTimeoutError::Timeout, None) => "the run stands still and takes nothing".to_owned(),
+            (RecvTimeoutError::Disconnected, _) => "the run has ended".to_owned(),
+        })
+    }
 }
 
 #[cfg(unix)]

@@ -4,15 +4,20 @@ mod simulated_host;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
 
 use narukom::{Hub, Timestamp};
 
 use super::agent_instance::AgentInstance;
-use super::clock::RunClock;
+use super::clock::{RunClock, SimulatedClock};
 use super::links::RunningLink;
+use super::observed_thread::ObservedThread;
+use super::real_time_host::spawn;
 use super::run_config::RunConfig;
-use super::run_handle::{self, ExternalRequest, RequestQueue, RunHandle, SimulatedClock};
-use super::setup::{PreparedRun, WorldDriver};
+use super::run_handle::{self, ExternalRequest, RequestQueue, RunHandle};
+use super::setup::{PreparedHost, PreparedRun, WorldDriver};
+use super::stall_watchdog::StallWatchdog;
 use super::stop_handle::StopHandle;
 use monas_core::activity_context::SimulatedTimeGuard;
 use monas_core::coverage::ChartCoverage;
@@ -41,6 +46,7 @@ pub struct Simulation {
     hosting: LogHosts,
     /// Scripted changes of agents, by time and the order in which they were added.
     script: BTreeMap<(Timestamp, usize), (usize, Change)>,
+    watchdog: StallWatchdog,
 }
 
 impl Simulation {
@@ -48,17 +54,20 @@ impl Simulation {
         let PreparedRun { world, stations, factory: crew } = PreparedRun::new(config, seed)?;
         let shown = Arc::new(SimulatedClock::default());
         let mut links = Vec::new();
+        let watchdog = StallWatchdog::new(limits(&stations));
         let hosts =
             stations.into_iter().map(|station| SimulatedHost::new(station, &crew, &shown, &mut links));
         let hosts = hosts.collect::<Result<Vec<SimulatedHost>, Error>>()?;
         let hubs = world.iter().map(WorldDriver::hub).chain(hosts.iter().map(SimulatedHost::hub));
         let hosting = LogHosts::simulated(hubs);
         let (inlet, script) = (RequestQueue::new(), BTreeMap::new());
-        Ok(Simulation { now: Timestamp::ZERO, shown, world, hosts, links, requests: inlet, hosting, script })
+        let now = Timestamp::ZERO;
+        Ok(Simulation { now, shown, world, hosts, links, requests: inlet, hosting, script, watchdog })
     }
 
     /// Sets the simulated time and log hosts of this thread until the guards are dropped.
-    fn enter(&self) -> (SimulatedTimeGuard, LogHostsGuard) {
+    fn enter(&mut self) -> (SimulatedTimeGuard, LogHostsGuard) {
+        self.watchdog.watch_this_thread(&self.shown);
         (SimulatedTimeGuard::begin(self.now), self.hosting.begin())
     }
 
@@ -158,10 +167,13 @@ impl Simulation {
     pub fn run_handle(&self) -> RunHandle {
         let world = self.world.iter().map(WorldDriver::hub);
         let hubs = self.hosts.iter().map(SimulatedHost::hub).chain(world).cloned();
-        RunHandle::simulated(hubs.collect(), self.shown.clone(), &self.requests)
+        let watched = self.watchdog.watched().clone();
+        RunHandle::simulated(hubs.collect(), self.shown.clone(), &self.requests, watched)
     }
 
-    /// The hub of a host or of the world, for inspection.
+    /// The hub of a host or of the world, for inspection, and for participation with a separate
+    /// blackboard or publisher: what is published between two calls of
+    /// [`run_until`](Simulation::run_until) wakes its readers at the beginning of the second.
     pub fn hub(&self, host: &str) -> Option<&Hub> {
         let world = self.world.iter().map(WorldDriver::hub);
         let hosts = self.hosts.iter().map(SimulatedHost::hub);
@@ -172,6 +184,44 @@ impl Simulation {
     pub fn stop(&mut self) {
         let _time = self.enter();
         self.hosts.iter_mut().for_each(|host| host.stop(self.now));
+    }
+
+    /// As [`stop`](Simulation::stop), for at most this real time.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Stuck`]: an activity, which the error names, has not returned by then. It keeps
+    /// its thread and the simulation until the process ends.
+    pub fn stop_within(self, limit: Duration) -> Result<Simulation, Error> {
+        let (sender, stopped) = channel();
+        let (slots, slot) = channel();
+        let mut simulation = self;
+        let stop = move || {
+            let _ = slots.send(ObservedThread::of_this_thread());
+            simulation.stop();
+            // Without a receiver the limit has passed.
+            let _ = sender.send(simulation);
+        };
+        spawn("stop", stop)?;
+        stopped.recv_timeout(limit).map_err(|error| {
+            let call = slot.try_recv().ok().and_then(|mut thread| thread.observe(Timestamp::ZERO));
+            let message = match (error, call) {
+                (RecvTimeoutError::Timeout, Some(call)) => {
+                    let (context, function) = (call.call.context, call.call.function.name());
+                    format!(
+                        "activity `{}` of agent `{}` on `{}` has not returned from `{function}` within {:.1} s",
+                        context.activity,
+                        context.agent,
+                        context.robot,
+                        limit.as_secs_f64()
+                    )
+                }
+                (RecvTimeoutError::Timeout, None) => {
+                    format!("the agents have not stopped within {:.1} s", limit.as_secs_f64())
+                }
+                (RecvTimeoutError::Disconnected, _) => "a panic ended the stop of the agents".to_owned(),
+            };
+            Error::new(ErrorKind::Stuck, message)
+        })
     }
 
     /// The coverage of the states and transitions of each chart.
@@ -186,11 +236,13 @@ impl Simulation {
         host.is_some_and(|host| host.raise(agent, event))
     }
 
+    /// The time of the next moment. What a paused agent was due to do before is due now when it
+    /// resumes: time does not go back.
     fn due(&self) -> Timestamp {
         let world = self.world.iter().map(WorldDriver::due);
         let script = self.script.keys().next().map(|(moment, _)| *moment);
         let hosts = self.hosts.iter().map(|host| host.due(self.now));
-        world.chain(script).chain(hosts).min().unwrap_or(Timestamp::MAX)
+        world.chain(script).chain(hosts).min().unwrap_or(Timestamp::MAX).max(self.now)
     }
 
     /// Advances the time of the run.
@@ -201,19 +253,16 @@ impl Simulation {
     }
 
     /// Processes the external requests since the last step, applies the requested changes, and
-    /// notifies agents of these and of messages from links.
+    /// notifies agents of everything published since: by requests, by links, and by the caller
+    /// through a [`hub`](Simulation::hub).
     fn drain_requests(&mut self) {
         let now = self.now;
-        let mut any = !self.links.is_empty();
         while let Some(handed_in) = self.requests.next() {
-            any = true;
             self.handle_request(handed_in);
         }
         for host in &mut self.hosts {
             host.apply_requests(now);
-            if any {
-                host.deliver_publications(now);
-            }
+            host.deliver_publications(now);
         }
     }
 
@@ -254,6 +303,15 @@ impl Simulation {
         }
         Ok(any)
     }
+}
+
+/// The limits for calls of the agents that set one.
+fn limits(stations: &[PreparedHost]) -> BTreeMap<(String, String), Duration> {
+    let agents = stations.iter().flat_map(|station| station.agents.iter().map(move |agent| (station, agent)));
+    let limited = agents.filter_map(|(station, agent)| {
+        Some(((station.hub.host().to_owned(), agent.name.clone()), agent.stuck_after?))
+    });
+    limited.collect()
 }
 
 impl std::fmt::Debug for Simulation {

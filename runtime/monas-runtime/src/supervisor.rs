@@ -33,9 +33,12 @@ impl Supervisor {
             self.check_agents();
         }
         self.hosts.iter().for_each(RealTimeHost::end);
+        let asked = self.clock.now();
         while !self.hosts.iter().all(RealTimeHost::is_finished) {
             poll_pause();
             self.check_agents();
+            let now = self.clock.now();
+            self.hosts.iter().for_each(|host| host.abandon(asked, now));
         }
         self.hosts.into_iter().flat_map(RealTimeHost::join).collect()
     }

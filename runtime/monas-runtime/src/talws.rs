@@ -24,6 +24,11 @@ use crate::simulation::Simulation;
 /// it as fast as the run can be computed, on one thread and in a defined order;
 /// [`start`](Talws::start) uses real time.
 ///
+/// All agents of a run subscribe before the first of them publishes, and links bring messages only
+/// after the agents of their host have subscribed: no first message is lost. An agent that is added
+/// later has missed the signals, and the events of messages, that were published before the change
+/// that adds it was applied; it begins with the latest states and with the histories.
+///
 /// ```
 /// use monas_core::{Agent, Blackboard, Hz, Timestamp};
 /// use monas_runtime::Talws;

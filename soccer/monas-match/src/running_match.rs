@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use monas::{RunHash, Simulation, Timestamp};
+use monas::{RunHash, Simulation, Statistics, Timestamp};
 use monas_sim::{SharedField, SimulatedWorld, TeamColour};
 use monas_tape::Tape;
 
@@ -11,6 +11,9 @@ use crate::error::Error;
 use crate::match_events;
 use crate::summary::{AgentSummary, MatchEvent, MatchSummary, Scoreboard, TeamScore, TeamSummary};
 use crate::tape_metadata;
+
+/// How long the end of a match waits for the activities to stop, in real time.
+const STOP_LIMIT: Duration = Duration::from_secs(3);
 
 /// A running match, in simulated time.
 pub struct RunningMatch {
@@ -97,46 +100,52 @@ impl RunningMatch {
         &self.simulation
     }
 
-    /// Ends the match and its recording.
+    /// Ends the match and its recording. It waits three seconds of real time for the activities to
+    /// stop; [`MatchSummary::unstopped`] names one that has not.
     ///
     /// # Errors
     /// The recording cannot be completed.
-    pub fn finish(mut self) -> Result<MatchSummary, Error> {
-        if let Some((tape, path)) = &self.tape {
-            tape_metadata::ended(tape, self.simulation.now())
-                .map_err(|error| Error::recording(path, error))?;
+    pub fn finish(self) -> Result<MatchSummary, Error> {
+        let simulated = self.now();
+        let RunningMatch { simulation, pitch, hash, tape, events, .. } = self;
+        if let Some((tape, path)) = &tape {
+            tape_metadata::ended(tape, simulation.now()).map_err(|error| Error::recording(path, error))?;
         }
-        self.simulation.stop();
-        let (hash, messages) = self.hash.finish();
-        if let Some((tape, path)) = self.tape.take() {
+        let last = (simulation.statistics(), simulation.coverage());
+        let ((statistics, coverage), unstopped) = match simulation.stop_within(STOP_LIMIT) {
+            Ok(stopped) => ((stopped.statistics(), stopped.coverage()), None),
+            Err(error) => (last, Some(error.to_string())),
+        };
+        let (hash, messages) = hash.finish();
+        if let Some((tape, path)) = tape {
             tape.finish().map_err(|error| Error::recording(&path, error))?;
         }
-        let touch = self.pitch.with_world(|world| world.statistics().time_to_first_touch());
+        let touch = pitch.with_world(|world| world.statistics().time_to_first_touch());
         Ok(MatchSummary {
             hash,
             messages,
-            simulated: self.now(),
-            teams: self.pitch.with_world(teams),
-            agents: self.agents(),
+            simulated,
+            teams: pitch.with_world(teams),
+            agents: agents(&statistics),
             time_to_first_touch: touch.map(Duration::from_secs_f64),
-            coverage: self.simulation.coverage(),
-            links: self.simulation.statistics().links,
-            events: self.events,
+            coverage,
+            links: statistics.links,
+            events,
+            unstopped,
         })
     }
+}
 
-    fn agents(&self) -> Vec<AgentSummary> {
-        let statistics = self.simulation.statistics();
-        let summary = |agent: &monas::AgentStatistics| AgentSummary {
-            host: agent.host.clone(),
-            agent: agent.agent.clone(),
-            cycles: agent.cycles,
-            overruns: agent.overruns,
-            micro_steps: agent.micro_steps,
-            activity_calls: agent.activities.iter().map(|activity| activity.calls).sum(),
-        };
-        statistics.agents.iter().map(summary).collect()
-    }
+fn agents(statistics: &Statistics) -> Vec<AgentSummary> {
+    let summary = |agent: &monas::AgentStatistics| AgentSummary {
+        host: agent.host.clone(),
+        agent: agent.agent.clone(),
+        cycles: agent.cycles,
+        overruns: agent.overruns,
+        micro_steps: agent.micro_steps,
+        activity_calls: agent.activities.iter().map(|activity| activity.calls).sum(),
+    };
+    statistics.agents.iter().map(summary).collect()
 }
 
 fn teams(world: &SimulatedWorld) -> Vec<TeamSummary> {

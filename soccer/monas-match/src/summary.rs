@@ -56,6 +56,8 @@ pub struct MatchSummary {
     pub coverage: Vec<monas::ChartCoverage>,
     /// Statistics of the robots' links.
     pub links: Vec<monas::LinkStatistics>,
+    /// Names the activity that has not returned at the end, if there is one. Its thread remains.
+    pub unstopped: Option<String>,
 }
 
 /// The results of a team.

@@ -414,7 +414,7 @@ impl ActivitySlots {
         node: NodeId,
         activity: Box<dyn Activity>,
         hub: &Hub,
-    ) -> Option<(Box<dyn Activity>, Activation)> {
+    ) -> Option<(Arc<ActivityContext>, Box<dyn Activity>, Activation)> {
         let index = self.index_of(node)?;
         let slot = self.slots.get_mut(index)?;
         slot.declared = declared(&activity.topics(), hub);
@@ -425,7 +425,7 @@ impl ActivitySlots {
         let old = slot.activity.replace(activity)?;
         let was_started = std::mem::take(&mut slot.is_started);
         match slot.phase {
-            Phase::Waiting { activation, .. } if was_started => Some((old, activation)),
+            Phase::Waiting { activation, .. } if was_started => Some((slot.context.clone(), old, activation)),
             _ => None,
         }
     }
@@ -496,10 +496,13 @@ impl ActivitySlots {
     }
 
     /// Ends the wait of an activation whose state was exited. Returns the instance, to be stopped.
-    pub(crate) fn end_exited(&mut self, activation: Activation) -> Option<&mut (dyn Activity + 'static)> {
+    pub(crate) fn end_exited(
+        &mut self,
+        activation: Activation,
+    ) -> Option<(Arc<ActivityContext>, &mut (dyn Activity + 'static))> {
         let slot = self.slot_mut(activation)?;
         slot.stop_waiting(|waiting, _| waiting == activation)?;
-        slot.activity.as_deref_mut()
+        Some((slot.context.clone(), slot.activity.as_deref_mut()?))
     }
 
     /// Schedules an early call of the activations that wait for a message's topic, except the one

@@ -14,6 +14,7 @@ use super::ChartContext;
 use super::activity_slots::ActivitySlots;
 use super::region_blackboards::RegionBlackboards;
 use crate::activity::Activity;
+use crate::call;
 use crate::coverage::CoverageCounts;
 use crate::error::Error;
 use crate::function::FunctionDeclaration;
@@ -117,7 +118,8 @@ impl Host for ChartHost {
     fn call(&self, function: FunctionId, arguments: &[Value<'_>]) -> Result<Value<'_>, CallError> {
         let declaration = self.functions.get(function.0 as usize);
         let declaration = declaration.ok_or_else(|| CallError::new("there is no such function"))?;
-        (declaration.call)(arguments)
+        call::caught(|| (declaration.call)(arguments))
+            .map_err(|failure| CallError::new(format!("the function {failure}")))?
             .ok_or_else(|| CallError::new("the function does not take these arguments"))
     }
 

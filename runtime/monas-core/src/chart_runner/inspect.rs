@@ -44,7 +44,7 @@ impl ChartRunner {
     }
 
     /// The name of the model.
-    pub(crate) fn name(&self) -> &str {
+    pub fn name(&self) -> &str {
         &self.machine.chart().statechart().name
     }
 
@@ -73,9 +73,20 @@ impl ChartRunner {
         self.host.blackboards.part()
     }
 
+    /// The name of a state, unique in the chart.
+    pub fn state_name(&self, node: NodeId) -> String {
+        self.machine.chart().short_path(node)
+    }
+
     /// The topics whose messages wake the chart.
     pub fn topics_of_guards(&self) -> Vec<TopicSlot> {
         self.machine.chart().reads().iter().map(|topic| TopicSlot::new(topic.0)).collect()
+    }
+
+    /// The number of publications on the hub when its blackboards were created: as a chart that has
+    /// not been started sees those after it.
+    pub fn position(&self) -> u64 {
+        self.host.blackboards.position()
     }
 
     /// Index of the activity that has been running for the longest time, and since when.

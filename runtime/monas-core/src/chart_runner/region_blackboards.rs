@@ -122,6 +122,12 @@ impl RegionBlackboards {
         self.part
     }
 
+    /// The lowest position of a resident blackboard.
+    pub(crate) fn position(&self) -> u64 {
+        let resident = self.regions.iter().filter_map(|region| region.resident.as_ref());
+        resident.map(|blackboard| blackboard.position()).min().unwrap_or_default()
+    }
+
     /// Makes all blackboards show these topics too.
     pub(crate) fn add_read_topics(&mut self, topics: &[TopicSlot]) {
         let mut read: Vec<TopicSlot> = self.read.iter().chain(topics).copied().collect();

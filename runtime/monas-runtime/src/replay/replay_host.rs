@@ -211,6 +211,8 @@ impl ReplayHost {
         make: impl FnOnce(&mut HostAdmin, &mut ReplayedAgents<'_>, Timestamp) -> Changed,
     ) -> bool {
         self.is_setting_up = false;
+        // As in the recorded run: a step of a paused agent sees what has arrived by then.
+        self.deliver_publications();
         let now = self.now;
         let mut staff = ReplayedAgents { host: self.hub.host(), agents: &mut self.agents, now };
         let mut is_done = false;

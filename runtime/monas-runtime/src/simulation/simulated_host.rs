@@ -12,10 +12,10 @@ use crate::agent_factory::{AgentFactory, PreparedAgent};
 use crate::agent_instance::{AgentInstance, PublishedTopics};
 use crate::agent_update::{AgentStatus, AgentUpdate, ChangeRef};
 use crate::body::BodyBridge;
+use crate::clock::SimulatedClock;
 use crate::host_status::HostStatus;
 use crate::links::RunningLink;
 use crate::list::CycleOutcome;
-use crate::run_handle::SimulatedClock;
 use crate::setup::{PreparedHost, tick};
 use monas_core::agent::AgentProfile;
 use monas_core::error::{Error, ErrorKind};
@@ -50,6 +50,17 @@ impl SimulatedHost {
         let PreparedHost { hub, body, agents: members, links, context: ground, profiles, configuration } =
             station;
         let moved = PublishedTopics::default();
+        let (note, asked) = (moved.topic_callback(), Arc::new(AtomicBool::new(false)));
+        let (change, ring) = (hub.topic(CHANGE.path()), asked.clone());
+        let noted = Arc::new(move |topic, host| {
+            note(topic, host);
+            if Some(topic) == change {
+                ring.store(true, Ordering::Relaxed);
+            }
+        });
+        let roster = HostAdmin::new(ground, crew.clone(), profiles, configuration)?;
+        // Links bring messages at once: what they bring before all of them stand is noted too.
+        hub.set_waker(noted.clone());
         let mut linked = Vec::new();
         for link in links {
             if let Some(other) = &link.clock {
@@ -62,15 +73,12 @@ impl SimulatedHost {
             linked.push(link.waker());
             running.push(link);
         }
-        let (note, asked) = (moved.topic_callback(), Arc::new(AtomicBool::new(false)));
-        let (change, ring) = (hub.topic(CHANGE.path()), asked.clone());
-        hub.set_waker(Arc::new(move |topic, host| {
-            note(topic, host);
-            if Some(topic) == change {
-                ring.store(true, Ordering::Relaxed);
-            }
-            linked.iter().for_each(|wake| wake(topic, host));
-        }));
+        if !linked.is_empty() {
+            hub.set_waker(Arc::new(move |topic, host| {
+                noted(topic, host);
+                linked.iter().for_each(|wake| wake(topic, host));
+            }));
+        }
         let instances =
             members.into_iter().map(|member| AgentInstance::new(member, Timestamp::ZERO)).collect();
         let team = BodyAndAgents {
@@ -79,7 +87,6 @@ impl SimulatedHost {
             instances,
             removed: Vec::new(),
         };
-        let roster = HostAdmin::new(ground, crew.clone(), profiles, configuration)?;
         Ok(SimulatedHost { moved, has_requests: asked, admin: roster, team })
     }
 
@@ -154,6 +161,7 @@ impl SimulatedHost {
 
     /// Applies an external change.
     pub(crate) fn change(&mut self, change: Change, now: Timestamp) -> Changed {
+        self.deliver_publications(now);
         let changed =
             self.admin.submit_change(change, &mut SimulatedAgents { team: &mut self.team, now }, now);
         self.has_requests.store(false, Ordering::Relaxed);
@@ -164,6 +172,7 @@ impl SimulatedHost {
     /// Applies the published changes.
     pub(crate) fn apply_requests(&mut self, now: Timestamp) {
         if self.has_requests.swap(false, Ordering::Relaxed) {
+            self.deliver_publications(now);
             self.admin.apply_requests(&mut SimulatedAgents { team: &mut self.team, now }, now);
             // The replies that this publishes need no processing.
             self.deliver_publications(now);

@@ -85,6 +85,22 @@ fn a_message_that_a_guard_reads_wakes_the_chart() {
 }
 
 #[test]
+fn a_message_published_between_two_calls_of_a_run_wakes_the_chart() {
+    let (calls, registry) = noting();
+    let text = "Liveness:\nm = A . B . C\nTransitions:\nA -> B : [ball.x == 1]\nB -> C : news";
+    let mut simulation = simulate(registry, text);
+    simulation.run_until(at(25)).unwrap();
+    let hub = simulation.hub("local").unwrap().clone();
+    let mut blackboard = hub.blackboard("outside");
+    blackboard.publish(BALL, Ball { x: 1.0, ..Ball::default() }).unwrap();
+    blackboard.publish_all(at(25));
+    simulation.run_until(at(10_000)).unwrap();
+    hub.publisher(NEWS, "outside").unwrap().publish(Ball::default(), at(10_000));
+    simulation.run_until(at(20_000)).unwrap();
+    assert_eq!(calls.taken(), ["A 0", "B 25", "C 10000"]);
+}
+
+#[test]
 fn each_arrival_of_a_message_is_an_event() {
     let (calls, registry) = noting();
     let text = "Liveness:\nm = A~\nTransitions:\nA -> A : news";

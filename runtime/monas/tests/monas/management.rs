@@ -14,7 +14,7 @@ use monas::records::{Action, Change, Changed, Setting};
 use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Registry};
 
 /// A change of an agent.
-fn change(action: Action, agent: &str) -> Change {
+pub(crate) fn change(action: Action, agent: &str) -> Change {
     Change { action: action.into(), agent: agent.into(), ..Change::default() }
 }
 
@@ -23,7 +23,7 @@ fn settings(given: &[(&str, &str)]) -> Vec<Setting> {
 }
 
 /// Asserts that a change was applied.
-fn made(changed: &Changed) {
+pub(crate) fn made(changed: &Changed) {
     assert!(changed.done, "{:?}", changed.findings);
 }
 

@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Barrier, Mutex};
 use std::time::Duration;
 
-use crate::kit::{BALL, Ball};
+use crate::kit::{BALL, Ball, NEWS};
 use monas::records::Cycle;
 use monas::{
     Agent, Blackboard, BoxError, FailurePolicy, HostConfig, Hz, Progress, Registry, StopHandle, Talws,
@@ -282,4 +282,46 @@ fn a_paced_simulation_is_the_same_run_and_not_faster_than_time() {
         Talws::new().agent(Agent::new("a", Hz(1)).activity(|_: &mut Blackboard| {})).simulate(1).unwrap();
     simulation.run_paced(Timestamp::MAX, &stopper).unwrap();
     assert_eq!(simulation.statistics().cycles(), 0, "a stopped run does not begin");
+}
+
+/// Agents that start together: one publishes a signal in its first cycle only; a chart answers it,
+/// and a list counts it. The names determine the order in which their threads are started.
+fn starting_together([first, chart_name, list]: [&str; 3]) -> (Talws, Receiver<&'static str>) {
+    let (sender, answers) = news();
+    let counted = sender.clone();
+    let registry = Registry::empty().with("Wait", || |_: &mut Blackboard| ()).with("Answer", move || {
+        let sender = sender.clone();
+        move |_: &mut Blackboard| _ = sender.send("chart")
+    });
+    let mut is_first = true;
+    let requests = move |blackboard: &mut Blackboard| match std::mem::take(&mut is_first) {
+        true => blackboard.publish(NEWS, Ball::default()),
+        false => Ok(()),
+    };
+    let counts = move |blackboard: &mut Blackboard| {
+        blackboard.signals(NEWS).for_each(|_| _ = counted.send("list"));
+    };
+    let text = "Liveness:\nm = Wait . Answer\nTransitions:\nWait -> Answer : news";
+    let talws = Talws::new().registry(registry).agent(Agent::new(first, Hz(1000)).activity(requests));
+    let talws = talws.agent(Agent::statechart(chart_name, chart(text)));
+    (talws.agent(Agent::new(list, Hz(1000)).activity(counts)), answers)
+}
+
+#[test]
+fn the_first_signal_reaches_all_agents_that_start_together() {
+    for names in [["a", "b", "c"], ["c", "b", "a"], ["b", "a", "c"]] {
+        for _ in 0..10 {
+            let (talws, answers) = starting_together(names);
+            let running = talws.start().unwrap();
+            let mut both = next(&answers, 2);
+            both.sort_unstable();
+            assert_eq!(both, ["chart", "list"]);
+            running.stop();
+        }
+        let (talws, answers) = starting_together(names);
+        talws.simulate(1).unwrap().run_until(crate::kit::at(10)).unwrap();
+        let mut both: Vec<&str> = answers.try_iter().collect();
+        both.sort_unstable();
+        assert_eq!(both, ["chart", "list"], "in simulated time");
+    }
 }

@@ -37,6 +37,9 @@ pub(crate) fn execute(
     let wall = clock.elapsed();
     let results = running.finish().map_err(|error| CommandFailure::failed(format, error))?;
     summary::write(console.out, format, &results, wall)?;
+    if let Some(unstopped) = results.unstopped {
+        return Err(CommandFailure::failed(format, unstopped));
+    }
     Ok(if interrupt.is_requested() { Exit::Interrupted } else { Exit::Success })
 }
 

@@ -176,7 +176,8 @@ mod tests {
                 state: "runs".into(),
                 ..AgentEntry::default()
             };
-            let activities = vec![ActivityFigures { entry: activity, hz: 30.0, load: Some(0.91), remark }];
+            let activities =
+                vec![ActivityFigures { entry: activity, hz: 30.0, load: Some(0.91), open_load: 0.0, remark }];
             AgentFigures { entry, hz: 30.0, load: Some(0.5), overruns: 0, activities }
         });
         Metrics {

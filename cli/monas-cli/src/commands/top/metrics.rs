@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use monas::records::{ActivityEntry, AgentEntry, Times};
+use monas::records::{ActivityEntry, AgentEntry, OpenCallEntry, Times};
 use monas_link::control::messages::TopicEntry;
 
 use super::RunSample;
@@ -43,6 +43,8 @@ pub(crate) struct ActivityFigures {
     pub(crate) hz: f64,
     /// Load, in cores; none if not measured.
     pub(crate) load: Option<f64>,
+    /// The part of it of a call that has not returned since the last sample.
+    pub(crate) open_load: f64,
     pub(crate) remark: Option<ActivityRemark>,
 }
 
@@ -119,9 +121,20 @@ fn agent(entry: &AgentEntry, before: Option<&AgentEntry>, rate: &impl Fn(u64) ->
             activity(one, rate(since(one.calls, calls)), since(one.failures, failures), stuck)
         })
         .collect();
+    let mut open = open_load(entry, before);
+    let with_open_call =
+        |one: ActivityFigures| match open.iter().position(|(name, _)| *name == one.entry.name) {
+            Some(place) => one.with_open_call(open.remove(place).1),
+            None => one,
+        };
+    let activities: Vec<ActivityFigures> = activities.into_iter().map(with_open_call).collect();
     // Activities of states run beside the steps of their chart, those of a list within the agent's
-    // cycles.
-    let beside = activities.iter().filter(|one| !one.entry.state.is_empty()).filter_map(|one| one.load);
+    // cycles, unless their call has not returned.
+    let beside = activities.iter().map(|one| match one.entry.state.is_empty() {
+        true => one.open_load,
+        false => one.load.unwrap_or_default(),
+    });
+    let beside: f64 = beside.sum();
     // Steps of charts are measured in processor time. Where it is not measured, the load of a
     // list's cycles is unknown.
     let has_list = activities.iter().any(|one| one.entry.state.is_empty());
@@ -131,7 +144,10 @@ fn agent(entry: &AgentEntry, before: Option<&AgentEntry>, rate: &impl Fn(u64) ->
     });
     AgentFigures {
         hz,
-        load: each.map(|each| hz * each + beside.sum::<f64>()),
+        load: match each {
+            Some(each) => Some(hz * each + beside),
+            None => activities.iter().any(|one| one.open_load > 0.0).then_some(beside),
+        },
         overruns: since(entry.overruns, before.map(|before| before.overruns)),
         activities,
         entry: entry.clone(),
@@ -150,7 +166,29 @@ fn activity(entry: &ActivityEntry, hz: f64, failures: u64, stuck: &str) -> Activ
         (Some(load), Some(called)) if called >= LONG && load < IDLE * called => Some(ActivityRemark::Blocks),
         _ => None,
     };
-    ActivityFigures { entry: entry.clone(), hz, load, remark }
+    ActivityFigures { entry: entry.clone(), hz, load, open_load: 0.0, remark }
+}
+
+/// The load of the calls that lasted from one sample to the next, by activity.
+fn open_load<'a>(entry: &'a AgentEntry, before: Option<&AgentEntry>) -> Vec<(&'a str, f64)> {
+    let earlier = |call: &OpenCallEntry| {
+        let calls = before.into_iter().flat_map(|before| &before.open_calls);
+        calls.into_iter().find(|known| (known.number, &known.activity) == (call.number, &call.activity))
+    };
+    let load = |call: &'a OpenCallEntry| {
+        let known = earlier(call)?;
+        let (seconds, cpu) = (call.seconds - known.seconds, call.cpu_seconds? - known.cpu_seconds?);
+        (seconds > 0.0).then(|| (call.activity.as_str(), (cpu / seconds).min(1.0)))
+    };
+    entry.open_calls.iter().filter_map(load).collect()
+}
+
+impl ActivityFigures {
+    /// The same with the load of a call that has not returned.
+    fn with_open_call(self, open: f64) -> ActivityFigures {
+        let remark = self.remark.or((open >= BURNS).then_some(ActivityRemark::Burns));
+        ActivityFigures { load: Some(self.load.unwrap_or_default() + open), open_load: open, remark, ..self }
+    }
 }
 
 /// The mean processor time of a call, if measured, s.
@@ -240,6 +278,32 @@ mod tests {
             "those of states beside it"
         );
         assert_eq!((figures.topics[0].hz, c.activities[0].hz), (10.0, 50.0));
+    }
+
+    #[test]
+    fn a_call_that_spins_is_a_busy_core() {
+        let agent = |seconds: f64, cpu_seconds: f64, number: u64| AgentEntry {
+            state: "stuck".into(),
+            reason: "activity `A` is stuck in cycle 3".into(),
+            activities: vec![activity("A", "", 1, 0, None), activity("B", "", 1, 0, None)],
+            open_calls: vec![OpenCallEntry {
+                activity: "A".into(),
+                number,
+                seconds,
+                cpu_seconds: Some(cpu_seconds),
+                ..OpenCallEntry::default()
+            }],
+            ..AgentEntry::default()
+        };
+        // In simulated time the time of the run stands still meanwhile.
+        let (before, same) = (sample(1, vec![agent(2.0, 7.0, 5)], 0), sample(1, vec![agent(4.0, 8.9, 5)], 0));
+        let figures = Metrics::between(&before, &same);
+        assert_eq!(figures.agents[0].load, Some(0.95));
+        let [spins, other] = figures.agents[0].activities.as_slice() else { panic!("two activities") };
+        assert_eq!((spins.load, spins.remark), (Some(0.95), Some(ActivityRemark::Stuck)));
+        assert_eq!(other.load, None);
+        let another = sample(1, vec![agent(4.0, 8.9, 6)], 0);
+        assert_eq!(Metrics::between(&before, &another).agents[0].load, None, "it is another call");
     }
 
     #[test]

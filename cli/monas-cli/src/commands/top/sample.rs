@@ -66,7 +66,7 @@ pub(crate) fn agent(agent: &AgentFigures) -> [String; 10] {
 }
 
 pub(crate) fn activity(activity: &ActivityFigures) -> [String; 9] {
-    let ActivityFigures { entry, hz, load, remark } = activity;
+    let ActivityFigures { entry, hz, load, remark, .. } = activity;
     let times = entry.call_time.as_ref();
     [
         entry.name.clone(),

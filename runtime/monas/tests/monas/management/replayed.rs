@@ -156,6 +156,46 @@ fn in_simulated_time_changes_are_made_again() {
     assert_eq!(replay_simulated(some, 7, &messages).unwrap().differences, []);
 }
 
+/// A chart that plays at each news, and an agent that publishes some each second and at the same
+/// time has the paused chart make a step.
+fn stepped() -> (Talws, Talws) {
+    let text = "Liveness:\nm = Play~\nTransitions:\nPlay -> Play : news";
+    let mind = || {
+        let (chart, diagnostics) = aseme_models::statechart_of(&Source::new("m.srm", text));
+        assert_eq!(diagnostics, []);
+        Talws::new().registry(registry()).agent(Agent::statechart("mind", chart))
+    };
+    let asks = |blackboard: &mut Blackboard| -> Result<(), BoxError> {
+        let asked = match blackboard.now().as_nanos() / 100_000_000 {
+            20 => Action::PauseAgent,
+            30 | 40 => Action::StepAgent,
+            50 => Action::ResumeAgent,
+            _ => Action::NoAction,
+        };
+        if blackboard.now().as_nanos().is_multiple_of(1_000_000_000) {
+            blackboard.publish(NEWS, Ball::default())?;
+        }
+        match asked {
+            Action::NoAction => Ok(()),
+            asked => Ok(blackboard.publish(CHANGE, change(asked, "mind"))?),
+        }
+    };
+    let asker = Agent::new("asker", Hz(10)).activity(asks);
+    (mind().agent(asker), mind())
+}
+
+#[test]
+fn in_simulated_time_a_step_sees_again_what_had_arrived() {
+    let tape = Tape::default();
+    let (mut talws, mind) = stepped();
+    talws.observe(Box::new(tape.clone()));
+    talws.simulate(7).unwrap().run_until(at(8000)).unwrap();
+    let outcome = replay_simulated(mind, 7, &tape.kept()).unwrap();
+    assert_eq!(outcome.differences, []);
+    // The first comes from START; that of 0 s to 7 s follow, those of 3 s and 4 s by steps.
+    assert_eq!(outcome.compared("mind", "test/game"), 9);
+}
+
 #[test]
 fn without_the_changes_it_would_be_another_run() {
     let messages = changed_run();

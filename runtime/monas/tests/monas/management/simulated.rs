@@ -1,9 +1,10 @@
 //! Changes in simulated time: at a defined time, in a defined order, with equal bytes in each run.
 
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 use monas::records::{Action, CHANGE, CHANGED, Change, Changed};
-use monas::{RunHash, Simulation, Talws};
+use monas::{Agent, Blackboard, Progress, Registry, RunHash, Simulation, Talws};
 use narukom::{Observer, Publication};
 use yase::Source;
 
@@ -29,11 +30,32 @@ fn ask(simulation: &mut Simulation, change: Change) -> Changed {
 }
 
 #[test]
+fn the_time_does_not_go_back_when_an_agent_resumes() {
+    let (times, note) = recorder();
+    let registry = Registry::empty().with("A", move || {
+        let note = note.clone();
+        move |blackboard: &mut Blackboard| {
+            note(blackboard.now());
+            Progress::after(Duration::from_millis(100))
+        }
+    });
+    let chart = aseme_models::statechart_of(&Source::new("m.srm", "m = A")).0;
+    let talws = Talws::new().registry(registry).agent(Agent::statechart("m", chart));
+    let mut simulation = talws.simulate(1).unwrap();
+    simulation.run_until(at(50)).unwrap();
+    made(&simulation.change("local", change(Action::PauseAgent, "m")).unwrap());
+    simulation.run_until(at(450)).unwrap();
+    made(&simulation.change("local", change(Action::ResumeAgent, "m")).unwrap());
+    simulation.run_until(at(600)).unwrap();
+    assert_eq!(times.taken(), [at(0), at(450), at(550)]);
+}
+
+#[test]
 fn activities_come_go_and_change_places_between_two_cycles() {
     let (mut simulation, told) = simulation();
     let mut then = |change: Change, expected: &[&str]| {
         made(&ask(&mut simulation, change));
-        let until = simulation.now() + std::time::Duration::from_millis(100);
+        let until = simulation.now() + Duration::from_millis(100);
         simulation.run_until(until).unwrap();
         assert_eq!(told.taken(), expected);
     };
@@ -202,16 +224,16 @@ fn the_same_script_gives_the_same_bytes_and_a_tape_has_changes_and_answers() {
 
 #[test]
 fn an_activity_may_ask_for_a_change_too() {
-    let asks = |blackboard: &mut monas::Blackboard| {
+    let asks = |blackboard: &mut Blackboard| {
         if blackboard.now() == at(200) {
             blackboard.publish(CHANGE, change(Action::StopAgent, "b")).unwrap();
         }
     };
     let (told, note) = recorder();
-    let b = move |blackboard: &mut monas::Blackboard| note(blackboard.now());
-    let agents = [("a", 10.0)].map(|(name, hertz)| monas::Agent::new(name, monas::Hz(hertz)).activity(asks));
+    let b = move |blackboard: &mut Blackboard| note(blackboard.now());
+    let agents = [("a", 10.0)].map(|(name, hertz)| Agent::new(name, monas::Hz(hertz)).activity(asks));
     let talws = agents.into_iter().fold(Talws::new(), Talws::agent);
-    let talws = talws.agent(monas::Agent::new("b", monas::Hz(10)).activity(b));
+    let talws = talws.agent(Agent::new("b", monas::Hz(10)).activity(b));
     talws.simulate(1).unwrap().run_until(at(1000)).unwrap();
     assert_eq!(told.taken(), [at(0), at(100), at(200)]);
 }

@@ -1,0 +1,142 @@
+//! Watches a run in simulated time, whose agents share one thread: while a call does not return,
+//! nothing of the run continues. A thread beside it names the call. It only reads, so that the run
+//! stays the same.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use monas_core::records::AgentEntry;
+use narukom::Timestamp;
+
+use crate::agent_update::AgentStatus;
+use crate::clock::{RunClock, SimulatedClock};
+use crate::observed_thread::{LastingCall, ObservedThread};
+use crate::real_time_host::spawn;
+use crate::stop_handle::StopHandle;
+
+/// Interval of its observations.
+const INTERVAL: Duration = Duration::from_millis(100);
+
+/// A call is reported after this real time, unless its agent sets another.
+const STALL: Duration = Duration::from_secs(2);
+
+/// The watchdog of a simulation. Its thread begins with the run, and ends with this.
+pub(crate) struct StallWatchdog {
+    watched: Arc<WatchedRun>,
+    stopper: StopHandle,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// A simulated run as its watchdog sees it.
+#[derive(Default)]
+pub(crate) struct WatchedRun {
+    /// The thread that advances the run.
+    thread: Mutex<Option<ObservedThread>>,
+    stalled: Mutex<Option<LastingCall>>,
+    /// The limits of agents that set one, by host and agent.
+    limits: BTreeMap<(String, String), Duration>,
+}
+
+impl StallWatchdog {
+    pub(crate) fn new(limits: BTreeMap<(String, String), Duration>) -> StallWatchdog {
+        let watched = Arc::new(WatchedRun { limits, ..WatchedRun::default() });
+        StallWatchdog { watched, stopper: StopHandle::new(), thread: None }
+    }
+
+    /// What it watches.
+    pub(crate) fn watched(&self) -> &Arc<WatchedRun> {
+        &self.watched
+    }
+
+    /// Watches the calling thread from now on.
+    pub(crate) fn watch_this_thread(&mut self, time: &Arc<SimulatedClock>) {
+        let mut thread = locked(&self.watched.thread);
+        if thread.as_ref().is_none_or(|thread| !thread.is_this_thread()) {
+            *thread = Some(ObservedThread::of_this_thread());
+        }
+        drop(thread);
+        if self.thread.is_some() {
+            return;
+        }
+        let (watched, stopper, time) = (self.watched.clone(), self.stopper.clone(), time.clone());
+        let watch = move || {
+            let clock = RunClock::start();
+            while stopper.wait_until(clock.now() + INTERVAL, &clock) {
+                watched.observe(clock.now(), &time);
+            }
+        };
+        match spawn("watchdog", watch) {
+            Ok(thread) => self.thread = Some(thread),
+            Err(error) => tracing::warn!("calls that do not return are not reported: {error}"),
+        }
+    }
+}
+
+impl Drop for StallWatchdog {
+    fn drop(&mut self) {
+        self.stopper.stop();
+        if self.thread.take().is_some_and(|thread| thread.join().is_err()) {
+            tracing::error!("the thread of the watchdog has panicked");
+        }
+    }
+}
+
+impl WatchedRun {
+    fn observe(&self, now: Timestamp, time: &SimulatedClock) {
+        let call = locked(&self.thread).as_mut().and_then(|thread| thread.observe(now));
+        let mut stalled = locked(&self.stalled);
+        let was_reported =
+            |call: &LastingCall| stalled.as_ref().is_some_and(|known| known.call.number == call.call.number);
+        match call.filter(|call| call.lasts >= self.limit(call)) {
+            Some(call) if was_reported(&call) => *stalled = Some(call),
+            Some(call) => {
+                let (context, time) = (&call.call.context, time.get());
+                let (robot, agent, activity) = (&context.robot, &context.agent, &context.activity);
+                tracing::error!(%robot, %agent, %activity, "stuck: {call}; the whole run stands still at {time}");
+                *stalled = Some(call);
+            }
+            None => {
+                if let Some(call) = stalled.take() {
+                    let context = &call.call.context;
+                    let (robot, agent, activity) = (&context.robot, &context.agent, &context.activity);
+                    tracing::warn!(%robot, %agent, %activity, "is stuck no more: the run goes on");
+                }
+            }
+        }
+    }
+
+    fn limit(&self, call: &LastingCall) -> Duration {
+        let context = &call.call.context;
+        let key = (context.robot.clone(), context.agent.clone());
+        self.limits.get(&key).copied().unwrap_or(STALL)
+    }
+
+    /// The call because of which the run stands still, if any.
+    pub(crate) fn stalled(&self) -> Option<LastingCall> {
+        locked(&self.stalled).clone()
+    }
+
+    /// The entry of the agent because of which the run stands still.
+    pub(crate) fn stuck_agent(&self) -> Option<AgentEntry> {
+        let stalled = self.stalled()?;
+        let context = &stalled.call.context;
+        Some(AgentEntry {
+            host: context.robot.clone(),
+            name: context.agent.clone(),
+            state: AgentStatus::Stuck.word().into(),
+            reason: stalled.to_string(),
+            activities: vec![monas_core::records::ActivityEntry {
+                name: context.activity.clone(),
+                ..monas_core::records::ActivityEntry::default()
+            }],
+            open_calls: vec![stalled.entry()],
+            ..AgentEntry::default()
+        })
+    }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
