@@ -1,6 +1,5 @@
 //! A running match.
 
-use std::path::PathBuf;
 use std::time::Duration;
 
 use monas::{RunHash, Simulation, Timestamp};
@@ -17,7 +16,7 @@ pub struct RunningMatch {
     simulation: Simulation,
     pitch: SharedField,
     hash: RunHash,
-    tape: Option<(Tape, PathBuf)>,
+    tape: Option<Tape>,
     length: Duration,
     events: Vec<MatchEvent>,
     seen_events: usize,
@@ -28,7 +27,7 @@ impl RunningMatch {
         simulation: Simulation,
         pitch: SharedField,
         hash: RunHash,
-        tape: Option<(Tape, PathBuf)>,
+        tape: Option<Tape>,
         length: Duration,
     ) -> RunningMatch {
         RunningMatch { simulation, pitch, hash, tape, length, events: Vec::new(), seen_events: 0 }
@@ -97,20 +96,16 @@ impl RunningMatch {
         &self.simulation
     }
 
-    /// Ends the match and its recording.
+    /// Ends the match. The caller finishes its tape.
     ///
     /// # Errors
-    /// The recording cannot be completed.
+    /// The tape is finished already.
     pub fn finish(mut self) -> Result<MatchSummary, Error> {
-        if let Some((tape, path)) = &self.tape {
-            tape_metadata::ended(tape, self.simulation.now())
-                .map_err(|error| Error::recording(path, error))?;
+        if let Some(tape) = &self.tape {
+            tape_metadata::ended(tape, self.simulation.now()).map_err(Error::recording)?;
         }
         self.simulation.stop();
         let (hash, messages) = self.hash.finish();
-        if let Some((tape, path)) = self.tape.take() {
-            tape.finish().map_err(|error| Error::recording(&path, error))?;
-        }
         let touch = self.pitch.with_world(|world| world.statistics().time_to_first_touch());
         Ok(MatchSummary {
             hash,
