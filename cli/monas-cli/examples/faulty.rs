@@ -35,7 +35,7 @@ fn segv() {
 #[allow(unconditional_recursion, reason = "the fault is the purpose")]
 fn overflow(depth: u64) -> u64 {
     let frame = black_box([depth; 512]);
-    overflow(depth + frame[0]) + frame[1]
+    overflow(black_box(depth)).wrapping_add(frame[1])
 }
 
 fn main() -> std::process::ExitCode {

@@ -3,6 +3,7 @@
 //! A crash handler may neither allocate nor take a lock. Threads therefore store addresses of texts
 //! that are never freed into a table of fixed size, and the handler reads them.
 
+use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicBool, AtomicPtr, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -68,15 +69,21 @@ struct OwnEntry(Option<&'static ThreadEntry>);
 impl OwnEntry {
     fn take() -> OwnEntry {
         let is_free = |entry: &&ThreadEntry| !entry.is_taken.swap(true, Ordering::AcqRel);
-        OwnEntry(TABLE.iter().find(is_free))
+        let entry = TABLE.iter().find(is_free);
+        if let Some(entry) = entry {
+            entry.activity.store(std::ptr::null_mut(), Ordering::Relaxed);
+            entry.is_running.store(false, Ordering::Relaxed);
+            CURRENT.set(entry);
+        }
+        OwnEntry(entry)
     }
 }
 
 impl Drop for OwnEntry {
     fn drop(&mut self) {
         if let Some(entry) = self.0 {
-            entry.activity.store(std::ptr::null_mut(), Ordering::Relaxed);
-            entry.is_running.store(false, Ordering::Relaxed);
+            // What it says stays until another thread takes it: `exit` destroys the thread-locals of
+            // its thread before it calls the handlers of the exit.
             entry.is_taken.store(false, Ordering::Release);
         }
     }
@@ -84,6 +91,8 @@ impl Drop for OwnEntry {
 
 thread_local! {
     static OWN: OwnEntry = OwnEntry::take();
+    /// The address of the entry, which has no destructor.
+    static CURRENT: Cell<*const ThreadEntry> = const { Cell::new(std::ptr::null()) };
 }
 
 /// This thread calls an activity.
@@ -119,15 +128,14 @@ pub struct ThreadActivity {
 /// Calls `look` with the activity of each thread that has called one. Neither allocates nor takes a
 /// lock, so that a signal handler may use it.
 pub fn each(mut look: impl FnMut(ThreadActivity)) {
-    let own = OWN.try_with(|own| own.0.map(std::ptr::from_ref)).ok().flatten();
+    let current = CURRENT.get();
     for entry in &TABLE {
-        let activity = text(&entry.activity);
-        if let (true, Some(activity)) = (entry.is_taken.load(Ordering::Acquire), activity) {
-            look(ThreadActivity {
-                activity,
-                is_running: entry.is_running.load(Ordering::Relaxed),
-                is_current: own == Some(std::ptr::from_ref(entry)),
-            });
+        let is_running = entry.is_running.load(Ordering::Relaxed);
+        let is_current = std::ptr::eq(entry, current);
+        if let Some(activity) = text(&entry.activity)
+            && (is_running || entry.is_taken.load(Ordering::Acquire))
+        {
+            look(ThreadActivity { activity, is_running, is_current });
         }
     }
 }
@@ -165,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn the_entry_of_a_thread_that_has_ended_is_free() {
+    fn a_thread_that_has_ended_is_known_only_if_it_ended_in_a_call() {
         let own = OwnEntry::take();
         let entry = own.0.unwrap();
         entry.set(Some(InternedText::of("red-1/Goalie/Dive".to_owned())), true);
@@ -174,8 +182,9 @@ mod tests {
             each(|one| is_known |= one.activity == "red-1/Goalie/Dive");
             is_known
         };
-        assert!(is_known());
         drop(own);
+        assert!(is_known());
+        entry.set(None, false);
         assert!(!is_known());
     }
 
