@@ -82,8 +82,8 @@ impl OwnEntry {
 impl Drop for OwnEntry {
     fn drop(&mut self) {
         if let Some(entry) = self.0 {
-            // What it says stays until another thread takes it: `exit` destroys the thread-locals of
-            // its thread before it calls the handlers of the exit.
+            // What it says stays until another thread takes it: `exit` destroys the thread-locals
+            // of its thread before it calls the handlers of the exit.
             entry.is_taken.store(false, Ordering::Release);
         }
     }
