@@ -10,7 +10,9 @@ use indicatif::MultiProgress;
 use crate::arguments::Arguments;
 use crate::delegate;
 use crate::dispatch::dispatch;
-use crate::terminal::{CommandOutput, Exit, ProcessLog};
+#[cfg(target_os = "linux")]
+use crate::terminal::crash_report::CrashReport;
+use crate::terminal::{CommandOutput, Exit, ProcessLog, crash_report};
 
 /// Executes the command as this process.
 pub(crate) fn main() -> Exit {
@@ -19,6 +21,8 @@ pub(crate) fn main() -> Exit {
     let bars = MultiProgress::new();
     let log = ProcessLog::begin(&bars);
     delegate::delegate();
+    #[cfg(target_os = "linux")]
+    let _crashes = CrashReport::install();
     // The caller decides how to handle a panic; the log has its location.
     panic::set_hook(Box::new(|panic| tracing::error!("{panic}")));
     let (mut out, mut err) = (io::stdout(), io::stderr());
@@ -34,5 +38,6 @@ pub(crate) fn main() -> Exit {
     };
     let exit = dispatch(std::env::args_os(), &mut console);
     log.iter().for_each(|log| log.end());
+    crash_report::end();
     exit
 }

@@ -3,6 +3,7 @@
 
 mod command_failure;
 mod command_output;
+pub(crate) mod crash_report;
 pub(crate) mod duration;
 mod exit;
 mod file_output;
@@ -21,5 +22,5 @@ pub(crate) use file_output::write_text;
 pub(crate) use format::{Format, FormatArgument};
 pub(crate) use interrupt::Interrupt;
 pub(crate) use process_log::ProcessLog;
-pub(crate) use quantity::{counted, grouped, memory, millis, seconds, size};
+pub(crate) use quantity::{counted, grouped, memory, millis, parse_size, seconds, size};
 pub(crate) use wall_clock::WallClock;

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use monas::ConfigurationBundle;
 use sha2::{Digest, Sha256};
 
-use crate::robot::Robot;
+use crate::robot::{KeptRecordings, Robot};
 use crate::shell::quoted;
 
 /// The hashes of all other files, in the format of `sha256sum -c`.
@@ -48,7 +48,7 @@ impl Release {
             files.insert(inside(&folder, file)?, plain(read(file)?));
         }
         files.insert(format!("bin/{name}"), ReleaseFile { content: read(program)?, is_program: true });
-        let start = start(&name, &root, &robot.arguments);
+        let start = start(&name, &root, robot);
         files.insert("start".into(), ReleaseFile { content: start.into_bytes(), is_program: true });
         let sums = sums(&files);
         let digest = Sha256::digest(&sums);
@@ -83,9 +83,13 @@ impl Release {
 }
 
 /// The script that starts the program.
-fn start(program: &str, config: &str, arguments: &[String]) -> String {
+fn start(program: &str, config: &str, robot: &Robot) -> String {
     let mut line = format!("exec ./bin/{} run {}", quoted(program), quoted(config));
-    arguments.iter().for_each(|argument| {
+    if let Some(KeptRecordings { count, megabytes }) = &robot.recordings {
+        // Beside the folder of releases. Writing to a String does not fail.
+        let _ = write!(line, " --record ../../recordings/ --keep {count} --keep-size {megabytes}MB");
+    }
+    robot.arguments.iter().for_each(|argument| {
         // Writing to a String does not fail.
         let _ = write!(line, " {}", quoted(argument));
     });
@@ -149,6 +153,7 @@ mod tests {
             folder: "monas".into(),
             service: "none".into(),
             settle: Duration::from_secs(1),
+            recordings: None,
         }
     }
 
@@ -168,8 +173,13 @@ mod tests {
 
     #[test]
     fn arguments_of_the_start_script_are_quoted() {
-        let script = start("team", "agents.xml", &["--for".into(), "1 s".into()]);
+        let robot = robot(Path::new("team"));
+        let script = start("team", "agents.xml", &robot);
         assert!(script.ends_with("exec ./bin/team run agents.xml --for '1 s'\n"), "{script}");
+        let recordings = Some(KeptRecordings { count: "5".into(), megabytes: "100".into() });
+        let script = start("team", "agents.xml", &Robot { recordings, arguments: Vec::new(), ..robot });
+        let line = "exec ./bin/team run agents.xml --record ../../recordings/ --keep 5 --keep-size 100MB\n";
+        assert!(script.ends_with(line), "{script}");
     }
 
     #[test]

@@ -10,6 +10,10 @@ use yase::diagnostic::nearest;
 /// How long a release must keep running to be accepted, if the file does not say.
 const SETTLE: &str = "3s";
 
+/// How many recordings are kept, and how many megabytes of them, if the file does not say.
+const KEEP: &str = "20";
+const KEEP_MB: &str = "4000";
+
 /// A robot in the file of robots.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Robot {
@@ -31,6 +35,15 @@ pub struct Robot {
     pub(crate) folder: String,
     pub(crate) service: String,
     pub(crate) settle: Duration,
+    /// Whether each run is recorded, and how many recordings the robot keeps.
+    pub(crate) recordings: Option<KeptRecordings>,
+}
+
+/// How many recordings a robot keeps, as [`Robot`] has them from the file.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(crate) struct KeptRecordings {
+    pub(crate) count: String,
+    pub(crate) megabytes: String,
 }
 
 /// The grammar of a file of robots.
@@ -66,6 +79,26 @@ pub fn robots_grammar() -> Grammar {
         .attribute(
             AttributeRule::new("settle", seconds, "how long a release must keep running to be accepted")
                 .or(SETTLE),
+        )
+        .attribute(
+            AttributeRule::new(
+                "record",
+                Kind::Flag,
+                "whether each run is recorded in `recordings` of the folder",
+            )
+            .or("0"),
+        )
+        .attribute(
+            AttributeRule::new("keep", Kind::whole_in(1, 1_000_000), "the most recordings that are kept")
+                .or(KEEP),
+        )
+        .attribute(
+            AttributeRule::new(
+                "keep_mb",
+                Kind::whole_in(1, 1_000_000_000),
+                "the most that all recordings take, in megabytes",
+            )
+            .or(KEEP_MB),
         )
         .children("file")
         .identified_by(Identity::Attribute("name"));
@@ -127,6 +160,16 @@ fn entry(path: &Path, robot: &Element) -> Result<Robot, Box<Diagnostic>> {
     for (key, flag) in [("port", "-p"), ("identity", "-i")] {
         ssh.extend(value(robot, key).into_iter().flat_map(|value| [flag.to_owned(), value.to_owned()]));
     }
+    let is_recorded = matches!(value(robot, "record"), Some("1" | "true"));
+    let arguments = words(&text("arguments", ""));
+    if let Some(message) = misplaced_recording(&arguments, is_recorded) {
+        let wrong = robot.attribute("arguments").map(|it| it.error("E0743", message.clone()));
+        let wrong = wrong.unwrap_or_else(|| robot.error("E0743", robot.span(), message));
+        let hint = "`record=\"1\"` records each run in `recordings`, outside of releases";
+        return Err(Box::new(wrong.with_hint(hint)));
+    }
+    let recordings = is_recorded
+        .then(|| KeptRecordings { count: text("keep", KEEP), megabytes: text("keep_mb", KEEP_MB) });
     let located = |named: &str| config::locate(path, named).unwrap_or_else(|_| PathBuf::from(named));
     Ok(Robot {
         name: text("name", ""),
@@ -135,9 +178,44 @@ fn entry(path: &Path, robot: &Element) -> Result<Robot, Box<Diagnostic>> {
         target: value(robot, "target").map(str::to_owned),
         config: located(&text("config", "")),
         files: robot.children_named("file").map(|file| located(file.text().trim())).collect(),
-        arguments: words(&text("arguments", "")),
+        arguments,
         folder: text("folder", "monas"),
         service: text("service", "auto"),
         settle: config::duration(&text("settle", SETTLE)).unwrap_or(Duration::from_secs(3)),
+        recordings,
     })
+}
+
+/// What is wrong with `--record` among the arguments: a relative path lies in a release, which is
+/// removed some day.
+fn misplaced_recording(arguments: &[String], is_recorded: bool) -> Option<String> {
+    let place = arguments.iter().position(|word| word == "--record" || word.starts_with("--record="))?;
+    if is_recorded {
+        return Some("the run is recorded twice: by `record` and by `--record`".into());
+    }
+    let path = match arguments[place].split_once('=') {
+        Some((_, path)) => path,
+        None => arguments.get(place + 1)?,
+    };
+    let is_absolute = path.starts_with('/');
+    (!is_absolute).then(|| format!("the recording `{path}` would be in the release, and removed with it"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_recording_within_a_release_is_refused() {
+        let wrong = |arguments: &[&str], is_recorded| {
+            let arguments: Vec<String> = arguments.iter().map(|word| (*word).to_owned()).collect();
+            misplaced_recording(&arguments, is_recorded)
+        };
+        for arguments in [&["--record", "goalie.mcap"][..], &["--record=../goalie.mcap"]] {
+            assert!(wrong(arguments, false).is_some_and(|message| message.contains("in the release")));
+        }
+        assert_eq!(wrong(&["--record", "/data/goalie.mcap"], false), None);
+        assert_eq!(wrong(&["--for", "1s"], true), None);
+        assert!(wrong(&["--record", "/data/goalie.mcap"], true).is_some());
+    }
 }

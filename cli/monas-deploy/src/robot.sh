@@ -61,21 +61,48 @@ write_script() {
 #!/bin/sh
 # Starts and stops the current release of Monas: service start|stop|status
 cd "$(dirname "$0")" || exit 1
-# A zombie process stays visible until reaped, which some init processes never do.
+# The identity of a process: its number, when it started, and in which boot. After its end, or after
+# the next boot, another process may have the number.
+identity() {
+    boot='' started=''
+    if [ -d /proc/self ]; then
+        # The second field is the name, which may contain anything; the start is field 22.
+        started=$(sed 's/^.*) //' "/proc/$1/stat" 2>/dev/null | cut -d ' ' -f 20)
+        boot=$(cat /proc/sys/kernel/random/boot_id 2>/dev/null)
+    else
+        started=$(ps -o lstart= -p "$1" 2>/dev/null)
+    fi
+    [ -z "$started" ] || echo "$1 $started $boot"
+}
+# Whether the process that was started runs. A zombie process stays visible until reaped, which some
+# init processes never do.
 runs() {
     [ -f service.pid ] || return 1
-    process=$(cat service.pid)
-    kill -0 "$process" 2>/dev/null && ! grep -qs '^State:[[:space:]]*Z' "/proc/$process/status"
+    known=$(cat service.pid)
+    process=${known%% *}
+    case $process in
+    '' | *[!0-9]*) return 1 ;;
+    esac
+    [ "$(identity "$process")" = "$known" ] && ! grep -qs '^State:[[:space:]]*Z' "/proc/$process/status"
+}
+# The output of the last runs stays in service.log.1 and so on.
+keep_log() {
+    for number in 4 3 2 1; do
+        [ ! -f "service.log.$number" ] || mv -f "service.log.$number" "service.log.$((number + 1))"
+    done
+    [ ! -f service.log ] || mv -f service.log service.log.1
 }
 case ${1:-} in
 start)
     runs && exit 0
+    keep_log
     if command -v setsid >/dev/null; then
         setsid ./current/start >service.log 2>&1 </dev/null &
     else
         nohup ./current/start >service.log 2>&1 </dev/null &
     fi
-    echo $! >service.pid
+    identity $! >service.pid.new
+    mv -f service.pid.new service.pid
     ;;
 stop)
     if runs; then

@@ -193,7 +193,8 @@ impl FileWriter<'_> {
         if there.as_deref() == Some(text) || (is_skeleton && path.exists()) {
             return Ok(());
         }
-        let written = path.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::write(&path, text));
+        let written =
+            path.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| monas_files::write(&path, text));
         written.map_err(|error| Error::file("write", &path, &error))?;
         self.changed.push(path);
         Ok(())

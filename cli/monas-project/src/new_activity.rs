@@ -1,12 +1,13 @@
 //! Creates an activity in a project: one file, which the project's build finds.
 
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use monas::Registry;
+use monas_files::write_new;
 use yase::Diagnostic;
 
 use crate::error::{Error, ErrorKind};
-use crate::new_project::write;
 use crate::project_root::project_root;
 
 pub(crate) const TEMPLATE: &str = include_str!("template/activity.rs.txt");
@@ -29,10 +30,14 @@ pub struct NewActivity {
 pub fn create_activity(name: &str, here: &Path) -> Result<NewActivity, Error> {
     let project = project_for(name, here)?;
     let path = project.join("activities").join(format!("{}.rs", snake_case(name)));
-    if path.exists() {
-        return Err(Error::new(ErrorKind::File, format!("{} exists already", path.display())));
-    }
-    write(&path, &TEMPLATE.replace("{{type}}", name)).map_err(|error| Error::file("write", &path, &error))?;
+    let text = TEMPLATE.replace("{{type}}", name);
+    let written = fs::create_dir_all(project.join("activities")).and_then(|()| write_new(&path, text));
+    written.map_err(|error| match error.kind() {
+        io::ErrorKind::AlreadyExists => {
+            Error::new(ErrorKind::File, format!("{} exists already", path.display()))
+        }
+        _ => Error::file("write", &path, &error),
+    })?;
     Ok(NewActivity { files: vec![path], name: qualified(name) })
 }
 

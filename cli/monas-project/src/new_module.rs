@@ -1,7 +1,7 @@
 //! Creates an activity as a module: a crate of a project that can be loaded at run time.
 
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use crate::error::{Error, ErrorKind};
 use crate::manifest::with_members;
@@ -35,9 +35,13 @@ pub fn create_module(name: &str, here: &Path) -> Result<NewModule, Error> {
         return Err(Error::new(ErrorKind::Argument, message));
     }
     let folder = project.join("modules").join(&package);
-    if folder.exists() {
-        return Err(Error::new(ErrorKind::File, format!("{} exists already", folder.display())));
-    }
+    let created = fs::create_dir_all(project.join("modules")).and_then(|()| fs::create_dir(&folder));
+    created.map_err(|error| match error.kind() {
+        io::ErrorKind::AlreadyExists => {
+            Error::new(ErrorKind::File, format!("{} exists already", folder.display()))
+        }
+        _ => Error::file("create", &folder, &error),
+    })?;
     let fill = |text: &str| text.replace("{{name}}", &package).replace("{{type}}", name);
     let activity = "monas::activity!({{type}});\n";
     let library = TEMPLATE.replace(activity, &format!("{activity}monas::module!();\n"));
@@ -52,12 +56,12 @@ pub fn create_module(name: &str, here: &Path) -> Result<NewModule, Error> {
 }
 
 /// Adds the folder of modules to the workspace's members. Returns the manifest if it has changed.
-fn member(project: &Path) -> std::io::Result<Option<PathBuf>> {
+fn member(project: &Path) -> io::Result<Option<PathBuf>> {
     let path = project.join("Cargo.toml");
     let there = fs::read_to_string(&path)?;
     let text = with_members(&there, MEMBERS);
     match text == there {
         true => Ok(None),
-        false => fs::write(&path, text).map(|()| Some(path)),
+        false => monas_files::write(&path, text).map(|()| Some(path)),
     }
 }

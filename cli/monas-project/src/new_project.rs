@@ -90,7 +90,7 @@ pub fn create_project(folder: &Path, monas: Option<&str>) -> Result<Vec<PathBuf>
 
 pub(crate) fn write(path: &Path, text: &str) -> io::Result<()> {
     path.parent().map_or(Ok(()), fs::create_dir_all)?;
-    fs::write(path, text)
+    monas_files::write(path, text)
 }
 
 /// Whether the name is valid for a package and as the prefix of topics.

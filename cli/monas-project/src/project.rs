@@ -211,7 +211,7 @@ fn edited(path: &Path, text: impl FnOnce(&str) -> String) -> Result<Option<PathB
     if text == there {
         return Ok(None);
     }
-    fs::write(path, text).map_err(|error| Error::file("write", path, &error))?;
+    monas_files::write(path, text).map_err(|error| Error::file("write", path, &error))?;
     Ok(Some(path.to_path_buf()))
 }
 

@@ -46,7 +46,7 @@ fn main() {
     let rounds = std::env::args().skip(1).find_map(|word| word.parse().ok()).unwrap_or(9);
     let folder = tempfile::tempdir().unwrap();
     let local = |_: usize, bridge: &HubBridge, inbox| -> Box<dyn Transport> {
-        Box::new(LocalTransport::new(folder.path(), bridge.node().host(), inbox).unwrap())
+        Box::new(LocalTransport::new(&folder.path().join("links"), bridge.node().host(), inbox).unwrap())
     };
     let small = vec![
         Way::bare("zenoh", true, false, ball, when_ball),

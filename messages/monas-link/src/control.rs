@@ -1,15 +1,15 @@
 //! The control socket, through which tools on the same computer inspect a run and publish in it.
 //!
 //! A run serves a socket ([`ControlServer`]) that tools connect to ([`ControlClient`]). Its path is
-//! `$XDG_RUNTIME_DIR/monas/NAME.sock`; it is accessible to its owner only (mode 0600), and on Linux
-//! the peer's credentials are checked as well. The protocol is protobuf, `proto/control.proto`;
-//! messages of topics are transferred in their own encoding, and decoded by the tool with the
-//! schema from the run.
+//! `$XDG_RUNTIME_DIR/monas/NAME.sock`; it is accessible to its owner only (mode 0600, in a folder
+//! that is the owner's alone), and on Linux the peer's credentials are checked as well. The
+//! protocol is protobuf, `proto/control.proto`; messages of topics are transferred in their own
+//! encoding, and decoded by the tool with the schema from the run.
 //!
 //! A tool can neither block a run nor exhaust its memory: hubs are polled as by any other reader,
 //! so a tool that is too slow loses messages, which are counted, and one that does not read its
-//! replies is disconnected. At most [`CLIENT_LIMIT`] tools are served at a time, and a request has
-//! at most [`REQUEST_LIMIT`] bytes.
+//! replies is disconnected, as is one that sends a request in very small parts. At most
+//! [`CLIENT_LIMIT`] tools are served at a time, and a request has at most [`REQUEST_LIMIT`] bytes.
 
 mod client;
 pub(crate) mod frame;
@@ -19,7 +19,7 @@ mod server;
 use narukom::{Hub, Timestamp};
 
 pub use client::{ControlClient, WatchStream, control_sockets};
-pub use server::ControlServer;
+pub use server::{ControlServer, ControlSocket};
 
 /// The most tools that are served at a time; further ones are rejected.
 pub const CLIENT_LIMIT: usize = 16;
@@ -40,6 +40,11 @@ pub trait ControlTarget: Send + Sync {
 
     /// Whether its time is simulated.
     fn is_simulated(&self) -> bool;
+
+    /// What endangers the run's results at present, for people: a recording that cannot be written.
+    fn alarms(&self) -> Vec<String> {
+        Vec::new()
+    }
 
     /// Publishes an encoded message.
     ///

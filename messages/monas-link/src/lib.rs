@@ -104,6 +104,8 @@ mod link;
 mod link_config;
 mod protocol;
 mod settings;
+#[cfg(all(unix, feature = "local"))]
+mod socket_folder;
 mod transport;
 
 /// The messages of the examples.

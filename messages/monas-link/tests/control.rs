@@ -3,14 +3,18 @@
 #![cfg(all(unix, feature = "local"))]
 #![allow(clippy::unwrap_used, clippy::panic)] // a test may fail
 
+use std::io::{Read, Write};
 use std::os::unix::fs::PermissionsExt;
+use std::os::unix::net::UnixStream;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use monas_link::ErrorKind;
-use monas_link::control::{CLIENT_LIMIT, ControlClient, ControlServer, ControlTarget, control_sockets};
+use monas_link::control::{
+    CLIENT_LIMIT, ControlClient, ControlServer, ControlSocket, ControlTarget, control_sockets,
+};
 use monas_link::example::Ball;
+use monas_link::{ErrorKind, LocalTransport, PacketInbox};
 use narukom::{Data, Hub, State, Timestamp, topic};
 use prost::Message as _;
 
@@ -140,6 +144,51 @@ fn so_many_tools_are_served_and_no_more_until_one_leaves() {
     assert!(refused.to_string().contains("look at this run already"), "{refused}");
     tools.pop();
     while served.client().describe().is_err() {}
+}
+
+#[test]
+fn a_tool_that_sends_a_byte_at_a_time_loses_its_connection() {
+    let served = served();
+    let mut stream = UnixStream::connect(served.server.path()).unwrap();
+    stream.set_read_timeout(Some(Duration::from_millis(1))).unwrap();
+    // A request of 64 KiB is announced. The timeout of reading is the pause between two bytes.
+    let mut request = (1_u32 << 16).to_le_bytes().to_vec();
+    request.resize(1 << 16, 0);
+    let mut sent = 0;
+    let is_closed = request.iter().any(|byte| {
+        sent += 1;
+        stream.write_all(&[*byte]).is_err() || matches!(stream.read(&mut [0]), Ok(0))
+    });
+    assert!(is_closed && sent < 10_000, "{sent} bytes were taken one by one");
+}
+
+#[test]
+fn a_bound_socket_holds_its_name_before_its_run_exists() {
+    let outer = tempfile::tempdir().unwrap();
+    let folder = outer.path().join("monas");
+    let socket = ControlSocket::bind(&folder, "run").unwrap();
+    assert_eq!(ControlSocket::bind(&folder, "run").unwrap_err().kind(), ErrorKind::NameTaken);
+    let mut early = ControlClient::connect(socket.path()).unwrap();
+    let hub = Hub::with_linked_topics("robot_1").unwrap();
+    let server = socket.serve(Arc::new(OneHub([hub]))).unwrap();
+    assert_eq!(early.describe().unwrap().name, "run");
+    drop(server);
+    assert_eq!(control_sockets(&folder), []);
+    drop(ControlSocket::bind(&folder, "run").unwrap());
+    assert_eq!(control_sockets(&folder), []);
+}
+
+#[test]
+fn a_folder_that_is_open_to_others_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("trap.sock"), "").unwrap();
+    std::fs::set_permissions(folder.path(), std::fs::Permissions::from_mode(0o755)).unwrap();
+    let refused = ControlSocket::bind(folder.path(), "run").unwrap_err();
+    assert!(refused.to_string().contains("is open to other users"), "{refused}");
+    assert_eq!(control_sockets(folder.path()), []);
+    let inbox = Arc::new(PacketInbox::default());
+    let refused = LocalTransport::new(folder.path(), "robot", inbox).unwrap_err();
+    assert!(refused.to_string().contains("chmod 700"), "{refused}");
 }
 
 #[test]

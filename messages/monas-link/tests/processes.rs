@@ -105,7 +105,7 @@ fn ball_and_commands_pass_and_a_killed_process_comes_back(ways: [&str; 2], place
 #[test]
 fn over_local_sockets_a_killed_process_comes_back() {
     let folder = tempfile::tempdir().unwrap();
-    ball_and_commands_pass_and_a_killed_process_comes_back(["local", "local"], folder.path());
+    ball_and_commands_pass_and_a_killed_process_comes_back(["local", "local"], folder.path().join("links"));
 }
 
 #[cfg(feature = "zenoh")]
@@ -121,11 +121,12 @@ fn over_zenoh_a_killed_process_comes_back() {
 #[test]
 fn two_processes_of_one_name_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let robot = Player::new("robot", "local", folder.path());
-    let coach = Player::new("coach", "local", folder.path());
+    let links = folder.path().join("links");
+    let robot = Player::new("robot", "local", &links);
+    let coach = Player::new("coach", "local", &links);
     robot.line("command");
     let mut second = Command::new(player());
-    let output = second.arg("robot").arg("local").arg(folder.path()).stdin(Stdio::null()).output().unwrap();
+    let output = second.arg("robot").arg("local").arg(&links).stdin(Stdio::null()).output().unwrap();
     assert!(!output.status.success());
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains("another process has a link of this name"), "{said}");

@@ -47,6 +47,15 @@ impl Error {
         Error { kind: ErrorKind::File, text, source: Some(source.into()) }
     }
 
+    /// The recording has gaps.
+    pub(crate) fn interrupted(failure: &str, missing: u64) -> Error {
+        let text = match missing {
+            0 => failure.to_owned(),
+            _ => format!("{failure}; up to {missing} messages are missing"),
+        };
+        Error { kind: ErrorKind::File, text, source: None }
+    }
+
     pub(crate) fn no_thread(source: io::Error) -> Error {
         let text = format!("no thread to write the tape: {source}");
         Error { kind: ErrorKind::File, text, source: Some(source.into()) }

@@ -16,14 +16,17 @@
 //!
 //! - **Recording does not disturb.** Publishers enqueue a message and continue; a thread of the
 //!   tape encodes and writes. In real time a disk that is too slow costs messages, which are
-//!   counted, but does not block publishers. If the disk is full the recording ends and the run
-//!   continues; [`Tape::finish`] reports it.
+//!   counted, but does not block publishers. If the disk is full the run goes on, an error is
+//!   logged at once, and the recording continues in a new file when there is room; [`Tape::finish`]
+//!   reports what is missing.
+//! - **A recording is not overwritten.** A [`TapeFile`] is created exclusively and locked while it
+//!   is written. A [`RecordingFolder`] keeps the newest recordings of a robot.
 //! - **Recordings are reproducible.** In simulated time no message is dropped, and the file does
 //!   not depend on any clock. Nothing is compressed.
-//! - **A killed process loses little.** Chunks are closed once per second of the run's time, in
-//!   real time also when no message follows. Closed chunks are readable up to the point of
-//!   truncation; what follows is missing without an error, and [`Recording::is_finished`] returns
-//!   `false`. [`recover`] turns such a file into an intact tape.
+//! - **A killed process loses little.** Chunks are closed once per second of the run's time, at its
+//!   beginning sooner, in real time also when no message follows. Closed chunks are readable up to
+//!   the point of truncation; what follows is missing without an error, and
+//!   [`Recording::is_finished`] returns `false`. [`recover`] turns such a file into an intact tape.
 //! - **Input is not trusted.** A tape takes as much memory as its file, and the size of a decoded
 //!   message is bounded, whatever the file claims.
 //!
@@ -69,26 +72,34 @@
 //! # }
 //! ```
 
+mod crash_flush;
 mod edit;
 mod error;
 mod queue;
 mod recorder;
 mod recording;
+mod recording_folder;
 mod records;
 mod schema;
 mod tape;
 mod tape_copy;
+mod tape_file;
 mod tape_overview;
 mod value;
 mod writer;
 
+pub use crash_flush::CrashFlush;
 pub use edit::{Recovery, TapeFilter, cut, merge, recover};
 pub use error::{Error, ErrorKind};
+pub use monas_files::ExistingFile;
 pub use recording::{
     Attachment, Channel, Messages, MetadataEntry, RecordedSample, Recording, RecordingItem, RecordingItems,
     Schema, read,
 };
+pub use recording_folder::{RecordingFolder, RecordingLimits};
 pub use schema::descriptor_pool;
 pub use tape::Tape;
+pub use tape_file::TapeFile;
 pub use tape_overview::{ChannelOverview, TapeOverview};
 pub use value::{Decoder, FieldDifference, Value};
+pub use writer::CONTINUATION;

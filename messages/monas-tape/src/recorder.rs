@@ -7,28 +7,33 @@ use mcap::write::NoSeek;
 use mcap::{McapError, McapResult, WriteOptions, Writer};
 
 use crate::recording::{Attachment, Channel, MetadataEntry, RecordedSample, Schema};
+use crate::tape_file::Output;
 
 /// A chunk is closed when its messages span this many nanoseconds: the most that a killed process
 /// loses.
 const CHUNK_SPAN: u64 = 1_000_000_000;
 
-/// The output of a recorder.
-type Output = NoSeek<Box<dyn Write + Send>>;
+/// The span of the first chunk; each one is twice as long as the one before, so that a process that
+/// is killed early leaves about half of its messages.
+const FIRST_SPAN: u64 = 20_000_000;
 
 /// Writes one MCAP file.
-pub(crate) struct Recorder {
-    writer: Writer<Output>,
+pub(crate) struct Recorder<W: Write = Output> {
+    writer: Writer<NoSeek<W>>,
     /// The time of the first message of the current chunk.
     chunk_begins: Option<u64>,
+    chunk_span: u64,
     messages: u64,
+    /// How many of them are passed to the operating system.
+    flushed: u64,
 }
 
-impl Recorder {
-    pub(crate) fn new(output: Box<dyn Write + Send>) -> McapResult<Recorder> {
+impl<W: Write> Recorder<W> {
+    pub(crate) fn new(output: W) -> McapResult<Recorder<W>> {
         let library = concat!("monas-tape/", env!("CARGO_PKG_VERSION"));
         let options = WriteOptions::new().compression(None).disable_seeking(true).library(library);
         let writer = options.create(NoSeek::new(output))?;
-        Ok(Recorder { writer, chunk_begins: None, messages: 0 })
+        Ok(Recorder { writer, chunk_begins: None, chunk_span: FIRST_SPAN, messages: 0, flushed: 0 })
     }
 
     /// The number of a channel in the file.
@@ -60,9 +65,10 @@ impl Recorder {
     /// Closes the chunk if the message at `time` is too late for it.
     fn begin(&mut self, time: u64) -> McapResult<()> {
         let begins = *self.chunk_begins.get_or_insert(time);
-        if time.saturating_sub(begins) >= CHUNK_SPAN {
+        if time.saturating_sub(begins) >= self.chunk_span {
             self.flush()?;
             self.chunk_begins = Some(time);
+            self.chunk_span = CHUNK_SPAN.min(self.chunk_span * 2);
         }
         Ok(())
     }
@@ -70,7 +76,9 @@ impl Recorder {
     /// Closes the chunk: everything written so far survives this process.
     pub(crate) fn flush(&mut self) -> McapResult<()> {
         self.chunk_begins = None;
-        self.writer.flush()
+        self.writer.flush()?;
+        self.flushed = self.messages;
+        Ok(())
     }
 
     pub(crate) fn describe(&mut self, facts: &MetadataEntry) -> McapResult<()> {
@@ -94,10 +102,19 @@ impl Recorder {
         self.messages
     }
 
-    /// Writes the summary; returns the number of messages written.
-    pub(crate) fn finish(mut self) -> McapResult<u64> {
+    /// Gives the file up after a failure: nothing more is written. Returns the number of messages
+    /// that the file has for certain, and of those that it may lack.
+    pub(crate) fn abandon(self) -> (u64, u64) {
+        // Dropping the writer would write the summary.
+        drop(self.writer.into_inner());
+        (self.flushed, self.messages - self.flushed)
+    }
+
+    /// Writes the summary; returns the number of messages written, and the output.
+    pub(crate) fn finish(mut self) -> McapResult<(u64, W)> {
         self.writer.finish()?;
-        self.writer.into_inner().into_inner().flush().map_err(McapError::Io)?;
-        Ok(self.messages)
+        let mut output = self.writer.into_inner().into_inner();
+        output.flush().map_err(McapError::Io)?;
+        Ok((self.messages, output))
     }
 }

@@ -2,19 +2,19 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
-use std::fs::File;
-use std::io::{BufWriter, Write};
-use std::path::Path;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use mcap::McapResult;
+use monas_files::ExistingFile;
 use narukom::{HostId, Observer, Publication};
 
+use crate::crash_flush::CrashFlush;
 use crate::error::Error;
 use crate::queue::{OverflowPolicy, QueueEntry, QueuedMessage, SizeHint, WriteQueue};
-use crate::recorder::Recorder;
 use crate::recording::{Channel, MetadataEntry};
-use crate::writer::{self, WriterThread};
+use crate::tape_file::{SingleOutput, TapeFile, TapeStorage};
+use crate::writer::{self, WriterReport, WriterThread};
 
 /// Records all messages that are published on one or more hubs, and those that the hubs receive
 /// from other hosts, into one MCAP file.
@@ -27,6 +27,10 @@ use crate::writer::{self, WriterThread};
 /// that thread falls behind, by 65,536 messages or about 64 MiB, a tape created with
 /// [`create`](Tape::create) blocks publishers, and one created with
 /// [`create_real_time`](Tape::create_real_time) drops messages and [counts](Tape::dropped) them.
+///
+/// If the file cannot be written any more, the run goes on: [`failure`](Tape::failure) returns the
+/// reason, messages are [counted](Tape::missing), and the recording continues in a new file when
+/// that can be written.
 pub struct Tape {
     shared: Arc<TapeShared>,
     channels: ChannelCache,
@@ -35,6 +39,8 @@ pub struct Tape {
 /// The state shared by the handles.
 struct TapeShared {
     queue: Arc<WriteQueue>,
+    report: Arc<WriterReport>,
+    crash: CrashFlush,
     when_full: OverflowPolicy,
     /// `None` once it was joined.
     thread: Mutex<Option<WriterThread>>,
@@ -52,35 +58,47 @@ struct ChannelCache {
 type ChannelTable = Vec<Vec<Vec<Vec<Option<(u32, SizeHint)>>>>>;
 
 impl Tape {
-    /// Creates a tape in a file at `path`; an existing file is replaced. For simulated time: no
-    /// message is dropped, and the same run gives the same bytes.
+    /// Creates a tape in a file at `path`, or in one with a number in its name if that exists: see
+    /// [`files`](Tape::files). For simulated time: no message is dropped, and the same run gives
+    /// the same bytes.
     pub fn create(path: impl AsRef<Path>) -> Result<Tape, Error> {
-        Tape::new(Box::new(file(path.as_ref())?), OverflowPolicy::Wait)
+        Tape::to_file(TapeFile::create(path, ExistingFile::Keep)?)
     }
 
     /// Like [`create`](Tape::create), for real time: publishers never wait for the disk, and
     /// messages are passed to the operating system within two seconds, whether others follow or
     /// not.
     pub fn create_real_time(path: impl AsRef<Path>) -> Result<Tape, Error> {
-        Tape::new(Box::new(file(path.as_ref())?), OverflowPolicy::Drop)
+        Tape::to_file_real_time(TapeFile::create(path, ExistingFile::Keep)?)
+    }
+
+    /// Creates a tape in a file, otherwise like [`create`](Tape::create).
+    pub fn to_file(file: TapeFile) -> Result<Tape, Error> {
+        Tape::new(Box::new(file), OverflowPolicy::Wait)
+    }
+
+    /// Creates a tape in a file, otherwise like [`create_real_time`](Tape::create_real_time).
+    pub fn to_file_real_time(file: TapeFile) -> Result<Tape, Error> {
+        Tape::new(Box::new(file), OverflowPolicy::Drop)
     }
 
     /// Creates a tape that is written to `output`, otherwise like [`create`](Tape::create).
     pub fn to_writer(output: impl Write + Send + 'static) -> Result<Tape, Error> {
-        Tape::new(Box::new(output), OverflowPolicy::Wait)
+        Tape::new(Box::new(SingleOutput(Some(Box::new(output)))), OverflowPolicy::Wait)
     }
 
     /// Creates a tape that is written to `output`, otherwise like
     /// [`create_real_time`](Tape::create_real_time).
     pub fn to_writer_real_time(output: impl Write + Send + 'static) -> Result<Tape, Error> {
-        Tape::new(Box::new(output), OverflowPolicy::Drop)
+        Tape::new(Box::new(SingleOutput(Some(Box::new(output)))), OverflowPolicy::Drop)
     }
 
-    fn new(output: Box<dyn Write + Send>, when_full: OverflowPolicy) -> Result<Tape, Error> {
-        let recorder = Recorder::new(output).map_err(Error::writing)?;
+    fn new(storage: Box<dyn TapeStorage>, when_full: OverflowPolicy) -> Result<Tape, Error> {
         let queue = Arc::new(WriteQueue::new(when_full));
-        let thread = writer::start(queue.clone(), recorder, when_full).map_err(Error::no_thread)?;
-        let shared = TapeShared { queue, when_full, thread: Mutex::new(Some(thread)) };
+        let report = Arc::<WriterReport>::default();
+        let crash = CrashFlush::default();
+        let thread = writer::start(queue.clone(), storage, report.clone(), crash.clone(), when_full)?;
+        let shared = TapeShared { queue, report, crash, when_full, thread: Mutex::new(Some(thread)) };
         Ok(Tape { shared: Arc::new(shared), channels: ChannelCache::default() })
     }
 
@@ -96,8 +114,35 @@ impl Tape {
 
     /// Waits until everything published so far is passed to the operating system, where it survives
     /// this process.
+    ///
+    /// # Errors
+    /// The tape is finished, or its file cannot be written at present.
     pub fn flush(&self) -> Result<(), Error> {
-        if self.shared.queue.flush() { Ok(()) } else { Err(Error::finished()) }
+        if !self.shared.queue.flush() {
+            return Err(Error::finished());
+        }
+        self.failure().map_or(Ok(()), |failure| Err(Error::interrupted(&failure, self.missing())))
+    }
+
+    /// Why messages are not recorded at present; `None` if they are.
+    pub fn failure(&self) -> Option<String> {
+        self.shared.report.failure()
+    }
+
+    /// The most messages that are missing because the tape could not be written.
+    pub fn missing(&self) -> u64 {
+        self.shared.report.missing()
+    }
+
+    /// The files of the tape: one, and another one after each time that it could not be written;
+    /// none if it is not written to files.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.shared.report.files()
+    }
+
+    /// Passes what was published to the operating system although the process is about to end.
+    pub fn crash_flush(&self) -> CrashFlush {
+        self.shared.crash.clone()
     }
 
     /// The number of messages dropped because the disk was too slow.
@@ -109,8 +154,7 @@ impl Tape {
     /// written, now or before, or if the tape is finished already; later publications are not
     /// recorded.
     pub fn finish(&self) -> Result<u64, Error> {
-        let written = self.shared.finish().ok_or_else(Error::finished)?;
-        written.map_err(Error::writing)
+        self.shared.finish().ok_or_else(Error::finished)?
     }
 
     /// Enqueues an entry; write errors are reported by `finish`.
@@ -142,13 +186,9 @@ impl Tape {
     }
 }
 
-fn file(path: &Path) -> Result<BufWriter<File>, Error> {
-    File::create(path).map(BufWriter::new).map_err(|error| Error::file(path, error))
-}
-
 impl TapeShared {
     /// Ends the recording; `None` if it has ended before.
-    fn finish(&self) -> Option<McapResult<u64>> {
+    fn finish(&self) -> Option<Result<u64, Error>> {
         let dropped = self.queue.dropped();
         if self.when_full == OverflowPolicy::Drop {
             let entries = BTreeMap::from([("dropped".to_owned(), dropped.to_string())]);
@@ -176,7 +216,7 @@ impl Clone for Tape {
     }
 }
 
-/// Enqueues each message for the writer. An error ends the recording; [`Tape::finish`] reports it.
+/// Enqueues each message for the writer. [`Tape::finish`] reports errors.
 impl Observer for Tape {
     fn observe(&mut self, publication: Publication<'_>) {
         self.record(&publication);

@@ -1,10 +1,10 @@
 //! Copies items of tapes to a new tape.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
+
+use monas_files::AtomicFile;
 
 use crate::error::Error;
 use crate::recorder::Recorder;
@@ -12,7 +12,7 @@ use crate::recording::{Attachment, Channel, MetadataEntry, RecordedSample, Recor
 
 /// A tape copied from others.
 pub(crate) struct TapeCopy {
-    recorder: Recorder,
+    recorder: Recorder<AtomicFile>,
     /// The numbers of the channels, by the address of the shared channel; the reference is kept, so
     /// that the address remains unique.
     numbers: BTreeMap<*const Channel, (u16, Arc<Channel>)>,
@@ -25,13 +25,13 @@ impl TapeCopy {
         path: &Path,
         fill: impl FnOnce(&mut TapeCopy) -> Result<T, Error>,
     ) -> Result<T, Error> {
-        let draft = TemporaryFile::beside(path);
-        let file = File::create(&draft.path).map_err(|error| Error::unwritable(path, error))?;
-        let recorder = Recorder::new(Box::new(BufWriter::new(file))).map_err(Error::writing)?;
+        let unwritable = |error| Error::unwritable(path, error);
+        let file = AtomicFile::create(path).map_err(unwritable)?;
+        let recorder = Recorder::new(file).map_err(Error::writing)?;
         let mut copy = TapeCopy { recorder, numbers: BTreeMap::new() };
         let value = fill(&mut copy)?;
-        copy.recorder.finish().map_err(Error::writing)?;
-        fs::rename(&draft.path, path).map_err(|error| Error::unwritable(path, error))?;
+        let (_, file) = copy.recorder.finish().map_err(Error::writing)?;
+        file.commit().map_err(unwritable)?;
         Ok(value)
     }
 
@@ -67,25 +67,5 @@ impl TapeCopy {
     /// The number of messages.
     pub(crate) fn messages(&self) -> u64 {
         self.recorder.messages()
-    }
-}
-
-/// A file that is deleted unless it is renamed.
-struct TemporaryFile {
-    path: PathBuf,
-}
-
-impl TemporaryFile {
-    fn beside(path: &Path) -> TemporaryFile {
-        let mut name = path.file_name().unwrap_or_default().to_owned();
-        name.push(".part");
-        TemporaryFile { path: path.with_file_name(name) }
-    }
-}
-
-impl Drop for TemporaryFile {
-    fn drop(&mut self) {
-        // After success it has been renamed.
-        let _ = fs::remove_file(&self.path);
     }
 }

@@ -10,7 +10,7 @@ use crate::{Element, ElementRule, Grammar, Kind, Layers, resolve};
 /// Outputs and filters of a log.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct LogSettings {
-    /// The file, replaced at the start.
+    /// The file. If it exists, the log takes the next free name.
     pub file: Option<PathBuf>,
     /// Whether to write to the console.
     pub console: bool,

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -106,8 +105,8 @@ impl XmlConfig {
         &self.path
     }
 
-    /// Saves the file atomically: writes a new file and renames it, so that readers never see a
-    /// partial file.
+    /// Saves the file atomically, so that readers never see a partial file: see
+    /// [`monas_files::AtomicFile`].
     ///
     /// # Errors
     /// The file cannot be written, or it exists and could not be read.
@@ -118,11 +117,7 @@ impl XmlConfig {
                 self.path.display()
             )));
         }
-        let mut name = self.path.file_name().unwrap_or_default().to_os_string();
-        name.push(".new");
-        let new = self.path.with_file_name(name);
-        fs::write(&new, self.text())?;
-        fs::rename(&new, &self.path)
+        monas_files::write(&self.path, self.text())
     }
 
     /// The value of the first element of that name; none if there is no such element.

@@ -8,6 +8,7 @@ use narukom::Timestamp;
 
 use crate::call_slot::CallMark;
 use crate::memory::{Account, LeakDetector};
+use crate::thread_activities::{self, InternedText};
 
 /// An activity, as log lines name it.
 #[derive(Debug)]
@@ -20,6 +21,8 @@ pub struct ActivityContext {
     pub activity: String,
     /// The memory it holds, in real time.
     pub account: Account,
+    /// All names, for a report of a crash.
+    label: &'static InternedText,
 }
 
 impl ActivityContext {
@@ -31,7 +34,8 @@ impl ActivityContext {
     /// An activity of an agent of a host.
     pub fn new(robot: &str, agent: &str, activity: &str) -> Arc<ActivityContext> {
         let (robot, agent, activity) = (robot.into(), agent.into(), activity.into());
-        Arc::new(ActivityContext { robot, agent, activity, account: Account::default() })
+        let label = InternedText::of(format!("{robot}/{agent}/{activity}"));
+        Arc::new(ActivityContext { robot, agent, activity, account: Account::default(), label })
     }
 }
 
@@ -61,6 +65,7 @@ impl ActivityContext {
 /// Calls an activity; lines written meanwhile are attributed to it.
 pub fn calling<T>(caller: &Arc<ActivityContext>, cycle: u64, call: impl FnOnce() -> T) -> T {
     let _mark = CallMark::begin(caller);
+    thread_activities::begin(caller.label);
     let _before = ContextGuard(CALLED.replace(Some(CalledActivity { caller: caller.clone(), cycle })));
     call()
 }
@@ -70,6 +75,7 @@ struct ContextGuard(Option<CalledActivity>);
 
 impl Drop for ContextGuard {
     fn drop(&mut self) {
+        thread_activities::end(self.0.as_ref().map(|outer| outer.caller.label));
         CALLED.replace(self.0.take());
     }
 }

@@ -61,6 +61,7 @@ pub mod scheduling;
 pub mod seeds;
 pub mod statistics;
 pub mod stopwatch;
+pub mod thread_activities;
 pub mod unreachable_sources;
 pub mod vocabulary;
 

@@ -14,8 +14,8 @@
 //! # fn main() {}
 //! ```
 //!
-//! `ModuleFile::load` of the crate `monas-module` loads it, and a [`Registry`](crate::Registry) [with
-//! it](crate::Registry::with_module) contains its activities. The element
+//! `ModuleFile::load` of the crate `monas-module` loads it, and a [`Registry`](crate::Registry)
+//! [with it](crate::Registry::with_module) contains its activities. The element
 //! `<module>libeyes.so</module>` of a configuration and the command `monas module load libeyes.so`
 //! in a run do the same.
 //!
@@ -90,7 +90,8 @@ macro_rules! module {
         const _: () = {
             const OWN: &str = ::core::concat!(
                 "module ", $name, "\npackage ",
-                ::core::env!("CARGO_PKG_NAME"), " ", ::core::env!("CARGO_PKG_VERSION"), "\n"
+                ::core::env!("CARGO_PKG_NAME"), " ", ::core::env!("CARGO_PKG_VERSION"),
+                "\ncontent 0000000000000000000000000000000000000000000000000000000000000000\n"
             );
 
             #[used]

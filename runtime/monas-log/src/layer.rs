@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::io::{self, Write};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -18,6 +19,7 @@ use super::queue::RecordQueue;
 use crate::record::Record;
 use monas_config::LogSettings;
 use monas_config::Severity;
+use monas_files::ExistingFile;
 
 /// A layer that does nothing until its logger begins, and that logger.
 pub fn layer<S: Subscriber + for<'a> tracing_subscriber::registry::LookupSpan<'a>>() -> (impl Layer<S>, Logger)
@@ -62,32 +64,36 @@ struct OpenLog {
 
 impl Logger {
     /// Starts writing. The console is standard error. The layer must be installed before, since
-    /// `tracing` queries the wanted events when the log begins.
+    /// `tracing` queries the wanted events when the log begins. Returns the path of the file: that
+    /// of the settings, or one with a number in its name if that exists.
     ///
     /// # Errors
     /// The file cannot be created, the system cannot create a thread, or the log has begun before.
-    pub fn begin(&self, settings: LogSettings) -> io::Result<()> {
-        self.begin_with(settings, |lines| {
+    pub fn begin(&self, settings: LogSettings) -> io::Result<Option<PathBuf>> {
+        self.begin_with(settings, ExistingFile::Keep, |lines| {
             // A failure to write to the console cannot be reported.
             let _ = io::stderr().write_all(lines);
         })
     }
 
     /// As [`begin`](Logger::begin), with a function that receives console output as whole lines.
+    /// `existing` decides what happens to a file that exists.
     ///
     /// # Errors
     /// As in [`begin`](Logger::begin).
     pub fn begin_with(
         &self,
         settings: LogSettings,
+        existing: ExistingFile,
         console: impl Fn(&[u8]) + Send + Sync + 'static,
-    ) -> io::Result<()> {
+    ) -> io::Result<Option<PathBuf>> {
         let again = || io::Error::new(io::ErrorKind::AlreadyExists, "the log has begun before");
         if self.shared.begun.get().is_some() {
             return Err(again());
         }
         let console: ConsoleWriter = Box::new(console);
-        let outputs = Outputs::open(&settings, console)?;
+        let outputs = Outputs::open(&settings, existing, console)?;
+        let path = outputs.path().map(PathBuf::from);
         let least_grave = settings.verbosity.max(Severity::Error);
         let begun = OpenLog { settings, outputs, queue: RecordQueue::new() };
         self.shared.begun.set(begun).map_err(|_| again())?;
@@ -95,7 +101,7 @@ impl Logger {
         let thread = thread::Builder::new().name("logger".into()).spawn(move || shared.write_all())?;
         *self.shared.thread.lock().unwrap_or_else(PoisonError::into_inner) = Some(thread);
         self.shared.written.include(least_grave);
-        Ok(())
+        Ok(path)
     }
 
     /// From now on, publishes messages of at least this severity on

@@ -34,7 +34,7 @@
 //!
 //! | element | means |
 //! |---|---|
-//! | `MessageLogFile` | the file, which is begun anew; none if it is not said |
+//! | `MessageLogFile` | the file; if it exists, the next free name is taken; no file if it is not said |
 //! | `MessageLogCerr` | `1` for the console too |
 //! | `MessageLogCerrColor` | `1` for colours there |
 //! | `MessageLogFilter` | the activities or agents whose messages are wanted, or `all` |
@@ -80,6 +80,7 @@ mod record;
 pub use layer::{Logger, layer};
 pub use log_hosts::{LogHosts, LogHostsGuard};
 pub use monas_config::{LogFormat, LogSettings, Severity};
+pub use monas_files::ExistingFile;
 
 /// Writes a message in the name of an activity or another component: the thesis's `WriteMsg`. Code
 /// called by the runtime uses the macros of [`tracing`] instead.

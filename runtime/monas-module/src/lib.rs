@@ -1,10 +1,12 @@
 //! Loads modules, shared objects with activities, into a running program.
 //!
-//! [`ModuleFile::read`] reads a file and its build fingerprint without running code of it;
+//! [`ModuleFile::read`] reads a file and its build fingerprint without running code of it, if no
+//! other user can change it and its content is what [`seal`] has found after the build;
 //! [`ModuleFile::load`] compares the fingerprint with that of the program, loads a copy of the
 //! file, compares types, and returns the [`Module`](monas_core::Module) for a
 //! [`Registry`](monas_core::Registry). The part that is compiled into modules is
-//! [`monas_core::module`](mod@monas_core::module), which also describes compatibility, state and lifetime.
+//! [`monas_core::module`](mod@monas_core::module), which also describes compatibility, state and
+//! lifetime.
 //!
 //! ```no_run
 //! use monas_core::Registry;
@@ -17,7 +19,9 @@
 //! }
 //! ```
 
+mod content;
 mod load;
 mod module_file;
 
+pub use content::seal;
 pub use module_file::{ModuleFile, read_fingerprint};

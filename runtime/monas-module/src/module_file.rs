@@ -1,12 +1,12 @@
 //! The file of a module, read but not loaded.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use object::{Object, ObjectSection};
 use yase::Diagnostic;
 
+use crate::content;
 use monas_core::module::note::{self, BuildFingerprint, FingerprintMismatch};
 
 /// Maximum size of a module, in bytes.
@@ -27,14 +27,18 @@ impl ModuleFile {
     /// Reads the file of a module without running its code.
     ///
     /// # Errors
-    /// Diagnostics (`E0360`): it cannot be read, or is not a module of Monas.
+    /// Diagnostics: it cannot be read, is not a module of Monas, or other users can change it
+    /// (`E0360`); it is damaged (`E0368`).
     pub fn read(path: impl AsRef<Path>) -> Result<ModuleFile, Vec<Diagnostic>> {
         // A later use may happen in another working directory.
         let path = path.as_ref();
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
         let bytes = bytes_of(&path).map_err(|error| unread(&path, &error.to_string()))?;
         match read_fingerprint(&bytes) {
-            Ok(note) => Ok(ModuleFile { path, bytes, note }),
+            Ok(note) => match content::check(&bytes, &note) {
+                Ok(()) => Ok(ModuleFile { path, bytes, note }),
+                Err(reason) => Err(damaged(&path, &reason)),
+            },
             Err(reason) => Err(unread(&path, &format!("this is no module of Monas: {reason}"))),
         }
     }
@@ -90,7 +94,7 @@ pub fn read_fingerprint(bytes: &[u8]) -> Result<BuildFingerprint, String> {
 
 fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let read = File::open(path)?.take(MOST + 1).read_to_end(&mut bytes)?;
+    let read = monas_files::open_trusted(path)?.take(MOST + 1).read_to_end(&mut bytes)?;
     match read as u64 > MOST {
         true => Err(std::io::Error::new(std::io::ErrorKind::FileTooLarge, "it is too large for a module")),
         false => Ok(bytes),
@@ -100,6 +104,12 @@ fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
 fn unread(path: &Path, reason: &str) -> Vec<Diagnostic> {
     let message = format!("{}: {reason}", path.display());
     vec![Diagnostic::error("E0360", 0..0, message).with_hint("a module is what `monas module build` writes")]
+}
+
+fn damaged(path: &Path, reason: &str) -> Vec<Diagnostic> {
+    let message = format!("{}: this module is damaged: {reason}", path.display());
+    let hint = "copy it again, or build it with `monas module build`";
+    vec![Diagnostic::error("E0368", 0..0, message).with_hint(hint)]
 }
 
 #[cfg(test)]
@@ -136,7 +146,11 @@ mod tests {
     }
 
     fn note() -> Vec<u8> {
-        let text = format!("{}{OWN}", note::BUILD);
+        note_of(OWN)
+    }
+
+    fn note_of(own: &str) -> Vec<u8> {
+        let text = format!("{}{own}", note::BUILD);
         let numbers = [6, text.len() as u32, 1];
         let mut bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
         bytes.extend(b"Monas\0\0\0");
@@ -162,6 +176,52 @@ mod tests {
         }
         assert!(read_fingerprint(b"#!/bin/sh\n").is_err());
         assert!(read_fingerprint(b"").is_err());
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn what_others_can_change_or_what_is_no_file_is_refused() {
+        use std::os::unix::fs::PermissionsExt;
+
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("eyes.so");
+        std::fs::write(&path, elf(note::SECTION, &note())).unwrap();
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o666)).unwrap();
+        let wrong = ModuleFile::read(&path).unwrap_err()[0].to_string();
+        assert!(wrong.contains("other users may change it"), "{wrong}");
+        let pipe = folder.path().join("pipe.so");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let wrong = ModuleFile::read(&pipe).unwrap_err()[0].to_string();
+        assert!(wrong.contains("it is no regular file"), "{wrong}");
+    }
+
+    #[test]
+    fn a_sealed_module_whose_content_has_changed_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("eyes.so");
+        let own = format!("{OWN}{} {}\n", note::CONTENT, note::UNSEALED);
+        let unsealed = [elf(note::SECTION, &note_of(&own)), b"code".to_vec()].concat();
+        std::fs::write(&path, &unsealed).unwrap();
+        assert!(ModuleFile::read(&path).is_ok(), "a module that cargo alone has built");
+        crate::seal(&path).unwrap();
+        let sealed = std::fs::read(&path).unwrap();
+        assert!(sealed != unsealed && sealed.len() == unsealed.len());
+        assert!(ModuleFile::read(&path).is_ok());
+        crate::seal(&path).unwrap();
+        assert!(std::fs::read(&path).unwrap() == sealed, "once more changes nothing");
+        for change in [
+            |bytes: &mut Vec<u8>| bytes.truncate(bytes.len() - 1),
+            |bytes: &mut Vec<u8>| {
+                let last = bytes.len() - 1;
+                bytes[last] ^= 1;
+            },
+        ] {
+            let mut bytes = sealed.clone();
+            change(&mut bytes);
+            std::fs::write(&path, bytes).unwrap();
+            let wrong = ModuleFile::read(&path).unwrap_err()[0].to_string();
+            assert!(wrong.starts_with("error[E0368]: ") && wrong.contains("is damaged"), "{wrong}");
+        }
     }
 
     #[test]

@@ -74,14 +74,14 @@ pub use monas_core::{
     TimingPolicy, Topics, Totals, TransitionCoverage, ViolationResponse,
 };
 pub use monas_core::{activity, function, module, statechart};
-pub use monas_core::{generated, memory, records, scenario};
+pub use monas_core::{generated, memory, records, scenario, thread_activities};
 
 pub use monas_config as config;
 pub use monas_config::ConfigurationBundle;
 pub use monas_link::{Certificates, LinkConfig, LinkStatistics, LinkTransport, ZenohEndpoints};
 pub use monas_log as logger;
 pub use monas_log::fatal;
-pub use monas_module::ModuleFile;
+pub use monas_module::{ModuleFile, seal as seal_module};
 pub use monas_runtime::replay;
 pub use monas_runtime::{HostConfig, RealTimeRun, RunHandle, Simulation, StopHandle, Talws, World};
 

@@ -33,8 +33,8 @@ impl Error {
         Error { kind: ErrorKind::Agents, message, source: Some(error.into()) }
     }
 
-    pub(crate) fn recording(path: &std::path::Path, error: monas_tape::Error) -> Error {
-        let message = format!("cannot record to `{}`: {error}", path.display());
+    pub(crate) fn recording(error: monas_tape::Error) -> Error {
+        let message = format!("cannot record: {error}");
         Error { kind: ErrorKind::Recording, message, source: Some(error.into()) }
     }
 

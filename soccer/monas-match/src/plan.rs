@@ -1,6 +1,6 @@
 //! A match that was read and checked but not started.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -9,6 +9,7 @@ use monas::{
     Agent, ChartListener, ConfigurationBundle, HostConfig, LinkConfig, Module, Registry, RunHash, Talws,
 };
 use monas_sim::{FieldGeometry, MatchRules, Physics, Setup, SharedField, SimulatedWorld, TeamSetup};
+use monas_tape::Tape;
 use yase::{Diagnostic, Source};
 
 use crate::error::Error;
@@ -154,12 +155,12 @@ struct RobotPlan {
 }
 
 /// Options of a match.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct MatchOptions {
     /// The seed of all random numbers.
     pub seed: u64,
-    /// The file to which all messages are recorded.
-    pub record: Option<PathBuf>,
+    /// The tape on which all messages are recorded. The caller finishes it after the match.
+    pub record: Option<Tape>,
 }
 
 impl MatchPlan {
@@ -254,12 +255,10 @@ impl MatchPlan {
         let (mut talws, pitch) = self.set_up(options.seed)?;
         let hash = RunHash::new();
         talws.observe(Box::new(hash.clone()));
-        let tape = options.record.map(|path| {
-            let tape = tape_metadata::simulated(&path, &files, &settings, options.seed, &hosts);
-            Ok((tape.map_err(|error| Error::recording(&path, error))?, path))
-        });
-        let tape = tape.transpose()?;
-        if let Some((tape, _)) = &tape {
+        let tape = options.record;
+        if let Some(tape) = &tape {
+            tape_metadata::label_simulated(tape, &files, &settings, options.seed, &hosts)
+                .map_err(Error::recording)?;
             talws.observe(Box::new(tape.clone()));
         }
         let simulation = match is_linked {

@@ -1,6 +1,5 @@
 //! A running match.
 
-use std::path::PathBuf;
 use std::time::Duration;
 
 use monas::{RunHash, Simulation, Statistics, Timestamp};
@@ -20,7 +19,7 @@ pub struct RunningMatch {
     simulation: Simulation,
     pitch: SharedField,
     hash: RunHash,
-    tape: Option<(Tape, PathBuf)>,
+    tape: Option<Tape>,
     length: Duration,
     events: Vec<MatchEvent>,
     seen_events: usize,
@@ -31,7 +30,7 @@ impl RunningMatch {
         simulation: Simulation,
         pitch: SharedField,
         hash: RunHash,
-        tape: Option<(Tape, PathBuf)>,
+        tape: Option<Tape>,
         length: Duration,
     ) -> RunningMatch {
         RunningMatch { simulation, pitch, hash, tape, length, events: Vec::new(), seen_events: 0 }
@@ -100,16 +99,16 @@ impl RunningMatch {
         &self.simulation
     }
 
-    /// Ends the match and its recording. It waits three seconds of real time for the activities to
-    /// stop; [`MatchSummary::unstopped`] names one that has not.
+    /// Ends the match. The caller finishes its tape. It waits three seconds of real time for the
+    /// activities to stop; [`MatchSummary::unstopped`] names one that has not.
     ///
     /// # Errors
-    /// The recording cannot be completed.
+    /// The tape is finished already.
     pub fn finish(self) -> Result<MatchSummary, Error> {
         let simulated = self.now();
         let RunningMatch { simulation, pitch, hash, tape, events, .. } = self;
-        if let Some((tape, path)) = &tape {
-            tape_metadata::ended(tape, simulation.now()).map_err(|error| Error::recording(path, error))?;
+        if let Some(tape) = &tape {
+            tape_metadata::ended(tape, simulation.now()).map_err(Error::recording)?;
         }
         let last = (simulation.statistics(), simulation.coverage());
         let ((statistics, coverage), unstopped) = match simulation.stop_within(STOP_LIMIT) {
@@ -117,9 +116,6 @@ impl RunningMatch {
             Err(error) => (last, Some(error.to_string())),
         };
         let (hash, messages) = hash.finish();
-        if let Some((tape, path)) = tape {
-            tape.finish().map_err(|error| Error::recording(&path, error))?;
-        }
         let touch = pitch.with_world(|world| world.statistics().time_to_first_touch());
         Ok(MatchSummary {
             hash,

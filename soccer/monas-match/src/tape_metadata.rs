@@ -1,10 +1,9 @@
 //! Metadata of a recording: the run and its files.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use monas::{ConfigurationBundle, Timestamp};
-use monas_tape::{Error, Tape};
+use monas_tape::{Error, ErrorKind, Tape};
 
 /// The name of the metadata about a run: `version`, `configuration` (the name of a file in the
 /// tape), `configuration_hash`, `time` (`simulated` or `real`), `seed` if time is simulated, and
@@ -22,17 +21,15 @@ pub const FOLDER: &str = "folder";
 /// were published while agents were being stopped.
 pub const END: &str = "end";
 
-/// Creates the tape of a run in simulated time.
-pub(crate) fn simulated(
-    path: &Path,
+/// Writes the metadata of a run in simulated time.
+pub(crate) fn label_simulated(
+    tape: &Tape,
     files: &ConfigurationBundle,
     settings: &str,
     seed: u64,
     robots: &[String],
-) -> Result<Tape, Error> {
-    let tape = Tape::create(path)?;
-    label(&tape, files, settings, robots, &[("time", "simulated".to_owned()), ("seed", seed.to_string())])?;
-    Ok(tape)
+) -> Result<(), Error> {
+    label(tape, files, settings, robots, &[("time", "simulated".to_owned()), ("seed", seed.to_string())])
 }
 
 /// Writes the metadata of a run in real time; `settings` are the command-line settings, one per
@@ -71,7 +68,13 @@ fn label(
         .chain(&folder)
         .map(|(key, value)| ((*key).to_owned(), value.clone()));
     tape.describe(RUN, &facts.collect())?;
-    files.files().try_for_each(|(name, media_type, content)| tape.attach(name, media_type, content))
+    files.files().try_for_each(|(name, media_type, content)| tape.attach(name, media_type, content))?;
+    // A process that is killed early leaves a tape that names its run.
+    match tape.flush() {
+        Err(error) if error.kind() == ErrorKind::Finished => Err(error),
+        // The tape reports what it cannot write, and the run goes on.
+        _ => Ok(()),
+    }
 }
 
 /// Writes the end time of a run.

@@ -8,12 +8,13 @@ use super::layers::is_product;
 use super::workspace::{Crate, TextFile, Workspace};
 
 /// The documents that must exist.
-const EXPECTED: [&str; 7] = [
+const EXPECTED: [&str; 8] = [
     "README.md",
     "ARCHITECTURE.md",
     "STYLE.md",
     "CHANGELOG.md",
     "CONTRIBUTING.md",
+    "SECURITY.md",
     "LICENSE-MIT",
     "LICENSE-APACHE",
 ];

@@ -6,7 +6,8 @@ use super::TidyFinding;
 use super::workspace::{Crate, Dependency, Workspace};
 
 /// Every crate of the product and its layer.
-const LAYERS: [(&str, u8); 29] = [
+const LAYERS: [(&str, u8); 30] = [
+    ("monas-files", 0),
     ("narukom", 0),
     ("narukom-build", 0),
     ("yase-expression", 0),

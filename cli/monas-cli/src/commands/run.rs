@@ -3,21 +3,21 @@
 mod control;
 mod coverage;
 mod links;
+mod outputs;
 mod play;
 mod real_time;
 mod scoreboard;
 mod summary;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, ValueHint};
-use monas::logger::{LogSettings, Severity};
 use monas_project::differences;
 use yase::Diagnostic;
 
 use crate::input::{ConfigurationKind, DEFAULT_CONFIGURATION, LayerArguments, kind_of, layers};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, duration, report};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, duration, parse_size, report};
 
 /// Arguments of `monas run`.
 #[derive(Args, Debug)]
@@ -33,12 +33,23 @@ pub(crate) struct RunArguments {
     /// Stop after this much time, for example 600s, 10min or 500ms.
     #[arg(long = "for", value_name = "DURATION", value_parser = duration::parse)]
     pub(crate) length: Option<Duration>,
-    /// Record every message into this MCAP file.
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    /// Record every message into this MCAP file, or into a new one in this folder, named after the
+    /// run. If the file exists, the next free name is taken: `match-2.mcap`.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub(crate) record: Option<PathBuf>,
-    /// Write a log as configured by this file, in XML or TOML, see `config/logger.xml`.
+    /// The most recordings in a folder; the oldest are removed.
+    #[arg(long, value_name = "COUNT", default_value_t = 20)]
+    pub(crate) keep: usize,
+    /// The most that all recordings in a folder take, for example 500MB; the oldest are removed.
+    #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "4GB")]
+    pub(crate) keep_size: u64,
+    /// Write a log as configured by this file, in XML or TOML, see `config/logger.xml`. If the
+    /// log's file exists, the next free name is taken.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) log: Option<PathBuf>,
+    /// Replace the files of the recording and of the log if they exist and no run is writing them.
+    #[arg(long)]
+    pub(crate) overwrite: bool,
     /// Run simulated time no faster than real time. Without a match, agents always run in real
     /// time.
     #[arg(long)]
@@ -71,31 +82,8 @@ pub(crate) fn execute(
     }
     report::write(console, arguments.format.value, &unlinked)?;
     let layers = layers::of(&arguments.config, &arguments.layers).map_err(invalid)?;
-    let asked = match &arguments.log {
-        Some(file) => write_log(file, arguments.format.value, console)?,
-        None => Severity::Info,
-    };
-    console.log.iter().for_each(|log| log.publish(asked.max(Severity::Info)));
     match kind {
         ConfigurationKind::Match => play::execute(arguments, &layers, console),
         ConfigurationKind::Agents => real_time::execute(arguments, &layers, console),
     }
-}
-
-/// Starts the log that a file configures. Returns its verbosity.
-fn write_log(file: &Path, format: Format, console: &CommandOutput<'_>) -> Result<Severity, CommandFailure> {
-    let (mut settings, diagnostics) = LogSettings::load(file);
-    if diagnostics.iter().any(Diagnostic::is_error) {
-        return Err(CommandFailure::Invalid(format, diagnostics));
-    }
-    let Some(log) = &console.log else {
-        return Err(CommandFailure::Usage(
-            "--log needs the log of the process, which belongs to the calling program".into(),
-        ));
-    };
-    settings.colour &= console.colour_err;
-    let verbosity = settings.verbosity;
-    log.write(settings).map(|()| verbosity).map_err(|error| {
-        CommandFailure::failed(format, format_args!("the log of {}: {error}", file.display()))
-    })
 }

@@ -38,6 +38,8 @@ struct RunSample {
     run: String,
     /// Time of the run.
     now: Duration,
+    /// What endangers its results.
+    alarms: Vec<String>,
     agents: Vec<AgentEntry>,
     topics: Vec<TopicEntry>,
 }
@@ -78,7 +80,13 @@ impl RunPoller<'_> {
         let agents = Reply::decode(reply.as_slice()).ok().and_then(|reply| reply.agents);
         let topics = self.client.topics(&host, "").map_err(failed())?;
         let agents = agents.ok_or_else(|| unexpected_reply(self.choice))?.agents;
-        Ok(RunSample { run: run.name, now: Duration::from_nanos(run.now), agents, topics })
+        Ok(RunSample {
+            run: run.name,
+            now: Duration::from_nanos(run.now),
+            alarms: run.alarms,
+            agents,
+            topics,
+        })
     }
 }
 

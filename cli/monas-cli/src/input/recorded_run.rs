@@ -7,7 +7,7 @@ use std::path::Path;
 use monas::replay::{RecordedPublisher, Replay};
 use monas::{Agent, ConfigurationBundle, HostConfig, Registry, Talws};
 use monas_match::MatchSource;
-use monas_tape::{Channel, Recording, RecordingItem, TapeOverview};
+use monas_tape::{CONTINUATION, Channel, Recording, RecordingItem, TapeOverview};
 use yase::Diagnostic;
 
 use super::configuration::{ConfigurationKind, kind_of};
@@ -47,6 +47,10 @@ pub(crate) fn run_of(overview: &TapeOverview) -> Result<RecordedRun, String> {
         "simulated" => TimeMode::Simulated { seed: seed(&fact("seed")?)? },
         _ => TimeMode::Real,
     };
+    if let Some(of) = overview.facts.iter().find(|facts| facts.name == CONTINUATION) {
+        let of = of.entries.get("of").map_or("another tape", String::as_str);
+        return Err(format!("the tape continues {of}, which could not be written: its beginning is missing"));
+    }
     if let Some(dropped) = dropped(overview) {
         return Err(format!(
             "{dropped} messages were dropped because the disk was too slow: the inputs of agents are incomplete"

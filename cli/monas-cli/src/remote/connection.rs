@@ -36,6 +36,9 @@ pub(crate) fn socket(choice: &RunSelector) -> Result<PathBuf, CommandFailure> {
 }
 
 fn no_live_run(folder: &std::path::Path) -> String {
+    if let (true, Err(error)) = (folder.exists(), monas_files::check_private(folder)) {
+        return format!("control sockets are not used: {error}");
+    }
     format!("nothing runs here, by {}; start a run with `monas run`", folder.display())
 }
 

@@ -44,7 +44,8 @@ impl LinkTargets {
         talws.host(HostConfig { name, links, ..HostConfig::default() });
         let running = talws.start().map_err(|error| CommandFailure::not_started(format, error))?;
         let folder = tempfile::tempdir().map_err(|error| CommandFailure::failed(format, error))?;
-        let server = ControlServer::start(folder.path(), "link", Arc::new(running.run_handle()));
+        let server =
+            ControlServer::start(&folder.path().join("monas"), "link", Arc::new(running.run_handle()));
         let server = server.map_err(failure(format))?;
         let reach = LinkTargets { server, running, sent, format, _folder: folder };
         reach.wait_until(LinkTargets::is_connected)?;

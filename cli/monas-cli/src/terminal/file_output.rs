@@ -1,6 +1,5 @@
 //! The flag `-o`: writes a text to a file or to standard output.
 
-use std::fs;
 use std::path::Path;
 
 use super::{CommandFailure, CommandOutput, Exit, Format};
@@ -13,7 +12,7 @@ pub(crate) fn write_text(
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
     match output {
-        Some(path) => fs::write(path, text).map_err(|error| {
+        Some(path) => monas_files::write(path, text).map_err(|error| {
             CommandFailure::Failed(format, format!("cannot write {}: {error}", path.display()))
         })?,
         None => console.out.write_all(text.as_bytes())?,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::{CommandOutput, Exit};
+use super::{CommandOutput, Exit, crash_report};
 
 /// Whether the user has requested the end of the run.
 #[derive(Clone, Debug, Default)]
@@ -24,6 +24,7 @@ impl Interrupt {
         let requested = interrupt.0.clone();
         ctrlc::set_handler(move || {
             if requested.swap(true, Ordering::Relaxed) {
+                crash_report::end();
                 std::process::exit(Exit::Interrupted.code().into());
             }
         })?;

@@ -1,9 +1,11 @@
 //! The log of this process: on standard error, and in the files that `--log` configures.
 
 use std::io::{self, Write};
+use std::path::PathBuf;
 
 use indicatif::MultiProgress;
 use monas::logger::{self, LogSettings, Logger, Severity};
+use monas_tape::ExistingFile;
 use tracing_subscriber::prelude::*;
 use tracing_subscriber::{EnvFilter, Registry, reload};
 
@@ -53,9 +55,10 @@ impl ProcessLog {
     }
 
     /// Starts the configured log. It replaces the lines on standard error unless MONAS_LOG is set.
-    pub(crate) fn write(&self, settings: LogSettings) -> io::Result<()> {
+    /// Returns the path of its file, which differs from the configured one if that exists.
+    pub(crate) fn write(&self, settings: LogSettings, existing: ExistingFile) -> io::Result<Option<PathBuf>> {
         let bars = self.bars.clone();
-        self.logger.begin_with(settings, move |lines| {
+        let file = self.logger.begin_with(settings, existing, move |lines| {
             // If standard error is closed there is nowhere to report that.
             let _ = ProgressAwareStderr(bars.clone()).write_all(lines);
         })?;
@@ -63,7 +66,7 @@ impl ProcessLog {
             // This fails only after the log has ended.
             let _ = self.usual.reload(EnvFilter::new("off"));
         }
-        Ok(())
+        Ok(file)
     }
 }
 

@@ -30,6 +30,21 @@ pub(crate) fn size(bytes: u64) -> String {
     }
 }
 
+/// Parses a size as [`size`] writes it: `500MB`.
+pub(crate) fn parse_size(text: &str) -> Result<u64, String> {
+    let number_ends = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
+    let (number, unit) = text.split_at(number_ends);
+    let worth = match unit.trim() {
+        "B" => 1,
+        "kB" => 1_000,
+        "MB" => 1_000_000,
+        "GB" => 1_000_000_000,
+        unit => return Err(format!("`{unit}` is not a unit of size: use B, kB, MB or GB, as in `500MB`")),
+    };
+    let number: u64 = number.parse().map_err(|_| format!("`{text}` does not start with a whole number"))?;
+    number.checked_mul(worth).ok_or_else(|| format!("`{text}` is too large"))
+}
+
 /// `1 message`, `12,345 messages`.
 pub(crate) fn counted(count: u64, word: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
@@ -58,6 +73,10 @@ mod tests {
         assert_eq!(counted(1, "message"), "1 message");
         assert_eq!(counted(0, "message"), "0 messages");
         assert_eq!([grouped(999), grouped(1_000), grouped(1_234_567)], ["999", "1,000", "1,234,567"]);
+        assert_eq!([parse_size("12 kB"), parse_size("4GB")], [Ok(12_000), Ok(4_000_000_000)]);
+        for wrong in ["", "5", "MB", "1.5GB", "5MiB", "99999999999GB"] {
+            assert!(parse_size(wrong).is_err(), "{wrong}");
+        }
         assert_eq!([size(999), size(1_000), size(12_340_000)], ["999 B", "1.0 kB", "12.3 MB"]);
     }
 }

@@ -27,6 +27,14 @@ pub(crate) fn write(
     Ok(())
 }
 
+/// Writes a remark about what the command does, on standard error.
+pub(crate) fn note(console: &mut CommandOutput<'_>, format: Format, message: &str) -> io::Result<()> {
+    match format {
+        Format::Text => writeln!(console.err, "note: {message}"),
+        Format::Json => writeln!(console.err, "{}", json!({"severity": "information", "message": message})),
+    }
+}
+
 /// `2 errors, 1 warning`
 fn count(diagnostics: &[Diagnostic]) -> String {
     let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();

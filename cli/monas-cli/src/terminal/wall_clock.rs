@@ -33,7 +33,7 @@ impl WallClock {
 
     /// Waits until this time, or until `is_over`.
     #[expect(clippy::disallowed_methods, reason = "simulated time is paced by the wall clock for watchers")]
-    pub(crate) fn wait_until_or(&self, time: Duration, is_over: impl Fn() -> bool) {
+    pub(crate) fn wait_until_or(&self, time: Duration, mut is_over: impl FnMut() -> bool) {
         while !is_over() {
             match time.checked_sub(self.elapsed()) {
                 None | Some(Duration::ZERO) => return,

@@ -121,11 +121,16 @@ impl Site {
     /// Writes the file of robots: one robot with a configuration, an ssh command and a kind of
     /// service.
     fn describe(&self, config: &str, ssh: &str, service: &str) {
+        self.describe_with(config, ssh, service, "");
+    }
+
+    /// Likewise, with further attributes.
+    fn describe_with(&self, config: &str, ssh: &str, service: &str, more: &str) {
         let user = Command::new("id").arg("-un").output().expect("a user").stdout;
         let user = String::from_utf8(user).expect("a name").trim().to_owned();
         let text = format!(
             "<robot name=\"nao-2\" address=\"{user}@127.0.0.1\" port=\"{}\" identity=\"{}\" ssh=\"{ssh} -F {}\" config=\"{config}\"\n  \
-             folder=\"{}\" service=\"{service}\" settle=\"1s\" arguments=\"--no-control\"/>\n",
+             folder=\"{}\" service=\"{service}\" settle=\"1s\" arguments=\"--no-control\" {more}/>\n",
             self.port,
             self.at("mine").display(),
             self.at("ssh_config").display(),
@@ -218,6 +223,39 @@ fn a_robot_gets_program_configuration_and_models_and_runs_them_and_what_fails_do
     let listed = site.deploy(&["--list"]);
     assert!(listed.out.contains(&format!("{one}  current")), "{}", listed.out);
     assert!(listed.out.contains(&format!("{two}  previous")), "{}", listed.out);
+}
+
+#[test]
+fn recordings_survive_a_crash_a_restart_and_a_new_release() {
+    let Some(site) = Site::open() else { return };
+    site.describe_with("config/roles/goalie.xml", "ssh", "script", "record=\"1\" keep=\"3\"");
+    let recordings = || {
+        let entries = fs::read_dir(site.there("recordings")).expect("a folder").flatten();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+        names.sort_unstable();
+        names
+    };
+    let numbers = || recordings().iter().map(|name| name[..12].to_owned()).collect::<Vec<_>>();
+    let size = |name: &str| fs::metadata(site.there("recordings").join(name)).expect("a file").len();
+    site.bring();
+    let first = recordings().pop().expect("a recording");
+    let process = fs::read_to_string(site.there("service.pid")).expect("a number");
+    let process = process.split(' ').next().expect("a number");
+    assert!(Command::new("kill").args(["-9", process]).status().expect("there is a kill").success());
+    while site.runs() {}
+    let recorded = size(&first);
+    assert!(recorded > 0);
+    let start = || Command::new(site.there("service")).arg("start").status().expect("it is there").success();
+    assert!(start());
+    while numbers().len() < 2 {}
+    let model = fs::read_to_string(site.at("models/goalie.srm")).expect("a model");
+    write(&site.at("models/goalie.srm"), &format!("{model}# a remark\n"));
+    site.bring();
+    assert_eq!(numbers(), ["0001-goalie-", "0002-goalie-", "0003-goalie-"]);
+    assert_eq!(size(&first), recorded, "the evidence of the crash is as it was");
+    site.bring();
+    assert_eq!(numbers(), ["0002-goalie-", "0003-goalie-", "0004-goalie-"], "the oldest is removed");
 }
 
 #[test]

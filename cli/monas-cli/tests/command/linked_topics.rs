@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use monas::records::Setting;
 use monas_match::{MatchOptions, MatchSource};
+use monas_tape::Tape;
 
 use crate::kit::{monas, root};
 
@@ -22,10 +23,13 @@ fn record(file: &Path, seconds: u64) -> String {
     let registry = monas::Registry::linked();
     let plan =
         MatchSource::load(root().join(MATCH), &registry).unwrap_or_else(|found| panic!("{}", found[0]));
-    let options = MatchOptions { seed: 1, record: Some(file.to_owned()) };
+    let tape = Tape::create(file).expect("the folder takes files");
+    let options = MatchOptions { seed: 1, record: Some(tape.clone()) };
     let mut running = plan.start(options).expect("the match starts");
     running.advance(Duration::from_secs(seconds)).expect("the match goes on");
-    running.finish().expect("the match ends").hash
+    let hash = running.finish().expect("the match ends").hash;
+    tape.finish().expect("it was written");
+    hash
 }
 
 fn hash_of_monas(length: &str) -> String {

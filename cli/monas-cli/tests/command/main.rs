@@ -11,6 +11,8 @@ mod compose;
 mod config;
 mod convert;
 mod copying;
+#[cfg(target_os = "linux")]
+mod crashes;
 #[cfg(unix)]
 mod deploy;
 mod doctor;
@@ -25,6 +27,7 @@ mod mutate;
 mod new;
 mod protocol;
 mod reading;
+mod recordings;
 mod reference;
 mod refinement;
 mod run;

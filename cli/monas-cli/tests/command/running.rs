@@ -37,6 +37,15 @@ impl Running {
         Running { child, out, err: Some(err) }
     }
 
+    /// Reads standard error up to a line with this text.
+    pub(crate) fn await_line(&mut self, part: &str) {
+        let err = self.err.as_mut().expect("it is not read to its end");
+        let mut said = String::new();
+        while !said.lines().last().is_some_and(|line| line.contains(part)) {
+            assert!(err.read_line(&mut said).expect("it says something") > 0, "it ended with:\n{said}");
+        }
+    }
+
     /// Interrupts the run like Ctrl-C.
     pub(crate) fn interrupt(mut self) -> Answer {
         signal("-INT", self.child.id());

@@ -181,8 +181,9 @@ fn hash_of(text: &str) -> String {
 fn looking_on_changes_nothing_and_what_is_published_is_recorded() {
     let folder = folder();
     let tape = folder.path().join("run.mcap").display().to_string();
+    let recorded = ["--record", tape.as_str(), "--overwrite"];
     let arguments =
-        ["run", MATCH, "--for", "30s", "--seed", "7", "--control", "game", "--record", tape.as_str()];
+        [&["run", MATCH, "--for", "30s", "--seed", "7", "--control", "game"], &recorded[..]].concat();
     let alone = ask(folder.path(), &arguments);
     let mut watched = Running::start(folder.path(), &arguments, "control socket: ");
     let echo = ask(folder.path(), &["topic", "echo", "**", "--count", "500", "--format", "json"]);

@@ -24,8 +24,12 @@ const ANSWER_LIMIT: usize = 64 << 20;
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// The control sockets in a folder, sorted by name: the name of each run and the path of its
-/// socket. Some may be left over from runs that were killed.
+/// socket. Some may be left over from runs that were killed. A folder that other users can access
+/// has none, since its sockets may be theirs.
 pub fn control_sockets(folder: &Path) -> Vec<(String, PathBuf)> {
+    if monas_files::check_private(folder).is_err() {
+        return Vec::new();
+    }
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let sockets = entries.map(|entry| entry.path());
     let named = sockets.filter(|path| path.extension().is_some_and(|end| end == ENDING));

@@ -1,9 +1,9 @@
 //! Server side of a run's control socket.
 
-use std::fs::{self, DirBuilder, Permissions};
+use std::fs::{self, Permissions};
 use std::io::{self, Read};
 use std::net::Shutdown;
-use std::os::unix::fs::{DirBuilderExt, PermissionsExt};
+use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,21 +21,46 @@ use super::messages::{
 };
 use super::{CLIENT_LIMIT, ControlTarget, REQUEST_LIMIT, frame};
 use crate::error::{Error, ErrorKind};
+use crate::socket_folder::lock_names;
 
 /// Interval at which a thread checks whether it should stop.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Number of such intervals without a request after which a tool is disconnected.
-const PATIENCE: u32 = 100;
+/// Number of such intervals without a whole request after which a tool is disconnected.
+const PATIENCE: usize = 100;
+
+/// A request of so many bytes may arrive in one more part. A tool that sends its request in smaller
+/// parts is disconnected, since it would hold its connection for as long as it likes.
+const PART: usize = 16 << 10;
 
 /// Time without reading its replies after which a tool is disconnected.
 const SLOWEST: Duration = Duration::from_secs(2);
 
+/// The control socket of a run that does not exist yet: it holds the run's name. Tools that connect
+/// wait until it is served.
+#[derive(Debug)]
+pub struct ControlSocket {
+    listener: UnixListener,
+    name: String,
+    path: SocketPath,
+}
+
 /// Serves the control socket of a run. Dropping it stops the server.
 pub struct ControlServer {
-    path: PathBuf,
     stops: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
+    path: SocketPath,
+}
+
+/// The path of a socket, which is removed when this is dropped.
+#[derive(Debug)]
+struct SocketPath(PathBuf);
+
+impl Drop for SocketPath {
+    fn drop(&mut self) {
+        // A process that finds the socket later gets an error on connecting.
+        let _ = fs::remove_file(&self.0);
+    }
 }
 
 /// The state shared by all connections.
@@ -47,12 +72,13 @@ struct ServerState {
     clients: AtomicUsize,
 }
 
-impl ControlServer {
+impl ControlSocket {
     /// Creates the socket `NAME.sock` in a folder, which is created if necessary.
     ///
     /// # Errors
-    /// The name is invalid, another run uses it ([`ErrorKind::NameTaken`]), or the system refuses.
-    pub fn start(folder: &Path, name: &str, run: Arc<dyn ControlTarget>) -> Result<ControlServer, Error> {
+    /// The name is invalid, another run uses it ([`ErrorKind::NameTaken`]), the folder belongs to
+    /// another user or is open to others, or the system refuses.
+    pub fn bind(folder: &Path, name: &str) -> Result<ControlSocket, Error> {
         let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if name.is_empty() || !name.chars().all(is_plain) {
             let text = format!("`{name}` is no name of a control socket: letters, digits, `_` and `-`");
@@ -61,24 +87,48 @@ impl ControlServer {
         let path = folder.join(format!("{name}.{}", super::client::ENDING));
         let failed =
             |error: io::Error| Error::new(ErrorKind::Connection, format!("{}: {error}", path.display()));
-        DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(failed)?;
+        let _names = lock_names(folder)?;
         remove_dead(&path)?;
         let listener = UnixListener::bind(&path).map_err(failed)?;
         fs::set_permissions(&path, Permissions::from_mode(0o600)).map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
-        let stops = Arc::new(AtomicBool::new(false));
-        let state =
-            ServerState { name: name.into(), run, stops: stops.clone(), clients: AtomicUsize::new(0) };
-        let thread = thread::Builder::new()
-            .name(format!("{name} control"))
-            .spawn(move || accept(&listener, &Arc::new(state)))
-            .map_err(failed)?;
-        Ok(ControlServer { path, stops, thread: Some(thread) })
+        Ok(ControlSocket { listener, name: name.into(), path: SocketPath(path) })
     }
 
     /// The path of the socket.
     pub fn path(&self) -> &Path {
-        &self.path
+        &self.path.0
+    }
+
+    /// Serves the socket.
+    ///
+    /// # Errors
+    /// The system cannot create a thread.
+    pub fn serve(self, run: Arc<dyn ControlTarget>) -> Result<ControlServer, Error> {
+        let ControlSocket { listener, name, path } = self;
+        let stops = Arc::new(AtomicBool::new(false));
+        let thread_name = format!("{name} control");
+        let state = ServerState { name, run, stops: stops.clone(), clients: AtomicUsize::new(0) };
+        let thread = thread::Builder::new()
+            .name(thread_name)
+            .spawn(move || accept(&listener, &Arc::new(state)))
+            .map_err(|error| Error::new(ErrorKind::Thread, error.to_string()))?;
+        Ok(ControlServer { stops, thread: Some(thread), path })
+    }
+}
+
+impl ControlServer {
+    /// Creates the socket `NAME.sock` in a folder, which is created if necessary, and serves it.
+    ///
+    /// # Errors
+    /// As [`ControlSocket::bind`] and [`ControlSocket::serve`].
+    pub fn start(folder: &Path, name: &str, run: Arc<dyn ControlTarget>) -> Result<ControlServer, Error> {
+        ControlSocket::bind(folder, name)?.serve(run)
+    }
+
+    /// The path of the socket.
+    pub fn path(&self) -> &Path {
+        &self.path.0
     }
 }
 
@@ -86,15 +136,14 @@ impl Drop for ControlServer {
     fn drop(&mut self) {
         self.stops.store(true, Ordering::SeqCst);
         // The thread polls the flag; a connection only makes it check sooner.
-        let _ = UnixStream::connect(&self.path);
+        let _ = UnixStream::connect(self.path());
         let _ = self.thread.take().map(JoinHandle::join);
-        let _ = fs::remove_file(&self.path);
     }
 }
 
 impl std::fmt::Debug for ControlServer {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "ControlServer({})", self.path.display())
+        write!(f, "ControlServer({})", self.path().display())
     }
 }
 
@@ -193,24 +242,28 @@ fn refused(reason: impl Into<String>) -> Answer {
     Answer { refused: Some(Refused { reason: reason.into() }), ..Answer::default() }
 }
 
-/// Reads while the run lasts and the peer sends something from time to time.
-struct TimeoutReader<'a> {
+/// Reads one request while the run lasts and the peer sends it soon. Time is counted in intervals
+/// without a byte and in parts of the request.
+struct RequestReader<'a> {
     stream: &'a UnixStream,
     stops: &'a AtomicBool,
-    remaining_timeouts: u32,
+    waits: usize,
+    bytes: usize,
 }
 
-impl Read for TimeoutReader<'_> {
+impl Read for RequestReader<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         loop {
+            self.waits += 1;
+            if self.waits > PATIENCE + self.bytes / PART || self.stops.load(Ordering::SeqCst) {
+                return Err(io::ErrorKind::TimedOut.into());
+            }
             match self.stream.read(buffer) {
-                Err(error) if is_timeout(&error) => {
-                    self.remaining_timeouts = self.remaining_timeouts.saturating_sub(1);
-                    if self.remaining_timeouts == 0 || self.stops.load(Ordering::SeqCst) {
-                        return Err(error);
-                    }
+                Err(error) if is_timeout(&error) => {}
+                read => {
+                    self.bytes += read.as_ref().copied().unwrap_or_default();
+                    return read;
                 }
-                read => return read,
             }
         }
     }
@@ -232,8 +285,8 @@ impl ServerState {
     /// Handles one request after the other.
     fn handle_requests(&self, mut stream: &UnixStream) -> io::Result<()> {
         loop {
-            let mut patient = TimeoutReader { stream, stops: &self.stops, remaining_timeouts: PATIENCE };
-            let request: Request = match frame::read(&mut patient, REQUEST_LIMIT) {
+            let mut reader = RequestReader { stream, stops: &self.stops, waits: 0, bytes: 0 };
+            let request: Request = match frame::read(&mut reader, REQUEST_LIMIT) {
                 Ok(request) => request,
                 Err(error) if error.kind() == io::ErrorKind::InvalidData => {
                     return frame::write(&refused(error.to_string()), &mut stream);
@@ -278,6 +331,7 @@ impl ServerState {
             simulated: self.run.is_simulated(),
             now: self.run.now().as_nanos(),
             hosts: self.run.hubs().iter().map(|hub| hub.host().to_owned()).collect(),
+            alarms: self.run.alarms(),
         }
     }
 

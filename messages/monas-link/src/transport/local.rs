@@ -2,9 +2,9 @@
 //! only its owner can access.
 
 use std::env;
-use std::fs::{self, DirBuilder, Permissions};
+use std::fs::{self, Permissions};
 use std::io;
-use std::os::unix::fs::{DirBuilderExt, PermissionsExt};
+use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::UnixDatagram;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,6 +18,7 @@ use crate::error::{Error, ErrorKind};
 use crate::inbox::PacketInbox;
 use crate::link::Transport;
 use crate::protocol::{Packet, wire};
+use crate::socket_folder::lock_names;
 
 /// Longest packet, in bytes, with its names. Longer ones need another transport.
 const LARGEST: usize = 128 << 10;
@@ -52,7 +53,8 @@ impl LocalTransport {
     /// Creates the socket of the link called `name`. The folder is created if necessary.
     ///
     /// # Errors
-    /// The name is invalid, another process uses it, or the system refuses.
+    /// The name is invalid, another process uses it, the folder belongs to another user or is open
+    /// to others, or the system refuses.
     pub fn new(folder: &Path, name: &str, inbox: Arc<PacketInbox>) -> Result<LocalTransport, Error> {
         let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if name.is_empty() || !name.chars().all(is_plain) {
@@ -62,10 +64,11 @@ impl LocalTransport {
         let path = folder.join(format!("{name}.{ENDING}"));
         let failed =
             |error: io::Error| Error::new(ErrorKind::Connection, format!("{}: {error}", path.display()));
-        DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(failed)?;
+        let names = lock_names(folder)?;
         remove_dead(&path)?;
         let socket = UnixDatagram::bind(&path).map_err(failed)?;
         fs::set_permissions(&path, Permissions::from_mode(0o600)).map_err(failed)?;
+        drop(names);
         let listener = socket.try_clone().map_err(failed)?;
         listener.set_read_timeout(Some(PATIENCE)).map_err(failed)?;
         // Sending uses a separate socket, since blocking mode is a property of the file and not of

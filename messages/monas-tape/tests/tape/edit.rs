@@ -60,8 +60,9 @@ fn what_follows_damage_is_kept() {
     let (_folder, path) = folder();
     let whole = tape(&path("a.mcap"), &["one"], 60);
     let mut bytes = std::fs::read(path("a.mcap")).unwrap();
-    let middle = bytes.len() / 2;
-    bytes[middle] ^= 0xff;
+    let message = whole.messages().unwrap().nth(90).unwrap().unwrap();
+    let place = bytes.windows(message.bytes.len()).position(|window| window == message.bytes).unwrap();
+    bytes[place + 4] ^= 0xff;
     std::fs::write(path("a.mcap"), bytes).unwrap();
     let recovery = recover(path("a.mcap"), path("a.mcap")).unwrap();
     assert_eq!(recovery.damages, ["the tape is damaged: the checksum of a chunk is wrong"]);

@@ -147,6 +147,22 @@ fn a_full_disk_stops_the_recording_and_not_the_run() {
 }
 
 #[test]
+fn a_crash_handler_has_the_chunk_closed() {
+    let (sender, written) = std::sync::mpsc::channel();
+    let tape = Tape::to_writer(ChannelWriter(sender)).unwrap();
+    let hub = hub("robot");
+    hub.observe(Box::new(tape.clone()));
+    hub.publisher(SEEN, "vision").unwrap().publish(Ball { distance: 1.25 }, at(0));
+    let flush = tape.crash_flush();
+    assert!(!flush.is_done());
+    flush.request();
+    await_ball(&written, 1.25);
+    while !flush.is_done() {
+        std::hint::spin_loop();
+    }
+}
+
+#[test]
 fn what_comes_from_other_hosts_is_recorded_too() {
     let output = Shared::default();
     let tape = Tape::to_writer(output.clone()).unwrap();

@@ -29,6 +29,13 @@ pub const BUILD: &str = concat!(
     "\n"
 );
 
+/// The field with the BLAKE3 hash of the module's file, in which the value of this field counts as
+/// [`UNSEALED`]. `monas module build` writes it.
+pub const CONTENT: &str = "content";
+
+/// The value of the field [`CONTENT`] before it is written.
+pub const UNSEALED: &str = "0000000000000000000000000000000000000000000000000000000000000000";
+
 /// Fields that must be equal in a module and in the program that loads it.
 const COMPARED: [&str; 8] = ["format", "compiler", "target", "profile", "flags", "monas", "features", "lock"];
 

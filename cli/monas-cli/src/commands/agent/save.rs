@@ -1,6 +1,5 @@
 //! `monas agent save`: the current configuration of a host.
 
-use std::fs;
 use std::path::Path;
 
 use monas::records::Inquiry;
@@ -26,11 +25,7 @@ pub(crate) fn execute(
             "the configuration is saved as XML: the file must end with .xml".into(),
         ));
     }
-    // Write a new file and rename it, so that no reader sees a partial one.
-    let mut name = file.file_name().unwrap_or_default().to_os_string();
-    name.push(".new");
-    let new = file.with_file_name(name);
-    let written = fs::write(&new, &configuration.text).and_then(|()| fs::rename(&new, file));
+    let written = monas_files::write(file, &configuration.text);
     written.map_err(|error| CommandFailure::failed(format, format!("{}: {error}", file.display())))?;
     match format {
         Format::Json => writeln!(console.out, "{}", json!({"file": file, "from": configuration.file}))?,

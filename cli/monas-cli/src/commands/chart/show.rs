@@ -1,6 +1,5 @@
 //! `monas chart show`: the state of a statechart.
 
-use std::fs;
 use std::path::Path;
 
 use monas::records::{ChartChoice, ChartState, Inquiry};
@@ -23,7 +22,7 @@ pub(crate) fn execute(
     let state = state.ok_or_else(|| unexpected_reply(run))?;
     if let Some(file) = output {
         let failed = |error| CommandFailure::failed(run.format.value, format!("{}: {error}", file.display()));
-        fs::write(file, &state.drawing).map_err(failed)?;
+        monas_files::write(file, &state.drawing).map_err(failed)?;
     }
     match run.format.value {
         Format::Json => {

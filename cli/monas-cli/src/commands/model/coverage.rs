@@ -162,7 +162,7 @@ fn draw(charts: &[ChartCounts], folder: &Path, format: Format) -> Result<(), Com
         let namesakes = charts[..place].iter().filter(|other| other.chart.name == covered.chart.name).count();
         let number = if namesakes == 0 { String::new() } else { format!("-{}", namesakes + 1) };
         let path = folder.join(format!("{}{number}.svg", covered.chart.name.replace(['/', '\\'], "_")));
-        fs::write(&path, to_svg_marked(&covered.chart, &marks(covered)))
+        monas_files::write(&path, to_svg_marked(&covered.chart, &marks(covered)))
             .map_err(|error| failed("write", &path, error))?;
     }
     Ok(())

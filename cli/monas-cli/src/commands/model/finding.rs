@@ -54,7 +54,7 @@ pub(crate) fn write_named_traces<'f>(
         *number += 1;
         let path = folder.join(format!("{name}-{number}.trace"));
         let text = format!("# {}\n{trace}", finding.diagnostic.message);
-        fs::write(&path, text).map_err(|error| failed("write", &path, error))?;
+        monas_files::write(&path, text).map_err(|error| failed("write", &path, error))?;
     }
     Ok(())
 }

@@ -28,6 +28,8 @@ pub(crate) fn execute(
     let built = workspace.build(&packages).map_err(|reason| CommandFailure::Failed(format, reason))?;
     let mut wrong = Vec::new();
     for file in &built {
+        monas::seal_module(file)
+            .map_err(|error| CommandFailure::Failed(format, format!("{}: {error}", file.display())))?;
         match format {
             Format::Text => writeln!(console.out, "{}", file.display())?,
             Format::Json => writeln!(console.out, "{}", json!({ "module": file }))?,

@@ -1,51 +1,100 @@
 //! The control socket of a run.
 
 use monas::RunHandle;
+use monas_tape::Tape;
 
 use super::RunArguments;
 use crate::terminal::{CommandFailure, CommandOutput};
 
-pub(crate) use socket::serve;
+pub(crate) use socket::{ControlSocket, bind, serve};
 
 /// The largest number in names of sockets of one configuration.
 #[cfg(unix)]
 const NAMESAKES: u32 = 99;
+
+/// The name of a run: that of its socket, or the stem of the configuration's file, reduced to
+/// characters allowed in names of sockets.
+pub(crate) fn name_of(arguments: &RunArguments) -> String {
+    let stem = arguments.config.file_stem().unwrap_or_default().to_string_lossy();
+    let name = arguments.control.as_deref().unwrap_or(&stem);
+    let plain = |c: char| if c.is_ascii_alphanumeric() || c == '_' || c == '-' { c } else { '_' };
+    match name.is_empty() {
+        true => "run".into(),
+        false => name.chars().map(plain).collect(),
+    }
+}
 
 #[cfg(unix)]
 mod socket {
     use std::path::Path;
     use std::sync::Arc;
 
-    use monas_link::control::ControlServer;
+    use monas_link::control::{ControlServer, ControlTarget};
     use monas_link::{Error, ErrorKind, default_folder};
+    use narukom::{Hub, Timestamp};
 
-    use crate::commands::run::control::{CommandFailure, CommandOutput, NAMESAKES, RunArguments, RunHandle};
+    pub(crate) use monas_link::control::ControlSocket;
 
-    /// Serves the control socket of a run, unless it is disabled.
+    use crate::commands::run::control::{
+        CommandFailure, CommandOutput, NAMESAKES, RunArguments, RunHandle, Tape, name_of,
+    };
+
+    /// A run with the alarms of its recording.
+    struct RecordedRun {
+        run: RunHandle,
+        tape: Option<Tape>,
+    }
+
+    impl ControlTarget for RecordedRun {
+        fn hubs(&self) -> &[Hub] {
+            self.run.hubs()
+        }
+
+        fn now(&self) -> Timestamp {
+            self.run.now()
+        }
+
+        fn is_simulated(&self) -> bool {
+            self.run.is_simulated()
+        }
+
+        fn alarms(&self) -> Vec<String> {
+            self.tape.iter().filter_map(Tape::failure).collect()
+        }
+
+        fn publish(&self, host: &str, path: &str, bytes: &[u8]) -> Result<(), String> {
+            self.run.publish(host, path, bytes)
+        }
+
+        fn manage(&self, inquiry: &[u8]) -> Result<Vec<u8>, String> {
+            ControlTarget::manage(&self.run, inquiry)
+        }
+    }
+
+    /// Takes the name of a run before it writes any file, unless its control socket is disabled.
     ///
-    /// A socket that was requested by name must start. A default socket is optional: the run works
+    /// A socket that was requested by name must exist. A default socket is optional: the run works
     /// without it, and the log gives the reason.
-    pub(crate) fn serve(
+    pub(crate) fn bind(
         arguments: &RunArguments,
-        overview: RunHandle,
         console: &mut CommandOutput<'_>,
-    ) -> Result<Option<ControlServer>, CommandFailure> {
+    ) -> Result<Option<ControlSocket>, CommandFailure> {
         if arguments.no_control {
             return Ok(None);
         }
         let format = arguments.format.value;
         match (&arguments.control, default_folder()) {
             (Some(name), Some(folder)) => {
-                let server = ControlServer::start(&folder, name, Arc::new(overview));
-                let server = server.map_err(|error| CommandFailure::failed(format, error))?;
-                writeln!(console.err, "control socket: {}", server.path().display())?;
-                Ok(Some(server))
+                let socket = ControlSocket::bind(&folder, name);
+                let socket = socket.map_err(|error| CommandFailure::failed(format, error))?;
+                writeln!(console.err, "control socket: {}", socket.path().display())?;
+                Ok(Some(socket))
             }
             (Some(_), None) => {
                 let message = "there is no folder for a control socket: XDG_RUNTIME_DIR is not set";
                 Err(CommandFailure::failed(format, message))
             }
-            (None, Some(folder)) => Ok(by_default(&folder, arguments, overview)),
+            (None, Some(folder)) => Ok(by_default(&folder, arguments)),
             (None, None) => {
                 tracing::info!("no control socket: XDG_RUNTIME_DIR is not set");
                 Ok(None)
@@ -53,11 +102,11 @@ mod socket {
         }
     }
 
-    fn by_default(folder: &Path, arguments: &RunArguments, overview: RunHandle) -> Option<ControlServer> {
-        match first_free(folder, &name_of(&arguments.config), Arc::new(overview)) {
-            Ok(server) => {
-                tracing::info!("control socket: {}", server.path().display());
-                Some(server)
+    fn by_default(folder: &Path, arguments: &RunArguments) -> Option<ControlSocket> {
+        match first_free(folder, &name_of(arguments)) {
+            Ok(socket) => {
+                tracing::info!("control socket: {}", socket.path().display());
+                Some(socket)
             }
             Err(error) => {
                 tracing::warn!("no control socket: {error}");
@@ -66,48 +115,57 @@ mod socket {
         }
     }
 
-    /// Starts `match`, or `match-2` if that name is taken, and so on.
-    fn first_free(folder: &Path, name: &str, overview: Arc<RunHandle>) -> Result<ControlServer, Error> {
-        let mut started = ControlServer::start(folder, name, overview.clone());
+    /// Takes `match`, or `match-2` if that name is taken, and so on.
+    fn first_free(folder: &Path, name: &str) -> Result<ControlSocket, Error> {
+        let mut bound = ControlSocket::bind(folder, name);
         for number in 2..=NAMESAKES {
-            match &started {
+            match &bound {
                 Err(error) if error.kind() == ErrorKind::NameTaken => {
-                    started = ControlServer::start(folder, &format!("{name}-{number}"), overview.clone());
+                    bound = ControlSocket::bind(folder, &format!("{name}-{number}"));
                 }
                 _ => break,
             }
         }
-        started
+        bound
     }
 
-    /// The stem of the configuration's file, reduced to characters allowed in names of sockets.
-    fn name_of(config: &Path) -> String {
-        let stem = config.file_stem().unwrap_or_default().to_string_lossy();
-        let plain = |c: char| if c.is_ascii_alphanumeric() || c == '_' || c == '-' { c } else { '_' };
-        match stem.is_empty() {
-            true => "run".into(),
-            false => stem.chars().map(plain).collect(),
-        }
+    /// Serves the control socket of a run.
+    pub(crate) fn serve(
+        socket: Option<ControlSocket>,
+        run: RunHandle,
+        tape: Option<Tape>,
+        arguments: &RunArguments,
+    ) -> Result<Option<ControlServer>, CommandFailure> {
+        let served = socket.map(|socket| socket.serve(Arc::new(RecordedRun { run, tape })));
+        served.transpose().map_err(|error| CommandFailure::failed(arguments.format.value, error))
     }
 }
 
 #[cfg(not(unix))]
 mod socket {
-    use crate::commands::run::control::{CommandFailure, CommandOutput, RunArguments, RunHandle};
+    use crate::commands::run::control::{CommandFailure, CommandOutput, RunArguments, RunHandle, Tape};
 
     /// Control sockets exist only on Unix.
-    pub(crate) enum NoSocket {}
+    pub(crate) enum ControlSocket {}
 
-    pub(crate) fn serve(
+    pub(crate) fn bind(
         arguments: &RunArguments,
-        _: RunHandle,
         _: &mut CommandOutput<'_>,
-    ) -> Result<Option<NoSocket>, CommandFailure> {
+    ) -> Result<Option<ControlSocket>, CommandFailure> {
         match arguments.control {
             Some(_) => {
                 Err(CommandFailure::failed(arguments.format.value, "control sockets exist only on Unix"))
             }
             None => Ok(None),
         }
+    }
+
+    pub(crate) fn serve(
+        socket: Option<ControlSocket>,
+        _: RunHandle,
+        _: Option<Tape>,
+        _: &RunArguments,
+    ) -> Result<Option<ControlSocket>, CommandFailure> {
+        Ok(socket)
     }
 }

@@ -4,8 +4,10 @@ use std::time::Duration;
 
 use monas::config::Layers;
 use monas_match::{MatchOptions, MatchPlan, MatchSource, RunningMatch};
+use monas_tape::Tape;
 
-use super::{RunArguments, control, scoreboard, summary};
+use super::outputs::RecordingAlarm;
+use super::{RunArguments, control, outputs, scoreboard, summary};
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Interrupt, WallClock, report};
 
 /// Simulated time between two updates of the scoreboard.
@@ -32,11 +34,14 @@ pub(crate) fn execute(
         false => plan,
     };
     let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
+    let socket = control::bind(arguments, console)?;
+    let tape = outputs::open(arguments, Tape::to_file, console)?;
     let clock = WallClock::start();
-    let running = play(plan, arguments, &interrupt, clock, console)?;
+    let running = play(plan, arguments, socket, tape.clone(), &interrupt, clock, console)?;
     let wall = clock.elapsed();
     let results = running.finish().map_err(|error| CommandFailure::failed(format, error))?;
     summary::write(console.out, format, &results, wall)?;
+    outputs::finish(tape, format)?;
     if let Some(unstopped) = results.unstopped {
         return Err(CommandFailure::failed(format, unstopped));
     }
@@ -47,24 +52,29 @@ pub(crate) fn execute(
 fn play(
     plan: MatchPlan,
     arguments: &RunArguments,
+    socket: Option<control::ControlSocket>,
+    tape: Option<Tape>,
     interrupt: &Interrupt,
     clock: WallClock,
     console: &mut CommandOutput<'_>,
 ) -> Result<RunningMatch, CommandFailure> {
     let failed = |error: monas_match::Error| CommandFailure::failed(arguments.format.value, error);
     let length = arguments.length.unwrap_or_else(|| plan.length());
-    let options = MatchOptions { seed: arguments.seed.unwrap_or_default(), record: arguments.record.clone() };
+    let options = MatchOptions { seed: arguments.seed.unwrap_or_default(), record: tape.clone() };
     let mut running = plan.start(options).map_err(|error| match error.diagnostics() {
         [] => failed(error),
         wrong => CommandFailure::Invalid(arguments.format.value, wrong.to_vec()),
     })?;
     // The socket closes with this function, since nothing advances the match afterwards.
-    let _control = control::serve(arguments, running.simulation().run_handle(), console)?;
+    let handle = running.simulation().run_handle();
+    let _control = control::serve(socket, handle.clone(), tape.clone(), arguments)?;
+    let mut alarm = RecordingAlarm::new(tape, handle);
     let look = if arguments.realtime { PACED_LOOK } else { LOOK };
     let mut scoreboard = scoreboard::for_console(console, length);
     scoreboard.show(&running)?;
     while running.now() < length && !running.is_over() && !interrupt.is_requested() {
         running.advance((running.now() + look).min(length)).map_err(failed)?;
+        alarm.check(running.simulation().now());
         scoreboard.show(&running)?;
         if arguments.realtime {
             clock.wait_until(running.now(), interrupt);

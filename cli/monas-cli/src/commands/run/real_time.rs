@@ -9,7 +9,8 @@ use monas_tape::Tape;
 use serde_json::{Value, json};
 use yase::Diagnostic;
 
-use super::{RunArguments, control, links};
+use super::outputs::RecordingAlarm;
+use super::{RunArguments, control, links, outputs};
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, report, table};
 
 pub(crate) fn execute(
@@ -24,8 +25,8 @@ pub(crate) fn execute(
         ));
     }
     let mut talws = talws(arguments, layers, console)?;
-    let tape = arguments.record.as_ref().map(Tape::create_real_time).transpose();
-    let tape = tape.map_err(|error| CommandFailure::failed(format, error))?;
+    let socket = control::bind(arguments, console)?;
+    let tape = outputs::open(arguments, Tape::to_file_real_time, console)?;
     if let Some(tape) = &tape {
         let files = ConfigurationBundle::of(&arguments.config);
         let settings = layers.settings().collect::<Vec<_>>().join("\n");
@@ -35,24 +36,33 @@ pub(crate) fn execute(
     }
     let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
     let running = talws.start().map_err(|error| CommandFailure::not_started(format, error))?;
-    let control = control::serve(arguments, running.run_handle(), console)?;
+    let overview = running.run_handle();
+    let control = control::serve(socket, overview.clone(), tape.clone(), arguments)?;
+    let mut alarm = RecordingAlarm::new(tape.clone(), overview.clone());
     writeln!(console.err, "running, Ctrl-C stops")?;
     let length = arguments.length.unwrap_or(Duration::MAX);
-    WallClock::start().wait_until_or(length, || interrupt.is_requested() || running.has_ended());
-    drop(control);
-    let overview = running.run_handle();
+    WallClock::start().wait_until_or(length, || {
+        alarm.check(overview.now());
+        interrupt.is_requested() || running.has_ended()
+    });
+    drop((control, alarm));
     let Statistics { agents, links } = running.stop();
-    tape.iter()
-        .try_for_each(|tape| monas_match::ended(tape, overview.now()))
-        .map_err(|error| CommandFailure::failed(format, error))?;
-    let recorded = tape.map(|tape| Ok((tape.finish()?, tape.dropped()))).transpose();
-    let recorded = recorded.map_err(|error: monas_tape::Error| CommandFailure::failed(format, error))?;
-    write(console.out, format, &agents, recorded)?;
+    if let Some(tape) = &tape {
+        monas_match::ended(tape, overview.now()).map_err(|error| CommandFailure::failed(format, error))?;
+    }
+    write(console.out, format, &agents)?;
     match format {
         Format::Text => links::write(console.out, &links)?,
         Format::Json => {
             links::objects(&links).iter().try_for_each(|object| writeln!(console.out, "{object}"))?;
         }
+    }
+    let dropped = tape.as_ref().map(Tape::dropped).unwrap_or_default();
+    if let (Some(messages), Format::Text) = (outputs::finish(tape, format)?, format) {
+        writeln!(
+            console.out,
+            "messages recorded: {messages}, dropped because the disk was too slow: {dropped}"
+        )?;
     }
     Ok(match interrupt.is_requested() {
         true => Exit::Interrupted,
@@ -76,12 +86,7 @@ fn talws(
     Ok(Talws::new().setup(setup))
 }
 
-fn write(
-    out: &mut dyn Write,
-    format: Format,
-    agents: &[AgentStatistics],
-    recorded: Option<(u64, u64)>,
-) -> Result<(), CommandFailure> {
+fn write(out: &mut dyn Write, format: Format, agents: &[AgentStatistics]) -> Result<(), CommandFailure> {
     if format == Format::Json {
         agents.iter().try_for_each(|agent| writeln!(out, "{}", object(agent)))?;
         return Ok(());
@@ -93,9 +98,6 @@ fn write(
         if let Some(reason) = &agent.stopped {
             writeln!(out, "{} has stopped: {reason}", agent.agent)?;
         }
-    }
-    if let Some((messages, dropped)) = recorded {
-        writeln!(out, "messages recorded: {messages}, dropped because the disk was too slow: {dropped}")?;
     }
     Ok(())
 }

@@ -1,9 +1,9 @@
 //! `monas tape export`: messages as a table or as JSON.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::{BufWriter, Write};
 
+use monas_files::AtomicFile;
 use monas_tape::{Decoder, RecordedSample, Recording, Value};
 use serde_json::json;
 
@@ -26,9 +26,9 @@ pub(crate) fn execute(
             let cannot = |error| {
                 CommandFailure::Failed(Format::Text, format!("cannot write {}: {error}", path.display()))
             };
-            let mut file = BufWriter::new(File::create(path).map_err(cannot)?);
+            let mut file = AtomicFile::create(path).map_err(cannot)?;
             write(arguments, &recording, &mut file)?;
-            file.flush().map_err(cannot)?;
+            file.commit().map_err(cannot)?;
         }
     }
     Ok(Exit::Success)

@@ -71,7 +71,11 @@ impl Screen {
         self.draw_agents(frame, agents);
         self.draw_activities(frame, activities);
         self.draw_topics(frame, topics);
-        frame.render_widget(Line::styled("up, down: choose an agent   q: quit", QUIET), keys);
+        let last = match self.figures.alarms.first() {
+            Some(alarm) => Line::styled(format!("alarm: {alarm}"), WRONG),
+            None => Line::styled("up, down: choose an agent   q: quit", QUIET),
+        };
+        frame.render_widget(last, keys);
     }
 
     fn head(&self) -> Line<'_> {
@@ -181,6 +185,7 @@ mod tests {
             AgentFigures { entry, hz: 30.0, load: Some(0.5), overruns: 0, activities }
         });
         Metrics {
+            alarms: Vec::new(),
             run: "match".into(),
             now: Duration::from_secs(12),
             agents: agents.collect(),

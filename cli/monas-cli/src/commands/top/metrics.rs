@@ -18,6 +18,8 @@ const IDLE: f64 = 0.2;
 pub(crate) struct Metrics {
     pub(crate) run: String,
     pub(crate) now: Duration,
+    /// What endangers the run's results.
+    pub(crate) alarms: Vec<String>,
     /// Highest load first.
     pub(crate) agents: Vec<AgentFigures>,
     /// Highest rate first.
@@ -102,7 +104,7 @@ impl Metrics {
         agents.sort_by(|one, other| other.load.unwrap_or(0.0).total_cmp(&one.load.unwrap_or(0.0)));
         let mut topics: Vec<TopicFigures> = after.topics.iter().filter_map(topic).collect();
         topics.sort_by(|one, other| other.hz.total_cmp(&one.hz));
-        Metrics { run: after.run.clone(), now: after.now, agents, topics }
+        Metrics { run: after.run.clone(), now: after.now, alarms: after.alarms.clone(), agents, topics }
     }
 }
 
@@ -243,7 +245,13 @@ mod tests {
     fn sample(seconds: u64, agents: Vec<AgentEntry>, sequence: u64) -> RunSample {
         let last = Some(Last { publisher: "vision".into(), sequence, published: 0 });
         let topic = TopicEntry { path: "ball".into(), last, ..TopicEntry::default() };
-        RunSample { run: "r".into(), now: Duration::from_secs(seconds), agents, topics: vec![topic] }
+        RunSample {
+            run: "r".into(),
+            now: Duration::from_secs(seconds),
+            alarms: Vec::new(),
+            agents,
+            topics: vec![topic],
+        }
     }
 
     #[test]

@@ -16,6 +16,7 @@ pub(crate) const ACTIVITY_HEADER: [&str; 9] =
     ["activity", "state", "", "calls/s", "core", "mean", "p99", "failures", "memory"];
 
 pub(crate) fn text(figures: &Metrics, out: &mut dyn Write) -> io::Result<()> {
+    figures.alarms.iter().try_for_each(|alarm| writeln!(out, "alarm: {alarm}"))?;
     writeln!(out, "{}", table::of_numbers(AGENT_HEADER, 3, figures.agents.iter().map(agent)))?;
     let activities = figures.agents.iter().flat_map(|agent| {
         agent.activities.iter().map(|one| {
@@ -89,7 +90,7 @@ pub(crate) fn share(load: Option<f64>) -> String {
     load.map_or_else(|| "-".into(), |load| format!("{:.1} %", load * 100.0))
 }
 
-/// One object per agent, then one per topic.
+/// One object per alarm, then one per agent and one per topic.
 pub(crate) fn objects(figures: &Metrics) -> impl Iterator<Item = Value> {
     let agents = figures.agents.iter().map(|agent| {
         let activities: Vec<Value> = agent
@@ -107,5 +108,5 @@ pub(crate) fn objects(figures: &Metrics) -> impl Iterator<Item = Value> {
     let topics = figures.topics.iter().map(|topic| {
         json!({"host": topic.host, "topic": topic.path, "publisher": topic.publisher, "hz": topic.hz})
     });
-    agents.chain(topics)
+    figures.alarms.iter().map(|alarm| json!({ "alarm": alarm })).chain(agents).chain(topics)
 }

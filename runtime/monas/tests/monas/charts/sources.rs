@@ -45,7 +45,7 @@ fn a_guard_reads_what_a_link_brings_from_another_host() {
     let settings = monas_link::LinkSettings::default().receiving("test/*");
     let link = LinkConfig {
         settings,
-        transport: LinkTransport::Local { folder: Some(folder.path().into()) },
+        transport: LinkTransport::Local { folder: Some(folder.path().join("links")) },
         clock: None,
     };
     let (calls, registry) = noting();
@@ -103,7 +103,7 @@ fn a_trigger_is_fired_by_messages_of_the_own_host_unless_it_names_another() {
     let calls_of = |trigger: &str| {
         let link = LinkConfig {
             settings: monas_link::LinkSettings::default().receiving("test/*"),
-            transport: LinkTransport::Local { folder: Some(folder.path().into()) },
+            transport: LinkTransport::Local { folder: Some(folder.path().join("links")) },
             clock: None,
         };
         let (calls, registry) = noting();
@@ -132,7 +132,7 @@ fn a_trigger_is_fired_by_messages_of_the_own_host_unless_it_names_another() {
 fn a_signal_of_another_host_is_there_for_one_step() {
     let folder = tempfile::tempdir().unwrap();
     let settings = monas_link::LinkSettings::default().receiving("test/news");
-    let transport = LinkTransport::Local { folder: Some(folder.path().into()) };
+    let transport = LinkTransport::Local { folder: Some(folder.path().join("links")) };
     let (calls, registry) = noting();
     let text = "Liveness:\nm = A~\nTransitions:\nA -> A : [striker.news.Signal.Ball.x == 0]";
     let talws = Talws::new().registry(registry).link(LinkConfig { settings, transport, clock: None });

@@ -1,0 +1,72 @@
+//! Whether the content of a module's file is what was built.
+
+use std::fs::OpenOptions;
+use std::io::{self, Seek, SeekFrom, Write};
+use std::ops::Range;
+use std::path::Path;
+
+use monas_core::module::note::{self, BuildFingerprint};
+use object::{Object, ObjectSection, ObjectSegment};
+
+/// Writes the hash of a module's content into its note, after the build. A file that is sealed
+/// already stays as it is.
+///
+/// # Errors
+/// The file cannot be read or written, or has no note with a place for the hash.
+pub fn seal(path: impl AsRef<Path>) -> io::Result<()> {
+    let bytes = std::fs::read(&path)?;
+    let place = place(&bytes).ok_or_else(|| io::Error::other("its note has no place for a hash"))?;
+    let hash = hash(&bytes, &place);
+    if bytes[place.clone()] == *hash.as_bytes() {
+        return Ok(());
+    }
+    // In place, since cargo keeps the file under two names.
+    let mut file = OpenOptions::new().write(true).open(path)?;
+    file.seek(SeekFrom::Start(place.start as u64))?;
+    file.write_all(hash.as_bytes())?;
+    file.sync_all()
+}
+
+/// Checks the parts of a file and, if it is sealed, its hash.
+///
+/// # Errors
+/// What is wrong with it.
+pub(crate) fn check(bytes: &[u8], note: &BuildFingerprint) -> Result<(), String> {
+    let file = object::File::parse(bytes).map_err(|error| error.to_string().to_lowercase())?;
+    let is_outside =
+        |(offset, size): (u64, u64)| offset.checked_add(size).is_none_or(|end| end > bytes.len() as u64);
+    let segments = file.segments().map(|segment| segment.file_range());
+    let sections = file.sections().filter_map(|section| section.file_range());
+    if segments.chain(sections).any(is_outside) {
+        return Err("it is cut off".into());
+    }
+    match note.field(note::CONTENT) {
+        None | Some(note::UNSEALED) => Ok(()),
+        Some(expected) => match place(bytes).map(|place| hash(bytes, &place)) {
+            Some(found) if found == expected => Ok(()),
+            _ => Err("its content is not what was built".into()),
+        },
+    }
+}
+
+/// Where the note of a file states the hash of its content.
+fn place(bytes: &[u8]) -> Option<Range<usize>> {
+    let file = object::File::parse(bytes).ok()?;
+    let (offset, size) = file.section_by_name(note::SECTION)?.file_range()?;
+    let offset = usize::try_from(offset).ok()?;
+    let section = bytes.get(offset..)?.get(..usize::try_from(size).ok()?)?;
+    let field = format!("\n{} ", note::CONTENT);
+    let found = section.windows(field.len()).position(|window| window == field.as_bytes())?;
+    let start = offset + found + field.len();
+    let place = start..start + note::UNSEALED.len();
+    bytes.get(place.clone())?.iter().all(u8::is_ascii_hexdigit).then_some(place)
+}
+
+/// The hash of a file whose own place counts as unsealed.
+fn hash(bytes: &[u8], place: &Range<usize>) -> String {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(&bytes[..place.start]);
+    hasher.update(note::UNSEALED.as_bytes());
+    hasher.update(&bytes[place.end..]);
+    hasher.finalize().to_hex().to_string()
+}
