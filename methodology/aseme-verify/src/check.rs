@@ -264,8 +264,11 @@ fn charted(
         found.extend(guards::check(&subject));
         found.extend(profiles::check(&subject));
         found.extend(messages::same_step(&subject));
-        found.extend(settings.world.iter().flat_map(|world| messages::names(&subject, world)));
-        found.extend(settings.world.iter().flat_map(|world| topics::unmet(&subject, world)));
+        // The scripts of other charts name nothing of the program.
+        for world in settings.world.iter().filter(|_| is_ours(&subject)) {
+            found.extend(messages::names(&subject, world));
+            found.extend(topics::unmet(&subject, world));
+        }
     }
     let can_be_explored = settings.states > 0 && is_ours(&subject) && !found.iter().any(Diagnostic::is_error);
     let (explored, extent) = match can_be_explored {

@@ -138,7 +138,7 @@ fn unread(bound: &BoundProperty, abstraction: &Abstraction) -> Vec<Diagnostic> {
                 let wrong = Diagnostic::warning("E0848", path.place.0, message);
                 found.push(match nearest(&text, known.iter().map(String::as_str)) {
                     Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
-                    None => wrong.with_hint("with `--linked` the program says whether there is such a field"),
+                    None => wrong.with_hint("name a field that a guard reads, or leave out `--unlinked`: the program knows all fields"),
                 });
             }
         });
