@@ -32,9 +32,20 @@ pub(crate) struct Arguments {
 }
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 done, 1 ran and failed, 2 usage, 3 invalid configuration or model, 4 nothing to connect to,
-5 a replay differs from its recording or a check of a model finds an error, 130 interrupted.
-Environment: NO_COLOR switches colours off; MONAS_LOG chooses what is logged, for example `info` or `monas=debug`.";
+Exit codes:
+  0    done
+  1    ran and failed
+  2    usage
+  3    invalid configuration or model
+  4    nothing to connect to
+  5    a replay differs from its recording, or a check of a model finds an error
+  130  interrupted
+  143  terminated
+
+Environment:
+  NO_COLOR   switches colours off
+  COLUMNS    the width of tables and help texts
+  MONAS_LOG  chooses what is logged, for example `info` or `monas=debug`";
 
 #[derive(Subcommand, Debug)]
 pub(crate) enum Command {
@@ -107,6 +118,18 @@ pub(crate) enum Command {
         /// The shell.
         shell: Shell,
     },
+}
+
+impl Command {
+    /// Whether the command writes results until it is stopped, and ends when nothing reads them.
+    pub(crate) const fn is_stream(&self) -> bool {
+        match self {
+            #[cfg(unix)]
+            Command::Topic(_) | Command::Top(_) => true,
+            Command::Log(_) | Command::Tape(_) => true,
+            _ => false,
+        }
+    }
 }
 
 #[cfg(test)]

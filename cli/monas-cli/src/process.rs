@@ -10,7 +10,7 @@ use indicatif::MultiProgress;
 use crate::arguments::Arguments;
 use crate::delegate;
 use crate::dispatch::dispatch;
-use crate::terminal::{CommandOutput, Exit, ProcessLog};
+use crate::terminal::{CommandOutput, Exit, ProcessLog, UnreadOutput};
 
 /// Executes the command as this process.
 pub(crate) fn main() -> Exit {
@@ -21,12 +21,14 @@ pub(crate) fn main() -> Exit {
     delegate::delegate();
     // The caller decides how to handle a panic; the log has its location.
     panic::set_hook(Box::new(|panic| tracing::error!("{panic}")));
-    let (mut out, mut err) = (io::stdout(), io::stderr());
+    let (mut out, mut stderr) = (io::stdout(), io::stderr());
     let colours_are_welcome = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+    let (reads_bars, reads_colours) = (stderr.is_terminal(), colours_are_welcome && stderr.is_terminal());
+    let mut err = UnreadOutput(&mut stderr);
     let mut console = CommandOutput {
         colour_out: colours_are_welcome && out.is_terminal(),
-        colour_err: colours_are_welcome && err.is_terminal(),
-        bars: err.is_terminal().then_some(bars),
+        colour_err: reads_colours,
+        bars: reads_bars.then_some(bars),
         catches_signals: true,
         log: log.clone(),
         out: &mut out,

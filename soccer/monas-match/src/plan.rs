@@ -16,7 +16,6 @@ use crate::file::{self, MatchFile};
 use crate::match_world::MatchWorld;
 use crate::running_match::RunningMatch;
 use crate::settings::MatchSettings;
-use crate::tape_metadata;
 
 /// Loads matches.
 #[derive(Debug)]
@@ -255,7 +254,7 @@ impl MatchPlan {
         let hash = RunHash::new();
         talws.observe(Box::new(hash.clone()));
         let tape = options.record.map(|path| {
-            let tape = tape_metadata::simulated(&path, &files, &settings, options.seed, &hosts);
+            let tape = monas_recording::simulated(&path, &files, &settings, options.seed, &hosts);
             Ok((tape.map_err(|error| Error::recording(&path, error))?, path))
         });
         let tape = tape.transpose()?;

@@ -10,7 +10,6 @@ use monas_tape::Tape;
 use crate::error::Error;
 use crate::match_events;
 use crate::summary::{AgentSummary, MatchEvent, MatchSummary, Scoreboard, TeamScore, TeamSummary};
-use crate::tape_metadata;
 
 /// A running match, in simulated time.
 pub struct RunningMatch {
@@ -103,7 +102,7 @@ impl RunningMatch {
     /// The recording cannot be completed.
     pub fn finish(mut self) -> Result<MatchSummary, Error> {
         if let Some((tape, path)) = &self.tape {
-            tape_metadata::ended(tape, self.simulation.now())
+            monas_recording::ended(tape, self.simulation.now())
                 .map_err(|error| Error::recording(path, error))?;
         }
         self.simulation.stop();

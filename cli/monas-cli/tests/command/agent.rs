@@ -64,6 +64,19 @@ fn a_session_with_a_run_in_real_time() {
 }
 
 #[test]
+fn a_swap_that_is_refused_says_how_states_are_mapped_and_a_signal_is_told_in_the_exit_code() {
+    let folder = folder();
+    let run = start(folder.path());
+    let other = folder.path().join("other.srm").display().to_string();
+    fs::write(&other, "Role: other\nLiveness:\nother = (SearchBall)~\n").expect("a file");
+    let answer = ask(folder.path(), &["agent", "swap", "Mind", &other]);
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    assert!(answer.err.contains("E0356") && answer.err.contains("--state OLD=NEW"), "{}", answer.err);
+    assert_eq!(answer.err.matches("--state").count(), 1, "{}", answer.err);
+    assert_eq!(run.terminate().code, Some(143));
+}
+
+#[test]
 fn mistakes_are_answered_with_what_would_be_right() {
     let folder = folder();
     let _run = start(folder.path());

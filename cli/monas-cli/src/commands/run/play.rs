@@ -37,7 +37,7 @@ pub(crate) fn execute(
     let wall = clock.elapsed();
     let results = running.finish().map_err(|error| CommandFailure::failed(format, error))?;
     summary::write(console.out, format, &results, wall)?;
-    Ok(if interrupt.is_requested() { Exit::Interrupted } else { Exit::Success })
+    Ok(interrupt.exit().unwrap_or(Exit::Success))
 }
 
 /// Plays until the match is over, the requested time has passed, or an interrupt.

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use yase::Diagnostic;
 
 use super::{RunArguments, control, links};
+use crate::input::load_agents;
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, report, table};
 
 pub(crate) fn execute(
@@ -29,7 +30,7 @@ pub(crate) fn execute(
     if let Some(tape) = &tape {
         let files = ConfigurationBundle::of(&arguments.config);
         let settings = layers.settings().collect::<Vec<_>>().join("\n");
-        monas_match::label_real_time(tape, &files, &settings, &[Talws::LOCAL.to_owned()])
+        monas_recording::label_real_time(tape, &files, &settings, &[Talws::LOCAL.to_owned()])
             .map_err(|error| CommandFailure::failed(format, error))?;
         talws.observe(Box::new(tape.clone()));
     }
@@ -43,7 +44,7 @@ pub(crate) fn execute(
     let overview = running.run_handle();
     let Statistics { agents, links } = running.stop();
     tape.iter()
-        .try_for_each(|tape| monas_match::ended(tape, overview.now()))
+        .try_for_each(|tape| monas_recording::ended(tape, overview.now()))
         .map_err(|error| CommandFailure::failed(format, error))?;
     let recorded = tape.map(|tape| Ok((tape.finish()?, tape.dropped()))).transpose();
     let recorded = recorded.map_err(|error: monas_tape::Error| CommandFailure::failed(format, error))?;
@@ -54,10 +55,10 @@ pub(crate) fn execute(
             links::objects(&links).iter().try_for_each(|object| writeln!(console.out, "{object}"))?;
         }
     }
-    Ok(match interrupt.is_requested() {
-        true => Exit::Interrupted,
-        false if agents.iter().any(|agent| agent.stopped.is_some()) => Exit::Failure,
-        false => Exit::Success,
+    Ok(match interrupt.exit() {
+        Some(exit) => exit,
+        None if agents.iter().any(|agent| agent.stopped.is_some()) => Exit::Failure,
+        None => Exit::Success,
     })
 }
 
@@ -68,7 +69,7 @@ fn talws(
     console: &mut CommandOutput<'_>,
 ) -> Result<Talws, CommandFailure> {
     let format = arguments.format.value;
-    let (setup, diagnostics) = monas::config::load_with(&arguments.config, &Registry::linked(), layers);
+    let (setup, diagnostics) = load_agents(&arguments.config, &Registry::linked(), layers);
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(CommandFailure::Invalid(format, diagnostics));
     }

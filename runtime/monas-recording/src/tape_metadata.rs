@@ -23,7 +23,10 @@ pub const FOLDER: &str = "folder";
 pub const END: &str = "end";
 
 /// Creates the tape of a run in simulated time.
-pub(crate) fn simulated(
+///
+/// # Errors
+/// The tape cannot be written.
+pub fn simulated(
     path: &Path,
     files: &ConfigurationBundle,
     settings: &str,
