@@ -176,7 +176,7 @@ mod tests {
         leaves(&Arguments::command(), "monas", &mut found);
         assert!(found.len() > 20, "{}", found.len());
         for (words, command) in found {
-            let help = command.clone().render_long_help().to_string();
+            let help = command.clone().term_width(usize::MAX).render_long_help().to_string();
             let example = help.lines().find_map(|line| line.trim().strip_prefix("Example: "));
             let example = example.unwrap_or_else(|| panic!("no example for `{words}`:\n{help}"));
             if words == "monas completions" {

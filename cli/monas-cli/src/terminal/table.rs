@@ -190,7 +190,7 @@ ball                  Vision               1.25 ms";
         assert_eq!(narrow.widths.iter().sum::<usize>() + 2 * GAP, 42);
         assert_eq!(narrow.rows[0][..2], [vec!["soccer/", "attack_status"], vec!["MotionController"]]);
         let least = topics().folded(0, GAP);
-        assert_eq!(least.widths, [8, 10, 7]);
+        assert_eq!(least.widths, [7, 10, 7]);
         assert_eq!(least.rows[0][0], ["soccer/", "attack_", "status"]);
         assert_eq!(least.rows[0][1], ["Motion", "Controller"]);
         assert_eq!(

@@ -20,6 +20,7 @@ mod socket {
     use monas_link::{Error, ErrorKind, default_folder};
 
     use crate::commands::run::control::{CommandFailure, CommandOutput, NAMESAKES, RunArguments, RunHandle};
+    use crate::terminal::Format;
 
     /// Serves the control socket of a run, unless it is disabled.
     ///
@@ -35,19 +36,28 @@ mod socket {
         }
         let format = arguments.format.value;
         match (&arguments.control, default_folder()) {
-            (Some(name), Some(folder)) => {
+            (Some(name), Ok(folder)) => {
                 let server = ControlServer::start(&folder, name, Arc::new(overview));
                 let server = server.map_err(|error| CommandFailure::failed(format, error))?;
                 writeln!(console.err, "control socket: {}", server.path().display())?;
                 Ok(Some(server))
             }
-            (Some(_), None) => {
-                let message = "there is no folder for a control socket: XDG_RUNTIME_DIR is not set";
-                Err(CommandFailure::failed(format, message))
+            (Some(_), Err(error)) => Err(CommandFailure::failed(format, error)),
+            (None, Ok(folder)) => {
+                let server = by_default(&folder, arguments, overview);
+                // Where tools look is known only if the system says so.
+                let is_said = std::env::var_os("XDG_RUNTIME_DIR").is_none_or(|folder| folder.is_empty());
+                if let Some(server) = server.as_ref().filter(|_| is_said && format == Format::Text) {
+                    writeln!(
+                        console.err,
+                        "control socket: {} (XDG_RUNTIME_DIR is not set)",
+                        server.path().display()
+                    )?;
+                }
+                Ok(server)
             }
-            (None, Some(folder)) => Ok(by_default(&folder, arguments, overview)),
-            (None, None) => {
-                tracing::info!("no control socket: XDG_RUNTIME_DIR is not set");
+            (None, Err(error)) => {
+                tracing::warn!("no control socket: {error}");
                 Ok(None)
             }
         }
