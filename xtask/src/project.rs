@@ -1,12 +1,13 @@
 //! `cargo xtask project`: a project created by `monas new` builds, runs and passes its tests, and
 //! added files are found.
 //!
-//! The first test compiles neither the simulator nor the soccer team, and it includes the unit tests
-//! of activities: one that fails is noticed. Files of the project are not edited, only added: an
-//! activity by `monas new activity`; a message, a functionality, a model and a configuration by
+//! The first test compiles neither the simulator nor the soccer team, and it includes the unit
+//! tests of activities: one that fails is noticed. Files of the project are not edited, only added:
+//! an activity by `monas new activity`; a message, a functionality, a model and a configuration by
 //! hand. Then a crate is generated from the model, and items that it refers to are removed: an
 //! activity, a field of a message, a state. Each time the compiler must report it. Finally an
-//! activity becomes a module: it is built, loaded by the existing program, changed, and built again.
+//! activity becomes a module: it is built, loaded by the existing program, changed, and built
+//! again.
 
 use std::error::Error;
 use std::fs;
