@@ -1,11 +1,13 @@
 //! `cargo xtask project`: a project created by `monas new` builds, runs and passes its tests, and
 //! added files are found.
 //!
-//! The project is not edited after its creation; files are only added: an activity by `monas new
-//! activity`; a message, a functionality, a model and a configuration by hand. Then a crate is
-//! generated from the model, and items that it refers to are removed: an activity, a field of a
-//! message, a state. Each time the compiler must report it. Finally an activity becomes a module:
-//! it is built, loaded by the existing program, changed, and built again.
+//! The first test compiles neither the simulator nor the soccer team, and it includes the unit
+//! tests of activities: one that fails is noticed. Files of the project are not edited, only added:
+//! an activity by `monas new activity`; a message, a functionality, a model and a configuration by
+//! hand. Then a crate is generated from the model, and items that it refers to are removed: an
+//! activity, a field of a message, a state. Each time the compiler must report it. Finally an
+//! activity becomes a module: it is built, loaded by the existing program, changed, and built
+//! again.
 
 use std::error::Error;
 use std::fs;
@@ -96,6 +98,17 @@ const TAKEN: [(&str, &str, &str, &[&str]); 2] = [
     ),
 ];
 
+/// A unit test of an activity that is made to fail: the file, the original text, its replacement,
+/// and the errors of the test.
+const FAILING: (&str, &str, &str, &[&str]) =
+    ("activities/greet.rs", "number, number)", "number, number + 1)", &["test failed", "-p activities"]);
+
+/// What a project without matches does not compile.
+const LEFT_OUT: [&str; 5] = ["monas-match", "monas-sim", "monas-soccer", "nalgebra", "rapier2d"];
+
+/// The most crates that the first test of a project compiles, its own included.
+const CRATES: usize = 215;
+
 /// A configuration with a module, whose file is filled in. It is separate from the project's
 /// configuration, whose test needs no module.
 const WITH_MODULE: &str =
@@ -116,31 +129,33 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     }
     fs::create_dir_all(&folder)?;
     let team = folder.join("my-team");
-    // Shares the target folder, because the project's dependencies are those of this workspace.
+    // A folder of its own: a new project begins with nothing compiled.
+    let built = folder.join("target");
     let cargo = |folder: &Path, arguments: &[&str]| {
         let mut command = Command::new("cargo");
-        command.args(arguments).current_dir(folder).env("CARGO_TARGET_DIR", &target);
+        command.args(arguments).current_dir(folder).env("CARGO_TARGET_DIR", &built);
         command
     };
     // with the features of the tests, so that nothing is built twice
-    done(
-        cargo(root, &["test", "--quiet", "--workspace", "--no-run"]).stderr(std::process::Stdio::inherit()),
-    )?;
+    let mut build = Command::new("cargo");
+    build.args(["build", "--quiet", "--workspace", "--bin", "monas"]).current_dir(root);
+    done(build.stderr(std::process::Stdio::inherit()))?;
     let program = target.join("debug").join(format!("monas{}", std::env::consts::EXE_SUFFIX));
     let monas = |folder: &Path, arguments: &[&str]| {
         let mut command = Command::new(&program);
-        command.args(arguments).current_dir(folder).env("CARGO_TARGET_DIR", &target);
+        command.args(arguments).current_dir(folder).env("CARGO_TARGET_DIR", &built);
         command
     };
     done(&mut monas(&folder, &["new", "my-team"]))?;
-    done(&mut cargo(&team, &["test", "--offline", "--workspace"]))?;
+    let crates = first_test(&mut cargo(&team, &["test", "--offline"]))?;
+    expect_refusal_after_edit(&team, FAILING, &mut cargo(&team, &["test", "--offline"]))?;
     let said = done(&mut cargo(&team, &["run", "--offline", "--quiet", "--", "run", "--for", "2s"]))?;
     expect(&said, "hello for the 1. time")?;
     done(&mut monas(&team, &["new", "activity", "Juggle"]))?;
     for (file, text) in DROPPED {
         fs::write(team.join(file), text)?;
     }
-    done(&mut cargo(&team, &["test", "--offline", "--workspace"]))?;
+    done(&mut cargo(&team, &["test", "--offline"]))?;
     let juggler = ["run", "--offline", "--quiet", "--", "run", "config/juggler.xml", "--for", "1s"];
     expect(&done(&mut cargo(&team, &juggler))?, "pins: 6")?;
     let generate = ["run", "--offline", "--quiet", "--", "generate", "models/juggler.srm"];
@@ -148,10 +163,10 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     for (file, text) in [GENERATED, NAMING] {
         fs::write(team.join(file), text)?;
     }
-    done(&mut cargo(&team, &["test", "--offline", "--workspace"]))?;
+    done(&mut cargo(&team, &["test", "--offline"]))?;
     let generated = ["run", "--offline", "--quiet", "--", "run", "config/generated.xml", "--for", "1s"];
     expect(&done(&mut cargo(&team, &generated))?, "pins: 6")?;
-    let build = ["test", "--offline", "--workspace", "--no-run"];
+    let build = ["test", "--offline", "--no-run"];
     for taken in TAKEN {
         expect_refusal_after_edit(&team, taken, &mut cargo(&team, &build))?;
     }
@@ -163,7 +178,7 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     expressions(&team, &cargo)?;
     module(&team, &monas, &cargo)?;
     println!(
-        "project: made, built, tested, run; what was added is found, what a generated chart lacks is no program, a module is exchanged"
+        "project: made, built from {crates} crates, tested, run; what was added is found, what a generated chart lacks is no program, a module is exchanged"
     );
     Ok(ExitCode::SUCCESS)
 }
@@ -184,9 +199,27 @@ fn expressions(team: &Path, cargo: &dyn Fn(&Path, &[&str]) -> Command) -> Result
     done(&mut cargo(team, &["build", "--offline", "--workspace"]))?;
     done(&mut cargo(
         team,
-        &["run", "--offline", "--quiet", "--", "model", "check", "--linked", "roles/usher.srm"],
+        &["run", "--offline", "--quiet", "--", "model", "check", "roles/usher.srm"],
     ))?;
     Ok(())
+}
+
+/// Runs the first test of a project, which has to succeed. Returns how many crates it compiled.
+fn first_test(test: &mut Command) -> Result<usize, Box<dyn Error>> {
+    let output = test.output()?;
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    if !output.status.success() {
+        return Err(format!("{test:?}\n{}{said}", String::from_utf8_lossy(&output.stdout)).into());
+    }
+    let crates: Vec<&str> = said.lines().filter_map(|line| line.trim().strip_prefix("Compiling ")).collect();
+    let needless = |line: &&&str| line.split(' ').next().is_some_and(|name| LEFT_OUT.contains(&name));
+    match crates.iter().find(needless) {
+        Some(name) => Err(format!("a project without matches compiles {name}").into()),
+        None if crates.len() > CRATES => {
+            Err(format!("a new project compiles {} crates, more than {CRATES}", crates.len()).into())
+        }
+        None => Ok(crates.len()),
+    }
 }
 
 /// Creates an activity as a module and changes it: the existing program loads the last build.

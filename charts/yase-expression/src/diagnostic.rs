@@ -6,7 +6,7 @@
 
 use std::fmt;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A range of a text: bytes `start..end`.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
@@ -41,31 +41,56 @@ impl From<Range<usize>> for Span {
 }
 
 /// A text with its file name, shared by the diagnostics about it.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, Debug)]
 pub struct Source {
     /// The path as given by the user, or a word such as `formula`.
     pub name: String,
     /// The whole text.
     pub text: String,
+    /// The first byte of each line, determined once: a text may have a finding in every line.
+    line_starts: OnceLock<Box<[usize]>>,
 }
 
 impl Source {
     /// A text and its name, ready to be shared.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Arc<Source> {
-        Arc::new(Source { name: name.into(), text: text.into() })
+        Arc::new(Source { name: name.into(), text: text.into(), line_starts: OnceLock::new() })
     }
 
     /// Line and column of a byte, both from 1; columns count characters.
     pub fn position(&self, byte: usize) -> (usize, usize) {
+        let (number, start) = self.line_at(byte);
         let mut end = byte.min(self.text.len());
         while !self.text.is_char_boundary(end) {
             end -= 1;
         }
-        let before = &self.text[..end];
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+        (number, self.text[start..end].chars().count() + 1)
+    }
+
+    /// The line that contains a byte, without its line break, and its first byte.
+    pub fn line(&self, byte: usize) -> (usize, &str) {
+        let (_, start) = self.line_at(byte);
+        (start, self.text[start..].lines().next().unwrap_or_default())
+    }
+
+    /// The number, from 1, and the first byte of the line that contains a byte.
+    fn line_at(&self, byte: usize) -> (usize, usize) {
+        let starts = self.line_starts.get_or_init(|| {
+            let after = self.text.match_indices('\n').map(|(newline, _)| newline + 1);
+            std::iter::once(0).chain(after).collect()
+        });
+        let number = starts.partition_point(|&start| start <= byte);
+        (number, starts[number - 1])
     }
 }
+
+impl PartialEq for Source {
+    fn eq(&self, other: &Source) -> bool {
+        (&self.name, &self.text) == (&other.name, &other.text)
+    }
+}
+
+impl Eq for Source {}
 
 /// Severity of a diagnostic.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -187,6 +212,17 @@ mod tests {
         assert_eq!(source.position("goalie = aω".len()), (1, 12));
         assert_eq!(source.position("goalie = aω\nb".len()), (2, 2));
         assert_eq!(source.position(1000), (2, 6));
+        assert_eq!(source.position("goalie = a".len() + 1), (1, 11), "within a character");
+    }
+
+    #[test]
+    fn a_line_is_found_by_any_of_its_bytes() {
+        let source = Source::new("a.srm", "a = b\r\n\nc");
+        assert_eq!(
+            [0, 6, 7, 8, 9].map(|byte| source.line(byte)),
+            [(0, "a = b"), (0, "a = b"), (7, ""), (8, "c"), (8, "c")]
+        );
+        assert_eq!(Source::new("empty", "").line(3), (0, ""));
     }
 
     #[test]

@@ -32,9 +32,20 @@ pub(crate) struct Arguments {
 }
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 done, 1 ran and failed, 2 usage, 3 invalid configuration or model, 4 nothing to connect to,
-5 a replay differs from its recording or a check of a model finds an error, 130 interrupted.
-Environment: NO_COLOR switches colours off; MONAS_LOG chooses what is logged, for example `info` or `monas=debug`.";
+Exit codes:
+  0    done
+  1    ran and failed
+  2    usage
+  3    invalid configuration or model
+  4    nothing to connect to
+  5    a replay differs from its recording, or a check of a model finds an error
+  130  interrupted
+  143  terminated
+
+Environment:
+  NO_COLOR   switches colours off
+  COLUMNS    the width of tables and help texts
+  MONAS_LOG  chooses what is logged, for example `info` or `monas=debug`";
 
 #[derive(Subcommand, Debug)]
 pub(crate) enum Command {
@@ -109,6 +120,18 @@ pub(crate) enum Command {
     },
 }
 
+impl Command {
+    /// Whether the command writes results until it is stopped, and ends when nothing reads them.
+    pub(crate) const fn is_stream(&self) -> bool {
+        match self {
+            #[cfg(unix)]
+            Command::Topic(_) | Command::Top(_) => true,
+            Command::Log(_) | Command::Tape(_) => true,
+            _ => false,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::PathBuf;
@@ -153,7 +176,7 @@ mod tests {
         leaves(&Arguments::command(), "monas", &mut found);
         assert!(found.len() > 20, "{}", found.len());
         for (words, command) in found {
-            let help = command.clone().render_long_help().to_string();
+            let help = command.clone().term_width(usize::MAX).render_long_help().to_string();
             let example = help.lines().find_map(|line| line.trim().strip_prefix("Example: "));
             let example = example.unwrap_or_else(|| panic!("no example for `{words}`:\n{help}"));
             if words == "monas completions" {

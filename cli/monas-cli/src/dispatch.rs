@@ -8,7 +8,7 @@ use clap_complete::env::Shells;
 
 use crate::arguments::{Arguments, Command};
 use crate::commands;
-use crate::terminal::{CommandFailure, CommandOutput, Exit};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, UnreadOutput};
 
 /// Parses the arguments, of which the first is the program's name, and executes the command.
 pub(crate) fn dispatch<Argument: Into<OsString> + Clone>(
@@ -16,7 +16,19 @@ pub(crate) fn dispatch<Argument: Into<OsString> + Clone>(
     console: &mut CommandOutput<'_>,
 ) -> Exit {
     let done = match Arguments::try_parse_from(arguments) {
-        Ok(arguments) => execute(arguments.command, console),
+        Ok(arguments) if arguments.command.is_stream() => execute(arguments.command, console),
+        Ok(arguments) => {
+            // What the command finds decides its exit code, also if its results are not read.
+            let mut out = UnreadOutput(&mut *console.out);
+            let mut rest = CommandOutput {
+                out: &mut out,
+                err: &mut *console.err,
+                bars: console.bars.clone(),
+                log: console.log.clone(),
+                ..*console
+            };
+            execute(arguments.command, &mut rest)
+        }
         Err(error) => answer(&error, console).map_err(CommandFailure::from),
     };
     done.unwrap_or_else(|failure| failure.report(console))

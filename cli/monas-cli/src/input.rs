@@ -5,7 +5,9 @@ pub(crate) mod layers;
 mod model;
 mod recorded_run;
 
-pub(crate) use configuration::{ConfigurationKind, DEFAULT_CONFIGURATION, checked, checked_with, kind_of};
+pub(crate) use configuration::{
+    ConfigurationKind, DEFAULT_CONFIGURATION, checked, checked_with, grammar, kind_of, load_agents,
+};
 pub(crate) use layers::LayerArguments;
 pub(crate) use model::{valid_chart, valid_model};
 pub(crate) use recorded_run::{chosen_hosts, recorded_hosts, replay, run_of};

@@ -12,7 +12,7 @@ use crate::delegate;
 use crate::dispatch::dispatch;
 #[cfg(target_os = "linux")]
 use crate::terminal::crash_report::CrashReport;
-use crate::terminal::{CommandOutput, Exit, ProcessLog, crash_report};
+use crate::terminal::{CommandOutput, Exit, ProcessLog, UnreadOutput, crash_report};
 
 /// Executes the command as this process.
 pub(crate) fn main() -> Exit {
@@ -25,12 +25,14 @@ pub(crate) fn main() -> Exit {
     let _crashes = CrashReport::install();
     // The caller decides how to handle a panic; the log has its location.
     panic::set_hook(Box::new(|panic| tracing::error!("{panic}")));
-    let (mut out, mut err) = (io::stdout(), io::stderr());
+    let (mut out, mut stderr) = (io::stdout(), io::stderr());
     let colours_are_welcome = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+    let (reads_bars, reads_colours) = (stderr.is_terminal(), colours_are_welcome && stderr.is_terminal());
+    let mut err = UnreadOutput(&mut stderr);
     let mut console = CommandOutput {
         colour_out: colours_are_welcome && out.is_terminal(),
-        colour_err: colours_are_welcome && err.is_terminal(),
-        bars: err.is_terminal().then_some(bars),
+        colour_err: reads_colours,
+        bars: reads_bars.then_some(bars),
         catches_signals: true,
         log: log.clone(),
         out: &mut out,

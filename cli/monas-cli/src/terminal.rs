@@ -11,8 +11,10 @@ mod format;
 mod interrupt;
 mod process_log;
 mod quantity;
+mod repaint;
 pub(crate) mod report;
 pub(crate) mod table;
+mod unread_output;
 mod wall_clock;
 
 pub(crate) use command_failure::{CommandFailure, failed, project_failure};
@@ -23,4 +25,6 @@ pub(crate) use format::{Format, FormatArgument};
 pub(crate) use interrupt::Interrupt;
 pub(crate) use process_log::ProcessLog;
 pub(crate) use quantity::{counted, grouped, memory, millis, parse_size, seconds, size};
+pub(crate) use repaint::Repaint;
+pub(crate) use unread_output::UnreadOutput;
 pub(crate) use wall_clock::WallClock;

@@ -112,14 +112,16 @@ fn check(name: &str) -> Result<(), String> {
 /// The dependency lines of the crates of Monas, and the folder of its checkout if it is local.
 fn dependencies(monas: Option<&str>) -> Result<(String, Option<PathBuf>), String> {
     let lines = |value: &dyn Fn(&str) -> String| -> String {
-        CRATES.iter().map(|name| format!("{name} = {}\n", value(name))).collect()
+        // A project without matches needs neither the field nor the soccer team.
+        let features = |name: &str| if name == "monas-cli" { ", default-features = false" } else { "" };
+        CRATES.iter().map(|name| format!("{name} = {{ {}{} }}\n", value(name), features(name))).collect()
     };
     match monas {
         Some(address) if address.contains("://") || address.starts_with("git@") => {
-            Ok((lines(&|_| format!("{{ git = {address:?} }}")), None))
+            Ok((lines(&|_| format!("git = {address:?}")), None))
         }
         Some(version) if version.starts_with(|first: char| first.is_ascii_digit()) => {
-            Ok((lines(&|_| format!("{version:?}")), None))
+            Ok((lines(&|_| format!("version = {version:?}")), None))
         }
         path => {
             let built_from = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
@@ -132,8 +134,7 @@ fn dependencies(monas: Option<&str>) -> Result<(String, Option<PathBuf>), String
                     path.display()
                 ));
             };
-            let at =
-                |name: &str| format!("{{ path = {:?} }}", checkout.join(folder(name)).display().to_string());
+            let at = |name: &str| format!("path = {:?}", checkout.join(folder(name)).display().to_string());
             Ok((lines(&at), Some(checkout.clone())))
         }
     }
@@ -174,7 +175,7 @@ mod tests {
         assert_eq!(text.lines().filter(|line| line.contains("path = ")).count(), CRATES.len());
         let (text, _) = dependencies(Some("https://example.org/monas.git")).unwrap();
         assert!(text.contains("narukom = { git = \"https://example.org/monas.git\" }\n"), "{text}");
-        assert!(dependencies(Some("0.1.0")).unwrap().0.contains("monas = \"0.1.0\"\n"));
+        assert!(dependencies(Some("0.1.0")).unwrap().0.contains("monas = { version = \"0.1.0\" }\n"));
         assert!(dependencies(Some("/nowhere")).unwrap_err().contains("--monas PATH"));
     }
 

@@ -168,7 +168,11 @@ impl Project {
             if is_shared { with_block(&manifest, "[workspace.dependencies]", &lines) } else { manifest }
         };
         changed.extend(edited(&self.root.join("Cargo.toml"), text)?);
-        let text = |manifest: &str| with_block(manifest, "[dependencies]", &own);
+        let text = |manifest: &str| {
+            let lines: Vec<String> =
+                crates.iter().zip(&own).map(|(name, line)| as_there(manifest, name, line)).collect();
+            with_block(manifest, "[dependencies]", &lines)
+        };
         changed.extend(edited(&self.team.join("Cargo.toml"), text)?);
         changed.extend(edited(&self.team.join(LINKS), |_| links(&crates))?);
         let main = ["src/main.rs", "src/lib.rs"].map(|file| self.team.join(file));
@@ -198,6 +202,13 @@ fn missing_setting(key: &str) -> String {
         "publish" => "publish = false\n".into(),
         _ => String::new(),
     }
+}
+
+/// The dependency on a crate as the manifest has it, which may be optional; `line` if it has none.
+fn as_there(manifest: &str, name: &str, line: &str) -> String {
+    let dependencies = table(manifest, "[dependencies]").unwrap_or_default();
+    let is_it = |there: &&str| there.split(['.', ' ', '=']).next() == Some(name);
+    dependencies.lines().find(is_it).unwrap_or(line).to_owned()
 }
 
 /// Rewrites a file if its text changes.

@@ -23,7 +23,8 @@ pub struct LinkConfig {
 pub enum LinkTransport {
     /// Local sockets of one computer.
     Local {
-        /// The folder of the sockets; default `$XDG_RUNTIME_DIR/monas`.
+        /// The folder of the sockets; default `$XDG_RUNTIME_DIR/monas`, or without it a
+        /// private folder of this user.
         folder: Option<PathBuf>,
     },
     /// Zenoh, in programs that are built with the feature `zenoh`.

@@ -271,11 +271,14 @@ fn charted(
         found.extend(guards::check(&subject));
         found.extend(profiles::check(&subject));
         found.extend(messages::same_step(&subject));
-        match &settings.world {
-            Some(world) => found.extend(messages::names(&subject, world)),
+        // The scripts of other charts name nothing of the program.
+        match settings.world.as_ref().filter(|_| is_ours(&subject)) {
+            Some(world) => {
+                found.extend(messages::names(&subject, world));
+                found.extend(topics::unmet(&subject, world));
+            }
             None => found.extend(messages::names_like_formulas(&subject)),
         }
-        found.extend(settings.world.iter().flat_map(|world| topics::unmet(&subject, world)));
     }
     let can_be_explored = settings.states > 0 && is_ours(&subject) && !found.iter().any(Diagnostic::is_error);
     let (explored, extent) = match can_be_explored {

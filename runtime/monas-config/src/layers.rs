@@ -186,6 +186,15 @@ fn not_there(elements: &[Element], over: &Element, rule: &ElementRule, grammar: 
     let diagnostic = over.error("E0341", over.text_span, message);
     let known = identities(elements, rule, grammar);
     let near = diagnostic.with_nearest(identity, known.iter().copied());
+    let is_value = rule.identity == Identity::Text && over.attributes.is_empty() && over.children.is_empty();
+    if let Some(first) = known.first().filter(|_| is_value) {
+        let path = over.source.text.split('=').next().unwrap_or_default();
+        let hint = format!(
+            "there is {}; it cannot be replaced, but its attributes can be set, as in `{path}.\"{first}\".enable=0`",
+            listed(&known)
+        );
+        return near.with_hint(hint);
+    }
     match (&near.hint, known.is_empty()) {
         (Some(_), _) => near,
         (None, true) => near.with_hint(format!("there is no `{}` at all", rule.name)),

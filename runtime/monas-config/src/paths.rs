@@ -51,6 +51,16 @@ fn read_up_to(path: &Path, largest: u64) -> Result<Arc<Source>, Box<Diagnostic>>
                 None => diagnostic,
             })
         }
+        Err(_) if path.is_dir() => {
+            let diagnostic = unreadable("E0317", &name, format!("`{name}` is a folder, not a file"));
+            Err(match files_in(path).into_iter().next() {
+                Some(file) => Box::new(
+                    diagnostic
+                        .with_hint(format!("name a file in it, for example `{}`", path.join(file).display())),
+                ),
+                None => diagnostic,
+            })
+        }
         Err(error) => Err(unreadable("E0317", &name, format!("`{name}` cannot be read: {error}"))),
     }
 }
@@ -82,11 +92,17 @@ fn neighbour(path: &Path) -> Option<PathBuf> {
     let name = path.file_name()?.to_str()?;
     let folder = path.parent()?;
     let listed = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let mut names: Vec<String> =
-        fs::read_dir(listed).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
-    // The order of a directory listing is unspecified.
-    names.sort_unstable();
+    let names = files_in(listed);
     nearest(name, names.iter().map(String::as_str)).map(|found| folder.join(found))
+}
+
+/// The names of the files in a folder, sorted: the order of a directory listing is unspecified.
+fn files_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let files = entries.filter(|entry| entry.path().is_file());
+    let mut names: Vec<String> = files.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    names.sort_unstable();
+    names
 }
 
 #[cfg(test)]

@@ -122,9 +122,9 @@ impl ResolvedTransport {
         };
         match transport {
             #[cfg(unix)]
-            LinkTransport::Local { folder } => match folder.or_else(monas_link::default_folder) {
-                Some(folder) => Ok(ResolvedTransport::Local(folder)),
-                None => refused("neither does it name a folder, nor does the system with XDG_RUNTIME_DIR"),
+            LinkTransport::Local { folder } => match folder.map_or_else(monas_link::default_folder, Ok) {
+                Ok(folder) => Ok(ResolvedTransport::Local(folder)),
+                Err(error) => refused(&error.to_string()),
             },
             #[cfg(not(unix))]
             LinkTransport::Local { .. } => refused("local sockets are those of Unix"),

@@ -34,7 +34,6 @@ mod plan;
 mod running_match;
 mod settings;
 mod summary;
-mod tape_metadata;
 
 pub use error::{Error, ErrorKind};
 pub use grammar::of_matches as grammar;
@@ -42,7 +41,6 @@ pub use parameters::simulator_file;
 pub use plan::{MatchOptions, MatchPlan, MatchSource};
 pub use running_match::RunningMatch;
 pub use summary::{AgentSummary, MatchEvent, MatchSummary, Scoreboard, TeamScore, TeamSummary};
-pub use tape_metadata::{END, FOLDER, RUN, SETTINGS, ended, label_real_time};
 
 // The activities register themselves at link time; the linker drops crates without a reference.
 use monas_soccer as _;

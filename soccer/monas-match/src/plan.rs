@@ -17,7 +17,6 @@ use crate::file::{self, MatchFile};
 use crate::match_world::MatchWorld;
 use crate::running_match::RunningMatch;
 use crate::settings::MatchSettings;
-use crate::tape_metadata;
 
 /// Loads matches.
 #[derive(Debug)]
@@ -257,7 +256,7 @@ impl MatchPlan {
         talws.observe(Box::new(hash.clone()));
         let tape = options.record;
         if let Some(tape) = &tape {
-            tape_metadata::label_simulated(tape, &files, &settings, options.seed, &hosts)
+            monas_recording::label_simulated(tape, &files, &settings, options.seed, &hosts)
                 .map_err(Error::recording)?;
             talws.observe(Box::new(tape.clone()));
         }

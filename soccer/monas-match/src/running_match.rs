@@ -9,7 +9,6 @@ use monas_tape::Tape;
 use crate::error::Error;
 use crate::match_events;
 use crate::summary::{AgentSummary, MatchEvent, MatchSummary, Scoreboard, TeamScore, TeamSummary};
-use crate::tape_metadata;
 
 /// How long the end of a match waits for the activities to stop, in real time.
 const STOP_LIMIT: Duration = Duration::from_secs(3);
@@ -108,7 +107,7 @@ impl RunningMatch {
         let simulated = self.now();
         let RunningMatch { simulation, pitch, hash, tape, events, .. } = self;
         if let Some(tape) = &tape {
-            tape_metadata::ended(tape, simulation.now()).map_err(Error::recording)?;
+            monas_recording::ended(tape, simulation.now()).map_err(Error::recording)?;
         }
         let last = (simulation.statistics(), simulation.coverage());
         let ((statistics, coverage), unstopped) = match simulation.stop_within(STOP_LIMIT) {

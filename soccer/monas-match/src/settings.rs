@@ -1,5 +1,6 @@
 //! Command-line settings for the roles of a match.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use monas::config::{Layers, UnmatchedSetting};
@@ -37,13 +38,14 @@ impl MatchSettings {
         of_robot.into_iter().map(|unmatched| unmatched.diagnostic).collect()
     }
 
-    /// Diagnostics for settings that match no role.
+    /// Diagnostics for settings that match no role. Of several roles, the one counts that matches
+    /// the longest part of the path: other roles lack the agent.
     pub(crate) fn unused_settings(self) -> Vec<Diagnostic> {
         let roles = self.roles;
         self.reported
             .into_values()
             .filter(|said| said.len() == roles)
-            .filter_map(|said| said.into_iter().next())
+            .filter_map(|said| said.into_iter().min_by_key(|it| Reverse(it.span.start)))
             .collect()
     }
 }

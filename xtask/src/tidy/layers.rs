@@ -6,7 +6,7 @@ use super::TidyFinding;
 use super::workspace::{Crate, Dependency, Workspace};
 
 /// Every crate of the product and its layer.
-const LAYERS: [(&str, u8); 30] = [
+const LAYERS: [(&str, u8); 31] = [
     ("monas-files", 0),
     ("narukom", 0),
     ("narukom-build", 0),
@@ -31,6 +31,7 @@ const LAYERS: [(&str, u8); 30] = [
     ("monas-runtime", 11),
     ("monas", 12),
     ("monas-sim", 12),
+    ("monas-recording", 13),
     ("monas-soccer", 13),
     ("monas-match", 14),
     ("monas-studio", 15),

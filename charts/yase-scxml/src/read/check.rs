@@ -40,7 +40,7 @@ impl DocumentReader<'_> {
             }
         }
         for required in known.required.iter().filter(|required| node.attribute(**required).is_none()) {
-            self.error("E0604", tag(node), format!("`{name}` has no attribute `{required}`"));
+            self.error("E0604", tag(node), format!("`{name}` lacks the attribute `{required}`"));
         }
     }
 

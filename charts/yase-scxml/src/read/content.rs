@@ -42,7 +42,7 @@ impl DocumentReader<'_> {
             "cancel" => {
                 let id = self.given(node, "sendid", "sendidexpr");
                 if id.is_none() {
-                    self.error("E0604", tag(node), "`cancel` has no attribute `sendid`");
+                    self.error("E0604", tag(node), "`cancel` lacks the attribute `sendid`");
                 }
                 id.map(ExecutableContent::Cancel)
             }
@@ -186,7 +186,7 @@ impl DocumentReader<'_> {
             self.error("E0608", tag(node), message);
         }
         if send.event.is_none() && send.payload.content.is_none() {
-            self.error("E0604", tag(node), "`send` has no attribute `event`");
+            self.error("E0604", tag(node), "`send` lacks the attribute `event`");
         }
         send
     }

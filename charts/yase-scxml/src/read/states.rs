@@ -224,7 +224,7 @@ impl DocumentReader<'_> {
             self.error("E0615", tag(*only), message);
         }
         if !only.has_attribute("target") {
-            self.error("E0604", tag(*only), "`transition` has no attribute `target`");
+            self.error("E0604", tag(*only), "`transition` lacks the attribute `target`");
         }
         self.transition(*only, source, Some(composite));
     }

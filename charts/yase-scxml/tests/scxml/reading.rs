@@ -55,10 +55,13 @@ fn misspelt_words_are_said_with_the_nearest_right_one() {
 #[test]
 fn what_is_missing_or_too_much_is_said() {
     refused("", "E0604 [scxml] the document has no states");
-    refused("<state><onentry><raise/></onentry></state>", "E0604 [raise] `raise` has no attribute `event`");
+    refused(
+        "<state><onentry><raise/></onentry></state>",
+        "E0604 [raise] `raise` lacks the attribute `event`",
+    );
     refused(
         "<state><onentry><cancel/></onentry></state>",
-        "E0604 [cancel] `cancel` has no attribute `sendid`",
+        "E0604 [cancel] `cancel` lacks the attribute `sendid`",
     );
     refused("<state id='a'/><final id='a'/>", "E0605 [a] two states have the id `a`");
     refused(

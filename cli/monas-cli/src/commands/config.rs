@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueHint};
 
-use crate::input::{DEFAULT_CONFIGURATION, LayerArguments};
+use crate::input::{DEFAULT_CONFIGURATION, LayerArguments, grammar};
 use crate::terminal::{CommandFailure, CommandOutput, Exit, FormatArgument};
 
 /// A configuration with its layers.
@@ -57,7 +57,7 @@ pub(crate) fn execute(
         ConfigCommand::Check(arguments) => check::execute(arguments, console),
         ConfigCommand::Show(arguments) => show::execute(arguments, console),
         ConfigCommand::Schema { xsd, robots, .. } => {
-            let grammar = if *robots { monas_deploy::robots_grammar() } else { monas_match::grammar() };
+            let grammar = if *robots { monas_deploy::robots_grammar() } else { grammar() };
             let schema = if *xsd { grammar.xml_schema() } else { grammar.json_schema() };
             console.out.write_all(schema.as_bytes())?;
             Ok(Exit::Success)

@@ -6,7 +6,7 @@ use clap::{Args, ValueHint};
 use monas_deploy::{Deployment, ErrorKind, Release, Robot, build_program, find_robot, missing_modules};
 use serde_json::json;
 
-use crate::input::checked;
+use crate::input::{checked, grammar};
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed};
 
 /// Arguments of `monas deploy`.
@@ -60,7 +60,7 @@ fn deploy(
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
     let format = arguments.format.value;
-    let missing = missing_modules(robot, &monas_match::grammar());
+    let missing = missing_modules(robot, &grammar());
     if !missing.is_empty() {
         return Err(CommandFailure::Invalid(format, missing));
     }

@@ -13,7 +13,7 @@ use monas::config::Layers;
 use serde_json::json;
 use yase::Diagnostic;
 
-use crate::input::{ConfigurationKind, DEFAULT_CONFIGURATION, kind_of};
+use crate::input::{ConfigurationKind, DEFAULT_CONFIGURATION, kind_of, load_agents};
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report};
 
 /// Arguments of `monas doctor`.
@@ -107,11 +107,12 @@ fn configuration(arguments: &DoctorArguments) -> (CheckResult, Vec<Diagnostic>) 
     }
     let registry = monas::Registry::linked();
     let diagnostics = match kind_of(path) {
+        #[cfg(feature = "soccer")]
         Ok(ConfigurationKind::Match) => match monas_match::MatchSource::load(path, &registry) {
             Ok(plan) => plan.warnings().to_vec(),
             Err(diagnostics) => diagnostics,
         },
-        Ok(ConfigurationKind::Agents) => monas::config::load_with(path, &registry, &Layers::new()).1,
+        Ok(ConfigurationKind::Agents) => load_agents(path, &registry, &Layers::new()).1,
         Err(unread) => vec![*unread],
     };
     let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();

@@ -62,9 +62,12 @@ pub(crate) enum ModelCommand {
     Ontology(OntologyArguments),
     /// Check models for errors.
     ///
+    /// Names are checked against the messages, functions and activities of this program; for a
+    /// model of another program this is left out with --unlinked.
+    ///
     /// Exits with 0 if there are no errors, with 3 if a model cannot be read, and with 5 if a check
     /// finds an error.
-    #[command(after_help = "Example: monas model check models/goalie.srm --linked")]
+    #[command(after_help = "Example: monas model check models/goalie.srm")]
     Check(CheckArguments),
     /// Check whether charts conform to a protocol: the protocol's own chart and those of its
     /// players.

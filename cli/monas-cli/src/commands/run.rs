@@ -1,12 +1,16 @@
 //! `monas run`: runs a match in simulated time, or a set of agents in real time.
 
 mod control;
+#[cfg(feature = "soccer")]
 mod coverage;
 mod links;
 mod outputs;
+#[cfg(feature = "soccer")]
 mod play;
 mod real_time;
+#[cfg(feature = "soccer")]
 mod scoreboard;
+#[cfg(feature = "soccer")]
 mod summary;
 
 use std::path::PathBuf;
@@ -71,7 +75,7 @@ pub(crate) fn execute(
 ) -> Result<Exit, CommandFailure> {
     let invalid = |diagnostics| CommandFailure::Invalid(arguments.format.value, diagnostics);
     let kind = kind_of(&arguments.config).map_err(|unread| invalid(vec![*unread]))?;
-    if kind == ConfigurationKind::Match && arguments.layers.robot.is_some() {
+    if kind != ConfigurationKind::Agents && arguments.layers.robot.is_some() {
         let message =
             "--robot is for the agents of one robot; a match configures each robot in its `<robot>`";
         return Err(CommandFailure::Usage(message.into()));
@@ -83,6 +87,7 @@ pub(crate) fn execute(
     report::write(console, arguments.format.value, &unlinked)?;
     let layers = layers::of(&arguments.config, &arguments.layers).map_err(invalid)?;
     match kind {
+        #[cfg(feature = "soccer")]
         ConfigurationKind::Match => play::execute(arguments, &layers, console),
         ConfigurationKind::Agents => real_time::execute(arguments, &layers, console),
     }

@@ -6,6 +6,8 @@ use clap::Args;
 use monas::config::{self, Layers};
 use yase::{Diagnostic, Source};
 
+use super::grammar;
+
 /// The flags `--set` and `--robot`.
 #[derive(Args, Debug, Default)]
 pub(crate) struct LayerArguments {
@@ -25,7 +27,7 @@ pub(crate) fn of(config: &Path, arguments: &LayerArguments) -> Result<Layers, Ve
         Some(name) => Layers::new().robot(robot(config, name)?),
         None => Layers::new(),
     };
-    let (grammar, mut wrong) = (monas_match::grammar(), Vec::new());
+    let (grammar, mut wrong) = (grammar(), Vec::new());
     for setting in &arguments.settings {
         match layers.clone().set(setting, &grammar) {
             Ok(with) => layers = with,

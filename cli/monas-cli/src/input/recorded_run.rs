@@ -6,6 +6,7 @@ use std::path::Path;
 
 use monas::replay::{RecordedPublisher, Replay};
 use monas::{Agent, ConfigurationBundle, HostConfig, Registry, Talws};
+#[cfg(feature = "soccer")]
 use monas_match::MatchSource;
 use monas_tape::{CONTINUATION, Channel, Recording, RecordingItem, TapeOverview};
 use yase::Diagnostic;
@@ -39,7 +40,7 @@ pub(crate) fn run_of(overview: &TapeOverview) -> Result<RecordedRun, String> {
     if let Some(damage) = overview.damages.first() {
         return Err(format!("{damage}; `monas tape recover` keeps what can be read"));
     }
-    let facts = overview.facts.iter().find(|facts| facts.name == monas_match::RUN);
+    let facts = overview.facts.iter().find(|facts| facts.name == monas_recording::RUN);
     let facts =
         &facts.ok_or("the tape does not describe its run: it was not recorded by `monas run`")?.entries;
     let fact = |key: &str| facts.get(key).cloned().ok_or(format!("the tape lacks the {key} of its run"));
@@ -61,8 +62,8 @@ pub(crate) fn run_of(overview: &TapeOverview) -> Result<RecordedRun, String> {
             "the tape starts after its run: the first message on `{topic}` is number {number}"
         ));
     }
-    let settings = facts.get(monas_match::SETTINGS).cloned().unwrap_or_default();
-    let folder = facts.get(monas_match::FOLDER).cloned();
+    let settings = facts.get(monas_recording::SETTINGS).cloned().unwrap_or_default();
+    let folder = facts.get(monas_recording::FOLDER).cloned();
     Ok(RecordedRun {
         version: fact("version")?,
         configuration: fact("configuration")?,
@@ -165,6 +166,7 @@ fn load(path: &Path, settings: &str, format: Format) -> Result<Vec<HostConfig>, 
     let settings = settings.lines().map(str::to_owned).collect();
     let layers = layers::of(path, &LayerArguments { settings, robot: None }).map_err(invalid)?;
     match kind_of(path).map_err(|unread| invalid(vec![*unread]))? {
+        #[cfg(feature = "soccer")]
         ConfigurationKind::Match => {
             Ok(MatchSource::load_with(path, &registry, &layers).map_err(invalid)?.agents())
         }

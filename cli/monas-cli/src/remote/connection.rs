@@ -15,8 +15,9 @@ pub(crate) fn socket(choice: &RunSelector) -> Result<PathBuf, CommandFailure> {
         return Ok(socket.clone());
     }
     let unreachable = |message: String| Err(CommandFailure::Unreachable(choice.format.value, message));
-    let Some(folder) = monas_link::default_folder() else {
-        return unreachable("there are no control sockets: XDG_RUNTIME_DIR is not set".into());
+    let folder = match monas_link::default_folder() {
+        Ok(folder) => folder,
+        Err(error) => return unreachable(error.to_string()),
     };
     let runs = live_runs();
     let names: Vec<String> = runs.iter().map(|(name, _)| format!("`{name}`")).collect();

@@ -7,7 +7,7 @@ use monas_link::control::{ControlClient, control_sockets};
 
 /// The runs that answer, by the name and path of their sockets.
 pub(crate) fn live_runs() -> Vec<(String, PathBuf)> {
-    let Some(folder) = monas_link::default_folder() else { return Vec::new() };
+    let Ok(folder) = monas_link::default_folder() else { return Vec::new() };
     let sockets = control_sockets(&folder).into_iter();
     sockets.filter(|(_, path)| ControlClient::connect(path).is_ok()).collect()
 }

@@ -60,7 +60,8 @@ impl CommandFailure {
 
     /// Writes it on standard error, and returns the exit status.
     pub(crate) fn report(self, console: &mut CommandOutput<'_>) -> Exit {
-        let (written, exit) = match self {
+        // If standard error cannot be written, only the exit code remains.
+        let (_, exit) = match self {
             CommandFailure::Invalid(format, diagnostics) => {
                 (report::write(console, format, &diagnostics), Exit::Invalid)
             }
@@ -78,8 +79,7 @@ impl CommandFailure {
                 (report_failure(console, Format::Text, &error.to_string()), Exit::Failure)
             }
         };
-        // If standard error cannot be written, only the exit code remains.
-        if written.is_err() { Exit::Failure } else { exit }
+        exit
     }
 }
 

@@ -19,8 +19,8 @@ pub enum Exit {
     /// 5: a check does not hold: a replay differs from its recording, or a check of a model finds
     /// an error.
     Diverged,
-    /// 130: interrupted.
-    Interrupted,
+    /// 128 and the number of the signal that ended the run: 130 for Ctrl-C, 143 for SIGTERM.
+    Interrupted(u8),
 }
 
 impl Exit {
@@ -33,7 +33,7 @@ impl Exit {
             Exit::Invalid => 3,
             Exit::Unreachable => 4,
             Exit::Diverged => 5,
-            Exit::Interrupted => 130,
+            Exit::Interrupted(signal) => 128 | signal,
         }
     }
 }

@@ -1,13 +1,22 @@
 //! Renders diagnostics: with the source underlined, or as one JSON object per line.
 
-use std::fmt;
+use std::fmt::Write;
 use std::io;
 
-use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode};
 use serde_json::{Value, json};
+use unicode_width::UnicodeWidthChar;
 use yase::{Diagnostic, Severity};
 
 use super::{CommandOutput, Format};
+
+/// The columns that are shown of a source line with more characters: it is cut around the finding.
+const WINDOW: usize = 100;
+
+/// How many columns of a long line are shown before the finding.
+const BEFORE: usize = 30;
+
+/// The characters of a message or a hint that are shown, at most: a name may fill a whole file.
+const MESSAGE: usize = 1000;
 
 /// Writes diagnostics on standard error, in the given order.
 pub(crate) fn write(
@@ -17,7 +26,7 @@ pub(crate) fn write(
 ) -> io::Result<()> {
     for diagnostic in diagnostics {
         match format {
-            Format::Text => writeln!(console.err, "{}", drawn(diagnostic, console.colour_err))?,
+            Format::Text => writeln!(console.err, "{}\n", drawn(diagnostic, console.colour_err))?,
             Format::Json => writeln!(console.err, "{}", object(diagnostic))?,
         }
     }
@@ -68,72 +77,120 @@ const fn severity(severity: Severity) -> &'static str {
     }
 }
 
-/// The diagnostic with its source; in one line if there is no source.
+/// The diagnostic as compilers print it: severity, code and message, file and position, the line
+/// with the place underlined, and the hint.
 fn drawn(diagnostic: &Diagnostic, colour: bool) -> String {
-    let theme = if colour { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
-    let mut text = String::new();
-    let drawing = GraphicalReportHandler::new_themed(theme).with_links(false);
-    match MietteDiagnostic::new(diagnostic) {
-        Some(drawable) if drawing.render_report(&mut text, &drawable).is_ok() => text,
-        _ => diagnostic.to_string(),
+    let paint = |code: &str, text: &str| match colour {
+        true => format!("\x1b[{code}m{text}\x1b[0m"),
+        false => text.to_owned(),
+    };
+    let tone = match diagnostic.severity {
+        Severity::Error => "1;31",
+        Severity::Warning => "1;33",
+        Severity::Information => "1;36",
+    };
+    let head = paint(tone, &format!("{}[{}]", severity(diagnostic.severity), diagnostic.code));
+    let mut text = format!("{head}: {}", paint("1", &shown(&diagnostic.message)));
+    let mut margin = 1;
+    if let (Some(source), Some((line, column))) = (&diagnostic.source, diagnostic.position()) {
+        let number = line.to_string();
+        margin += number.len();
+        let place = match source.text.is_empty() {
+            true => shown(&source.name),
+            false => format!("{}:{line}:{column}", shown(&source.name)),
+        };
+        let (arrow, bar) = (paint("34", "-->"), paint("34", "|"));
+        // Writing to a string does not fail.
+        let _ = write!(text, "\n{:>margin$}{arrow} {place}", "");
+        if !source.text.is_empty() {
+            let (start, content) = source.line(diagnostic.span.start);
+            let span = (
+                diagnostic.span.start - start.min(diagnostic.span.start),
+                diagnostic.span.end.saturating_sub(start),
+            );
+            let Excerpt { line, before, marked } = Excerpt::of(content, span.0, span.1);
+            let mark = format!("{:before$}{}", "", paint(tone, &"^".repeat(marked)));
+            let number = paint("34", &number);
+            let _ = write!(text, "\n{:margin$}{bar}\n{number} {bar} {line}\n{:margin$}{bar} {mark}", "", "");
+        }
+    }
+    if let Some(hint) = &diagnostic.hint {
+        let _ = write!(text, "\n{:margin$}{} {}", "", paint("34", "= help:"), shown(hint));
+    }
+    text
+}
+
+/// A text of a person as it can be shown: without control characters, and not longer than a screen.
+fn shown(text: &str) -> String {
+    let mut shown: String = text.chars().take(MESSAGE).map(printable).collect();
+    if text.chars().nth(MESSAGE).is_some() {
+        shown.push('…');
+    }
+    shown
+}
+
+/// The character, or its replacement if a terminal would interpret it.
+fn printable(c: char) -> char {
+    match c {
+        '\n' => '\n',
+        '\t' => ' ',
+        c if c.is_control() => '\u{fffd}',
+        c => c,
     }
 }
 
-/// Adapts a diagnostic to miette.
-#[derive(Debug)]
-struct MietteDiagnostic<'a> {
-    diagnostic: &'a Diagnostic,
-    source: NamedSource<String>,
+/// The part of a line around a place.
+#[derive(PartialEq, Eq, Debug)]
+struct Excerpt {
+    line: String,
+    /// Columns before the place.
+    before: usize,
+    /// Columns of the place; at least one.
+    marked: usize,
 }
 
-impl<'a> MietteDiagnostic<'a> {
-    /// None if there is no source text.
-    fn new(diagnostic: &'a Diagnostic) -> Option<MietteDiagnostic<'a>> {
-        let source = diagnostic.source.as_ref().filter(|source| !source.text.is_empty())?;
-        Some(MietteDiagnostic { diagnostic, source: NamedSource::new(&source.name, source.text.clone()) })
-    }
-
-    /// Start and length of the span, clipped to the text.
-    fn place(&self) -> (usize, usize) {
-        let length = self.source.inner().len();
-        let start = self.diagnostic.span.start.min(length);
-        (start, self.diagnostic.span.end.clamp(start, length) - start)
+impl Excerpt {
+    /// The part of a line around its bytes `start..end`, which are clipped to it.
+    fn of(line: &str, start: usize, end: usize) -> Excerpt {
+        let width = |c: char| printable(c).width().unwrap_or(0);
+        let is_long = line.chars().nth(WINDOW).is_some();
+        let mut left: Vec<char> = Vec::new();
+        let mut columns = 0;
+        // Backwards from the place, so that a long line costs no more than a short one.
+        let before = &line[..floor(line, start)];
+        for c in before.chars().rev() {
+            columns += width(c);
+            if is_long && columns > BEFORE {
+                left.push('…');
+                break;
+            }
+            left.push(printable(c));
+        }
+        let mut excerpt = Excerpt { line: left.iter().rev().collect(), before: 0, marked: 0 };
+        excerpt.before = left.iter().map(|&c| width(c)).sum();
+        let mut at = before.len();
+        let mut columns = excerpt.before;
+        for c in line[before.len()..].chars() {
+            if is_long && columns + width(c) >= WINDOW {
+                excerpt.line.push('…');
+                break;
+            }
+            columns += width(c);
+            excerpt.line.push(printable(c));
+            if at < end {
+                excerpt.marked += width(c);
+            }
+            at += c.len_utf8();
+        }
+        excerpt.marked = excerpt.marked.max(1);
+        excerpt
     }
 }
 
-impl fmt::Display for MietteDiagnostic<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.diagnostic.message)
-    }
-}
-
-impl std::error::Error for MietteDiagnostic<'_> {}
-
-impl miette::Diagnostic for MietteDiagnostic<'_> {
-    fn code<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
-        Some(Box::new(self.diagnostic.code))
-    }
-
-    fn severity(&self) -> Option<miette::Severity> {
-        Some(match self.diagnostic.severity {
-            Severity::Information => miette::Severity::Advice,
-            Severity::Warning => miette::Severity::Warning,
-            Severity::Error => miette::Severity::Error,
-        })
-    }
-
-    fn help<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
-        self.diagnostic.hint.as_ref().map(|hint| Box::new(hint) as Box<dyn fmt::Display + 'b>)
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(&self.source)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let (start, length) = self.place();
-        Some(Box::new(std::iter::once(LabeledSpan::new_primary_with_span(None, (start, length)))))
-    }
+/// The largest boundary of a character that is not after the byte.
+fn floor(text: &str, byte: usize) -> usize {
+    let byte = byte.min(text.len());
+    (0..=byte).rev().find(|&byte| text.is_char_boundary(byte)).unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -150,17 +207,15 @@ mod tests {
     }
 
     #[test]
-    fn a_drawing_names_file_line_and_column_and_underlines() {
-        let text = drawn(&finding(), false);
-        let source_line = "active = Serch . Track";
-        for part in
-            ["E0201", "models/goalie.srm:2:10", "`Serch` is unknown", source_line, "did you mean `Search`?"]
-        {
-            assert!(text.contains(part), "no {part} in\n{text}");
-        }
-        let marked = text.lines().skip_while(|line| !line.contains(source_line)).nth(1).unwrap_or_default();
-        assert_eq!(marked.matches(['─', '┬']).count(), "Serch".len(), "{text}");
-        assert!(!text.contains('\x1b'));
+    fn a_drawing_names_severity_file_line_and_column_and_underlines() {
+        let expected = "\
+error[E0201]: `Serch` is unknown
+  --> models/goalie.srm:2:10
+  |
+2 | active = Serch . Track
+  |          ^^^^^
+  = help: did you mean `Search`?";
+        assert_eq!(drawn(&finding(), false), expected);
     }
 
     #[test]
@@ -179,6 +234,41 @@ mod tests {
     fn without_a_source_one_line_remains() {
         let text = drawn(&Diagnostic::error("E0001", Span::default(), "nothing there"), false);
         assert_eq!(text, "error[E0001]: nothing there");
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_read_is_named() {
+        let source = Source::new("nowhere.srm", "");
+        let text = drawn(&Diagnostic::error("E0001", 0..0, "cannot be read").in_source(&source), false);
+        assert_eq!(text, "error[E0001]: cannot be read\n  --> nowhere.srm");
+    }
+
+    #[test]
+    fn a_long_line_is_cut_around_the_place() {
+        let line = format!("{}ab{}", "x".repeat(200), "y".repeat(200));
+        let Excerpt { line, before, marked } = Excerpt::of(&line, 200, 202);
+        assert_eq!(line, format!("…{}ab{}…", "x".repeat(BEFORE), "y".repeat(WINDOW - BEFORE - 4)));
+        assert_eq!((before, marked), (BEFORE + 1, 2));
+        let whole = "z".repeat(100_000);
+        let cut = Excerpt::of(&whole, 70_000, 100_000);
+        assert!(cut.line.chars().count() <= WINDOW && cut.marked < WINDOW, "{cut:?}");
+        let short = Excerpt::of("a = b", 4, 5);
+        assert_eq!(short, Excerpt { line: "a = b".into(), before: 4, marked: 1 });
+    }
+
+    #[test]
+    fn columns_are_those_of_a_terminal() {
+        let Excerpt { line, before, marked } = Excerpt::of("\t球 = ω\x1b[2J", 7, 9);
+        assert_eq!(line, " 球 = ω\u{fffd}[2J");
+        assert_eq!((before, marked), (6, 1));
+        assert_eq!(Excerpt::of("球", 1, 2).before, 0, "within a character");
+    }
+
+    #[test]
+    fn a_text_cannot_command_the_terminal_or_fill_it() {
+        let name = "\x1b[31m".repeat(1000);
+        let text = drawn(&Diagnostic::error("E0001", Span::default(), name), false);
+        assert!(!text.contains('\x1b') && text.ends_with('…') && text.len() < 5000, "{text}");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::kit::{monas, root};
+use crate::kit::{Answer, command, monas, root};
 use crate::running::{Running, ask, objects};
 
 fn folder() -> tempfile::TempDir {
@@ -61,6 +61,46 @@ fn a_session_with_a_run_in_real_time() {
     assert!(text.starts_with(begin), "{text}");
     assert_eq!(monas(&["config", "check", &saved]).code, Some(0));
     assert_eq!(run.interrupt().code, Some(130));
+}
+
+#[test]
+fn a_swap_that_is_refused_says_how_states_are_mapped_and_a_signal_is_told_in_the_exit_code() {
+    let folder = folder();
+    let run = start(folder.path());
+    let other = folder.path().join("other.srm").display().to_string();
+    fs::write(&other, "Role: other\nLiveness:\nother = (SearchBall)~\n").expect("a file");
+    let answer = ask(folder.path(), &["agent", "swap", "Mind", &other]);
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    assert!(answer.err.contains("E0356") && answer.err.contains("--state OLD=NEW"), "{}", answer.err);
+    assert_eq!(answer.err.matches("--state").count(), 1, "{}", answer.err);
+    assert_eq!(run.terminate().code, Some(143));
+}
+
+#[test]
+fn without_a_folder_of_the_system_the_run_names_its_own_which_has_to_be_private() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = folder();
+    let file = folder.path().join("agents.xml");
+    fs::write(&file, AGENTS.replace("models", &root().join("models").display().to_string())).expect("a file");
+    let file = file.display().to_string();
+    let prepared = |arguments: &[&str]| {
+        let mut command = command(arguments);
+        command.env_remove("XDG_RUNTIME_DIR").env("TMPDIR", folder.path());
+        command
+    };
+    let run = Running::of(&mut prepared(&["run", &file]), "control socket: ");
+    let list: Answer = prepared(&["agent", "list"]).output().expect("it starts").into();
+    assert_eq!(list.code, Some(0), "{}", list.err);
+    assert!(list.out.contains("Lights"), "{}", list.out);
+    assert_eq!(run.interrupt().code, Some(130));
+    let entries = fs::read_dir(folder.path()).expect("it is there").flatten();
+    let mut own = entries.filter(|entry| entry.file_name().to_string_lossy().starts_with("monas-"));
+    let own = own.next().expect("the folder of the sockets").path();
+    fs::set_permissions(&own, fs::Permissions::from_mode(0o755)).expect("it is changed");
+    let refused: Answer =
+        prepared(&["run", &file, "--control", "lab", "--for", "1s"]).output().expect("it starts").into();
+    assert_eq!(refused.code, Some(1), "{}", refused.err);
+    assert!(refused.err.contains("open to other users (mode 755)"), "{}", refused.err);
 }
 
 #[test]

@@ -151,6 +151,7 @@ fn every_kind_of_model_is_checked() {
     let answer = monas(&[
         "model",
         "check",
+        "--unlinked",
         &golden("goals/in.sag"),
         &golden("merged/in.eac"),
         &golden("merged/in.srm"),

@@ -350,7 +350,7 @@ fn mistakes_are_told_before_anything_is_brought() {
     let answer = deploy(&robot("address=\"nao@10.0.2.2\""), &["--dry-run", "--robots", "fleet.xml"]);
     assert_eq!(answer.code, Some(3), "{answer:?}");
     assert!(
-        answer.err.contains("there is no file fleet.xml (write it: `<robot name=\"nao-2\""),
+        answer.err.contains("there is no file fleet.xml\n = help: write it: `<robot name=\"nao-2\""),
         "{}",
         answer.err
     );

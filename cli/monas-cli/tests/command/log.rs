@@ -91,11 +91,21 @@ fn lines_are_on_the_tape_between_the_messages_of_their_moment_and_what_is_replay
 }
 
 #[test]
-fn the_settings_that_are_shipped_are_understood() {
-    let (settings, wrong) = monas::logger::LogSettings::load(root().join("config/logger.xml"));
-    assert!(wrong.is_empty(), "{wrong:?}");
-    assert_eq!(settings.file.as_deref(), Some(Path::new("MonasLog.txt")));
-    assert!(settings.console && settings.colour && settings.filter.is_none());
+fn the_settings_that_are_shipped_show_robot_agent_activity_and_cycle_and_leave_no_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |file: &str| root().join(file).display().to_string();
+    let mut command =
+        command(&["run", &at("config/match.xml"), "--for", "60s", "--log", &at("config/logger.xml")]);
+    let answer: Answer = command.current_dir(folder.path()).output().expect("it starts").into();
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let is_whole = |line: &&str| {
+        line.contains(" INFO ")
+            && line.contains("[blue-2 Attacker/")
+            && line.contains(" #")
+            && line.contains("motion=")
+    };
+    assert!(answer.err.lines().any(|line| is_whole(&line)), "{}", answer.err);
+    assert_eq!(fs::read_dir(folder.path()).expect("it is there").count(), 0);
 }
 
 #[test]

@@ -19,6 +19,7 @@ mod doctor;
 #[cfg(unix)]
 mod elsewhere;
 mod generate;
+mod hints;
 mod kit;
 mod linked_topics;
 mod log;

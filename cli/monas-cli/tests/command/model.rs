@@ -96,7 +96,7 @@ fn a_formula_that_cannot_be_read_ends_with_3_and_its_place() {
 fn two_mistakes_are_two_objects() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = file(folder.path(), "broken.srm", "Liveness:\nday = wake . ( work\nnight = sleep ..\n");
-    let answer = monas(&["model", "check", &path, "--format", "json"]);
+    let answer = monas(&["model", "check", "--unlinked", &path, "--format", "json"]);
     assert_eq!((answer.code, answer.out.as_str()), (Some(3), ""));
     let found: Vec<Value> =
         answer.err.lines().map(|line| serde_json::from_str(line).expect("each line is JSON")).collect();
@@ -125,15 +125,15 @@ fn what_a_check_finds_ends_with_5_and_a_warning_with_0() {
         "weights.srm",
         &format!("{roles}CONDITION -> turn %0.2\nCONDITION -> walk %0.2\n"),
     );
-    let answer = monas(&["model", "check", &weights]);
+    let answer = monas(&["model", "check", "--unlinked", &weights]);
     assert_eq!((answer.code, answer.out.as_str()), (Some(5), ""), "{}", answer.err);
     assert!(answer.err.contains("M23") && answer.err.contains("weights.srm:3:13"), "{}", answer.err);
     let warned = file(folder.path(), "warned.srm", roles);
-    let answer = monas(&["model", "check", &warned]);
+    let answer = monas(&["model", "check", "--unlinked", &warned]);
     assert_eq!(answer.code, Some(0), "{}", answer.err);
     assert!(answer.err.contains("M07"), "{}", answer.err);
     let unreadable = file(folder.path(), "broken.srm", "Liveness:\nr = (\n");
-    assert_eq!(monas(&["model", "check", &weights, &unreadable]).code, Some(3));
+    assert_eq!(monas(&["model", "check", "--unlinked", &weights, &unreadable]).code, Some(3));
     assert_eq!(monas(&["model", "check", "nowhere.srm"]).code, Some(3));
 }
 
@@ -141,7 +141,7 @@ fn what_a_check_finds_ends_with_5_and_a_warning_with_0() {
 fn findings_are_written_as_sarif() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = file(folder.path(), "warned.srm", "Role: r\nLiveness:\nr = look . (turn | walk)\n");
-    let answer = monas(&["model", "check", &path, "--format", "sarif"]);
+    let answer = monas(&["model", "check", "--unlinked", &path, "--format", "sarif"]);
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
     let document: Value = serde_json::from_str(&answer.out).expect("it is JSON");
     assert_eq!(document["version"], "2.1.0");
@@ -158,8 +158,8 @@ fn what_is_good_to_know_is_said_when_asked_for() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = "Role: r\nLiveness:\nr = look . walk\nTransitions:\nSTART -> look : [Ball.found]\n";
     let path = file(folder.path(), "waits.srm", text);
-    assert!(!monas(&["model", "check", &path]).err.contains("M25"));
-    assert!(monas(&["model", "check", &path, "--all"]).err.contains("M25"));
+    assert!(!monas(&["model", "check", "--unlinked", &path]).err.contains("M25"));
+    assert!(monas(&["model", "check", "--unlinked", &path, "--all"]).err.contains("M25"));
 }
 
 #[test]
@@ -169,8 +169,16 @@ fn a_way_to_a_finding_is_written_and_played() {
         "Role: r\nLiveness:\nr = look . walk\nTransitions:\nlook -> walk : kick\nwalk -> END : [In(look)]\n";
     let model = file(folder.path(), "stuck.srm", text);
     let traces = folder.path().join("found/ways");
-    let answer =
-        monas(&["model", "check", &model, "--event", "kick", "--traces", &traces.display().to_string()]);
+    let answer = monas(&[
+        "model",
+        "check",
+        "--unlinked",
+        &model,
+        "--event",
+        "kick",
+        "--traces",
+        &traces.display().to_string(),
+    ]);
     assert_eq!(answer.code, Some(0), "{}", answer.err);
     assert!(answer.err.contains("M14") && answer.err.contains("    event kick\n"), "{}", answer.err);
     assert!(answer.out.contains("states explored"), "{}", answer.out);
@@ -193,17 +201,26 @@ fn an_exploration_that_was_not_finished_says_so() {
 }
 
 #[test]
-fn names_are_checked_against_the_program_when_asked_for() {
-    let answer = monas(&["model", "check", ROLES[0], ROLES[1], "--linked", "--states", "500"]);
-    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+fn names_are_checked_against_the_program_unless_the_model_is_of_another() {
     let folder = tempfile::tempdir().expect("a folder");
-    let text = "Role: r\nLiveness:\nr = TrakBall\nTransitions:\nTrakBall -> END : [Ball.fond]\n";
+    let text = "Role: r\nLiveness:\nr = TrakBall . (Stand | Vision)\nTransitions:\nVision -> END : [!Ball.fuond]\n\
+                CONDITION -> Stand : [GameState.player_state == PLAYNG]\nCONDITION -> Vision : [Ball.distance < \"near\"]\n";
     let path = file(folder.path(), "names.srm", text);
-    assert_eq!(monas(&["model", "check", &path]).code, Some(0));
-    let answer = monas(&["model", "check", &path, "--linked"]);
+    let answer = monas(&["model", "check", &path]);
     assert_eq!(answer.code, Some(5), "{}", answer.err);
-    assert!(answer.err.contains("M17") && answer.err.contains("`found`?"), "{}", answer.err);
-    assert!(answer.err.contains("M21") && answer.err.contains("`TrackBall`?"), "{}", answer.err);
+    for hint in [
+        "did you mean `found`?",
+        "did you mean `PLAYING`?",
+        "did you mean `TrackBall`?",
+        "cannot be compared",
+    ] {
+        assert!(answer.err.contains(hint), "no {hint} in\n{}", answer.err);
+    }
+    assert_eq!(answer.err.matches("M17").count(), 3, "{}", answer.err);
+    assert_eq!(answer.err.matches("M21").count(), 1, "{}", answer.err);
+    let answer = monas(&["model", "check", &path, "--unlinked"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert!(!answer.err.contains("M17") && !answer.err.contains("M21"), "{}", answer.err);
 }
 
 #[test]
@@ -239,15 +256,15 @@ fn variables_that_are_no_messages_and_messages_kept_in_two_ways_are_told() {
         )
     };
     let odd = file(folder.path(), "odd.iac", &text("Ball.x > 0", "bool"));
-    let answer = monas(&["model", "check", &odd]);
+    let answer = monas(&["model", "check", "--unlinked", &odd]);
     assert_eq!(answer.code, Some(0), "{}", answer.err);
     assert!(answer.err.contains("E0880") && answer.err.contains("odd.iac:3:"), "{}", answer.err);
     let double = file(folder.path(), "double.iac", &text("a.Data.Ball.x > 0", "a.State.Ball"));
-    let answer = monas(&["model", "check", &double]);
+    let answer = monas(&["model", "check", "--unlinked", &double]);
     assert_eq!(answer.code, Some(0), "{}", answer.err);
     assert!(answer.err.contains("E0884"), "{}", answer.err);
     let unknown = file(folder.path(), "unknown.iac", &text("Ball.x > 0", "ball.State.Bal"));
-    let answer = monas(&["model", "check", "--linked", &unknown]);
+    let answer = monas(&["model", "check", &unknown]);
     assert!(answer.err.contains("E0881") && answer.err.contains("did you mean `Ball`?"), "{}", answer.err);
     let none = file(folder.path(), "none.iac", &text("In(a)", "bool"));
     let answer = monas(&["model", "ontology", &none]);

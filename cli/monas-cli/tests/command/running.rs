@@ -52,6 +52,12 @@ impl Running {
         self.wait()
     }
 
+    /// Asks the run to end, as a service manager does.
+    pub(crate) fn terminate(mut self) -> Answer {
+        signal("-TERM", self.child.id());
+        self.wait()
+    }
+
     /// Waits for its end.
     pub(crate) fn wait(&mut self) -> Answer {
         let (mut out, mut err) = (String::new(), String::new());

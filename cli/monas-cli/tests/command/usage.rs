@@ -27,9 +27,10 @@ fn help_lists_the_commands_and_exit_codes() {
         "top",
         "topic",
         "completions",
-        "4 nothing to connect to",
-        "5 a replay differs",
-        "130 interrupted",
+        "4    nothing to connect to",
+        "5    a replay differs",
+        "130  interrupted",
+        "143  terminated",
         "NO_COLOR",
     ] {
         assert!(answer.out.contains(word), "{word} is not in\n{}", answer.out);

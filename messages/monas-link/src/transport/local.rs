@@ -43,10 +43,34 @@ pub struct LocalTransport {
     thread: Option<JoinHandle<()>>,
 }
 
-/// The folder of a user's link sockets: `$XDG_RUNTIME_DIR/monas`; `None` if the system defines no
-/// such folder.
-pub fn default_folder() -> Option<PathBuf> {
-    env::var_os("XDG_RUNTIME_DIR").map(|folder| Path::new(&folder).join("monas"))
+/// The folder of a user's sockets: `$XDG_RUNTIME_DIR/monas`; without that variable `monas-UID` in
+/// the system's folder for temporary files, which only this user can access.
+///
+/// # Errors
+/// The folder for want of the variable cannot be created, or is that of another user or open to
+/// others.
+pub fn default_folder() -> Result<PathBuf, Error> {
+    match env::var_os("XDG_RUNTIME_DIR").filter(|folder| !folder.is_empty()) {
+        Some(folder) => Ok(Path::new(&folder).join("monas")),
+        None => private_folder(&env::temp_dir()),
+    }
+}
+
+/// The folder of this user in a folder that others can write.
+fn private_folder(shared: &Path) -> Result<PathBuf, Error> {
+    let path = shared.join(format!("monas-{}", rustix::process::geteuid().as_raw()));
+    // A symbolic link is not followed: it may lead elsewhere at any time.
+    let created = match fs::symlink_metadata(&path) {
+        Ok(found) if !found.is_dir() => Err(io::Error::other("it is no folder")),
+        _ => monas_files::private_folder(&path),
+    };
+    match created {
+        Ok(()) => Ok(path),
+        Err(error) => {
+            let text = format!("{}: {error}; remove it, or set XDG_RUNTIME_DIR", path.display());
+            Err(Error::new(ErrorKind::Connection, text))
+        }
+    }
 }
 
 impl LocalTransport {
@@ -178,5 +202,35 @@ pub(crate) fn read(bytes: &[u8]) -> Packet {
         payload: datagram.payload.into(),
         priority: datagram.priority.clamp(1, 7) as u8,
         is_reliable: true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_among_those_of_others_is_private_or_refused() {
+        let shared = tempfile::tempdir().unwrap();
+        let path = private_folder(shared.path()).unwrap();
+        assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o700);
+        assert_eq!(private_folder(shared.path()).unwrap(), path);
+        fs::set_permissions(&path, Permissions::from_mode(0o755)).unwrap();
+        let refused = private_folder(shared.path()).unwrap_err().to_string();
+        assert!(
+            refused.contains("open to other users (mode 755)") && refused.contains("XDG_RUNTIME_DIR"),
+            "{refused}"
+        );
+        fs::set_permissions(&path, Permissions::from_mode(0o700)).unwrap();
+        let elsewhere = shared.path().join("elsewhere");
+        fs::rename(&path, &elsewhere).unwrap();
+        std::os::unix::fs::symlink(&elsewhere, &path).unwrap();
+        assert!(private_folder(shared.path()).unwrap_err().to_string().contains("no folder"));
+        if rustix::process::geteuid().is_root() {
+            fs::remove_file(&path).unwrap();
+            std::os::unix::fs::chown(&elsewhere, Some(12345), None).unwrap();
+            fs::rename(&elsewhere, &path).unwrap();
+            assert!(private_folder(shared.path()).unwrap_err().to_string().contains("another user"));
+        }
     }
 }

@@ -41,7 +41,7 @@ fn unknown(subject: &CheckedModel, diagnostic: Diagnostic) -> Diagnostic {
     let hint = diagnostic
         .hint
         .clone()
-        .or_else(|| Some("say what the program has, or link the crate that has it".into()));
+        .or_else(|| Some("say what the program has, or link the crate that has it; `--unlinked` is for models of other programs".into()));
     Diagnostic { code: "M17", span, hint, ..diagnostic }
 }
 
@@ -54,7 +54,9 @@ fn activities(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagnostic>
         let message = format!("there is no activity `{name}`");
         let hint = match nearest(name, world.activities.keys().map(String::as_str)) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => "write it, or link the crate that has it".into(),
+            None => {
+                "write it, or link the crate that has it; `--unlinked` is for models of other programs".into()
+            }
         };
         found.push(Diagnostic::error("M21", subject.places.node(id), message).with_hint(hint));
     }

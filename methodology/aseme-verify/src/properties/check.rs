@@ -117,7 +117,7 @@ fn judged(
         ExplorationVerdict::NotConfirmed(trace, why) => {
             let message =
                 format!("the property `{name}` is not decided: a run against it is not confirmed: {why}");
-            let hint = "the trace shows what the exploration has found; with `--linked` the program says who publishes what";
+            let hint = "the trace shows the run that the exploration has found";
             let diagnostic = Diagnostic::error("E0872", place, message).with_hint(hint);
             (judgement(PropertyOutcome::NotConfirmed), Some(Finding { diagnostic, trace: Some(trace) }))
         }
@@ -149,7 +149,7 @@ fn unread(bound: &BoundProperty, abstraction: &Abstraction) -> Vec<Diagnostic> {
                 let wrong = Diagnostic::warning("E0848", path.place.0, message);
                 found.push(match nearest(&text, known.iter().map(String::as_str)) {
                     Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
-                    None => wrong.with_hint("with `--linked` the program says whether there is such a field"),
+                    None => wrong.with_hint("name a field that a guard reads, or leave out `--unlinked`: the program knows all fields"),
                 });
             }
         });

@@ -65,7 +65,7 @@ fn check_value(given: &Attribute, rule: &AttributeRule, diagnostics: &mut Vec<Di
 }
 
 fn missing_attribute(element: &Element, wanted: &AttributeRule) -> Diagnostic {
-    let message = format!("`{}` has no attribute `{}`", element.name(), wanted.key);
+    let message = format!("`{}` lacks the attribute `{}`", element.name(), wanted.key);
     let diagnostic = element.error("E0305", element.name_span(), message);
     let given = element.attributes().iter().map(|given| given.name.as_str());
     match yase::diagnostic::nearest(wanted.key, given) {
@@ -82,7 +82,10 @@ fn unknown_attribute(element: &Element, given: &Attribute, rule: &ElementRule) -
     let spelled = |key: &str| if as_in_thesis { camel_case(key) } else { key.to_owned() };
     let known: Vec<String> = rule.attributes.iter().map(|attribute| spelled(attribute.key)).collect();
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
-    let diagnostic = diagnostic.with_nearest(&given.name, known.iter().copied());
+    let aliases: Vec<String> =
+        rule.attributes.iter().filter_map(|attribute| attribute.alias.map(spelled)).collect();
+    let all = known.iter().copied().chain(aliases.iter().map(String::as_str));
+    let diagnostic = diagnostic.with_nearest(&given.name, all);
     match (&diagnostic.hint, known.is_empty()) {
         (Some(_), _) => diagnostic,
         (None, true) => diagnostic.with_hint(format!("`{}` has no attributes", element.name())),

@@ -79,8 +79,9 @@ enum SettingValue {
 fn given(element: &str, key: &str, value: &str) -> Result<SettingValue, ChangeRefusal> {
     let grammar = Grammar::agents();
     let rule = grammar.element(element).and_then(|rule| rule.attribute_named(key));
-    let known = ["thread_frequency", "priority", "is_real_time", "stats_cycle", "on_failure"];
-    let Some(rule) = rule.filter(|rule| known.contains(&rule.key())) else {
+    let known = ["frequency", "priority", "is_real_time", "stats_cycle", "on_failure"];
+    let is_known = |key: &str| key == "thread_frequency" || known.contains(&key);
+    let Some(rule) = rule.filter(|rule| is_known(rule.key())) else {
         let message = match rule {
             Some(rule) => {
                 format!("`{}` of an {element} is what it begins with, and cannot be set", rule.key())

@@ -21,6 +21,7 @@ pub(super) fn request_walk(blackboard: &mut Blackboard, walk: Walk) -> Result<()
 pub(super) fn request_skill(blackboard: &mut Blackboard, kind: MotionKind) -> Result<u64, BoxError> {
     let done = blackboard.read(topics::MOTION_STATE).map_or(0, |state| state.done);
     let number = last_number(blackboard).max(done) + 1;
+    tracing::info!(motion = kind.as_str_name(), "motion requested");
     publish(blackboard, MotionRequest { kind: kind.into(), number, ..MotionRequest::default() })?;
     Ok(number)
 }

@@ -16,7 +16,14 @@ pub(crate) fn execute(
 ) -> Result<Exit, CommandFailure> {
     let Some((change, run)) = requested_change(command)? else { return Ok(Exit::Success) };
     let chart = change.chart.clone();
-    let changed = request_change(change, run)?;
+    let mut changed = request_change(change, run)?;
+    // The runtime names the states; how they are mapped is a matter of the command line.
+    let unmapped = changed.findings.iter_mut().rfind(|finding| finding.code == "E0356");
+    if let Some(finding) = unmapped.filter(|_| matches!(command, AgentCommand::Swap { .. })) {
+        finding.hint = "--state OLD=NEW names the state of the new chart that continues an old one; --lossy accepts the \
+                        loss of history, timers and events"
+            .into();
+    }
     print_outcome(&changed, &sentence(&changed, &chart), run.format.value, console)
 }
 

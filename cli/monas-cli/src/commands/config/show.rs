@@ -3,12 +3,13 @@
 use std::io::{self, Write};
 
 use monas::config::{self, ResolvedEntry};
+#[cfg(feature = "soccer")]
 use monas_match::MatchSource;
 use serde_json::{Value, json};
 use yase::Diagnostic;
 
 use super::ConfigArguments;
-use crate::input::{ConfigurationKind, kind_of, layers};
+use crate::input::{ConfigurationKind, grammar, kind_of, layers};
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 
 /// The widest left column, in characters; longer lines push their origin to the right.
@@ -22,8 +23,9 @@ pub(crate) fn execute(
     let invalid = |diagnostics| CommandFailure::Invalid(format, diagnostics);
     let kind = kind_of(config).map_err(|unread| invalid(vec![*unread]))?;
     let layers = layers::of(config, &arguments.layers).map_err(invalid)?;
-    let grammar = monas_match::grammar();
+    let grammar = grammar();
     let (elements, diagnostics) = match kind {
+        #[cfg(feature = "soccer")]
         ConfigurationKind::Match => MatchSource::elements(config, &layers),
         ConfigurationKind::Agents => {
             let resolved = config::resolve(config, &grammar, &layers);

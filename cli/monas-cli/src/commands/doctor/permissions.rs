@@ -1,13 +1,13 @@
 //! Checks of the user's permissions.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use super::CheckResult;
 
 const AREA: &str = "permissions";
 
 pub(crate) fn findings() -> Vec<CheckResult> {
-    vec![real_time(), sockets(std::env::var_os("XDG_RUNTIME_DIR").as_deref().map(Path::new))]
+    vec![real_time(), sockets(folder())]
 }
 
 /// Whether threads may use real-time scheduling.
@@ -36,14 +36,28 @@ fn priority(limits: &str) -> Option<u64> {
     }
 }
 
+/// The folder of control sockets.
+#[cfg(unix)]
+fn folder() -> Result<PathBuf, String> {
+    let folder = monas_link::default_folder().map_err(|error| error.to_string())?;
+    // A run creates it.
+    Ok(if folder.is_dir() { folder } else { folder.parent().unwrap_or(&folder).to_path_buf() })
+}
+
+#[cfg(not(unix))]
+fn folder() -> Result<PathBuf, String> {
+    Err("they exist only on Unix".into())
+}
+
 /// Whether a run can create a control socket.
-fn sockets(folder: Option<&Path>) -> CheckResult {
+fn sockets(folder: Result<PathBuf, String>) -> CheckResult {
     let hint = "set XDG_RUNTIME_DIR to a private folder; without it `monas topic` finds no run";
-    let Some(folder) = folder else {
-        return CheckResult::warning(AREA, "no control sockets: XDG_RUNTIME_DIR is not set", hint);
+    let folder = match folder {
+        Ok(folder) => folder,
+        Err(reason) => return CheckResult::warning(AREA, format!("no control sockets: {reason}"), hint),
     };
-    match tempfile::Builder::new().prefix("monas-doctor").tempfile_in(folder) {
-        Ok(_) => CheckResult::ok(AREA, format!("control sockets in {}", folder.join("monas").display())),
+    match tempfile::Builder::new().prefix("monas-doctor").tempfile_in(&folder) {
+        Ok(_) => CheckResult::ok(AREA, format!("control sockets in {}", folder.display())),
         Err(error) => {
             CheckResult::warning(AREA, format!("no control sockets: {}: {error}", folder.display()), hint)
         }
@@ -66,10 +80,10 @@ mod tests {
 
     #[test]
     fn a_folder_that_cannot_be_written_is_told() {
-        assert_eq!(sockets(None).state, CheckStatus::Warning);
-        assert_eq!(sockets(Some(Path::new("/nowhere"))).state, CheckStatus::Warning);
+        assert_eq!(sockets(Err("none".into())).state, CheckStatus::Warning);
+        assert_eq!(sockets(Ok(PathBuf::from("/nowhere"))).state, CheckStatus::Warning);
         let folder = tempfile::tempdir().unwrap();
-        assert_eq!(sockets(Some(folder.path())).state, CheckStatus::Ok);
+        assert_eq!(sockets(Ok(folder.path().to_path_buf())).state, CheckStatus::Ok);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is left behind");
     }
 }

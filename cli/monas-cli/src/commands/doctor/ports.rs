@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use monas::config::{self, Element, Layers};
 
 use super::{CheckResult, DoctorArguments};
+use crate::input::grammar;
 
 const AREA: &str = "ports";
 
@@ -12,7 +13,7 @@ pub(crate) fn findings(arguments: &DoctorArguments) -> Vec<CheckResult> {
     if !arguments.config.exists() {
         return Vec::new();
     }
-    let resolved = config::resolve(&arguments.config, &monas_match::grammar(), &Layers::new());
+    let resolved = config::resolve(&arguments.config, &grammar(), &Layers::new());
     let mut wanted = BTreeSet::new();
     resolved.elements.iter().for_each(|element| listened(element, &mut wanted));
     if wanted.is_empty() {

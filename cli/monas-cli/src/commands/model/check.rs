@@ -40,9 +40,10 @@ pub(crate) struct CheckArguments {
     /// The number of activities that the agent's pool runs at once; 12 if not given.
     #[arg(long, value_name = "NUMBER")]
     pub(crate) pool: Option<usize>,
-    /// Also check names against the messages, functions and activities of this program.
+    /// Do not check names against the messages, functions and activities of this program: the
+    /// model is that of another one.
     #[arg(long)]
-    pub(crate) linked: bool,
+    pub(crate) unlinked: bool,
     /// Also report what this recording covered of the charts (with --all).
     #[arg(long = "tape", value_name = "TAPE", value_hint = ValueHint::FilePath, requires = "all")]
     pub(crate) tapes: Vec<PathBuf>,
@@ -69,7 +70,7 @@ pub(crate) fn execute(
     settings.events.extend(arguments.events.iter().cloned());
     settings.pool = arguments.pool;
     let interrupt = arguments.exploration.apply(&mut settings, console)?;
-    settings.world = arguments.linked.then(program::linked).transpose()?;
+    settings.world = (!arguments.unlinked).then(program::linked).transpose()?;
     settings.recorded = super::coverage::recorded(&arguments.tapes)?;
     let (mut reports, mut judged): (Vec<(&Path, CheckReport)>, Vec<CheckedProperty>) =
         (Vec::new(), Vec::new());

@@ -19,8 +19,9 @@ pub(crate) struct ConvertArguments {
     #[arg(value_name = "OUT", value_hint = ValueHint::FilePath)]
     pub(crate) output: PathBuf,
     /// The format: text, role, xmi, xmi-2010, xmi-flat, xmi-2012, xmi-2018, scxml or rust. If not
-    /// given, it follows from the extension of OUT (.model, .stct, .xmi, .scxml, .rs, .txt); any
-    /// other extension means XMI for textual input, and text for XMI.
+    /// given, it follows from the extension of OUT: .model, .stct, .xmi, .scxml, .rs, .txt; with
+    /// .iac, .eac, .sag, .suc, .aip, .srm or .ft it is XMI for textual input, and text for XMI.
+    /// Any other extension needs it.
     #[arg(long = "as", value_name = "FORMAT")]
     pub(crate) written: Option<String>,
     /// Write the file even if the format cannot represent all of the model.
@@ -60,8 +61,9 @@ fn by_ending(output: &Path, model: &Model, read_as: ModelFormat) -> Result<Model
         }
         ("iac" | "eac" | "sag" | "suc" | "aip" | "srm", _, _) => Ok(ModelFormat::Text),
         _ => Err(CommandFailure::Usage(format!(
-            "`{}` does not determine the format; give it with --as",
-            output.display()
+            "the extension of `{}` does not determine the format; give it with --as, as one of {}",
+            output.display(),
+            ModelFormat::WORDS.map(|(word, _)| word).join(", ")
         ))),
     }
 }

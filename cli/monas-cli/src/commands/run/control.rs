@@ -38,6 +38,7 @@ mod socket {
     use crate::commands::run::control::{
         CommandFailure, CommandOutput, NAMESAKES, RunArguments, RunHandle, Tape, name_of,
     };
+    use crate::terminal::Format;
 
     /// A run with the alarms of its recording.
     struct RecordedRun {
@@ -84,19 +85,28 @@ mod socket {
         }
         let format = arguments.format.value;
         match (&arguments.control, default_folder()) {
-            (Some(name), Some(folder)) => {
+            (Some(name), Ok(folder)) => {
                 let socket = ControlSocket::bind(&folder, name);
                 let socket = socket.map_err(|error| CommandFailure::failed(format, error))?;
                 writeln!(console.err, "control socket: {}", socket.path().display())?;
                 Ok(Some(socket))
             }
-            (Some(_), None) => {
-                let message = "there is no folder for a control socket: XDG_RUNTIME_DIR is not set";
-                Err(CommandFailure::failed(format, message))
+            (Some(_), Err(error)) => Err(CommandFailure::failed(format, error)),
+            (None, Ok(folder)) => {
+                let socket = by_default(&folder, arguments);
+                // Where tools look is known only if the system says so.
+                let is_said = std::env::var_os("XDG_RUNTIME_DIR").is_none_or(|folder| folder.is_empty());
+                if let Some(socket) = socket.as_ref().filter(|_| is_said && format == Format::Text) {
+                    writeln!(
+                        console.err,
+                        "control socket: {} (XDG_RUNTIME_DIR is not set)",
+                        socket.path().display()
+                    )?;
+                }
+                Ok(socket)
             }
-            (None, Some(folder)) => Ok(by_default(&folder, arguments)),
-            (None, None) => {
-                tracing::info!("no control socket: XDG_RUNTIME_DIR is not set");
+            (None, Err(error)) => {
+                tracing::warn!("no control socket: {error}");
                 Ok(None)
             }
         }

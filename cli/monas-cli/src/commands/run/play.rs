@@ -45,7 +45,7 @@ pub(crate) fn execute(
     if let Some(unstopped) = results.unstopped {
         return Err(CommandFailure::failed(format, unstopped));
     }
-    Ok(if interrupt.is_requested() { Exit::Interrupted } else { Exit::Success })
+    Ok(interrupt.exit().unwrap_or(Exit::Success))
 }
 
 /// Plays until the match is over, the requested time has passed, or an interrupt.

@@ -11,6 +11,7 @@ use yase::Diagnostic;
 
 use super::outputs::RecordingAlarm;
 use super::{RunArguments, control, links, outputs};
+use crate::input::load_agents;
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, report, table};
 
 pub(crate) fn execute(
@@ -30,7 +31,7 @@ pub(crate) fn execute(
     if let Some(tape) = &tape {
         let files = ConfigurationBundle::of(&arguments.config);
         let settings = layers.settings().collect::<Vec<_>>().join("\n");
-        monas_match::label_real_time(tape, &files, &settings, &[Talws::LOCAL.to_owned()])
+        monas_recording::label_real_time(tape, &files, &settings, &[Talws::LOCAL.to_owned()])
             .map_err(|error| CommandFailure::failed(format, error))?;
         talws.observe(Box::new(tape.clone()));
     }
@@ -48,7 +49,7 @@ pub(crate) fn execute(
     drop((control, alarm));
     let Statistics { agents, links } = running.stop();
     if let Some(tape) = &tape {
-        monas_match::ended(tape, overview.now()).map_err(|error| CommandFailure::failed(format, error))?;
+        monas_recording::ended(tape, overview.now()).map_err(|error| CommandFailure::failed(format, error))?;
     }
     write(console.out, format, &agents)?;
     match format {
@@ -64,10 +65,10 @@ pub(crate) fn execute(
             "messages recorded: {messages}, dropped because the disk was too slow: {dropped}"
         )?;
     }
-    Ok(match interrupt.is_requested() {
-        true => Exit::Interrupted,
-        false if agents.iter().any(|agent| agent.stopped.is_some()) => Exit::Failure,
-        false => Exit::Success,
+    Ok(match interrupt.exit() {
+        Some(exit) => exit,
+        None if agents.iter().any(|agent| agent.stopped.is_some()) => Exit::Failure,
+        None => Exit::Success,
     })
 }
 
@@ -78,7 +79,7 @@ fn talws(
     console: &mut CommandOutput<'_>,
 ) -> Result<Talws, CommandFailure> {
     let format = arguments.format.value;
-    let (setup, diagnostics) = monas::config::load_with(&arguments.config, &Registry::linked(), layers);
+    let (setup, diagnostics) = load_agents(&arguments.config, &Registry::linked(), layers);
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(CommandFailure::Invalid(format, diagnostics));
     }

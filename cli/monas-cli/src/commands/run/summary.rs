@@ -3,11 +3,11 @@
 use std::io::{self, Write};
 use std::time::Duration;
 
-use comfy_table::Table;
 use monas_match::{AgentSummary, MatchSummary, TeamSummary};
 use serde_json::{Value, json};
 
 use super::{coverage, links};
+use crate::terminal::table::Table;
 use crate::terminal::{Format, table};
 
 /// Writes the results; `wall` is the wall-clock time of the match.

@@ -45,7 +45,7 @@ pub(crate) fn cut(arguments: &CutArguments, console: &mut CommandOutput<'_>) -> 
     // A chart's trace refers to the names in its model, so those messages are always kept.
     let names = |channel: &Channel| channel.topic == monas::records::MODEL.path();
     // The entry with the run's end is dropped if the end is cut off.
-    let facts = |facts: &MetadataEntry| to.is_none() || facts.name != monas_match::END;
+    let facts = |facts: &MetadataEntry| to.is_none() || facts.name != monas_recording::END;
     let cut = TapeFilter { from, to, channels: Some(&wanted), always: Some(&names), facts: Some(&facts) };
     let messages = monas_tape::cut(&recording, &cut, output).map_err(failed(format))?;
     written(output, messages, format, console)

@@ -67,7 +67,7 @@ fn seconds(moment: Timestamp) -> f64 {
     moment.as_secs_f64()
 }
 
-fn channels(channels: &[ChannelOverview]) -> comfy_table::Table {
+fn channels(channels: &[ChannelOverview]) -> table::Table {
     let header = ["host", "topic", "kept as", "type", "published by", "messages", "Hz", "size"];
     let row = |one: &ChannelOverview| {
         let channel = &one.channel;

@@ -101,7 +101,7 @@ fn play(
 
 /// The end of the run, if the tape contains it.
 fn end_of(overview: &TapeOverview) -> Option<Timestamp> {
-    let facts = overview.facts.iter().find(|facts| facts.name == monas_match::END)?;
+    let facts = overview.facts.iter().find(|facts| facts.name == monas_recording::END)?;
     facts.entries.get("nanoseconds")?.parse().ok().map(Timestamp::from_nanos)
 }
 

@@ -3,12 +3,13 @@
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
-use ratatui::text::{Line, Span};
+use ratatui::text::{Line, Span, Text};
 use ratatui::widgets::{Block, Cell, Row, Table, TableState};
 
 use super::metrics::{ActivityFigures, ActivityRemark, AgentFigures, Metrics};
 use super::sample;
 use super::sample::{ACTIVITY_HEADER, AGENT_HEADER};
+use crate::terminal::table::{FoldedRow, of_numbers};
 
 const QUIET: Style = Style::new().fg(Color::DarkGray);
 const HEADER: Style = Style::new().add_modifier(Modifier::BOLD);
@@ -91,8 +92,8 @@ impl Screen {
     }
 
     fn draw_agents(&self, frame: &mut Frame<'_>, area: Rect) {
-        let rows = self.figures.agents.iter().map(|agent| row(sample::agent(agent), 3, style_of(agent)));
-        let table = table(AGENT_HEADER, [12, 22, 9], rows)
+        let rows = self.figures.agents.iter().map(|agent| (sample::agent(agent), style_of(agent)));
+        let table = table(AGENT_HEADER, 3, rows, area.width)
             .row_highlight_style(Style::new().add_modifier(Modifier::REVERSED));
         let mut state = TableState::default().with_selected(Some(self.place()));
         frame.render_stateful_widget(table, area, &mut state);
@@ -100,46 +101,57 @@ impl Screen {
 
     fn draw_activities(&self, frame: &mut Frame<'_>, area: Rect) {
         let Some(agent) = self.figures.agents.get(self.place()) else { return };
-        let rows = agent.activities.iter().map(|one| row(sample::activity(one), 3, style_of_activity(one)));
+        let rows = agent.activities.iter().map(|one| (sample::activity(one), style_of_activity(one)));
         let reason = match agent.entry.reason.as_str() {
             "" => String::new(),
             reason => format!(": {reason}"),
         };
         let block =
             Block::bordered().title(format!(" {} on {}{reason} ", agent.entry.name, agent.entry.host));
-        frame.render_widget(table(ACTIVITY_HEADER, [28, 24, 14], rows).block(block), area);
+        let table = table(ACTIVITY_HEADER, 3, rows, block.inner(area).width);
+        frame.render_widget(table.block(block), area);
     }
 
     fn draw_topics(&self, frame: &mut Frame<'_>, area: Rect) {
         let rows = self.figures.topics.iter().map(|topic| {
             let cells =
                 [topic.path.clone(), topic.host.clone(), topic.publisher.clone(), sample::number(topic.hz)];
-            row(cells, 3, Style::new())
+            (cells, Style::new())
         });
         let block = Block::bordered().title(" topics ");
-        frame.render_widget(table(["topic", "host", "by", "Hz"], [28, 24, 24], rows).block(block), area);
+        let table = table(["topic", "host", "by", "Hz"], 3, rows, block.inner(area).width);
+        frame.render_widget(table.block(block), area);
     }
 }
 
-/// A table whose first columns are texts of these widths; the others are numbers.
+/// Blanks between two columns.
+const GAP: u16 = 1;
+
+/// A table of this width, with numbers from a column on. Columns are as wide as their contents.
 fn table<'a, const N: usize>(
-    header: [&'a str; N],
-    texts: [u16; 3],
-    rows: impl Iterator<Item = Row<'a>>,
+    header: [&str; N],
+    first_number: usize,
+    rows: impl Iterator<Item = ([String; N], Style)>,
+    width: u16,
 ) -> Table<'a> {
-    let numbers = std::iter::repeat_n(Constraint::Length(14), N.saturating_sub(texts.len()));
-    let widths = texts.into_iter().map(Constraint::Length).chain(numbers);
-    let header = row(header.map(str::to_owned), texts.len(), HEADER);
-    Table::new(rows, widths).header(header)
+    let (cells, styles): (Vec<[String; N]>, Vec<Style>) = rows.unzip();
+    let folded = of_numbers(header, first_number, cells).folded(width.into(), GAP.into());
+    let rows = folded.rows.into_iter().zip(styles).map(|(cells, style)| row(cells, first_number, style));
+    let widths =
+        folded.widths.iter().map(|&width| Constraint::Length(u16::try_from(width).unwrap_or(u16::MAX)));
+    Table::new(rows.collect::<Vec<_>>(), widths.collect::<Vec<_>>())
+        .header(row(folded.header, first_number, HEADER))
+        .column_spacing(GAP)
 }
 
 /// A row with numbers from a column on.
-fn row<'a, const N: usize>(cells: [String; N], numbers_from: usize, style: Style) -> Row<'a> {
-    let cells = cells.into_iter().enumerate().map(|(column, text)| {
-        let line = Line::from(text);
-        Cell::from(if column < numbers_from { line } else { line.right_aligned() })
+fn row<'a>(cells: FoldedRow, first_number: usize, style: Style) -> Row<'a> {
+    let height = cells.iter().map(Vec::len).max().unwrap_or_default();
+    let cells = cells.into_iter().enumerate().map(|(column, lines)| {
+        let text: Text<'a> = lines.into_iter().map(Line::from).collect();
+        Cell::from(if column < first_number { text } else { text.right_aligned() })
     });
-    Row::new(cells).style(style)
+    Row::new(cells).height(u16::try_from(height).unwrap_or(u16::MAX)).style(style)
 }
 
 fn style_of(agent: &AgentFigures) -> Style {
@@ -208,7 +220,7 @@ mod tests {
         let mut screen = Screen::new(figures(&["Vision", "Motion"]));
         let lines = shown(&screen);
         assert_eq!(lines[0], "match  12.0 s  2 agents  100.0 % of a core");
-        assert!(lines[2].starts_with("blue-2       Vision                 runs"), "{lines:#?}");
+        assert!(lines[2].starts_with("blue-2 Vision runs"), "{lines:#?}");
         assert!(lines[4].contains(" Vision on blue-2 "), "{lines:#?}");
         for word in ["Visions", "burns a core", "91.0 %"] {
             assert!(lines[6].contains(word), "{lines:#?}");

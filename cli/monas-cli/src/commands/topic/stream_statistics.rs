@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::echo::place;
 use crate::remote::{RunSelector, WatchLimits, connection, failure, watch};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, WallClock};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, Repaint, WallClock};
 
 /// Time until the first report.
 const FIRST: Duration = Duration::from_millis(80);
@@ -85,6 +85,7 @@ fn measure(
     let mut streams: BTreeMap<[String; 4], StreamStatistics> = BTreeMap::new();
     let mut lost = 0;
     let (clock, mut next) = (WallClock::start(), FIRST);
+    let mut screen = Repaint::of_console(console);
     let exit = watch(pattern, false, limits, choice, console, |seen, console| {
         if let Some(seen) = seen.filter(|seen| seen.local >= begin) {
             lost = seen.lost;
@@ -96,7 +97,7 @@ fn measure(
         }
         if clock.elapsed() >= next && !streams.is_empty() {
             next = clock.elapsed() + AGAIN;
-            print(figure, streams.values(), lost, format, console)?;
+            print(figure, streams.values(), lost, format, &mut screen, console)?;
         }
         Ok(true)
     })?;
@@ -104,7 +105,7 @@ fn measure(
         writeln!(console.out, "nothing was published on `{pattern}` meanwhile")?;
     }
     // The last report covers everything received.
-    print(figure, streams.values(), lost, format, console)?;
+    print(figure, streams.values(), lost, format, &mut screen, console)?;
     Ok(exit)
 }
 
@@ -185,19 +186,21 @@ fn print<'a>(
     streams: impl Iterator<Item = &'a StreamStatistics>,
     lost: u64,
     format: Format,
+    screen: &mut Repaint,
     console: &mut CommandOutput<'_>,
 ) -> Result<(), CommandFailure> {
-    for stream in streams {
-        match format {
-            Format::Json => writeln!(console.out, "{}", object(figure, stream, lost))?,
-            Format::Text => writeln!(console.out, "{}", line(figure, stream))?,
+    if format == Format::Json {
+        streams
+            .map(|stream| object(figure, stream, lost))
+            .try_for_each(|it| writeln!(console.out, "{it}"))?;
+    } else {
+        let mut lines: Vec<String> = streams.map(|stream| line(figure, stream)).collect();
+        if lost > 0 {
+            lines.push(format!(
+                "({lost} messages were overwritten before they were fetched; rates count them)"
+            ));
         }
-    }
-    if lost > 0 && format == Format::Text {
-        writeln!(
-            console.out,
-            "({lost} messages were overwritten before they were fetched; rates count them)"
-        )?;
+        screen.show(&lines, console.out)?;
     }
     console.out.flush()?;
     Ok(())

@@ -95,7 +95,7 @@ fn attributes_that_cannot_be_meant_are_said_and_count_as_not_given() {
         "a.xml:1:30: error[E0304]: unknown attribute `colr` of `a` (did you mean `color`?)",
         "a.xml:1:41: error[E0304]: unknown attribute `odd` of `a` (expected `n`, `i`, `yes`, `no`, `half`, `word` or `color`)",
         "a.xml:1:47: error[E0307]: attribute `i` is given twice (leave one of them out)",
-        "a.xml:1:2: error[E0305]: `a` has no attribute `color` (is `colr` meant to be `color`?)",
+        "a.xml:1:2: error[E0305]: `a` lacks the attribute `color` (is `colr` meant to be `color`?)",
     ];
     assert_eq!(said, expected);
     let grammar = grammar();

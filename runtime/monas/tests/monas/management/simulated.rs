@@ -130,7 +130,7 @@ fn what_cannot_be_is_refused_with_a_reason_and_changes_nothing() {
         (
             set(&[("frequncy", "50")]),
             "E0304",
-            "an agent has no attribute `frequncy`; there are thread_frequency, priority, is_real_time, stats_cycle, on_failure",
+            "an agent has no attribute `frequncy`; did you mean `frequency`?",
         ),
         (
             set(&[("A.speed", "quick")]),

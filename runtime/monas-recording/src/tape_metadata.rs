@@ -22,7 +22,10 @@ pub const FOLDER: &str = "folder";
 pub const END: &str = "end";
 
 /// Writes the metadata of a run in simulated time.
-pub(crate) fn label_simulated(
+///
+/// # Errors
+/// The tape cannot be written.
+pub fn label_simulated(
     tape: &Tape,
     files: &ConfigurationBundle,
     settings: &str,
