@@ -102,7 +102,7 @@ fn people_are_told_what_a_scenario_would_have_to_show() {
     assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
     let first = out.lines().next().unwrap_or_default();
     assert!(first.contains("lamp.srm: 1 scenario notices ") && first.ends_with(" %)"), "{out}");
-    let survivor = "lamp.srm:5: CONDITION -> On: the guard `[Ball.distance < 3]` becomes `[Ball.distance <= 3]`\n    a scenario would have to show a moment at which `Ball.distance` is exactly `3`\n";
+    let survivor = "lamp.srm:5: CONDITION -> On: the guard `[Ball.distance < 3]` becomes `[Ball.distance <= 3]`\n    a scenario would have to show a case in which `Ball.distance` equals `3`\n";
     assert!(out.contains(survivor), "{out}");
     assert!(!out.contains("CONDITION -> On: it is never taken"), "that is noticed\n{out}");
 }

@@ -15,7 +15,7 @@ fn of(text: &str) -> Vec<Mutant> {
     mutants(&Source::new("r.srm", text)).expect("the role is in order")
 }
 
-/// What was changed at a place, by the names of the mutants without it.
+/// The descriptions of the mutants whose names start with an element.
 fn told(mutants: &[Mutant], place: &str) -> Vec<String> {
     let here = mutants.iter().filter_map(|mutant| {
         let name = mutant.name.strip_prefix(place)?.strip_prefix(" #")?;
@@ -36,7 +36,7 @@ fn a_guard_is_changed_in_every_part() {
             format!("part-dropped-2: {guard} becomes `[Ball.found]`"),
             format!("and-or: {guard} becomes `[Ball.found || Ball.distance <= near]`"),
             format!("comparison: {guard} becomes `[Ball.found && Ball.distance < near]`"),
-            String::from("target: it leads to `C`"),
+            String::from("target: the target is `C`"),
             String::from("transition-removed: it is never taken"),
         ]
     );
@@ -55,8 +55,8 @@ fn numbers_go_a_step_up_and_a_step_down() {
         [
             "CONDITION -> C: the guard `[Ball.distance > 2]` becomes `[Ball.distance > 3]`",
             "CONDITION -> C: the guard `[Ball.distance > 2]` becomes `[Ball.distance > 1]`",
-            "near: the constant is 0.275 in place of 0.25",
-            "near: the constant is 0.225 in place of 0.25",
+            "near: the constant is 0.275 instead of 0.25",
+            "near: the constant is 0.225 instead of 0.25",
         ]
     );
     let of_constant = mutants.last().expect("there are some");
@@ -70,10 +70,10 @@ fn a_timer_runs_another_time_or_is_not_started() {
     assert_eq!(
         actions,
         [
-            "timeout: `late` runs 50ms in place of 100ms",
-            "timeout-2: `late` runs 200ms in place of 100ms",
+            "timeout: `late` runs 50ms instead of 100ms",
+            "timeout-2: `late` runs 200ms instead of 100ms",
             "timeout-3: `late` is never started",
-            "target: it leads to `r/END`",
+            "target: the target is `r/END`",
             "transition-removed: it is never taken",
         ]
     );

@@ -16,27 +16,27 @@ use crate::abstraction::abstracted;
 use crate::check_settings::CheckSettings;
 use crate::finding::Finding;
 
-/// What was found of one property.
+/// The result for one property.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct PropertyResult {
     /// Its name.
     pub name: String,
-    /// Whether it holds.
+    /// The outcome.
     pub outcome: PropertyOutcome,
-    /// How many states of the chart were looked at.
+    /// How many states of the chart were explored.
     pub states: usize,
 }
 
-/// Whether a property holds of all runs.
+/// Whether a property holds for all runs.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum PropertyOutcome {
-    /// It does.
+    /// It holds.
     Holds,
-    /// There is a run that violates it.
+    /// A run violates it.
     Violated,
-    /// There are more states than were looked at, and none of those that were violates it.
+    /// The limit of states was reached without finding a violation.
     NotDecided,
 }
 
@@ -104,23 +104,23 @@ fn judged(
         ExplorationVerdict::Violated(trace, is_circle) => {
             let message = format!("the property `{name}` does not hold");
             let hint = match is_circle {
-                true => "the trace shows a run that goes round for ever without what must come",
+                true => "the trace shows a run that repeats forever without the required step",
                 false => "the trace shows a run that violates it",
             };
             let diagnostic = Diagnostic::error("E0870", place, message).with_hint(hint);
             (judgement(PropertyOutcome::Violated), Some(Finding { diagnostic, trace: Some(trace) }))
         }
         ExplorationVerdict::NotDecided => {
-            let message =
-                format!("the property `{name}` is not decided: after {states} states there are more");
-            let hint = "nothing that was looked at violates it; look at more with `--states`, or say less in one property";
+            let message = format!("the property `{name}` is undecided after {states} states");
+            let hint =
+                "no explored state violates it; raise the limit with `--states`, or split the property";
             let diagnostic = Diagnostic::error("E0871", place, message).with_hint(hint);
             (judgement(PropertyOutcome::NotDecided), Some(diagnostic.into()))
         }
     }
 }
 
-/// Fields that no guard of the chart reads: as likely misspelt as meant.
+/// Reports fields that no guard of the chart reads, since they may be misspelt.
 fn unread(bound: &BoundProperty, abstraction: &Abstraction) -> Vec<Diagnostic> {
     let mut known: BTreeSet<String> = BTreeSet::new();
     for condition in abstraction.conditions.iter().flatten() {
@@ -138,7 +138,7 @@ fn unread(bound: &BoundProperty, abstraction: &Abstraction) -> Vec<Diagnostic> {
                 let wrong = Diagnostic::warning("E0848", path.place.0, message);
                 found.push(match nearest(&text, known.iter().map(String::as_str)) {
                     Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
-                    None => wrong.with_hint("with `--linked` the program says whether there is such a field"),
+                    None => wrong.with_hint("`--linked` checks fields against the messages of the program"),
                 });
             }
         });
@@ -146,7 +146,7 @@ fn unread(bound: &BoundProperty, abstraction: &Abstraction) -> Vec<Diagnostic> {
     found
 }
 
-/// The fields and messages that a condition reads.
+/// Visits the fields and messages that a condition reads.
 fn fields<'a>(expression: &'a Expression, told: &mut impl FnMut(&'a Path)) {
     match &expression.kind {
         ExpressionKind::Variable(path) if path.segments.len() > 1 => told(path),

@@ -1,5 +1,5 @@
-//! Robots together: a folder for each case, with a model for each robot and `expected.txt`. With
-//! `MONAS_BLESS=1` that is written anew.
+//! Compositions: a folder per case, with a model per robot and `expected.txt`, which
+//! `MONAS_BLESS=1` rewrites.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ fn composed(case: &str, channels: Channels, states: usize) -> Composition {
     compose(&models(case), channels, &settings).unwrap_or_else(|wrong| panic!("{case}: {wrong:?}"))
 }
 
-/// All that is said, with the ways there.
+/// All findings with their traces.
 fn text(found: &Composition) -> String {
     let mut text = String::new();
     for (from, to, message) in &found.passing {
@@ -98,14 +98,14 @@ fn a_way_to_a_standstill_is_played_by_the_charts() {
     let refused = |text: &str| TeamTrace::parse(&robots, text).unwrap_err().to_string();
     assert_eq!(
         refused("passer: start\nkeeper: start\n"),
-        "line 2: `keeper: start` belongs to no robot: a step begins with `passer:` or `receiver:`"
+        "line 2: `keeper: start` belongs to no robot: a step starts with `passer:` or `receiver:`"
     );
     assert!(
         refused("passer: start\nreceiver: start\nreceiver: return Aim\n").starts_with("line 3: no state")
     );
 }
 
-/// Another region may say the same as a first one: neither is left out of what is explored.
+/// Two regions that send the same message are both explored.
 #[test]
 fn who_says_something_in_two_regions_is_heard_from_both() {
     let mut models = models("deadlock");
@@ -119,7 +119,7 @@ fn who_says_something_in_two_regions_is_heard_from_both() {
     assert!(text(&found).contains(shouted), "{}", text(&found));
 }
 
-/// Of robots to which nothing passes no more is explored than whether they start.
+/// Of robots without routes only the start is explored.
 #[test]
 fn what_nobody_hears_is_left_out() {
     let role =
@@ -129,7 +129,7 @@ fn what_nobody_hears_is_left_out() {
     assert_eq!((codes(&found), found.robots[0].1 <= 3), (Vec::new(), true), "{}", text(&found));
 }
 
-/// What waits for an answer stands still if the answer may be lost.
+/// A robot that waits for an answer is deadlocked if the answer may be lost.
 #[test]
 fn a_handshake_without_a_timer_does_not_survive_a_loss() {
     let mut channels = Channels::default();
@@ -166,7 +166,7 @@ fn of_texts(texts: &[(&str, &str)]) -> Models {
     texts.iter().map(model).collect()
 }
 
-/// What a robot says to itself goes by a channel like any other message.
+/// A message that a robot sends to itself passes through a channel like any other.
 #[test]
 fn who_says_something_to_itself_hears_it_if_it_has_been_said() {
     let speaks = "Role: echo\nLiveness:\necho = Call . Listen . Act\nTransitions:\n\
@@ -193,7 +193,7 @@ fn who_says_something_to_itself_hears_it_if_it_has_been_said() {
     assert!(said.contains("waits in `Listen` for `Word` of `echo`"), "{said}");
 }
 
-/// A robot that TERMINATE has stopped says nothing any more, and waits for nothing.
+/// A robot that TERMINATE has stopped neither sends nor waits.
 #[test]
 fn who_waits_for_a_robot_that_was_stopped_waits_for_ever() {
     let receiver = |end: &str| {

@@ -1,4 +1,4 @@
-//! The logic of guards, compared with what comes out when all values of small domains are tried.
+//! The logic of guards, compared with an exhaustive search of small domains.
 
 use aseme_verify::logic::{Claim, GuardSolver, Satisfiability};
 use proptest::prelude::*;
@@ -11,8 +11,7 @@ fn condition(text: &str) -> Expression {
     condition.unwrap()
 }
 
-/// A condition over two numbers, a value of three, and a flag, and what it says of a message that
-/// is there.
+/// A condition over two numbers, an enumeration and a flag, on a message that has arrived.
 #[derive(Clone, Debug)]
 enum Guard {
     Number(&'static str, &'static str, i8),
@@ -78,8 +77,8 @@ fn compare(left: f64, comparison: &str, right: f64) -> bool {
 }
 
 fn worlds() -> impl Iterator<Item = World> {
-    // quarters lie between whole limits in every order that two numbers and their difference can
-    // have
+    // quarters are enough for every order of two numbers and their difference relative to integer
+    // limits
     let numbers = || (-20..=20).map(|number| f64::from(number) / 4.0);
     numbers().flat_map(move |x| {
         numbers().flat_map(move |y| {
@@ -95,7 +94,7 @@ fn guard() -> impl Strategy<Value = Guard> {
         (prop::sample::select(vec!["x", "y"]), comparison(), -2_i8..=2)
             .prop_map(|(n, c, v)| Guard::Number(n, c, v)),
         (comparison(), -2_i8..=2).prop_map(|(comparison, value)| Guard::Difference(comparison, value)),
-        // the fourth is never named: it stands for the values that no guard knows
+        // the fourth value is in no guard: it represents all other values
         (any::<bool>(), prop::sample::select(PHASES[..3].to_vec()))
             .prop_map(|(same, p)| Guard::Phase(same, p)),
         Just(Guard::Found),

@@ -1,4 +1,4 @@
-//! The ways that explorations show: they are text, and lead there again.
+//! Traces of explorations can be parsed from their text and replayed.
 
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ fn what_is_no_trace_is_refused_by_its_line() {
     let refused = |text: &str| Trace::parse(&chart, text).unwrap_err().to_string();
     assert_eq!(refused(""), "line 1: a trace begins with `start`");
     assert_eq!(refused("event kick"), "line 1: a trace begins with `start`");
-    assert_eq!(refused("  true  x\n"), "line 1: this belongs to no step: a trace begins with `start`");
+    assert_eq!(refused("  true  x\n"), "line 1: this line belongs to no step: a trace begins with `start`");
     assert!(refused("# a\nstart\nreturn x\n").starts_with("line 3: no state with an activity is called `x`"));
     assert!(refused("start\ntimer r x\n").starts_with("line 2: the chart has no timer `r x`"));
     assert!(refused("start\n  true  Ball.found\n").starts_with("line 2: no guard of the chart reads"));
