@@ -1,5 +1,5 @@
-//! Names as identifiers: any path is found again, no two are the same, and each is one that Rust
-//! takes.
+//! The mapping from paths to identifiers is injective and invertible, and yields valid Rust
+//! identifiers.
 
 use aseme_codegen::generate::{identifier, path_of};
 use proptest::prelude::*;

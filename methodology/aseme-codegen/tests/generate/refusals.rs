@@ -1,4 +1,4 @@
-//! What cannot be written as Rust, and what is not a chart.
+//! Elements that cannot be represented in Rust, and texts that are no chart.
 
 use aseme_codegen::generate::{RustBindings, generate};
 use yase::{Diagnostic, Source, TypeEnvironment};
@@ -23,7 +23,7 @@ fn what_is_misspelt_is_said_before_any_code_is_written() {
 fn a_message_without_a_type_is_refused() {
     let words = RustBindings { messages: [].into(), ..soccer() };
     let found = refused("a -> b : [Ball.found]", &words);
-    assert_eq!(found, ["E0921 nothing says which Rust type the message `Ball` is"]);
+    assert_eq!(found, ["E0921 the Rust type of the message `Ball` is unknown"]);
 }
 
 #[test]

@@ -6,14 +6,13 @@ use yase::{Diagnostic, Span};
 
 use crate::iac::{Iac, IacTransition};
 
-/// Puts what is written on a protocol's chart onto the chart of a role: wherever the role has a
-/// composite called as a participant is, its states and transitions get the variables and
-/// refinements of those at the same place in the participant.
+/// Merges a protocol's chart into the chart of a role: each composite with the name of a
+/// participant gets the variables and refinements of the participant's states and transitions.
 ///
-/// Returns the paths, by label, of the composites that were found. One that is not built as the
-/// participant is stays as it is, and that is an error (E0835): the role would not do what the
-/// protocol asks for. Where the role says another thing than the protocol, the protocol holds, and
-/// that is said (E0836). A protocol of which nothing is found is reported (E0837).
+/// Returns the labels of the composites that were found. A composite with another structure than
+/// the participant stays unchanged and is an error (E0835), because the role would violate the
+/// protocol. Where the role contradicts the protocol, the protocol takes precedence (E0836). A
+/// protocol without any matching composite is reported (E0837).
 pub fn merge_eac(iac: &mut Iac, eac: &Iac) -> (Vec<String>, Vec<Diagnostic>) {
     let mut merging = ChartMerge {
         variables: shared_variables(iac, eac),
@@ -39,7 +38,7 @@ pub fn merge_eac(iac: &mut Iac, eac: &Iac) -> (Vec<String>, Vec<Diagnostic>) {
             .collect::<Vec<_>>()
             .join(", ");
         let message = format!("`{}` has none of the parts of `{}`: {names}", iac.name, eac.name);
-        let hint = "a part is found by its name; the role's formulas must refine that";
+        let hint = "a part is found by its name, which the role's formulas must refine";
         diagnostics.push(Diagnostic::warning("E0837", Span::default(), message).with_hint(hint));
     }
     (merged, diagnostics)
@@ -58,7 +57,7 @@ pub fn participants(eac: &Iac) -> Vec<usize> {
     if inside.is_empty() { of_kind(top, "OR") } else { inside }
 }
 
-/// The variable of the role for each of the protocol, made where it is missing.
+/// The variable of the role for each variable of the protocol, added if it is missing.
 fn shared_variables(iac: &mut Iac, eac: &Iac) -> Vec<usize> {
     eac.variables.iter().map(|variable| iac.variable(variable)).collect()
 }
@@ -116,28 +115,28 @@ impl ChartMerge<'_> {
     fn mismatch(&mut self, participant: usize, place: usize, wanted: &str, found: &str) {
         let name = &self.eac.nodes[participant].name;
         let message = format!(
-            "`{name}` of `{}` is not that of `{}`: {found} stands where {wanted} would be",
+            "`{name}` of `{}` differs from `{}`: {found} instead of {wanted}",
             self.iac.name, self.eac.name
         );
-        let hint = "take the formula of the participant over as it is";
+        let hint = "copy the formula of the participant";
         let span = self.iac.nodes[place].place.0;
         self.diagnostics.push(Diagnostic::error("E0835", span, message).with_hint(hint));
     }
 
-    /// What the protocol asks of those who engage in a part, wherever the role does.
+    /// Copies the engaging rule of a part to all transitions of the role into it.
     fn ways_in(&mut self, participant: usize, place: usize) {
         let rule = |it: &&IacTransition| it.target == participant && it.source != participant;
         let Some(theirs) = self.eac.transitions.iter().find(rule) else { return };
         let own = self.iac.transitions.iter_mut().filter(|it| it.target == place && it.source != place);
         for own in own {
-            // how the role chooses among its ways stays its own
+            // the role keeps its own selection order and weights
             let refinement = std::mem::take(&mut own.refinement);
             self.diagnostics.extend(copy_refinement(theirs, own));
             own.refinement = refinement;
         }
     }
 
-    /// The exits of a part lead where the role goes on after it.
+    /// Adds the exits of a part, which lead to where the role continues after it.
     fn ways_out(&mut self, participant: usize, place: usize) {
         let theirs: Vec<&IacTransition> = self
             .eac
@@ -170,7 +169,8 @@ impl ChartMerge<'_> {
         }
     }
 
-    /// Those with both ends inside; several between the same two ends are matched in order.
+    /// Merges transitions with both ends inside; several between the same two ends are matched in
+    /// order.
     fn transitions(&mut self, pairs: &BTreeMap<usize, usize>) {
         let mut seen: BTreeMap<(usize, usize), usize> = BTreeMap::new();
         for theirs in &self.eac.transitions {
@@ -191,7 +191,7 @@ impl ChartMerge<'_> {
     }
 }
 
-/// The protocol holds wherever it says something.
+/// Refinements of the protocol take precedence.
 fn copy_refinement(theirs: &IacTransition, own: &mut IacTransition) -> Option<Diagnostic> {
     let says = |transition: &IacTransition| {
         !transition.te.is_empty() || transition.refinement != crate::iac::TransitionRefinement::default()
@@ -209,17 +209,17 @@ fn copy_refinement(theirs: &IacTransition, own: &mut IacTransition) -> Option<Di
     found
 }
 
-/// How alike two composites are to be.
+/// How similar two composites must be.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum ShapeMatch {
     /// The same.
     Same,
-    /// The second may do in several steps what is an activity of the first.
+    /// The second may refine activities of the first into several steps.
     Refined,
 }
 
-/// For each node in one composite the node at the same place in another, the composites themselves
-/// first; or the first two that differ.
+/// The corresponding node for each node of a composite, starting with the composites themselves, or
+/// the first two nodes that differ.
 pub fn same_shape(
     eac: &Iac,
     participant: usize,
@@ -257,7 +257,7 @@ fn is_refined(eac: &Iac, a: usize, iac: &Iac, b: usize) -> bool {
     theirs.name == own.name && theirs.kind == "BASIC" && matches!(own.kind.as_str(), "OR" | "AND")
 }
 
-/// What a node is, apart from its label.
+/// The content of a node except its label.
 fn node_content(chart: &Iac, node: usize) -> String {
     let node = &chart.nodes[node];
     if node.name == node.label { node.kind.clone() } else { format!("{} {}", node.written(), node.kind) }

@@ -26,7 +26,7 @@ fn chart(text: &str) -> Statechart {
     chart
 }
 
-/// The differences after texts of the role were replaced.
+/// The differences after replacements in the role's text.
 fn said(replacements: &[(&str, &str)]) -> Vec<String> {
     let edited = replacements.iter().fold(ROLE.to_owned(), |role, (text, other)| {
         assert!(role.contains(text), "{text}");

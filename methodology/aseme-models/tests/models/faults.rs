@@ -1,4 +1,4 @@
-//! Faults in the structure of files are reported, each where it is.
+//! Structural faults of files are reported with their positions.
 
 use crate::kit::{read, told};
 

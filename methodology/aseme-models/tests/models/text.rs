@@ -1,4 +1,4 @@
-//! The text form of each kind of model, beside its XMI.
+//! The text form of each kind of model, compared with its XMI.
 
 use aseme_models::convert::Format;
 

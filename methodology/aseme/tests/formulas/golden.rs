@@ -1,5 +1,5 @@
-//! The thesis's two roles, transformed: as trees in `tests/golden`. With `MONAS_BLESS=1` the files
-//! are written anew.
+//! The charts of the thesis's two roles as trees in `tests/golden`. `MONAS_BLESS=1` rewrites the
+//! files.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! Refinements stay in force when formulas are edited, as far as they still fit.
+//! Refinements remain valid when formulas are edited, as far as they still match.
 
 use aseme::{SrmFile, srm::Section};
 use yase::{Diagnostic, Statechart};
@@ -106,7 +106,7 @@ r/START -> a[1]
         !-1 : [first]
 ";
     let (chart, unmatched) = chart(text);
-    // `*` names states, END is none
+    // `*` matches states, and END is none
     assert_eq!(unmatched, []);
     assert_eq!(
         refined(&chart),

@@ -30,7 +30,7 @@ impl PanicBoundary {
 
 /// The text of a failure. The panic payload is dropped here too.
 fn panic_error(failure: CallFailure) -> String {
-    call::caught(move || failure.to_string()).unwrap_or_else(|_| "failed, and cannot say how".into())
+    call::caught(move || failure.to_string()).unwrap_or_else(|_| "failed without a description".into())
 }
 
 impl Activity for PanicBoundary {

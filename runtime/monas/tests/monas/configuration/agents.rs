@@ -389,15 +389,13 @@ fn mistakes_in_formulas_and_expressions_are_said_with_their_place_in_the_model()
     check_model(
         "m = Vision . . Behavior",
         &[
-            "models/m.srm:1:14: error[E0205]: there is nothing to the left of `.` (an operator stands between two terms)",
+            "models/m.srm:1:14: error[E0205]: there is nothing to the left of `.` (an operator connects two terms)",
         ],
     );
     check_model(
         "m = a\na = b . Vision\nb = a",
-        &[
-            "models/m.srm:3:5: error[E0214]: `a` is part of what it consists of: a -> b -> a (repetition is written `x~`, \
-           `x*` or `x+`)",
-        ],
+        &["models/m.srm:3:5: error[E0214]: `a` refines itself: a -> b -> a (repetition is written `x~`, \
+           `x*` or `x+`)"],
     );
     check_model(
         &refined("Vision -> Behavior : [ball.x >]"),
