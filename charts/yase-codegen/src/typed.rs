@@ -64,8 +64,8 @@
 //!
 //! | code | what is wrong |
 //! |---|---|
-//! | E0150 | what was written down does not fit together |
-//! | E0151 | the functions were made for other messages or another model |
+//! | E0150 | inconsistent statements |
+//! | E0151 | functions for other messages or another model |
 
 mod builder;
 mod chart;

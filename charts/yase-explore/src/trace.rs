@@ -115,7 +115,7 @@ impl Trace {
                 }
                 (true, Some(step)) => detail(chart, content, step).map_err(wrong)?,
                 (true, None) => {
-                    return Err(wrong("this belongs to no step: a trace begins with `start`".into()));
+                    return Err(wrong("this line belongs to no step: a trace begins with `start`".into()));
                 }
             }
         }
@@ -181,8 +181,8 @@ impl fmt::Display for Trace {
     }
 }
 
-/// Replays a trace. After each step `told` receives the machine, the step, and its trace lines, one
-/// per micro-step.
+/// Replays a trace and passes the machine, the step and its trace lines, one per micro-step, to
+/// `told` after each step.
 ///
 /// Conditions that the trace does not contain are false.
 ///

@@ -88,9 +88,7 @@ fn bracketed_condition(parser: &mut Cursor<'_>) -> Parsed<Expression> {
     if parser.at(Symbol::CloseBracket) {
         let span = open.span.to(parser.span());
         let hint = "leave the brackets out, or write `[true]`";
-        return parser.refuse(
-            Diagnostic::error("E0117", span, "there is no condition in the brackets").with_hint(hint),
-        );
+        return parser.refuse(Diagnostic::error("E0117", span, "the brackets are empty").with_hint(hint));
     }
     let condition = parser.condition()?;
     parser.expect_close_bracket(open.span)?;

@@ -1,4 +1,4 @@
-//! Choices that the rules leave open: R22.
+//! Choices that the model leaves open: R22.
 
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -56,8 +56,7 @@ impl Chance {
         chosen
     }
 
-    /// Equal options share the generator's numbers evenly; others in proportion to their weights,
-    /// in order.
+    /// Equal weights divide the generator's range evenly, other weights in proportion, in order.
     fn generated(&mut self, weights: &[f64]) -> usize {
         let draw = self.generator.next_u64();
         if weights.iter().all(|weight| *weight == 1.0) {
@@ -71,7 +70,7 @@ impl Chance {
         reached.unwrap_or(weights.len() - 1)
     }
 
-    /// The choices made by a script, which are all that the machine's chooser records.
+    /// The recorded choices of a script; they equal those recorded by the machine's chooser.
     pub(crate) fn told(&self) -> &[(u32, u32)] {
         match self.freedom {
             Freedom::Scripted(_) => &self.log,

@@ -1,4 +1,4 @@
-//! Both interpreters play one case, and their logs are compared.
+//! Both interpreters execute one case, and their logs are compared.
 //!
 //! All contents of trace records are compared, and so are all calls of the host, the reports, the
 //! configuration after each step and the error that ends a chart. Two things are not compared,
@@ -49,7 +49,7 @@ pub(crate) fn judge(case: &Case) -> Verdict {
             return Verdict::Different(Difference { expected, found });
         }
     }
-    // A machine without an observer records no micro-steps: everything else must be equal.
+    // A machine without an observer logs no micro-steps; everything else must be equal.
     let is_micro_step = |line: &String| line.starts_with(|first: char| first.is_ascii_digit());
     let told: Vec<String> = expected.iter().filter(|line| !is_micro_step(line)).cloned().collect();
     let found = by_machine(case, machine, true);
@@ -111,7 +111,7 @@ impl<M: Asked> Configured for M {
     }
 }
 
-/// A machine, however it is stepped.
+/// Access to the machine of an interpreter, however it steps it.
 trait Asked: Interpreter {
     fn machine(&self) -> &Machine;
 }

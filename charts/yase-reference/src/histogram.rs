@@ -102,7 +102,7 @@ impl Histogram {
         self.add("chooser scripted", matches!(case.freedom, crate::chance::Freedom::Scripted(_)));
     }
 
-    /// The counts, a row a line.
+    /// The counts, one row per line.
     pub fn text(&self) -> String {
         let lines: Vec<String> = self.rows.iter().map(|(row, count)| format!("{count:8} {row}")).collect();
         lines.join("\n")

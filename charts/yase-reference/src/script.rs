@@ -13,7 +13,7 @@ use super::world::{TOPICS, World, vocabulary};
 pub trait Interpreter {
     /// Starts the chart.
     fn start(&mut self, now: Moment, world: &mut World);
-    /// An event comes.
+    /// An event occurs.
     fn event(&mut self, name: &str);
     /// A message has arrived on a topic.
     fn message(&mut self, topic: TopicId);
@@ -119,7 +119,7 @@ impl Interpreter for ByMicroSteps {
 /// An input.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input {
-    /// An event comes.
+    /// An event occurs.
     Event(String),
     /// A message with a number arrives on a topic.
     Message(TopicId, i64),
@@ -252,7 +252,7 @@ fn tell_arrivals(interpreter: &mut impl Interpreter, world: &mut World) {
     }
 }
 
-/// Processes activities and steps until nothing is due; false if the interpreter failed.
+/// Processes activities and steps until nothing is due. Returns false if the interpreter failed.
 fn settle(interpreter: &mut impl Interpreter, now: Moment, world: &mut World) -> bool {
     loop {
         while let Some(index) = (0..world.jobs.len()).find(|&index| world.jobs[index].due <= now) {
@@ -276,7 +276,7 @@ fn advance(interpreter: &mut impl Interpreter, now: Moment, world: &mut World, i
     if job.waits {
         match interpreter.resumed(activation) {
             true => (job.waits, job.due, job.calls) = (false, now + job.duration, job.calls + 1),
-            false => job.due = Moment::from_nanos(u64::MAX), // its state is about to be left
+            false => job.due = Moment::from_nanos(u64::MAX), // its state will be exited
         }
         return;
     }

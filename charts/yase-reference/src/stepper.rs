@@ -25,9 +25,9 @@ use tree::Tree;
 /// A failure that stops the chart.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Failure {
-    /// No branch of that CHOICE is open.
+    /// No branch of a CHOICE is enabled.
     NoBranch(NodeId),
-    /// Too many micro-steps, or steps at one moment.
+    /// Too many micro-steps, or steps at one time.
     Endless,
 }
 
@@ -72,7 +72,7 @@ struct Deadline {
     bound: Option<NodeId>,
 }
 
-/// What happens in a micro-step, for its line.
+/// The content of a micro-step's line.
 #[derive(Clone, Debug, Default)]
 struct Line {
     exits: Vec<NodeId>,
@@ -116,7 +116,7 @@ pub(crate) struct Stepper<'c> {
     found: Vec<(NodeId, Way)>,
     /// The active leaves from which a candidate was found, outward.
     closed: BTreeSet<NodeId>,
-    /// The active leaves at its beginning.
+    /// The active leaves at the start of the micro-step.
     leaves: Vec<NodeId>,
     /// The segments whose guards have failed in this micro-step, each reported once.
     told: BTreeSet<TransitionId>,

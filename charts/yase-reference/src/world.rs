@@ -105,7 +105,7 @@ pub struct World {
 }
 
 impl World {
-    /// The world of a chart, before anything has happened.
+    /// The world of a chart before its start.
     pub fn new(chart: &yase::Statechart) -> World {
         let activities = chart
             .nodes()
@@ -125,12 +125,12 @@ impl World {
         }
     }
 
-    /// A blackboard, made if it is not there.
+    /// The blackboard of a scope, created if it is missing.
     pub fn board(&mut self, region: ScopeId) -> &mut Board {
         self.boards.entry(region).or_default()
     }
 
-    /// A message reaches every blackboard, to be delivered there.
+    /// Sends a message to every blackboard, where it waits for delivery.
     pub fn send(&mut self, topic: TopicId, value: i64, regions: impl Iterator<Item = ScopeId>) {
         for region in regions {
             self.board(region).inbox.insert(topic, Number { n: value });

@@ -41,7 +41,7 @@ static ALLOCATOR: Counting = Counting;
 
 const A: TopicId = TopicId(0);
 
-/// For each blackboard one number and one activity, and nothing that grows.
+/// One number and one activity per blackboard, and no growing data.
 #[derive(Default)]
 struct World {
     traces: bool,
@@ -121,7 +121,7 @@ fn vocabulary() -> TypeEnvironment {
     }
 }
 
-/// A machine in its world.
+/// A machine and its host.
 struct Run {
     machine: Machine,
     world: World,
@@ -130,7 +130,7 @@ struct Run {
 }
 
 impl Run {
-    /// A machine of a chart, at rest for the first time.
+    /// Starts a machine of a chart and runs it until it is stable.
     fn new(text: &str, traces: bool) -> Run {
         let chart =
             yase_reference::chart(text).compile(&vocabulary()).unwrap_or_else(|found| panic!("{found:?}"));
@@ -142,20 +142,20 @@ impl Run {
         run
     }
 
-    /// A step so many milliseconds later.
+    /// Executes a step after some milliseconds.
     fn step(&mut self, millis: u64) {
         self.now += millis;
         let summary = self.machine.run_to_completion(Moment::from_millis(self.now), &mut self.world).unwrap();
         self.transitions += summary.transitions;
     }
 
-    /// An event, and the step that it leads to, a millisecond later.
+    /// Raises an event and executes the step a millisecond later.
     fn event(&mut self, name: &str) {
         self.machine.dispatch_name(name);
         self.step(1);
     }
 
-    /// The activity of a region returns for good.
+    /// The activity of a region returns and has finished.
     fn returns(&mut self, region: usize) {
         let activation = self.world.jobs[region].take().unwrap();
         assert!(self.machine.activity_returned(activation, Outcome::Done));
@@ -171,8 +171,8 @@ impl Run {
     }
 }
 
-/// Repeats something in a running chart, with and without a trace, and asserts that it takes so
-/// many transitions each time and, after the first few times, no memory.
+/// Repeats a cycle of a running chart, with and without a trace. Asserts that it takes a number of
+/// transitions each time and does not allocate after the first few times.
 fn assert_allocates_nothing(text: &str, transitions: u32, mut cycle: impl FnMut(&mut Run)) {
     for traces in [false, true] {
         let mut run = Run::new(text, traces);
@@ -340,7 +340,7 @@ fn activities() {
     assert_allocates_nothing(text, 3, |run| {
         run.is_called_again(1);
         run.returns(1);
-        run.event("e"); // u is asked to return, and left when it has
+        run.event("e"); // u is asked to return and exited afterwards
         run.returns(2);
         run.returns(1);
     });
@@ -391,7 +391,7 @@ fn history() {
         out -> shallow : children
         out -> deep : all
     ";
-    // `b` begins anew twice, with a step out of its START
+    // `b` restarts twice, with a step out of its START
     assert_allocates_nothing(text, 7 + 2, |run| {
         for event in ["next", "leave", "all", "leave", "children", "over", "over"] {
             run.event(event);

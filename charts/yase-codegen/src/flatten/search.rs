@@ -168,5 +168,5 @@ fn endless(from: &Machine, error: &MachineError) -> Diagnostic {
     } else {
         format!("where active are {active}")
     };
-    Diagnostic::error("E0162", Span::default(), format!("a step has no end, {place}: {error}"))
+    Diagnostic::error("E0162", Span::default(), format!("a livelock, {place}: {error}"))
 }

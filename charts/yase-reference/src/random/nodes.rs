@@ -59,7 +59,7 @@ impl Maker<'_, '_> {
         }
     }
 
-    /// Entry and exit points and history of a composite.
+    /// Adds entry and exit points and a history to a composite.
     fn borders(&mut self, composite: NodeId) {
         for (kind, prefix, percent) in [
             (NodeKind::ShallowHistory, "h", 15),

@@ -103,7 +103,7 @@ impl Maker<'_, '_> {
     }
 }
 
-/// Both parts may contain actions.
+/// Parses an expression that may contain actions in both parts.
 pub(crate) fn parse(text: &str) -> TransitionExpression {
     let mut parts = text.split(" / ");
     let head = parts.next().unwrap_or_default();

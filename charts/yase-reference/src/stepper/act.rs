@@ -60,7 +60,7 @@ impl Stepper<'_> {
         self.erred.retain(|(id, other)| *other != region || !reads.contains(id));
     }
 
-    /// Written data is published with the step, or visible to all others at once.
+    /// Publishes written data with the step, or makes it visible to all blackboards at once.
     fn wrote(&mut self, region: ScopeId, world: &mut World) {
         self.written.insert(region);
         if self.semantics.sharing == WriteVisibility::NextStep {

@@ -62,7 +62,7 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    /// Entering stops at START, or goes on at once.
+    /// Enters START; continues at once if its transition is enabled.
     fn enter_start(&mut self, composite: NodeId, world: &mut World) -> Result<(), Failure> {
         let mut children = self.chart.children(composite).iter().copied();
         let Some(start) = children.find(|&child| self.kind(child) == NodeKind::Start) else { return Ok(()) };
@@ -75,11 +75,10 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    /// The way out of START or HISTORY that is open now.
+    /// The enabled transition out of START or HISTORY.
     fn open_way(&mut self, connector: NodeId, world: &mut World) -> Option<Way> {
         let out = self.outgoing(connector);
-        // the blackboard of the composite, also where its way leads from an AND's HISTORY into a
-        // region
+        // the scope of the composite, even if the path leads from an AND's HISTORY into a region
         let region = self.region(self.parent(connector));
         self.first_way(connector, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, world))
     }
@@ -127,7 +126,7 @@ impl Stepper<'_> {
             (NodeKind::DeepHistory, _) => self.enter_below(owner, &record, world),
             (_, NodeKind::And) => self.enter_regions(owner, &[], world),
             _ => match record[..] {
-                [child] => self.enter_whole(child, &[], world), // START too, to rest there
+                [child] => self.enter_whole(child, &[], world), // including START, to stay there
                 _ => Ok(()),
             },
         }
@@ -157,7 +156,7 @@ impl Stepper<'_> {
         }
     }
 
-    /// A region that was vacated is active again: an arrival at a JOIN from it has to be repeated.
+    /// Marks a vacated region as active: its arrival at a JOIN has to be repeated.
     fn occupy(&mut self, node: NodeId) {
         let Some(around) = self.chart.node(node).parent else { return };
         let chart = self.chart;
@@ -204,7 +203,7 @@ impl Stepper<'_> {
         self.raise(&format!("done.state.{}", self.chart.node(node).name));
     }
 
-    /// A state has completed, and the ANDs around it that complete with it.
+    /// Marks a state as completed, and the ANDs around it that complete with it.
     pub(crate) fn completed(&mut self, node: NodeId) {
         if self.semantics.eventless != CompletionTrigger::Once || node == Statechart::ROOT {
             return;

@@ -9,8 +9,8 @@ use super::{Failure, Phase, Stepper, Way};
 use crate::world::World;
 
 impl Stepper<'_> {
-    /// Fires one transition after the other, without those whose source an earlier one has exited,
-    /// even if it is active again.
+    /// Fires transitions in order, without those whose source an earlier one has exited, even if it
+    /// is active again.
     pub(crate) fn fire_each(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
         let mut fired = vec![];
         for way in ways {
@@ -46,7 +46,7 @@ impl Stepper<'_> {
         }
     }
 
-    /// Nothing is entered any more.
+    /// Whether no further state is entered.
     pub(crate) fn is_ended(&self) -> bool {
         self.terminates || !self.running_chart
     }
@@ -60,7 +60,7 @@ impl Stepper<'_> {
         for way in &ways {
             let targets = self.effects_and_targets(way, world)?;
             match std::mem::take(&mut self.terminates) {
-                true => stops = true, // when what the others lead to has been entered
+                true => stops = true, // after the targets of the others have been entered
                 false => entering.push((way.clone(), targets)),
             }
         }
@@ -75,8 +75,8 @@ impl Stepper<'_> {
         Ok(ways)
     }
 
-    /// Removes transitions with a target whose source another one exits: they are only selected
-    /// because nothing is active in it.
+    /// Removes transitions with a target whose source another one exits: they were selected only
+    /// because nothing is active in that source.
     fn with_their_sources(&self, mut ways: Vec<Way>) -> Vec<Way> {
         let mut index = 0;
         while index < ways.len() {
@@ -84,7 +84,7 @@ impl Stepper<'_> {
             let stays = self.is_targetless(way)
                 || self.only_terminates(way)
                 || self.kind(way.ends[0]) == NodeKind::Join
-                || self.kind(self.scope(way)) == NodeKind::Basic; // nothing is in it that could be left
+                || self.kind(self.scope(way)) == NodeKind::Basic; // nothing inside can be exited
             let mut others = ways.iter().enumerate().filter(|(other, _)| *other != index);
             let is_left = others.any(|(_, other)| {
                 let left = self.exit_set(other);
@@ -136,7 +136,7 @@ impl Stepper<'_> {
         let actions = self.chart.node(node).exit.clone();
         let before = self.unbound.clone();
         self.act(&actions, self.region(node), &format!("exit {}", self.name(node)), world);
-        self.unbound = before; // what an exit action starts belongs to no state
+        self.unbound = before; // timers started by exit actions belong to no state
         self.active.remove(&node);
         self.waiting.remove(&node);
         self.vacated.remove(&node);
@@ -146,7 +146,7 @@ impl Stepper<'_> {
         self.line.exits.push(node);
     }
 
-    /// An AND that is exited resets the arrivals at its JOINs, and a region that is exited its own.
+    /// Resets the arrivals at the JOINs of an exited AND, or those of an exited region.
     fn forget_arrivals(&mut self, node: NodeId) {
         let (chart, is_region) = (self.chart, self.is_region(node));
         let from = |id: &TransitionId| chart.transition(*id).source;
@@ -184,7 +184,7 @@ impl Stepper<'_> {
         let mut targets = vec![];
         for &end in ends {
             if self.terminates {
-                break; // nothing happens behind TERMINATE
+                break; // nothing follows TERMINATE
             }
             if self.kind(end) != NodeKind::Choice {
                 self.terminates = self.kind(end) == NodeKind::Terminate;
@@ -214,7 +214,7 @@ impl Stepper<'_> {
             }
             self.vacated.insert(node);
             match arrives {
-                true => self.complete_around(node), // for the region it is no news
+                true => self.complete_around(node), // not newly completed for the region
                 false => self.completed(node),
             }
         }
@@ -228,7 +228,7 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    /// When all have arrived, their AND is offered once more.
+    /// Offers the completion of an AND again when all sources of a JOIN have arrived.
     fn arrived_at(&mut self, join: NodeId) {
         let all = self.incoming(join).iter().all(|id| self.arrivals.contains(id));
         if let Some(and) =

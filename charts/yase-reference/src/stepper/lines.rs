@@ -24,7 +24,7 @@ impl Stepper<'_> {
         ways.iter().map(|way| self.chain(&way.segments)).collect::<Vec<_>>().join(", ")
     }
 
-    /// `a -> CONDITION -> b`, and ` + ` where a segment does not go on from the one before.
+    /// `a -> CONDITION -> b`, with ` + ` before a segment that does not continue the previous one.
     fn chain(&self, segments: &[TransitionId]) -> String {
         let mut text = String::new();
         let mut at = None;
@@ -42,7 +42,7 @@ impl Stepper<'_> {
 
     fn event_name(&self, event: &str) -> String {
         match topic(event) {
-            Some(_) => event.to_lowercase(), // messages are known by their topic
+            Some(_) => event.to_lowercase(), // messages are identified by their topic
             None => self.known_name(event).unwrap_or_else(|| "?".to_owned()),
         }
     }

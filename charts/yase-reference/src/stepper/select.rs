@@ -8,11 +8,11 @@ use yase::{ActivityOnExit, CompletionTrigger, ConflictResolution, Firing, JoinMo
 use super::{Held, Occurrence, Phase, Stepper, Way};
 use crate::world::World;
 
-/// What a micro-step offers to transitions.
+/// The occurrence offered to transitions in a micro-step.
 #[derive(Clone, Copy)]
 pub(crate) enum Offer<'a> {
     Nothing,
-    /// The state has completed, which is offered once.
+    /// The completion of a state, offered once.
     Completion,
     Event(&'a Occurrence),
 }
@@ -98,7 +98,7 @@ impl<'c> Stepper<'c> {
             return way.sources.iter().all(|&source| self.is_complete(source) && open(source));
         }
         if matches!(offer, Offer::Completion) {
-            return self.is_complete(source); // it may be complete no more
+            return self.is_complete(source); // it may no longer be complete
         }
         let leaf = !matches!(self.kind(source), NodeKind::Or | NodeKind::And);
         let guarded = self.expression(way.segments[0]).guard.is_some();
@@ -131,7 +131,7 @@ impl<'c> Stepper<'c> {
         pending || !with_event && held
     }
 
-    /// Paths out of JOINs with all arrivals come first.
+    /// Evaluates the paths out of a node; those out of JOINs with all arrivals come first.
     pub(crate) fn judge_ways(&mut self, node: NodeId, offer: Offer<'_>, world: &mut World) -> Judgement {
         let event = offer.event();
         if event.is_none() && self.is_frozen(node, false) {
@@ -180,14 +180,14 @@ impl<'c> Stepper<'c> {
         });
     }
 
-    /// Those with a weight are drawn among if R15 allows one of their ways.
+    /// Whether a draw may include a transition: R15 must allow one of its paths.
     fn may_be_drawn(&mut self, node: NodeId, id: TransitionId, offer: Offer<'_>) -> bool {
         let start = Way { sources: vec![node], ..Way::default() };
         self.transition(id).weight.is_none()
             || self.any_way(&start, &[id], &mut |me, way, _| me.is_ready(way, offer))
     }
 
-    /// The JOINs behind an AND at which all have arrived, one by one.
+    /// The JOINs after an AND at which all sources have arrived.
     fn joins_behind(&self, and: NodeId) -> Vec<NodeId> {
         let joins = self.chart.nodes().map(|(id, _)| id).filter(|&id| self.kind(id) == NodeKind::Join);
         let complete = |&join: &NodeId| {
@@ -197,14 +197,14 @@ impl<'c> Stepper<'c> {
         joins.filter(complete).collect()
     }
 
-    /// The candidates, and the ways that wait for running activities.
+    /// The candidates, and the transitions that wait for running activities.
     pub(crate) fn candidates(&mut self, offer: Offer<'_>, world: &mut World) -> (Vec<Way>, Vec<Way>) {
         self.begin_micro_step();
         let mut search = Search::default();
         self.visit(Statechart::ROOT, offer, &mut search, world);
         let mut found = search.found;
         if self.semantics.firing == Firing::Phases {
-            found.sort_by_key(|(leaf, _)| self.position(*leaf)); // as SCXML goes through atomic states
+            found.sort_by_key(|(leaf, _)| self.position(*leaf)); // the order of atomic states in SCXML
         }
         (found.into_iter().map(|(_, way)| way).collect(), search.waiting)
     }
@@ -236,7 +236,7 @@ impl<'c> Stepper<'c> {
         lists.flatten().copied().filter(|&source| source != node).collect()
     }
 
-    /// A state contributes if from some active leaf outward nothing has been found yet.
+    /// Adds the candidates of a state unless every active leaf inside already has one.
     fn consider(&mut self, node: NodeId, offer: Offer<'_>, search: &mut Search, world: &mut World) {
         let leaves = self.leaves_in(node);
         let Some(&open) = leaves.difference(&self.closed).min_by_key(|&&leaf| self.position(leaf)) else {
@@ -278,7 +278,7 @@ impl<'c> Stepper<'c> {
         way.sources.iter().map(|&source| self.position(source)).min().unwrap()
     }
 
-    /// What is nested before what is around it, else in the order of the document.
+    /// Sorts inner before outer sources, otherwise in document order.
     pub(crate) fn sort_inner_first(&self, ways: &mut Vec<Way>) {
         ways.sort_by_key(|way| self.key(way));
         let mut sorted: Vec<Way> = vec![];
@@ -305,7 +305,8 @@ impl<'c> Stepper<'c> {
         (winners, losers)
     }
 
-    /// Whether a later candidate wins against an earlier one: it is nested in it, or chosen.
+    /// Whether a later candidate takes precedence over an earlier one: it is nested in it, or
+    /// chosen.
     fn upsets(&mut self, way: &Way, winner: &Way) -> bool {
         self.is_nested(way, winner)
             || !self.is_nested(winner, way)

@@ -119,8 +119,8 @@ impl Stepper<'_> {
         triggered || defers || anywhere && raises
     }
 
-    /// The name an event is known by: its own, or the longest of its token prefixes that the chart
-    /// names.
+    /// The name under which the chart knows an event: its own, or its longest token prefix in the
+    /// chart.
     pub(crate) fn known_name(&self, event: &str) -> Option<String> {
         let mut name = event;
         loop {
@@ -166,11 +166,11 @@ impl Stepper<'_> {
         self.offer(next, world)
     }
 
-    /// R15, `once`: completions before what is new; one that finds nothing open is consumed.
+    /// R15, `once`: completions precede new events; one without an enabled transition is consumed.
     fn complete_something(&mut self, world: &mut World) -> Result<bool, Failure> {
         while !self.completions.is_empty() {
             let node = self.completions.remove(0);
-            self.begin_micro_step(); // what one that is consumed has read is not told
+            self.begin_micro_step(); // reads of a consumed completion are not reported
             if let Some(way) = self.judge_ways(node, Offer::Completion, world).found {
                 self.admit()?;
                 self.take(vec![way], None, world)?;
@@ -180,7 +180,7 @@ impl Stepper<'_> {
         Ok(false)
     }
 
-    /// Resets the record of the micro-step; each selection begins one.
+    /// Resets the record of the micro-step before a selection.
     pub(crate) fn begin_micro_step(&mut self) {
         self.line = Line::default();
         self.leaves = self.active_leaves();
@@ -190,7 +190,7 @@ impl Stepper<'_> {
         self.drawn.clear();
     }
 
-    /// An interruption whose activities have returned.
+    /// Completes an interruption whose activities have returned.
     fn interrupt_something(&mut self, world: &mut World) -> Result<bool, Failure> {
         let Some(index) = self.pending.iter().position(|(way, _)| !self.leaves_running(way)) else {
             return Ok(false);
@@ -208,7 +208,7 @@ impl Stepper<'_> {
         Ok(true)
     }
 
-    /// Deferred events come back before newer ones.
+    /// Puts deferred events before newer ones.
     fn recall(&mut self) {
         let (kept, recalled): (Vec<Occurrence>, Vec<Occurrence>) = std::mem::take(&mut self.deferred)
             .into_iter()
@@ -260,7 +260,7 @@ impl Stepper<'_> {
         Ok(true)
     }
 
-    /// The innermost active state that defers an event; of several, the first of the document.
+    /// The innermost active state that defers an event; of several, the first in document order.
     fn deferring(&self, event: &str) -> Option<NodeId> {
         fn visit(stepper: &Stepper<'_>, node: NodeId, event: &str) -> Option<NodeId> {
             let inside = stepper.chart.children(node).iter().find_map(|&child| visit(stepper, child, event));

@@ -1,4 +1,4 @@
-//! Compound transitions: R2, R6, and what a compound would leave.
+//! Compound transitions: R2, R6, and their exit sets.
 
 use std::collections::BTreeSet;
 
@@ -61,8 +61,7 @@ impl<'c> Stepper<'c> {
         self.kind(around) == NodeKind::And && out.len() > 1 && plain && regions.len() == out.len()
     }
 
-    /// Tries segments in their order. Those with weights are drawn, at the place of the first of
-    /// them, if there is a draw.
+    /// Tries segments in order. Weighted ones are drawn at the position of the first of them.
     pub(crate) fn try_each(
         &mut self,
         list: &[TransitionId],
@@ -166,8 +165,8 @@ impl<'c> Stepper<'c> {
         })
     }
 
-    /// Nothing is drawn at a connector that no open segments reach, on the blackboard of any path
-    /// through it.
+    /// Whether some path through a connector, in its scope, is reached by the remaining segments;
+    /// otherwise nothing is drawn there.
     fn is_come_by(&mut self, way: &Way, node: NodeId, rest: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
         let so_far = way.segments.len();
         self.without_chance(|me| {
@@ -175,7 +174,7 @@ impl<'c> Stepper<'c> {
         })
     }
 
-    /// The first way out of a node that is accepted.
+    /// The first accepted path out of a node.
     pub(crate) fn first_way(
         &mut self,
         node: NodeId,
@@ -196,20 +195,20 @@ impl<'c> Stepper<'c> {
         found
     }
 
-    /// The path through a JOIN belongs to its first source; evaluated once, to the source that
-    /// completes.
+    /// Whether a JOIN is offered at a source. Its path belongs to the first source and is evaluated
+    /// once, at the source that completes.
     fn is_offered(&self, join: NodeId, source: NodeId) -> bool {
         let sources = self.incoming(join).into_iter().map(|id| self.transition(id).source);
         self.semantics.eventless == CompletionTrigger::Once
             || sources.min_by_key(|&node| self.position(node)) == Some(source)
     }
 
-    /// Whether it is the way out of a JOIN at which all have arrived; its source is their AND.
+    /// Whether a path starts at a JOIN at which all sources have arrived; its source is their AND.
     pub(crate) fn begins_at_join(&self, way: &Way) -> bool {
         self.kind(self.transition(way.segments[0]).source) == NodeKind::Join
     }
 
-    /// The AND that JOINs' sources lie in.
+    /// The AND that contains the sources of a JOIN.
     pub(crate) fn joined_and(&self, join: NodeId) -> Option<NodeId> {
         let sources: Vec<NodeId> = self.incoming(join).iter().map(|&id| self.transition(id).source).collect();
         let together = self.semantics.join == JoinMode::Together;
@@ -233,7 +232,7 @@ impl<'c> Stepper<'c> {
         way.segments.iter().any(|&id| self.transition(id).interrupts)
     }
 
-    /// Where a path may lead to in the end, whatever its CHOICEs say.
+    /// The possible final targets of a path, for all outcomes of its CHOICEs.
     fn final_targets(&self, node: NodeId) -> Vec<NodeId> {
         match self.kind(node) {
             NodeKind::Choice
@@ -265,8 +264,8 @@ impl<'c> Stepper<'c> {
         self.lowest_around(&all, |kind| kind == NodeKind::Or)
     }
 
-    /// R13: a way all of whose possible ends are TERMINATE leaves and enters nothing; where it may
-    /// also lead elsewhere, its scope is that of the other ends.
+    /// R13: a path that can only end in TERMINATE exits and enters nothing; otherwise its scope is
+    /// that of its other ends.
     pub(crate) fn only_terminates(&self, way: &Way) -> bool {
         let mut targets = way.ends.iter().flat_map(|&end| self.final_targets(end));
         targets.all(|target| self.kind(target) == NodeKind::Terminate)
@@ -277,8 +276,8 @@ impl<'c> Stepper<'c> {
         self.chart.ancestors(nodes[0]).find(|outer| wanted(self.kind(*outer)) && around(outer)).unwrap()
     }
 
-    /// The composites that stay but lose what is active in them: `uml`'s arrival at a JOIN, and its
-    /// way to an active ancestor.
+    /// The composites that stay active but lose their active children: in `uml`, on arrival at a
+    /// JOIN and on a transition to an active ancestor.
     pub(crate) fn vacates(&self, way: &Way) -> Vec<NodeId> {
         let [end] = way.ends[..] else { return vec![] };
         let around = if self.kind(end) == NodeKind::Join {
@@ -306,7 +305,7 @@ impl<'c> Stepper<'c> {
         self.outward(inner).into_iter().find(|&node| self.chart.node(node).parent == Some(outer)).unwrap()
     }
 
-    /// The active states a way would leave.
+    /// The active states that a path would exit.
     pub(crate) fn exit_set(&self, way: &Way) -> BTreeSet<NodeId> {
         if self.is_targetless(way) || self.only_terminates(way) {
             return BTreeSet::new();
@@ -318,7 +317,7 @@ impl<'c> Stepper<'c> {
         vacated.into_iter().flat_map(|outer| self.active_inside(outer)).collect()
     }
 
-    /// States in the order they are left.
+    /// States in the order of their exits.
     pub(crate) fn in_order_of_exit(&self, set: &BTreeSet<NodeId>) -> Vec<NodeId> {
         fn visit(stepper: &Stepper<'_>, node: NodeId, set: &BTreeSet<NodeId>, out: &mut Vec<NodeId>) {
             for &child in stepper.chart.children(node) {

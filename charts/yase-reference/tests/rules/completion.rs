@@ -1,4 +1,4 @@
-//! R14 to R17: completion, transitions without an event, queues, charts that never rest.
+//! R14 to R17: completion, completion transitions, queues, livelocks.
 
 use std::num::NonZeroU32;
 use std::time::Duration;
@@ -82,7 +82,7 @@ fn r14_an_or_completes_at_end_and_an_and_when_all_its_regions_have() {
     );
 }
 
-/// A composite that is left without an event, in one way or another.
+/// A composite that is exited without an event.
 fn composite(exit: &str) -> String {
     format!(
         "
@@ -145,7 +145,7 @@ fn r15_a_guarded_exit_of_a_composite_waits_until_nothing_inside_can_step() {
         "1 A=1; 2",
         &format!("{INSIDE}0.001 s -: P -> X; exit P/A, P; enter X"),
     );
-    // with both guards open the inner step comes first
+    // if both guards hold, the inner step comes first
     check(
         &composite("P -> X : [B.n > 0]"),
         "1 B=1; 2",
@@ -355,7 +355,7 @@ fn r17_a_chart_that_never_rests_stops_with_an_error_that_names_the_cycle() {
     assert!(text.contains("`A` -> `B`") && text.contains("`B` -> `A`"), "{text}");
     assert_eq!(machine.status(), Status::Stopped);
     assert_eq!(world.log.iter().filter(|line| line.contains("exit")).count(), 11, "START and ten more");
-    // the configuration before the micro-step that would have been one too many
+    // the configuration before the micro-step that exceeded the limit
     assert!(machine.is_active(chart::find(&chart, "B")), "{:?}", machine.configuration());
     assert_eq!(machine.run_to_completion(Moment::ZERO, &mut world).unwrap().micro_steps, 0);
 }
@@ -395,7 +395,7 @@ fn r17_a_chart_that_steps_for_ever_at_one_moment_is_stopped() {
         log.last().unwrap(),
         "error: the chart makes more than 10 steps at one moment: it repeats `A` -> `A`"
     );
-    // time that passes makes it a loop like any other
+    // if time advances, it is an ordinary loop
     let log =
         script::play_with(&chart("START\nA | run | for=1ms\nc/START -> A\nA -> A\n"), "50", limited(10));
     assert!(!log.iter().any(|line| line.starts_with("error")));

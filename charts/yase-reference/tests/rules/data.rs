@@ -1,4 +1,4 @@
-//! R19 and R20: blackboards, and the activities that work on them.
+//! R19 and R20: blackboards and activities.
 
 use yase::{Delivery, Semantics};
 
@@ -6,8 +6,8 @@ use crate::{check, check_with, compare};
 use yase_reference::world::World;
 use yase_reference::{chart, script};
 
-/// Plays a script and gives every line, with those of the blackboards, of a chart whose text begins
-/// at margin zero.
+/// Executes a script and returns every line, including those of blackboards, for an unindented
+/// chart.
 pub(crate) fn verbose(text: &str, script: &str, semantics: Semantics) -> Vec<String> {
     let chart = chart(text);
     let mut machine = yase::Machine::new(script::compile_with(&chart, semantics));

@@ -1,4 +1,4 @@
-//! R10 to R13: leaving, acting, entering, and the end.
+//! R10 to R13: exits, effects, entries and the end.
 
 use yase::{Activation, Host, Machine, Moment, Status};
 
@@ -124,8 +124,7 @@ fn r10_no_state_exits_or_enters_twice_in_a_transition_across_levels() {
 
 #[test]
 fn r10_a_region_that_another_transition_has_left_does_not_fire() {
-    // the AND is left by one region; the other, which takes the event too, is preempted and does
-    // nothing
+    // one region exits the AND; the other reacts to the same event, is preempted and does nothing
     let log = script::play(
         &chart(
             "

@@ -1,4 +1,4 @@
-//! R10: what HISTORYs remember, and where they lead.
+//! R10: the content of HISTORYs and their targets.
 
 use yase::{Machine, Moment, Semantics, TransitionToAncestor};
 
@@ -306,10 +306,10 @@ fn r21_a_timer_that_a_transition_to_a_history_starts_belongs_to_its_composite_an
         let log = script::play_with(&chart(text), script, with(|it| it.timers = yase::TimerScope::State));
         log.last().unwrap().trim().to_owned()
     };
-    // not unset while `P` is active
+    // kept while `P` is active
     assert_eq!(taken("1 out; 2 back; 3 swap; 30"), "0.012 s v: P/B -> P/B");
     assert!(taken("1 out; 2 back; 3 out; 30").starts_with("0.003 s out: P -> Q"));
-    // only while `A` is
+    // kept only while `A` is active
     assert_eq!(taken("1 out; 2 a; 30"), "0.012 s v: P/A -> P/A");
     assert!(taken("1 out; 2 a; 3 swap; 30").starts_with("0.003 s swap: P/A -> P/B"));
 }

@@ -1,4 +1,4 @@
-//! R1, R6, R12: connectors that cannot be followed are refused, each by name.
+//! R1, R6, R12: invalid connectors are rejected with their names.
 
 use yase::{Machine, MachineErrorKind, Moment, Status};
 
@@ -22,7 +22,7 @@ const BOTH: &str = "
 ";
 
 fn with(lines: &str) -> String {
-    // nodes stand before transitions only for those who read it
+    // nodes precede transitions only for readability
     refusal(&format!("{BOTH}{lines}"))
 }
 

@@ -1,4 +1,4 @@
-//! R9: running activities lock, hold and are interrupted.
+//! R9: running activities block transitions, hold events and are interrupted.
 
 use yase::CompletionTrigger;
 
@@ -114,7 +114,7 @@ fn r09_without_an_event_too() {
 
 #[test]
 fn r09_running_lasts_from_the_enqueueing_of_the_activity() {
-    // the second event comes in the step that entered A: its activity has not been started yet
+    // the second event arrives in the step that entered A, before its activity was started
     check(
         "
         START
@@ -169,8 +169,8 @@ fn r09_a_held_event_comes_before_newer_ones_and_before_the_eventless_transitions
 
 #[test]
 fn r09_what_a_held_event_would_leave_waits_for_it_in_all_regions() {
-    // C's way on needs no event; it would start the next activity for ever, and the AND could never
-    // be left
+    // C's completion transition would start the next activity forever, and the AND could never be
+    // exited
     check(
         "
         START
@@ -260,7 +260,7 @@ fn r09_a_held_event_that_fits_no_longer_is_dropped() {
 
 #[test]
 fn r09_an_interrupting_transition_asks_activities_to_return_and_fires_when_they_have() {
-    // B's activity ends by itself in the meantime: the way on from B does not come first
+    // B's activity ends meanwhile; B's completion transition does not come first
     check(
         "
         START
@@ -298,7 +298,7 @@ fn r09_an_interrupting_transition_asks_activities_to_return_and_fires_when_they_
 
 #[test]
 fn r09_an_interrupting_transition_needs_no_event() {
-    // A's way back to itself would start its activity for ever; without the mark nothing inside may
+    // A's self-transition would start its activity forever; without the mark no activity inside may
     // run
     let chart = |mark: &str| {
         format!(

@@ -11,8 +11,8 @@ use yase::{
 use yase_reference::chart;
 use yase_reference::chart::find;
 
-/// Understands `in PATH` as a condition, `fail` as both, and `raise NAME TOKEN`, `look PATH` and
-/// `see:LABEL` as actions.
+/// A host language with the condition `in PATH`, the actions `raise NAME TOKEN`, `look PATH` and
+/// `see:LABEL`, and `fail` as both.
 struct Reader {
     chart: Arc<CompiledChart>,
     lines: Vec<String>,
@@ -239,8 +239,8 @@ fn failures_are_events_by_their_cause_or_every_time() {
     assert_eq!(offered(every), ["?", "error.execution", "error.execution"], "until the limit");
 }
 
-/// Composites, side by side and nested, whose actions write down what is active: one action,
-/// several, and none.
+/// Parallel and nested composites whose actions record the active states: one action, several, and
+/// none.
 const SEEING: &str = "
     START
     P | entry=script(\"see:+P\") | exit=script(\"see:-P\"),script(\"see:-P2\")

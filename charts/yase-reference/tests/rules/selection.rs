@@ -1,4 +1,4 @@
-//! R4 to R8: events, guards, paths, and who wins.
+//! R4 to R8: events, guards, paths, and conflicts.
 
 use yase::{FailureEvents, Semantics};
 
@@ -90,7 +90,7 @@ fn r04_each_arrival_of_a_message_is_one_occurrence() {
 
 #[test]
 fn r05_guards_see_the_beginning_of_the_micro_step() {
-    // the second segment's guard is read before the first one's action; the region on the right
+    // the second segment's guard is evaluated before the first one's action, and the right region
     // before the left one acts
     check(
         "
@@ -195,8 +195,8 @@ fn r05_a_guard_that_has_succeeded_since_says_again_that_it_errs() {
 
 #[test]
 fn r05_a_timer_that_a_failing_guard_reads_makes_it_say_so_again() {
-    // the guard on the left reads a timer of its own blackboard; that on the right has the same
-    // number on another
+    // the left guard reads a timer of its own blackboard; the right one has a timer with the same
+    // index on another
     check(
         "
         START
@@ -373,8 +373,8 @@ fn last(chart: &str) -> String {
 
 #[test]
 fn r08_what_is_nested_wins_and_losers_are_preempted() {
-    // from the leaf in `two` outward only the AND's transition is found; it would exit what `one`
-    // takes
+    // from the leaf in `two` outward only the AND's transition is found; it would exit the source
+    // in `one`
     compare(
         &[last(&format!("{CONFLICT}    A -> B : e\n    both -> X : e"))],
         "0.001 s e: both/one/A -> both/one/B; preempt both -> X; exit both/one/A; enter both/one/B",

@@ -1,4 +1,4 @@
-//! R23: a record for every micro-step.
+//! R23: one record per micro-step.
 
 use yase::statechart::TransitionId;
 use yase::{
@@ -20,7 +20,7 @@ const CHART: &str = "
     c1 -> A
 ";
 
-/// Keeps what records hold.
+/// Stores the content of records.
 #[derive(Default)]
 struct Listener {
     occasions: Vec<MicroStepCause>,

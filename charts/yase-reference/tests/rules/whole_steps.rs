@@ -1,4 +1,4 @@
-//! A run-to-completion step in one call does what it does one micro-step at a time, traced or not.
+//! A run-to-completion step in one call equals its micro-steps, with and without a trace.
 
 use std::time::Duration;
 
@@ -9,7 +9,8 @@ use yase_reference::chart;
 use yase_reference::script::{self, ByMicroSteps, Interpreter, Script};
 use yase_reference::world::World;
 
-/// Plays a script in whole steps and in micro-steps, and returns the log, guards included.
+/// Executes a script in complete steps and in micro-steps, and returns the log with the reads of
+/// guards.
 fn with_reads(text: &str, script: &str) -> Vec<String> {
     let (chart, script) = (chart(text), Script::parse(script));
     let played = |machine: &mut dyn Play| {
@@ -155,7 +156,7 @@ fn r13_beside_others_nothing_fires_after_the_end_of_the_chart() {
 
 #[test]
 fn r10_what_leaves_nothing_does_not_fire_when_another_has_left_its_source_before() {
-    // the transition of `P` comes first, in the order of the document
+    // the transition of `P` is first in document order
     check(
         "
         START
@@ -300,7 +301,7 @@ fn r03_a_guard_that_failed_is_told_again_when_its_own_blackboard_was_written_and
     );
 }
 
-/// What one call takes: how many micro-steps, and where it leads.
+/// The micro-steps of one call, and the reached configuration.
 fn handled(prepare: impl Fn(&mut Machine), at: u64) -> (u32, String) {
     let text = "
         START

@@ -1,4 +1,4 @@
-//! R18: what wakes a chart.
+//! R18: the causes of a step.
 
 use yase::expression::EventId;
 use yase::{Host, Machine, Moment, Outcome, ScopeId, TopicId};
@@ -96,7 +96,7 @@ fn r18_what_arrives_during_a_step_makes_another_one_due() {
     let activation = world.jobs[0].activation;
     machine.activity_returned(activation, Outcome::Done);
     machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
-    // nothing to do: but before the caller falls asleep the message comes
+    // nothing is due, but the message arrives before the caller sleeps
     machine.message_arrived(A, 1);
     world.send(A, 1, [ScopeId::ROOT].into_iter());
     assert!(machine.needs_step(Moment::ZERO));

@@ -1,4 +1,4 @@
-//! Snapshots are inspected, changed and restored.
+//! Snapshots are inspected, edited and restored.
 
 use yase::snapshot::{ActivityPhase, EventName, Snapshot};
 use yase::{Chooser, Moment};
@@ -105,7 +105,7 @@ fn a_timer_is_set_to_another_time() {
 
 #[test]
 fn a_timer_that_is_set_again_or_unset_forgets_its_expiry() {
-    // `held` keeps the expiry from being taken
+    // `held` prevents the expiry from being processed
     let chart = "
         START
         a | run=work | for=90ms
@@ -207,7 +207,7 @@ fn siblings_of_one_name_are_told_apart() {
     assert!(restored.is_active(twins[1]));
 }
 
-/// Two timers that expire at one moment: the chooser says which is first.
+/// Two timers that expire at the same time; the chooser decides which is first.
 const RACE: &str = "
     START
     a

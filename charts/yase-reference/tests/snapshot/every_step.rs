@@ -1,5 +1,5 @@
-//! Random runs, under all semantics, that are interrupted at every micro-step: captured as text,
-//! and continued by a machine restored from the text.
+//! Random runs under all semantics, interrupted at every micro-step: captured as text and continued
+//! by a machine restored from it.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use yase_reference::world::{World, vocabulary};
 
 const RUNS: u64 = 1000;
 
-/// In this many runs each interruption is also continued without further ones.
+/// The number of runs in which each interruption is also continued without further ones.
 const WHOLE_RUNS: u64 = 10;
 
 #[test]
@@ -94,7 +94,7 @@ fn difference(expected: &[String], found: &[String]) -> String {
     format!("\n{before}\nexpected {}\nfound    {}", one(expected), one(found))
 }
 
-/// A machine that is replaced by its restored copy before every call, or before one of these calls.
+/// A machine that is replaced by its restored copy before all or selected calls.
 struct Cut {
     machine: Machine,
     only: Option<u64>,

@@ -1,4 +1,4 @@
-//! A machine in the reference's world.
+//! A machine with the host of the reference tests.
 
 use yase::snapshot::{RestoreError, Snapshot};
 use yase::{Machine, Moment, Outcome, Semantics};
@@ -11,7 +11,7 @@ pub(crate) struct Stage {
 }
 
 impl Stage {
-    /// Starts a chart and lets events happen to it at time 0.
+    /// Starts a chart and raises events at time 0.
     pub(crate) fn new(chart: &str, events: &[&str]) -> Stage {
         Stage::with(Semantics::yase(), chart, events)
     }
@@ -39,7 +39,7 @@ impl Stage {
         self.step(0);
     }
 
-    /// The only activity that runs returns.
+    /// The only running activity returns.
     pub(crate) fn returns(&mut self) {
         let job = self.world.jobs.remove(0);
         assert!(self.machine.activity_returned(job.activation, Outcome::Done));
@@ -50,7 +50,7 @@ impl Stage {
         Machine::restore(self.machine.chart().clone(), snapshot)
     }
 
-    /// Goes on with a snapshot of it that was changed.
+    /// Continues with an edited snapshot.
     pub(crate) fn edit(&mut self, change: impl FnOnce(&mut Snapshot)) {
         let mut snapshot = self.machine.snapshot();
         change(&mut snapshot);

@@ -1,4 +1,4 @@
-//! A run-to-completion step, taken one micro-step at a time.
+//! A run-to-completion step executed as micro-steps.
 
 use std::num::NonZeroU32;
 
@@ -34,7 +34,7 @@ fn micro_steps_one_by_one_are_the_step() {
     machine.dispatch_name("e");
     let mut made = 0;
     let found = loop {
-        // the time stands still from the first one on
+        // later calls of the same step use the time of the first
         match machine.micro_step(Moment::from_millis(5 + made), &mut world).unwrap() {
             MicroStep::Progressed => made += 1,
             MicroStep::Stable(summary) => break summary,

@@ -1,4 +1,4 @@
-//! Snapshots that do not fit are refused, with everything that is wrong with them.
+//! Inconsistent snapshots are rejected with all their issues.
 
 use yase::snapshot::{EventName, RestoreIssueKind, Snapshot, TimerName};
 use yase::{Moment, Status};
@@ -27,7 +27,7 @@ const CHART: &str = "
     off -> both : g
 ";
 
-/// What is wrong with the snapshot of the running chart once it was changed, one a line.
+/// The issues of the running chart's snapshot after an edit, one per line.
 #[track_caller]
 fn found(change: impl FnOnce(&mut Snapshot)) -> String {
     let stage = Stage::new(CHART, &["f", "g"]);

@@ -1,5 +1,5 @@
-//! What only some charts and some semantics have: HISTORY, timers of states, composites without an
-//! active child, JOINs that wait.
+//! Features of certain charts and semantics: HISTORY, timers of states, composites without an
+//! active child, waiting JOINs.
 
 use yase::{MicroStep, Moment, Semantics, TimerScope};
 

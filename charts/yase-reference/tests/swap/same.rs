@@ -22,7 +22,7 @@ fn swapping_a_chart_for_itself_or_a_renumbered_copy_at_every_stable_point_change
     assert!(swaps > 20 * RUNS, "the runs are too short");
 }
 
-/// Plays a case without and with swaps, and says how many there were.
+/// Executes a case without and with migrations, and returns their number.
 fn swapped(number: u64) -> u64 {
     let case = Case::numbered(number);
     let compiled = compile(&case.chart, case.semantics);
@@ -91,7 +91,7 @@ fn renumbered(chart: &Statechart) -> Statechart {
     copy
 }
 
-/// A machine whose chart is swapped before and after each step, to and fro.
+/// A machine that is migrated to and fro before and after each step.
 struct Swapping {
     machine: Machine,
     charts: [Arc<CompiledChart>; 2],

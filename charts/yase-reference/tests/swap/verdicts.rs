@@ -152,7 +152,7 @@ fn a_new_region_of_an_active_and_is_entered_by_its_start_in_the_next_step() {
     let report = stage.swap(&plan).unwrap();
     assert_eq!(report.to_enter, ["c/both/more"]);
     assert_eq!(stage.active(), "both both/one both/one/A", "not before the next step");
-    // what is kept of it in between is not lost
+    // what the snapshot keeps in between is not lost
     let kept = stage.machine.snapshot();
     assert_eq!(kept.to_enter, ["c/both/more"]);
     let chart = stage.machine.chart().clone();
@@ -192,7 +192,7 @@ fn there_and_back_again_is_as_before() {
     stage.swap(&back).unwrap();
     stage.step(0);
     let mut after = stage.machine.snapshot();
-    after.bound = before.bound.clone(); // there was one more step, in which nothing was done
+    after.bound = before.bound.clone(); // an additional step without effect was executed
     assert_eq!(after, before);
 }
 

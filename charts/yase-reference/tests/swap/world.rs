@@ -1,4 +1,4 @@
-//! A machine in the reference's world, and the work of a host when the chart is migrated.
+//! A running machine with the host of the reference tests, and the duties of a host in a migration.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -9,14 +9,14 @@ use yase::{CompiledChart, Machine, Moment, Outcome, Semantics};
 use yase_reference::script;
 use yase_reference::world::World;
 
-/// A machine that runs, in its world.
+/// A running machine with its host.
 pub(crate) struct Stage {
     pub(crate) machine: Machine,
     pub(crate) world: World,
 }
 
 impl Stage {
-    /// Starts a chart and lets events happen to it at time 0.
+    /// Starts a chart and raises events at time 0.
     pub(crate) fn new(chart: &str, events: &[&str]) -> Stage {
         Stage::with(Semantics::yase(), chart, events)
     }
@@ -44,7 +44,7 @@ impl Stage {
         self.step(0);
     }
 
-    /// The only activity that runs returns.
+    /// The only running activity returns.
     pub(crate) fn returns(&mut self) {
         let job = self.world.jobs.remove(0);
         assert!(self.machine.activity_returned(job.activation, Outcome::Done), "it is still known");
@@ -87,7 +87,7 @@ impl Stage {
     }
 }
 
-/// The work of a host: activities and blackboards get new indices.
+/// Gives activities and blackboards their new indices.
 pub(crate) fn rekey(world: &mut World, chart: &Arc<CompiledChart>, report: &MigrationReport) {
     let activations: BTreeMap<_, _> = report.activations.iter().copied().collect();
     for job in &mut world.jobs {
@@ -101,7 +101,7 @@ pub(crate) fn rekey(world: &mut World, chart: &Arc<CompiledChart>, report: &Migr
     world.activities = World::new(chart.statechart()).activities;
 }
 
-/// The findings of a report, one a line.
+/// The findings of a report, one per line.
 pub(crate) fn findings(report: &MigrationReport) -> String {
     report.findings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }

@@ -135,10 +135,7 @@ pub(crate) const PARSING: Table = &[
             "E0116 <>: an event is expected, not the end (an event is a name; conditions stand in brackets, actions after `/`)",
         ],
     ),
-    (
-        "[]",
-        &["E0117 <[]>: there is no condition in the brackets (leave the brackets out, or write `[true]`)"],
-    ),
+    ("[]", &["E0117 <[]>: the brackets are empty (leave the brackets out, or write `[true]`)"]),
     (
         "[a]/",
         &[

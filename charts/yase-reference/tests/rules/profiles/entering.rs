@@ -1,4 +1,4 @@
-//! How transitions are ordered and fire, where composites begin, and how the root ends.
+//! Order of transitions, firing, initial states of composites, and completion of the root.
 
 use yase::{ExitOrder, InitialState, Semantics};
 

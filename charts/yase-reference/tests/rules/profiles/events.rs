@@ -1,4 +1,4 @@
-//! Which events come when, when completion counts, and who sees what is written.
+//! Order of events, validity of completions, and visibility of writes.
 
 use yase::{CompletionTrigger, Semantics};
 

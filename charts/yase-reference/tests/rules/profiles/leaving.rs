@@ -1,4 +1,4 @@
-//! What running activities, ancestors as targets, JOINs and timers mean for leaving.
+//! Effects of running activities, ancestors as targets, JOINs and timers on exits.
 
 use yase::{Semantics, TimerScope};
 
