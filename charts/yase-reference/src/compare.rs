@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use yase::statechart::{NodeId, Statechart};
-use yase::{Activation, Chooser, Machine, Moment, Outcome, ScopeId, TopicId};
+use yase::{Activation, Chooser, Machine, Outcome, ScopeId, Timestamp, TopicId};
 
 use crate::chance::{Chance, Freedom};
 use crate::random::Case;
@@ -137,7 +137,7 @@ impl<I: Configured> Watched<'_, I> {
 }
 
 impl<I: Configured> Interpreter for Watched<'_, I> {
-    fn start(&mut self, now: Moment, world: &mut World) {
+    fn start(&mut self, now: Timestamp, world: &mut World) {
         self.inner.start(now, world);
         self.show(world);
     }
@@ -158,17 +158,17 @@ impl<I: Configured> Interpreter for Watched<'_, I> {
         self.inner.resumed(activation)
     }
 
-    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
         let result = self.inner.step(now, world);
         self.show(world);
         result
     }
 
-    fn needs_step(&self, now: Moment) -> bool {
+    fn needs_step(&self, now: Timestamp) -> bool {
         self.inner.needs_step(now)
     }
 
-    fn next_deadline(&self) -> Option<Moment> {
+    fn next_deadline(&self) -> Option<Timestamp> {
         self.inner.next_deadline()
     }
 

@@ -331,7 +331,7 @@ const SEEN: [Row; 79] = [
     ("R17 comes to rest", |it| !it.says("error: ")),
     ("R18 a message wakes a guard", |it| {
         it.case.script.inputs.iter().any(|(time, input)| {
-            let now = yase::Moment::from_millis(*time).to_string();
+            let now = yase::Timestamp::from_millis(*time).to_string();
             matches!(input, crate::script::Input::Message(..))
                 && it.lines.iter().any(|line| line.event == "-" && now.strip_suffix(" s") == Some(line.time))
         })

@@ -14,7 +14,7 @@ mod truth;
 use std::collections::{BTreeMap, BTreeSet};
 
 use yase::statechart::{NodeId, Statechart, TransitionId};
-use yase::{Activation, Moment, Outcome, ScopeId, Semantics, TopicId};
+use yase::{Activation, Outcome, ScopeId, Semantics, Timestamp, TopicId};
 
 use crate::chance::Chance;
 use crate::script::Interpreter;
@@ -66,7 +66,7 @@ struct Job {
 
 #[derive(Clone, Debug)]
 struct Deadline {
-    moment: Moment,
+    moment: Timestamp,
     announced: bool,
     /// The state it is bound to.
     bound: Option<NodeId>,
@@ -88,7 +88,7 @@ pub(crate) struct Stepper<'c> {
     semantics: Semantics,
     pub(crate) chance: Chance,
     running_chart: bool,
-    now: Moment,
+    now: Timestamp,
     due: bool,
     active: BTreeSet<NodeId>,
     jobs: BTreeMap<NodeId, Job>,
@@ -125,7 +125,7 @@ pub(crate) struct Stepper<'c> {
     line: Line,
     micro_steps: u32,
     did_something: bool,
-    instant: Moment,
+    instant: Timestamp,
     steps_at_instant: u32,
     /// The root has reached its END, and active states have still to be exited.
     ended: bool,
@@ -150,7 +150,7 @@ impl<'c> Stepper<'c> {
             semantics,
             chance,
             running_chart: false,
-            now: Moment::ZERO,
+            now: Timestamp::ZERO,
             due: false,
             active: BTreeSet::new(),
             jobs: BTreeMap::new(),
@@ -180,7 +180,7 @@ impl<'c> Stepper<'c> {
             line: Line::default(),
             micro_steps: 0,
             did_something: false,
-            instant: Moment::ZERO,
+            instant: Timestamp::ZERO,
             steps_at_instant: 0,
             ended: false,
             terminates: false,
@@ -199,7 +199,7 @@ fn topic(name: &str) -> Option<TopicId> {
 }
 
 impl Interpreter for Stepper<'_> {
-    fn start(&mut self, now: Moment, world: &mut World) {
+    fn start(&mut self, now: Timestamp, world: &mut World) {
         self.now = now;
         self.instant = now;
         self.running_chart = true;
@@ -271,7 +271,7 @@ impl Interpreter for Stepper<'_> {
         true
     }
 
-    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
         self.now = now;
         match self.whole_step(world) {
             Ok(()) => Ok(()),
@@ -282,14 +282,14 @@ impl Interpreter for Stepper<'_> {
         }
     }
 
-    fn needs_step(&self, now: Moment) -> bool {
+    fn needs_step(&self, now: Timestamp) -> bool {
         let waiting =
             !self.raised.is_empty() || !self.arrived.is_empty() || self.held.iter().any(|held| held.offer);
         self.running_chart
             && (self.due || waiting || self.next_deadline().is_some_and(|deadline| deadline <= now))
     }
 
-    fn next_deadline(&self) -> Option<Moment> {
+    fn next_deadline(&self) -> Option<Timestamp> {
         if !self.running_chart {
             return None;
         }

@@ -8,7 +8,7 @@ use yase::expression::set;
 use yase::expression::{CallError, MessageSource};
 use yase::vocabulary::{FieldEntry, FunctionEntry, MessageEntry, TopicEntry, TopicKind, ValueType};
 use yase::{
-    Activation, CompiledChart, FieldId, FunctionId, Host, Moment, Notice, Outcome, ScopeId, TopicId,
+    Activation, CompiledChart, FieldId, FunctionId, Host, Notice, Outcome, ScopeId, Timestamp, TopicId,
     TraceRecord, TypeEnvironment, Value,
 };
 
@@ -74,7 +74,7 @@ pub struct Job {
     /// How long a call takes.
     pub duration: Duration,
     /// When it returns or, if it waits, is called again.
-    pub due: Moment,
+    pub due: Timestamp,
     /// Whether it waits to be called again.
     pub waits: bool,
     /// How often it was called.
@@ -85,7 +85,7 @@ pub struct Job {
 #[derive(Clone, Default, Debug)]
 pub struct World {
     /// The time of the step.
-    pub now: Moment,
+    pub now: Timestamp,
     /// The blackboard of each scope.
     pub boards: BTreeMap<ScopeId, Board>,
     /// The activities that run or wait.
@@ -119,7 +119,7 @@ impl World {
         self.log.push(text.into());
     }
 
-    fn whisper(&mut self, text: String) {
+    fn log_verbose(&mut self, text: String) {
         if self.verbose {
             self.log.push(text);
         }
@@ -179,13 +179,13 @@ impl Host for World {
         let board = self.board(region);
         let inbox = std::mem::take(&mut board.inbox);
         board.shown.extend(inbox);
-        self.whisper(format!("  deliver {}", region.0));
+        self.log_verbose(format!("  deliver {}", region.0));
     }
 
     fn inherit(&mut self, region: ScopeId, from: ScopeId) {
         let around = self.board(from).clone();
         *self.board(region) = Board { outbox: BTreeSet::new(), ..around };
-        self.whisper(format!("  inherit {} from {}", region.0, from.0));
+        self.log_verbose(format!("  inherit {} from {}", region.0, from.0));
     }
 
     fn assign(
@@ -216,7 +216,7 @@ impl Host for World {
         let board = self.board(region);
         board.shown.insert(topic, number);
         board.outbox.insert(topic);
-        self.whisper(format!("  {} on {} = {}", TOPICS[topic.0 as usize], region.0, number.n));
+        self.log_verbose(format!("  {} on {} = {}", TOPICS[topic.0 as usize], region.0, number.n));
         Ok(())
     }
 
@@ -237,7 +237,7 @@ impl Host for World {
             }
             self.arrivals.push(topic);
         }
-        self.whisper(format!("  publish {}", region.0));
+        self.log_verbose(format!("  publish {}", region.0));
     }
 
     fn start(&mut self, activation: Activation) {

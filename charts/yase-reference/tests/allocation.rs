@@ -10,7 +10,7 @@ use std::sync::Arc;
 use yase::expression::{CallError, MessageSource};
 use yase::vocabulary::{FieldEntry, FunctionEntry, MessageEntry, TopicEntry, TopicKind, ValueType};
 use yase::{
-    Activation, CompiledChart, FieldId, FunctionId, Host, Machine, Moment, Outcome, ScopeId, TopicId,
+    Activation, CompiledChart, FieldId, FunctionId, Host, Machine, Outcome, ScopeId, Timestamp, TopicId,
     TraceRecord, TypeEnvironment, Value,
 };
 
@@ -137,7 +137,7 @@ impl Run {
         let machine = Machine::new(Arc::new(chart));
         let world = World { traces, ..World::default() };
         let mut run = Run { machine, world, now: 0, transitions: 0 };
-        run.machine.start(Moment::ZERO, &mut run.world);
+        run.machine.start(Timestamp::ZERO, &mut run.world);
         run.step(0);
         run
     }
@@ -145,7 +145,8 @@ impl Run {
     /// Executes a step after some milliseconds.
     fn step(&mut self, millis: u64) {
         self.now += millis;
-        let summary = self.machine.run_to_completion(Moment::from_millis(self.now), &mut self.world).unwrap();
+        let summary =
+            self.machine.run_to_completion(Timestamp::from_millis(self.now), &mut self.world).unwrap();
         self.transitions += summary.transitions;
     }
 

@@ -81,7 +81,7 @@ fn own_messages_are_this_hosts_alone() {
 }
 
 #[test]
-fn a_host_may_be_read_before_it_is_heard_of() {
+fn a_host_can_be_read_before_its_first_message() {
     let hub = hub();
     let mut reader = hub.blackboard("reader");
     let host = hub.host_id("left").unwrap();
@@ -163,7 +163,7 @@ fn losses_are_counted_host_by_host() {
 }
 
 #[test]
-fn arrivals_are_told_host_by_host() {
+fn arrivals_are_reported_per_host() {
     let hub = hub();
     let mut left = Mate::new(&hub, "left");
     let mut reader = hub.blackboard("reader");
@@ -206,7 +206,7 @@ fn a_region_takes_over_what_was_delivered_from_other_hosts() {
 }
 
 #[test]
-fn what_cannot_be_taken_in_is_refused_by_name() {
+fn unsupported_elements_are_rejected_by_name() {
     let hub = hub();
     let refused = |host: &str, path: &str| {
         let error = hub.receiver(host, "vision", path).unwrap_err();
@@ -264,7 +264,7 @@ impl Observer for Watch {
 }
 
 #[test]
-fn observers_and_wakers_learn_of_what_comes_from_elsewhere() {
+fn observers_and_wakers_receive_messages_of_other_hosts() {
     let hub = hub();
     let (seen, woken) = (Arc::new(Mutex::new(Vec::new())), Arc::new(Mutex::new(Vec::new())));
     hub.observe(Box::new(Watch(seen.clone())));

@@ -320,7 +320,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn blackboards_show_what_the_model_says(steps in prop::collection::vec(step(), 1..120)) {
+    fn blackboards_equal_the_model(steps in prop::collection::vec(step(), 1..120)) {
         let hub = hub();
         let mut comparison = Comparison::new(&hub);
         for (time, step) in (1..).zip(&steps) {

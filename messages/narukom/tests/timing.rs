@@ -253,7 +253,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn reads_by_time_give_what_the_model_says(steps in prop::collection::vec(step(), 1..150)) {
+    fn reads_by_time_equal_the_model(steps in prop::collection::vec(step(), 1..150)) {
         let mut comparison = Comparison::new();
         steps.iter().for_each(|step| comparison.take(*step));
         assert_eq!(comparison.hub.hosts().len(), HOSTS);

@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read() {
+    fn written_files_are_read_back() {
         let frame = Frame { at: Some((0.1, 3.0)), size: None };
         assert_eq!(frame_settings(&frame), [("at", "0.1 3".to_owned())]);
         let corners = [(1.0, 2.5), (3.0, 4.0)];

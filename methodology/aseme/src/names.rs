@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_encoded_is_decoded() {
+    fn encoding_and_decoding_round_trips() {
         for term in ["([I]|R)+", "a||b*", "|a~|3", "(a.b)~", "[Stare+]"] {
             assert_eq!(decode(&encode(term)).as_deref(), Some(term));
         }

@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn another_type_is_refused_by_its_name() {
         let gate = ModuleAbi { fingerprints: other_types, ..ModuleAbi::new(silent) };
-        let expected = "error[E0363]: module `eyes` was built with another `narukom::Moment` than this program \
+        let expected = "error[E0363]: module `eyes` was built with another `narukom::Timestamp` than this program \
                         (`monas module build` builds it as this program is built)";
         assert_eq!(codes(check_compatibility(&gate, "eyes")), [expected]);
         assert_eq!(codes(check_compatibility(&ModuleAbi::new(silent), "eyes")), [""; 0]);
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_system_does_not_take_is_refused_with_its_reason() {
+    fn settings_rejected_by_the_system_have_a_reason() {
         let refused = codes(enter(b"no library", "eyes").map(|_| ()));
         assert!(refused[0].starts_with("error[E0362]: module `eyes` cannot be loaded: "), "{refused:?}");
     }

@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_note_of_monas_is_refused_with_its_reason() {
+    fn a_library_without_a_fingerprint_is_rejected() {
         for (bytes, reason) in [
             (elf(".note.other", &note()), "it has no note"),
             (elf(note::SECTION, b"short"), "its note is cut off"),
@@ -179,7 +179,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn whatever_the_bytes_are_reading_them_ends_well(bytes in prop::collection::vec(any::<u8>(), 0..4096)) {
+        fn arbitrary_bytes_are_parsed_without_panic(bytes in prop::collection::vec(any::<u8>(), 0..4096)) {
             let _ = read_fingerprint(&bytes);
             for is_little in [true, false] {
                 let _ = note::text_in(&bytes, is_little);

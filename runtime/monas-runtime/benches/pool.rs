@@ -33,12 +33,12 @@ fn main() {
     // Under `cargo test` every benchmark runs once, without output.
     if std::env::args().any(|argument| argument == "--bench") {
         println!("one interleaved run; median (least to most)");
-        tell_round_trips("at once", None);
-        tell_round_trips("after a rest of 500 us", Some(Duration::from_micros(500)));
-        tell_activities("on all cores");
-        on_one_core(|| tell_activities("on one core"));
-        tell_regions();
-        tell_idle();
+        report_round_trips("at once", None);
+        report_round_trips("after a rest of 500 us", Some(Duration::from_micros(500)));
+        report_activities("on all cores");
+        on_one_core(|| report_activities("on one core"));
+        report_regions();
+        report_idle();
     }
     divan::main();
 }
@@ -167,7 +167,7 @@ fn seconds_a_call(calls: u32, rest: Option<Duration>, mut call: impl FnMut()) ->
     taken.as_secs_f64() / f64::from(calls)
 }
 
-fn tell_round_trips(when: &str, rest: Option<Duration>) {
+fn report_round_trips(when: &str, rest: Option<Duration>) {
     let (mut pool, mut channels) = (RoundTrip::new().unwrap(), Channels::new());
     let calls = if rest.is_some() { 200 } else { 5_000 };
     let (mut ours, mut theirs, mut ratios) = (Figures(vec![]), Figures(vec![]), Figures(vec![]));
@@ -267,7 +267,7 @@ fn rates(batches: &Receiver<Instant>) -> Vec<f64> {
     (0..5).map(rate).collect()
 }
 
-fn tell_activities(where_: &str) {
+fn report_activities(where_: &str) {
     for regions in [1, 3] {
         let (mut ours, mut theirs, mut ratios) = (Figures(vec![]), Figures(vec![]), Figures(vec![]));
         for _ in 0..9 {
@@ -328,7 +328,7 @@ fn hundred_milliseconds() -> u64 {
 /// Start and end of a call.
 type Told = (Instant, Instant);
 
-fn tell_regions() {
+fn report_regions() {
     let rounds = hundred_milliseconds();
     let violations = Arc::new(AtomicU64::new(0));
     let (mut after, mut beside, mut ratios) = (Figures(vec![]), Figures(vec![]), Figures(vec![]));
@@ -383,7 +383,7 @@ fn worker(
 }
 
 /// Prints the CPU time of a chart in which all activities wait, where the system provides it.
-fn tell_idle() {
+fn report_idle() {
     let (sender, called) = channel();
     let registry = Registry::empty().with("A", move || {
         let sender = sender.clone();

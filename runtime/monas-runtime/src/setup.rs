@@ -115,7 +115,7 @@ impl AgentFactory {
         let mut others: Vec<String> = names_on(&self.publishers, hub.host()).collect();
         others.extend(body.iter().map(|_| BodyBridge::PUBLISHER.to_owned()));
         let ground = HostContext { linked_topics: LinkedTopics::by(&links, &hub)?, others, hub: hub.clone() };
-        refuse_changes_from_strangers(&ground, &links)?;
+        reject_changes_over_links(&ground, &links)?;
         let names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
         let profiles = agents.iter().map(AgentProfile::of).collect();
         let members = agents
@@ -130,7 +130,7 @@ impl AgentFactory {
 /// host controls its agents, and messages that a link delivers as the host's own may be changes, so
 /// the link must name the permitted peers and grant them that permission. Over a network, names are
 /// trusted only if certificates prove them.
-fn refuse_changes_from_strangers(ground: &HostContext, links: &[LinkConfig]) -> Result<(), Error> {
+fn reject_changes_over_links(ground: &HostContext, links: &[LinkConfig]) -> Result<(), Error> {
     for link in links {
         let brought = LinkedTopics::by(std::slice::from_ref(link), &ground.hub)?;
         if !brought.own.iter().any(|slot| Some(*slot) == ground.hub.topic(CHANGE.path())) {

@@ -94,7 +94,7 @@ fn the_listing_of_the_thesis_is_a_log_s_settings_as_it_is_printed() {
 }
 
 #[test]
-fn toml_says_the_same_and_what_is_not_understood_is_told() {
+fn toml_is_equivalent_and_errors_are_reported() {
     let text = "message_log_file = \"a.log\"\nmessage_log_filter = \"Vision Motion\"\nlog_file_verbosity_level = -3\n\
                 message_log_format = \"json\"\n";
     let (settings, wrong) = settings_in("logger.toml", text);
@@ -169,7 +169,7 @@ fn team() -> Talws {
 }
 
 #[test]
-fn a_line_says_which_activity_of_which_robot_wrote_it_and_when_and_the_same_run_writes_the_same() {
+fn a_line_has_robot_activity_and_time_and_is_reproducible() {
     let run = || team().simulate(1).unwrap().run_until(Timestamp::from_nanos(30_000_000)).unwrap();
     let log = written(|settings| settings, run);
     let again = written(|settings| settings, run);
@@ -331,7 +331,7 @@ fn a_line_is_a_line_and_steers_no_terminal() {
 }
 
 #[test]
-fn who_writes_allocates_nothing_and_what_comes_too_fast_is_counted() {
+fn logging_does_not_allocate_and_excess_lines_are_counted() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("log.txt");
     let (dispatch, logger) = begun(to(&file));
@@ -418,7 +418,7 @@ fn errors_are_on_the_disk_when_a_process_is_killed() {
 #[test]
 #[cfg(unix)]
 #[expect(clippy::disallowed_methods, reason = "somebody has to read what others write")]
-fn what_comes_faster_than_it_can_be_written_is_dropped_and_that_is_said() {
+fn lines_beyond_the_write_rate_are_dropped_and_reported() {
     let folder = tempfile::tempdir().unwrap();
     let pipe = folder.path().join("log.txt");
     assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());

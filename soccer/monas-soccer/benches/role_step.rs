@@ -26,7 +26,7 @@ use narukom::AnyMessage;
 use rustix::time::{ClockId, clock_gettime};
 use yase::expression::{CallError, MessageSource};
 use yase::{
-    Activation, CompiledChart, FieldId, FunctionId, Host, Machine, Moment, Outcome, ScopeId, Source,
+    Activation, CompiledChart, FieldId, FunctionId, Host, Machine, Outcome, ScopeId, Source, Timestamp,
     TraceRecord, TypeEnvironment, Value,
 };
 
@@ -160,7 +160,7 @@ impl Role {
                 ..Ball::default()
             },
         );
-        role.machine.start(Moment::ZERO, &mut role.host);
+        role.machine.start(Timestamp::ZERO, &mut role.host);
         for _ in 0..20 {
             role.cycle();
         }
@@ -178,7 +178,7 @@ impl Role {
     }
 
     fn step(&mut self) -> u64 {
-        let now = Moment::from_nanos(self.now);
+        let now = Timestamp::from_nanos(self.now);
         u64::from(self.machine.run_to_completion(now, &mut self.host).expect("it comes to rest").micro_steps)
     }
 }

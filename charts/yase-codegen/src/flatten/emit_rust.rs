@@ -271,7 +271,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_empty_stands_in_one_line() {
+    fn empty_items_are_on_one_line() {
         let mut chart = yase::Statechart::new("");
         let start = chart.add(yase::Statechart::ROOT, yase::Node::new(yase::NodeKind::Start, ""));
         let only = chart.add(yase::Statechart::ROOT, yase::Node::new(yase::NodeKind::Basic, "only"));

@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn what_may_be_unknown_is_asked_for_with_its_negation() {
+    fn conditions_that_may_be_unknown_have_a_separate_negation() {
         let cases: [(&str, &str, &[&str]); 6] = [
             ("!Ball.found", r#"script("condition 0")"#, &["!Ball.found"]),
             (r#"!script("x")"#, r#"!script("condition 0")"#, &["x"]),

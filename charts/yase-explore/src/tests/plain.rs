@@ -228,7 +228,7 @@ fn charts_of_chance_are_explored_as_by_the_plain_way() {
 
 /// Timers that have expired differ from those never started where a chart distinguishes them.
 #[test]
-fn what_a_chart_can_tell_apart_is_not_one() {
+fn distinguishable_states_are_not_merged() {
     let states = |guard: &str| {
         let mut sketch = ChartSketch::new();
         sketch.states(Statechart::ROOT, &["a", "b"]);

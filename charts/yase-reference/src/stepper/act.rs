@@ -46,7 +46,7 @@ impl Stepper<'_> {
                 world
                     .assign(region, topic(name).unwrap(), &[FieldId(0)], Value::Int(value))
                     .map_err(|error| format!("the value cannot be assigned: {error}"))?;
-                self.forgive(name, region);
+                self.clear_guard_failures(name, region);
                 self.wrote(region, world);
             }
             other => panic!("the generator makes no {other:?}"),
@@ -55,7 +55,7 @@ impl Stepper<'_> {
     }
 
     /// Clears failures of guards that read changed data.
-    fn forgive(&mut self, name: &str, region: ScopeId) {
+    fn clear_guard_failures(&mut self, name: &str, region: ScopeId) {
         let reads = self.guards_that_read(name);
         self.erred.retain(|(id, other)| *other != region || !reads.contains(id));
     }
@@ -87,7 +87,7 @@ impl Stepper<'_> {
         let key = (region, name.to_owned());
         self.withdraw(&key);
         self.timers.insert(key.clone(), Deadline { moment: self.now + delay, announced: false, bound: None });
-        self.forgive(name, region);
+        self.clear_guard_failures(name, region);
         self.unbound.retain(|other| *other != key);
         self.unbound.push(key);
     }
@@ -121,7 +121,7 @@ impl Stepper<'_> {
         for key in bound.map(|(key, _)| key.clone()).collect::<Vec<_>>() {
             self.withdraw(&key);
             self.timers.remove(&key);
-            self.forgive(&key.1, key.0);
+            self.clear_guard_failures(&key.1, key.0);
         }
     }
 

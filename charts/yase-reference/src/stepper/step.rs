@@ -2,7 +2,7 @@
 
 use yase::expression::{Action, ActionKind, Trigger};
 use yase::statechart::{NodeId, NodeKind, Statechart};
-use yase::{Deferral, Delivery, EventMatching, EventPool, FailureEvents, Firing, Host, Moment, ScopeId};
+use yase::{Deferral, Delivery, EventMatching, EventPool, FailureEvents, Firing, Host, ScopeId, Timestamp};
 
 use super::lines::Heading;
 use super::select::Offer;
@@ -86,7 +86,7 @@ impl Stepper<'_> {
     /// The earliest expired timer that has not been processed; the chooser decides between equal
     /// ones.
     fn next_expiry(&mut self) -> Option<(ScopeId, String)> {
-        let over: Vec<(Moment, (ScopeId, String))> = self
+        let over: Vec<(Timestamp, (ScopeId, String))> = self
             .timers
             .iter()
             .filter(|(_, deadline)| !deadline.announced && deadline.moment <= self.now)

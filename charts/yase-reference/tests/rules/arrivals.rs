@@ -93,7 +93,7 @@ fn draws(join: JoinMode) -> Vec<u32> {
 }
 
 #[test]
-fn r12_what_lies_in_other_sources_is_looked_at_first_only_if_all_are_joined_together() {
+fn r12_the_content_of_other_sources_is_visited_first_only_for_a_common_join() {
     assert_eq!(draws(JoinMode::Each), [2, 3]);
     assert_eq!(draws(JoinMode::Together), [3, 2]);
 }

@@ -108,7 +108,7 @@ fn r22_declared_takes_weighted_segments_in_their_order_and_seeds_draw_in_proport
 }
 
 #[test]
-fn r08_of_transitions_in_conflict_the_chooser_says_which_wins_if_that_is_meant() {
+fn r08_the_chooser_resolves_conflicts_if_configured() {
     let text = "
         START
         & both
@@ -150,7 +150,7 @@ fn r22_weights_that_are_no_shares_are_refused() {
 }
 
 #[test]
-fn r22_what_is_drawn_at_a_node_stays_drawn_for_the_micro_step() {
+fn r22_a_draw_at_a_node_is_kept_for_the_micro_step() {
     // both regions pass the same CONDITION in one micro-step, and one of them loses the conflict
     let text = "
         START
@@ -177,7 +177,7 @@ fn r22_what_is_drawn_at_a_node_stays_drawn_for_the_micro_step() {
 }
 
 #[test]
-fn r22_what_leaves_a_connector_is_drawn_among_though_it_lies_on_several_blackboards() {
+fn r22_a_draw_at_a_connector_covers_several_scopes() {
     // one path after the CONDITION stays in the region, the other exits the AND
     let text = "
         START
@@ -223,7 +223,7 @@ const DEEP: &str = "
 ";
 
 #[test]
-fn r22_what_is_drawn_at_a_state_and_behind_it_is_drawn_in_this_order() {
+fn r22_a_draw_at_a_state_precedes_draws_after_it() {
     let choices: [&[u32]; 4] = [&[0, 0], &[0, 1], &[1], &[2]];
     let found = reached(DEEP, "1 A=10; 2 e; 3", Semantics::yase(), &choices);
     let expected =
@@ -258,7 +258,7 @@ fn r22_behind_a_connector_that_is_not_come_by_nothing_is_drawn() {
 }
 
 #[test]
-fn r22_weights_are_drawn_where_the_first_that_matches_stands() {
+fn r22_weights_are_drawn_at_the_first_match() {
     let behind = "A -> k {w0.5} : e\nk -> D {w0.5}\nk -> E {w0.5}";
     for (node, weighted, last) in [("", "A -> D {w0.5} : e", "D"), ("? k", behind, "E")] {
         let text = format!(
@@ -295,7 +295,7 @@ fn r22_a_drawn_way_is_open_only_if_all_behind_it_is() {
 }
 
 #[test]
-fn r22_what_is_drawn_at_one_connector_says_nothing_of_another() {
+fn r22_draws_at_connectors_are_independent() {
     let text = "
         START
         & both
@@ -344,7 +344,7 @@ fn r22_if_nothing_drawn_is_open_nothing_happens() {
 }
 
 #[test]
-fn r22_what_was_drawn_in_vain_is_not_drawn_for_the_next_with_a_weight() {
+fn r22_a_rejected_draw_is_not_repeated_for_the_next_weight() {
     let text = "
         START
         A

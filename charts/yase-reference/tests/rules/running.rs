@@ -139,7 +139,7 @@ fn r09_running_lasts_from_the_enqueueing_of_the_activity() {
 }
 
 #[test]
-fn r09_a_held_event_comes_before_newer_ones_and_before_the_eventless_transitions_of_what_it_leaves() {
+fn r09_a_held_event_precedes_newer_events_and_completion_transitions_of_its_exit_set() {
     check(
         "
         START
@@ -168,7 +168,7 @@ fn r09_a_held_event_comes_before_newer_ones_and_before_the_eventless_transitions
 }
 
 #[test]
-fn r09_what_a_held_event_would_leave_waits_for_it_in_all_regions() {
+fn r09_the_exit_set_of_a_held_event_waits_in_all_regions() {
     // C's completion transition would start the next activity forever, and the AND could never be
     // exited
     check(
@@ -349,7 +349,7 @@ fn r09_an_interrupting_transition_needs_no_event() {
 }
 
 #[test]
-fn r09_an_activity_that_is_interrupted_before_it_starts_is_asked_to_return_when_it_has() {
+fn r09_an_activity_interrupted_before_its_start_is_cancelled_after_it() {
     check(
         "
         START
@@ -375,7 +375,7 @@ fn r09_an_activity_that_is_interrupted_before_it_starts_is_asked_to_return_when_
 }
 
 #[test]
-fn r09_what_happens_to_an_interrupted_state_meanwhile_is_held() {
+fn r09_events_for_an_interrupted_state_are_held() {
     check(
         "
         START
@@ -438,7 +438,7 @@ fn r09_an_ongoing_activity_is_not_called_again_when_its_state_is_about_to_be_lef
 }
 
 #[test]
-fn r15_what_interrupts_but_asks_nothing_waits_under_quiescent() {
+fn r15_an_unguarded_interrupt_waits_under_quiescent() {
     let text = "
         START
         P

@@ -125,7 +125,7 @@ fn r05_guards_see_the_beginning_of_the_micro_step() {
 }
 
 #[test]
-fn r05_a_guard_that_errs_is_false_and_says_so_once_until_its_input_changes() {
+fn r05_a_failing_guard_is_false_and_reported_once_until_its_input_changes() {
     check(
         "
         START
@@ -155,7 +155,7 @@ fn r05_a_guard_that_errs_is_false_and_says_so_once_until_its_input_changes() {
 }
 
 #[test]
-fn r05_a_guard_that_has_succeeded_since_says_again_that_it_errs() {
+fn r05_a_guard_that_succeeded_meanwhile_is_reported_again() {
     check(
         "
         START
@@ -255,7 +255,7 @@ fn r05_a_message_that_has_not_arrived_is_unknown_and_does_not_fire() {
 }
 
 #[test]
-fn r06_all_of_a_compound_transition_happens_or_none() {
+fn r06_a_compound_transition_is_atomic() {
     check(
         "
         START
@@ -372,7 +372,7 @@ fn last(chart: &str) -> String {
 }
 
 #[test]
-fn r08_what_is_nested_wins_and_losers_are_preempted() {
+fn r08_nested_transitions_win_and_losers_are_preempted() {
     // from the leaf in `two` outward only the AND's transition is found; it would exit the source
     // in `one`
     compare(
@@ -395,7 +395,7 @@ fn r08_else_the_smaller_key_wins() {
 }
 
 #[test]
-fn r08_what_stays_inside_conflicts_with_nothing_and_fires_first() {
+fn r08_internal_transitions_have_no_conflict_and_fire_first() {
     let chart =
         format!("{CONFLICT}    A -> X : e / publish_all\n    C -> C {{internal}} : e / process_messages");
     compare(
@@ -407,7 +407,7 @@ fn r08_what_stays_inside_conflicts_with_nothing_and_fires_first() {
 }
 
 #[test]
-fn r05_a_guard_that_errs_is_told_once_in_a_micro_step_however_often_it_is_read() {
+fn r05_a_failing_guard_is_reported_once_per_micro_step() {
     let text = "
         START
         & both
@@ -445,7 +445,7 @@ fn r05_a_guard_that_errs_is_told_once_in_a_micro_step_however_often_it_is_read()
 }
 
 #[test]
-fn r15_what_can_step_in_another_region_keeps_no_composite_from_being_left() {
+fn r15_steps_of_another_region_do_not_delay_an_exit() {
     let one = "
           one
             START

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use yase::{Machine, Moment};
+use yase::{Machine, Timestamp};
 
 use crate::check;
 use yase_reference::chart;
@@ -59,7 +59,7 @@ fn r23_guards_that_are_read_stand_in_the_record() {
 }
 
 #[test]
-fn r03_a_guard_that_failed_is_read_again_and_told_again_when_what_it_reads_has_changed() {
+fn r03_a_failed_guard_is_evaluated_and_reported_again_after_its_input_changed() {
     check(
         "
         START
@@ -102,13 +102,13 @@ fn r21_a_timer_that_was_over_long_ago_expires_in_the_next_step() {
     for silent in [false, true] {
         let mut world = World { silent, ..World::new(&chart) };
         let mut machine = Machine::new(script::compile(&chart));
-        machine.start(Moment::ZERO, &mut world);
-        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut world);
+        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
         machine.dispatch_name("set");
-        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
-        assert_eq!(machine.next_deadline(), Some(Moment::from_millis(10)));
+        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+        assert_eq!(machine.next_deadline(), Some(Timestamp::from_millis(10)));
         machine.dispatch_name("e");
-        let late = Moment::ZERO + Duration::from_millis(25);
+        let late = Timestamp::ZERO + Duration::from_millis(25);
         let summary = machine.run_to_completion(late, &mut world).unwrap();
         assert_eq!((summary.transitions, machine.next_deadline()), (2, None), "B -> C at e, C -> A at v");
     }
@@ -144,10 +144,10 @@ fn r13_beside_others_nothing_fires_after_the_end_of_the_chart() {
     let played = [false, true].map(|silent| {
         let mut world = World { silent, ..World::new(&chart) };
         let mut machine = Machine::new(script::compile(&chart));
-        machine.start(Moment::ZERO, &mut world);
-        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut world);
+        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
         machine.dispatch_name("go");
-        let summary = machine.run_to_completion(Moment::from_millis(1), &mut world).unwrap();
+        let summary = machine.run_to_completion(Timestamp::from_millis(1), &mut world).unwrap();
         (summary.transitions, machine.status(), machine.configuration())
     });
     assert_eq!(played[0], played[1]);
@@ -155,7 +155,7 @@ fn r13_beside_others_nothing_fires_after_the_end_of_the_chart() {
 }
 
 #[test]
-fn r10_what_leaves_nothing_does_not_fire_when_another_has_left_its_source_before() {
+fn r10_an_internal_transition_does_not_fire_after_its_source_was_exited() {
     // the transition of `P` is first in document order
     check(
         "
@@ -189,7 +189,7 @@ fn r10_what_leaves_nothing_does_not_fire_when_another_has_left_its_source_before
 }
 
 #[test]
-fn r14_what_an_event_led_to_goes_on_without_an_event() {
+fn r14_completion_transitions_follow_an_event() {
     let text = "
         START
         A
@@ -219,25 +219,25 @@ fn r14_what_an_event_led_to_goes_on_without_an_event() {
     for silent in [false, true] {
         let mut world = World { silent, ..World::new(&chart) };
         let mut machine = Machine::new(script::compile(&chart));
-        machine.start(Moment::ZERO, &mut world);
-        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut world);
+        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
         let counts = [1, 2].map(|millis| {
             machine.dispatch_name("e");
-            let summary = machine.run_to_completion(Moment::from_millis(millis), &mut world).unwrap();
+            let summary = machine.run_to_completion(Timestamp::from_millis(millis), &mut world).unwrap();
             (summary.micro_steps, summary.transitions)
         });
         assert_eq!(counts, [(3, 4), (2, 4)]);
-        machine.start(Moment::ZERO, &mut world);
-        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut world);
+        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
         machine.dispatch_name("e");
         machine.dispatch_name("e");
-        let summary = machine.run_to_completion(Moment::from_millis(1), &mut world).unwrap();
+        let summary = machine.run_to_completion(Timestamp::from_millis(1), &mut world).unwrap();
         assert_eq!((summary.micro_steps, summary.transitions), (5, 8));
     }
 }
 
 #[test]
-fn r10_what_one_state_does_at_an_event_says_nothing_of_others() {
+fn r10_the_reaction_of_one_state_is_independent_of_others() {
     let text = "
         A
         START
@@ -261,19 +261,18 @@ fn r10_what_one_state_does_at_an_event_says_nothing_of_others() {
     for silent in [false, true] {
         let mut world = World { silent, ..World::new(&chart) };
         let mut machine = Machine::new(script::compile(&chart));
-        machine.start(Moment::ZERO, &mut world);
-        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut world);
+        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
         let transitions = [1, 2, 3].map(|millis| {
             machine.dispatch_name("e");
-            machine.run_to_completion(Moment::from_millis(millis), &mut world).unwrap().transitions
+            machine.run_to_completion(Timestamp::from_millis(millis), &mut world).unwrap().transitions
         });
         assert_eq!(transitions, [1, 3, 1]);
     }
 }
 
 #[test]
-fn r03_a_guard_that_failed_is_told_again_when_its_own_blackboard_was_written_and_not_when_another_topic_was()
-{
+fn r03_a_failed_guard_is_reported_again_only_after_a_write_to_its_topics() {
     check(
         "
         START
@@ -316,11 +315,11 @@ fn handled(prepare: impl Fn(&mut Machine), at: u64) -> (u32, String) {
     let chart = chart(text);
     let mut machine = Machine::new(script::compile(&chart));
     let mut world = World { silent: true, ..World::new(&chart) };
-    machine.start(Moment::ZERO, &mut world);
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    machine.start(Timestamp::ZERO, &mut world);
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     prepare(&mut machine);
     machine.dispatch_name("e");
-    let summary = machine.run_to_completion(Moment::from_millis(at), &mut world).unwrap();
+    let summary = machine.run_to_completion(Timestamp::from_millis(at), &mut world).unwrap();
     let leaf = machine.configuration().pop().unwrap();
     (summary.micro_steps, machine.chart().short_path(leaf))
 }

@@ -1,7 +1,7 @@
 //! Snapshots are inspected, edited and restored.
 
 use yase::snapshot::{ActivityPhase, EventName, Snapshot};
-use yase::{Chooser, Moment};
+use yase::{Chooser, Timestamp};
 
 use crate::fixture::Stage;
 
@@ -79,12 +79,12 @@ fn a_snapshot_is_text_that_a_person_can_read() {
 }
 
 #[test]
-fn what_is_in_it_can_be_asked_for() {
+fn contents_can_be_queried() {
     let mut stage = Stage::new(LAMP, &["e"]);
     let snapshot = stage.machine.snapshot();
     assert!(snapshot.is_active("c/on") && !snapshot.is_active("c/off"));
     let timer = snapshot.timer("c", "v").unwrap();
-    assert_eq!((timer.deadline, timer.expired), (Moment::from_millis(50), false));
+    assert_eq!((timer.deadline, timer.expired), (Timestamp::from_millis(50), false));
     assert_eq!((snapshot.timer("c", "w"), snapshot.timer("c/on", "v")), (None, None));
     stage.event("f");
     let snapshot = stage.machine.snapshot();
@@ -95,8 +95,8 @@ fn what_is_in_it_can_be_asked_for() {
 #[test]
 fn a_timer_is_set_to_another_time() {
     let mut stage = Stage::new(LAMP, &["e"]);
-    stage.edit(|snapshot| assert!(snapshot.set_timer("c", "v", Moment::from_millis(70))));
-    assert_eq!(stage.machine.next_deadline(), Some(Moment::from_millis(70)));
+    stage.edit(|snapshot| assert!(snapshot.set_timer("c", "v", Timestamp::from_millis(70))));
+    assert_eq!(stage.machine.next_deadline(), Some(Timestamp::from_millis(70)));
     stage.step(69);
     assert_eq!(stage.active(), "on");
     stage.step(70);
@@ -119,7 +119,7 @@ fn a_timer_that_is_set_again_or_unset_forgets_its_expiry() {
     };
     let mut stage = Stage::new(chart, &[]);
     held(&mut stage);
-    stage.edit(|snapshot| assert!(snapshot.set_timer("c", "v", Moment::from_millis(80))));
+    stage.edit(|snapshot| assert!(snapshot.set_timer("c", "v", Timestamp::from_millis(80))));
     stage.returns();
     assert_eq!(stage.active(), "a");
     stage.step(80);
@@ -173,14 +173,14 @@ fn an_activity_is_given_up_and_queued_again() {
         activity.phase = ActivityPhase::Queued;
         snapshot.due = true;
     });
-    assert!(stage.machine.needs_step(Moment::ZERO));
+    assert!(stage.machine.needs_step(Timestamp::ZERO));
     stage.step(0);
     let [job] = &stage.world.jobs[..] else { panic!("it was started once more") };
     assert_eq!((job.name.as_str(), job.activation.number), ("fade", 1));
 }
 
 #[test]
-fn siblings_of_one_name_are_told_apart() {
+fn siblings_of_one_name_are_distinguished() {
     let chart = "
         START
         a
@@ -197,9 +197,9 @@ fn siblings_of_one_name_are_told_apart() {
     }
     let mut world = yase_reference::World::new(&chart);
     let mut machine = yase::Machine::new(yase_reference::script::compile(&chart));
-    machine.start(Moment::ZERO, &mut world);
+    machine.start(Timestamp::ZERO, &mut world);
     machine.dispatch_name("f");
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     let snapshot: Snapshot = machine.snapshot();
     assert_eq!(snapshot.configuration, ["c", "c/a#2"]);
     assert_eq!(snapshot.bound.recent, [["c/START -> c/b"], ["c/b -> c/a#2"]]);
@@ -220,7 +220,7 @@ const RACE: &str = "
 ";
 
 #[test]
-fn a_chooser_goes_on_choosing_where_it_was() {
+fn a_restored_chooser_continues_its_sequence() {
     for chooser in [Chooser::seeded(7), Chooser::scripted(vec![1, 0, 1, 1, 0, 0, 1, 0]), Chooser::declared()]
     {
         let play = |cut: bool| {

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use yase::snapshot::Snapshot;
-use yase::{Activation, Chooser, CompiledChart, Machine, MicroStep, Moment, Outcome, TopicId};
+use yase::{Activation, Chooser, CompiledChart, Machine, MicroStep, Outcome, Timestamp, TopicId};
 
 use yase_reference::chance::Freedom;
 use yase_reference::random::Case;
@@ -46,7 +46,7 @@ fn cut_everywhere(numbers: std::ops::Range<u64>) -> (u64, u64) {
 }
 
 #[test]
-fn a_machine_that_is_restored_once_goes_on_to_the_end() {
+fn a_machine_restored_once_runs_to_the_end() {
     let mut restored = 0;
     for number in RUNS..RUNS + WHOLE_RUNS {
         let case = Case::numbered(number);
@@ -132,7 +132,7 @@ impl Cut {
 }
 
 impl Interpreter for Cut {
-    fn start(&mut self, now: Moment, world: &mut World) {
+    fn start(&mut self, now: Timestamp, world: &mut World) {
         self.cut().start(now, world);
     }
 
@@ -152,7 +152,7 @@ impl Interpreter for Cut {
         self.cut().activity_resumed(activation)
     }
 
-    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
         loop {
             match self.cut().micro_step(now, world).map_err(|error| error.to_string())? {
                 MicroStep::Progressed => {}
@@ -161,11 +161,11 @@ impl Interpreter for Cut {
         }
     }
 
-    fn needs_step(&self, now: Moment) -> bool {
+    fn needs_step(&self, now: Timestamp) -> bool {
         self.machine.needs_step(now)
     }
 
-    fn next_deadline(&self) -> Option<Moment> {
+    fn next_deadline(&self) -> Option<Timestamp> {
         self.machine.next_deadline()
     }
 

@@ -1,7 +1,7 @@
 //! A machine with the host of the reference tests.
 
 use yase::snapshot::{RestoreError, Snapshot};
-use yase::{Machine, Moment, Outcome, Semantics};
+use yase::{Machine, Outcome, Semantics, Timestamp};
 
 use yase_reference::world::World;
 
@@ -20,7 +20,7 @@ impl Stage {
         let chart = yase_reference::chart(chart);
         let mut world = World::new(&chart);
         let mut machine = Machine::new(yase_reference::script::compile_with(&chart, semantics));
-        machine.start(Moment::ZERO, &mut world);
+        machine.start(Timestamp::ZERO, &mut world);
         let mut stage = Stage { machine, world };
         stage.step(0);
         for event in events {
@@ -30,7 +30,7 @@ impl Stage {
     }
 
     pub(crate) fn step(&mut self, millis: u64) {
-        self.world.now = Moment::from_millis(millis);
+        self.world.now = Timestamp::from_millis(millis);
         self.machine.run_to_completion(self.world.now, &mut self.world).unwrap();
     }
 

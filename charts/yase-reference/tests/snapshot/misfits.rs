@@ -1,7 +1,7 @@
 //! Inconsistent snapshots are rejected with all their issues.
 
 use yase::snapshot::{EventName, RestoreIssueKind, Snapshot, TimerName};
-use yase::{Moment, Status};
+use yase::{Status, Timestamp};
 
 use crate::fixture::Stage;
 
@@ -260,7 +260,7 @@ fn kinds_and_fields_say_what_is_wrong() {
     let stage = Stage::new(CHART, &[]);
     let mut snapshot = stage.machine.snapshot();
     snapshot.version = 2;
-    snapshot.now = Moment::from_millis(5);
+    snapshot.now = Timestamp::from_millis(5);
     snapshot.configuration.push("c/x".into());
     let error = stage.restore(&snapshot).map(|_| ()).unwrap_err();
     let kinds: Vec<_> = error.issues().iter().map(|misfit| (misfit.kind(), misfit.field())).collect();

@@ -23,7 +23,7 @@ const PAST: &str = "
 ";
 
 #[test]
-fn what_is_remembered_is_kept() {
+fn histories_are_kept() {
     let mut stage = Stage::new(PAST, &["e", "f"]);
     let plan = stage.plan(&PAST.replace(": f", ": x"));
     let report = stage.swap(&plan).unwrap();
@@ -67,7 +67,7 @@ fn a_composite_that_was_put_around_is_remembered_with_what_is_in_it_if_that_is_d
 }
 
 #[test]
-fn what_is_no_more_is_not_remembered() {
+fn removed_states_are_not_in_histories() {
     let new = PAST.replace("      b\n", "").replace("      w/a -> w/b : e\n", "");
     let mut stage = Stage::new(PAST, &["e", "f"]);
     let plan = stage.plan(&new);
@@ -99,7 +99,7 @@ fn a_timer_is_lost_with_the_state_that_it_belongs_to() {
 }
 
 #[test]
-fn what_has_arrived_at_a_join_goes_on_waiting() {
+fn an_arrival_at_a_join_continues_to_wait() {
     let old = "
         START
         & both
@@ -130,7 +130,7 @@ fn what_has_arrived_at_a_join_goes_on_waiting() {
 }
 
 #[test]
-fn a_new_region_goes_on_from_its_start_at_once_where_that_is_meant() {
+fn a_new_region_leaves_its_start_in_the_same_step_if_configured() {
     let old = "
         START
         & both

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use yase::migrate::plan;
 use yase::statechart::{NodeId, Statechart, Transition};
-use yase::{Activation, Chooser, CompiledChart, Machine, Moment, Outcome, Semantics, TopicId};
+use yase::{Activation, Chooser, CompiledChart, Machine, Outcome, Semantics, Timestamp, TopicId};
 
 use crate::world::rekey;
 use yase_reference::chance::Freedom;
@@ -111,7 +111,7 @@ impl Swapping {
 }
 
 impl Interpreter for Swapping {
-    fn start(&mut self, now: Moment, world: &mut World) {
+    fn start(&mut self, now: Timestamp, world: &mut World) {
         self.machine.start(now, world);
     }
 
@@ -131,18 +131,18 @@ impl Interpreter for Swapping {
         self.machine.activity_resumed(activation)
     }
 
-    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
         self.swap(world);
         self.machine.run_to_completion(now, world).map_err(|error| error.to_string())?;
         self.swap(world);
         Ok(())
     }
 
-    fn needs_step(&self, now: Moment) -> bool {
+    fn needs_step(&self, now: Timestamp) -> bool {
         self.machine.needs_step(now)
     }
 
-    fn next_deadline(&self) -> Option<Moment> {
+    fn next_deadline(&self) -> Option<Timestamp> {
         self.machine.next_deadline()
     }
 

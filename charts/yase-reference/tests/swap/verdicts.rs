@@ -13,7 +13,7 @@ const TWO: &str = "
 ";
 
 #[test]
-fn what_is_active_stays_active_without_entries_and_exits() {
+fn active_states_stay_active_without_entries_and_exits() {
     let mut stage = Stage::new(TWO, &["e"]);
     stage.lines();
     let new = "
@@ -71,7 +71,7 @@ fn a_state_around_which_a_composite_was_put_has_moved() {
 }
 
 #[test]
-fn a_composite_may_be_taken_away_if_it_is_said_what_is_in_its_place() {
+fn a_composite_may_be_removed_with_a_replacement() {
     let old = "
         START
         outer
@@ -236,7 +236,7 @@ const WORK: &str = "
 ";
 
 #[test]
-fn an_activity_that_runs_goes_on_under_its_new_number() {
+fn a_running_activity_continues_under_its_new_activation() {
     let mut stage = Stage::new(WORK, &[]);
     let new = "
         START
@@ -346,7 +346,7 @@ fn held_events_are_offered_again() {
 }
 
 #[test]
-fn a_transition_that_waits_for_activities_goes_on_waiting() {
+fn a_transition_continues_to_wait_for_activities() {
     let old = "START\na | run=work | for=20ms\nb\nSTART -> a\na -> b {interrupts} : e";
     let mut stage = Stage::new(old, &["e"]);
     let new = "START\nz\na | run=work | for=20ms\nb\nSTART -> a\na -> b {interrupts} : e\na -> z : f";
@@ -358,7 +358,7 @@ fn a_transition_that_waits_for_activities_goes_on_waiting() {
 }
 
 #[test]
-fn a_plan_tells_of_every_node() {
+fn a_plan_covers_every_node() {
     let stage = Stage::new(TWO, &[]);
     let plan = stage.plan("START\na\nouter\n  START\n  d\n  outer/START -> outer/d\nSTART -> a");
     let verdicts: Vec<String> = plan.nodes().map(|(path, verdict)| format!("{path} {verdict}")).collect();
@@ -366,7 +366,7 @@ fn a_plan_tells_of_every_node() {
 }
 
 #[test]
-fn a_name_is_looked_for_inside_the_nearest_composite_around_it() {
+fn a_name_is_resolved_in_the_nearest_enclosing_composite() {
     let old = "
         START
         head

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use yase::migrate::{MigrationError, MigrationReport, NodeMapping, plan};
-use yase::{CompiledChart, Machine, Moment, Outcome, Semantics};
+use yase::{CompiledChart, Machine, Outcome, Semantics, Timestamp};
 
 use yase_reference::script;
 use yase_reference::world::World;
@@ -25,7 +25,7 @@ impl Stage {
         let chart = yase_reference::chart(chart);
         let mut world = World::new(&chart);
         let mut machine = Machine::new(script::compile_with(&chart, semantics));
-        machine.start(Moment::ZERO, &mut world);
+        machine.start(Timestamp::ZERO, &mut world);
         let mut stage = Stage { machine, world };
         stage.step(0);
         for event in events {
@@ -35,7 +35,7 @@ impl Stage {
     }
 
     pub(crate) fn step(&mut self, millis: u64) {
-        self.world.now = Moment::from_millis(millis);
+        self.world.now = Timestamp::from_millis(millis);
         self.machine.run_to_completion(self.world.now, &mut self.world).unwrap();
     }
 

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_are_there_when_asked_for() {
+    fn colours_are_used_on_request() {
         assert!(drawn(&finding(), true).contains('\x1b'));
     }
 

@@ -33,7 +33,7 @@ fn a_chart_goes_through_every_format_and_back() {
 }
 
 #[test]
-fn what_would_get_lost_is_listed_and_needs_a_word() {
+fn losses_are_listed_and_need_confirmation() {
     let folder = tempfile::tempdir().expect("a folder");
     let input =
         file(folder.path(), "a.txt", &CHART.replace("Scan BASIC\n", "Scan BASIC\n      priority = 5\n"));

@@ -97,7 +97,7 @@ fn lamp(scenario: &str, more: &[&str]) -> Answer {
 const DARK: &str = "model lamp.srm\nstart\nreturn Look\n  Ball.distance = 1\n  starts On\n";
 
 #[test]
-fn people_are_told_what_a_scenario_would_have_to_show() {
+fn survivors_are_reported_with_a_distinguishing_case() {
     let Answer { code, out, err } = lamp(DARK, &[]);
     assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
     let first = out.lines().next().unwrap_or_default();
@@ -108,7 +108,7 @@ fn people_are_told_what_a_scenario_would_have_to_show() {
 }
 
 #[test]
-fn what_cannot_run_is_told_apart() {
+fn invalid_mutants_are_reported_separately() {
     let folder = beside_the_models(DARK);
     let model = folder.path().join("lamp.srm").to_string_lossy().into_owned();
     let states = "On -> END : [over]\nStates:\nOn : entry = StartTimeout(over, 1s)\n";

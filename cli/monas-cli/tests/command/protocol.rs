@@ -30,7 +30,7 @@ fn the_player_is_made_from_role_and_protocol_and_conforms() {
 }
 
 #[test]
-fn what_does_not_conform_is_refused_with_its_place() {
+fn nonconformance_is_reported_with_positions() {
     let folder = tempfile::tempdir().expect("a folder");
     let chart = fs::read_to_string(root().join(EAC)).expect("it is there");
     let unguarded = folder.path().join("unguarded.eac");

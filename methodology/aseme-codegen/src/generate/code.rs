@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_too_long_has_an_argument_a_line() {
+    fn long_calls_have_one_argument_per_line() {
         let long = |letter: &str| RustCode::plain(letter.repeat(60));
         let code = RustCode::call("Ok", vec![RustCode::tried("all!", vec![long("a"), long("b")])]);
         let expected =
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fits_stays_on_its_line() {
+    fn matching_entries_keep_their_lines() {
         let code = RustCode::Before("!", Box::new(RustCode::tried("holds", vec![RustCode::plain("x")])));
         assert_eq!(code.statement(), "    !holds(x)?;\n");
     }

@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_for_no_path_is_none() {
+    fn identifiers_of_no_path_are_rejected() {
         for text in ["a__", "a__b", "a__never__", "__u61__", "a__uffffffff__b", "type", "2"] {
             assert_eq!(path_of(text), None, "{text}");
         }

@@ -36,7 +36,7 @@ fn the_module_of_a_model_is_written_where_it_is_included_from() {
 }
 
 #[test]
-fn what_is_wrong_with_a_model_is_said_with_its_place() {
+fn model_errors_have_positions() {
     let folder = folder("wrong");
     let text = "Role: r\nLiveness:\nr = look . dive\nTransitions:\nlook -> drive : [Ball.approaching]\n";
     let error = generate(model(&folder, "wrong.srm", text)).into(&folder).write().expect_err("it is wrong");
@@ -49,7 +49,7 @@ fn what_is_wrong_with_a_model_is_said_with_its_place() {
 }
 
 #[test]
-fn an_activity_that_nobody_has_written_is_no_skeleton_in_a_folder_that_nobody_edits() {
+fn a_missing_activity_gets_no_skeleton_in_a_build_folder() {
     let folder = folder("missing");
     let words = aseme_codegen::generate::RustBindings {
         registers: true,

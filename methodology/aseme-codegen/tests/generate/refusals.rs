@@ -14,7 +14,7 @@ fn refused(transitions: &str, words: &RustBindings) -> Vec<String> {
 }
 
 #[test]
-fn what_is_misspelt_is_said_before_any_code_is_written() {
+fn misspelt_names_are_reported_before_generation() {
     let found = refused("a -> b : [Ball.fund]", &soccer());
     assert_eq!(found, ["E0134 the message `Ball` has no field `fund` (from `p/a` to `p/b`)"]);
 }

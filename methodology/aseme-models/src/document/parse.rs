@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn what_belongs_to_nothing_is_reported() {
+    fn stray_lines_are_reported() {
         let (document, findings) = ItemDocument::parse("\u{feff}a = b\nGoal: Win\nc = d\n");
         assert_eq!(findings.iter().map(|finding| finding.code).collect::<Vec<_>>(), ["E0260", "E0260"]);
         assert_eq!(document.items[0].lines.len(), 1);

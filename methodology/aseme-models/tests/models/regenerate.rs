@@ -41,13 +41,13 @@ fn chart(text: &str) -> Statechart {
 }
 
 #[test]
-fn what_fits_stays_letter_by_letter() {
+fn matching_entries_stay_unchanged() {
     let RegeneratedRole { text, kept, lost, .. } = comment_out_refinements(&file(ROLE)).unwrap();
     assert_eq!((text.as_str(), kept, lost.len()), (ROLE, 6, 0));
 }
 
 #[test]
-fn what_no_longer_fits_becomes_a_comment_with_its_reason() {
+fn unmatched_entries_become_comments_with_reasons() {
     let edited = ROLE
         .replace("act = Track . Kick", "act = Track . [Align] . Kick")
         .replace("Search | act", "Find | act");
@@ -119,7 +119,7 @@ fn a_composite_with_history_is_entered_where_it_was_left() {
 
 /// Entries represent all refinements of a chart.
 #[test]
-fn a_chart_says_its_refinements_as_entries_and_a_role_takes_them_in() {
+fn refinements_of_a_chart_become_entries_of_a_role() {
     let formulas = &ROLE[..ROLE.find("Constants:").unwrap()];
     let entries = entries_of_chart(&chart(ROLE));
     let made = apply_refinements(&file(formulas), &entries).unwrap();
@@ -137,7 +137,7 @@ fn a_chart_says_its_refinements_as_entries_and_a_role_takes_them_in() {
 }
 
 #[test]
-fn what_the_role_says_itself_holds_and_the_other_is_listed() {
+fn entries_of_the_role_take_precedence_and_others_are_listed() {
     let own = "Role: player\nLiveness:\nplayer = Stand . (Search | act)\nact = Track . [Align] . Kick\nTransitions:\nCONDITION -> act : [up]\n";
     let made = apply_refinements(&file(own), &entries_of_role(&file(ROLE))).unwrap();
     let lost: Vec<&str> = made.lost.iter().map(|lost| lost.text.as_str()).collect();
@@ -193,7 +193,7 @@ fn a_chart_keeps_what_only_its_file_can_say() {
 
 /// Internal transitions are written as entries and restored from them.
 #[test]
-fn a_way_that_does_not_leave_its_state_is_said_and_carried() {
+fn internal_transitions_become_entries_and_are_restored() {
     let role = "Role: r\nLiveness:\nr = a~ . b\nTransitions:\na -> a interrupts internal : more\na~ -> b also !2 %0.5 : stop\n";
     let own = chart(role);
     let (_, loop_of_a) = own.transitions().find(|(_, it)| it.internal).unwrap();
@@ -263,7 +263,7 @@ fn places_of_what_is_gone_become_comments_and_those_that_differ_are_listed() {
 }
 
 #[test]
-fn a_layout_that_is_not_understood_is_said() {
+fn an_invalid_layout_is_reported() {
     for (line, code, what) in [
         ("a : at = 10", "E0245", "`10` is not a value for `at`"),
         ("a : size = 0 5", "E0245", "`0 5` is not a value for `size`"),

@@ -65,7 +65,7 @@ fn goals_become_use_cases() {
 }
 
 #[test]
-fn a_goal_of_nobody_is_refused() {
+fn a_goal_without_an_actor_is_rejected() {
     let text = "SAG:\nGoal: Win\nActor: a\n";
     let Model::Sag(sag) = clean(text) else { panic!("goals") };
     let (_, findings) = transformations::sag_to_suc(&sag);
@@ -198,7 +198,7 @@ fn broken_protocols_are_refused() {
 }
 
 #[test]
-fn the_protocol_holds_where_the_role_says_another_thing() {
+fn the_protocol_takes_precedence_over_the_role() {
     let mut iac = extended_attacker();
     let inside = iac
         .transitions

@@ -103,7 +103,7 @@ Transitions:
 ";
 
 #[test]
-fn what_no_dialect_can_say_is_listed_thing_by_thing() {
+fn losses_of_dialects_are_listed_individually() {
     let model = clean(SAID);
     for (_, format) in Format::WORDS {
         let Format::Statechart(dialect) = format else { continue };

@@ -424,7 +424,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_short_may_end_at_any_time_and_what_comes_behind_it_begin() {
+    fn a_cut_term_may_end_at_any_time_and_its_successor_start() {
         let (liveness, _) = aseme::liveness::parse("r = (a . b~) . c");
         let allows = |cut: &[&str], trace: &str| {
             let cut = cut.iter().map(|&name| name.to_owned()).collect();
@@ -441,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn what_goes_on_forever_is_owed_until_its_turn_has_begun() {
+    fn an_endless_term_is_required_until_an_iteration_starts() {
         let owed = |formulas: &str, trace: &str| {
             let (mut language, all) = Language::new(&aseme::liveness::parse(formulas).0).unwrap();
             let rests = trace.split_whitespace().fold(BTreeSet::from([all]), |rests, name| {

@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn what_hangs_on_rounding_is_not_judged() {
+    fn results_that_depend_on_rounding_are_undecided() {
         let mut bounds = DifferenceBounds::new();
         bounds.add(Some("x"), Some("y"), 0.1, false);
         bounds.add(Some("y"), Some("z"), 0.2, false);

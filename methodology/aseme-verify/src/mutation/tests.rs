@@ -80,7 +80,7 @@ fn a_timer_runs_another_time_or_is_not_started() {
 }
 
 #[test]
-fn each_mutant_stands_where_what_it_changes_does_and_is_made_once() {
+fn each_mutant_has_the_span_of_its_change_and_is_unique() {
     let source = Source::new("r.srm", ROLE);
     let mutants = of(ROLE);
     let (chart, _) = aseme_models::statechart_of(&source);
@@ -105,7 +105,7 @@ fn each_mutant_stands_where_what_it_changes_does_and_is_made_once() {
 }
 
 #[test]
-fn what_is_never_taken_may_only_be_taken() {
+fn a_disabled_transition_has_only_enabling_mutants() {
     let mutants =
         of("Liveness:\nr = A ~ || (B . C)\nTransitions:\n*~ -> END : [false]\n(B.C) -> END : [false]\n");
     assert_eq!(told(&mutants, "A~ -> END"), ["guard-negated: the guard `[false]` becomes `[true]`"]);
@@ -120,7 +120,7 @@ fn what_is_never_taken_may_only_be_taken() {
 }
 
 #[test]
-fn the_order_is_turned_round_only_where_it_matters() {
+fn the_order_is_reversed_only_where_it_matters() {
     let role = |one: &str, other: &str| {
         let text =
             format!("Liveness:\nr = A | B\nTransitions:\nCONDITION -> A{one}\nCONDITION -> B{other}\n");

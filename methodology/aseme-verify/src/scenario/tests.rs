@@ -62,7 +62,7 @@ fn a_timer_is_named_and_read() {
 }
 
 #[test]
-fn everything_that_is_wrong_is_said_at_its_place() {
+fn all_errors_are_reported_at_their_positions() {
     let text = "model m\nstart\n  in Shin\nreturn lamp\nevent of\nwait long\njump\n  timer lat: over\n  raise(off)\n";
     let expected = [
         "a.scenario:3:6: error[E0845]: the chart `lamp` has no state `Shin` (did you mean `Shine`?)",

@@ -172,7 +172,7 @@ fn the_table_is_in_order_and_names_each_check_once() {
 }
 
 #[test]
-fn what_cannot_be_explored_is_said_with_the_reason() {
+fn a_chart_that_cannot_be_explored_is_reported_with_the_reason() {
     let role = "Role: r\nLiveness:\nr = look . turn\nTransitions:\nlook -> turn : [In(nowhere)]\n";
     let report = check(&Source::new("r.srm", role), &CheckSettings::default());
     let found: Vec<String> = report.findings.iter().map(ToString::to_string).collect();

@@ -81,7 +81,7 @@ fn robots_that_wait_for_each_other_are_found_and_those_that_nearly_do_are_not() 
 }
 
 #[test]
-fn a_way_to_a_standstill_is_played_by_the_charts() {
+fn a_trace_to_a_deadlock_is_replayed_by_the_charts() {
     let models = models("deadlock");
     let found = composed("deadlock", Channels::default(), 10_000);
     let trace = found.findings[0].trace.as_deref().unwrap();
@@ -107,7 +107,7 @@ fn a_way_to_a_standstill_is_played_by_the_charts() {
 
 /// Two regions that send the same message are both explored.
 #[test]
-fn who_says_something_in_two_regions_is_heard_from_both() {
+fn messages_sent_in_two_regions_arrive_from_both() {
     let mut models = models("deadlock");
     let passer = "Role: passer\nLiveness:\npasser = (Aim . Pass) || (Stand . Shout)\nTransitions:\n\
         Pass -> END : receiver.ready.Signal.Ready / publish.passed.Signal.Passed\n\
@@ -121,7 +121,7 @@ fn who_says_something_in_two_regions_is_heard_from_both() {
 
 /// Of robots without routes only the start is explored.
 #[test]
-fn what_nobody_hears_is_left_out() {
+fn messages_without_a_receiver_are_not_explored() {
     let role =
         "Role: a\nLiveness:\na = b~ || c~ || d~\nTransitions:\nb -> b : / publish.noise.Signal.Noise\n";
     let models: Models = ["one", "two"].map(|name| (name.to_owned(), Source::new("a.srm", role))).into();
@@ -138,13 +138,13 @@ fn a_handshake_without_a_timer_does_not_survive_a_loss() {
 }
 
 #[test]
-fn what_was_not_looked_at_is_not_decided() {
+fn an_incomplete_composition_is_undecided() {
     let found = composed("near", Channels::default(), 8);
     assert_eq!((codes(&found), found.is_finished), (vec!["E0933"], false));
 }
 
 #[test]
-fn what_nobody_says_may_come_at_any_time() {
+fn messages_without_a_sender_arrive_at_any_time() {
     let mut models = models("deadlock");
     models[1].1 = Source::new("receiver.srm", "Role: receiver\nLiveness:\nreceiver = Stand\n");
     let found = compose(&models, Channels::default(), &CheckSettings::default()).unwrap();
@@ -152,7 +152,7 @@ fn what_nobody_says_may_come_at_any_time() {
 }
 
 #[test]
-fn messages_that_cannot_be_told_apart_are_refused() {
+fn indistinguishable_messages_are_rejected() {
     let mut models = models("deadlock");
     let text =
         "Role: receiver\nLiveness:\nreceiver = Listen . Take\nTransitions:\nListen -> Take : not other\n";
@@ -168,7 +168,7 @@ fn of_texts(texts: &[(&str, &str)]) -> Models {
 
 /// A message that a robot sends to itself passes through a channel like any other.
 #[test]
-fn who_says_something_to_itself_hears_it_if_it_has_been_said() {
+fn a_message_to_itself_arrives_after_it_was_sent() {
     let speaks = "Role: echo\nLiveness:\necho = Call . Listen . Act\nTransitions:\n\
         Call -> Listen : / publish.word.Signal.Word\nListen -> Act : echo.word.Signal.Word\n";
     let found =
@@ -195,7 +195,7 @@ fn who_says_something_to_itself_hears_it_if_it_has_been_said() {
 
 /// A robot that TERMINATE has stopped neither sends nor waits.
 #[test]
-fn who_waits_for_a_robot_that_was_stopped_waits_for_ever() {
+fn waiting_for_a_terminated_robot_is_a_deadlock() {
     let receiver = |end: &str| {
         format!(
             "IAC: receiver\n\nStates:\n  receiver OR\n    START\n    Walk BASIC\n    Ready BASIC\n    halt {end}\n\n\

@@ -112,7 +112,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 150, ..ProptestConfig::default() })]
 
     #[test]
-    fn what_can_hold_is_what_holds_somewhere(one in guard(), other in guard()) {
+    fn satisfiable_conditions_hold_for_some_values(one in guard(), other in guard()) {
         let (first, second) = (condition(&one.text()), condition(&other.text()));
         let logic = GuardSolver::default();
         let both = worlds().any(|world| one.holds(world) && other.holds(world));
@@ -131,7 +131,7 @@ fn holds(texts: &[&str]) -> Satisfiability {
 }
 
 #[test]
-fn what_is_outside_is_unknown_unless_its_text_alone_decides() {
+fn opaque_terms_are_unknown_unless_equal_texts_decide() {
     assert_eq!(holds(&["seen(Ball.x)"]), Satisfiability::Unknown);
     assert_eq!(holds(&["seen(Ball.x) && !seen(Ball.x)"]), Satisfiability::No);
     assert_eq!(holds(&["abs(Ball.x) > 2", "abs(Ball.x) <= 2"]), Satisfiability::No);

@@ -42,7 +42,7 @@ const WALKER: &str = "Role: walker\nLiveness:\nwalker = act~\nact = Look . (Turn
     CONDITION -> Turn : [!Ball.found]\nCONDITION -> Walk : [Ball.found]\n";
 
 #[test]
-fn what_guards_say_holds_and_its_contrary_has_a_run() {
+fn a_property_implied_by_guards_holds_and_its_negation_is_violated() {
     assert_eq!(outcome(WALKER, "always (entering Walk implies [Ball.found])"), PropertyOutcome::Holds);
     assert_eq!(outcome(WALKER, "always not (in Walk and in Turn)"), PropertyOutcome::Holds);
     let text = run_against(WALKER, "always (entering Walk implies [!Ball.found])");
@@ -55,7 +55,7 @@ fn what_guards_say_holds_and_its_contrary_has_a_run() {
 /// A region does not see in a step what is written to the root's blackboard in it; properties read
 /// the root's blackboard.
 #[test]
-fn what_the_chart_writes_on_the_blackboard_of_the_root_is_not_what_a_region_has_read_before() {
+fn writes_to_the_root_blackboard_are_not_visible_to_earlier_reads_of_a_region() {
     let role = "Role: r\nLiveness:\nr = (a || b) . c\nTransitions:\n\
         b -> END : [Ball.found]\n(a||b) -> c : go / Ball.found = true\n";
     let text = run_against(role, "always (entering c implies not [Ball.found])");
@@ -63,7 +63,7 @@ fn what_the_chart_writes_on_the_blackboard_of_the_root_is_not_what_a_region_has_
 }
 
 #[test]
-fn what_need_never_come_is_a_run_that_goes_round() {
+fn an_optional_event_gives_a_violating_cycle() {
     let restless = WALKER.replace(" : [!Ball.found]", " :");
     let text = run_against(&restless, "always (entering Look implies eventually entering Walk)");
     let (_, circle) = text.split_once("# repeats forever from here\n").unwrap();
@@ -139,7 +139,7 @@ fn a_part_that_others_wait_for_is_not_left_out() {
 }
 
 #[test]
-fn what_is_not_looked_at_to_the_end_is_not_decided() {
+fn an_incomplete_exploration_is_undecided() {
     let mut settings = CheckSettings::default();
     settings.states = 2;
     let (_, judgements, findings) = judged(WALKER, "always not (in Walk and in Turn)", &settings);
@@ -165,7 +165,7 @@ fn said(model: &str, formula: &str, settings: &CheckSettings) -> Vec<(&'static s
 }
 
 #[test]
-fn names_that_the_chart_does_not_have_are_said_with_the_nearest() {
+fn unknown_names_are_reported_with_the_nearest_one() {
     let settings = CheckSettings::default();
     let one = |code, place: &str, hint: &str| vec![(code, place.to_owned(), hint.to_owned())];
     assert_eq!(said(WALKER, "always not in Wakl", &settings), one("E0845", "Wakl", "did you mean `Walk`?"));

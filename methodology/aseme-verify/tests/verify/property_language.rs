@@ -58,7 +58,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn what_is_printed_reads_back_as_the_same(formula in any_of(atom())) {
+    fn printing_and_parsing_round_trips(formula in any_of(atom())) {
         let property = Property { name: "it is so".into(), formula, place: TextPosition::default() };
         let text = property.to_string();
         let (again, findings) = parse(&text);
@@ -80,7 +80,7 @@ proptest! {
 
     /// Compared with a direct evaluation of the semantics on a run whose last position repeats.
     #[test]
-    fn a_monitor_says_what_the_formula_means(
+    fn a_monitor_evaluates_the_semantics_of_its_formula(
         formula in any_of(prop::sample::select(vec!["a", "b", "c"]).prop_map(|state| formula(PropertyFormulaKind::In(name(state))))),
         run in prop::collection::vec((0..8_u64, 0..3_000_u64), 1..8)
     ) {

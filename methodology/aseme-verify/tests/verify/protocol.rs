@@ -107,7 +107,7 @@ fn the_role_as_text_is_the_chart_of_the_player() {
 }
 
 #[test]
-fn a_role_that_says_nothing_of_the_protocol_gets_its_rules_guards_and_exits() {
+fn a_role_without_protocol_entries_gets_rules_guards_and_exits() {
     let text = text("extended_attacker.srm");
     let lines = text.lines().filter(|line| !line.contains(" also : "));
     let lines = lines.map(|line| line.split_once(" : [Attack.").map_or(line, |(before, _)| before));

@@ -37,7 +37,7 @@ fn a_way_to_a_livelock_ends_in_it() {
 }
 
 #[test]
-fn what_is_no_trace_is_refused_by_its_line() {
+fn an_invalid_trace_is_rejected_with_its_line() {
     let chart = explorable(&Source::new("r.iac", include_str!("m14/fault.iac"))).unwrap();
     let refused = |text: &str| Trace::parse(&chart, text).unwrap_err().to_string();
     assert_eq!(refused(""), "line 1: a trace begins with `start`");

@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_value_is_refused() {
+    fn invalid_values_are_rejected() {
         for text in ["", "inf", "NaN", "1e999", "15 degrees", "\"a", "\"a\"b\"", "near"] {
             assert_eq!(constant_value(text), None, "{text}");
         }

@@ -63,7 +63,7 @@ timer again
 }
 
 #[test]
-fn what_differs_is_said_line_by_line() {
+fn differences_are_reported_line_by_line() {
     let scenario = "start
   starts Look
   in Near
@@ -86,7 +86,7 @@ return Look
 }
 
 #[test]
-fn what_cannot_be_ends_the_play() {
+fn an_impossible_step_ends_the_scenario() {
     let missing = differences("start\nreturn Near\n  in Far\nwait 1s\n  in Far\n");
     assert_eq!(missing.len(), 1, "{missing:?}");
     assert!(
@@ -102,7 +102,7 @@ fn what_cannot_be_ends_the_play() {
 }
 
 #[test]
-fn an_activity_that_goes_on_is_called_again_and_one_that_fails_is_not_done() {
+fn an_ongoing_activity_is_called_again_and_a_failed_one_is_incomplete() {
     let scenario = "start
 ongoing Look
   in Look
@@ -125,7 +125,7 @@ return Stand
 }
 
 #[test]
-fn a_chart_that_never_rests_is_a_difference() {
+fn a_livelock_is_a_difference() {
     let player = ScenarioRunner::new(&Registry::linked()).unwrap();
     let (mut chart, _) = aseme_models::statechart_of(&Source::new("r.srm", "Liveness:\nr = A ~\n"));
     let state = chart.find("A").unwrap();

@@ -402,7 +402,9 @@ impl ThreadReplay {
         }
         match (&self.thread_replay, record.turn()) {
             (_, Turn::Ordered) => self.follow(&record, ledger, told)?,
-            (_, Turn::None | Turn::Start) if self.is_removed => return Err(came_back_untold(&self.agent)),
+            (_, Turn::None | Turn::Start) if self.is_removed => {
+                return Err(returned_without_a_record(&self.agent));
+            }
             (ReplayedThread::Chart(_), Turn::None) if self.is_told => {
                 self.numbers.push(record.number);
                 self.own.push(own);
@@ -482,7 +484,7 @@ impl ThreadReplay {
         self.restart(&change, now)?;
         match &self.thread_replay {
             ReplayedThread::Waiting(_) => Ok(()),
-            _ => Err(came_back_untold(&self.agent)),
+            _ => Err(returned_without_a_record(&self.agent)),
         }
     }
 
@@ -622,7 +624,7 @@ impl ThreadReplay {
     }
 }
 
-fn came_back_untold(agent: &str) -> Error {
+fn returned_without_a_record(agent: &str) -> Error {
     let message = format!(
         "agent `{agent}` was removed and added anew: the recording, of an earlier version, does not tell by which change"
     );

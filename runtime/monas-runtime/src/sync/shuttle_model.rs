@@ -185,7 +185,7 @@ impl<const WAKES: bool> ModelState<WAKES> {
 }
 
 #[test]
-fn every_activity_comes_back_and_every_message_wakes_in_ten_thousand_interleavings() {
+fn every_activity_returns_and_every_message_wakes_in_ten_thousand_interleavings() {
     let scene = ModelScenario { regions: 3, calls: 3, workers: 2, messages: 2 };
     shuttle::check_random(move || scene.play::<true>(), 6_000);
     shuttle::check_pct(move || scene.play::<true>(), 4_000, 3);

@@ -72,13 +72,13 @@ fn an_event_whose_guard_held_when_the_activity_began_is_held() {
 }
 
 #[test]
-fn an_activity_that_is_asked_to_return_takes_no_more_time() {
+fn a_cancelled_activity_takes_no_more_time() {
     let text = format!("Liveness:\nm = A . B\nTransitions:\nA -> B interrupts : news\n{SLOW}");
     assert_eq!(told(same, &text), ["A 0 ball 1", "B 20 ball 9"]);
 }
 
 #[test]
-fn an_activity_that_is_to_be_left_before_it_begins_is_asked_from_the_start() {
+fn an_activity_cancelled_before_its_start_sees_the_request_at_once() {
     // A -> B wants to leave A in the step that enters it; its activity is asked as soon as it has
     // begun.
     let text = "Liveness:\nm = C . A . B\nTransitions:\nC -> A : news / raise(go)\nA -> B interrupts : go";
@@ -103,8 +103,7 @@ fn a_message_that_arrives_during_a_call_begins_the_next_one_at_its_end() {
 }
 
 #[test]
-fn where_leaving_a_state_interrupts_its_activity_the_chart_does_not_wait_and_a_late_return_is_of_no_interest()
-{
+fn an_interrupting_exit_does_not_wait_and_ignores_a_late_return() {
     // Entering the chart enters A, which locks the region before anything is delivered. It would
     // return at 50 ms. B, at 20 ms, sees the second ball on another blackboard, and never what A
     // has written.

@@ -328,7 +328,7 @@ fn the_end_of_a_run_asks_running_activities_to_return() {
 }
 
 #[test]
-fn a_chart_tells_how_long_its_steps_and_the_calls_of_its_activities_take() {
+fn a_chart_reports_durations_of_steps_and_calls() {
     let scene = Scene::new();
     let running = scene.start(same, "m = A . B");
     assert_eq!(scene.next(2), ["A", "B"]);

@@ -96,7 +96,7 @@ fn waiting(property: &str, on_violation: ViolationResponse) -> (Talws, Receiver<
 }
 
 #[test]
-fn a_bound_of_a_property_is_over_when_the_clock_says_so_though_the_chart_does_nothing() {
+fn a_time_bound_expires_by_the_clock_without_steps() {
     let (talws, violated) = waiting("eventually entering END within 20 ms", ViolationResponse::Log);
     let running = talws.start().unwrap();
     assert_eq!(next(&violated, 1), ["p"]);

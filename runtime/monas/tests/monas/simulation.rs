@@ -132,7 +132,7 @@ fn team(order: &[usize], seed: u64) -> (String, u64) {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_hash_in_whatever_order_hosts_and_agents_were_added() {
+fn the_hash_does_not_depend_on_the_order_of_hosts_and_agents() {
     let (hash, messages) = team(&[0, 1, 2], 7);
     assert_eq!(hash.len(), 64);
     // Per host: one introduction, and 2 agents x 20 cycles x (a ball and a record).
@@ -277,7 +277,7 @@ fn at_one_moment_the_world_moves_bodies_sense_agents_run_and_bodies_act() {
 }
 
 #[test]
-fn in_the_safe_state_the_body_rests_whatever_is_published() {
+fn the_safe_state_unloads_the_body_and_ignores_commands() {
     let walks = |b: &mut Blackboard| b.publish(ACTUATORS, Actuators { walk_x: 0.3, ..Actuators::default() });
     let fails = |b: &mut Blackboard| if b.now() < at(20) { Ok(()) } else { Err("broken leg") };
     let (talws, log) = embodied(vec![

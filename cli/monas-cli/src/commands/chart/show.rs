@@ -46,7 +46,7 @@ pub(crate) fn execute(
 /// The state of a chart as text.
 fn lines(state: &ChartState, snapshot: &Snapshot) -> Vec<String> {
     let ChartState { host, agent, model, state, .. } = state;
-    let seconds = |moment: yase::Moment| moment.as_nanos() as f64 / 1e9;
+    let seconds = |moment: yase::Timestamp| moment.as_nanos() as f64 / 1e9;
     let now = seconds(snapshot.now);
     let mut lines =
         vec![format!("{} ({model}) of {agent} on {host}: {state}, last step at {now:.3} s", snapshot.chart)];

@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_cannot_be_written_is_told() {
+    fn an_unwritable_folder_is_reported() {
         assert_eq!(sockets(None).state, CheckStatus::Warning);
         assert_eq!(sockets(Some(Path::new("/nowhere"))).state, CheckStatus::Warning);
         let folder = tempfile::tempdir().unwrap();

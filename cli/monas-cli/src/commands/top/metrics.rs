@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_list_whose_processor_time_nobody_reads_the_load_is_not_known() {
+    fn the_load_of_a_list_without_processor_time_is_unknown() {
         let agent = |state: &str| AgentEntry {
             cycle_time: times(0.004, 0.0),
             activities: vec![activity("A", state, 1, 0, None)],
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn what_burns_blocks_fails_or_is_stuck_is_named() {
+    fn busy_blocked_failing_and_stuck_agents_are_named() {
         let remark = |calls: u64, failures: u64, call_time: Option<Times>, state: &str| {
             let agent = |calls, failures| AgentEntry {
                 name: "a".into(),
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_whose_time_stands_has_no_rates() {
+    fn a_run_with_stopped_time_has_no_rates() {
         let agent = |cycles| AgentEntry { cycles, ..AgentEntry::default() };
         let figures = Metrics::between(&sample(3, vec![agent(5)], 1), &sample(3, vec![agent(6)], 2));
         assert_eq!((figures.agents[0].hz, figures.topics[0].hz), (0.0, 0.0));

@@ -52,7 +52,7 @@ fn times(violations: &Violations) -> Vec<u64> {
 }
 
 #[test]
-fn what_is_missed_in_time_is_found_when_the_time_is_over_and_each_time_anew() {
+fn missed_deadlines_are_reported_each_time() {
     let agent = |bound: &str| {
         let text = format!("always eventually entering A within {bound}");
         Agent::statechart("m", chart(LOOP)).monitor(properties(&text), ViolationResponse::Log)
@@ -107,7 +107,7 @@ fn a_violation_may_have_the_agent_do_what_it_does_when_an_activity_fails() {
 }
 
 #[test]
-fn what_does_not_begin_with_always_is_decided_once() {
+fn properties_without_always_are_decided_once() {
     let agent = Agent::statechart("m", chart(LOOP))
         .monitor(properties("not leaving A until [ball.found]"), ViolationResponse::Log);
     let (mut simulation, violations) = simulated(agent, noting().1);
@@ -171,7 +171,7 @@ fn a_replay_finds_the_same_violations() {
 }
 
 #[test]
-fn of_several_charts_each_keeps_to_its_own_properties() {
+fn each_of_several_charts_has_its_own_properties() {
     let rules = |text| ChartSettings::new().monitor(properties(text), ViolationResponse::Policy);
     let of = |first, second| {
         let agent = Agent::statechart("m", chart(LOOP))
@@ -187,7 +187,7 @@ fn of_several_charts_each_keeps_to_its_own_properties() {
 }
 
 #[test]
-fn names_that_nobody_knows_are_refused_before_the_run() {
+fn unknown_names_are_rejected_before_the_run() {
     let refused = |text: &str| {
         let agent = Agent::statechart("m", chart(LOOP)).monitor(properties(text), ViolationResponse::Log);
         Talws::new().registry(noting().1).agent(agent).simulate(1).unwrap_err().diagnostics()[0].code

@@ -126,7 +126,7 @@ fn statecharts_have_what_agents_have_as_they_or_the_thesis_write_it() {
 }
 
 #[test]
-fn what_is_said_of_a_statechart_is_checked() {
+fn statechart_settings_are_checked() {
     let chart = |attributes: &str, within: &str| {
         format!("<statechart {attributes}>models/walker.srm{within}</statechart>")
     };
@@ -200,7 +200,7 @@ fn names_that_are_not_known_come_with_the_nearest_that_is() {
 }
 
 #[test]
-fn values_that_cannot_be_meant_are_said() {
+fn implausible_values_are_reported() {
     check_agent(
         "priority='high'",
         "<activity>Vision</activity>",
@@ -233,7 +233,7 @@ fn values_that_cannot_be_meant_are_said() {
 }
 
 #[test]
-fn what_an_agent_lacks_is_said() {
+fn missing_parts_of_an_agent_are_reported() {
     check(
         "<agent thread_frequency='1'><activity>Vision</activity></agent>",
         &["agents.xml:1:2: error[E0305]: `agent` has no `name` (give it a `name`)"],
@@ -257,7 +257,7 @@ fn what_an_agent_lacks_is_said() {
 }
 
 #[test]
-fn two_agents_of_one_name_are_said() {
+fn two_agents_of_one_name_are_reported() {
     let agent = "<agent thread_frequency='1'><name>a</name><activity>Vision</activity></agent>\n";
     check(
         &agent.repeat(2),
@@ -298,7 +298,7 @@ fn parameters_are_checked_by_the_activity_that_has_them() {
 }
 
 #[test]
-fn ill_formed_xml_is_repaired_and_said() {
+fn ill_formed_xml_is_repaired_and_reported() {
     check_agent(
         "",
         "<activity>Vision",
@@ -345,7 +345,7 @@ fn two_mistakes_are_two_diagnostics() {
 }
 
 #[test]
-fn files_that_are_not_there_are_said_with_the_nearest_that_is() {
+fn missing_files_are_reported_with_the_nearest_one() {
     let text = "<agent><name>a</name><statechart>models/golie.srm</statechart></agent>";
     let expected =
         "agents.xml:1:34: error[E0316]: no model file `models/golie.srm` (did you mean `models/goalie.srm`?)";
@@ -375,7 +375,7 @@ fn a_model_is_found_from_the_folders_above() {
 }
 
 #[test]
-fn mistakes_in_a_model_are_said_with_their_place_in_it() {
+fn errors_in_a_model_are_reported_with_positions_in_it() {
     check_model(
         "m = Vsion . Behavior",
         &[
@@ -385,7 +385,7 @@ fn mistakes_in_a_model_are_said_with_their_place_in_it() {
 }
 
 #[test]
-fn mistakes_in_formulas_and_expressions_are_said_with_their_place_in_the_model() {
+fn errors_in_formulas_and_expressions_have_positions_in_the_model() {
     check_model(
         "m = Vision . . Behavior",
         &[

@@ -76,7 +76,7 @@ fn the_last_setting_of_a_value_holds() {
 }
 
 #[test]
-fn a_setting_of_what_is_not_there_is_said() {
+fn a_setting_of_a_missing_element_is_reported() {
     let said = |setting: &str| {
         let resolved = resolve(&set(Layers::new(), &[setting]));
         resolved.into_diagnostics().iter().map(ToString::to_string).collect::<Vec<_>>()
@@ -101,7 +101,7 @@ fn a_setting_of_what_is_not_there_is_said() {
 }
 
 #[test]
-fn a_setting_that_is_no_path_is_said() {
+fn a_setting_without_a_path_is_reported() {
     let said = |setting: &str| Layers::new().set(setting, &Grammar::agents()).unwrap_err().to_string();
     let how = "write `agent.NAME.priority=2`: a path, `=` and a value";
     for (setting, expected) in [

@@ -65,7 +65,7 @@ fn check_link(attributes: &str, elements: &str, expected: &[&str]) {
 }
 
 #[test]
-fn what_is_wrong_with_a_link_is_said_with_its_place_and_what_would_be_right() {
+fn link_errors_have_positions_and_hints() {
     let send = "<send topics='test/ball'/>";
     check_link(
         "",
@@ -135,7 +135,7 @@ fn what_is_wrong_with_a_link_is_said_with_its_place_and_what_would_be_right() {
 
 #[cfg(not(feature = "zenoh"))]
 #[test]
-fn zenoh_in_a_program_without_it_is_said_beside_what_else_is_wrong() {
+fn zenoh_in_a_program_without_it_is_reported_with_other_errors() {
     check_link(
         "transport='zenoh'",
         "<send topics='test/ball'/><listen>7447</listen><connect>10.0.0.2</connect>",
@@ -221,7 +221,7 @@ impl Activity for See {
 }
 
 #[test]
-fn what_runs_elsewhere_must_be_the_charts_and_come_over_a_link() {
+fn remote_activities_belong_to_a_chart_and_need_a_link() {
     let elsewhere = |names: &str, link: &str| {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("m.srm"), "m = See . Vision").unwrap();

@@ -43,7 +43,7 @@ fn swap(text: &str) -> Change {
 }
 
 #[test]
-fn a_model_is_swapped_and_what_is_active_goes_on() {
+fn active_states_survive_a_model_exchange() {
     let (mut simulation, told) = simulation("m = A . B");
     assert_eq!(told.taken(), ["A", "B first", "B again"]);
     // Another activity comes before, and one after; B is where it was, with what it remembers.
@@ -58,7 +58,7 @@ fn a_model_is_swapped_and_what_is_active_goes_on() {
 }
 
 #[test]
-fn a_model_that_is_wrong_is_refused_with_its_places_and_the_chart_goes_on() {
+fn an_invalid_model_is_rejected_with_positions_and_the_chart_continues() {
     let (mut simulation, told) = simulation("m = A . B");
     told.taken();
     for (text, code) in [("m = A . . B", "E0"), ("m = A . C", "E0318"), ("m = A", "E0356")] {
@@ -75,7 +75,7 @@ fn a_model_that_is_wrong_is_refused_with_its_places_and_the_chart_goes_on() {
 }
 
 #[test]
-fn a_state_that_is_gone_goes_on_in_the_one_that_is_named() {
+fn a_removed_state_is_replaced_by_the_mapped_one() {
     let (mut simulation, told) = simulation("m = A . B");
     told.taken();
     let text = "Liveness:\nm = A . Late\nStates:\nLate : activity = B";
@@ -91,7 +91,7 @@ fn a_state_that_is_gone_goes_on_in_the_one_that_is_named() {
 }
 
 #[test]
-fn a_chart_pauses_steps_stops_and_starts_anew() {
+fn a_chart_pauses_steps_stops_and_restarts() {
     let (mut simulation, told) = simulation("m = (A . B)~");
     told.taken();
     let mut ask = |action| made(&simulation.change("local", change(action, "m")).unwrap());

@@ -97,7 +97,7 @@ fn states(entry: &AgentEntry) -> Vec<&str> {
 }
 
 #[test]
-fn one_chart_is_idle_and_the_list_and_the_other_go_on() {
+fn an_idle_chart_does_not_stop_the_list_and_the_other() {
     let (mut simulation, told, _folder) = simulated();
     simulation.run_until(at(950)).unwrap();
     assert_eq!(counted(&told.taken()), [("Head 1", 10), ("Legs 2", 10), ("List 1", 5)]);
@@ -116,7 +116,7 @@ fn one_chart_is_idle_and_the_list_and_the_other_go_on() {
 }
 
 #[test]
-fn what_is_no_matter_of_one_chart_is_refused() {
+fn changes_beyond_one_chart_are_rejected() {
     let (mut simulation, _, _folder) = simulated();
     for (asked, code, says) in [
         (of_chart(Action::PauseAgent, "head.srm"), "E0352", "a statechart alone cannot be told that"),
@@ -153,7 +153,7 @@ fn what_is_no_matter_of_one_chart_is_refused() {
 }
 
 #[test]
-fn a_chart_is_set_and_saved_and_begins_anew_with_what_was_set() {
+fn a_changed_chart_is_saved_and_restarts_with_its_settings() {
     let (mut simulation, told, folder) = simulated();
     simulation.run_until(at(50)).unwrap();
     let set = |chart: &str, given: &[(&str, &str)]| Change {
@@ -264,7 +264,7 @@ fn in_real_time_one_chart_is_idle_and_the_list_and_the_other_go_on() {
 }
 
 #[test]
-fn an_activity_of_a_chart_fails_as_it_says_itself_or_as_its_chart_says() {
+fn an_activity_of_a_chart_has_its_own_policy_or_that_of_its_chart() {
     let failing = |chart: &str, of_agent: &str| {
         let registry = Registry::empty().with("Fails", || {
             |_: &mut monas::Blackboard| -> Result<Progress, monas::BoxError> { Err("no".into()) }

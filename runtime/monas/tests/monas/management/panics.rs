@@ -59,7 +59,7 @@ fn in_a_configuration_it_is_a_diagnostic() {
 }
 
 #[test]
-fn of_a_change_it_is_the_reason_why_not() {
+fn a_rejected_change_has_a_reason() {
     let (mut simulation, told) = simulation();
     let set = Change { settings: settings(&[("Fragile.speed", "3")]), ..change(Action::Set, "a") };
     let add = Change { activity: "Unmade".into(), ..change(Action::AddActivity, "a") };
@@ -72,7 +72,7 @@ fn of_a_change_it_is_the_reason_why_not() {
 }
 
 #[test]
-fn an_activity_that_panics_over_what_another_instance_took_goes_on() {
+fn an_activity_that_panics_on_a_taken_value_continues() {
     let (mut simulation, told) = simulation();
     simulation.run_until(at(100)).unwrap();
     let set = Change { settings: settings(&[("Fragile.speed", "1.5")]), ..change(Action::Set, "a") };

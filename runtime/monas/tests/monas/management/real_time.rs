@@ -106,7 +106,7 @@ fn charts_stop_start_and_take_another_model_while_they_run() {
 }
 
 #[test]
-fn an_agent_in_a_cycle_that_does_not_end_keeps_nobody_waiting_and_its_list_stays_as_it_is() {
+fn a_stuck_agent_blocks_no_other_and_keeps_its_list() {
     let (hangs, others) = (Arc::new(Barrier::new(2)), Arc::new(Barrier::new(2)));
     let (enter, leave) = (hangs.clone(), others.clone());
     let mut calls = 0;
@@ -148,7 +148,7 @@ fn a_run_ends_when_its_last_agent_has_stopped_by_itself() {
 }
 
 #[test]
-fn a_link_that_lets_strangers_change_agents_is_refused() {
+fn a_link_that_permits_changes_is_rejected() {
     let named = |name: &str, transport: LinkTransport, access: &str, topics: &str| {
         let access = if access.is_empty() { AccessList::open() } else { AccessList::parse(access).0 };
         let rule = ReceiveRule { topics: topics.into(), publish_as: PublishAs::Own };
@@ -191,7 +191,7 @@ fn a_link_that_lets_strangers_change_agents_is_refused() {
 }
 
 #[test]
-fn a_chart_takes_other_models_at_any_moment_of_a_call_and_goes_on_calling() {
+fn a_model_is_exchanged_at_any_time_of_a_call() {
     let (sender, told) = channel();
     let registry = Registry::empty().with("A", move || {
         let sender = sender.clone();

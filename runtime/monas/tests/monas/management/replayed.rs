@@ -223,7 +223,7 @@ fn in_simulated_time_agents_that_left_come_back() {
 }
 
 #[test]
-fn one_that_comes_back_as_another_than_then_is_another_run() {
+fn a_different_restart_is_another_run() {
     let mut messages = run_of_returns();
     let is_last = |kept: &&mut Kept| kept.topic == CHANGE.path() && kept.publisher == "outside";
     let kept = messages.iter_mut().rfind(is_last).unwrap();
@@ -236,7 +236,7 @@ fn one_that_comes_back_as_another_than_then_is_another_run() {
 }
 
 #[test]
-fn who_was_refused_for_the_sake_of_one_that_is_not_replayed_is_not_brought_back() {
+fn a_change_rejected_because_of_an_unreplayed_agent_is_not_repeated() {
     let tape = Tape::default();
     let mut talws = agents();
     talws.observe(Box::new(tape.clone()));
@@ -519,7 +519,7 @@ fn in_real_time_another_change_in_the_place_of_the_recorded_one_is_another_run()
 }
 
 #[test]
-fn in_real_time_what_the_recording_does_not_tell_is_refused_with_the_reason() {
+fn in_real_time_missing_records_are_rejected_with_the_reason() {
     let is_ordered = |kept: &Kept| {
         kept.topic == CYCLE.path() && Cycle::decode(&kept.bytes[..]).unwrap().turn() == Turn::Ordered
     };
@@ -579,7 +579,7 @@ fn in_real_time_agents_that_left_come_back() {
 }
 
 #[test]
-fn in_real_time_a_chart_that_left_comes_back_from_its_beginning() {
+fn in_real_time_a_removed_chart_restarts_from_its_start() {
     let folder = tempfile::tempdir().unwrap();
     let model = folder.path().join("m.srm");
     std::fs::write(&model, "m = Play . Play . Watch").unwrap();
@@ -598,7 +598,7 @@ fn in_real_time_a_chart_that_left_comes_back_from_its_beginning() {
 }
 
 #[test]
-fn in_real_time_an_agent_comes_back_thread_by_thread_if_it_has_those_that_it_had() {
+fn in_real_time_an_agent_is_restored_thread_by_thread() {
     let folder = tempfile::tempdir().unwrap();
     for (file, model) in [("m.srm", "m = Play . Watch"), ("n.srm", "n = Watch")] {
         std::fs::write(folder.path().join(file), model).unwrap();
@@ -658,7 +658,7 @@ fn in_real_time_a_list_begins_again_where_it_began() {
 }
 
 #[test]
-fn in_real_time_a_list_of_which_the_recording_does_not_tell_how_it_began_is_refused() {
+fn in_real_time_a_list_without_a_recorded_start_is_rejected() {
     let [first, ..] = with_a_list();
     let mut messages = live_run(mind, &[first]);
     let is_ordered = |kept: &Kept| {

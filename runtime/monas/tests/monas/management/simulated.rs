@@ -54,7 +54,7 @@ fn activities_come_go_and_change_places_between_two_cycles() {
 }
 
 #[test]
-fn an_agent_pauses_steps_goes_on_stops_and_starts() {
+fn an_agent_pauses_steps_resumes_stops_and_starts() {
     let (mut simulation, told) = simulation();
     made(&ask(&mut simulation, change(Action::PauseAgent, "a")));
     simulation.run_until(at(1000)).unwrap();
@@ -78,7 +78,7 @@ fn an_agent_pauses_steps_goes_on_stops_and_starts() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_with_a_reason_and_changes_nothing() {
+fn impossible_changes_are_rejected_with_a_reason() {
     let (mut simulation, told) = simulation();
     let of = |action, activity: &str| Change { activity: activity.into(), ..change(action, "a") };
     let set = |given: &[(&str, &str)]| Change { settings: settings(given), ..change(Action::Set, "a") };

@@ -33,7 +33,7 @@ impl<F: Fn(f64) + Send> Robot for Body<F> {
 }
 
 #[test]
-fn a_stuck_cycle_is_named_cut_off_from_publishing_and_ends_the_run_with_a_body_at_rest() {
+fn a_stuck_cycle_is_reported_and_ends_the_run_with_the_body_unloaded() {
     let (enter, leave) = (Arc::new(Barrier::new(2)), Arc::new(Barrier::new(2)));
     let (here, there) = (enter.clone(), leave.clone());
     let mut calls = 0;
@@ -85,7 +85,7 @@ fn a_stuck_cycle_is_named_cut_off_from_publishing_and_ends_the_run_with_a_body_a
 }
 
 #[test]
-fn an_agent_that_comes_back_from_being_stuck_has_stopped_and_starts_again() {
+fn a_stuck_agent_that_returns_has_stopped_and_can_restart() {
     let (enter, leave) = (Arc::new(Barrier::new(2)), Arc::new(Barrier::new(2)));
     let (here, there) = (enter.clone(), leave.clone());
     let (sender, called) = channel();
@@ -121,7 +121,7 @@ fn an_agent_that_comes_back_from_being_stuck_has_stopped_and_starts_again() {
 }
 
 #[test]
-fn what_the_system_does_not_grant_is_said_and_the_agent_runs_on() {
+fn denied_scheduling_is_reported_and_the_agent_runs() {
     let (sender, called) = channel();
     let agent = Agent::new("a", Hz(1000)).activity(move |_: &mut Blackboard| _ = sender.send(()));
     let running = Talws::new().agent(agent.urgency(5, true).cores([0])).start().unwrap();
@@ -181,7 +181,7 @@ fn statistics_are_published_as_often_as_they_are_wanted() {
 }
 
 #[test]
-fn a_chart_that_ends_ends_the_run_and_its_failure_is_told() {
+fn a_chart_that_ends_ends_the_run_and_its_failure_is_reported() {
     let chart = aseme_models::statechart_of(&yase::Source::new("m.srm", "m = A")).0;
     let fails = || |_: &mut Blackboard| -> Result<(), std::fmt::Error> { Err(std::fmt::Error) };
     let agent = Agent::statechart("m", chart).on_failure(FailurePolicy::StopAgent);
