@@ -198,10 +198,10 @@ pub fn assert_silent_alike(
     chart: Arc<CompiledChart>,
     script: &Script,
 ) {
-    let told: Vec<&String> =
+    let expected: Vec<&String> =
         seen.log.iter().filter(|line| line.starts_with("  ") || line.starts_with("error")).collect();
     let alike = |machine: &Machine, log: &[String]| {
-        assert_eq!(told, log.iter().collect::<Vec<_>>());
+        assert_eq!(expected, log.iter().collect::<Vec<_>>());
         assert_eq!(traced.configuration(), machine.configuration());
         assert_eq!((traced.status(), traced.next_deadline()), (machine.status(), machine.next_deadline()));
     };
@@ -221,12 +221,12 @@ pub fn run(interpreter: &mut impl Interpreter, script: &Script, world: &mut Worl
         while let Some((_, input)) = inputs.next_if(|(time, _)| Timestamp::from_millis(*time) <= now) {
             apply(interpreter, world, input);
         }
-        if !settle(interpreter, now, world) {
+        if !run_until_idle(interpreter, now, world) {
             return;
         }
         let next = [
             inputs.peek().map(|(time, _)| Timestamp::from_millis(*time)),
-            world.jobs.iter().map(|job| job.due).min(),
+            world.running.iter().map(|job| job.due).min(),
             interpreter.next_deadline(),
         ];
         let Some(next) = next.into_iter().flatten().min() else { return };
@@ -254,9 +254,9 @@ fn report_arrivals(interpreter: &mut impl Interpreter, world: &mut World) {
 }
 
 /// Processes activities and steps until nothing is due. Returns false if the interpreter failed.
-fn settle(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World) -> bool {
+fn run_until_idle(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World) -> bool {
     loop {
-        while let Some(index) = (0..world.jobs.len()).find(|&index| world.jobs[index].due <= now) {
+        while let Some(index) = (0..world.running.len()).find(|&index| world.running[index].due <= now) {
             advance(interpreter, now, world, index);
         }
         if !interpreter.needs_step(now) {
@@ -272,7 +272,7 @@ fn settle(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World)
 
 /// An activity returns or, if it waits, is called again.
 fn advance(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World, index: usize) {
-    let job = &mut world.jobs[index];
+    let job = &mut world.running[index];
     let activation = job.activation;
     if job.waits {
         match interpreter.resumed(activation) {
@@ -286,6 +286,6 @@ fn advance(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World
     (job.waits, job.due) = (true, now + Duration::from_millis(10));
     world.say(text);
     if !interpreter.returned(activation, outcome) || outcome != Outcome::Ongoing {
-        world.jobs.remove(index);
+        world.running.remove(index);
     }
 }

@@ -16,10 +16,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use yase::statechart::{NodeId, Statechart, TransitionId};
 use yase::{Activation, Outcome, ScopeId, Semantics, Timestamp, TopicId};
 
-use crate::chance::Chance;
+use crate::chance::ChoiceSource;
 use crate::script::Interpreter;
 use crate::world::{TOPICS, World};
-use transitions::Way;
+use transitions::StaticPath;
 use tree::Tree;
 
 /// A failure that stops the chart.
@@ -42,9 +42,9 @@ pub(crate) struct Occurrence {
 /// An event held for running activities: the transitions it would take, and whether it is offered
 /// again.
 #[derive(Clone, Debug)]
-struct Held {
+struct HeldEvent {
     occurrence: Occurrence,
-    ways: Vec<Way>,
+    ways: Vec<StaticPath>,
     offer: bool,
 }
 
@@ -58,7 +58,7 @@ enum Phase {
 }
 
 #[derive(Clone, Debug)]
-struct Job {
+struct RunningActivity {
     phase: Phase,
     number: u64,
     cancelled: bool,
@@ -86,12 +86,12 @@ pub(crate) struct Stepper<'c> {
     chart: &'c Statechart,
     tree: Tree,
     semantics: Semantics,
-    pub(crate) chance: Chance,
+    pub(crate) chance: ChoiceSource,
     running_chart: bool,
     now: Timestamp,
     due: bool,
     active: BTreeSet<NodeId>,
-    jobs: BTreeMap<NodeId, Job>,
+    running: BTreeMap<NodeId, RunningActivity>,
     job_count: u64,
     timers: BTreeMap<(ScopeId, String), Deadline>,
     timer_numbers: Vec<(ScopeId, String)>,
@@ -106,20 +106,20 @@ pub(crate) struct Stepper<'c> {
     raised: Vec<Occurrence>,
     arrived: Vec<Occurrence>,
     deferred: Vec<Occurrence>,
-    held: Vec<Held>,
-    pending: Vec<(Way, Option<String>)>,
+    held: Vec<HeldEvent>,
+    pending: Vec<(StaticPath, Option<String>)>,
     erred: BTreeSet<(TransitionId, ScopeId)>,
     stale: BTreeSet<(TransitionId, ScopeId)>,
     written: BTreeSet<ScopeId>,
     waiting: BTreeSet<NodeId>,
     /// Candidates of this micro-step: transitions, and the state at which each was found.
-    found: Vec<(NodeId, Way)>,
+    found: Vec<(NodeId, StaticPath)>,
     /// The active leaves from which a candidate was found, outward.
     closed: BTreeSet<NodeId>,
     /// The active leaves at the start of the micro-step.
     leaves: Vec<NodeId>,
     /// The segments whose guards have failed in this micro-step, each reported once.
-    told: BTreeSet<TransitionId>,
+    reported: BTreeSet<TransitionId>,
     /// The segments with weights that were drawn in this micro-step.
     drawn: Vec<TransitionId>,
     line: Line,
@@ -141,7 +141,7 @@ impl<'c> Stepper<'c> {
     pub(crate) fn new(
         chart: &'c Statechart,
         semantics: Semantics,
-        chance: Chance,
+        chance: ChoiceSource,
         timer_numbers: Vec<(ScopeId, String)>,
     ) -> Stepper<'c> {
         Stepper {
@@ -153,7 +153,7 @@ impl<'c> Stepper<'c> {
             now: Timestamp::ZERO,
             due: false,
             active: BTreeSet::new(),
-            jobs: BTreeMap::new(),
+            running: BTreeMap::new(),
             job_count: 0,
             timers: BTreeMap::new(),
             timer_numbers,
@@ -175,7 +175,7 @@ impl<'c> Stepper<'c> {
             found: vec![],
             closed: BTreeSet::new(),
             leaves: vec![],
-            told: BTreeSet::new(),
+            reported: BTreeSet::new(),
             drawn: vec![],
             line: Line::default(),
             micro_steps: 0,
@@ -232,7 +232,7 @@ impl Interpreter for Stepper<'_> {
     }
 
     fn returned(&mut self, activation: Activation, outcome: Outcome) -> bool {
-        let Some(job) = self.jobs.get_mut(&activation.node) else { return false };
+        let Some(job) = self.running.get_mut(&activation.node) else { return false };
         if !self.running_chart || job.number != activation.number {
             return false;
         }
@@ -243,8 +243,8 @@ impl Interpreter for Stepper<'_> {
             Outcome::Failed => Phase::Failed,
         };
         let mut held = std::mem::take(&mut self.held);
-        for Held { ways, offer, .. } in &mut held {
-            let in_the_way = |way: &Way| {
+        for HeldEvent { ways, offer, .. } in &mut held {
+            let in_the_way = |way: &StaticPath| {
                 self.exit_set(way).contains(&activation.node)
                     || way.sources.iter().any(|&source| self.region(source) == activation.region)
             };
@@ -262,7 +262,7 @@ impl Interpreter for Stepper<'_> {
 
     fn resumed(&mut self, activation: Activation) -> bool {
         let about_to_be_left = self.pending.iter().any(|(way, _)| self.would_leave(way, activation.node));
-        let Some(job) = self.jobs.get_mut(&activation.node) else { return false };
+        let Some(job) = self.running.get_mut(&activation.node) else { return false };
         assert_eq!((job.number, job.phase), (activation.number, Phase::Ongoing));
         if about_to_be_left {
             return false;

@@ -66,7 +66,7 @@ pub struct Board {
 
 /// An activity that runs or waits to be called again.
 #[derive(Clone, Debug)]
-pub struct Job {
+pub struct RunningActivity {
     /// Its activation.
     pub activation: Activation,
     /// The activity.
@@ -89,7 +89,7 @@ pub struct World {
     /// The blackboard of each scope.
     pub boards: BTreeMap<ScopeId, Board>,
     /// The activities that run or wait.
-    pub jobs: Vec<Job>,
+    pub running: Vec<RunningActivity>,
     /// Published topics whose arrival has not been reported.
     pub arrivals: Vec<TopicId>,
     /// The log, one line per entry.
@@ -148,7 +148,7 @@ impl World {
     }
 
     /// The outcome of an activity: `ongoing…` ends after its third call, `failing…` always fails.
-    pub fn outcome(job: &Job) -> Outcome {
+    pub fn outcome(job: &RunningActivity) -> Outcome {
         match job.name.as_str() {
             name if name.starts_with("ongoing") && job.calls < 3 => Outcome::Ongoing,
             name if name.starts_with("failing") => Outcome::Failed,
@@ -244,12 +244,12 @@ impl Host for World {
         let (name, duration) = self.activities[&activation.node].clone();
         self.say(format!("  start {name}"));
         let due = self.now + duration;
-        self.jobs.push(Job { activation, name, duration, due, waits: false, calls: 1 });
+        self.running.push(RunningActivity { activation, name, duration, due, waits: false, calls: 1 });
     }
 
     fn cancel(&mut self, activation: Activation) {
         let soon = self.now + Duration::from_millis(1);
-        let job = self.jobs.iter_mut().find(|job| job.activation == activation).expect("it runs");
+        let job = self.running.iter_mut().find(|job| job.activation == activation).expect("it runs");
         assert!(!job.waits);
         job.due = job.due.min(soon);
         let text = format!("  cancel {}", job.name);
@@ -257,8 +257,8 @@ impl Host for World {
     }
 
     fn stop(&mut self, activation: Activation) {
-        let index = self.jobs.iter().position(|job| job.activation == activation).expect("it waits");
-        let job = self.jobs.remove(index);
+        let index = self.running.iter().position(|job| job.activation == activation).expect("it waits");
+        let job = self.running.remove(index);
         assert!(job.waits);
         self.say(format!("  stop {}", job.name));
     }

@@ -46,7 +46,7 @@ const A: TopicId = TopicId(0);
 struct World {
     traces: bool,
     boards: [i64; 8],
-    jobs: [Option<Activation>; 3],
+    running: [Option<Activation>; 3],
     /// Accumulates data of trace records, so that they are read.
     seen: usize,
     published: u64,
@@ -85,13 +85,13 @@ impl Host for World {
     }
 
     fn start(&mut self, activation: Activation) {
-        assert!(self.jobs[activation.region.0 as usize].replace(activation).is_none());
+        assert!(self.running[activation.region.0 as usize].replace(activation).is_none());
     }
 
     fn cancel(&mut self, _: Activation) {}
 
     fn stop(&mut self, activation: Activation) {
-        assert_eq!(self.jobs[activation.region.0 as usize].take(), Some(activation));
+        assert_eq!(self.running[activation.region.0 as usize].take(), Some(activation));
     }
 
     fn wants_trace(&self) -> bool {
@@ -158,14 +158,14 @@ impl Run {
 
     /// The activity of a region returns and has finished.
     fn returns(&mut self, region: usize) {
-        let activation = self.world.jobs[region].take().unwrap();
+        let activation = self.world.running[region].take().unwrap();
         assert!(self.machine.activity_returned(activation, Outcome::Done));
         self.step(1);
     }
 
     /// The activity of a region returns, and is called again.
     fn is_called_again(&mut self, region: usize) {
-        let activation = self.world.jobs[region].unwrap();
+        let activation = self.world.running[region].unwrap();
         assert!(self.machine.activity_returned(activation, Outcome::Ongoing));
         self.step(1);
         assert!(self.machine.activity_resumed(activation));

@@ -118,8 +118,8 @@ impl Generation {
 
 /// Prints a directive to cargo.
 fn print_cargo_directive(line: &str) -> Result<(), Error> {
-    let told = writeln!(std::io::stdout(), "cargo::{line}");
-    told.map_err(|error| Error::from_message(format!("cannot write to cargo: {error}")))
+    let written = writeln!(std::io::stdout(), "cargo::{line}");
+    written.map_err(|error| Error::from_message(format!("cannot write to cargo: {error}")))
 }
 
 /// An activity without implementation: generated code in a build folder has no skeletons.

@@ -169,14 +169,19 @@ impl MutantCollector<'_> {
     fn transition(
         &mut self,
         id: TransitionId,
-        told: MutantDescription,
+        mutation: MutantDescription,
         change: impl FnOnce(&mut Transition),
     ) {
-        self.changed(id, told, |chart| change(chart.transition_mut(id)));
+        self.changed(id, mutation, |chart| change(chart.transition_mut(id)));
     }
 
     /// Adds a mutant with one transition and dependent elements replaced.
-    fn changed(&mut self, id: TransitionId, told: MutantDescription, change: impl FnOnce(&mut Statechart)) {
+    fn changed(
+        &mut self,
+        id: TransitionId,
+        mutation: MutantDescription,
+        change: impl FnOnce(&mut Statechart),
+    ) {
         let mut chart = self.chart.clone();
         change(&mut chart);
         if chart.transition(id) == self.chart.transition(id) {
@@ -185,15 +190,15 @@ impl MutantCollector<'_> {
         let it = chart.transition(id);
         let what = format!("{} {} {} {}", id.0, it.target.0, it.priority, it.expression);
         let span = self.places.get(id.0 as usize).copied().unwrap_or_default();
-        self.add(&what, self.arrow(id), span, told, chart);
+        self.add(&what, self.arrow(id), span, mutation, chart);
     }
 
     /// Adds a mutant unless an equal one exists.
-    fn add(&mut self, what: &str, place: String, span: Span, told: MutantDescription, chart: Statechart) {
+    fn add(&mut self, what: &str, place: String, span: Span, mutation: MutantDescription, chart: Statechart) {
         if !self.known.insert(what.to_owned()) {
             return;
         }
-        let MutantDescription { kind, change, wanted } = told;
+        let MutantDescription { kind, change, wanted } = mutation;
         let description = format!("{place}: {change}");
         self.made.push((place, Mutant { kind, name: String::new(), description, wanted, span, chart }));
     }

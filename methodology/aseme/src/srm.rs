@@ -22,11 +22,10 @@
 //! decision: CONDITION -> SearchBall : via = 80 60
 //! ```
 //!
-//! - **Transitions**:
-//!   `[scope:] source -> target [also] [!priority] [%weight] [interrupts] [internal] [: expression]`.
-//!   Paths are described in [`path`](crate::path); `scope: a -> b` is short for
-//!   `scope/a -> scope/b`. A line without `->` continues the entry above it. `also` adds a
-//!   transition parallel to the one referred to, such as an exit that the formulas do not have.
+//! - **Transitions**: `[scope:] source -> target [also] [!priority] [%weight] [interrupts]
+//!   [internal] [: expression]`. Paths are described in [`path`](crate::path); `scope: a -> b` is
+//!   short for `scope/a -> scope/b`. A line without `->` continues the entry above it. `also` adds
+//!   a transition parallel to the one referred to, such as an exit that the formulas do not have.
 //! - **States**: `path : key = value, ...` with the keys `activity`, `priority`, `entry`, `exit`,
 //!   `defer`, `duration` and, for composites, `history`: with `shallow` or `deep` a composite that
 //!   is entered again resumes where it was left. A line without `:` continues the entry above it.

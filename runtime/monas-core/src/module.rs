@@ -14,8 +14,8 @@
 //! # fn main() {}
 //! ```
 //!
-//! `ModuleFile::load` of the crate `monas-module` loads it, and a [`Registry`](crate::Registry) [with
-//! it](crate::Registry::with_module) contains its activities. The element
+//! `ModuleFile::load` of the crate `monas-module` loads it;
+//! [`Registry::with_module`](crate::Registry::with_module) adds its activities. The element
 //! `<module>libeyes.so</module>` of a configuration and the command `monas module load libeyes.so`
 //! in a run do the same.
 //!

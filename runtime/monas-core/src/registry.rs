@@ -163,7 +163,8 @@ impl Registry {
             if let Some((taken, _)) = makers.and_then(<[_]>::first) {
                 let message =
                     format!("activity `{}` of module `{}` is also in {taken}", activity.name, module.name());
-                let hint = format!("call it otherwise: `monas::activity!(.. as \"Other{}\")`", activity.name);
+                let hint =
+                    format!("give it another name: `monas::activity!(.. as \"Other{}\")`", activity.name);
                 return Err(Error::new(ErrorKind::Module, message).with_hint(hint));
             }
             let made = *activity;

@@ -65,7 +65,7 @@ impl Logger {
     /// `tracing` queries the wanted events when the log begins.
     ///
     /// # Errors
-    /// The file cannot be created, the system cannot create a thread, or the log has begun before.
+    /// The file or a thread cannot be created, or the log was started already.
     pub fn begin(&self, settings: LogSettings) -> io::Result<()> {
         self.begin_with(settings, |lines| {
             // A failure to write to the console cannot be reported.
@@ -82,7 +82,7 @@ impl Logger {
         settings: LogSettings,
         console: impl Fn(&[u8]) + Send + Sync + 'static,
     ) -> io::Result<()> {
-        let again = || io::Error::new(io::ErrorKind::AlreadyExists, "the log has begun before");
+        let again = || io::Error::new(io::ErrorKind::AlreadyExists, "the log was started already");
         if self.shared.begun.get().is_some() {
             return Err(again());
         }
@@ -140,7 +140,9 @@ impl LoggerShared {
         let dropped = queue.take_dropped();
         if dropped > 0 {
             outputs.add(
-                &Record::of_logger(format_args!("{dropped} messages were dropped here: they came too fast")),
+                &Record::of_logger(format_args!(
+                    "{dropped} messages were dropped here: the rate was too high"
+                )),
                 batch,
             );
         }

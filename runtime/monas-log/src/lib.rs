@@ -34,7 +34,7 @@
 //!
 //! | element | means |
 //! |---|---|
-//! | `MessageLogFile` | the file, which is begun anew; none if it is not said |
+//! | `MessageLogFile` | the file, which is overwritten; by default none |
 //! | `MessageLogCerr` | `1` for the console too |
 //! | `MessageLogCerrColor` | `1` for colours there |
 //! | `MessageLogFilter` | the activities or agents whose messages are wanted, or `all` |

@@ -4,7 +4,8 @@
 //! [`ModuleFile::load`] compares the fingerprint with that of the program, loads a copy of the
 //! file, compares types, and returns the [`Module`](monas_core::Module) for a
 //! [`Registry`](monas_core::Registry). The part that is compiled into modules is
-//! [`monas_core::module`](mod@monas_core::module), which also describes compatibility, state and lifetime.
+//! [`monas_core::module`](mod@monas_core::module), which also describes compatibility, state and
+//! lifetime.
 //!
 //! ```no_run
 //! use monas_core::Registry;

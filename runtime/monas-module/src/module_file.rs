@@ -13,7 +13,7 @@ use monas_core::module::note::{self, BuildFingerprint, FingerprintMismatch};
 const MOST: u64 = 1 << 30;
 
 /// How to build a compatible module.
-pub(crate) const HINT: &str = "`monas module build` builds it as this program is built";
+pub(crate) const HINT: &str = "build it like this program by `monas module build`";
 
 /// The bytes of a module and the note in them.
 #[derive(Clone)]
@@ -99,7 +99,7 @@ fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
 
 fn unread(path: &Path, reason: &str) -> Vec<Diagnostic> {
     let message = format!("{}: {reason}", path.display());
-    vec![Diagnostic::error("E0360", 0..0, message).with_hint("a module is what `monas module build` writes")]
+    vec![Diagnostic::error("E0360", 0..0, message).with_hint("modules are written by `monas module build`")]
 }
 
 #[cfg(test)]

@@ -209,7 +209,7 @@ impl RunHandle {
     /// # Errors
     /// Why the query cannot be answered.
     pub fn manage(&self, inquiry: &[u8]) -> Result<Vec<u8>, String> {
-        let inquiry = Inquiry::decode(inquiry).map_err(|_| "what is asked is not understood".to_owned())?;
+        let inquiry = Inquiry::decode(inquiry).map_err(|_| "invalid request".to_owned())?;
         let host = (!inquiry.host.is_empty()).then_some(inquiry.host.as_str());
         let mut reply = Reply::default();
         if inquiry.agents {
@@ -237,7 +237,7 @@ impl RunHandle {
             (Some(only), true) => Ok(only),
             (None, _) => Err(format!("no agent is named `{agent}`")),
             (Some(last), false) => {
-                Err(format!("`{agent}` is on several hosts: say which of {}, {last}", hosts.join(", ")))
+                Err(format!("`{agent}` is on several hosts: name one of {}, {last}", hosts.join(", ")))
             }
         }
     }
@@ -251,7 +251,7 @@ impl RunHandle {
         match &hosts[..] {
             [only] => Ok(only.clone()),
             [] => Err("the run has no host".into()),
-            several => Err(format!("there are several hosts: say which of {}", several.join(", "))),
+            several => Err(format!("there are several hosts: name one of {}", several.join(", "))),
         }
     }
 }
@@ -263,11 +263,11 @@ fn submit<T>(
 ) -> Result<T, String> {
     let (answer, answered) = sync_channel(1);
     inlet.try_send(what(answer)).map_err(|error| match error {
-        TrySendError::Full(_) => format!("{WAITING} messages from outside wait already"),
+        TrySendError::Full(_) => format!("{WAITING} external messages are queued already"),
         TrySendError::Disconnected(_) => "the run has ended".to_owned(),
     })?;
     answered.recv_timeout(PATIENCE).map_err(|error| match error {
-        RecvTimeoutError::Timeout => "the run stands still and takes nothing".to_owned(),
+        RecvTimeoutError::Timeout => "the run is stopped and accepts nothing".to_owned(),
         RecvTimeoutError::Disconnected => "the run has ended".to_owned(),
     })
 }

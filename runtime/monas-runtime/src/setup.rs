@@ -81,7 +81,7 @@ fn with_modules(registry: Registry, hosts: &[HostConfig]) -> Result<Registry, Er
         Some(known) if known.digest() == module.digest() => Ok(registry),
         Some(known) => {
             let (one, other) = (known.file().display(), module.file().display());
-            let message = format!("two modules are called `{}`: {one} and {other}", module.name());
+            let message = format!("two modules have the name `{}`: {one} and {other}", module.name());
             Err(Error::new(ErrorKind::Module, message))
         }
         None => registry.with_module(module.clone()),
@@ -144,17 +144,21 @@ fn reject_changes_over_links(ground: &HostContext, links: &[LinkConfig]) -> Resu
         let host = ground.hub.host();
         let (message, hint) = match (access.is_open(), stranger) {
             (true, _) => (
-                format!("a link of `{host}` lets anybody change its agents"),
-                "give the link an `access` list that says who may, or do not receive `monas/change` as its own".into(),
+                format!("a link of `{host}` lets any peer change its agents"),
+                "give the link an `access` list, or do not receive `monas/change` as its own".into(),
             ),
             (false, Some(stranger)) => (
-                format!("a link of `{host}` lets `{stranger}` publish changes of its agents, who may not manage them"),
-                format!("add `{stranger} manage` to the access list, or name the topics that `{stranger}` may publish"),
+                format!(
+                    "a link of `{host}` lets `{stranger}` publish changes of its agents without the right to manage them"
+                ),
+                format!(
+                    "add `{stranger} manage` to the access list, or name the topics that `{stranger}` may publish"
+                ),
             ),
             (false, None) if is_believed(&link.transport) => continue,
             (false, None) => (
-                format!("a link of `{host}` lets anybody change its agents who takes the name of one who may manage them"),
-                "give the link `certificates`, and endpoints that begin with `tls/`".into(),
+                format!("a link of `{host}` lets any peer change its agents under the name of a manager"),
+                "give the link `certificates` and `tls/` endpoints".into(),
             ),
         };
         return Err(Error::new(ErrorKind::Link, message).with_hint(hint));

@@ -54,7 +54,7 @@ fn to(file: &Path) -> LogSettings {
     LogSettings { file: Some(file.into()), verbosity: Severity::ExtraExtraInfo, ..LogSettings::default() }
 }
 
-/// What is written into the file while `speak` runs.
+/// The content of the file after `speak` has run.
 fn written(settings: impl FnOnce(LogSettings) -> LogSettings, speak: impl FnOnce()) -> String {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("log.txt");
@@ -74,8 +74,8 @@ fn settings_in(name: &str, text: &str) -> (LogSettings, Vec<String>) {
     let file = folder.path().join(name);
     std::fs::write(&file, text).unwrap();
     let (settings, diagnostics) = LogSettings::load(file);
-    let told = diagnostics.iter().map(|found| format!("{}: {}", found.code, found.message));
-    (settings, told.collect())
+    let messages = diagnostics.iter().map(|found| format!("{}: {}", found.code, found.message));
+    (settings, messages.collect())
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn a_line_has_robot_activity_and_time_and_is_reproducible() {
     assert_eq!(of(&["Behaviour"]).lines().count(), 1);
 }
 
-/// A dispatch whose logger writes nothing and publishes this.
+/// A dispatch whose logger writes nothing and publishes lines of this severity.
 fn publishing(least_grave: Option<Severity>) -> Dispatch {
     let (layer, logger) = logger::layer();
     let dispatch = Dispatch::new(tracing_subscriber::registry().with(layer));
@@ -204,7 +204,7 @@ fn publishing(least_grave: Option<Severity>) -> Dispatch {
     dispatch
 }
 
-/// What is published of a run of so many cycles at 100 Hz, and its hash.
+/// The lines published by a run of some cycles at 100 Hz, and its hash.
 fn published(talws: Talws, least_grave: Option<Severity>, cycles: u64) -> (Vec<(String, Log)>, String) {
     let (lines, hash) = (Arc::new(Mutex::new(Vec::new())), RunHash::new());
     let (mut talws, seen) = (talws, lines.clone());
@@ -363,14 +363,14 @@ fn a_log_begins_once() {
     assert!(other.begin(to(&folder.path().join("no/folder"))).is_err());
 }
 
-/// Names the file of a process that is killed.
-const DOOMED: &str = "MONAS_LOG_OF_THE_DOOMED";
+/// The variable with the file of the process that is killed.
+const CHILD_LOG: &str = "MONAS_CHILD_LOG";
 
-/// In a process of its own that runs this very test: writes two lines and says so, and comes to its
-/// end. Here: what the file holds when that process is gone. `is_killed` says whether it is killed
-/// from here.
-fn of_the_doomed(test: &str, is_killed: bool, end: fn()) -> String {
-    if let Some(file) = std::env::var_os(DOOMED) {
+/// Runs this test in a child process, which writes two lines, reports that, and ends by `end`.
+/// Returns the content of the file after the child has ended; `is_killed` says whether the child is
+/// killed.
+fn file_after_end(test: &str, is_killed: bool, end: fn()) -> String {
+    if let Some(file) = std::env::var_os(CHILD_LOG) {
         let (dispatch, _logger) =
             begun(LogSettings { verbosity: Severity::FatalError, ..to(Path::new(&file)) });
         tracing::dispatcher::with_default(&dispatch, || {
@@ -386,7 +386,7 @@ fn of_the_doomed(test: &str, is_killed: bool, end: fn()) -> String {
     let file = folder.path().join("log.txt");
     let mut process = Command::new(std::env::current_exe().unwrap())
         .args([test, "--exact", "--nocapture"])
-        .env(DOOMED, &file)
+        .env(CHILD_LOG, &file)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
@@ -403,14 +403,14 @@ fn of_the_doomed(test: &str, is_killed: bool, end: fn()) -> String {
 
 #[test]
 fn errors_are_on_the_disk_when_a_process_aborts() {
-    let log = of_the_doomed("errors_are_on_the_disk_when_a_process_aborts", false, || std::process::abort());
+    let log = file_after_end("errors_are_on_the_disk_when_a_process_aborts", false, || std::process::abort());
     assert_eq!(without_times(&log), ["ERROR one leg is gone", "FATAL so is the other"]);
 }
 
 #[test]
 fn errors_are_on_the_disk_when_a_process_is_killed() {
     let wait = || drop(std::io::stdin().read_line(&mut String::new()));
-    let log = of_the_doomed("errors_are_on_the_disk_when_a_process_is_killed", true, wait);
+    let log = file_after_end("errors_are_on_the_disk_when_a_process_is_killed", true, wait);
     assert_eq!(without_times(&log), ["ERROR one leg is gone", "FATAL so is the other"]);
 }
 
@@ -440,7 +440,7 @@ fn lines_beyond_the_write_rate_are_dropped_and_reported() {
     drop((dispatch, logger));
     let lines = reading.join().unwrap();
     let dropped = lines.iter().filter_map(|line| {
-        let said = line.strip_suffix(" messages were dropped here: they came too fast")?;
+        let said = line.strip_suffix(" messages were dropped here: the rate was too high")?;
         said.rsplit(' ').next()?.parse::<usize>().ok()
     });
     let dropped: Vec<usize> = dropped.collect();

@@ -75,9 +75,10 @@ impl RustEmitter<'_> {
         };
         self.lines(&format!(
             "\
-//! {chart}, flattened: generated, so that changes here are lost when it is generated again.
+//! {chart}, flattened. Generated: changes here are lost.
 //!
-//! `State::start` returns the initial state, `State::handle` reacts to an event. Conditions and actions are methods of `World`.
+//! `State::start` returns the initial state, `State::handle` reacts to an event.
+//! Conditions and actions are methods of `World`.
 #![allow(dead_code, clippy::all)] // unused items are allowed, and generated code has one style
 
 "

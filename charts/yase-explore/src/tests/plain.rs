@@ -94,7 +94,7 @@ fn steps(machine: &Machine, cause: &StepCause, found: &mut ReferenceExploration)
         next.set_chooser(Chooser::declared());
         found.taken.extend(&host.notes.taken);
         found.entered.extend(&host.notes.entered);
-        let told = (host.notes.taken.clone(), host.notes.held.clone());
+        let observed = (host.notes.taken.clone(), host.notes.held.clone());
         let decided: Vec<(ScriptId, bool)> =
             host.step_decisions().iter().map(|it| (it.script, it.value)).collect();
         let decisions: Vec<bool> = decided.iter().map(|it| it.1).collect();
@@ -106,7 +106,7 @@ fn steps(machine: &Machine, cause: &StepCause, found: &mut ReferenceExploration)
             plans.extend((1..made[index].1).map(|other| (values.clone(), [&before[..], &[other]].concat())));
         }
         match result {
-            Ok(()) => steps.push((format!("{cause:?} {decided:?} {made:?} {told:?}"), next)),
+            Ok(()) => steps.push((format!("{cause:?} {decided:?} {made:?} {observed:?}"), next)),
             Err(error) => {
                 found.failures.insert(format!("{:?}", error.kind()));
             }

@@ -5,12 +5,12 @@ use std::time::Duration;
 use yase::expression::parse_actions;
 use yase::statechart::{Node, NodeId, NodeKind};
 
-use super::Maker;
+use super::ChartGenerator;
 
 /// Charts with this many nodes get no more composites.
 const MANY: usize = 28;
 
-impl Maker<'_, '_> {
+impl ChartGenerator<'_, '_> {
     /// The children of an OR.
     pub(crate) fn composite(&mut self, composite: NodeId, depth: usize) {
         self.chart.add(composite, Node::new(NodeKind::Start, ""));

@@ -2,7 +2,7 @@
 
 use yase::statechart::{NodeId, NodeKind, Statechart, Transition};
 
-use super::Maker;
+use super::ChartGenerator;
 use super::words::parse;
 
 fn is_state(kind: NodeKind) -> bool {
@@ -22,7 +22,7 @@ fn is_branch(kind: NodeKind) -> bool {
     matches!(kind, NodeKind::Condition | NodeKind::Junction | NodeKind::Choice)
 }
 
-impl Maker<'_, '_> {
+impl ChartGenerator<'_, '_> {
     pub(crate) fn transitions(&mut self) {
         let nodes: Vec<NodeId> = self.chart.nodes().map(|(id, _)| id).collect();
         for &node in nodes.iter().skip(1) {

@@ -3,7 +3,7 @@
 use yase::statechart::{NodeId, NodeKind, TransitionId};
 use yase::{CompletionTrigger, Host, InitialState, RootCompletion, Statechart};
 
-use super::{Failure, Job, Phase, Stepper, Way};
+use super::{Failure, Phase, RunningActivity, StaticPath, Stepper};
 use crate::world::World;
 
 impl Stepper<'_> {
@@ -76,7 +76,7 @@ impl Stepper<'_> {
     }
 
     /// The enabled transition out of START or HISTORY.
-    fn open_way(&mut self, connector: NodeId, world: &mut World) -> Option<Way> {
+    fn open_way(&mut self, connector: NodeId, world: &mut World) -> Option<StaticPath> {
         let out = self.outgoing(connector);
         // the scope of the composite, even if the path leads from an AND's HISTORY into a region
         let region = self.region(self.parent(connector));
@@ -87,7 +87,7 @@ impl Stepper<'_> {
     /// where entering ends.
     fn go_on(
         &mut self,
-        way: &Way,
+        way: &StaticPath,
         composite: NodeId,
         start: Option<NodeId>,
         world: &mut World,
@@ -147,8 +147,8 @@ impl Stepper<'_> {
         match self.kind(node) {
             NodeKind::Basic if self.chart.node(node).activity.is_some() => {
                 self.job_count += 1;
-                let job = Job { phase: Phase::Queued, number: self.job_count, cancelled: false };
-                self.jobs.insert(node, job);
+                let job = RunningActivity { phase: Phase::Queued, number: self.job_count, cancelled: false };
+                self.running.insert(node, job);
             }
             NodeKind::Basic => self.completed(node),
             NodeKind::End => self.reached(node, world),

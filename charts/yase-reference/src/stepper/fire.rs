@@ -5,13 +5,17 @@ use std::collections::BTreeSet;
 use yase::statechart::{NodeId, NodeKind, TransitionId};
 use yase::{ActivityOnExit, CompletionTrigger, Host, RootCompletion, ScopeId, Statechart};
 
-use super::{Failure, Phase, Stepper, Way};
+use super::{Failure, Phase, StaticPath, Stepper};
 use crate::world::World;
 
 impl Stepper<'_> {
     /// Fires transitions in order, without those whose source an earlier one has exited, even if it
     /// is active again.
-    pub(crate) fn fire_each(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
+    pub(crate) fn fire_each(
+        &mut self,
+        ways: Vec<StaticPath>,
+        world: &mut World,
+    ) -> Result<Vec<StaticPath>, Failure> {
         let mut fired = vec![];
         for way in ways {
             let left = way.sources.iter().any(|source| self.line.exits.contains(source));
@@ -24,11 +28,11 @@ impl Stepper<'_> {
     }
 
     /// Whether all sources are still active.
-    pub(crate) fn may_fire(&self, way: &Way) -> bool {
+    pub(crate) fn may_fire(&self, way: &StaticPath) -> bool {
         way.sources.iter().all(|source| self.active.contains(source))
     }
 
-    pub(crate) fn fire(&mut self, way: &Way, world: &mut World) -> Result<(), Failure> {
+    pub(crate) fn fire(&mut self, way: &StaticPath, world: &mut World) -> Result<(), Failure> {
         let exits = self.exit_set(way);
         self.leave_all(&exits, world);
         let targets = self.effects_and_targets(way, world)?;
@@ -52,7 +56,11 @@ impl Stepper<'_> {
     }
 
     /// All exits, then all effects, then all entries.
-    pub(crate) fn fire_phases(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
+    pub(crate) fn fire_phases(
+        &mut self,
+        ways: Vec<StaticPath>,
+        world: &mut World,
+    ) -> Result<Vec<StaticPath>, Failure> {
         let ways = self.with_their_sources(ways);
         let exits: BTreeSet<NodeId> = ways.iter().flat_map(|way| self.exit_set(way)).collect();
         self.leave_all(&exits, world);
@@ -77,7 +85,7 @@ impl Stepper<'_> {
 
     /// Removes transitions with a target whose source another one exits: they were selected only
     /// because nothing is active in that source.
-    fn with_their_sources(&self, mut ways: Vec<Way>) -> Vec<Way> {
+    fn with_their_sources(&self, mut ways: Vec<StaticPath>) -> Vec<StaticPath> {
         let mut index = 0;
         while index < ways.len() {
             let way = &ways[index];
@@ -124,7 +132,7 @@ impl Stepper<'_> {
     }
 
     pub(crate) fn leave(&mut self, node: NodeId, world: &mut World) {
-        if let Some(job) = self.jobs.remove(&node) {
+        if let Some(job) = self.running.remove(&node) {
             match job.phase {
                 Phase::Ongoing => world.stop(self.activation(node, job.number)),
                 Phase::Running if self.semantics.on_exit == ActivityOnExit::Interrupted => {
@@ -158,7 +166,7 @@ impl Stepper<'_> {
 
     /// Executes the effects of the complete compound transition, with its CHOICEs evaluated on the
     /// way; returns its targets.
-    fn effects_and_targets(&mut self, way: &Way, world: &mut World) -> Result<Vec<NodeId>, Failure> {
+    fn effects_and_targets(&mut self, way: &StaticPath, world: &mut World) -> Result<Vec<NodeId>, Failure> {
         let region = self.region(self.scope(way));
         self.effects(&way.segments, region, world);
         let targets = self.choose(&way.ends, region, world)?;
@@ -202,7 +210,12 @@ impl Stepper<'_> {
         Ok(targets)
     }
 
-    fn enter_targets(&mut self, way: &Way, targets: &[NodeId], world: &mut World) -> Result<(), Failure> {
+    fn enter_targets(
+        &mut self,
+        way: &StaticPath,
+        targets: &[NodeId],
+        world: &mut World,
+    ) -> Result<(), Failure> {
         let vacated = self.vacates(way);
         let arrives = self.kind(way.ends[0]) == NodeKind::Join;
         for &node in &vacated {
@@ -257,14 +270,14 @@ impl Stepper<'_> {
     /// R13, and the remaining work when a chart ends.
     pub(crate) fn halt(&mut self, world: &mut World) {
         for node in self.tree.document.clone() {
-            let Some(job) = self.jobs.get(&node).cloned() else { continue };
+            let Some(job) = self.running.get(&node).cloned() else { continue };
             match job.phase {
                 Phase::Running if !job.cancelled => world.cancel(self.activation(node, job.number)),
                 Phase::Ongoing => world.stop(self.activation(node, job.number)),
                 _ => {}
             }
         }
-        self.jobs.clear();
+        self.running.clear();
         self.raised.clear();
         self.arrived.clear();
         self.deferred.clear();

@@ -6,7 +6,7 @@ use yase::{Deferral, Delivery, EventMatching, EventPool, FailureEvents, Firing, 
 
 use super::lines::Heading;
 use super::select::Offer;
-use super::{Failure, Held, Line, Occurrence, Phase, Stepper, Way};
+use super::{Failure, HeldEvent, Line, Occurrence, Phase, StaticPath, Stepper};
 use crate::world::World;
 
 impl Stepper<'_> {
@@ -186,7 +186,7 @@ impl Stepper<'_> {
         self.leaves = self.active_leaves();
         self.found.clear();
         self.closed.clear();
-        self.told.clear();
+        self.reported.clear();
         self.drawn.clear();
     }
 
@@ -246,7 +246,7 @@ impl Stepper<'_> {
         if !candidates.is_empty() {
             self.take(candidates, Some(&event), world)?;
         } else if !waiting.is_empty() {
-            self.held.push(Held { occurrence, ways: waiting.clone(), offer: false });
+            self.held.push(HeldEvent { occurrence, ways: waiting.clone(), offer: false });
             self.held.sort_by_key(|held| held.occurrence.number);
             self.print(&Heading { held: &waiting, ..heading }, world);
         } else {
@@ -276,7 +276,12 @@ impl Stepper<'_> {
         }
     }
 
-    fn take(&mut self, candidates: Vec<Way>, event: Option<&str>, world: &mut World) -> Result<(), Failure> {
+    fn take(
+        &mut self,
+        candidates: Vec<StaticPath>,
+        event: Option<&str>,
+        world: &mut World,
+    ) -> Result<(), Failure> {
         let (winners, losers) = self.resolve(candidates);
         let (mut now, mut later) = (vec![], vec![]);
         for way in winners {
@@ -304,7 +309,7 @@ impl Stepper<'_> {
         if !self.runs(node) {
             return;
         }
-        let job = self.jobs.get_mut(&node).unwrap();
+        let job = self.running.get_mut(&node).unwrap();
         let (is_new, phase, number) = (!job.cancelled, job.phase, job.number);
         job.cancelled = true;
         if is_new && phase == Phase::Running {
@@ -318,7 +323,7 @@ impl Stepper<'_> {
             world.publish_all(region);
         }
         for node in self.tree.document.clone() {
-            let Some(job) = self.jobs.get_mut(&node) else { continue };
+            let Some(job) = self.running.get_mut(&node) else { continue };
             if job.phase == Phase::Queued {
                 job.phase = Phase::Running;
                 let (number, cancelled) = (job.number, job.cancelled);

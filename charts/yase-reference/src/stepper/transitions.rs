@@ -10,7 +10,7 @@ use super::Stepper;
 /// The static part of a compound transition: everything up to the first CHOICE, HISTORY or state on
 /// each of its paths.
 #[derive(Clone, PartialEq, Debug, Default)]
-pub(crate) struct Way {
+pub(crate) struct StaticPath {
     pub sources: Vec<NodeId>,
     /// In the order of their effects.
     pub segments: Vec<TransitionId>,
@@ -30,7 +30,7 @@ enum Role {
 }
 
 /// Accepts a complete path or, given a number of segments, an incomplete one.
-pub(crate) type Accept<'a, 'c> = &'a mut dyn FnMut(&mut Stepper<'c>, &Way, Option<usize>) -> bool;
+pub(crate) type Accept<'a, 'c> = &'a mut dyn FnMut(&mut Stepper<'c>, &StaticPath, Option<usize>) -> bool;
 
 impl<'c> Stepper<'c> {
     pub(crate) fn transition(&self, id: TransitionId) -> &'c Transition {
@@ -114,7 +114,7 @@ impl<'c> Stepper<'c> {
 
     /// Follows segments depth-first to the first complete path that is accepted; `open` are those
     /// still to be followed.
-    pub(crate) fn follow(&mut self, way: &Way, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+    pub(crate) fn follow(&mut self, way: &StaticPath, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
         let Some((&segment, rest)) = open.split_first() else { return accept(self, way, None) };
         let mut way = way.clone();
         way.segments.push(segment);
@@ -141,19 +141,30 @@ impl<'c> Stepper<'c> {
     }
 
     /// Whether any complete path is accepted, regardless of choices.
-    pub(crate) fn any_way(&mut self, way: &Way, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+    pub(crate) fn any_way(
+        &mut self,
+        way: &StaticPath,
+        open: &[TransitionId],
+        accept: Accept<'_, 'c>,
+    ) -> bool {
         self.without_chance(|me| me.follow(way, open, accept))
     }
 
     fn without_chance(&mut self, look: impl FnOnce(&mut Stepper<'c>) -> bool) -> bool {
-        let (chance, declared) = (self.chance.clone(), crate::chance::Freedom::Declared);
-        self.chance = crate::chance::Chance::new(declared);
+        let (chance, declared) = (self.chance.clone(), crate::chance::ChoicePolicy::Declared);
+        self.chance = crate::chance::ChoiceSource::new(declared);
         let found = look(self);
         self.chance = chance;
         found
     }
 
-    fn branch(&mut self, way: &Way, node: NodeId, rest: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+    fn branch(
+        &mut self,
+        way: &StaticPath,
+        node: NodeId,
+        rest: &[TransitionId],
+        accept: Accept<'_, 'c>,
+    ) -> bool {
         let out = self.outgoing(node);
         let drawn = self.chance.draws() && out.iter().any(|&id| self.transition(id).weight.is_some());
         if drawn && !self.is_come_by(way, node, rest, accept) {
@@ -167,7 +178,13 @@ impl<'c> Stepper<'c> {
 
     /// Whether some path through a connector, in its scope, is reached by the remaining segments;
     /// otherwise nothing is drawn there.
-    fn is_come_by(&mut self, way: &Way, node: NodeId, rest: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+    fn is_come_by(
+        &mut self,
+        way: &StaticPath,
+        node: NodeId,
+        rest: &[TransitionId],
+        accept: Accept<'_, 'c>,
+    ) -> bool {
         let so_far = way.segments.len();
         self.without_chance(|me| {
             me.branch(way, node, rest, &mut |me, whole, _| accept(me, whole, Some(so_far)))
@@ -180,8 +197,8 @@ impl<'c> Stepper<'c> {
         node: NodeId,
         list: &[TransitionId],
         accept: Accept<'_, 'c>,
-    ) -> Option<Way> {
-        let start = Way { sources: vec![node], ..Way::default() };
+    ) -> Option<StaticPath> {
+        let start = StaticPath { sources: vec![node], ..StaticPath::default() };
         let mut found = None;
         self.try_each(list, &mut |me, id| {
             me.follow(&start, &[id], &mut |me, way, so_far| {
@@ -204,7 +221,7 @@ impl<'c> Stepper<'c> {
     }
 
     /// Whether a path starts at a JOIN at which all sources have arrived; its source is their AND.
-    pub(crate) fn begins_at_join(&self, way: &Way) -> bool {
+    pub(crate) fn begins_at_join(&self, way: &StaticPath) -> bool {
         self.kind(self.transition(way.segments[0]).source) == NodeKind::Join
     }
 
@@ -220,15 +237,15 @@ impl<'c> Stepper<'c> {
         into.map(|(id, _)| id).collect()
     }
 
-    pub(crate) fn is_internal(&self, way: &Way) -> bool {
+    pub(crate) fn is_internal(&self, way: &StaticPath) -> bool {
         way.segments.iter().any(|&id| self.transition(id).internal)
     }
 
-    pub(crate) fn is_targetless(&self, way: &Way) -> bool {
+    pub(crate) fn is_targetless(&self, way: &StaticPath) -> bool {
         self.is_internal(way) && way.ends == way.sources
     }
 
-    pub(crate) fn interrupts(&self, way: &Way) -> bool {
+    pub(crate) fn interrupts(&self, way: &StaticPath) -> bool {
         way.segments.iter().any(|&id| self.transition(id).interrupts)
     }
 
@@ -249,7 +266,7 @@ impl<'c> Stepper<'c> {
     }
 
     /// R2
-    pub(crate) fn scope(&self, way: &Way) -> NodeId {
+    pub(crate) fn scope(&self, way: &StaticPath) -> NodeId {
         if self.is_internal(way) {
             return way.sources[0];
         }
@@ -266,7 +283,7 @@ impl<'c> Stepper<'c> {
 
     /// R13: a path that can only end in TERMINATE exits and enters nothing; otherwise its scope is
     /// that of its other ends.
-    pub(crate) fn only_terminates(&self, way: &Way) -> bool {
+    pub(crate) fn only_terminates(&self, way: &StaticPath) -> bool {
         let mut targets = way.ends.iter().flat_map(|&end| self.final_targets(end));
         targets.all(|target| self.kind(target) == NodeKind::Terminate)
     }
@@ -278,7 +295,7 @@ impl<'c> Stepper<'c> {
 
     /// The composites that stay active but lose their active children: in `uml`, on arrival at a
     /// JOIN and on a transition to an active ancestor.
-    pub(crate) fn vacates(&self, way: &Way) -> Vec<NodeId> {
+    pub(crate) fn vacates(&self, way: &StaticPath) -> Vec<NodeId> {
         let [end] = way.ends[..] else { return vec![] };
         let around = if self.kind(end) == NodeKind::Join {
             self.joined_and(end).unwrap()
@@ -293,7 +310,7 @@ impl<'c> Stepper<'c> {
         }
     }
 
-    fn completes_ancestor(&self, way: &Way, end: NodeId) -> bool {
+    fn completes_ancestor(&self, way: &StaticPath, end: NodeId) -> bool {
         self.semantics.ancestor == TransitionToAncestor::Completed
             && !self.is_internal(way)
             && matches!(self.kind(end), NodeKind::Or | NodeKind::And)
@@ -306,7 +323,7 @@ impl<'c> Stepper<'c> {
     }
 
     /// The active states that a path would exit.
-    pub(crate) fn exit_set(&self, way: &Way) -> BTreeSet<NodeId> {
+    pub(crate) fn exit_set(&self, way: &StaticPath) -> BTreeSet<NodeId> {
         if self.is_targetless(way) || self.only_terminates(way) {
             return BTreeSet::new();
         }
@@ -337,7 +354,7 @@ impl<'c> Stepper<'c> {
         }
     }
 
-    pub(crate) fn would_leave(&self, way: &Way, node: NodeId) -> bool {
+    pub(crate) fn would_leave(&self, way: &StaticPath, node: NodeId) -> bool {
         self.exit_set(way).contains(&node)
     }
 }

@@ -317,7 +317,7 @@ fn r20_a_failing_activity_releases_the_lock_and_can_run_again() {
     let mut world = World::new(&chart);
     machine.start(Timestamp::ZERO, &mut world);
     machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    let activation = world.jobs[0].activation;
+    let activation = world.running[0].activation;
     assert!(machine.is_running(activation.region));
     assert!(machine.activity_returned(activation, Outcome::Failed));
     assert!(!machine.is_running(activation.region));

@@ -284,14 +284,14 @@ fn r13_stop_cancels_and_what_returns_later_is_not_for_the_next_run() {
     let mut world = World { activities: World::new(&chart).activities, ..World::default() };
     machine.start(Timestamp::ZERO, &mut world);
     machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    let first: Activation = world.jobs[0].activation;
+    let first: Activation = world.running[0].activation;
     machine.stop(&mut world);
     assert_eq!(machine.status(), Status::Stopped);
     assert!(!machine.is_running(first.region));
     machine.start(Timestamp::ZERO, &mut world);
     machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     assert!(!machine.activity_returned(first, yase::Outcome::Done));
-    let second = world.jobs[1].activation;
+    let second = world.running[1].activation;
     assert!(machine.activity_returned(second, yase::Outcome::Done));
     assert!(!machine.activity_returned(second, yase::Outcome::Done));
     machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();

@@ -287,7 +287,7 @@ fn r06_connectors_in_a_circle_or_without_a_way_on_are_refused() {
     assert_eq!(
         refusal("START\n? a\n? b\n? d\nc/START -> a\na -> b\nb -> a\na -> d"),
         "error[M06]: connectors lead in a circle: `c/a` -> `c/b` -> `c/a`\n\
-         error[M06]: no way leads on from `c/d`"
+         error[M06]: no path continues from `c/d`"
     );
 }
 
@@ -426,7 +426,7 @@ fn r05_a_failing_guard_is_reported_once_per_micro_step() {
         B -> p : e
         p -> D : [A.n < fail()]
         ";
-    let told = |event: &str| {
+    let expected = |event: &str| {
         format!(
             "
             0.000 s start; enter c, START
@@ -439,9 +439,9 @@ fn r05_a_failing_guard_is_reported_once_per_micro_step() {
         )
     };
     let again = "guard failed: the function failed: it always fails\n0.002 s e: dropped\n0.002 s error.execution: dropped";
-    check(text, "1 e; 2 e; 3", &format!("{}0.002 s e: dropped", told("error.guard")));
+    check(text, "1 e; 2 e; 3", &format!("{}0.002 s e: dropped", expected("error.guard")));
     let every_time = with(|it| it.failures = FailureEvents::EveryTime);
-    check_with(every_time, text, "1 e; 2 e; 3", &format!("{}{again}", told("error.execution")));
+    check_with(every_time, text, "1 e; 2 e; 3", &format!("{}{again}", expected("error.execution")));
 }
 
 #[test]

@@ -112,8 +112,8 @@ fn r23_a_record_shows_the_guards_that_were_read() {
 
 #[test]
 fn r23_no_record_is_made_for_a_host_without_traces() {
-    struct Deaf;
-    impl Host for Deaf {
+    struct MutedHost;
+    impl Host for MutedHost {
         fn start(&mut self, _: Activation) {}
         fn cancel(&mut self, _: Activation) {}
         fn stop(&mut self, _: Activation) {}
@@ -123,7 +123,7 @@ fn r23_no_record_is_made_for_a_host_without_traces() {
     }
     let chart = chart(&CHART.replace("on the way", "through"));
     let mut machine = Machine::new(script::compile(&chart));
-    machine.start(Timestamp::ZERO, &mut Deaf);
+    machine.start(Timestamp::ZERO, &mut MutedHost);
     machine.dispatch_name("e");
-    assert_eq!(machine.run_to_completion(Timestamp::ZERO, &mut Deaf).unwrap().micro_steps, 2);
+    assert_eq!(machine.run_to_completion(Timestamp::ZERO, &mut MutedHost).unwrap().micro_steps, 2);
 }

@@ -47,9 +47,9 @@ fn r23_guards_that_are_read_stand_in_the_record() {
         B -> A : e
     ";
     let log = with_reads(text, "1 A=0; 2 e; 3 A=1; 4 e; 5 e; 6");
-    let told: Vec<&str> = log[2..].iter().map(|line| line.trim()).collect();
+    let lines: Vec<&str> = log[2..].iter().map(|line| line.trim()).collect();
     assert_eq!(
-        told,
+        lines,
         [
             "0.002 s e: dropped; read A -> B = false, A -> A = false",
             "0.004 s e: A -> B; exit A; enter B; read A -> B = true",

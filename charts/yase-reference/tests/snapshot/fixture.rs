@@ -5,23 +5,23 @@ use yase::{Machine, Outcome, Semantics, Timestamp};
 
 use yase_reference::world::World;
 
-pub(crate) struct Stage {
+pub(crate) struct MachineFixture {
     pub(crate) machine: Machine,
     pub(crate) world: World,
 }
 
-impl Stage {
+impl MachineFixture {
     /// Starts a chart and raises events at time 0.
-    pub(crate) fn new(chart: &str, events: &[&str]) -> Stage {
-        Stage::with(Semantics::yase(), chart, events)
+    pub(crate) fn new(chart: &str, events: &[&str]) -> MachineFixture {
+        MachineFixture::with(Semantics::yase(), chart, events)
     }
 
-    pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> Stage {
+    pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> MachineFixture {
         let chart = yase_reference::chart(chart);
         let mut world = World::new(&chart);
         let mut machine = Machine::new(yase_reference::script::compile_with(&chart, semantics));
         machine.start(Timestamp::ZERO, &mut world);
-        let mut stage = Stage { machine, world };
+        let mut stage = MachineFixture { machine, world };
         stage.step(0);
         for event in events {
             stage.event(event);
@@ -41,7 +41,7 @@ impl Stage {
 
     /// The only running activity returns.
     pub(crate) fn returns(&mut self) {
-        let job = self.world.jobs.remove(0);
+        let job = self.world.running.remove(0);
         assert!(self.machine.activity_returned(job.activation, Outcome::Done));
         self.step(0);
     }

@@ -3,7 +3,7 @@
 
 use yase::{MicroStep, Semantics, TimerScope, Timestamp};
 
-use crate::fixture::Stage;
+use crate::fixture::MachineFixture;
 
 const PAST: &str = "
     START
@@ -29,7 +29,7 @@ const PAST: &str = "
 
 #[test]
 fn histories_can_be_inspected_and_set() {
-    let mut stage = Stage::new(PAST, &["e", "n"]);
+    let mut stage = MachineFixture::new(PAST, &["e", "n"]);
     assert_eq!(stage.machine.snapshot().history("c/w/past"), None);
     stage.event("f");
     let snapshot = stage.machine.snapshot();
@@ -51,7 +51,7 @@ fn histories_can_be_inspected_and_set() {
 
 #[test]
 fn a_history_is_set_before_there_is_one_or_forgotten() {
-    let mut stage = Stage::new(PAST, &["f"]);
+    let mut stage = MachineFixture::new(PAST, &["f"]);
     stage.edit(|snapshot| {
         snapshot.history.clear();
         snapshot.set_history("c/w/past", &["c/w/b"]);
@@ -63,7 +63,7 @@ fn a_history_is_set_before_there_is_one_or_forgotten() {
 
 #[test]
 fn a_history_remembers_what_was_active_together_inside_its_composite() {
-    let stage = Stage::new(PAST, &["f"]);
+    let stage = MachineFixture::new(PAST, &["f"]);
     let wrong = |history: &str, nodes: &[&str]| {
         let mut snapshot = stage.machine.snapshot();
         snapshot.set_history(history, nodes);
@@ -99,7 +99,7 @@ fn timers_of_states_keep_their_state() {
         a -> b : e
         b -> d : v
     ";
-    let mut stage = Stage::with(semantics, chart, &[]);
+    let mut stage = MachineFixture::with(semantics, chart, &[]);
     assert_eq!(stage.machine.snapshot().timers[0].owner.as_deref(), Some("c/a"));
     stage.edit(|_| {});
     let kept = stage.machine.clone();
@@ -137,7 +137,7 @@ const JOINED: &str = "
 
 #[test]
 fn an_arrival_at_a_join_is_kept() {
-    let mut stage = Stage::with(Semantics::uml(), JOINED, &["e"]);
+    let mut stage = MachineFixture::with(Semantics::uml(), JOINED, &["e"]);
     let snapshot = stage.machine.snapshot();
     assert_eq!(snapshot.vacated, ["c/both/one"]);
     assert_eq!(snapshot.joined, [["c/both/one/B -> c/j"]]);
@@ -150,7 +150,7 @@ fn an_arrival_at_a_join_is_kept() {
 
 #[test]
 fn a_source_that_has_not_arrived_has_an_active_child() {
-    let stage = Stage::with(Semantics::uml(), JOINED, &["e"]);
+    let stage = MachineFixture::with(Semantics::uml(), JOINED, &["e"]);
     let wrong = |change: &dyn Fn(&mut yase::snapshot::Snapshot)| {
         let mut snapshot = stage.machine.snapshot();
         change(&mut snapshot);
@@ -186,8 +186,8 @@ fn a_step_that_ends_the_root_exits_all_states() {
         START -> a
         a -> END : e
     ";
-    let mut whole = Stage::with(Semantics::scxml(), chart, &["e"]);
-    let mut stage = Stage::with(Semantics::scxml(), chart, &[]);
+    let mut whole = MachineFixture::with(Semantics::scxml(), chart, &["e"]);
+    let mut stage = MachineFixture::with(Semantics::scxml(), chart, &[]);
     stage.machine.dispatch_name("e");
     while stage.machine.micro_step(Timestamp::ZERO, &mut stage.world) == Ok(MicroStep::Progressed) {
         stage.edit(|_| {});

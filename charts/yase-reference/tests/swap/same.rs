@@ -8,7 +8,7 @@ use yase::statechart::{NodeId, Statechart, Transition};
 use yase::{Activation, Chooser, CompiledChart, Machine, Outcome, Semantics, Timestamp, TopicId};
 
 use crate::world::rekey;
-use yase_reference::chance::Freedom;
+use yase_reference::chance::ChoicePolicy;
 use yase_reference::random::Case;
 use yase_reference::script::{self, Interpreter};
 use yase_reference::world::World;
@@ -30,7 +30,7 @@ fn swapped(number: u64) -> u64 {
     let mut swaps = 0;
     for other in [case.chart.clone(), renumbered(&case.chart)] {
         let charts = [compiled.clone(), compile(&other, case.semantics)];
-        let mut swapping = Swapping { machine: machine(compiled.clone(), &case), charts, swaps: 0 };
+        let mut swapping = MigratingMachine { machine: machine(compiled.clone(), &case), charts, swaps: 0 };
         let found = run(&mut swapping, &case);
         swaps += swapping.swaps;
         let same = expected.iter().zip(&found).take_while(|(a, b)| a == b).count();
@@ -58,9 +58,9 @@ fn compile(chart: &Statechart, semantics: Semantics) -> Arc<CompiledChart> {
 fn machine(chart: Arc<CompiledChart>, case: &Case) -> Machine {
     let mut machine = Machine::new(chart);
     machine.set_chooser(match &case.freedom {
-        Freedom::Declared => Chooser::declared(),
-        Freedom::Seeded(seed) => Chooser::seeded(*seed),
-        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
+        ChoicePolicy::Declared => Chooser::declared(),
+        ChoicePolicy::Seeded(seed) => Chooser::seeded(*seed),
+        ChoicePolicy::Scripted(choices) => Chooser::scripted(choices.clone()),
     });
     machine
 }
@@ -92,13 +92,13 @@ fn renumbered(chart: &Statechart) -> Statechart {
 }
 
 /// A machine that is migrated to and fro before and after each step.
-struct Swapping {
+struct MigratingMachine {
     machine: Machine,
     charts: [Arc<CompiledChart>; 2],
     swaps: u64,
 }
 
-impl Swapping {
+impl MigratingMachine {
     fn swap(&mut self, world: &mut World) {
         let [one, other] = &self.charts;
         let plan = plan(one, other);
@@ -110,7 +110,7 @@ impl Swapping {
     }
 }
 
-impl Interpreter for Swapping {
+impl Interpreter for MigratingMachine {
     fn start(&mut self, now: Timestamp, world: &mut World) {
         self.machine.start(now, world);
     }

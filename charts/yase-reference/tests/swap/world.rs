@@ -10,23 +10,23 @@ use yase_reference::script;
 use yase_reference::world::World;
 
 /// A running machine with its host.
-pub(crate) struct Stage {
+pub(crate) struct MachineFixture {
     pub(crate) machine: Machine,
     pub(crate) world: World,
 }
 
-impl Stage {
+impl MachineFixture {
     /// Starts a chart and raises events at time 0.
-    pub(crate) fn new(chart: &str, events: &[&str]) -> Stage {
-        Stage::with(Semantics::yase(), chart, events)
+    pub(crate) fn new(chart: &str, events: &[&str]) -> MachineFixture {
+        MachineFixture::with(Semantics::yase(), chart, events)
     }
 
-    pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> Stage {
+    pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> MachineFixture {
         let chart = yase_reference::chart(chart);
         let mut world = World::new(&chart);
         let mut machine = Machine::new(script::compile_with(&chart, semantics));
         machine.start(Timestamp::ZERO, &mut world);
-        let mut stage = Stage { machine, world };
+        let mut stage = MachineFixture { machine, world };
         stage.step(0);
         for event in events {
             stage.event(event);
@@ -46,7 +46,7 @@ impl Stage {
 
     /// The only running activity returns.
     pub(crate) fn returns(&mut self) {
-        let job = self.world.jobs.remove(0);
+        let job = self.world.running.remove(0);
         assert!(self.machine.activity_returned(job.activation, Outcome::Done), "it is still known");
         self.step(0);
     }
@@ -90,7 +90,7 @@ impl Stage {
 /// Gives activities and blackboards their new indices.
 pub(crate) fn rekey(world: &mut World, chart: &Arc<CompiledChart>, report: &MigrationReport) {
     let activations: BTreeMap<_, _> = report.activations.iter().copied().collect();
-    for job in &mut world.jobs {
+    for job in &mut world.running {
         if let Some(&activation) = activations.get(&job.activation) {
             job.activation = activation;
         }

@@ -12,12 +12,12 @@ fn around(inside: &str) -> String {
 /// The diagnostics of a document, as `code [underlined text] message (hint)`.
 fn said(text: &str) -> Vec<String> {
     let (_, found) = read(&Source::new("d.scxml", text));
-    let told = found.iter().map(|found| {
+    let texts = found.iter().map(|found| {
         let place = &text[found.span.start..found.span.end];
         let hint = found.hint.as_ref().map(|hint| format!(" ({hint})")).unwrap_or_default();
         format!("{} [{place}] {}{hint}", found.code, found.message)
     });
-    told.collect()
+    texts.collect()
 }
 
 #[track_caller]

@@ -7,12 +7,12 @@ use yase_scxml::{DataValue, Platform, ScxmlEvent, Session, SessionError, read};
 
 /// A platform with files that records all calls.
 #[derive(Debug, Default)]
-struct Desk {
+struct RecordingPlatform {
     files: BTreeMap<String, String>,
     notes: Vec<String>,
 }
 
-impl Platform for Desk {
+impl Platform for RecordingPlatform {
     fn read(&mut self, uri: &str) -> Result<String, String> {
         self.files.get(uri).cloned().ok_or_else(|| "there is no such file".into())
     }
@@ -33,14 +33,14 @@ fn document(inside: &str) -> String {
     format!("<scxml xmlns='http://www.w3.org/2005/07/scxml' version='1.0' name='test'>{inside}</scxml>")
 }
 
-fn session(inside: &str) -> Session<Desk> {
-    session_with(inside, Desk::default())
+fn session(inside: &str) -> Session<RecordingPlatform> {
+    session_with(inside, RecordingPlatform::default())
 }
 
-fn session_with(inside: &str, desk: Desk) -> Session<Desk> {
+fn session_with(inside: &str, platform: RecordingPlatform) -> Session<RecordingPlatform> {
     let (document, found) = read(&Source::new("test.scxml", document(inside)));
     assert!(!found.iter().any(yase::Diagnostic::is_error), "{found:?}");
-    let mut session = Session::new(&document.unwrap(), desk).unwrap();
+    let mut session = Session::new(&document.unwrap(), platform).unwrap();
     let _ = session.start(Timestamp::ZERO);
     session
 }
@@ -267,7 +267,7 @@ fn late_variables_get_their_values_at_the_first_entry() {
            <transition event='e' target='a'/></state>";
     let text = document(inside).replace("version", "binding='late' version");
     let (document, _) = read(&Source::new("d", text));
-    let mut session = Session::new(&document.unwrap(), Desk::default()).unwrap();
+    let mut session = Session::new(&document.unwrap(), RecordingPlatform::default()).unwrap();
     session.start(Timestamp::ZERO).unwrap();
     assert_eq!(session.value("x"), Some(DataValue::Undefined));
     for _ in 0..3 {
@@ -285,12 +285,12 @@ fn scripts_and_data_come_from_elsewhere() {
         ("words.txt", " some \n words "),
     ];
     let files = files.map(|(name, text)| (name.to_owned(), text.to_owned()));
-    let desk = Desk { files: files.into(), ..Desk::default() };
+    let platform = RecordingPlatform { files: files.into(), ..RecordingPlatform::default() };
     let session = session_with(
         "<datamodel><data id='a' src='data.json'/><data id='b' src='words.txt'/><data id='c' src='nowhere'/></datamodel><script src='lib.js'/>
          <state id='s'><onentry><log expr='twice(a[1])'/><log expr='b'/></onentry>
            <transition event='error.execution'><log expr='_event.data'/></transition></state>",
-        desk,
+        platform,
     );
     assert_eq!(
         session.platform().notes,
@@ -301,7 +301,7 @@ fn scripts_and_data_come_from_elsewhere() {
 #[test]
 fn a_script_that_cannot_be_had_is_refused() {
     let (document, _) = read(&Source::new("d", document("<script src='nowhere'/><state/>")));
-    let refused = Session::new(&document.unwrap(), Desk::default()).unwrap_err();
+    let refused = Session::new(&document.unwrap(), RecordingPlatform::default()).unwrap_err();
     assert_eq!(
         refused[0].to_string(),
         "error[E0621]: the script `nowhere` cannot be had: there is no such file"
@@ -349,8 +349,9 @@ fn sessions_do_not_nest_for_ever() {
     let own = document(
         "<state id='s'><invoke src='self'/><transition event='error.communication'><log expr='_event.data'/></transition></state>",
     );
-    let desk = Desk { files: [("self".to_owned(), own)].into(), ..Desk::default() };
-    let session = session_with("<state id='s'><invoke src='self'/></state>", desk);
+    let platform =
+        RecordingPlatform { files: [("self".to_owned(), own)].into(), ..RecordingPlatform::default() };
+    let session = session_with("<state id='s'><invoke src='self'/></state>", platform);
     assert_eq!(session.inner_sessions(), 15);
     assert_eq!(session.platform().notes, ["  inner sessions nest deeper than 16"]);
 }
@@ -405,7 +406,8 @@ fn another_semantics_can_be_selected() {
     let (document, _) = read(&Source::new("d", text));
     for semantics in [Semantics::scxml(), Semantics::yase(), Semantics::uml()] {
         let mut session =
-            Session::with_semantics(&document.clone().unwrap(), Desk::default(), semantics).unwrap();
+            Session::with_semantics(&document.clone().unwrap(), RecordingPlatform::default(), semantics)
+                .unwrap();
         session.start(Timestamp::ZERO).unwrap();
         session.send(ScxmlEvent::new("e")).unwrap();
         assert_eq!(session.configuration(), ["c"]);

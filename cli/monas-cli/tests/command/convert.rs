@@ -76,7 +76,7 @@ fn a_chart_of_events_goes_to_rust_and_others_are_refused() {
     let output = folder.path().join("a.rs").display().to_string();
     let refused = monas(&["model", "convert", &input, &output]);
     assert_eq!(refused.code, Some(3));
-    let why = "`r/Scan` has an activity: a flat chart knows events and conditions only";
+    let why = "`r/Scan` has an activity: a flat chart has events and conditions only";
     assert!(refused.err.contains("E0160") && refused.err.contains(why), "{}", refused.err);
     assert!(!Path::new(&output).exists());
 }

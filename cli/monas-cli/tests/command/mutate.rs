@@ -117,7 +117,7 @@ fn invalid_mutants_are_reported_separately() {
     let Answer { code, out, err } = monas(&["model", "mutate", &model, "--scenarios", &here]);
     assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
     assert!(out.lines().next().is_some_and(|line| line.ends_with("; 1 more cannot run")), "{out}");
-    let refused = "On entry: `over` is never started\n    there is nothing called `over` here";
+    let refused = "On entry: `over` is never started\n    there is no `over` here";
     assert!(out.contains("cannot run:\n") && out.contains(refused), "{out}");
 }
 

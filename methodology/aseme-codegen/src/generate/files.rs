@@ -28,8 +28,8 @@ pub(crate) fn library(chart: &Statechart, words: &RustBindings) -> String {
     };
     format!(
         "//! The statechart {}.{origin}\n//!\n\
-         //! [`State`] lists its states; the modules `chart` and `transitions` define its structure, `guards` its guards and\n\
-         //! assigned values, `words` the names that they use.\n\n\
+         //! [`State`] lists its states; the modules `chart` and `transitions` define its structure,\n\
+         //! `guards` its guards and assigned values, `words` the names that they use.\n\n\
          {activities}mod chart;\nmod guards;\nmod states;\n{transitions}mod words;\n\n\
          pub use chart::chart;\npub use states::State;\n{registration}",
         quoted(&chart.name)

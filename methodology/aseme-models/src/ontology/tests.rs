@@ -26,7 +26,7 @@ fn fields_are_what_they_are_used_as() {
                  && Ball.x - Ball.y > 0 && Ball.owner == Game.owner] / Goal.count = Goal.count + 1, Goal.ours = true";
     let (ontology, found) = gathered(guard, &[]);
     assert_eq!(found, [""; 0]);
-    let told: Vec<String> = ontology
+    let messages: Vec<String> = ontology
         .messages
         .iter()
         .flat_map(|message| {
@@ -34,7 +34,7 @@ fn fields_are_what_they_are_used_as() {
         })
         .collect();
     assert_eq!(
-        told,
+        messages,
         [
             "Ball.found Condition",
             "Ball.distance Number",
@@ -85,19 +85,19 @@ fn variables_are_held_against_what_a_program_knows() {
         functions: vec![],
         scripts: false,
     };
-    let told = |kind: &str| {
+    let messages = |kind: &str| {
         let found = check(&[variable("v", kind)], &vocabulary);
         found.iter().map(|found| format!("{} {}", found.code, found.message)).collect::<String>()
     };
-    assert_eq!(told("ball.State.Ball"), "");
-    assert_eq!(told("elsewhere.State.GameState"), "");
-    assert_eq!(told("ball.State.Bal"), "E0881 the variable `v` has the unknown message type `Bal`");
+    assert_eq!(messages("ball.State.Ball"), "");
+    assert_eq!(messages("elsewhere.State.GameState"), "");
+    assert_eq!(messages("ball.State.Bal"), "E0881 the variable `v` has the unknown message type `Bal`");
     assert_eq!(
-        told("ball.State.GameState"),
+        messages("ball.State.GameState"),
         "E0882 the variable `v` is of `GameState`, but `soccer/ball` carries `Ball`"
     );
     assert_eq!(
-        told("ball.Data.Ball"),
+        messages("ball.Data.Ball"),
         "E0883 the variable `v` has the retention `Data`, but `soccer/ball` has `State`"
     );
 }

@@ -28,6 +28,6 @@ pub(crate) fn whole(model: &Model, format: Format) -> String {
 }
 
 /// The codes of findings, and the texts at their spans.
-pub(crate) fn told<'a>(text: &'a str, findings: &[Diagnostic]) -> Vec<(&'static str, &'a str)> {
+pub(crate) fn codes_and_texts<'a>(text: &'a str, findings: &[Diagnostic]) -> Vec<(&'static str, &'a str)> {
     findings.iter().map(|finding| (finding.code, &text[finding.span.start..finding.span.end])).collect()
 }

@@ -180,13 +180,13 @@ pub(crate) fn concurrent_publishers(
         let topic = world.activities.get(name)?.as_ref()?.first()?;
         Some((name, topic))
     };
-    let (mut told, mut findings) = (BTreeSet::new(), Vec::new());
+    let (mut reported, mut findings) = (BTreeSet::new(), Vec::new());
     for (number, state) in found.states().iter().enumerate() {
         for (index, &node) in state.running.iter().enumerate() {
             let Some((name, topic)) = publishing(node) else { continue };
             let same = |&&other: &&NodeId| publishing(other).is_some_and(|(it, _)| it == name);
             let Some(&other) = state.running[..index].iter().find(same) else { continue };
-            if !told.insert(name) {
+            if !reported.insert(name) {
                 continue;
             }
             let (one, other) = (subject.path(other), subject.path(node));

@@ -24,17 +24,17 @@ pub(crate) fn deadlocks(product: &GlobalProduct<'_>) -> Vec<Deadlock> {
         behaviour.waiting[class].contains(&wait) && behaviour.may_end[wait][class] && !ends[number][state]
     };
     let next = forwards(product);
-    let mut told = vec![false; waits.len()];
+    let mut reported = vec![false; waits.len()];
     let mut found = Vec::new();
     for state in 0..product.states.len() {
-        if !(0..waits.len()).any(|number| !told[number] && is_stuck(number, state)) {
+        if !(0..waits.len()).any(|number| !reported[number] && is_stuck(number, state)) {
             continue;
         }
         let stuck_in = |state: usize| (0..waits.len()).filter(|&it| is_stuck(it, state)).collect::<Vec<_>>();
         let worst = worst_from(state, &next, &|state| stuck_in(state).len());
         let stuck = stuck_in(worst);
-        stuck.iter().for_each(|&number| told[number] = true);
-        (0..waits.len()).filter(|&it| is_stuck(it, state)).for_each(|number| told[number] = true);
+        stuck.iter().for_each(|&number| reported[number] = true);
+        (0..waits.len()).filter(|&it| is_stuck(it, state)).for_each(|number| reported[number] = true);
         found.push(Deadlock { state: worst, waits: stuck.into_iter().map(|it| waits[it]).collect() });
     }
     found

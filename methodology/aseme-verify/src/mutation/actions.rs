@@ -22,8 +22,8 @@ pub(crate) fn of_transition(making: &mut MutantCollector<'_>, id: TransitionId) 
     if transition.expression.is_never() {
         return;
     }
-    for ActionVariant { description: told, actions, unstarted } in variants(&transition.expression.actions) {
-        making.changed(id, told, |chart| {
+    for ActionVariant { description, actions, unstarted } in variants(&transition.expression.actions) {
+        making.changed(id, description, |chart| {
             chart.transition_mut(id).expression.actions = actions;
             unstarted.into_iter().for_each(|action| keep_known(chart, id, action));
         });
@@ -55,12 +55,12 @@ fn of_node(
     actions: fn(&mut Node) -> &mut Vec<Action>,
 ) {
     let mut node = making.chart.node(id).clone();
-    for ActionVariant { description: told, actions: changed, .. } in variants(actions(&mut node)) {
+    for ActionVariant { description, actions: changed, .. } in variants(actions(&mut node)) {
         let mut chart = making.chart.clone();
         let what = format!("{when} {} {changed:?}", id.0);
         *actions(chart.node_mut(id)) = changed;
         let place = format!("{} {when}", shortest_path(making.chart, id));
-        making.add(&what, place, yase::Span::default(), told, chart);
+        making.add(&what, place, yase::Span::default(), description, chart);
     }
 }
 
@@ -72,8 +72,8 @@ fn variants(actions: &[Action]) -> Vec<ActionVariant> {
                 let mut changed = actions.to_vec();
                 changed[place].kind =
                     ActionKind::StartTimeout { timer: timer.clone(), delay: other, form: *form };
-                let told = timed(&timer.text(), *delay, other);
-                found.push(ActionVariant { description: told, actions: changed, unstarted: None });
+                let description = timed(&timer.text(), *delay, other);
+                found.push(ActionVariant { description, actions: changed, unstarted: None });
             }
         }
         let mut rest = actions.to_vec();
@@ -89,13 +89,13 @@ fn gone(action: &Action, rest: Vec<Action>) -> ActionVariant {
     match &action.kind {
         ActionKind::StartTimeout { timer, .. } => {
             let change = format!("`{timer}` is never started");
-            let told = MutantDescription { kind: MutationKind::Timeout, change, wanted };
-            ActionVariant { description: told, actions: rest, unstarted: Some(action.clone()) }
+            let description = MutantDescription { kind: MutationKind::Timeout, change, wanted };
+            ActionVariant { description, actions: rest, unstarted: Some(action.clone()) }
         }
         _ => {
             let change = format!("the action `{action}` is removed");
-            let told = MutantDescription { kind: MutationKind::ActionRemoved, change, wanted };
-            ActionVariant { description: told, actions: rest, unstarted: None }
+            let description = MutantDescription { kind: MutationKind::ActionRemoved, change, wanted };
+            ActionVariant { description, actions: rest, unstarted: None }
         }
     }
 }

@@ -41,13 +41,13 @@ pub(crate) fn all(making: &mut MutantCollector<'_>) {
         for other in around(value) {
             let mut chart = making.chart.clone();
             chart.constants[place].value = ConstantValue::Number(other);
-            let told = MutantDescription {
+            let mutation = MutantDescription {
                 kind: MutationKind::Number,
                 change: format!("the constant is {other} instead of {value}"),
                 wanted: format!("a case in which `{}` and {other} make a difference", constant.name),
             };
             let what = format!("constant {place} {other}");
-            making.add(&what, constant.name.clone(), span.unwrap_or_default(), told, chart);
+            making.add(&what, constant.name.clone(), span.unwrap_or_default(), mutation, chart);
         }
     }
 }

@@ -45,12 +45,12 @@ fn change(making: &mut MutantCollector<'_>, id: TransitionId, variant: GuardVari
 
 fn remove(making: &mut MutantCollector<'_>, id: TransitionId, guard: &Expression) {
     let before = bracketed(Some(guard));
-    let told = MutantDescription {
+    let mutation = MutantDescription {
         kind: MutationKind::GuardRemoved,
         change: format!("the guard {before} is removed"),
         wanted: format!("a case in which only the guard {before} prevents the transition"),
     };
-    making.transition(id, told, |it| it.expression.guard = None);
+    making.transition(id, mutation, |it| it.expression.guard = None);
 }
 
 /// Whether a state can complete, judged by its structure. Removing the guard of an exit that waits
@@ -195,11 +195,11 @@ fn steps(number: &Expression) -> Vec<GuardVariant> {
         }
         _ => Vec::new(),
     };
-    let told = |guard: Expression| {
+    let mutation = |guard: Expression| {
         let wanted = format!("a case in which `{number}` and `{guard}` make a difference");
         GuardVariant { kind: MutationKind::Number, guard, wanted }
     };
-    stepped.into_iter().map(told).collect()
+    stepped.into_iter().map(mutation).collect()
 }
 
 fn decimal(value: f64, like: &Expression) -> Expression {

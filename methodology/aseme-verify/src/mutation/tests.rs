@@ -16,7 +16,7 @@ fn of(text: &str) -> Vec<Mutant> {
 }
 
 /// The descriptions of the mutants whose names start with an element.
-fn told(mutants: &[Mutant], place: &str) -> Vec<String> {
+fn descriptions(mutants: &[Mutant], place: &str) -> Vec<String> {
     let here = mutants.iter().filter_map(|mutant| {
         let name = mutant.name.strip_prefix(place)?.strip_prefix(" #")?;
         Some(format!("{name}{}", &mutant.description[place.len()..]))
@@ -28,7 +28,7 @@ fn told(mutants: &[Mutant], place: &str) -> Vec<String> {
 fn a_guard_is_changed_in_every_part() {
     let guard = "the guard `[Ball.found && Ball.distance <= near]`";
     assert_eq!(
-        told(&of(ROLE), "CONDITION -> B"),
+        descriptions(&of(ROLE), "CONDITION -> B"),
         [
             format!("guard-negated: {guard} becomes `[!(Ball.found && Ball.distance <= near)]`"),
             format!("guard-removed: {guard} is removed"),
@@ -66,7 +66,7 @@ fn numbers_go_a_step_up_and_a_step_down() {
 #[test]
 fn a_timer_runs_another_time_or_is_not_started() {
     let actions: Vec<String> =
-        told(&of(ROLE), "A -> (B|C|D)").into_iter().filter(|it| !it.starts_with("guard")).collect();
+        descriptions(&of(ROLE), "A -> (B|C|D)").into_iter().filter(|it| !it.starts_with("guard")).collect();
     assert_eq!(
         actions,
         [
@@ -108,9 +108,9 @@ fn each_mutant_has_the_span_of_its_change_and_is_unique() {
 fn a_disabled_transition_has_only_enabling_mutants() {
     let mutants =
         of("Liveness:\nr = A ~ || (B . C)\nTransitions:\n*~ -> END : [false]\n(B.C) -> END : [false]\n");
-    assert_eq!(told(&mutants, "A~ -> END"), ["guard-negated: the guard `[false]` becomes `[true]`"]);
+    assert_eq!(descriptions(&mutants, "A~ -> END"), ["guard-negated: the guard `[false]` becomes `[true]`"]);
     assert_eq!(
-        told(&mutants, "(B.C) -> END"),
+        descriptions(&mutants, "(B.C) -> END"),
         [
             "guard-negated: the guard `[false]` becomes `[true]`",
             "guard-removed: the guard `[false]` is removed"
@@ -124,7 +124,7 @@ fn the_order_is_reversed_only_where_it_matters() {
     let role = |one: &str, other: &str| {
         let text =
             format!("Liveness:\nr = A | B\nTransitions:\nCONDITION -> A{one}\nCONDITION -> B{other}\n");
-        told(&of(&text), "CONDITION -> A")
+        descriptions(&of(&text), "CONDITION -> A")
             .into_iter()
             .filter(|it| it.starts_with("priority"))
             .collect::<Vec<_>>()
@@ -144,8 +144,8 @@ fn the_order_is_reversed_only_where_it_matters() {
 #[test]
 fn entries_and_exits_lose_their_actions() {
     let mutants = of("Liveness:\nr = A\nStates:\nA : entry = StartTimeout(t, 2s), exit = raise(over)\n");
-    assert_eq!(told(&mutants, "A entry").len(), 3);
-    assert_eq!(told(&mutants, "A exit"), ["action-removed: the action `raise(over)` is removed"]);
+    assert_eq!(descriptions(&mutants, "A entry").len(), 3);
+    assert_eq!(descriptions(&mutants, "A exit"), ["action-removed: the action `raise(over)` is removed"]);
 }
 
 #[test]

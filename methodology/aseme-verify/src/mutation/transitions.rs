@@ -24,12 +24,12 @@ fn target(making: &mut MutantCollector<'_>, id: TransitionId) {
     let before = chart.transition(id).target;
     let Some(after) = sibling(chart, before) else { return };
     let (from, to) = (shortest_path(chart, before), shortest_path(chart, after));
-    let told = MutantDescription {
+    let mutation = MutantDescription {
         kind: MutationKind::Target,
         change: format!("the target is `{to}`"),
         wanted: format!("that `{from}` is entered and not `{to}`"),
     };
-    making.transition(id, told, |it| it.target = after);
+    making.transition(id, mutation, |it| it.target = after);
 }
 
 /// The next sibling state of a node in document order, cyclically; none if there is no other.
@@ -49,13 +49,13 @@ fn sibling(chart: &Statechart, node: NodeId) -> Option<NodeId> {
 }
 
 fn removed(making: &mut MutantCollector<'_>, id: TransitionId) {
-    let told = MutantDescription {
+    let mutation = MutantDescription {
         kind: MutationKind::TransitionRemoved,
         change: String::from("it is never taken"),
         wanted: String::from("a case in which it is taken"),
     };
     let never = Expression { kind: ExpressionKind::Bool(false), place: TextPosition::default() };
-    making.transition(id, told, |it| it.expression.guard = Some(never));
+    making.transition(id, mutation, |it| it.expression.guard = Some(never));
 }
 
 /// Adds the mutant that tries the next transition before this one.
@@ -63,7 +63,7 @@ fn priority(making: &mut MutantCollector<'_>, id: TransitionId) {
     let chart = making.chart;
     let Some(later) = next(chart, id).filter(|later| matters(chart, id, *later)) else { return };
     let (first, second) = (making.arrow(id), making.arrow(later));
-    let told = MutantDescription {
+    let mutation = MutantDescription {
         kind: MutationKind::Priority,
         change: format!("`{second}` is tried before it"),
         wanted: format!("a case in which `{first}` and `{second}` are both enabled"),
@@ -78,7 +78,7 @@ fn priority(making: &mut MutantCollector<'_>, id: TransitionId) {
         }
     }
     let span = making.places.get(id.0 as usize).copied().unwrap_or_default();
-    making.add(&format!("priority {} {}", id.0, later.0), first, span, told, changed);
+    making.add(&format!("priority {} {}", id.0, later.0), first, span, mutation, changed);
 }
 
 /// The next transition of the same node, for the same event, in selection order.

@@ -147,9 +147,9 @@ fn unread(bound: &BoundProperty, abstraction: &Abstraction) -> Vec<Diagnostic> {
 }
 
 /// Visits the fields and messages that a condition reads.
-fn fields<'a>(expression: &'a Expression, told: &mut impl FnMut(&'a Path)) {
+fn fields<'a>(expression: &'a Expression, visit: &mut impl FnMut(&'a Path)) {
     match &expression.kind {
-        ExpressionKind::Variable(path) if path.segments.len() > 1 => told(path),
-        _ => expression.parts().into_iter().for_each(|operand| fields(operand, told)),
+        ExpressionKind::Variable(path) if path.segments.len() > 1 => visit(path),
+        _ => expression.parts().into_iter().for_each(|operand| fields(operand, visit)),
     }
 }

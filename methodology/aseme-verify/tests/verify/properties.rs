@@ -152,7 +152,7 @@ fn an_incomplete_exploration_is_undecided() {
 /// Code, text at the span, and hint of each finding.
 fn said(model: &str, formula: &str, settings: &CheckSettings) -> Vec<(&'static str, String, String)> {
     let (_, _, findings) = judged(model, formula, settings);
-    let told = |it: &Finding| {
+    let summary = |it: &Finding| {
         let text = &it.diagnostic.source.as_ref().unwrap().text;
         let span = it.diagnostic.span;
         (
@@ -161,7 +161,7 @@ fn said(model: &str, formula: &str, settings: &CheckSettings) -> Vec<(&'static s
             it.diagnostic.hint.clone().unwrap_or_default(),
         )
     };
-    findings.iter().map(told).collect()
+    findings.iter().map(summary).collect()
 }
 
 #[test]

@@ -110,7 +110,7 @@ impl Kind {
             Kind::Word(words) => format!("one of {}", listed(words)),
             Kind::Name => "a name of letters, digits, `_` and `-`".into(),
             Kind::File => "the path of a file".into(),
-            Kind::List => "words with blanks between them".into(),
+            Kind::List => "words separated by blanks".into(),
             Kind::Text => "a text".into(),
         }
     }

@@ -202,7 +202,7 @@ impl Host for ChartHost {
         self.blackboards.delivery_log.publishing();
         let number = self.number;
         self.records.publish_with(|message| write_record(message, number, chart, record), self.now);
-        self.listeners.tell(&self.host, &self.agent, chart, record);
+        self.listeners.micro_step(&self.host, &self.agent, chart, record);
     }
 
     fn report(&mut self, chart: &CompiledChart, report: Notice<'_>) {
@@ -216,7 +216,7 @@ impl Host for ChartHost {
                 tracing::error!(%robot, %agent, ?place, action = index + 1, "action failed: {error}");
             }
             Notice::StartWaits { start } => {
-                tracing::debug!(%robot, %agent, start = %chart.short_path(start), "no way out of this START is open");
+                tracing::debug!(%robot, %agent, start = %chart.short_path(start), "no transition out of this START is enabled");
             }
             _ => {}
         }

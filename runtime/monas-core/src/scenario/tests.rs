@@ -79,7 +79,7 @@ return Look
             "3: expected `starts Look`, but started are: Look, Stand",
             "4: expected `in Near`, but active are: Look, Stand",
             "7: expected `publishes nothing`, but published are: monas/host",
-            "8: expected `[host.team == 9]`, but the newest messages do not say so",
+            "8: expected `[host.team == 9]`, but it does not hold for the newest messages",
             "9: expected `timer again: over`, but it is not set",
         ]
     );
@@ -90,14 +90,14 @@ fn an_impossible_step_ends_the_scenario() {
     let missing = differences("start\nreturn Near\n  in Far\nwait 1s\n  in Far\n");
     assert_eq!(missing.len(), 1, "{missing:?}");
     assert!(
-        missing[0].starts_with("3: expected the activity to run, but it does not, and active are: "),
+        missing[0].starts_with("3: expected the activity to run, but it does not; active are: "),
         "{missing:?}"
     );
     assert_eq!(differences("start\ntimer again\n"), ["3: expected the timer to run, but it is not set"]);
     let unknown = differences("start\n  host.team = host.number + 1\n");
     assert_eq!(
         unknown,
-        ["3: expected a message to come, but the value depends on a message that has not come"]
+        ["3: expected a message to arrive, but the value depends on a message that has not arrived"]
     );
 }
 
@@ -133,6 +133,6 @@ fn a_livelock_is_a_difference() {
     let chart = player.compile(&chart).unwrap();
     let (script, _) = ScenarioText::parse(&Source::new("a.scenario", "model r.srm\nstart\n"));
     let steps = script.bind(&chart, player.vocabulary()).unwrap();
-    let found = player.first_difference(&chart, &steps).unwrap().expect("it goes on and on");
-    assert_eq!(found.expected, "the chart to come to rest");
+    let found = player.first_difference(&chart, &steps).unwrap().expect("it is in a livelock");
+    assert_eq!(found.expected, "the chart to become stable");
 }

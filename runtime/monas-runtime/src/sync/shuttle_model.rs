@@ -111,7 +111,7 @@ struct ModelState<const WAKES: bool> {
 }
 
 impl ModelScenario {
-    /// Executes the model to its end, which a thread that waits in vain does not reach.
+    /// Executes the model to its end, which a thread that waits forever does not reach.
     fn play<const WAKES: bool>(self) {
         let stage = Arc::new(ModelState::<WAKES> {
             work: WorkQueue::new(self.workers),

@@ -276,7 +276,7 @@ fn activities_that_wake_each_other_endlessly_stop_their_agent() {
     let mut simulation = simulate(registry, "m = A || B");
     simulation.run_until(at(10)).unwrap();
     let stopped = simulation.statistics().agents[0].stopped.clone().unwrap();
-    assert!(stopped.ends_with("is called at one moment after 10000 other calls"), "{stopped}");
+    assert!(stopped.ends_with("is called more than 10000 times at one time"), "{stopped}");
 }
 
 #[test]
@@ -422,10 +422,10 @@ fn an_unreachable_source_is_reported_before_the_start() {
         let started = talws.agent(balls(&[10])).simulate(1);
         started.err().map(|error| error.diagnostics().iter().map(ToString::to_string).collect::<Vec<_>>())
     };
-    let other_host = "error[E0320]: the chart `m` reads `test/ball` of the host `striker`, of which nothing arrives on \
-                      `local` (a link brings it: `<receive topics=\"test/ball\"/>`; without a host in front the chart's own is meant)";
+    let other_host = "error[E0320]: the chart `m` reads `test/ball` of the host `striker`, whose messages do not reach \
+                      `local` (add a link: `<receive topics=\"test/ball\"/>`, or remove the host to read the chart's own messages)";
     assert_eq!(reads("striker.ball.State.Ball.x > 0").unwrap(), [other_host]);
-    let nobody = "error[E0321]: the chart `m` reads `test/game` of `Vision`, but nobody publishes under that name on `local` \
+    let nobody = "error[E0321]: the chart `m` reads `test/game` of `Vision`, but `local` has no publisher of that name \
                   (agents publish under their own names: `m`, `z`)";
     assert_eq!(reads("Vision.Game.phase == PLAY").unwrap(), [nobody]);
     assert_eq!(reads("z.Game.phase == PLAY"), None);

@@ -101,7 +101,7 @@ fn a_time_bound_expires_by_the_clock_without_steps() {
     let running = talws.start().unwrap();
     assert_eq!(next(&violated, 1), ["p"]);
     let statistics = running.stop();
-    assert_eq!(statistics.agents[0].stopped, None, "it is only told");
+    assert_eq!(statistics.agents[0].stopped, None, "it is only reported");
     let (talws, violated) = waiting("eventually entering END within 1 ms", ViolationResponse::Policy);
     // the run is over when its only agent is
     let statistics = talws.start().unwrap().wait();

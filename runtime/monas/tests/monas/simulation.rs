@@ -197,7 +197,7 @@ fn a_list_without_a_frequency_is_refused() {
     let chart = yase::Statechart::new("m");
     let error = Talws::new().agent(Agent::statechart("a", chart).activity(hello)).simulate(1).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::NoFrequency);
-    assert_eq!(error.to_string(), "agent `a` has activities, but nothing says how often they run");
+    assert_eq!(error.to_string(), "agent `a` has activities but no frequency");
 }
 
 /// A world that counts its steps, shared with the body in it.

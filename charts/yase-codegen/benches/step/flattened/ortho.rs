@@ -1,6 +1,7 @@
-//! The statechart `ortho`, flattened: generated, so that changes here are lost when it is generated again.
+//! The statechart `ortho`, flattened. Generated: changes here are lost.
 //!
-//! `State::start` returns the initial state, `State::handle` reacts to an event. Conditions and actions are methods of `World`.
+//! `State::start` returns the initial state, `State::handle` reacts to an event.
+//! Conditions and actions are methods of `World`.
 #![allow(dead_code, clippy::all)] // unused items are allowed, and generated code has one style
 
 /// The external events.

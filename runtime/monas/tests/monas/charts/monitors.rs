@@ -31,11 +31,11 @@ struct Violations(Arc<Mutex<Vec<(Timestamp, u64, String)>>>);
 impl Observer for Violations {
     fn observe(&mut self, publication: Publication<'_>) {
         if let Some(cycle) = publication.sample.message.as_any().downcast_ref::<Cycle>() {
-            let told = cycle
+            let texts = cycle
                 .violations
                 .iter()
                 .map(|it| (Timestamp::from_nanos(cycle.time), cycle.number, it.property.clone()));
-            self.0.lock().unwrap().extend(told);
+            self.0.lock().unwrap().extend(texts);
         }
     }
 }
@@ -63,7 +63,7 @@ fn missed_deadlines_are_reported_each_time() {
     let (mut simulation, violations) = simulated(agent("50 ms"), noting().1);
     simulation.run_until(at(290)).unwrap();
     assert_eq!(times(&violations), [50_000_001, 150_000_001, 250_000_001]);
-    assert_eq!(simulation.statistics().agents[0].stopped, None, "it is only told");
+    assert_eq!(simulation.statistics().agents[0].stopped, None, "it is only reported");
     let (_, number, name) = violations.0.lock().unwrap()[0].clone();
     assert_eq!((number > 1, name.as_str()), (true, "p"));
 }
@@ -102,7 +102,7 @@ fn a_violation_may_have_the_agent_do_what_it_does_when_an_activity_fails() {
     {
         let (count, reason) = stopped(policy, on_violation);
         assert_eq!(reason, None);
-        assert!(count > 1, "each violation is told");
+        assert!(count > 1, "each violation is reported");
     }
 }
 

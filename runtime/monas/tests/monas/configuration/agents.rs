@@ -149,13 +149,11 @@ fn statechart_settings_are_checked() {
         ),
         (
             chart("", "<activity>Walk</activity><activity>Walk</activity>"),
-            "agents.xml:2:66: error[E0311]: of the activity `Walk` of the chart `walker` something is said already (say it all in one \
-             `activity`: it holds for every state that has it)",
+            "agents.xml:2:66: error[E0311]: the activity `Walk` of the chart `walker` is configured twice (use one `activity` element: it applies to every state that runs it)",
         ),
         (
             chart("", "") + &chart("", "") + "<monitor>models/p.properties</monitor>",
-            "agents.xml:2:96: error[E0324]: agent `a` has 2 statecharts: nobody knows whose properties these are (put the `monitor` into \
-             the `statechart` that is to keep to it)",
+            "agents.xml:2:96: error[E0324]: agent `a` has 2 statecharts: the properties are ambiguous (put the `monitor` into one `statechart`)",
         ),
     ] {
         check_charts(&elements, &[expected]);
@@ -251,7 +249,7 @@ fn missing_parts_of_an_agent_are_reported() {
     check(
         "<agent><name>a</name><activity>Vision</activity></agent>",
         &[
-            "agents.xml:1:2: error[E0305]: agent `a` has activities and no `thread_frequency` (say how many cycles a second it has: `thread_frequency=\"10\"`)",
+            "agents.xml:1:2: error[E0305]: agent `a` has activities and no `thread_frequency` (add its cycles per second: `thread_frequency=\"10\"`)",
         ],
     );
 }
@@ -262,14 +260,14 @@ fn two_agents_of_one_name_are_reported() {
     check(
         &agent.repeat(2),
         &[
-            "agents.xml:2:35: error[E0311]: another agent is named `a` (each agent of a host has a name of its own)",
+            "agents.xml:2:35: error[E0311]: another agent is named `a` (give each agent of a host a unique name)",
         ],
     );
     let provider = "<provider thread_frequency='1'>Vision</provider>";
     check(
         &provider.repeat(2),
         &[
-            "agents.xml:1:80: error[E0311]: another agent is named `Vision` (each agent of a host has a name of its own)",
+            "agents.xml:1:80: error[E0311]: another agent is named `Vision` (give each agent of a host a unique name)",
         ],
     );
 }
@@ -317,12 +315,12 @@ fn ill_formed_xml_is_repaired_and_reported() {
     check_agent(
         "priority='1' priority='2'",
         "<activity>Vision</activity>",
-        &["agents.xml:1:43: error[E0307]: attribute `priority` is given twice (leave one of them out)"],
+        &["agents.xml:1:43: error[E0307]: attribute `priority` is repeated (remove one of them)"],
     );
     check(
         "hello",
         &[
-            "agents.xml:1:1: error[E0301]: text outside of an element (a text stands between tags: `<name>text</name>`)",
+            "agents.xml:1:1: error[E0301]: text outside an element (text must be inside an element: `<name>text</name>`)",
         ],
     );
     check(

@@ -107,11 +107,11 @@ fn a_setting_without_a_path_is_reported() {
     for (setting, expected) in [
         ("agent.Motion.priority", format!("--set:1:1: error[E0340]: `agent.Motion.priority` is no path with a value ({how})")),
         ("", format!("--set:1:1: error[E0340]: `` is no path with a value ({how})")),
-        ("agnt.Motion.priority=2", "--set:1:1: error[E0340]: there is nothing called `agnt` to set (did you mean `agent`?)".into()),
-        ("agent=2", "--set:1:1: error[E0340]: the setting does not say which `agent` (write `agent.NAME.thread_frequency=VALUE`)".into()),
-        ("agent.Motion=2", "--set:1:1: error[E0340]: the setting does not say what of `agent` (write `agent.NAME.thread_frequency=VALUE`)".into()),
+        ("agnt.Motion.priority=2", "--set:1:1: error[E0340]: there is no setting `agnt` (did you mean `agent`?)".into()),
+        ("agent=2", "--set:1:1: error[E0340]: the setting does not name the `agent` (write `agent.NAME.thread_frequency=VALUE`)".into()),
+        ("agent.Motion=2", "--set:1:1: error[E0340]: the setting does not name an attribute of `agent` (write `agent.NAME.thread_frequency=VALUE`)".into()),
         ("agent.Motion.activty.Walk.gait=2", "--set:1:14: error[E0340]: `agent` holds no `activty` (did you mean `activity`?)".into()),
-        ("agent.Motion.name=Other", "--set:1:14: error[E0340]: the `name` of `agent` tells it from others and cannot be set (change it in the file)".into()),
+        ("agent.Motion.name=Other", "--set:1:14: error[E0340]: the `name` of `agent` identifies it and cannot be set (change it in the file)".into()),
     ] {
         assert_eq!(said(setting), expected);
     }

@@ -153,7 +153,7 @@ fn invalid_toml_is_reported_and_the_rest_is_read() {
     let (_, diagnostics) = config::read(&Source::new("a.toml", text), Path::new("a.toml"), &registry());
     assert_eq!(
         diagnostics[0].to_string(),
-        "a.toml:3:12: error[E0343]: `priority` is an array, expected one value (leave one of them and the brackets out)"
+        "a.toml:3:12: error[E0343]: `priority` is an array, expected one value (keep one of them, without brackets)"
     );
 }
 

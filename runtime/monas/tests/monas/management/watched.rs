@@ -163,7 +163,7 @@ fn overruns_at_ten_kilohertz_cost_only_the_cycles_they_cover() {
 
 #[test]
 fn statistics_are_published_as_often_as_they_are_wanted() {
-    let (sender, told) = channel();
+    let (sender, notes) = channel();
     let mut talws = Talws::new();
     talws.observe(Box::new(move |publication: narukom::Publication<'_>| {
         if let Some(sample) = publication.sample.downcast::<monas::records::AgentEntry>() {
@@ -172,9 +172,9 @@ fn statistics_are_published_as_often_as_they_are_wanted() {
     }));
     let agent = Agent::new("a", Hz(1000)).activity(|_: &mut Blackboard| {}).statistics_every(5);
     let running = talws.agent(agent).start().unwrap();
-    let cycles: Vec<u64> = (0..3).map(|_| told.recv_timeout(PATIENCE).unwrap().cycles).collect();
+    let cycles: Vec<u64> = (0..3).map(|_| notes.recv_timeout(PATIENCE).unwrap().cycles).collect();
     assert_eq!(cycles, [5, 10, 15]);
-    let entry = told.recv_timeout(PATIENCE).unwrap();
+    let entry = notes.recv_timeout(PATIENCE).unwrap();
     assert_eq!((entry.name.as_str(), entry.activities.len()), ("a", 1));
     assert!(entry.cycle_time.unwrap().p99 > 0.0);
     running.stop();

@@ -2,8 +2,8 @@
 //!
 //! Generated from `models/patrol.srm`: changes here are lost when it is generated again.
 //!
-//! [`State`] lists its states; the modules `chart` and `transitions` define its structure, `guards` its guards and
-//! assigned values, `words` the names that they use.
+//! [`State`] lists its states; the modules `chart` and `transitions` define its structure,
+//! `guards` its guards and assigned values, `words` the names that they use.
 
 mod activities;
 mod chart;
