@@ -170,20 +170,20 @@
 //! | E0121 | invalid setter |
 //! | E0122 | a single bar or ampersand instead of two |
 //! | E0123 | a script is no text |
-//! | E0130 | a bare name is not known |
 //! | E0130 | unknown bare name |
 //! | E0131 | ambiguous name |
 //! | E0132 | unknown message or topic |
 //! | E0133 | no topic, or several, for a message or name |
 //! | E0134 | unknown field |
-//! | E0136 | a function takes other arguments |
+//! | E0135 | a topic without messages of this type |
 //! | E0136 | wrong arguments of a function |
 //! | E0137 | wrong type |
-//! | E0139 | a function is not known |
+//! | E0138 | a field is compared with NULL |
 //! | E0139 | unknown function |
 //! | E0140 | unknown state |
 //! | E0141 | the timer belongs to another blackboard |
 //! | E0142 | a message of another publisher or host is written |
+//! | E0143 | a delay is too short |
 //! | E0144 | a message is raised |
 //! | E0145 | a whole message is assigned, or a field published |
 //! | E0146 | a trigger names a field or one publisher's messages |

@@ -184,7 +184,7 @@ mod tests {
         let gate = ModuleAbi { version: 9, fingerprints: few_types, ..ModuleAbi::new(silent) };
         assert!(codes(check_compatibility(&gate, "eyes"))[0].contains("interface version 9, this program 1"));
         let gate = ModuleAbi { fingerprints: few_types, ..ModuleAbi::new(silent) };
-        assert!(codes(check_compatibility(&gate, "eyes"))[0].contains("names 2 types, this program 8"));
+        assert!(codes(check_compatibility(&gate, "eyes"))[0].contains("has 2 types, this program 8"));
     }
 
     #[test]

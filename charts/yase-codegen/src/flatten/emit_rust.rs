@@ -278,7 +278,7 @@ mod tests {
         let only = chart.add(yase::Statechart::ROOT, yase::Node::new(yase::NodeKind::Basic, "only"));
         chart.connect(yase::Transition::new(start, only));
         let code = crate::flatten::flatten(&chart, yase::Semantics::yase(), 1).unwrap().to_rust();
-        assert!(code.starts_with("//! A statechart, flattened: "), "{code}");
+        assert!(code.starts_with("//! A statechart, flattened. "), "{code}");
         assert!(code.contains("pub enum Event {}\n\n") && code.contains("pub trait World {}\n\n"), "{code}");
     }
 
