@@ -354,10 +354,10 @@ fn logging_does_not_allocate_and_excess_lines_are_counted() {
 }
 
 #[test]
-fn a_log_begins_once() {
+fn a_log_starts_once() {
     let folder = tempfile::tempdir().unwrap();
     let (_, logger) = begun(to(&folder.path().join("a")));
-    assert!(logger.begin(LogSettings::default()).unwrap_err().to_string().contains("has begun"));
+    assert!(logger.begin(LogSettings::default()).unwrap_err().to_string().contains("was started already"));
     logger.end();
     let (_, other) = logger::layer::<tracing_subscriber::Registry>();
     assert!(other.begin(to(&folder.path().join("no/folder"))).is_err());

@@ -144,7 +144,7 @@ fn changes_beyond_one_chart_are_rejected() {
         (
             Change { settings: settings(&[("workers", "3")]), ..of_chart(Action::Set, "2") },
             "E0304",
-            "`workers` of a statechart is what it begins with",
+            "`workers` of a statechart applies only at its start",
         ),
     ] {
         let changed = simulation.change("local", asked.clone()).unwrap();

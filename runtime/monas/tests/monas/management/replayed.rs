@@ -253,7 +253,7 @@ fn a_change_rejected_because_of_an_unreplayed_agent_is_not_repeated() {
     let (setup, _) = monas::config::read(&Source::new("a.xml", text), "a.xml".as_ref(), &registry());
     let sayer = Talws::new().registry(registry()).setup(setup);
     let error = replay_simulated(sayer, 7, &tape.kept()).err().unwrap();
-    assert!(error.to_string().starts_with("agents that left were refused "), "{error}");
+    assert!(error.to_string().starts_with("removed agents were rejected "), "{error}");
     assert_eq!(error.hint(), Some("replay all agents of the host"));
 }
 
@@ -514,7 +514,7 @@ fn in_real_time_another_change_in_the_place_of_the_recorded_one_is_another_run()
     let error = replay(list(channel().0), &messages).err().unwrap().to_string();
     assert!(error.starts_with("the change of agent `thrower` "), "{error}");
     assert!(
-        error.ends_with("cannot be made again: the list of `thrower` has no activity `Nothing`"),
+        error.ends_with("cannot be repeated: the list of `thrower` has no activity `Nothing`"),
         "{error}"
     );
 }
@@ -539,7 +539,7 @@ fn in_real_time_missing_records_are_rejected_with_the_reason() {
         };
         let error = by_another(&is_ordered);
         assert!(error.to_string().starts_with(was), "{error}");
-        let reason = "the recording, of an earlier version, does not tell after which turn";
+        let reason = "the recording, of an earlier version, lacks the turn";
         assert!(error.to_string().ends_with(reason), "{error}");
         assert_eq!(error.hint(), Some("replay other agents, or the time before"));
         let error = by_another(&|kept| kept.topic == CHANGE.path());
@@ -623,7 +623,7 @@ fn in_real_time_an_agent_is_restored_thread_by_thread() {
     assert_compared(&messages, &outcome, &expected);
     let messages = live_run(player, &of("<statechart>F/n.srm</statechart>"));
     let error = replay(player(channel().0), &messages).err().unwrap().to_string();
-    assert!(error.starts_with("agent `player` came back "), "{error}");
+    assert!(error.starts_with("agent `player` returned "), "{error}");
 }
 
 /// A chart agent to which activities are added.

@@ -165,7 +165,7 @@ fn a_recording_without_turns_is_refused() {
         kept.bytes = records::Cycle { number, time, delivered, ..records::Cycle::default() }.encode_to_vec();
     }
     let error = replay(again(-3.0), &messages).err().unwrap();
-    assert!(error.to_string().contains("does not tell what each turn of `"), "{error}");
+    assert!(error.to_string().contains("lacks the inputs of the turns of `"), "{error}");
 }
 
 /// One agent with the list and with two charts: the keeper's, and one that counts what that one
@@ -231,7 +231,7 @@ fn a_recording_with_ambiguous_threads_is_rejected() {
     let mut messages = recorded_player();
     messages.iter_mut().for_each(|kept| kept.part = 0);
     let error = replay(player(-3.0, &channel().0), &messages).err().unwrap();
-    assert!(error.to_string().contains("does not tell what each turn of `player`"), "{error}");
+    assert!(error.to_string().contains("lacks the inputs of the turns of `player`"), "{error}");
 }
 
 #[test]
