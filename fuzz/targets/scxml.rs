@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use libfuzzer_sys::fuzz_target;
 use monas_fuzz::assert_findings_fit;
-use yase::{Moment, Source};
+use yase::{Timestamp, Source};
 use yase_scxml::{self, Event, NoPlatform, Session};
 
 fuzz_target!(|text: &str| {
@@ -26,11 +26,11 @@ fuzz_target!(|text: &str| {
 
 /// Sends some events and advances time; a session that cannot continue reports an error.
 fn play(mut session: Session<NoPlatform>, text: &str) {
-    if session.start(Moment::ZERO).is_err() {
+    if session.start(Timestamp::ZERO).is_err() {
         return;
     }
     for (round, name) in (1..).zip(["e", "ball.near", "whistle", "stop", "error.execution"]) {
-        let moment = Moment::ZERO + Duration::from_secs(round);
+        let moment = Timestamp::ZERO + Duration::from_secs(round);
         let next = session.next_deadline().map_or(moment, |deadline| deadline.min(moment));
         if session.send(Event::new(name)).is_err() || session.advance_to(next).is_err() {
             return;

@@ -8,6 +8,7 @@ mod columns;
 mod documents;
 mod layers;
 mod manifests;
+mod names;
 mod prose;
 mod road;
 mod size;
@@ -73,6 +74,7 @@ fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     findings.extend(layers::check(workspace));
     findings.extend(absences::check(workspace));
     findings.extend(manifests::check(workspace));
+    findings.extend(names::check(workspace));
     findings.extend(texts::check(workspace));
     findings.extend(documents::check(workspace));
     findings.extend(road::check(workspace));

@@ -42,9 +42,9 @@
 //!
 //! | code | what is wrong |
 //! |---|---|
-//! | E0160 | something in the chart is not known beforehand |
-//! | E0161 | there are too many configurations or ways |
-//! | E0162 | a step has no end |
+//! | E0160 | a feature whose result is not known beforehand |
+//! | E0161 | too many configurations or paths |
+//! | E0162 | a livelock |
 
 mod emit_rust;
 mod merge_states;

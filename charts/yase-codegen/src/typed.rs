@@ -64,8 +64,8 @@
 //!
 //! | code | what is wrong |
 //! |---|---|
-//! | E0150 | what was written down does not fit together |
-//! | E0151 | the functions were made for other messages or another model |
+//! | E0150 | inconsistent statements |
+//! | E0151 | functions for other messages or another model |
 
 mod builder;
 mod chart;
@@ -168,7 +168,7 @@ mod tests {
 
     /// A text declares how it reads a timer; code may read it in any form.
     #[test]
-    fn code_may_tell_apart_what_its_text_does_not() {
+    fn code_may_distinguish_timers_that_its_text_does_not() {
         let mut draft = TypedChartBuilder::new("waits");
         draft.starts(Timer(0), "late");
         draft.add(NodeId(1), NodeId(0), NodeKind::Start, "");
@@ -182,7 +182,7 @@ mod tests {
         let typed = chart.compile(&vocabulary, yase::Semantics::yase()).unwrap();
         let plain = chart.statechart().compile(&vocabulary).unwrap();
         let told_apart = |chart: &yase::CompiledChart| -> usize {
-            chart.guards().map(|(_, _, guard)| guard.timers_told_apart().len()).sum()
+            chart.guards().map(|(_, _, guard)| guard.timers_distinguished_from_unset().len()).sum()
         };
         assert_eq!((told_apart(&plain), told_apart(&typed)), (0, 1));
     }

@@ -12,7 +12,7 @@ use yase::{MicroStepCause, TraceRecord};
 use super::constraint_cache::ConstraintCache;
 use super::{ConditionConstraint, WriteEffects};
 
-/// Stands for the blackboard of conditions that only the caller reads.
+/// The blackboard of conditions that only the caller evaluates.
 const BESIDE: ScopeId = ScopeId(u32::MAX);
 
 /// The blackboard of the chart's root.
@@ -89,13 +89,13 @@ impl<'s, 'a> ChoosingHost<'s, 'a> {
         ChoosingHost { decisions: RefCell::new(decisions), notes: StepNotes::default() }
     }
 
-    /// A host with blackboards, by index, on which no condition holds.
+    /// Sets the idle blackboards, by index.
     pub(crate) fn with_idle(mut self, idle: &'s [bool]) -> ChoosingHost<'s, 'a> {
         self.decisions.get_mut().idle = idle;
         self
     }
 
-    /// Begins a step with planned values of the first conditions.
+    /// Starts a step with planned values of the first conditions.
     pub(crate) fn begin(&mut self, planned: &[bool]) {
         let decisions = self.decisions.get_mut();
         decisions.planned.clear();

@@ -96,7 +96,7 @@ fn every_combination_is_found_and_nothing_else() {
 }
 
 #[test]
-fn a_search_that_was_stopped_says_so() {
+fn a_stopped_search_is_incomplete() {
     let found = explore(&two_switches().compile(), &mut events(&["left", "right"]), 3);
     assert!(!found.is_finished());
     assert_eq!(found.states().len(), 3);
@@ -151,7 +151,7 @@ fn activities_return_and_timers_expire_in_any_order() {
 }
 
 #[test]
-fn what_a_chart_leaves_open_goes_each_way() {
+fn open_choices_are_explored_each_way() {
     let mut sketch = ChartSketch::new();
     sketch.states(Statechart::ROOT, &["a", "b", "c"]);
     for (target, weight) in [("b", 0.9), ("c", 0.1)] {

@@ -116,13 +116,13 @@ impl Trace {
                 }
                 (true, Some(step)) => detail(chart, content, step).map_err(wrong)?,
                 (true, None) => {
-                    return Err(wrong("this belongs to no step: a trace begins with `start`".into()));
+                    return Err(wrong("this line belongs to no step: a trace starts with `start`".into()));
                 }
             }
         }
         match steps.first().map(|step| &step.cause) {
             Some(StepCause::Start) => Ok(Trace::new(chart.clone(), steps)),
-            _ => Err(ParseError { line: 1, message: "a trace begins with `start`".into() }),
+            _ => Err(ParseError { line: 1, message: "a trace starts with `start`".into() }),
         }
     }
 }
@@ -136,7 +136,7 @@ fn cause(chart: &CompiledChart, line: &str) -> Result<StepCause, String> {
         ("event", false) => Ok(StepCause::Event(rest.into())),
         ("return", false) => match chart.activities().find(|entry| chart.short_path(entry.node) == rest) {
             Some(entry) => Ok(StepCause::Return(entry.node)),
-            None => Err(format!("no state with an activity is called `{rest}`")),
+            None => Err(format!("no state with an activity has the name `{rest}`")),
         },
         ("timer", false) => match (0..chart.timers().len()).find(|&timer| timer_name(chart, timer) == rest) {
             Some(timer) => Ok(StepCause::Timer(timer)),
@@ -182,8 +182,8 @@ impl fmt::Display for Trace {
     }
 }
 
-/// Replays a trace. After each step `told` receives the machine, the step, and its trace lines, one
-/// per micro-step.
+/// Replays a trace and passes the machine, the step and its trace lines, one per micro-step, to
+/// `observe` after each step.
 ///
 /// Conditions that the trace does not contain are false.
 ///
@@ -191,7 +191,7 @@ impl fmt::Display for Trace {
 /// The machine stops with an error, as the trace may be intended to show.
 pub fn replay(
     trace: &Trace,
-    mut told: impl FnMut(&Machine, &TraceStep, &[String]),
+    mut observe: impl FnMut(&Machine, &TraceStep, &[String]),
 ) -> Result<Machine, MachineError> {
     let mut machine = Machine::new(trace.chart.clone());
     let mut allows = |_: ScriptId, _: bool, _: &[(ScriptId, bool)]| true;
@@ -202,7 +202,7 @@ pub fn replay(
         let values: Vec<bool> = step.decisions.iter().map(|&(_, value)| value).collect();
         host.begin(&values);
         let result = take_step(&mut machine, &step.cause, step.choices.clone(), &mut host);
-        told(&machine, step, host.notes.lines.as_deref().unwrap_or_default());
+        observe(&machine, step, host.notes.lines.as_deref().unwrap_or_default());
         result?;
     }
     Ok(machine)

@@ -35,16 +35,16 @@
 //!
 //! # What is lost
 //!
-//! | code | what the target cannot say |
+//! | code | what the target cannot represent |
 //! |---|---|
 //! | E0701 | a kind of node; it is shown as another |
-//! | E0702 | something that is said of a node; it is shown and means nothing |
-//! | E0703 | something that is said of a transition; it is shown and means nothing |
-//! | E0704 | constants; they stand in a comment |
+//! | E0702 | a property of a node; it is shown without effect |
+//! | E0703 | a property of a transition; it is shown without effect |
+//! | E0704 | constants; they become a comment |
 //! | E0705 | an end of a transition; it is shown at the state around it |
-//! | E0706 | a transition at all: it is left out (an error) |
-//! | E0707 | the moment at which a transition happens; it may happen earlier, later or otherwise |
-//! | E0708 | the chart at all: its tree is broken, and there is no text (an error) |
+//! | E0706 | a transition: it is omitted (an error) |
+//! | E0707 | the time at which a transition is taken |
+//! | E0708 | the chart: its tree is broken, and there is no text (an error) |
 
 mod compact;
 mod dot;

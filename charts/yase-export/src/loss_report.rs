@@ -18,14 +18,14 @@ impl<'a> LossReport<'a> {
     /// The nodes of the chart do not form a tree; no text can be written.
     pub(crate) fn new(chart: &'a Statechart, tool: &'static str) -> Result<LossReport<'a>, Exported> {
         if !is_tree(chart) {
-            let message = format!("`{}` is no tree: a node does not lie in its parent", chart.name);
+            let message = format!("`{}` is no tree: a node is not a child of its parent", chart.name);
             let lost = vec![Diagnostic::error("E0708", Span::default(), message)];
             return Err(Exported { text: String::new(), lost });
         }
         let mut lost = LossReport { chart, tool, found: Vec::new() };
         for (id, transition) in chart.transitions() {
             if !has_ends(chart, transition) {
-                lost.report_omitted(format!("transition {} joins nodes that do not exist", id.0));
+                lost.report_omitted(format!("transition {} connects nodes that do not exist", id.0));
             }
         }
         Ok(lost)
@@ -35,7 +35,7 @@ impl<'a> LossReport<'a> {
     pub(crate) fn kind(&mut self, id: NodeId, shown_as: &str) {
         let word = super::notation::kind_word(self.chart.node(id).kind);
         let (path, tool) = (self.chart.path(id), self.tool);
-        let message = format!("`{path}` is of the kind {word}; for {tool} it is {shown_as}");
+        let message = format!("`{path}` has the kind {word}; in {tool} it is {shown_as}");
         self.found.push(Diagnostic::warning("E0701", Span::default(), message));
     }
 
@@ -63,7 +63,7 @@ impl<'a> LossReport<'a> {
 
     /// Reports an omitted transition with its reason.
     pub(crate) fn report_omitted(&mut self, why: String) {
-        let message = format!("{why}: left out for {}", self.tool);
+        let message = format!("{why}: omitted for {}", self.tool);
         self.found.push(Diagnostic::error("E0706", Span::default(), message));
     }
 
@@ -73,7 +73,7 @@ impl<'a> LossReport<'a> {
     }
 
     fn warn(&mut self, code: &'static str, what: String) {
-        let message = format!("{} has no way to say {what}", self.tool);
+        let message = format!("{} cannot represent {what}", self.tool);
         self.found.push(Diagnostic::warning(code, Span::default(), message));
     }
 

@@ -160,12 +160,14 @@ impl XStateWriter<'_> {
                 Some(Trigger::Any | Trigger::Not(_)) => {
                     any = true;
                     let message = format!(
-                        "the event `*` of {arrow} is for XState also the end of states and activities"
+                        "in XState the event `*` of {arrow} also matches the completion of states and activities"
                     );
                     self.lost.moment(message);
                 }
                 Some(Trigger::OneOf(_)) if any => {
-                    self.lost.moment(format!("{arrow} comes after one for any event, for XState before it"));
+                    self.lost.moment(format!(
+                        "{arrow} follows a transition for any event, in XState it precedes it"
+                    ));
                 }
                 _ => {}
             }
@@ -176,7 +178,7 @@ impl XStateWriter<'_> {
             }
             if self.stops(id, way) {
                 let message =
-                    format!("{arrow} waits until activities have returned, for XState it stops them");
+                    format!("{arrow} waits until activities have returned, in XState it stops them");
                 self.lost.moment(message);
             }
         }
@@ -196,8 +198,7 @@ impl XStateWriter<'_> {
         if node.kind == NodeKind::Choice && self.ways[id.0 as usize].iter().all(ResolvedTransition::has_guard)
         {
             let path = self.chart.path(id);
-            self.lost
-                .moment(format!("`{path}` without an open branch is an error, for XState it waits there"));
+            self.lost.moment(format!("`{path}` without an enabled branch is an error, in XState it waits"));
         }
     }
 }
@@ -227,9 +228,9 @@ fn all_ways<'a>(chart: &'a Statechart, lost: &mut LossReport<'_>) -> Vec<Vec<Res
     for (id, _) in
         chart.nodes().filter(|&(id, _)| role(chart, id) != ConnectorRole::Rest && !reached[id.0 as usize])
     {
-        lost.kind(id, "nothing, as no way leads over it");
+        lost.kind(id, "nothing, because no path uses it");
         for segment in ways.outgoing(id) {
-            lost.report_omitted(format!("no way leads over {}", lost.arrow(segment)));
+            lost.report_omitted(format!("no path uses {}", lost.arrow(segment)));
         }
     }
     all

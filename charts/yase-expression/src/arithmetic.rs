@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_in_order_whatever_their_width() {
+    fn values_of_all_widths_are_ordered() {
         for row in ROWS {
             for (i, &left) in row.iter().enumerate() {
                 for (j, &right) in row.iter().enumerate() {
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn what_guards_mostly_compare_takes_the_short_way() {
+    fn common_comparisons_take_the_fast_path() {
         for value in [Value::Int(3), Value::Uint(3), Value::Float(3.0), Value::Enum(3), Value::Bool(true)] {
             assert_eq!(compare_plainly(value, Comparison::Equal, &literal(value)), Some(true), "{value:?}");
         }
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_has_no_order() {
+    fn nan_has_no_order() {
         for other in [Value::Int(1), Value::Uint(0), Value::Float(0.0)] {
             for (left, right) in [(other, Value::Float(f64::NAN)), (Value::Float(f64::NAN), other)] {
                 assert_eq!(compare(left, Comparison::Less, right), Err(GuardError::NotANumber));

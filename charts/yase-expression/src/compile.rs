@@ -196,8 +196,8 @@ fn refuse_foreign(path: &Path, origin: &Origin, verb: &str) -> CompileResult<()>
     if *origin == Origin::Own {
         return Ok(());
     }
-    let message = format!("`{path}` is another's variable and cannot be {verb} by a chart");
-    let hint = "a chart writes its own messages only: leave out what stands before the message";
+    let message = format!("`{path}` is a variable of another publisher and cannot be {verb} by a chart");
+    let hint = "a chart writes only its own messages: remove the prefix of the message";
     Err(vec![Diagnostic::error("E0142", path.place.0, message).with_hint(hint)])
 }
 

@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fits_is_set_and_what_does_not_is_named() {
+    fn valid_settings_are_applied_and_others_are_named() {
         let out_of_range = Err("the number does not fit into the field `n`".to_owned());
         assert_eq!(read::<i32>(Value::Float(3.0)), Ok(3));
         assert_eq!(read::<i32>(Value::Float(3.5)), out_of_range);

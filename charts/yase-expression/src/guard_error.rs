@@ -13,10 +13,10 @@ pub enum GuardError {
     #[error("a whole number is out of range")]
     OutOfRange,
     /// NaN was compared.
-    #[error("what is not a number was compared")]
+    #[error("NaN was compared")]
     NotANumber,
     /// A value does not have the declared type of its field or function.
-    #[error("a value is not of the declared type")]
+    #[error("a value does not have the declared type")]
     WrongType,
     /// A function failed.
     #[error("the function failed: {0}")]

@@ -78,7 +78,7 @@ impl Guard {
     }
 
     /// The timers for which the guard distinguishes expired from never started.
-    pub fn timers_told_apart(&self) -> Vec<TimerId> {
+    pub fn timers_distinguished_from_unset(&self) -> Vec<TimerId> {
         let mut reads = ReadSet::default();
         reads.of_test(&self.test);
         reads.timers_distinguished(&self.timers)

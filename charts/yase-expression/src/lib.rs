@@ -147,47 +147,47 @@
 //!
 //! | code | what is wrong |
 //! |---|---|
-//! | E0101 | a character has no meaning here |
+//! | E0101 | invalid character |
 //! | E0102 | a text or a name in backquotes is not closed |
 //! | E0103 | an escape in a text is not one |
 //! | E0104 | there is no name in the backquotes |
 //! | E0105 | a number is too large |
-//! | E0106 | an operand is missing |
-//! | E0107 | an operator is missing |
-//! | E0108 | `=` stands for `==` |
-//! | E0109 | a parenthesis is not closed, or closes nothing |
+//! | E0106 | missing operand |
+//! | E0107 | missing operator |
+//! | E0108 | `=` instead of `==` |
+//! | E0109 | unbalanced parenthesis |
 //! | E0110 | a bracket is not closed |
 //! | E0111 | comparisons are chained |
 //! | E0112 | the nesting is too deep |
 //! | E0113 | a member has arguments |
 //! | E0114 | NULL is not compared with a message |
 //! | E0115 | a name is missing |
-//! | E0116 | the trigger cannot be read |
-//! | E0117 | there is no condition in the brackets |
-//! | E0118 | the action cannot be read |
-//! | E0119 | a delay cannot be read |
-//! | E0120 | something follows a complete part |
-//! | E0121 | a setter cannot be read |
-//! | E0122 | a single bar or ampersand stands for two |
+//! | E0116 | invalid trigger |
+//! | E0117 | the brackets are empty |
+//! | E0118 | invalid action |
+//! | E0119 | invalid delay |
+//! | E0120 | unexpected text after a complete part |
+//! | E0121 | invalid setter |
+//! | E0122 | a single bar or ampersand instead of two |
 //! | E0123 | a script is no text |
-//! | E0130 | a bare name is not known |
-//! | E0131 | a name has several meanings |
-//! | E0132 | a message or topic is not known |
-//! | E0133 | no topic, or several, have the message or the name |
-//! | E0134 | a field is not known |
-//! | E0135 | a topic has no such messages |
-//! | E0136 | a function takes other arguments |
-//! | E0137 | a value has another type than is needed |
+//! | E0130 | unknown bare name |
+//! | E0131 | ambiguous name |
+//! | E0132 | unknown message or topic |
+//! | E0133 | no topic, or several, for a message or name |
+//! | E0134 | unknown field |
+//! | E0135 | a topic without messages of this type |
+//! | E0136 | wrong arguments of a function |
+//! | E0137 | wrong type |
 //! | E0138 | a field is compared with NULL |
-//! | E0139 | a function is not known |
-//! | E0140 | a state is not known |
-//! | E0141 | a timer is not one of the blackboard |
-//! | E0142 | another's message is written |
+//! | E0139 | unknown function |
+//! | E0140 | unknown state |
+//! | E0141 | the timer belongs to another blackboard |
+//! | E0142 | a message of another publisher or host is written |
 //! | E0143 | a delay is too short |
 //! | E0144 | a message is raised |
 //! | E0145 | a whole message is assigned, or a field published |
 //! | E0146 | a trigger names a field or one publisher's messages |
-//! | E0147 | a script stands where there are none |
+//! | E0147 | a script in a host without scripts |
 
 pub mod arithmetic;
 mod compile;

@@ -65,7 +65,7 @@ fn transition(parser: &mut Cursor<'_>) -> TransitionExpression {
     let actions = if parser.accept(Symbol::Slash) { parser.actions() } else { Vec::new() };
     if parser.kind() != TokenKind::End {
         let found = parser.found();
-        let message = format!("{found} follows the end of the expression");
+        let message = format!("unexpected {found} after the expression");
         parser.report(
             Diagnostic::error("E0120", parser.span(), message)
                 .with_hint("the form is `trigger [guard] / actions`"),
@@ -87,10 +87,8 @@ fn bracketed_condition(parser: &mut Cursor<'_>) -> Parsed<Expression> {
     let open = parser.advance();
     if parser.at(Symbol::CloseBracket) {
         let span = open.span.to(parser.span());
-        let hint = "leave the brackets out, or write `[true]`";
-        return parser.refuse(
-            Diagnostic::error("E0117", span, "there is no condition in the brackets").with_hint(hint),
-        );
+        let hint = "remove the brackets, or write `[true]`";
+        return parser.refuse(Diagnostic::error("E0117", span, "the brackets are empty").with_hint(hint));
     }
     let condition = parser.condition()?;
     parser.expect_close_bracket(open.span)?;

@@ -186,11 +186,11 @@ impl Expression {
     }
 
     /// The first result of the closure in a pre-order walk of the expression.
-    pub fn find_map<'a, T>(&'a self, told: &mut dyn FnMut(&'a Expression) -> Option<T>) -> Option<T> {
-        if let Some(found) = told(self) {
+    pub fn find_map<'a, T>(&'a self, visit: &mut dyn FnMut(&'a Expression) -> Option<T>) -> Option<T> {
+        if let Some(found) = visit(self) {
             return Some(found);
         }
-        self.parts().into_iter().find_map(|operand| operand.find_map(told))
+        self.parts().into_iter().find_map(|operand| operand.find_map(visit))
     }
 }
 

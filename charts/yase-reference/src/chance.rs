@@ -1,11 +1,11 @@
-//! Choices that the rules leave open: R22.
+//! Choices that the model leaves open: R22.
 
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
 /// How choices are resolved.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Freedom {
+pub enum ChoicePolicy {
     /// Always the first option.
     Declared,
     /// A generator with that seed.
@@ -16,17 +16,17 @@ pub enum Freedom {
 
 /// Resolves choices and records them.
 #[derive(Clone, Debug)]
-pub(crate) struct Chance {
-    freedom: Freedom,
+pub(crate) struct ChoiceSource {
+    freedom: ChoicePolicy,
     generator: Pcg64,
     /// The chosen options and the numbers of options.
     pub log: Vec<(u32, u32)>,
 }
 
-impl Chance {
-    pub(crate) fn new(freedom: Freedom) -> Chance {
-        let seed = if let Freedom::Seeded(seed) = freedom { seed } else { 0 };
-        Chance { freedom, generator: Pcg64::seed_from_u64(seed), log: vec![] }
+impl ChoiceSource {
+    pub(crate) fn new(freedom: ChoicePolicy) -> ChoiceSource {
+        let seed = if let ChoicePolicy::Seeded(seed) = freedom { seed } else { 0 };
+        ChoiceSource { freedom, generator: Pcg64::seed_from_u64(seed), log: vec![] }
     }
 
     /// Chooses one of the options; a single option is not recorded.
@@ -36,7 +36,7 @@ impl Chance {
 
     /// Whether weights matter.
     pub(crate) fn draws(&self) -> bool {
-        !matches!(self.freedom, Freedom::Declared)
+        !matches!(self.freedom, ChoicePolicy::Declared)
     }
 
     /// Chooses one of several options, in proportion to their weights.
@@ -45,9 +45,9 @@ impl Chance {
             return 0;
         }
         let chosen = match &self.freedom {
-            Freedom::Declared => 0,
-            Freedom::Seeded(_) => self.generated(weights),
-            Freedom::Scripted(choices) => {
+            ChoicePolicy::Declared => 0,
+            ChoicePolicy::Seeded(_) => self.generated(weights),
+            ChoicePolicy::Scripted(choices) => {
                 let next = choices.get(self.log.len()).copied().unwrap_or(0) as usize;
                 next.min(weights.len() - 1)
             }
@@ -56,8 +56,7 @@ impl Chance {
         chosen
     }
 
-    /// Equal options share the generator's numbers evenly; others in proportion to their weights,
-    /// in order.
+    /// Equal weights divide the generator's range evenly, other weights in proportion, in order.
     fn generated(&mut self, weights: &[f64]) -> usize {
         let draw = self.generator.next_u64();
         if weights.iter().all(|weight| *weight == 1.0) {
@@ -71,10 +70,10 @@ impl Chance {
         reached.unwrap_or(weights.len() - 1)
     }
 
-    /// The choices made by a script, which are all that the machine's chooser records.
-    pub(crate) fn told(&self) -> &[(u32, u32)] {
+    /// The recorded choices of a script; they equal those recorded by the machine's chooser.
+    pub(crate) fn scripted_log(&self) -> &[(u32, u32)] {
         match self.freedom {
-            Freedom::Scripted(_) => &self.log,
+            ChoicePolicy::Scripted(_) => &self.log,
             _ => &[],
         }
     }

@@ -1,4 +1,4 @@
-//! Both interpreters play one case, and their logs are compared.
+//! Both interpreters execute one case, and their logs are compared.
 //!
 //! All contents of trace records are compared, and so are all calls of the host, the reports, the
 //! configuration after each step and the error that ends a chart. Two things are not compared,
@@ -9,16 +9,16 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use yase::statechart::{NodeId, Statechart};
-use yase::{Activation, Chooser, Machine, Moment, Outcome, ScopeId, TopicId};
+use yase::{Activation, Chooser, Machine, Outcome, ScopeId, Timestamp, TopicId};
 
-use crate::chance::{Chance, Freedom};
+use crate::chance::{ChoicePolicy, ChoiceSource};
 use crate::random::Case;
 use crate::script::{self, ByMicroSteps, Interpreter};
 use crate::stepper::Stepper;
 use crate::world::{World, vocabulary};
 
 /// Result of a case.
-pub(crate) enum Verdict {
+pub(crate) enum CaseResult {
     /// Both logs are equal.
     Same(Vec<String>),
     Different(Difference),
@@ -31,11 +31,11 @@ pub(crate) struct Difference {
     pub found: Vec<String>,
 }
 
-pub(crate) fn judge(case: &Case) -> Verdict {
+pub(crate) fn judge(case: &Case) -> CaseResult {
     let chart = match case.chart.compile_with(&vocabulary(), case.semantics) {
         Ok(chart) => Arc::new(chart),
         Err(found) => {
-            return Verdict::Refused(found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"));
+            return CaseResult::Refused(found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"));
         }
     };
     let timers = chart.timers().map(|(region, name)| (region, name.to_owned())).collect();
@@ -46,16 +46,16 @@ pub(crate) fn judge(case: &Case) -> Verdict {
         [by_machine(case, machine.clone(), false), by_machine(case, ByMicroSteps(machine.clone()), false)]
     {
         if expected != found {
-            return Verdict::Different(Difference { expected, found });
+            return CaseResult::Different(Difference { expected, found });
         }
     }
-    // A machine without an observer records no micro-steps: everything else must be equal.
+    // A machine without an observer logs no micro-steps; everything else must be equal.
     let is_micro_step = |line: &String| line.starts_with(|first: char| first.is_ascii_digit());
-    let told: Vec<String> = expected.iter().filter(|line| !is_micro_step(line)).cloned().collect();
+    let without_steps: Vec<String> = expected.iter().filter(|line| !is_micro_step(line)).cloned().collect();
     let found = by_machine(case, machine, true);
-    match told == found {
-        true => Verdict::Same(expected),
-        false => Verdict::Different(Difference { expected: told, found }),
+    match without_steps == found {
+        true => CaseResult::Same(expected),
+        false => CaseResult::Different(Difference { expected: without_steps, found }),
     }
 }
 
@@ -65,32 +65,34 @@ fn world(case: &Case) -> World {
 
 fn by_reference(case: &Case, timers: Vec<(ScopeId, String)>) -> Vec<String> {
     let mut world = world(case);
-    let chance = Chance::new(case.freedom.clone());
-    let mut watched =
-        Watched { inner: Stepper::new(&case.chart, case.semantics, chance, timers), chart: &case.chart };
+    let chance = ChoiceSource::new(case.freedom.clone());
+    let mut watched = ConfigurationLogger {
+        inner: Stepper::new(&case.chart, case.semantics, chance, timers),
+        chart: &case.chart,
+    };
     script::run(&mut watched, &case.script, &mut world);
-    world.say(format!("asked {:?}", watched.inner.chance.told()));
+    world.say(format!("asked {:?}", watched.inner.chance.scripted_log()));
     normal(world.log)
 }
 
-fn by_machine<M: Asked>(case: &Case, machine: M, silent: bool) -> Vec<String> {
+fn by_machine<M: MachineAccess>(case: &Case, machine: M, silent: bool) -> Vec<String> {
     let mut world = World { silent, ..world(case) };
-    let mut watched = Watched { inner: machine, chart: &case.chart };
+    let mut watched = ConfigurationLogger { inner: machine, chart: &case.chart };
     script::run(&mut watched, &case.script, &mut world);
     world.say(format!("asked {:?}", watched.inner.machine().chooser().choices()));
     normal(world.log)
 }
 
-fn chooser(freedom: &Freedom) -> Chooser {
+fn chooser(freedom: &ChoicePolicy) -> Chooser {
     match freedom {
-        Freedom::Declared => Chooser::declared(),
-        Freedom::Seeded(seed) => Chooser::seeded(*seed),
-        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
+        ChoicePolicy::Declared => Chooser::declared(),
+        ChoicePolicy::Seeded(seed) => Chooser::seeded(*seed),
+        ChoicePolicy::Scripted(choices) => Chooser::scripted(choices.clone()),
     }
 }
 
 /// An interpreter that also logs its configuration after each step.
-struct Watched<'c, I> {
+struct ConfigurationLogger<'c, I> {
     inner: I,
     chart: &'c Statechart,
 }
@@ -105,30 +107,30 @@ impl Configured for Stepper<'_> {
     }
 }
 
-impl<M: Asked> Configured for M {
+impl<M: MachineAccess> Configured for M {
     fn has(&self, node: NodeId) -> bool {
         self.machine().is_active(node)
     }
 }
 
-/// A machine, however it is stepped.
-trait Asked: Interpreter {
+/// Access to the machine of an interpreter, however it steps it.
+trait MachineAccess: Interpreter {
     fn machine(&self) -> &Machine;
 }
 
-impl Asked for Machine {
+impl MachineAccess for Machine {
     fn machine(&self) -> &Machine {
         self
     }
 }
 
-impl Asked for ByMicroSteps {
+impl MachineAccess for ByMicroSteps {
     fn machine(&self) -> &Machine {
         &self.0
     }
 }
 
-impl<I: Configured> Watched<'_, I> {
+impl<I: Configured> ConfigurationLogger<'_, I> {
     fn show(&self, world: &mut World) {
         let active = self.chart.nodes().filter(|(id, _)| self.inner.has(*id));
         let numbers: Vec<String> = active.map(|(id, _)| id.0.to_string()).collect();
@@ -136,8 +138,8 @@ impl<I: Configured> Watched<'_, I> {
     }
 }
 
-impl<I: Configured> Interpreter for Watched<'_, I> {
-    fn start(&mut self, now: Moment, world: &mut World) {
+impl<I: Configured> Interpreter for ConfigurationLogger<'_, I> {
+    fn start(&mut self, now: Timestamp, world: &mut World) {
         self.inner.start(now, world);
         self.show(world);
     }
@@ -158,17 +160,17 @@ impl<I: Configured> Interpreter for Watched<'_, I> {
         self.inner.resumed(activation)
     }
 
-    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
         let result = self.inner.step(now, world);
         self.show(world);
         result
     }
 
-    fn needs_step(&self, now: Moment) -> bool {
+    fn needs_step(&self, now: Timestamp) -> bool {
         self.inner.needs_step(now)
     }
 
-    fn next_deadline(&self) -> Option<Moment> {
+    fn next_deadline(&self) -> Option<Timestamp> {
         self.inner.next_deadline()
     }
 

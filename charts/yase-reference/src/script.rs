@@ -4,7 +4,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use yase::{
-    Activation, CompiledChart, Machine, MicroStep, Moment, Outcome, ScopeId, Semantics, Statechart, TopicId,
+    Activation, CompiledChart, Machine, MicroStep, Outcome, ScopeId, Semantics, Statechart, Timestamp,
+    TopicId,
 };
 
 use super::world::{TOPICS, World, vocabulary};
@@ -12,8 +13,8 @@ use super::world::{TOPICS, World, vocabulary};
 /// An interpreter of charts: the machine, or the reference.
 pub trait Interpreter {
     /// Starts the chart.
-    fn start(&mut self, now: Moment, world: &mut World);
-    /// An event comes.
+    fn start(&mut self, now: Timestamp, world: &mut World);
+    /// An event occurs.
     fn event(&mut self, name: &str);
     /// A message has arrived on a topic.
     fn message(&mut self, topic: TopicId);
@@ -22,17 +23,17 @@ pub trait Interpreter {
     /// Reports a repeated call of an activity; false if its activation is outdated.
     fn resumed(&mut self, activation: Activation) -> bool;
     /// Executes a step; `Err` with a text if the chart fails.
-    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String>;
+    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String>;
     /// Whether a step is due.
-    fn needs_step(&self, now: Moment) -> bool;
+    fn needs_step(&self, now: Timestamp) -> bool;
     /// When the next timer expires.
-    fn next_deadline(&self) -> Option<Moment>;
+    fn next_deadline(&self) -> Option<Timestamp>;
     /// The number of blackboards.
     fn regions(&self) -> usize;
 }
 
 impl Interpreter for Machine {
-    fn start(&mut self, now: Moment, world: &mut World) {
+    fn start(&mut self, now: Timestamp, world: &mut World) {
         Machine::start(self, now, world);
     }
 
@@ -52,15 +53,15 @@ impl Interpreter for Machine {
         self.activity_resumed(activation)
     }
 
-    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
         self.run_to_completion(now, world).map(|_| ()).map_err(|error| error.to_string())
     }
 
-    fn needs_step(&self, now: Moment) -> bool {
+    fn needs_step(&self, now: Timestamp) -> bool {
         Machine::needs_step(self, now)
     }
 
-    fn next_deadline(&self) -> Option<Moment> {
+    fn next_deadline(&self) -> Option<Timestamp> {
         Machine::next_deadline(self)
     }
 
@@ -73,7 +74,7 @@ impl Interpreter for Machine {
 pub struct ByMicroSteps(pub Machine);
 
 impl Interpreter for ByMicroSteps {
-    fn start(&mut self, now: Moment, world: &mut World) {
+    fn start(&mut self, now: Timestamp, world: &mut World) {
         self.0.start(now, world);
     }
 
@@ -93,7 +94,7 @@ impl Interpreter for ByMicroSteps {
         self.0.activity_resumed(activation)
     }
 
-    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
         loop {
             match self.0.micro_step(now, world) {
                 Ok(MicroStep::Progressed) => {}
@@ -103,11 +104,11 @@ impl Interpreter for ByMicroSteps {
         }
     }
 
-    fn needs_step(&self, now: Moment) -> bool {
+    fn needs_step(&self, now: Timestamp) -> bool {
         self.0.needs_step(now)
     }
 
-    fn next_deadline(&self) -> Option<Moment> {
+    fn next_deadline(&self) -> Option<Timestamp> {
         self.0.next_deadline()
     }
 
@@ -119,7 +120,7 @@ impl Interpreter for ByMicroSteps {
 /// An input.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input {
-    /// An event comes.
+    /// An event occurs.
     Event(String),
     /// A message with a number arrives on a topic.
     Message(TopicId, i64),
@@ -197,10 +198,10 @@ pub fn assert_silent_alike(
     chart: Arc<CompiledChart>,
     script: &Script,
 ) {
-    let told: Vec<&String> =
+    let expected: Vec<&String> =
         seen.log.iter().filter(|line| line.starts_with("  ") || line.starts_with("error")).collect();
     let alike = |machine: &Machine, log: &[String]| {
-        assert_eq!(told, log.iter().collect::<Vec<_>>());
+        assert_eq!(expected, log.iter().collect::<Vec<_>>());
         assert_eq!(traced.configuration(), machine.configuration());
         assert_eq!((traced.status(), traced.next_deadline()), (machine.status(), machine.next_deadline()));
     };
@@ -213,23 +214,23 @@ pub fn assert_silent_alike(
 /// then the step.
 pub fn run(interpreter: &mut impl Interpreter, script: &Script, world: &mut World) {
     let mut inputs = script.inputs.iter().peekable();
-    interpreter.start(Moment::ZERO, world);
-    let mut now = Moment::ZERO;
+    interpreter.start(Timestamp::ZERO, world);
+    let mut now = Timestamp::ZERO;
     loop {
         world.now = now;
-        while let Some((_, input)) = inputs.next_if(|(time, _)| Moment::from_millis(*time) <= now) {
+        while let Some((_, input)) = inputs.next_if(|(time, _)| Timestamp::from_millis(*time) <= now) {
             apply(interpreter, world, input);
         }
-        if !settle(interpreter, now, world) {
+        if !run_until_idle(interpreter, now, world) {
             return;
         }
         let next = [
-            inputs.peek().map(|(time, _)| Moment::from_millis(*time)),
-            world.jobs.iter().map(|job| job.due).min(),
+            inputs.peek().map(|(time, _)| Timestamp::from_millis(*time)),
+            world.running.iter().map(|job| job.due).min(),
             interpreter.next_deadline(),
         ];
         let Some(next) = next.into_iter().flatten().min() else { return };
-        if next > Moment::from_millis(script.until) {
+        if next > Timestamp::from_millis(script.until) {
             return;
         }
         now = next.max(now);
@@ -241,21 +242,21 @@ fn apply(interpreter: &mut impl Interpreter, world: &mut World, input: &Input) {
         Input::Event(name) => interpreter.event(name),
         Input::Message(topic, value) => {
             world.send(*topic, *value, (0..interpreter.regions() as u32).map(ScopeId));
-            tell_arrivals(interpreter, world);
+            report_arrivals(interpreter, world);
         }
     }
 }
 
-fn tell_arrivals(interpreter: &mut impl Interpreter, world: &mut World) {
+fn report_arrivals(interpreter: &mut impl Interpreter, world: &mut World) {
     for topic in std::mem::take(&mut world.arrivals) {
         interpreter.message(topic);
     }
 }
 
-/// Processes activities and steps until nothing is due; false if the interpreter failed.
-fn settle(interpreter: &mut impl Interpreter, now: Moment, world: &mut World) -> bool {
+/// Processes activities and steps until nothing is due. Returns false if the interpreter failed.
+fn run_until_idle(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World) -> bool {
     loop {
-        while let Some(index) = (0..world.jobs.len()).find(|&index| world.jobs[index].due <= now) {
+        while let Some(index) = (0..world.running.len()).find(|&index| world.running[index].due <= now) {
             advance(interpreter, now, world, index);
         }
         if !interpreter.needs_step(now) {
@@ -265,18 +266,18 @@ fn settle(interpreter: &mut impl Interpreter, now: Moment, world: &mut World) ->
             world.say(format!("error: {error}"));
             return false;
         }
-        tell_arrivals(interpreter, world);
+        report_arrivals(interpreter, world);
     }
 }
 
 /// An activity returns or, if it waits, is called again.
-fn advance(interpreter: &mut impl Interpreter, now: Moment, world: &mut World, index: usize) {
-    let job = &mut world.jobs[index];
+fn advance(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World, index: usize) {
+    let job = &mut world.running[index];
     let activation = job.activation;
     if job.waits {
         match interpreter.resumed(activation) {
             true => (job.waits, job.due, job.calls) = (false, now + job.duration, job.calls + 1),
-            false => job.due = Moment::from_nanos(u64::MAX), // its state is about to be left
+            false => job.due = Timestamp::from_nanos(u64::MAX), // its state will be exited
         }
         return;
     }
@@ -285,6 +286,6 @@ fn advance(interpreter: &mut impl Interpreter, now: Moment, world: &mut World, i
     (job.waits, job.due) = (true, now + Duration::from_millis(10));
     world.say(text);
     if !interpreter.returned(activation, outcome) || outcome != Outcome::Ongoing {
-        world.jobs.remove(index);
+        world.running.remove(index);
     }
 }

@@ -16,20 +16,20 @@ mod walk;
 use std::collections::{BTreeMap, BTreeSet};
 
 use yase::statechart::{NodeId, Statechart, TransitionId};
-use yase::{Activation, Moment, Outcome, ScopeId, Semantics, TopicId};
+use yase::{Activation, Outcome, ScopeId, Semantics, Timestamp, TopicId};
 
-use crate::chance::Chance;
+use crate::chance::ChoiceSource;
 use crate::script::Interpreter;
 use crate::world::{TOPICS, World};
-use transitions::Way;
+use transitions::StaticPath;
 use tree::Tree;
 
 /// A failure that stops the chart.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Failure {
-    /// No branch of that CHOICE is open.
+    /// No branch of a CHOICE is enabled.
     NoBranch(NodeId),
-    /// Too many micro-steps, or steps at one moment.
+    /// Too many micro-steps, or steps at one time.
     Endless,
 }
 
@@ -44,9 +44,9 @@ pub(crate) struct Occurrence {
 /// An event held for running activities: the transitions it would take, and whether it is offered
 /// again.
 #[derive(Clone, Debug)]
-struct Held {
+struct HeldEvent {
     occurrence: Occurrence,
-    ways: Vec<Way>,
+    ways: Vec<StaticPath>,
     offer: bool,
 }
 
@@ -60,7 +60,7 @@ enum Phase {
 }
 
 #[derive(Clone, Debug)]
-struct Job {
+struct RunningActivity {
     phase: Phase,
     number: u64,
     cancelled: bool,
@@ -68,13 +68,13 @@ struct Job {
 
 #[derive(Clone, Debug)]
 struct Deadline {
-    moment: Moment,
+    moment: Timestamp,
     announced: bool,
     /// The state it is bound to.
     bound: Option<NodeId>,
 }
 
-/// What happens in a micro-step, for its line.
+/// The content of a micro-step's line.
 #[derive(Clone, Debug, Default)]
 struct Line {
     exits: Vec<NodeId>,
@@ -88,12 +88,12 @@ pub(crate) struct Stepper<'c> {
     chart: &'c Statechart,
     tree: Tree,
     semantics: Semantics,
-    pub(crate) chance: Chance,
+    pub(crate) chance: ChoiceSource,
     running_chart: bool,
-    now: Moment,
+    now: Timestamp,
     due: bool,
     active: BTreeSet<NodeId>,
-    jobs: BTreeMap<NodeId, Job>,
+    running: BTreeMap<NodeId, RunningActivity>,
     job_count: u64,
     timers: BTreeMap<(ScopeId, String), Deadline>,
     timer_numbers: Vec<(ScopeId, String)>,
@@ -113,26 +113,26 @@ pub(crate) struct Stepper<'c> {
     raised: Vec<Occurrence>,
     arrived: Vec<Occurrence>,
     deferred: Vec<Occurrence>,
-    held: Vec<Held>,
-    pending: Vec<(Way, Option<String>)>,
+    held: Vec<HeldEvent>,
+    pending: Vec<(StaticPath, Option<String>)>,
     erred: BTreeSet<(TransitionId, ScopeId)>,
     stale: BTreeSet<(TransitionId, ScopeId)>,
     written: BTreeSet<ScopeId>,
     waiting: BTreeSet<NodeId>,
     /// Candidates of this micro-step: transitions, and the state at which each was found.
-    found: Vec<(NodeId, Way)>,
+    found: Vec<(NodeId, StaticPath)>,
     /// The active leaves from which a candidate was found, outward.
     closed: BTreeSet<NodeId>,
-    /// The active leaves at its beginning.
+    /// The active leaves at the start of the micro-step.
     leaves: Vec<NodeId>,
     /// The segments whose guards have failed in this micro-step, each reported once.
-    told: BTreeSet<TransitionId>,
+    reported: BTreeSet<TransitionId>,
     /// The segments with weights that were drawn in this micro-step.
     drawn: Vec<TransitionId>,
     line: Line,
     micro_steps: u32,
     did_something: bool,
-    instant: Moment,
+    instant: Timestamp,
     steps_at_instant: u32,
     /// The root has reached its END, and active states have still to be exited.
     ended: bool,
@@ -148,7 +148,7 @@ impl<'c> Stepper<'c> {
     pub(crate) fn new(
         chart: &'c Statechart,
         semantics: Semantics,
-        chance: Chance,
+        chance: ChoiceSource,
         timer_numbers: Vec<(ScopeId, String)>,
     ) -> Stepper<'c> {
         Stepper {
@@ -157,10 +157,10 @@ impl<'c> Stepper<'c> {
             semantics,
             chance,
             running_chart: false,
-            now: Moment::ZERO,
+            now: Timestamp::ZERO,
             due: false,
             active: BTreeSet::new(),
-            jobs: BTreeMap::new(),
+            running: BTreeMap::new(),
             job_count: 0,
             timers: BTreeMap::new(),
             timer_numbers,
@@ -184,12 +184,12 @@ impl<'c> Stepper<'c> {
             found: vec![],
             closed: BTreeSet::new(),
             leaves: vec![],
-            told: BTreeSet::new(),
+            reported: BTreeSet::new(),
             drawn: vec![],
             line: Line::default(),
             micro_steps: 0,
             did_something: false,
-            instant: Moment::ZERO,
+            instant: Timestamp::ZERO,
             steps_at_instant: 0,
             ended: false,
             terminates: false,
@@ -208,7 +208,7 @@ fn topic(name: &str) -> Option<TopicId> {
 }
 
 impl Interpreter for Stepper<'_> {
-    fn start(&mut self, now: Moment, world: &mut World) {
+    fn start(&mut self, now: Timestamp, world: &mut World) {
         self.now = now;
         self.instant = now;
         self.running_chart = true;
@@ -241,7 +241,7 @@ impl Interpreter for Stepper<'_> {
     }
 
     fn returned(&mut self, activation: Activation, outcome: Outcome) -> bool {
-        let Some(job) = self.jobs.get_mut(&activation.node) else { return false };
+        let Some(job) = self.running.get_mut(&activation.node) else { return false };
         if !self.running_chart || job.number != activation.number {
             return false;
         }
@@ -252,8 +252,8 @@ impl Interpreter for Stepper<'_> {
             Outcome::Failed => Phase::Failed,
         };
         let mut held = std::mem::take(&mut self.held);
-        for Held { ways, offer, .. } in &mut held {
-            let in_the_way = |way: &Way| {
+        for HeldEvent { ways, offer, .. } in &mut held {
+            let in_the_way = |way: &StaticPath| {
                 self.exit_set(way).contains(&activation.node)
                     || way.sources.iter().any(|&source| self.region(source) == activation.region)
             };
@@ -271,7 +271,7 @@ impl Interpreter for Stepper<'_> {
 
     fn resumed(&mut self, activation: Activation) -> bool {
         let about_to_be_left = self.pending.iter().any(|(way, _)| self.would_leave(way, activation.node));
-        let Some(job) = self.jobs.get_mut(&activation.node) else { return false };
+        let Some(job) = self.running.get_mut(&activation.node) else { return false };
         assert_eq!((job.number, job.phase), (activation.number, Phase::Ongoing));
         if about_to_be_left {
             return false;
@@ -280,7 +280,7 @@ impl Interpreter for Stepper<'_> {
         true
     }
 
-    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
         self.now = now;
         match self.whole_step(world) {
             Ok(()) => Ok(()),
@@ -291,14 +291,14 @@ impl Interpreter for Stepper<'_> {
         }
     }
 
-    fn needs_step(&self, now: Moment) -> bool {
+    fn needs_step(&self, now: Timestamp) -> bool {
         let waiting =
             !self.raised.is_empty() || !self.arrived.is_empty() || self.held.iter().any(|held| held.offer);
         self.running_chart
             && (self.due || waiting || self.next_deadline().is_some_and(|deadline| deadline <= now))
     }
 
-    fn next_deadline(&self) -> Option<Moment> {
+    fn next_deadline(&self) -> Option<Timestamp> {
         if !self.running_chart {
             return None;
         }

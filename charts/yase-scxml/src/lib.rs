@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use yase_scxml::{ScxmlEvent, NoPlatform, Session, read};
-//! use yase::{Moment, Source};
+//! use yase::{Timestamp, Source};
 //!
 //! let source = Source::new("door.scxml", r#"
 //!     <scxml xmlns="http://www.w3.org/2005/07/scxml" version="1.0" initial="closed">
@@ -25,10 +25,10 @@
 //! assert!(found.is_empty());
 //!
 //! let mut session = Session::new(&document.expect("it is a document"), NoPlatform).expect("its chart is in order");
-//! session.start(Moment::ZERO)?;
+//! session.start(Timestamp::ZERO)?;
 //! session.send(ScxmlEvent::new("open.slowly"))?;
 //! assert_eq!(session.configuration(), ["open"]);
-//! session.advance_to(Moment::from_millis(5000))?;
+//! session.advance_to(Timestamp::from_millis(5000))?;
 //! assert_eq!(session.configuration(), ["closed"]);
 //! assert_eq!(session.value("opened").map(|opened| opened.to_string()).as_deref(), Some("1"));
 //! # Ok::<(), yase_scxml::SessionError>(())

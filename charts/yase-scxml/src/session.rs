@@ -15,9 +15,9 @@ use std::sync::Arc;
 
 use super::document::Document;
 use super::language::DataValue;
-use yase::Moment;
 use yase::Semantics;
 use yase::Status;
+use yase::Timestamp;
 use yase::diagnostic::Diagnostic;
 
 pub use event::{ScxmlEvent, ScxmlEventKind};
@@ -89,7 +89,7 @@ pub struct Session<P> {
     exchange: EventRouter,
     semantics: Semantics,
     root: SessionNumber,
-    now: Moment,
+    now: Timestamp,
     started: bool,
     steps_now: usize,
     failed: Option<SessionError>,
@@ -124,7 +124,7 @@ impl<P: Platform> Session<P> {
             exchange,
             semantics,
             root,
-            now: Moment::ZERO,
+            now: Timestamp::ZERO,
             started: false,
             steps_now: 0,
             failed: None,
@@ -136,7 +136,7 @@ impl<P: Platform> Session<P> {
     ///
     /// # Errors
     /// A document never becomes stable, or a session exceeds a limit.
-    pub fn start(&mut self, now: Moment) -> Result<(), SessionError> {
+    pub fn start(&mut self, now: Timestamp) -> Result<(), SessionError> {
         if self.started {
             return self.run();
         }
@@ -163,7 +163,7 @@ impl<P: Platform> Session<P> {
     ///
     /// # Errors
     /// A document never becomes stable, or a session exceeds a limit.
-    pub fn advance_to(&mut self, moment: Moment) -> Result<(), SessionError> {
+    pub fn advance_to(&mut self, moment: Timestamp) -> Result<(), SessionError> {
         self.run()?;
         while let Some(due) = self.exchange.next_deadline().filter(|&due| due <= moment) {
             self.set_now(due);
@@ -175,7 +175,7 @@ impl<P: Platform> Session<P> {
     }
 
     /// The time of the next delayed event.
-    pub fn next_deadline(&self) -> Option<Moment> {
+    pub fn next_deadline(&self) -> Option<Timestamp> {
         if self.failed.is_some() { None } else { self.exchange.next_deadline() }
     }
 
@@ -225,7 +225,7 @@ impl<P: Platform> Session<P> {
         &mut self.platform
     }
 
-    fn set_now(&mut self, moment: Moment) {
+    fn set_now(&mut self, moment: Timestamp) {
         if moment > self.now {
             self.now = moment;
             self.steps_now = 0;

@@ -121,7 +121,9 @@ impl<'a> DocumentWriter<'a> {
                 ("the mark that it interrupts", transition.interrupts),
             ];
             for (what, _) in wrong.into_iter().filter(|(_, present)| *present) {
-                self.refuse(format!("a transition out of `{source}` has {what}, which SCXML cannot say"));
+                self.refuse(format!(
+                    "a transition out of `{source}` has {what}, which SCXML cannot represent"
+                ));
             }
         }
     }
@@ -147,7 +149,7 @@ impl<'a> DocumentWriter<'a> {
         }
         let root = self.node(Statechart::ROOT);
         if !root.entry.is_empty() || !root.exit.is_empty() {
-            self.refuse("the root has actions, which SCXML cannot say");
+            self.refuse("the root has actions, which SCXML cannot represent");
         }
         self.state_features(Statechart::ROOT);
         let start = self.initial(Statechart::ROOT);
@@ -188,7 +190,7 @@ impl<'a> DocumentWriter<'a> {
             NodeKind::Start | NodeKind::Fork => {}
             kind => {
                 let path = self.chart.path(id);
-                self.refuse(format!("`{path}` is a {kind:?}, which SCXML cannot say"));
+                self.refuse(format!("`{path}` is a {kind:?}, which SCXML cannot represent"));
             }
         }
     }
@@ -235,7 +237,7 @@ impl<'a> DocumentWriter<'a> {
         ];
         for (what, _) in features.into_iter().filter(|(_, present)| *present) {
             let path = self.chart.path(id);
-            self.refuse(format!("`{path}` has {what}, which SCXML cannot say"));
+            self.refuse(format!("`{path}` has {what}, which SCXML cannot represent"));
         }
     }
 
@@ -255,7 +257,9 @@ impl<'a> DocumentWriter<'a> {
         };
         self.node_features_of_connector(start);
         if way.expression.guard.is_some() || way.expression.trigger.is_some() {
-            self.refuse(format!("the START of `{path}` has a guard or trigger, which SCXML cannot say"));
+            self.refuse(format!(
+                "the START of `{path}` has a guard or trigger, which SCXML cannot represent"
+            ));
         }
         if !way.expression.actions.is_empty() {
             return Some(way);
@@ -269,11 +273,11 @@ impl<'a> DocumentWriter<'a> {
         let node = self.node(id);
         if !node.name.is_empty() && !is_named(node.kind) {
             let path = self.chart.path(id);
-            self.refuse(format!("`{path}` has a name, which SCXML cannot say"));
+            self.refuse(format!("`{path}` has a name, which SCXML cannot represent"));
         }
         if !node.entry.is_empty() || !node.exit.is_empty() {
             let path = self.chart.path(id);
-            self.refuse(format!("`{path}` has actions, which SCXML cannot say"));
+            self.refuse(format!("`{path}` has actions, which SCXML cannot represent"));
         }
         self.state_features(id);
     }
@@ -289,7 +293,7 @@ impl<'a> DocumentWriter<'a> {
     fn history(&mut self, kind: &str, id: NodeId) {
         if self.node(id).parent == Some(Statechart::ROOT) {
             let path = self.chart.path(id);
-            self.refuse(format!("`{path}` is a history of the whole document, which SCXML cannot say"));
+            self.refuse(format!("`{path}` is a history of the whole document, which SCXML cannot represent"));
         }
         self.node_features_of_connector(id);
         self.writer.open("history");
@@ -303,7 +307,7 @@ impl<'a> DocumentWriter<'a> {
             if way.expression.guard.is_some() || way.expression.trigger.is_some() {
                 let path = self.chart.path(id);
                 self.refuse(format!(
-                    "the way out of `{path}` has a guard or trigger, which SCXML cannot say"
+                    "the way out of `{path}` has a guard or trigger, which SCXML cannot represent"
                 ));
             }
             self.transition(way);
@@ -393,11 +397,13 @@ impl<'a> DocumentWriter<'a> {
         self.node_features_of_connector(fork);
         let path = self.chart.path(fork);
         if self.incoming.get(&fork).copied().unwrap_or(0) > 1 {
-            self.refuse(format!("several transitions lead to `{path}`, which SCXML cannot say"));
+            self.refuse(format!("several transitions lead to `{path}`, which SCXML cannot represent"));
         }
         let ways = self.out_of(fork);
         if ways.iter().any(|way| !way.expression.is_empty() || way.internal) {
-            self.refuse(format!("something stands on the ways out of `{path}`, which SCXML cannot say"));
+            self.refuse(format!(
+                "transitions out of `{path}` have triggers, guards or actions, which SCXML cannot represent"
+            ));
         }
         ways.iter().map(|way| way.target).collect()
     }
@@ -416,7 +422,9 @@ impl<'a> DocumentWriter<'a> {
     fn actions(&mut self, actions: &[Action], place: &str) {
         let scripts = actions.iter().filter(|action| matches!(action.kind, ActionKind::Script(_))).count();
         if scripts > 0 && actions.len() > 1 {
-            self.refuse(format!("a script of `{place}` stands among other actions, which SCXML cannot say"));
+            self.refuse(format!(
+                "a script of `{place}` stands among other actions, which SCXML cannot represent"
+            ));
         }
         for action in actions {
             match &action.kind {

@@ -23,7 +23,7 @@ use std::time::Duration;
 
 use yase::expression::{parse_actions, parse_transition};
 use yase::{
-    Activation, CompiledChart, Host, Machine, Moment, Node, NodeId, NodeKind, Notice, Outcome, Statechart,
+    Activation, CompiledChart, Host, Machine, Node, NodeId, NodeKind, Notice, Outcome, Statechart, Timestamp,
     TraceRecord, Transition, TypeEnvironment,
 };
 
@@ -70,9 +70,9 @@ fn connect(chart: &mut Statechart, source: NodeId, target: NodeId, text: &str) {
 /// The host of the machine. It starts the requested activities; crossing takes six seconds.
 #[derive(Default)]
 struct Street {
-    now: Moment,
+    now: Timestamp,
     /// The walking activity, and when the pedestrians are across.
-    walking: Option<(Activation, Moment)>,
+    walking: Option<(Activation, Timestamp)>,
 }
 
 impl Host for Street {
@@ -114,7 +114,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut script = [(4, "button"), (15, "fault"), (25, "repaired"), (40, "button")].into_iter().peekable();
     loop {
         machine.run_to_completion(street.now, &mut street)?;
-        let outside = script.peek().map(|&(second, _)| Moment::from_millis(second * 1_000));
+        let outside = script.peek().map(|&(second, _)| Timestamp::from_millis(second * 1_000));
         let across = street.walking.map(|(_, moment)| moment);
         // Virtual time: advance to the earliest event.
         let Some(next) = [outside, across, machine.next_deadline()].into_iter().flatten().min() else {
@@ -125,7 +125,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!("{next} (people are across)");
             machine.activity_returned(activation, Outcome::Done);
         }
-        if let Some((_, event)) = script.next_if(|&(second, _)| Moment::from_millis(second * 1_000) <= next) {
+        if let Some((_, event)) =
+            script.next_if(|&(second, _)| Timestamp::from_millis(second * 1_000) <= next)
+        {
             machine.dispatch_name(event);
         }
     }

@@ -156,7 +156,7 @@ pub trait Host {
         false
     }
 
-    /// A micro-step has happened, or the chart has been started.
+    /// A micro-step has happened, or the chart was started already.
     fn trace(&mut self, chart: &CompiledChart, record: &TraceRecord<'_>) {
         let _ = (chart, record);
     }

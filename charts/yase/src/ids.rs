@@ -18,8 +18,8 @@ impl ScopeId {
     }
 }
 
-/// A compound transition of a [`CompiledChart`](crate::CompiledChart): one path from a state through connectors to a
-/// state, taken as a unit.
+/// A compound transition of a [`CompiledChart`](crate::CompiledChart): one path from a state
+/// through connectors to a state, taken as a unit.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct CompoundTransitionId(pub(crate) u32);
 

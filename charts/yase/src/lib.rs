@@ -38,7 +38,7 @@
 //! ```
 //! use std::sync::Arc;
 //! use yase::expression::parse_transition;
-//! use yase::{Activation, Host, Machine, Moment, Node, NodeKind, Outcome, Statechart, Transition, TypeEnvironment};
+//! use yase::{Activation, Host, Machine, Timestamp, Node, NodeKind, Outcome, Statechart, Transition, TypeEnvironment};
 //!
 //! let mut lamp = Statechart::new("lamp");
 //! let start = lamp.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));
@@ -67,17 +67,17 @@
 //! let chart = lamp.compile(&TypeEnvironment::default()).expect("the chart is in order");
 //! let mut machine = Machine::new(Arc::new(chart));
 //! let mut room = Room::default();
-//! machine.start(Moment::ZERO, &mut room);
-//! machine.run_to_completion(Moment::ZERO, &mut room)?;
+//! machine.start(Timestamp::ZERO, &mut room);
+//! machine.run_to_completion(Timestamp::ZERO, &mut room)?;
 //! assert!(machine.is_active(off));
 //!
 //! machine.dispatch_name("button");
-//! machine.run_to_completion(Moment::from_millis(100), &mut room)?;
+//! machine.run_to_completion(Timestamp::from_millis(100), &mut room)?;
 //! assert!(machine.is_active(on));
 //!
 //! let working = room.working.take().expect("the activity was started when the step was over");
 //! machine.activity_returned(working, Outcome::Done);
-//! machine.run_to_completion(Moment::from_millis(600), &mut room)?;
+//! machine.run_to_completion(Timestamp::from_millis(600), &mut room)?;
 //! assert!(machine.is_active(off));
 //! # Ok::<(), yase::MachineError>(())
 //! ```
@@ -103,11 +103,11 @@ mod host;
 mod ids;
 mod machine;
 pub mod migrate;
-mod moment;
 pub mod native;
 mod script;
 mod semantics;
 pub mod statechart;
+mod timestamp;
 mod trace;
 
 pub use compile::{ActivityEntry, CompiledChart, ScriptEntry, ScriptLocation};
@@ -116,7 +116,6 @@ pub use host::{ActionError, Host, Notice, Outcome};
 pub use ids::{ActionLocation, Activation, CompoundTransitionId, ScopeId};
 pub use machine::{Chooser, Machine, MachineError, MachineErrorKind, MicroStep, Status, StepSummary};
 pub use machine::{snapshot, state_key};
-pub use moment::Moment;
 pub use script::{ActiveStates, ScriptContext};
 pub use semantics::{
     ActivityOnExit, CompletionTrigger, ConflictResolution, Deferral, Delivery, EventMatching, EventPool,

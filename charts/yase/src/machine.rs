@@ -32,9 +32,9 @@ use crate::compile::CompiledChart;
 use crate::expression::{EventId, EventInterner};
 use crate::host::{Host, Outcome};
 use crate::ids::{Activation, ScopeId};
-use crate::moment::Moment;
 use crate::semantics::Semantics;
 use crate::statechart::{NodeId, TransitionId};
+use crate::timestamp::Timestamp;
 use crate::vocabulary::TopicId;
 
 use machine_state::MachineState;
@@ -172,7 +172,7 @@ impl Machine {
     /// [`InitialState::SameStep`](crate::InitialState::SameStep), also the states behind it). A
     /// previous execution is [stopped](Machine::stop); timers and events are discarded. The first
     /// transitions are taken by the next [`run_to_completion`](Machine::run_to_completion).
-    pub fn start(&mut self, now: Moment, host: &mut impl Host) {
+    pub fn start(&mut self, now: Timestamp, host: &mut impl Host) {
         self.stop(host);
         self.run.reset(now);
         self.step(host).begin_run();
@@ -284,7 +284,7 @@ impl Machine {
     /// micro-step that failed or exceeded the limit.
     pub fn run_to_completion(
         &mut self,
-        now: Moment,
+        now: Timestamp,
         host: &mut impl Host,
     ) -> Result<StepSummary, MachineError> {
         match self.advance_to(now) {
@@ -304,7 +304,7 @@ impl Machine {
     ///
     /// # Errors
     /// As [`run_to_completion`](Machine::run_to_completion).
-    pub fn micro_step(&mut self, now: Moment, host: &mut impl Host) -> Result<MicroStep, MachineError> {
+    pub fn micro_step(&mut self, now: Timestamp, host: &mut impl Host) -> Result<MicroStep, MachineError> {
         match self.advance_to(now) {
             true => self.step(host).run_micro_step(),
             false => Ok(MicroStep::Stable(StepSummary::default())),
@@ -317,7 +317,7 @@ impl Machine {
     }
 
     /// Advances the time for a new step; returns whether a step is due.
-    fn advance_to(&mut self, now: Moment) -> bool {
+    fn advance_to(&mut self, now: Timestamp) -> bool {
         if self.is_mid_step() {
             return true;
         }
@@ -329,7 +329,7 @@ impl Machine {
     }
 
     /// Whether a step at `now` could have an effect.
-    pub fn needs_step(&self, now: Moment) -> bool {
+    pub fn needs_step(&self, now: Timestamp) -> bool {
         if self.is_mid_step() {
             return true;
         }
@@ -343,12 +343,12 @@ impl Machine {
     }
 
     /// The deadline of the next timer, if one is set.
-    pub fn next_deadline(&self) -> Option<Moment> {
+    pub fn next_deadline(&self) -> Option<Timestamp> {
         if self.run.status == Status::Running { self.run.timers.next_deadline() } else { None }
     }
 
     /// The deadline of a timer of a scope, past or future; none if it is not set.
-    pub fn deadline(&self, region: ScopeId, timer: &str) -> Option<Moment> {
+    pub fn deadline(&self, region: ScopeId, timer: &str) -> Option<Timestamp> {
         let place = self.chart.timers().position(|(board, name)| board == region && name == timer)?;
         self.run.timers.slots.get(place).copied().flatten().map(|deadline| deadline.moment)
     }

@@ -47,7 +47,7 @@
 //! use std::sync::Arc;
 //! use yase::expression::parse_transition;
 //! use yase::migrate::plan;
-//! use yase::{Activation, CompiledChart, Host, Machine, Moment, Node, NodeKind, Statechart, Transition, TypeEnvironment};
+//! use yase::{Activation, CompiledChart, Host, Machine, Timestamp, Node, NodeKind, Statechart, Transition, TypeEnvironment};
 //!
 //! fn lamp(with: impl FnOnce(&mut Statechart)) -> Arc<CompiledChart> {
 //!     let mut lamp = Statechart::new("lamp");
@@ -82,9 +82,9 @@
 //! });
 //!
 //! let mut machine = Machine::new(steady.clone());
-//! machine.start(Moment::ZERO, &mut Dark);
+//! machine.start(Timestamp::ZERO, &mut Dark);
 //! machine.dispatch_name("button");
-//! machine.run_to_completion(Moment::ZERO, &mut Dark)?;
+//! machine.run_to_completion(Timestamp::ZERO, &mut Dark)?;
 //!
 //! // `on` is a composite now: which of its states becomes active?
 //! let plan = plan(&steady, &blinking);
@@ -95,7 +95,7 @@
 //! for finding in &report.findings {
 //!     println!("{finding}");
 //! }
-//! machine.run_to_completion(Moment::ZERO, &mut Dark)?;
+//! machine.run_to_completion(Timestamp::ZERO, &mut Dark)?;
 //! assert!(machine.is_active(blinking.statechart().find("bright").expect("it is there")));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -4,8 +4,8 @@ use std::fmt;
 
 use crate::bits::BitSet;
 use crate::compile::{CompiledChart, NodeIndex};
-use crate::moment::Moment;
 use crate::statechart::NodeId;
+use crate::timestamp::Timestamp;
 
 /// The active states, as visible to a condition in the host's own language.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +25,7 @@ impl ActiveStates<'_> {
 pub(crate) trait ScriptMachine: fmt::Debug {
     fn active_states(&self) -> ActiveStates<'_>;
     fn is_complete(&self, node: NodeId) -> bool;
-    fn now(&self) -> Moment;
+    fn now(&self) -> Timestamp;
     fn raise(&mut self, name: &str, token: u64) -> bool;
 }
 
@@ -52,7 +52,7 @@ impl<'a> ScriptContext<'a> {
     }
 
     /// The time of the step.
-    pub fn now(&self) -> Moment {
+    pub fn now(&self) -> Timestamp {
         self.machine.now()
     }
 

@@ -5,8 +5,8 @@ use std::fmt;
 use crate::compile::CompiledChart;
 use crate::expression::EventId;
 use crate::ids::{ActionLocation, CompoundTransitionId};
-use crate::moment::Moment;
 use crate::statechart::{NodeId, TransitionId};
+use crate::timestamp::Timestamp;
 
 /// One micro-step: the transitions taken and preempted, the states left and entered, the actions.
 ///
@@ -15,7 +15,7 @@ use crate::statechart::{NodeId, TransitionId};
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct TraceRecord<'a> {
     /// The time of the step.
-    pub time: Moment,
+    pub time: Timestamp,
     /// The cause of the micro-step.
     pub occasion: MicroStepCause,
     /// The compound transitions taken, in the order of execution.

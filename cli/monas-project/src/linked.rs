@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_on_one_side_only_is_named() {
+    fn messages_on_one_side_only_are_named() {
         let said = |there: &[&str], linked: &[&str]| -> Vec<String> {
             compared(&set(there), &set(linked), "statecharts")
                 .into_iter()

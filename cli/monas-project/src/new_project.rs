@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn monas_comes_from_a_folder_a_repository_or_a_registry() {
+    fn monas_is_taken_from_a_folder_a_repository_or_a_registry() {
         let (text, checkout) = dependencies(None).unwrap();
         assert!(checkout.is_some_and(|checkout| checkout.join("Cargo.lock").is_file()));
         assert_eq!(text.lines().filter(|line| line.contains("path = ")).count(), CRATES.len());

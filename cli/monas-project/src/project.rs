@@ -253,7 +253,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_module_of_links_follows_what_is_said_of_the_whole() {
+    fn the_module_of_links_follows_the_project_settings() {
         let text = "//! A team.\n\nuse legs as _;\n\nfn main() {}\n";
         let expected = "//! A team.\n\nmod statecharts;\n\nuse legs as _;\n\nfn main() {}\n";
         assert_eq!(with_module(text), expected);

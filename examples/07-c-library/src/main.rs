@@ -39,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_absurd_does_not_come_through() {
+    fn absurd_values_are_filtered() {
         let mut median = Median::default();
         let filtered: Vec<f64> = (0..14).map(|cycle| median.next(measured(cycle))).collect();
         assert!(filtered.iter().all(|distance| *distance < 1.2), "{filtered:?}");

@@ -35,7 +35,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A path for messages: the first function sends a message with its time of sending, the second
 /// waits for the next and returns that time, or `None` after the timeout.
-struct Way {
+struct MessagePath {
     name: &'static str,
     send: Box<dyn FnMut(u64)>,
     receive: Box<dyn FnMut() -> Option<u64>>,
@@ -49,23 +49,29 @@ fn main() {
         Box::new(LocalTransport::new(&folder.path().join("links"), bridge.node().host(), inbox).unwrap())
     };
     let small = vec![
-        Way::bare("zenoh", true, false, ball, when_ball),
-        Way::bare("zenoh, by a thread of its own", true, true, ball, when_ball),
-        Way::link("link on zenoh", BALL, Pair::on_zenoh(true), ball, when_ball),
-        Way::link("link on local sockets", BALL, Pair::over(local), ball, when_ball),
+        MessagePath::bare("zenoh", true, false, ball, when_ball),
+        MessagePath::bare("zenoh, by a thread of its own", true, true, ball, when_ball),
+        MessagePath::link("link on zenoh", BALL, Pair::on_zenoh(true), ball, when_ball),
+        MessagePath::link("link on local sockets", BALL, Pair::over(local), ball, when_ball),
     ];
     table("A ball, from host to host", rounds, 500, small);
     let large = vec![
-        Way::bare("zenoh", false, false, picture, when_picture),
-        Way::link("link on zenoh", PICTURE, Pair::on_zenoh(false), picture, when_picture),
-        Way::bare("zenoh, shared memory", true, false, picture, when_picture),
-        Way::bare("zenoh, shared memory, by a thread of its own", true, true, picture, when_picture),
-        Way::link("link on zenoh, shared memory", PICTURE, Pair::on_zenoh(true), picture, when_picture),
+        MessagePath::bare("zenoh", false, false, picture, when_picture),
+        MessagePath::link("link on zenoh", PICTURE, Pair::on_zenoh(false), picture, when_picture),
+        MessagePath::bare("zenoh, shared memory", true, false, picture, when_picture),
+        MessagePath::bare("zenoh, shared memory, by a thread of its own", true, true, picture, when_picture),
+        MessagePath::link(
+            "link on zenoh, shared memory",
+            PICTURE,
+            Pair::on_zenoh(true),
+            picture,
+            when_picture,
+        ),
     ];
     table("A picture of 1 MiB, from host to host", rounds, 60, large);
 }
 
-fn table(title: &str, rounds: usize, count: usize, mut ways: Vec<Way>) {
+fn table(title: &str, rounds: usize, count: usize, mut ways: Vec<MessagePath>) {
     let mut figures = vec![Vec::new(); ways.len()];
     for round in 0..=rounds {
         for (way, figures) in ways.iter_mut().zip(&mut figures) {
@@ -93,7 +99,7 @@ fn now() -> u64 {
     START.get_or_init(Instant::now).elapsed().as_nanos() as u64 + 1
 }
 
-impl Way {
+impl MessagePath {
     /// The median and the 99th percentile of the latencies of messages that are sent one at a time,
     /// in microseconds.
     fn round(&mut self, count: usize) -> [f64; 2] {
@@ -127,7 +133,7 @@ impl Way {
         has_thread: bool,
         make: fn(u64) -> M,
         when: fn(&M) -> u64,
-    ) -> Way {
+    ) -> MessagePath {
         let port = port();
         let listener = session("listen", port, is_shared);
         let subscriber = listener.declare_subscriber("bench/bare").wait().unwrap();
@@ -146,7 +152,7 @@ impl Way {
             }
             false => Box::new(move |sent| put(make(sent))),
         };
-        Way {
+        MessagePath {
             name,
             send,
             receive: Box::new(move || {
@@ -165,14 +171,14 @@ impl Way {
         pair: Pair,
         make: fn(u64) -> K::Message,
         when: fn(&K::Message) -> u64,
-    ) -> Way
+    ) -> MessagePath
     where
         Topic<K>: Copy + 'static,
     {
         let mut publisher = pair.hubs[0].publisher(topic, "bench").unwrap();
         let mut reader = pair.hubs[1].blackboard("reader");
         let (mut last, sleeper) = (0, pair.sleeper.clone());
-        Way {
+        MessagePath {
             name,
             send: Box::new(move |sent| publisher.publish(make(sent), Timestamp::from_nanos(sent))),
             receive: Box::new(move || {

@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_dropped_and_counted() {
+    fn invalid_input_is_dropped_and_counted() {
         let inbox = PacketInbox::default();
         (0..PACKETS + 10).for_each(|_| inbox.put(packet("a", 0)));
         assert_eq!(inbox.dropped(), 10);

@@ -77,8 +77,7 @@ impl Link {
     ///
     /// # Errors
     ///
-    /// The settings do not fit the hub, the transport cannot be created, or the system cannot create
-    /// a thread.
+    /// The settings do not fit the hub, or the transport or a thread cannot be created.
     pub fn start(
         hub: &Hub,
         settings: LinkSettings,
@@ -100,7 +99,7 @@ impl Link {
             inbox: inbox.clone(),
             shared: shared.clone(),
             next_report: Timestamp::ZERO,
-            comes_again: Timestamp::ZERO,
+            next_poll: Timestamp::ZERO,
         };
         let desk = Arc::new(LinkState(Mutex::new(Some(worker))));
         let (bringer, looker) = (desk.clone(), desk.clone());
@@ -128,7 +127,7 @@ impl Link {
     /// The status of the link: the current one, or while the link is busy the last one, at most 100
     /// ms old.
     pub fn report(&self) -> LinkReport {
-        self.state.tell();
+        self.state.update_report();
         self.shared.report.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
@@ -171,7 +170,7 @@ struct LinkWorker {
     shared: Arc<LinkShared>,
     next_report: Timestamp,
     /// When the link's thread polls again if it is not woken.
-    comes_again: Timestamp,
+    next_poll: Timestamp,
 }
 
 impl LinkState {
@@ -181,13 +180,13 @@ impl LinkState {
         let Ok(mut place) = self.0.try_lock() else { return false };
         let Some(worker) = place.as_mut() else { return true };
         worker.take_in();
-        worker.inbox.is_empty() && worker.bridge.poll_at() >= worker.comes_again
+        worker.inbox.is_empty() && worker.bridge.poll_at() >= worker.next_poll
     }
 
     /// Updates the status if the worker is idle.
-    fn tell(&self) {
+    fn update_report(&self) {
         if let Ok(mut place) = self.0.try_lock() {
-            place.iter_mut().for_each(|worker| worker.tell((worker.clock)()));
+            place.iter_mut().for_each(|worker| worker.update_report((worker.clock)()));
         }
     }
 
@@ -217,15 +216,15 @@ impl LinkWorker {
         self.pump();
         if now >= self.next_report {
             self.next_report = now + LONGEST_WAIT;
-            self.tell(now);
+            self.update_report(now);
         }
-        self.comes_again = self.bridge.poll_at();
-        self.comes_again.since((self.clock)()).min(LONGEST_WAIT)
+        self.next_poll = self.bridge.poll_at();
+        self.next_poll.since((self.clock)()).min(LONGEST_WAIT)
     }
 
     fn end(mut self) {
         self.pump();
-        self.tell((self.clock)());
+        self.update_report((self.clock)());
     }
 
     fn take_in(&mut self) {
@@ -243,7 +242,7 @@ impl LinkWorker {
         }
     }
 
-    fn tell(&self, now: Timestamp) {
+    fn update_report(&self, now: Timestamp) {
         let node = self.bridge.node();
         let peer = |(name, heard): (&Arc<str>, Timestamp)| (name.to_string(), heard, node.clock_offset(name));
         let report = LinkReport {

@@ -109,7 +109,7 @@ fn a_tool_learns_what_there_is_and_publishes() {
 }
 
 #[test]
-fn a_tool_that_is_too_slow_loses_messages_which_are_counted_and_holds_nobody_up() {
+fn a_slow_tool_loses_counted_messages_and_delays_no_other() {
     let served = served();
     let mut publisher = served.hub.publisher(PATH, "vision").unwrap();
     let mut watching = served.client().watch("", "soccer/path", true).unwrap();

@@ -65,7 +65,7 @@ proptest! {
     }
 
     #[test]
-    fn no_change_of_what_is_said_does_harm(
+    fn corrupted_packets_do_no_harm(
         edits in proptest::collection::vec((0_usize..10_000, 0_usize..200, any::<u8>()), 0..40),
         order in proptest::collection::vec(0_usize..10_000, 0..60),
     ) {
@@ -179,7 +179,7 @@ fn lengths_that_cannot_be_are_malformed() {
 }
 
 #[test]
-fn links_of_another_version_are_told_apart() {
+fn links_of_another_version_are_detected() {
     let mut network = Network::of(1, 64, CALM, 3);
     // Field 1, the version, is 2.
     network.nodes[0].handle(&packet("b", None, &[], &[0x08, 0x02]), Timestamp::ZERO);

@@ -155,7 +155,7 @@ fn a_second_process_of_the_same_robot_publishes_as_if_it_were_here() {
 }
 
 #[test]
-fn what_the_access_list_does_not_allow_is_refused_and_counted() {
+fn access_violations_are_rejected_and_counted() {
     let hubs = hubs();
     let (access, errors) = AccessList::parse("robot_1 publish soccer/ball");
     assert_eq!(errors, []);
@@ -235,7 +235,7 @@ fn bytes_that_are_no_message_any_more_or_never_were_are_refused_and_counted() {
 }
 
 #[test]
-fn nothing_is_taken_that_comes_under_a_links_own_name() {
+fn messages_under_a_links_own_name_are_rejected() {
     let hub = &hubs()[0];
     let settings = LinkSettings { guests: true, name: "vision".into(), ..LinkSettings::default() };
     let mut end = HubBridge::new(hub, settings.receiving("soccer/ball"), 1).unwrap();

@@ -85,7 +85,7 @@ fn check(line: &str) {
 }
 
 /// The robot is killed twice, and restarted.
-fn ball_and_commands_pass_and_a_killed_process_comes_back(ways: [&str; 2], place: impl AsRef<OsStr>) {
+fn ball_and_commands_pass_and_a_killed_process_reconnects(ways: [&str; 2], place: impl AsRef<OsStr>) {
     let coach = Player::new("coach", ways[0], &place);
     for _ in 0..2 {
         let robot = Player::new("robot", ways[1], &place);
@@ -112,7 +112,7 @@ fn over_local_sockets_a_killed_process_comes_back() {
 #[test]
 fn over_zenoh_a_killed_process_comes_back() {
     let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-    ball_and_commands_pass_and_a_killed_process_comes_back(
+    ball_and_commands_pass_and_a_killed_process_reconnects(
         ["listen", "connect"],
         format!("tcp/127.0.0.1:{port}"),
     );

@@ -105,7 +105,7 @@ proptest! {
     }
 
     #[test]
-    fn nothing_comes_twice_or_out_of_order(turns in turns(2), seed in any::<u8>()) {
+    fn no_message_is_duplicated_or_out_of_order(turns in turns(2), seed in any::<u8>()) {
         let turns: Vec<Turn> = turns.into_iter().filter(|turn| !matches!(turn, Turn::Restart(_))).collect();
         let mut network = Network::of(2, 64, ROUGH, seed);
         play(&mut network, &turns);
@@ -146,7 +146,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_kept_long_enough_comes_all_and_in_order() {
+fn retained_messages_arrive_completely_and_in_order() {
     let mut network = Network::of(2, 4096, CALM, 7);
     network.run(500);
     network.faults = ROUGH;
@@ -195,7 +195,7 @@ fn late_readers_get_the_state_and_no_signals() {
 }
 
 #[test]
-fn a_host_that_was_killed_and_comes_back_is_heard_at_once() {
+fn a_killed_host_is_received_at_once_after_its_restart() {
     let mut network = Network::of(2, 64, CALM, 7);
     network.run(500);
     (0..5).for_each(|_| network.publish(0, 1));
@@ -255,7 +255,7 @@ fn with_a_budget_states_are_equal_within_four_beats() {
 }
 
 #[test]
-fn a_link_with_a_budget_is_silent_for_its_first_window_and_says_how_much_is_spent() {
+fn a_link_with_a_budget_is_silent_in_its_first_window_and_reports_its_use() {
     let budget = SendBudget { packets: 4, window: Duration::from_secs(1), payload: 512 };
     let mut settings = ["a", "b"].map(|name| settings(name, topics(64)));
     settings[0].budget = Some(budget);
@@ -272,7 +272,7 @@ fn a_link_with_a_budget_is_silent_for_its_first_window_and_says_how_much_is_spen
 }
 
 #[test]
-fn what_is_too_large_for_the_budget_is_counted_and_not_sent() {
+fn messages_beyond_the_budget_are_counted_and_not_sent() {
     let budget = SendBudget { packets: 100, window: Duration::from_secs(1), payload: 128 };
     let mut one = settings("a", topics(64));
     one.budget = Some(budget);
@@ -307,7 +307,7 @@ fn clocks_are_compared() {
 }
 
 #[test]
-fn the_clock_of_a_run_that_goes_in_steps_is_learned_in_whatever_part_of_a_step_a_process_begins() {
+fn the_clock_of_a_stepped_run_is_learned_at_any_phase_of_a_step() {
     for (grain, phase) in [10, 25].into_iter().flat_map(|grain| (0..grain).map(move |phase| (grain, phase))) {
         let mut network = Network::of(2, 64, CALM, 7);
         network.grain[0] = grain;
@@ -328,7 +328,7 @@ fn the_clock_of_a_run_that_goes_in_steps_is_learned_in_whatever_part_of_a_step_a
 }
 
 #[test]
-fn a_life_that_was_never_heard_of_does_not_silence_the_next() {
+fn an_unknown_session_does_not_block_the_next() {
     let turns = [
         Turn::Publish { node: 0, topic: 0, count: 7 },
         Turn::Publish { node: 1, topic: 0, count: 8 },

@@ -44,7 +44,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_schema_is_refused() {
+    fn an_invalid_schema_is_rejected() {
         assert!(descriptor_pool(&[0xff; 5]).is_err());
     }
 }

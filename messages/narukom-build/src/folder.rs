@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn each_proto_file_is_compiled_whatever_its_package() {
+    fn proto_files_of_all_packages_are_compiled() {
         let target = folder(&[]);
         compile_into(folder(&[]).path(), target.path()).unwrap();
         assert_eq!(read(&target, "messages.rs"), "");

@@ -111,7 +111,7 @@ fn every_scalar_field_is_read_by_index() {
 }
 
 #[test]
-fn what_is_not_set_is_missing_and_what_has_no_index_is_unsupported() {
+fn unset_fields_are_missing_and_unindexed_ones_unsupported() {
     let message = Everything::default();
     for name in ["position", "touch", "distance", "remark", "wish", "limit", "blob", "home"] {
         assert!(matches!(message.field(index(name)), FieldValue::Missing), "{name}");
@@ -133,7 +133,7 @@ fn messages_inside_messages_are_reached_also_when_boxed() {
 }
 
 #[test]
-fn what_is_set_is_read() {
+fn settings_are_read_back() {
     let mut message = Everything::default();
     let place = Position { x: 1.0, y: 2.0 };
     let values = [

@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_publication_lies_beside_the_lock() {
+    fn the_last_publication_is_read_without_the_lock() {
         let hub = hub();
         let mut publisher = hub.publisher(SEEN, "body").unwrap();
         publisher.publish(ball(1.0), Timestamp::ZERO);
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn a_signal_at_the_front_is_seen_once_and_not_by_who_came_later() {
+    fn a_signal_is_seen_once_and_not_by_later_readers() {
         let hub = hub();
         let mut publisher = hub.publisher(KICKED, "body").unwrap();
         let mut early = hub.blackboard("early");

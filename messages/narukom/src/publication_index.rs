@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     #[allow(clippy::disallowed_methods, reason = "the lock is awaited on another thread")]
-    fn who_reads_nothing_of_what_was_published_does_not_wait_for_the_lock() {
+    fn blackboards_without_new_messages_do_not_lock() {
         const READ: Topic<State<Ball>> = Topic::new("test/read");
         const OTHER: Topic<State<Ball>> = Topic::new("test/other");
         let declared =

@@ -47,7 +47,7 @@ fn a_cycle_does_not_allocate() {
 }
 
 #[test]
-fn what_comes_from_another_host_does_not_allocate() {
+fn messages_of_another_host_do_not_allocate() {
     let hub = hub();
     let mut reader = hub.blackboard("reader");
     let mut mate = hub.receiver("mate", "vision", "test/data").unwrap();

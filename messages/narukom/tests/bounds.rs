@@ -49,7 +49,7 @@ fn a_state_never_loses_its_last_value() {
 }
 
 #[test]
-fn a_reader_that_never_drains_slows_nobody() {
+fn a_reader_that_never_drains_slows_no_other() {
     let hub = hub();
     let (never, mut quick) = (hub.blackboard("never"), hub.blackboard("quick"));
     numbers(&never);
@@ -84,7 +84,7 @@ fn more_publications_than_are_remembered_by_topic_are_delivered_all_the_same() {
 }
 
 #[test]
-fn messages_that_nobody_publishes_are_refused_when_they_are_too_many() {
+fn too_many_written_messages_are_rejected() {
     let mut robot = hub().blackboard("robot");
     for number in 0..OUTBOX_LIMIT as u64 {
         robot.publish(SIGNAL, Mark::new(number)).unwrap();

@@ -34,7 +34,7 @@ fn messages_of_others_come_when_they_are_published_and_delivered() {
 }
 
 #[test]
-fn readers_say_up_to_which_publication_they_have_looked() {
+fn readers_report_their_last_seen_publication() {
     let hub = hub();
     let (mut writer, mut reader) = (hub.blackboard("writer"), hub.blackboard("reader"));
     let mut subscriber = hub.subscriber("**").unwrap();
@@ -111,7 +111,7 @@ fn own_states_are_replaced_by_later_ones_of_others() {
 }
 
 #[test]
-fn what_is_published_together_arrives_together_and_in_order() {
+fn messages_published_together_arrive_together_and_in_order() {
     let hub = hub();
     let (mut giver, mut taker) = (hub.blackboard("giver"), hub.blackboard("taker"));
     let slots = ["test/signal", "test/data", "test/state"].map(|path| hub.topic(path).unwrap());
@@ -127,7 +127,7 @@ fn what_is_published_together_arrives_together_and_in_order() {
 }
 
 #[test]
-fn headers_say_who_when_and_how_many() {
+fn headers_have_sender_time_and_number() {
     let hub = hub();
     let (mut giver, mut taker) = (hub.blackboard("giver"), hub.blackboard("taker"));
     publish_everywhere(&mut giver, 1, at(1));

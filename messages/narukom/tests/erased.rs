@@ -74,7 +74,7 @@ fn messages_are_published_by_name_as_values_and_as_bytes() {
 }
 
 #[test]
-fn what_is_not_of_the_topic_is_refused() {
+fn messages_of_another_type_are_rejected() {
     let hub = hub();
     let error = hub.publisher_by_name("test/stat", "cli").unwrap_err();
     assert_eq!(error.kind(), ErrorKind::UndeclaredTopic);
@@ -102,7 +102,7 @@ fn what_is_not_of_the_topic_is_refused() {
 }
 
 #[test]
-fn fields_that_nobody_knows_are_left_out() {
+fn unknown_fields_are_skipped() {
     let mut robot = hub().blackboard("robot");
     let mut bytes = bytes_of(7);
     bytes.extend([0x78, 1]);
@@ -127,7 +127,7 @@ fn bytes_that_were_refused_leave_no_trace_in_the_next_message() {
 }
 
 #[test]
-fn looking_makes_nobody_a_reader() {
+fn inspection_does_not_create_a_reader() {
     let hub = hub();
     let (mut giver, mut robot) = (hub.blackboard("giver"), hub.blackboard("robot"));
     let [state, signal] = ["test/state", "test/signal"].map(|path| hub.topic(path).unwrap());
@@ -252,7 +252,7 @@ fn observers_alone_share_an_encoding_as_well() {
 }
 
 #[test]
-fn nothing_is_encoded_where_nobody_looks_at_bytes() {
+fn nothing_is_encoded_without_a_reader_of_bytes() {
     let hub = counted_hub();
     let mut tap = hub.encoded_subscriber("counted").unwrap();
     hub.observe(Box::new(|_: Publication<'_>| {}));
@@ -311,7 +311,7 @@ fn bytes_that_a_tap_holds_do_not_change() {
 }
 
 #[test]
-fn events_that_nobody_collects_are_bounded_and_counted() {
+fn uncollected_events_are_bounded_and_counted() {
     let mut robot = hub().blackboard("robot");
     (0..narukom::EVENT_LIMIT + 3).for_each(|number| robot.raise(&format!("event_{number}")));
     assert_eq!(robot.events_lost(), 3);

@@ -32,7 +32,7 @@ impl Mate {
         self.receivers[0].host()
     }
 
-    fn says(&mut self, number: u64) {
+    fn publish_number(&mut self, number: u64) {
         for receiver in &mut self.receivers {
             receiver.receive(mark(number), arrival(number, at(number))).unwrap();
         }
@@ -55,15 +55,15 @@ fn hosts_are_read_apart() {
     let (mut left, mut right) = (Mate::new(&hub, "left"), Mate::new(&hub, "right"));
     let mut reader = hub.blackboard("reader");
     publish_everywhere(&mut hub.blackboard("giver"), 1, at(1));
-    left.says(2);
-    right.says(3);
+    left.publish_number(2);
+    right.publish_number(3);
     assert_eq!(numbers_of(&reader, left.host()), NOTHING, "received is not delivered");
     reader.process_messages(at(4));
     assert_eq!(numbers(&reader), (Some(1), vec![1], vec![1]));
     assert_eq!(numbers_of(&reader, HostId::LOCAL), (Some(1), vec![1], vec![1]));
     assert_eq!(numbers_of(&reader, left.host()), (Some(2), vec![2], vec![2]));
     assert_eq!(numbers_of(&reader, right.host()), (Some(3), vec![3], vec![3]));
-    left.says(5);
+    left.publish_number(5);
     reader.process_messages(at(5));
     assert_eq!(numbers_of(&reader, left.host()), (Some(5), vec![5], vec![2, 5]));
     assert_eq!(numbers_of(&reader, right.host()), (Some(3), vec![], vec![3]));
@@ -81,14 +81,14 @@ fn own_messages_are_this_hosts_alone() {
 }
 
 #[test]
-fn a_host_may_be_read_before_it_is_heard_of() {
+fn a_host_can_be_read_before_its_first_message() {
     let hub = hub();
     let mut reader = hub.blackboard("reader");
     let host = hub.host_id("left").unwrap();
     assert_eq!(numbers_of(&reader, host), NOTHING);
     let mut left = Mate::new(&hub, "left");
     assert_eq!(left.host(), host);
-    left.says(1);
+    left.publish_number(1);
     reader.process_messages(at(1));
     assert_eq!(numbers_of(&reader, host), (Some(1), vec![1], vec![1]));
     assert_eq!(hub.hosts().iter().map(|name| name.to_string()).collect::<Vec<_>>(), ["robot", "left"]);
@@ -100,7 +100,7 @@ fn a_host_may_be_read_before_it_is_heard_of() {
 fn late_readers_get_a_hosts_state_and_history_and_no_signal() {
     let hub = hub();
     let mut left = Mate::new(&hub, "left");
-    left.says(1);
+    left.publish_number(1);
     let mut late = hub.blackboard("late");
     late.process_messages(at(2));
     assert_eq!(numbers_of(&late, left.host()), (Some(1), vec![], vec![1]));
@@ -152,8 +152,8 @@ fn losses_are_counted_host_by_host() {
     let mut slow = hub.blackboard("slow");
     [left.host(), right.host()].into_iter().for_each(|host| drop(numbers_of(&slow, host)));
     let count = SIGNAL_DEPTH as u64 + 3;
-    (1..=count).for_each(|number| left.says(number));
-    right.says(1);
+    (1..=count).for_each(|number| left.publish_number(number));
+    right.publish_number(1);
     slow.process_messages(at(count));
     let view = slow.from(left.host());
     assert_eq!((view.lost(STATE), view.lost(SIGNAL), view.lost(DATA)), (0, 3, count - 4));
@@ -163,13 +163,13 @@ fn losses_are_counted_host_by_host() {
 }
 
 #[test]
-fn arrivals_are_told_host_by_host() {
+fn arrivals_are_reported_per_host() {
     let hub = hub();
     let mut left = Mate::new(&hub, "left");
     let mut reader = hub.blackboard("reader");
     numbers(&reader);
     numbers_of(&reader, left.host());
-    left.says(1);
+    left.publish_number(1);
     reader.process_messages(at(1));
     let paths = ["test/state", "test/signal", "test/data"].map(|path| hub.topic(path).unwrap());
     assert_eq!(reader.arrivals().count(), 0);
@@ -194,9 +194,9 @@ fn a_region_takes_over_what_was_delivered_from_other_hosts() {
     let mut left = Mate::new(&hub, "left");
     let (mut outer, mut inner) = (hub.blackboard("chart"), hub.blackboard("chart"));
     numbers_of(&outer, left.host());
-    left.says(1);
+    left.publish_number(1);
     outer.process_messages(at(1));
-    left.says(2);
+    left.publish_number(2);
     inner.adopt(&outer);
     assert_eq!(numbers_of(&inner, left.host()), (Some(1), vec![1], vec![1]));
     inner.process_messages(at(2));
@@ -206,7 +206,7 @@ fn a_region_takes_over_what_was_delivered_from_other_hosts() {
 }
 
 #[test]
-fn what_cannot_be_taken_in_is_refused_by_name() {
+fn unsupported_elements_are_rejected_by_name() {
     let hub = hub();
     let refused = |host: &str, path: &str| {
         let error = hub.receiver(host, "vision", path).unwrap_err();
@@ -264,7 +264,7 @@ impl Observer for Watch {
 }
 
 #[test]
-fn observers_and_wakers_learn_of_what_comes_from_elsewhere() {
+fn observers_and_wakers_receive_messages_of_other_hosts() {
     let hub = hub();
     let (seen, woken) = (Arc::new(Mutex::new(Vec::new())), Arc::new(Mutex::new(Vec::new())));
     hub.observe(Box::new(Watch(seen.clone())));
@@ -283,10 +283,10 @@ fn observers_and_wakers_learn_of_what_comes_from_elsewhere() {
 fn subscribers_read_one_host() {
     let hub = hub();
     let mut left = Mate::new(&hub, "left");
-    left.says(1);
+    left.publish_number(1);
     let mut of_left = hub.subscriber_of(left.host(), "test/*").unwrap();
     let mut of_here = hub.subscriber("test/*").unwrap();
-    left.says(2);
+    left.publish_number(2);
     publish_everywhere(&mut hub.blackboard("giver"), 3, at(3));
     let numbers = |subscriber: &mut narukom::Subscriber| -> Vec<u64> {
         let samples = std::iter::from_fn(|| subscriber.next_sample());

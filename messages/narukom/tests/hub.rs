@@ -74,7 +74,7 @@ fn ill_formed_paths_are_refused() {
 }
 
 #[test]
-fn a_thousand_topics_are_told_apart() {
+fn a_thousand_topics_are_distinguished() {
     let paths: Vec<&'static str> = (0..1000).map(|number| &*format!("topic_{number}").leak()).collect();
     let declarations: Vec<_> = paths.iter().map(|path| declared::<State<Mark>>(path, "test")).collect();
     let hub = Hub::new("robot", &declarations).unwrap();

@@ -13,21 +13,21 @@ use proptest::prelude::*;
 const BOARDS: usize = 3;
 
 #[derive(Clone, Copy, PartialEq, Debug)]
-enum Way {
+enum TestedKind {
     State,
     Signal,
     Data,
 }
 
-const WAYS: [Way; 3] = [Way::State, Way::Signal, Way::Data];
+const KINDS: [TestedKind; 3] = [TestedKind::State, TestedKind::Signal, TestedKind::Data];
 
-impl Way {
+impl TestedKind {
     /// The number of messages that the hub holds.
     fn depth(self) -> usize {
         match self {
-            Way::State => STATE_DEPTH,
-            Way::Signal => SIGNAL_DEPTH,
-            Way::Data => 4,
+            TestedKind::State => STATE_DEPTH,
+            TestedKind::Signal => SIGNAL_DEPTH,
+            TestedKind::Data => 4,
         }
     }
 }
@@ -45,7 +45,7 @@ enum Step {
 
 fn step() -> impl Strategy<Value = Step> {
     let board = 0..BOARDS;
-    let way = 0..WAYS.len();
+    let way = 0..KINDS.len();
     prop_oneof![
         4 => (board.clone(), way.clone()).prop_map(|(board, way)| Step::Write(board, way)),
         1 => (board.clone(), way.clone(), 1..90_usize).prop_map(|(board, way, count)| Step::Burst(board, way, count)),
@@ -58,7 +58,7 @@ fn step() -> impl Strategy<Value = Step> {
 
 /// A message that was published.
 #[derive(Clone, Copy)]
-struct Published {
+struct PublishedMessage {
     order: u64,
     board: usize,
     nth: u64,
@@ -67,7 +67,7 @@ struct Published {
 
 /// A message that a blackboard wrote and the hub has not delivered.
 #[derive(Clone, Copy)]
-struct Own {
+struct OwnMessage {
     value: u64,
     nth: u64,
     sent: bool,
@@ -76,22 +76,22 @@ struct Own {
 
 /// One topic on a blackboard.
 #[derive(Clone, Default)]
-struct Shelf {
+struct TopicState {
     attached: bool,
     cursor: usize,
     items: Vec<u64>,
     lost: u64,
-    own: Vec<Own>,
+    own: Vec<OwnMessage>,
     inherited: Vec<u64>,
     written: u64,
     seen: u64,
 }
 
 #[derive(Clone, Default)]
-struct Board {
+struct BoardState {
     since: u64,
     delivered: u64,
-    shelves: [Shelf; 3],
+    states: [TopicState; 3],
     /// The retention kinds of the unpublished messages, in the order in which they were written.
     outbox: Vec<usize>,
 }
@@ -99,22 +99,22 @@ struct Board {
 #[derive(Default)]
 struct Model {
     order: u64,
-    logs: [Vec<Published>; 3],
-    boards: [Board; BOARDS],
+    logs: [Vec<PublishedMessage>; 3],
+    boards: [BoardState; BOARDS],
 }
 
-impl Shelf {
+impl TopicState {
     fn visible_own(&self) -> impl Iterator<Item = u64> {
         let own = self.own.iter().filter(|own| !own.hidden).map(|own| own.value);
         self.inherited.iter().copied().chain(own)
     }
 
-    fn accept(&mut self, way: Way, entry: Published, reader: usize) {
+    fn accept(&mut self, way: TestedKind, entry: PublishedMessage, reader: usize) {
         match way {
-            Way::State => self.items = vec![entry.value],
-            Way::Signal if entry.board == reader && entry.nth <= self.seen => {}
-            Way::Signal => self.items.push(entry.value),
-            Way::Data => {
+            TestedKind::State => self.items = vec![entry.value],
+            TestedKind::Signal if entry.board == reader && entry.nth <= self.seen => {}
+            TestedKind::Signal => self.items.push(entry.value),
+            TestedKind::Data => {
                 self.items.push(entry.value);
                 let surplus = self.items.len().saturating_sub(way.depth());
                 self.items.drain(..surplus);
@@ -125,54 +125,59 @@ impl Shelf {
 
 impl Model {
     fn write(&mut self, board: usize, way: usize, value: u64) {
-        let shelf = &mut self.boards[board].shelves[way];
-        shelf.written += 1;
-        shelf.own.push(Own { value, nth: shelf.written, sent: false, hidden: false });
+        let state = &mut self.boards[board].states[way];
+        state.written += 1;
+        state.own.push(OwnMessage { value, nth: state.written, sent: false, hidden: false });
         self.boards[board].outbox.push(way);
     }
 
     fn publish(&mut self, board: usize) {
         for way in std::mem::take(&mut self.boards[board].outbox) {
-            let shelf = &mut self.boards[board].shelves[way];
-            let own = shelf.own.iter_mut().find(|own| !own.sent).unwrap();
+            let state = &mut self.boards[board].states[way];
+            let own = state.own.iter_mut().find(|own| !own.sent).unwrap();
             own.sent = true;
             self.order += 1;
-            self.logs[way].push(Published { order: self.order, board, nth: own.nth, value: own.value });
+            self.logs[way].push(PublishedMessage {
+                order: self.order,
+                board,
+                nth: own.nth,
+                value: own.value,
+            });
         }
-        for (way, shelf) in WAYS.iter().zip(&mut self.boards[board].shelves) {
-            let kept = if *way == Way::State { 1 } else { way.depth() };
-            while shelf.own.len() > kept && shelf.own[0].sent {
-                shelf.own.remove(0);
+        for (way, state) in KINDS.iter().zip(&mut self.boards[board].states) {
+            let kept = if *way == TestedKind::State { 1 } else { way.depth() };
+            while state.own.len() > kept && state.own[0].sent {
+                state.own.remove(0);
             }
         }
     }
 
     /// The messages of a topic that the hub still holds, and the index of the first.
-    fn ring(&self, way: usize) -> (usize, &[Published]) {
-        let first = self.logs[way].len().saturating_sub(WAYS[way].depth());
+    fn ring(&self, way: usize) -> (usize, &[PublishedMessage]) {
+        let first = self.logs[way].len().saturating_sub(KINDS[way].depth());
         (first, &self.logs[way][first..])
     }
 
     fn process(&mut self, board: usize) {
-        for (way, kind) in WAYS.into_iter().enumerate() {
+        for (way, kind) in KINDS.into_iter().enumerate() {
             let (first, ring) = self.ring(way);
             let ring = ring.to_vec();
-            let shelf = &mut self.boards[board].shelves[way];
-            shelf.own.retain(|own| !own.sent);
-            shelf.inherited.clear();
-            if kind == Way::Signal {
-                shelf.items.clear();
+            let state = &mut self.boards[board].states[way];
+            state.own.retain(|own| !own.sent);
+            state.inherited.clear();
+            if kind == TestedKind::Signal {
+                state.items.clear();
             }
-            if !shelf.attached {
+            if !state.attached {
                 continue;
             }
-            if kind != Way::State {
-                shelf.lost += first.saturating_sub(shelf.cursor) as u64;
+            if kind != TestedKind::State {
+                state.lost += first.saturating_sub(state.cursor) as u64;
             }
-            for entry in &ring[shelf.cursor.saturating_sub(first)..] {
-                shelf.accept(kind, *entry, board);
+            for entry in &ring[state.cursor.saturating_sub(first)..] {
+                state.accept(kind, *entry, board);
             }
-            shelf.cursor = first + ring.len();
+            state.cursor = first + ring.len();
         }
         let board = &mut self.boards[board];
         board.since = board.since.max(board.delivered);
@@ -182,58 +187,58 @@ impl Model {
     fn attach(&mut self, board: usize, way: usize) {
         let (first, ring) = self.ring(way);
         let (ring, known) = (ring.to_vec(), self.boards[board].clone());
-        let shelf = &mut self.boards[board].shelves[way];
-        let begin = if WAYS[way] == Way::Signal { known.since } else { 0 };
-        shelf.attached = true;
-        shelf.lost = 0;
-        shelf.items.clear();
+        let state = &mut self.boards[board].states[way];
+        let begin = if KINDS[way] == TestedKind::Signal { known.since } else { 0 };
+        state.attached = true;
+        state.lost = 0;
+        state.items.clear();
         for entry in ring.iter().filter(|entry| entry.order > begin && entry.order <= known.delivered) {
-            shelf.accept(WAYS[way], *entry, board);
+            state.accept(KINDS[way], *entry, board);
         }
         // If the hub no longer holds the state of that time, begin with the oldest that it holds.
         let had_a_value = self.logs[way].first().is_some_and(|entry| entry.order <= known.delivered);
-        let shelf = &mut self.boards[board].shelves[way];
-        if WAYS[way] == Way::State && shelf.items.is_empty() && had_a_value {
-            shelf.items = vec![ring[0].value];
+        let state = &mut self.boards[board].states[way];
+        if KINDS[way] == TestedKind::State && state.items.is_empty() && had_a_value {
+            state.items = vec![ring[0].value];
         }
-        let late = |entry: &Published| entry.order > known.delivered.max(begin);
-        shelf.cursor = first + ring.iter().position(late).unwrap_or(ring.len());
+        let late = |entry: &PublishedMessage| entry.order > known.delivered.max(begin);
+        state.cursor = first + ring.iter().position(late).unwrap_or(ring.len());
     }
 
     fn read(&mut self, board: usize, way: usize) -> (Vec<u64>, u64) {
-        if !self.boards[board].shelves[way].attached {
+        if !self.boards[board].states[way].attached {
             self.attach(board, way);
         }
-        let shelf = &mut self.boards[board].shelves[way];
-        shelf.seen = shelf.written;
-        let mut values = shelf.items.clone();
-        values.extend(shelf.visible_own());
-        let depth = match WAYS[way] {
-            Way::State => 1,
-            Way::Signal => usize::MAX,
-            Way::Data => 4,
+        let state = &mut self.boards[board].states[way];
+        state.seen = state.written;
+        let mut values = state.items.clone();
+        values.extend(state.visible_own());
+        let depth = match KINDS[way] {
+            TestedKind::State => 1,
+            TestedKind::Signal => usize::MAX,
+            TestedKind::Data => 4,
         };
-        // Own messages are shown even when they exceed the depth.
-        let own = shelf.visible_own().count().max(1);
-        let shown = if WAYS[way] == Way::State { 1 } else { depth.max(own) };
-        (values.split_off(values.len().saturating_sub(shown)), shelf.lost)
+        // OwnMessage messages are shown even when they exceed the depth.
+        let own = state.visible_own().count().max(1);
+        let shown = if KINDS[way] == TestedKind::State { 1 } else { depth.max(own) };
+        (values.split_off(values.len().saturating_sub(shown)), state.lost)
     }
 
     fn adopt(&mut self, board: usize, other: usize) {
         let other = self.boards[other].clone();
         self.boards[board].since = other.since;
         self.boards[board].delivered = other.delivered;
-        for (way, theirs) in other.shelves.iter().enumerate() {
-            let shelf = &mut self.boards[board].shelves[way];
-            shelf.own.iter_mut().for_each(|own| own.hidden = true);
-            shelf.inherited.clear();
-            if WAYS[way] != Way::Signal {
-                shelf.inherited.extend(theirs.visible_own());
+        for (way, theirs) in other.states.iter().enumerate() {
+            let state = &mut self.boards[board].states[way];
+            state.own.iter_mut().for_each(|own| own.hidden = true);
+            state.inherited.clear();
+            if KINDS[way] != TestedKind::Signal {
+                state.inherited.extend(theirs.visible_own());
             }
             if theirs.attached {
-                (shelf.attached, shelf.cursor, shelf.lost) = (true, theirs.cursor, theirs.lost);
-                shelf.items = theirs.items.clone();
-            } else if shelf.attached {
+                (state.attached, state.cursor, state.lost) = (true, theirs.cursor, theirs.lost);
+                state.items = theirs.items.clone();
+            } else if state.attached {
                 self.attach(board, way);
             }
         }
@@ -242,10 +247,12 @@ impl Model {
 
 /// The real blackboard: the values and the losses of a topic.
 fn read(board: &Blackboard, way: usize) -> (Vec<u64>, u64) {
-    match WAYS[way] {
-        Way::State => (board.read(STATE).map(|mark| mark.number).into_iter().collect(), board.lost(STATE)),
-        Way::Signal => (board.signals(SIGNAL).map(|mark| mark.number).collect(), board.lost(SIGNAL)),
-        Way::Data => {
+    match KINDS[way] {
+        TestedKind::State => {
+            (board.read(STATE).map(|mark| mark.number).into_iter().collect(), board.lost(STATE))
+        }
+        TestedKind::Signal => (board.signals(SIGNAL).map(|mark| mark.number).collect(), board.lost(SIGNAL)),
+        TestedKind::Data => {
             let age = std::time::Duration::MAX;
             (board.recent(DATA, age).map(|mark| mark.number).collect(), board.lost(DATA))
         }
@@ -253,10 +260,10 @@ fn read(board: &Blackboard, way: usize) -> (Vec<u64>, u64) {
 }
 
 fn write(board: &mut Blackboard, way: usize, value: u64) {
-    let written = match WAYS[way] {
-        Way::State => board.publish(STATE, Mark::new(value)),
-        Way::Signal => board.publish(SIGNAL, Mark::new(value)),
-        Way::Data => board.publish(DATA, Mark::new(value)),
+    let written = match KINDS[way] {
+        TestedKind::State => board.publish(STATE, Mark::new(value)),
+        TestedKind::Signal => board.publish(SIGNAL, Mark::new(value)),
+        TestedKind::Data => board.publish(DATA, Mark::new(value)),
     };
     written.unwrap();
 }
@@ -303,7 +310,7 @@ impl Comparison {
                     read(&self.boards[board], way),
                     self.model.read(board, way),
                     "{board} {:?}",
-                    WAYS[way]
+                    KINDS[way]
                 );
             }
             Step::Adopt(board, other) => {
@@ -320,14 +327,14 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn blackboards_show_what_the_model_says(steps in prop::collection::vec(step(), 1..120)) {
+    fn blackboards_equal_the_model(steps in prop::collection::vec(step(), 1..120)) {
         let hub = hub();
         let mut comparison = Comparison::new(&hub);
         for (time, step) in (1..).zip(&steps) {
             comparison.take(*step, time);
         }
         for board in 0..BOARDS {
-            for way in 0..WAYS.len() {
+            for way in 0..KINDS.len() {
                 comparison.take(Step::Read(board, way), 1000);
             }
         }

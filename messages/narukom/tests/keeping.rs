@@ -61,7 +61,7 @@ fn an_own_signal_that_was_read_at_once_does_not_come_again() {
 }
 
 #[test]
-fn an_own_signal_that_nobody_read_comes_with_the_next_delivery() {
+fn an_unread_own_signal_is_in_the_next_delivery() {
     let mut robot = hub().blackboard("robot");
     signal(&mut robot, 1);
     robot.publish_all(at(1));
@@ -72,7 +72,7 @@ fn an_own_signal_that_nobody_read_comes_with_the_next_delivery() {
 }
 
 #[test]
-fn an_own_signal_that_was_only_looked_at_comes_with_the_next_delivery() {
+fn a_peeked_own_signal_is_in_the_next_delivery() {
     let mut robot = hub().blackboard("robot");
     let slot = robot.slot("test/signal").unwrap();
     assert!(robot.shown(slot).is_none(), "the topic has no reader");
@@ -85,7 +85,7 @@ fn an_own_signal_that_was_only_looked_at_comes_with_the_next_delivery() {
 }
 
 #[test]
-fn of_own_signals_only_those_written_after_the_last_read_come_again() {
+fn only_own_signals_written_after_the_last_read_are_delivered_again() {
     let mut robot = hub().blackboard("robot");
     signal(&mut robot, 1);
     assert_eq!(signals(&robot), [1]);
@@ -152,7 +152,7 @@ fn histories_are_read_by_time() {
 }
 
 #[test]
-fn own_data_is_part_of_the_history_before_it_comes_back() {
+fn own_data_is_in_the_history_before_its_delivery() {
     let mut taker = history();
     taker.publish(DATA, Mark::new(5)).unwrap();
     let all: Vec<_> = taker.recent(DATA, Duration::from_secs(1)).map(|mark| mark.number).collect();
@@ -163,7 +163,7 @@ fn own_data_is_part_of_the_history_before_it_comes_back() {
 }
 
 #[test]
-fn histories_are_sorted_by_time_whatever_the_order_of_arrival() {
+fn histories_are_sorted_by_time() {
     let hub = hub();
     let mut taker = hub.blackboard("taker");
     taker.read(DATA);
@@ -235,7 +235,7 @@ fn own_data_that_waits_grows_too_old_as_well() {
 }
 
 #[test]
-fn a_moment_lies_between_its_neighbours() {
+fn a_time_lies_between_its_neighbours() {
     let taker = history();
     let around = |millis| {
         let marks = taker.around(DATA, at(millis))?;
@@ -263,7 +263,7 @@ fn messages_of_one_moment_are_all_kept_by_every_way_that_keeps_several() {
 }
 
 #[test]
-fn what_comes_too_late_for_a_full_history_is_left_out() {
+fn messages_too_old_for_a_full_history_are_dropped() {
     let hub = hub();
     let (mut giver, mut taker) = (hub.publisher(DATA, "giver").unwrap(), hub.blackboard("taker"));
     [10, 20, 30, 40, 5].into_iter().for_each(|millis| {

@@ -65,14 +65,14 @@ fn stated(depth: usize, extra: i64) -> i64 {
 }
 
 #[test]
-fn states_take_what_is_stated_however_long_it_goes_on() {
+fn states_take_the_documented_memory_in_long_runs() {
     let (early, late) = taken::<State<Mark>>(|_, _| true);
     assert!(late <= stated(narukom::STATE_DEPTH, 0), "{late} of {}", stated(narukom::STATE_DEPTH, 0));
     assert!(late <= early + 10_000, "{early}, then {late}");
 }
 
 #[test]
-fn histories_take_what_is_stated_however_long_it_goes_on() {
+fn histories_take_the_documented_memory_in_long_runs() {
     let (early, late) = taken::<Data<Mark, DEPTH>>(|_, _| true);
     assert!(late <= stated(DEPTH, 0), "{late} of {}", stated(DEPTH, 0));
     assert!(late <= early + 10_000, "{early}, then {late}");

@@ -137,7 +137,7 @@ fn a_region_publishes_nothing_that_it_took_over() {
 }
 
 #[test]
-fn what_a_region_wrote_before_is_published_but_no_longer_read() {
+fn earlier_writes_of_a_region_are_published_but_not_read() {
     let hub = hub();
     let (parent, mut region) = (hub.blackboard("chart"), hub.blackboard("chart"));
     region.publish(STATE, Mark::new(1)).unwrap();
@@ -148,7 +148,7 @@ fn what_a_region_wrote_before_is_published_but_no_longer_read() {
 }
 
 #[test]
-fn nothing_is_delivered_twice_after_taking_over() {
+fn nothing_is_delivered_twice_after_inheriting() {
     let hub = hub();
     let (mut giver, mut parent, mut region) =
         (hub.blackboard("giver"), hub.blackboard("p"), hub.blackboard("r"));

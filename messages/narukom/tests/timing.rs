@@ -29,9 +29,9 @@ enum Step {
     Publish(usize, bool, u64),
     Process(usize),
     /// Reader, host, whether the topic with an age limit, and how many milliseconds ago.
-    Look(usize, usize, bool, u64),
+    Read(usize, usize, bool, u64),
     /// Time passes.
-    Pass(u64),
+    Advance(u64),
 }
 
 fn step() -> impl Strategy<Value = Step> {
@@ -39,27 +39,27 @@ fn step() -> impl Strategy<Value = Step> {
         6 => (0..HOSTS, any::<bool>(), 0..40_u64).prop_map(|(host, aged, ago)| Step::Publish(host, aged, ago)),
         3 => (0..READERS).prop_map(Step::Process),
         4 => (0..READERS, 0..HOSTS, any::<bool>(), 0..120_u64)
-            .prop_map(|(reader, host, aged, ago)| Step::Look(reader, host, aged, ago)),
-        3 => (0..20_u64).prop_map(Step::Pass),
+            .prop_map(|(reader, host, aged, ago)| Step::Read(reader, host, aged, ago)),
+        3 => (0..20_u64).prop_map(Step::Advance),
     ]
 }
 
 /// A message that arrived: when it was published, and its number.
-type Came = (u64, u64);
+type Arrival = (u64, u64);
 
 /// One topic of one host as seen by a reader of the model.
 #[derive(Clone, Default)]
-struct Shelf {
+struct TopicState {
     cursor: usize,
-    items: Vec<Came>,
+    items: Vec<Arrival>,
     lost: u64,
 }
 
 #[derive(Default)]
 struct Model {
     /// By host and topic, in order of arrival.
-    came: [[Vec<Came>; 2]; HOSTS],
-    shelves: [[[Shelf; 2]; HOSTS]; READERS],
+    came: [[Vec<Arrival>; 2]; HOSTS],
+    states: [[[TopicState; 2]; HOSTS]; READERS],
     /// The time of each reader's cycle.
     now: [u64; READERS],
 }
@@ -67,33 +67,33 @@ struct Model {
 impl Model {
     fn process(&mut self, reader: usize, now: u64) {
         self.now[reader] = now;
-        for (shelves, came) in self.shelves[reader].iter_mut().zip(&self.came) {
-            for (shelf, came) in shelves.iter_mut().zip(came) {
-                let held = came.len().saturating_sub(DEPTH).max(shelf.cursor);
-                shelf.lost += (held - shelf.cursor) as u64;
+        for (states, came) in self.states[reader].iter_mut().zip(&self.came) {
+            for (state, came) in states.iter_mut().zip(came) {
+                let held = came.len().saturating_sub(DEPTH).max(state.cursor);
+                state.lost += (held - state.cursor) as u64;
                 for message in &came[held..] {
-                    shelf.items.push(*message);
-                    shelf.items.sort_by_key(|(published, _)| *published);
-                    let surplus = shelf.items.len().saturating_sub(DEPTH);
-                    shelf.items.drain(..surplus);
+                    state.items.push(*message);
+                    state.items.sort_by_key(|(published, _)| *published);
+                    let surplus = state.items.len().saturating_sub(DEPTH);
+                    state.items.drain(..surplus);
                 }
-                shelf.cursor = came.len();
+                state.cursor = came.len();
             }
         }
     }
 
     /// What a reader sees, oldest first.
-    fn visible(&self, reader: usize, host: usize, aged: bool) -> Vec<Came> {
+    fn visible(&self, reader: usize, host: usize, aged: bool) -> Vec<Arrival> {
         let now = self.now[reader];
         let is_fresh = |published: u64| !aged || now.saturating_sub(published) <= AGE;
-        let items = self.shelves[reader][host][usize::from(aged)].items.iter();
+        let items = self.states[reader][host][usize::from(aged)].items.iter();
         items.copied().filter(|(published, _)| is_fresh(*published)).collect()
     }
 }
 
 /// The results of all reads by time for one time.
 #[derive(PartialEq, Debug)]
-struct Looked {
+struct TimedReads {
     all: Vec<u64>,
     newest: Option<u64>,
     not_newer: Option<u64>,
@@ -104,9 +104,9 @@ struct Looked {
     lost: u64,
 }
 
-fn expected(model: &Model, (reader, host, aged): (usize, usize, bool), moment: u64, age: u64) -> Looked {
+fn expected(model: &Model, (reader, host, aged): (usize, usize, bool), moment: u64, age: u64) -> TimedReads {
     let items = model.visible(reader, host, aged);
-    let number = |came: Option<&Came>| came.map(|(_, number)| *number);
+    let number = |came: Option<&Arrival>| came.map(|(_, number)| *number);
     let before = items.iter().rev().find(|(published, _)| *published <= moment);
     let after = items.iter().find(|(published, _)| *published >= moment);
     let later = items.iter().find(|(published, _)| *published > moment);
@@ -123,7 +123,7 @@ fn expected(model: &Model, (reader, host, aged): (usize, usize, bool), moment: u
         _ => None,
     };
     let oldest = model.now[reader].saturating_sub(age);
-    Looked {
+    TimedReads {
         all: items.iter().map(|(_, number)| *number).collect(),
         newest: number(items.last()),
         not_newer: number(before),
@@ -135,7 +135,7 @@ fn expected(model: &Model, (reader, host, aged): (usize, usize, bool), moment: u
             .filter(|(published, _)| *published >= oldest)
             .map(|(_, number)| *number)
             .collect(),
-        lost: model.shelves[reader][host][usize::from(aged)].lost,
+        lost: model.states[reader][host][usize::from(aged)].lost,
     }
 }
 
@@ -145,14 +145,14 @@ fn looked<K>(
     topic: narukom::Topic<K>,
     moment: Timestamp,
     age: Duration,
-) -> Looked
+) -> TimedReads
 where
     K: narukom::Timed<Message = Mark>,
 {
     let view = reader.from(host);
     let number = |mark: Option<Sample<'_, Mark>>| mark.map(|mark| mark.number);
     let numbers = |age| view.recent(topic, age).map(|mark| mark.number).collect();
-    Looked {
+    TimedReads {
         all: numbers(Duration::MAX),
         newest: view.read(topic).map(|mark| mark.number),
         not_newer: number(view.nearest_not_newer(topic, moment)),
@@ -195,7 +195,7 @@ impl Comparison {
         for reader in 0..READERS {
             comparison.take(Step::Process(reader));
             (0..HOSTS).for_each(|host| {
-                [false, true].iter().for_each(|aged| comparison.look(reader, host, *aged, 0))
+                [false, true].iter().for_each(|aged| comparison.read(reader, host, *aged, 0))
             });
         }
         comparison
@@ -225,7 +225,7 @@ impl Comparison {
         self.model.came[host][topic].push((published, self.number));
     }
 
-    fn look(&mut self, reader: usize, host: usize, aged: bool, ago: u64) {
+    fn read(&mut self, reader: usize, host: usize, aged: bool, ago: u64) {
         let moment = self.now - ago;
         let (id, board, age) = (self.host(host), &self.readers[reader], Duration::from_millis(ago));
         let real = if aged {
@@ -243,8 +243,8 @@ impl Comparison {
                 self.readers[reader].process_messages(at(self.now));
                 self.model.process(reader, self.now);
             }
-            Step::Look(reader, host, aged, ago) => self.look(reader, host, aged, ago),
-            Step::Pass(millis) => self.now += millis,
+            Step::Read(reader, host, aged, ago) => self.read(reader, host, aged, ago),
+            Step::Advance(millis) => self.now += millis,
         }
     }
 }
@@ -253,7 +253,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn reads_by_time_give_what_the_model_says(steps in prop::collection::vec(step(), 1..150)) {
+    fn reads_by_time_equal_the_model(steps in prop::collection::vec(step(), 1..150)) {
         let mut comparison = Comparison::new();
         steps.iter().for_each(|step| comparison.take(*step));
         assert_eq!(comparison.hub.hosts().len(), HOSTS);

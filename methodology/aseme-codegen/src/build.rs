@@ -31,7 +31,7 @@ use yase::{Diagnostic, Source};
 
 use crate::generate::{self, RustBindings, SKELETONS};
 
-/// What is to be generated from a model; [`write`](Generation::write) does it.
+/// A model from which Rust is generated; [`write`](Generation::write) generates it.
 #[derive(Clone, Debug)]
 #[must_use = "nothing is written before `write`"]
 pub struct Generation {
@@ -40,37 +40,36 @@ pub struct Generation {
     folder: Option<PathBuf>,
 }
 
-/// Begins with a model, whose path counts from the folder of the crate's Cargo.toml.
+/// Starts a generation. The model's path is relative to the folder of the crate's Cargo.toml.
 pub fn generate(model: impl Into<PathBuf>) -> Generation {
     Generation { model: model.into(), words: RustBindings::default(), folder: None }
 }
 
 impl Generation {
-    /// What the names in the chart mean; charts without messages and activities need none.
+    /// Sets the bindings of names; charts without messages and activities need none.
     pub fn bindings(mut self, words: RustBindings) -> Generation {
         self.words = words;
         self
     }
 
-    /// Another folder than that of generated files (`OUT_DIR`).
+    /// Sets the output folder; the default is `OUT_DIR`.
     pub fn into(mut self, folder: impl Into<PathBuf>) -> Generation {
         self.folder = Some(folder.into());
         self
     }
 
-    /// Writes the module, declares the model as an input to cargo, and returns the file to be
-    /// included.
+    /// Writes the module, declares the model as an input to cargo, and returns the file to include.
     ///
     /// # Errors
-    /// The model cannot be read or has errors, the chart has no counterpart in Rust, an activity is
-    /// nowhere, or the files cannot be written.
+    /// The model cannot be read or has errors, the chart cannot be represented in Rust, an activity
+    /// has no implementation, or the files cannot be written.
     pub fn write(self) -> Result<PathBuf, Error> {
         print_cargo_directive(&format!("rerun-if-changed={}", self.model.display()))?;
         let folder = match &self.folder {
             Some(folder) => folder.clone(),
             None => std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or_else(|| {
                 Error::from_message(
-                    "OUT_DIR is not set: this is for build scripts; others name a folder with `into`".into(),
+                    "OUT_DIR is not set: call this in a build script, or set a folder with `into`".into(),
                 )
             })?,
         };
@@ -110,28 +109,28 @@ impl Generation {
         match is_plain {
             true => Ok(name),
             false => Err(Error::from_message(format!(
-                "{}: a module is called like the file, with small letters, digits and underscores",
+                "{}: the file's name becomes the module's: use lower-case letters, digits and underscores",
                 self.model.display()
             ))),
         }
     }
 }
 
-/// A line that cargo reads.
+/// Prints a directive to cargo.
 fn print_cargo_directive(line: &str) -> Result<(), Error> {
-    let told = writeln!(std::io::stdout(), "cargo::{line}");
-    told.map_err(|error| Error::from_message(format!("cannot tell cargo anything: {error}")))
+    let written = writeln!(std::io::stdout(), "cargo::{line}");
+    written.map_err(|error| Error::from_message(format!("cannot write to cargo: {error}")))
 }
 
 /// An activity without implementation: generated code in a build folder has no skeletons.
 fn missing(path: &str) -> Option<Diagnostic> {
     let module = path.strip_prefix(SKELETONS)?.trim_end_matches(".rs");
     let message = format!("the activity of the module `{module}` has no implementation");
-    let hint = "write it and name it in the words, or have `monas generate` write a skeleton";
+    let hint = "write it and add it to the bindings, or let `monas generate` write a skeleton";
     Some(Diagnostic::error("E0923", 0..0, message).with_hint(hint))
 }
 
-/// The files in a folder of their own, and the one that takes them in as a module.
+/// Writes the files into a folder, and the file that includes them as a module.
 fn written(folder: &Path, name: &str, files: &generate::CrateFiles) -> Result<PathBuf, Error> {
     let own = folder.join(name);
     for (path, text) in files {
@@ -141,14 +140,14 @@ fn written(folder: &Path, name: &str, files: &generate::CrateFiles) -> Result<Pa
     }
     let file = folder.join(format!("{name}.rs"));
     let library = own.join("src/lib.rs");
-    // The module has words of its own; links in them would be looked up here if there were any
-    // before it.
+    // The documentation of the module is inside it, since links in outer documentation would be
+    // resolved here.
     let text = format!("#[path = {library:?}]\npub mod {name};\n");
     fs::write(&file, text).map_err(|error| Error::file("write", &file, &error))?;
     Ok(file)
 }
 
-/// Why nothing was generated.
+/// The error of a generation.
 pub struct Error {
     message: String,
     found: Vec<Diagnostic>,
@@ -180,7 +179,7 @@ impl fmt::Display for Error {
     }
 }
 
-/// As it is displayed: what a `main` returns is shown by this.
+/// Shown like `Display`, because a `main` that returns the error prints it by `Debug`.
 impl fmt::Debug for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)

@@ -44,29 +44,28 @@ use yase::{Diagnostic, Semantics, Span, Statechart, TypeEnvironment};
 
 pub use names::{identifier, path_of};
 
-/// What the names of a chart mean, in expressions and in Rust.
+/// Maps the names of a chart to expressions and to Rust.
 #[derive(Clone, Debug)]
 pub struct RustBindings {
-    /// What expressions may name.
+    /// The names that expressions can use.
     pub vocabulary: TypeEnvironment,
     /// The Rust type of each message, by its name in the vocabulary: `monas_soccer::Ball`.
     pub messages: BTreeMap<String, String>,
-    /// The constant that stands for each topic in Rust, by its path: `monas_soccer::topics::BALL`
-    /// for `soccer/ball`.
+    /// The Rust constant of each topic, by its path: `monas_soccer::topics::BALL` for
+    /// `soccer/ball`.
     pub topics: BTreeMap<String, String>,
-    /// Where each activity is in Rust, by its name in charts. One that is not here gets a skeleton.
+    /// The Rust path of each activity, by its name in charts. The others get skeletons.
     pub activities: BTreeMap<String, RustActivity>,
-    /// What activities are about, by their names: variables of the model with their types.
-    /// Skeletons say it, and declare the topics among them.
+    /// The variables of each activity in the model, with their types. Skeletons document them and
+    /// declare the topics among them.
     pub subjects: BTreeMap<String, Vec<(String, String)>>,
-    /// The module that has [`yase_codegen::typed`]'s names.
+    /// The module that re-exports [`yase_codegen::typed`].
     pub runtime: String,
-    /// Whether the crate registers itself and makes its activities: whether the runtime is that of
-    /// Monas.
+    /// Whether the crate registers its chart and activities, which requires the runtime of Monas.
     pub registers: bool,
-    /// What the first lines of the crate say it was made from.
+    /// The source named in the first lines of the crate.
     pub origin: String,
-    /// The name that configurations know the chart by; its own if it is empty.
+    /// The name of the chart in configurations; if empty, its own name.
     pub name: String,
 }
 
@@ -92,7 +91,7 @@ impl Default for RustBindings {
 pub struct RustActivity {
     /// Its path: `monas_soccer::activities::Vision`.
     pub path: String,
-    /// Whether it is a function; else it is a type made by `Default`.
+    /// Whether it is a function; otherwise it is a type that implements `Default`.
     pub is_function: bool,
 }
 
@@ -102,12 +101,11 @@ pub type CrateFiles = BTreeMap<String, String>;
 /// The skeletons among the files of a crate; existing files of this folder are not overwritten.
 pub const SKELETONS: &str = "src/activities/";
 
-/// Writes a chart as the sources of a crate. Equal charts and words give equal files, laid out as
-/// rustfmt does with this project's settings where their lines are not too long for it.
+/// Writes a chart as the sources of a crate. Equal charts and bindings yield equal files, formatted
+/// as rustfmt would with this project's settings, except lines that are too long for it.
 ///
 /// # Errors
-/// Everything that is wrong with the chart, as [`Statechart::compile`] finds it, and what cannot be
-/// said in Rust.
+/// All errors of [`Statechart::compile`], and elements that cannot be represented in Rust.
 pub fn generate(chart: &Statechart, words: &RustBindings) -> Result<CrateFiles, Vec<Diagnostic>> {
     let compiled = chart.compile_with(&words.vocabulary, Semantics::yase())?;
     let words = &with_absolute_paths(words);

@@ -8,8 +8,8 @@
 //! | FT | text |
 //! | EAC, IAC, the statechart of a role | text, XMI in four dialects, SCXML; Rust, which is only written |
 //!
-//! Only the text form stores where a chart is drawn: the original editors keep layouts in diagram
-//! files beside the models.
+//! Only the text form stores the layout of a chart: the original editors keep layouts in separate
+//! diagram files.
 //!
 //! [`Model::write`] lists what a format cannot represent.
 

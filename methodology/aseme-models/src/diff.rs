@@ -42,14 +42,14 @@ pub enum ChangeKind {
     Added,
     /// Removed.
     Removed,
-    /// It lies elsewhere, has another name, or joins other states.
+    /// It has another parent or name, or connects other states.
     Moved,
     /// Changed in content.
     Changed,
 }
 
 impl ChangeKind {
-    /// Its word.
+    /// Its name in reports.
     pub const fn word(self) -> &'static str {
         match self {
             ChangeKind::Added => "added",
@@ -77,14 +77,14 @@ pub enum ChangedPart {
     State,
     /// A transition.
     Transition,
-    /// The order in which the ways out of a state are tried, or in which regions step.
+    /// The selection order of the transitions out of a state, or the order of regions.
     Order,
     /// A constant.
     Constant,
 }
 
 impl ChangedPart {
-    /// Its word.
+    /// Its name in reports.
     pub const fn word(self) -> &'static str {
         match self {
             ChangedPart::State => "state",
@@ -131,20 +131,20 @@ impl fmt::Display for ChartChange {
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct ChartDifference {
-    /// Each difference: of states in the order of the later chart, then those removed; then
-    /// transitions, orders, constants.
+    /// The differences: states in the order of the later chart, removed states, transitions,
+    /// orders, constants.
     pub changes: Vec<ChartChange>,
     pairs: NodePairs,
 }
 
 impl ChartDifference {
-    /// Whether the charts mean the same.
+    /// Whether the charts are equal in meaning.
     pub fn is_empty(&self) -> bool {
         self.changes.is_empty()
     }
 }
 
-/// What differs between two charts.
+/// Compares two charts.
 pub fn diff(before: &Statechart, after: &Statechart) -> ChartDifference {
     let pairs = NodePairs::between(before, after);
     let mut comparison = ChartComparison { before, after, pairs: &pairs, changes: Vec::new() };
@@ -206,7 +206,7 @@ impl ChartComparison<'_> {
         let parent = earlier.parent.map(|parent| self.pairs.later(parent));
         if earlier.name != later.name || parent != later.parent.map(Some) {
             let names = (path::shortest_path(self.after, new), path::shortest_path(self.before, old));
-            // a state that went elsewhere may be called the same there and here
+            // a moved state may have the same shortest path in both charts
             let names = match names.0 == names.1 {
                 true => (self.after.path(new), self.before.path(old)),
                 false => names,
@@ -216,12 +216,11 @@ impl ChartComparison<'_> {
         }
     }
 
-    /// The attributes of a state besides its name, one by one.
+    /// Compares the attributes of a state except its name.
     fn compare_state(&mut self, new: NodeId, old: Option<NodeId>) {
         let said = |chart: &Statechart, id: NodeId| {
             let mut said = refinements(chart.node(id));
-            // a name that changed takes the activity of that name with it: that is no change of its
-            // own
+            // the default activity follows the name, so that its change is no separate difference
             said.retain(|line| !line.starts_with("activity = "));
             said.extend(own_activity(chart, id));
             said
@@ -253,7 +252,7 @@ impl ChartComparison<'_> {
         }
     }
 
-    /// Notes what differs, and gives for each transition of the later chart the earlier one.
+    /// Records differences of transitions and returns the earlier transition of each later one.
     fn transitions(&mut self) -> BTreeMap<TransitionId, TransitionId> {
         let mut by_ends: BTreeMap<(NodeId, NodeId), Vec<TransitionId>> = BTreeMap::new();
         for (id, transition) in self.before.transitions() {
@@ -308,8 +307,8 @@ impl ChartComparison<'_> {
         }
     }
 
-    /// A transition that has come, or one that went elsewhere: it leaves the same state, or leads
-    /// to the same one, and says the same as one that has gone.
+    /// Records a transition as moved if it shares source or target and content with a removed one,
+    /// otherwise as added.
     fn new_transition(&mut self, id: TransitionId, gone: &mut Vec<TransitionId>) {
         let transition = self.after.transition(id);
         let (name, text) = (path::shortest_transition(self.after, id), transition_text(transition));
@@ -329,8 +328,7 @@ impl ChartComparison<'_> {
         }
     }
 
-    /// Of those that both charts have: the order in which ways out are tried, and the order of
-    /// regions.
+    /// Compares the orders of transitions and regions that both charts have.
     fn orders(&mut self, same: &BTreeMap<TransitionId, TransitionId>) {
         let mut ways: BTreeMap<NodeId, Vec<TransitionId>> = BTreeMap::new();
         for (&id, &old) in same {
@@ -405,7 +403,7 @@ impl ChartComparison<'_> {
     }
 }
 
-/// The activity of a state that does not run the one of its name.
+/// The activity of a state if it differs from its name.
 fn own_activity(chart: &Statechart, id: NodeId) -> Option<String> {
     let node = chart.node(id);
     match (&node.activity, node.kind) {
@@ -415,13 +413,13 @@ fn own_activity(chart: &Statechart, id: NodeId) -> Option<String> {
     }
 }
 
-/// All that is written on a transition.
+/// The text of a transition.
 fn transition_text(transition: &Transition) -> String {
     let text = format!("{} {}", modifiers(transition), transition.expression);
     text.trim().to_owned()
 }
 
-/// What the order in which the ways out of a state are tried depends on.
+/// The sort key of the selection order of a state's transitions.
 fn rank(chart: &Statechart, id: TransitionId) -> (Reverse<i32>, bool, TransitionId) {
     let transition = chart.transition(id);
     (Reverse(transition.priority), transition.expression.guard.is_none(), id)

@@ -28,7 +28,7 @@ use yase::Span;
 
 pub(crate) use values::{Reference, list, quoted, reference, unquoted, value_text};
 
-/// A text in items.
+/// A text as a list of items.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct ItemDocument {
     pub(crate) items: Vec<Item>,
@@ -36,13 +36,13 @@ pub(crate) struct ItemDocument {
     pub(crate) tail: Vec<String>,
 }
 
-/// A header and what is below it.
+/// A header and the lines below it.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct Item {
     pub(crate) comments: Comments,
     /// The word before the colon.
     pub(crate) word: SpannedText,
-    /// What stands behind the colon.
+    /// The text after the colon.
     pub(crate) name: SpannedText,
     pub(crate) lines: Vec<Line>,
 }
@@ -51,7 +51,7 @@ pub(crate) struct Item {
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct Line {
     pub(crate) comments: Comments,
-    /// How far in it stands.
+    /// Its indentation.
     pub(crate) indent: usize,
     pub(crate) content: SpannedText,
 }
@@ -59,13 +59,13 @@ pub(crate) struct Line {
 /// Comments, each with its `#`.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub(crate) struct Comments {
-    /// On lines of their own above.
+    /// Comments on the lines above.
     pub(crate) above: Vec<String>,
-    /// Behind, on the same line; empty if there is none.
+    /// The comment after the text on the same line; empty if there is none.
     pub(crate) beside: String,
 }
 
-/// Some text and its place, without blanks around it.
+/// A text with its position, without surrounding blanks.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct SpannedText {
     pub(crate) text: String,
@@ -73,12 +73,12 @@ pub(crate) struct SpannedText {
 }
 
 impl SpannedText {
-    /// A text that stands nowhere yet.
+    /// A text without a position.
     pub(crate) fn new(text: impl Into<String>) -> SpannedText {
         SpannedText { text: text.into(), span: Span::default() }
     }
 
-    /// A part of it, by its bytes, without blanks around it.
+    /// A part of it given by a byte range, without surrounding blanks.
     pub(crate) fn part(&self, range: std::ops::Range<usize>) -> SpannedText {
         let part = &self.text[range.clone()];
         let start = self.span.start + range.start + (part.len() - part.trim_start().len());
@@ -94,11 +94,11 @@ pub(crate) struct KeyValue<'a> {
     pub(crate) key: SpannedText,
     pub(crate) value: SpannedText,
     pub(crate) comments: &'a Comments,
-    /// The lines further in, if it ends with a colon.
+    /// The deeper indented lines, if it ends with a colon.
     pub(crate) block: Option<&'a [Line]>,
 }
 
-/// The settings that lines are made of; what is none is handed back as it is.
+/// The settings of lines; a line that is no setting is returned as the error.
 pub(crate) fn settings(lines: &[Line]) -> Vec<Result<KeyValue<'_>, &Line>> {
     let mut settings = Vec::new();
     let mut rest = lines;
@@ -135,7 +135,7 @@ fn is_key(text: &str) -> bool {
 }
 
 impl Item {
-    /// An item that stands nowhere yet.
+    /// An item without a position.
     pub(crate) fn new(word: &str, name: String) -> Item {
         Item { word: SpannedText::new(word), name: SpannedText::new(name), ..Item::default() }
     }
@@ -150,7 +150,7 @@ impl Item {
         self.line(2, format!("{key} = {value}"));
     }
 
-    /// The place of its header.
+    /// The span of its header.
     pub(crate) fn span(&self) -> Span {
         if self.name.text.is_empty() { self.word.span } else { self.word.span.to(self.name.span) }
     }

@@ -10,7 +10,7 @@ use crate::meta::{Class, Feature, FeatureValue, Metamodel, ModelInstance, Object
 /// A functionality table.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct FunctionalityTable {
-    /// Its rows, those of a role together and in it those of a capability.
+    /// Its rows, grouped by role and capability.
     pub rows: Vec<FunctionalityRow>,
 }
 

@@ -73,13 +73,13 @@ pub struct Iac {
     pub constants: Vec<Constant>,
 }
 
-/// Whose chart it is.
+/// The owner of a chart.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum ChartKind {
-    /// An agent's.
+    /// The chart of an agent.
     #[default]
     Intra,
-    /// A protocol's.
+    /// The chart of a protocol.
     Inter,
 }
 
@@ -92,12 +92,12 @@ pub struct IacNode {
     pub label: String,
     /// Its type: OR, AND, BASIC, START, END, CONDITION and others.
     pub kind: String,
-    /// What the file calls its activity: the description of a functionality, or where its source
-    /// lies.
+    /// The activity according to the file: the description of a functionality, or the path of its
+    /// source.
     pub functionality: String,
     /// The variables it uses, by their indices in [`Iac::variables`].
     pub variables: Vec<usize>,
-    /// The node it lies in, by its index in [`Iac::nodes`].
+    /// Its parent, by its index in [`Iac::nodes`].
     pub parent: Option<usize>,
     /// Its actions in the dialect of 2018.
     pub actions: String,
@@ -114,7 +114,7 @@ pub struct IacNode {
 /// Settings of a state, as in the section `States:` of a role.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct StateRefinement {
-    /// The activity it runs; none for the one of its name, empty for nothing at all.
+    /// The activity it runs: `None` for the one with its name, empty for no activity.
     pub activity: Option<String>,
     /// The priority of its activity.
     pub priority: i32,
@@ -141,9 +141,9 @@ pub struct IacTransition {
     pub target: usize,
     /// Metadata of a tool.
     pub metadata: String,
-    /// What only text can say.
+    /// Settings that only the text form represents.
     pub refinement: TransitionRefinement,
-    /// The corners it is drawn with.
+    /// The corners of its line in drawings.
     pub bends: Vec<Point>,
     /// Its position in the source.
     pub place: TextPosition,
@@ -158,9 +158,9 @@ pub struct TransitionRefinement {
     pub priority: i32,
     /// The weight of a probabilistic branch.
     pub weight: Option<f64>,
-    /// Whether it may leave a state whose activity still runs.
+    /// Whether it may exit a state whose activity is running.
     pub interrupts: bool,
-    /// Whether it happens inside its source, without leaving it.
+    /// Whether it is internal: it does not exit its source.
     pub internal: bool,
 }
 
@@ -178,9 +178,9 @@ pub struct Variable {
 /// The dialects of XMI in which statecharts are kept.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Dialect {
-    /// 2010: `xmi:XMI` with nodes, transitions and the model as roots of their own.
+    /// 2010: `xmi:XMI` with nodes, transitions and the model as separate roots.
     MultiRoot,
-    /// 2011: `IAC:Model` with all nodes side by side, each naming the node it lies in.
+    /// 2011: `IAC:Model` with a flat list of nodes, each naming its parent.
     Flat,
     /// 2012: `statechart:Model` with nodes in nodes.
     Nested2012,
@@ -192,7 +192,7 @@ pub enum Dialect {
 pub(crate) const MAX_LEVELS: usize = aseme::liveness::MAX_LEVELS;
 
 impl Iac {
-    /// The label that each node has by its place.
+    /// The default label of each node, according to its position in the tree.
     pub(crate) fn labels(&self) -> Vec<String> {
         let mut labels: Vec<String> = Vec::with_capacity(self.nodes.len());
         let mut children = vec![0_usize; self.nodes.len()];
@@ -213,7 +213,7 @@ impl Iac {
         labels
     }
 
-    /// The place of a variable like this one, which is added if there is none.
+    /// The index of a variable, which is added if it is missing.
     pub(crate) fn variable(&mut self, wanted: &Variable) -> usize {
         let same = |own: &Variable| (&own.name, &own.kind) == (&wanted.name, &wanted.kind);
         self.variables.iter().position(same).unwrap_or_else(|| {
@@ -235,8 +235,8 @@ impl Iac {
         children
     }
 
-    /// The same chart with every node before its children and these together, as a file that nests
-    /// them has them.
+    /// The chart with every parent before its children and siblings contiguous, as in files that
+    /// nest nodes.
     pub(crate) fn in_order(mut self) -> Iac {
         let children = self.children();
         self.arrange(&children);
@@ -299,7 +299,7 @@ impl Iac {
         }
     }
 
-    /// The name that a transition between two nodes usually has.
+    /// The default name of a transition between two nodes.
     pub(crate) fn usual_name(&self, source: usize, target: usize) -> String {
         format!("{}TO{}", self.nodes[source].name, self.nodes[target].name)
     }
@@ -314,7 +314,7 @@ impl IacNode {
     }
 }
 
-/// `null`, which files of 2010 write for nothing.
+/// Removes `null`, which files of 2010 write for an absent value.
 pub(crate) fn without_null(text: &str) -> String {
     if text == "null" { String::new() } else { text.into() }
 }

@@ -15,9 +15,9 @@
 //! charts. [`diff`] compares two statecharts, [`regenerate`] carries refinements over to a
 //! regenerated chart, and [`ontology`] lists the messages that a chart uses.
 //!
-//! An [`Iac`] keeps a model file as it is written, faults included, so that a file is never
-//! changed by reading it; a [`Statechart`] is its meaning. Models are data, and all functions here
-//! work on text that they are given: the crate opens no file.
+//! An [`Iac`] keeps a model file as it is written, faults included, so that reading a file never
+//! changes it; a [`Statechart`] is its meaning. Models are data, and all functions here take text
+//! as an argument: the crate opens no file.
 //!
 //! ```
 //! use aseme_models::convert::{Format, Model};

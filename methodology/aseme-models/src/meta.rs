@@ -21,15 +21,15 @@ pub(crate) use from_xmi::from_xmi;
 pub(crate) use to_text::to_text;
 pub(crate) use to_xmi::to_xmi;
 
-/// What a kind of model consists of.
+/// The metamodel of a kind of model.
 pub(crate) struct Metamodel {
-    /// The header that a text begins with.
+    /// The header that a text starts with.
     pub(crate) word: &'static str,
     /// The root element of XMI.
     pub(crate) root: &'static str,
     /// The prefix of the root element.
     pub(crate) prefix: &'static str,
-    /// The namespace that is written, and any other that is read.
+    /// The namespace that is written, and others that are accepted.
     pub(crate) namespaces: &'static [&'static str],
     /// The classes of objects, in the order of the root's features.
     pub(crate) classes: &'static [Class],
@@ -41,13 +41,13 @@ pub(crate) struct Class {
     pub(crate) word: &'static str,
     /// The feature of the root that holds its objects.
     pub(crate) feature: &'static str,
-    /// How many objects a model has at least.
+    /// The minimum number of objects.
     pub(crate) least: usize,
-    /// The feature that is written in the header, by which objects are called.
+    /// The feature written in the header, which names the object.
     pub(crate) title: usize,
     /// In the order of the metamodel.
     pub(crate) features: &'static [Feature],
-    /// Classes of older metamodels that say what a choice says now: name, feature, choice.
+    /// Classes of older metamodels that correspond to a choice: name, feature, choice.
     pub(crate) subclasses: &'static [(&'static str, usize, usize)],
 }
 
@@ -69,7 +69,7 @@ pub(crate) enum FeatureKind {
     Text,
     /// Lines of formulas.
     Formulas,
-    /// One of some words; the first unless said.
+    /// One of several words; the first is the default.
     Choice(&'static [&'static str]),
     /// Links to objects of a class.
     Links { class: usize, least: usize, most: usize },
@@ -78,7 +78,7 @@ pub(crate) enum FeatureKind {
     Opposite { class: usize, feature: usize },
 }
 
-/// As many as anyone likes.
+/// No upper limit.
 pub(crate) const MANY: usize = usize::MAX;
 
 /// A model.
@@ -94,19 +94,19 @@ pub(crate) struct Object {
     pub(crate) values: Vec<FeatureValue>,
     /// Its position in the source.
     pub(crate) place: TextPosition,
-    /// Where the value of each feature stands.
+    /// The position of each feature's value.
     pub(crate) places: Vec<TextPosition>,
 }
 
-/// What a feature of an object is.
+/// The value of a feature.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) enum FeatureValue {
     Text(String),
-    /// By its place among the choices.
+    /// The index of the choice.
     Choice(usize),
-    /// By their places among the objects of their class.
+    /// The indices of the linked objects in their class.
     Links(Vec<usize>),
-    /// Not kept.
+    /// Derived, not stored.
     Derived,
 }
 
@@ -125,27 +125,27 @@ impl Feature {
         Feature::new(name, name, FeatureKind::Formulas)
     }
 
-    /// One of some words.
+    /// A choice between words.
     pub(crate) const fn choice(name: &'static str, choices: &'static [&'static str]) -> Feature {
         Feature::new(name, name, FeatureKind::Choice(choices))
     }
 
-    /// Links to objects of a class: from least to most of them.
+    /// Links to objects of a class, with a minimum and maximum number.
     pub(crate) const fn links(name: &'static str, class: usize, least: usize, most: usize) -> Feature {
         Feature::new(name, name, FeatureKind::Links { class, least, most })
     }
 
-    /// The other end of links.
+    /// The opposite of links.
     pub(crate) const fn opposite(name: &'static str, class: usize, feature: usize) -> Feature {
         Feature::new(name, name, FeatureKind::Opposite { class, feature })
     }
 
-    /// The same by another name in text.
+    /// Sets another name in text.
     pub(crate) const fn called(self, word: &'static str) -> Feature {
         Feature { word, ..self }
     }
 
-    /// The same, with the name that older metamodels had for it.
+    /// Sets the name in older metamodels.
     pub(crate) const fn once(self, older: &'static str) -> Feature {
         Feature { older: Some(older), ..self }
     }
@@ -225,7 +225,7 @@ impl Object {
         }
     }
 
-    /// Where the value of a feature stands; where the object does, if nowhere.
+    /// The position of a feature's value, or of the object if there is none.
     pub(crate) fn place_of(&self, feature: usize) -> TextPosition {
         match self.places.get(feature) {
             Some(place) if place.0 != yase::Span::default() => *place,

@@ -144,7 +144,8 @@ fn fits(variable: &Variable, vocabulary: &TypeEnvironment) -> Option<Diagnostic>
     }
     let is_kept = kind_word(known.kind);
     (is_kept != kind).then(|| {
-        let text = format!("the variable `{name}` is kept as `{kind}`, but `{}` as `{is_kept}`", known.path);
+        let text =
+            format!("the variable `{name}` has the retention `{kind}`, but `{}` has `{is_kept}`", known.path);
         Diagnostic::error("E0883", place, text)
     })
 }

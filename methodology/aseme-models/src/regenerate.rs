@@ -37,7 +37,7 @@ pub struct RegeneratedRole {
     pub renamed: Vec<Diagnostic>,
 }
 
-/// The role with every entry that no longer fits as a comment in its place.
+/// Turns every entry that no longer matches into a comment in its place.
 ///
 /// # Errors
 /// The formulas themselves cannot be expanded, or the file is XMI, which has no comments.
@@ -52,7 +52,7 @@ pub fn comment_out_refinements(file: &SrmFile) -> Result<RegeneratedRole, Vec<Di
     let mut lost = unmatched(&file, chart);
     let mut text = file.text().to_owned();
     let mut count = 0;
-    // from the end, so that places before stay true
+    // from the end, so that earlier positions stay valid
     for entry in entries.iter().rev() {
         if let Some(unmatched) = lost.iter().find(|it| it.diagnostic.span == entry.span) {
             comment_out(&mut text, entry, unmatched);
@@ -110,7 +110,7 @@ fn comment_out(text: &mut String, entry: &SrmEntry, unmatched: &UnmatchedEntry) 
     text.replace_range(start..end, &comment);
 }
 
-/// An old text as comments, with the reason above.
+/// A text as comments, with the reason above.
 fn comment(old: &str, reason: &Diagnostic) -> String {
     let hint = reason.hint.as_ref().map_or(String::new(), |hint| format!("; {hint}"));
     let what = reason.message.rsplit("` ").next().unwrap_or_default();
@@ -119,13 +119,12 @@ fn comment(old: &str, reason: &Diagnostic) -> String {
     format!("# lost: this {what}{hint}\n{}", lines.join("\n"))
 }
 
-/// A role with the entries of another model besides its own. Its own hold: an entry that says
-/// another thing of the same state or transition is lost, as is one that fits nowhere, and stands
-/// as a comment at the end.
+/// Adds the entries of another model to a role. The role's own entries take precedence: an entry
+/// that contradicts them, or matches nothing, is lost and becomes a comment at the end.
 ///
 /// # Errors
-/// The formulas of the role cannot be expanded, or entries of its own do not fit: these are to be
-/// put aside first.
+/// The formulas of the role cannot be expanded, or its own entries do not match and have to be
+/// commented out first.
 pub fn apply_refinements(
     file: &SrmFile,
     entries: &[(Section, String)],
@@ -158,12 +157,11 @@ pub fn apply_refinements(
 }
 
 struct RefinementTransfer {
-    /// The chart of the formulas alone, in which paths are looked up.
+    /// The chart of the formulas alone, in which paths are resolved.
     plain: Statechart,
-    /// The same with the transitions that stand beside those, and with the places of all: what a
-    /// layout is about.
+    /// The same with parallel transitions and all positions, to which layout entries refer.
     placed: Statechart,
-    /// The chart as it is refined so far.
+    /// The chart with the refinements applied so far.
     chart: Statechart,
     added: Vec<(Section, String)>,
     kept: usize,
@@ -194,7 +192,7 @@ impl RefinementTransfer {
         }
     }
 
-    /// Whether the entry is to be added, or said already.
+    /// Whether the entry has to be added; `false` if the role has it already.
     fn transition(&mut self, entry: &TransitionEntry) -> Result<bool, Box<UnmatchedEntry>> {
         let mut scratch = self.plain.clone();
         if let Some(unmatched) = refine::refine(&mut scratch, std::slice::from_ref(entry)).pop() {
@@ -222,12 +220,11 @@ impl RefinementTransfer {
         Ok(is_new)
     }
 
-    /// Whether another transition beside one of the formulas' is to be added: `scratch` has it
-    /// already.
+    /// Whether a parallel transition has to be added; `scratch` already has it.
     fn beside(&mut self, entry: &TransitionEntry, scratch: &Statechart) -> bool {
         let is_there = |wished: &Transition| {
             let same = |own: &Transition| (own.source, own.target) == (wished.source, wished.target);
-            // in the chart itself what enters a composite may lead to what remembers inside
+            // in the refined chart a transition into a composite may lead to its HISTORY
             self.placed
                 .transitions()
                 .any(|(_, own)| same(own) && transition_content(own) == transition_content(wished))
@@ -241,7 +238,7 @@ impl RefinementTransfer {
         is_new
     }
 
-    /// Whether the places are to be added, or are said already.
+    /// Whether the layout has to be added; `false` if the role has it already.
     fn layout(&mut self, entry: &LayoutEntry) -> Result<bool, Box<UnmatchedEntry>> {
         let mut scratch = self.placed.clone();
         scratch.layout = Layout::default();
@@ -307,19 +304,19 @@ impl RefinementTransfer {
     }
 }
 
-/// All that is written on a transition.
+/// The content of a transition.
 fn transition_content(it: &Transition) -> (String, i32, Option<u64>, [bool; 2]) {
     (it.expression.to_string(), it.priority, it.weight.map(f64::to_bits), [it.interrupts, it.internal])
 }
 
-/// How a composite remembers what was active in it.
+/// The kind of HISTORY of a composite.
 fn history(chart: &Statechart, id: NodeId) -> Option<NodeKind> {
     let kinds = chart.children(id).iter().map(|&child| chart.node(child).kind);
     kinds.into_iter().find(|kind| matches!(kind, NodeKind::ShallowHistory | NodeKind::DeepHistory))
 }
 
 fn conflict(text: &str, named: &str) -> Box<UnmatchedEntry> {
-    let message = format!("`{text}`: the role says another thing of `{named}` itself");
+    let message = format!("`{text}`: the role has another entry for `{named}`");
     let diagnostic =
         Diagnostic::error("E0255", yase::Span::default(), message).with_hint("keep one of the two");
     Box::new(UnmatchedEntry { text: text.into(), candidates: vec![named.into()], diagnostic })

@@ -1,8 +1,8 @@
 //! The System Roles Model of a whole system (SRM): its roles, their capabilities, and the
 //! functionalities that implement them.
 //!
-//! A single role that is refined and run has a file of its own, see [`srm`](aseme::srm); this model
-//! holds all roles of a system, as the method's tools store them.
+//! A single refined role is a file of its own, see [`srm`](aseme::srm); this model holds all roles
+//! of a system, as the method's tools store them.
 
 use yase::expression::TextPosition;
 
@@ -39,7 +39,7 @@ pub struct Capability {
     pub name: String,
     /// The activities it consists of, by their indices in [`SystemRoles::activities`].
     pub activities: Vec<usize>,
-    /// What it is.
+    /// Its description.
     pub description: String,
     /// Its position in the source.
     pub place: TextPosition,

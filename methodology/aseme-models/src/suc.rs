@@ -28,14 +28,14 @@ pub struct SystemRole {
 /// The kind of a role.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum RoleKind {
-    /// Not said, or nothing by itself.
+    /// Unspecified, or abstract.
     #[default]
     Abstract,
     /// An agent of the system that is developed.
     System,
     /// An agent that exists already.
     LegacySystem,
-    /// An agent outside.
+    /// An agent outside the system.
     ExternalSystem,
     /// A person.
     Human,
@@ -59,7 +59,7 @@ pub struct UseCase {
 const ROLES: usize = 0;
 const USECASES: usize = 1;
 
-/// The kinds of role as files spell them.
+/// The kinds of roles as spelled in files.
 const KINDS: [(&str, RoleKind); 5] = [
     ("Abstract", RoleKind::Abstract),
     ("System", RoleKind::System),

@@ -13,8 +13,8 @@
 //! | EAC, IAC | statechart | [`Iac::to_statechart`](crate::Iac::to_statechart) |
 //!
 //! Each is a function that returns its result and a list of findings (E0830 to E0839). Operators
-//! that it cannot decide, those between the activities of a capability, it writes as
-//! [`OPEN_OPERATOR`], to be replaced by the developer.
+//! that a transformation cannot decide, such as those between the activities of a capability, are
+//! written as [`OPEN_OPERATOR`] and replaced by the developer.
 
 mod aip_to_eac;
 mod from_role;
@@ -37,7 +37,7 @@ use crate::suc::{RoleKind, Suc, UseCase};
 use aseme::liveness::Liveness;
 pub use aseme::liveness::OPEN_OPERATOR;
 
-/// Names with operators between that are to be chosen.
+/// Names joined by placeholders.
 fn joined<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let names: Vec<&str> = names.into_iter().collect();
     names.join(&format!(" {OPEN_OPERATOR} "))
@@ -48,14 +48,14 @@ pub fn participant_formula(name: &str, liveness: &str) -> String {
     format!("{}={liveness}", formula_name(name))
 }
 
-/// A name as formulas can have it: other letters become underscores.
+/// A valid name of a formula: other characters become underscores.
 fn formula_name(name: &str) -> String {
     let letter = |letter: char| if aseme::text::is_name_character(letter) { letter } else { '_' };
     let name: String = name.trim().chars().map(letter).collect();
     if name.is_empty() { "_".into() } else { name }
 }
 
-/// All names in formulas that no formula refines, in order, each once.
+/// The names in formulas that no formula refines, each once, in order.
 fn activity_names(liveness: &Liveness) -> Vec<&str> {
     let refined: Vec<&str> = liveness.formulas().iter().map(|formula| formula.name.as_str()).collect();
     let mut names: Vec<&str> = Vec::new();
@@ -67,7 +67,7 @@ fn activity_names(liveness: &Liveness) -> Vec<&str> {
     names
 }
 
-/// The participants of a use case that belong to the system, or may.
+/// The participants of a use case that belong to the system, or may belong to it.
 fn system_participants<'a>(suc: &'a Suc, usecase: &'a UseCase) -> impl Iterator<Item = usize> + 'a {
     let may = |kind| matches!(kind, RoleKind::System | RoleKind::Abstract);
     usecase

@@ -1,8 +1,8 @@
 //! XMI, the XML in which the Eclipse tools of the method keep their models.
 //!
-//! Objects refer to each other by their path through the document, `//@nodes.0/@Children.1`, by
-//! their number among the roots of a document with several (`/3` or `#/3`), or by `xmi:id`.
-//! [`XmiPaths`] resolves these references.
+//! Objects refer to each other by their path in the document, `//@nodes.0/@Children.1`, by their
+//! index among several roots (`/3` or `#/3`), or by `xmi:id`. [`XmiPaths`] resolves these
+//! references.
 
 mod paths;
 mod write;
@@ -31,7 +31,7 @@ pub(crate) fn features<'a, 'input>(node: Node<'a, 'input>) -> impl Iterator<Item
     node.attributes().filter(move |attribute| !is_own(attribute.namespace()))
 }
 
-/// Where the value of an attribute stands, without its quotes.
+/// The span of an attribute's value, without quotes.
 pub(crate) fn value_span(attribute: &Attribute<'_, '_>) -> Span {
     attribute.range_value().into()
 }

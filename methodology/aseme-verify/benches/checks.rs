@@ -1,4 +1,4 @@
-//! How long a team waits for the checks of a model: `cargo bench -p aseme-verify`.
+//! Durations of the checks of a model: `cargo bench -p aseme-verify`.
 //!
 //! Medians of one run on two shared cores: the goalie 0.9 s for its 12,879 states, the attacker 0.5
 //! s for 14,229, the extended attacker 1.6 s for 25,029, every trace of which is compared with the
@@ -22,7 +22,7 @@ fn main() {
     divan::main();
 }
 
-/// What can be said of a role of the project, with all its states explored.
+/// All checks of a role, with all its states explored.
 #[divan::bench(args = ["goalie", "attacker", "extended_attacker"], sample_count = 5, sample_size = 1)]
 fn check_role(bencher: Bencher<'_, '_>, name: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name).with_extension("srm");
@@ -40,7 +40,7 @@ fn transform_large(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| aseme_models::statechart_of(&large()));
 }
 
-/// The same role, read, transformed, and its structure and guards checked.
+/// Reading, transforming and checking the structure and guards of the large role.
 #[divan::bench(sample_count = 10, sample_size = 1)]
 fn check_large(bencher: Bencher<'_, '_>) {
     let mut settings = CheckSettings::default();
@@ -48,7 +48,7 @@ fn check_large(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| check(&large(), &settings));
 }
 
-/// Its chart, drawn.
+/// Drawing the chart of the large role.
 #[divan::bench(sample_count = 10, sample_size = 1)]
 fn draw_large(bencher: Bencher<'_, '_>) {
     let chart = aseme_models::statechart_of(&large()).0;

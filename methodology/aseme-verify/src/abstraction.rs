@@ -25,7 +25,7 @@ pub(crate) use assignment::{Assignment, may_be_one_message, same_message};
 /// A chart to be explored, and the meaning of its conditions.
 pub(crate) struct Abstraction {
     pub(crate) chart: Arc<CompiledChart>,
-    /// The condition that each script stands for.
+    /// The condition that each script represents.
     pub(crate) conditions: Vec<Option<Expression>>,
     /// The assignment that each script stands for.
     pub(crate) assignments: Vec<Option<Assignment>>,
@@ -34,12 +34,12 @@ pub(crate) struct Abstraction {
     /// What triggers wait for, as written.
     pub(crate) awaited: Vec<Path>,
     pub(crate) constants: Vec<Constant>,
-    /// The events that come from outside.
+    /// The external events.
     events: Vec<String>,
 }
 
 impl Abstraction {
-    /// The abstraction of a chart, or why there is none.
+    /// Builds the abstraction of a chart.
     pub(crate) fn new(subject: &CheckedModel) -> Result<Abstraction, Vec<Diagnostic>> {
         let mut making = AbstractionBuilder {
             timers: timers::started(subject).into_keys().collect(),
@@ -71,7 +71,7 @@ impl Abstraction {
         Ok(Abstraction { chart, conditions, assignments, facts, awaited, constants, events })
     }
 
-    /// The same with more events that come from outside: those that the chart knows.
+    /// Adds external events, as far as the chart has them.
     pub(crate) fn with_events(mut self, events: &BTreeSet<String>) -> Abstraction {
         let known = events.iter().filter(|event| self.chart.events().find(event).is_some());
         let new: Vec<String> = known.filter(|event| !self.events.contains(event)).cloned().collect();
@@ -167,16 +167,16 @@ pub fn explorable(source: &Arc<Source>) -> Result<Arc<CompiledChart>, Vec<Diagno
     abstracted(source).map(|abstraction| abstraction.chart)
 }
 
-/// The abstraction of a model.
+/// Builds the abstraction of a model.
 pub(crate) fn abstracted(source: &Arc<Source>) -> Result<Abstraction, Vec<Diagnostic>> {
     let subject = subject_of(source)?;
     Abstraction::new(&subject).map_err(|found| placed(source, found))
 }
 
-/// An abstraction in the making.
+/// Builds an [`Abstraction`].
 struct AbstractionBuilder {
     timers: BTreeSet<timers::TimerKey>,
-    /// What the text of each condition says.
+    /// The parsed condition for each text.
     conditions: BTreeMap<String, Expression>,
     /// What the text of each assignment says.
     assignments: BTreeMap<String, Assignment>,
@@ -191,7 +191,7 @@ impl AbstractionBuilder {
         }
     }
 
-    /// A guard: the largest parts of it that are about data alone become conditions.
+    /// Replaces the largest parts of a guard that depend only on data by conditions.
     fn guard(&mut self, guard: &Expression, board: yase::NodeId) -> Expression {
         if !self.is_about_timers_or_states(guard, board) {
             return self.condition(guard);
@@ -206,7 +206,7 @@ impl AbstractionBuilder {
         Expression { kind, place: guard.place }
     }
 
-    /// Parts about data stay together: what they say of each other is not lost.
+    /// Keeps parts about data together, so that dependencies between them are preserved.
     fn parts(&mut self, parts: &[Expression], board: yase::NodeId, all: bool) -> Vec<Expression> {
         let (kept, data): (Vec<&Expression>, Vec<&Expression>) =
             parts.iter().partition(|part| self.is_about_timers_or_states(part, board));
@@ -277,7 +277,7 @@ fn trigger(trigger: &Trigger) -> Trigger {
     }
 }
 
-/// An event with a single name, so that it is not looked for among messages.
+/// An event with a single name, so that it is not resolved as a message.
 fn plain(event: &Path) -> Path {
     Path { segments: vec![Name { text: event.text(), place: event.place }], place: event.place }
 }
@@ -291,7 +291,7 @@ fn awaited(chart: &Statechart) -> Vec<Path> {
     triggers.flatten().cloned().collect()
 }
 
-/// The events that triggers name and nothing in the chart makes.
+/// The events that triggers name and that no action of the chart raises.
 fn outside(chart: &Statechart) -> Vec<String> {
     let mut named: BTreeSet<String> = BTreeSet::new();
     let mut takes_any = false;

@@ -4,7 +4,7 @@
 //! choices without an enabled transition, guards that cannot hold. [`CHECKS`] lists all checks.
 //! They use three methods:
 //!
-//! - **structure**: analysis of the tree of states and the transitions between them, whatever their
+//! - **structure**: analysis of the tree of states and the transitions between them, independent of
 //!   guards;
 //! - **guards**: satisfiability of conditions in the [`logic`](crate::logic) of comparisons. What
 //!   lies outside it (functions, products of fields) is unknown and never reported;
@@ -30,8 +30,8 @@
 //! let report = check(&source, &CheckSettings::default());
 //! let matters = report.findings.iter().filter(|finding| finding.diagnostic.severity > Severity::Information);
 //! let said: Vec<String> = matters.map(ToString::to_string).collect();
-//! assert_eq!(said, ["walker.srm:4:18: warning[M05]: the ways out of `CONDITION` leave cases open: there `Ball.distance` is 2 \
-//!     (let one of them be without a guard: it is taken when no other is)"]);
+//! assert_eq!(said, ["walker.srm:4:18: warning[M05]: the guards out of `CONDITION` leave cases uncovered: there `Ball.distance` is 2 \
+//!     (remove the guard of one transition: it is then taken if no other is)"]);
 //! ```
 
 mod events;
@@ -93,56 +93,46 @@ pub const CHECKS: &[Check] = {
     use CheckMethod::{Exploration, Guards, Roles, Structure};
     use Severity::{Error, Information, Warning};
     &[
-        of("M01", Structure, Error, "a composite does not begin as it should"),
+        of("M01", Structure, Error, "a composite without a valid START"),
+        of("M02", Structure, Error, "START or END in a wrong place; a state without an exit that is no END"),
+        of("M03", Structure, Error, "a transition to an invalid target"),
+        of("M04", Structure, Error, "FORK or JOIN between states that are not active together"),
+        of("M05", Guards, Error, "a branch that may have no enabled transition"),
         of(
-            "M02",
+            "M06",
             Structure,
             Error,
-            "START or END in a wrong place; a state that nothing leads out of and that is no END",
+            "a cycle of connectors, or a path through connectors that is never enabled",
         ),
-        of("M03", Structure, Error, "a transition to where none can lead"),
-        of("M04", Structure, Error, "FORK or JOIN between states that are not active together"),
-        of("M05", Guards, Error, "a branch that may have no open way"),
-        of("M06", Structure, Error, "connectors in a circle, or a way through them that is never open"),
-        of("M07", Guards, Warning, "a transition that an earlier one always wins over"),
-        of(
-            "M08",
-            Guards,
-            Warning,
-            "two transitions that may be enabled together, with nothing said of which is taken",
-        ),
-        of("M09", Guards, Warning, "a guard that never holds, or always"),
-        of("M10", Guards, Warning, "an event that one region answers by leaving and another by staying"),
+        of("M07", Guards, Warning, "a transition that is always shadowed by an earlier one"),
+        of("M08", Guards, Warning, "two transitions that may be enabled together, without priorities"),
+        of("M09", Guards, Warning, "a guard that never or always holds"),
+        of("M10", Guards, Warning, "an event on which one region leaves the AND and another stays in it"),
         of("M11", Structure, Warning, "a region that reads what another one may write in the same step"),
         of("M12", Exploration, Warning, "a state that is never reached, a transition that is never taken"),
-        of("M13", Exploration, Error, "transitions that lead on and on within one step"),
+        of("M13", Exploration, Error, "a livelock: transitions that repeat within one step"),
         of("M14", Exploration, Warning, "a state that is never left and is no END"),
-        of(
-            "M15",
-            Exploration,
-            Warning,
-            "a transition that waits for a composite to complete which never can",
-        ),
-        of("M16", Structure, Warning, "an event that is never raised, or never waited for"),
+        of("M15", Exploration, Warning, "a transition that waits for a composite that never completes"),
+        of("M16", Structure, Warning, "an event that is never raised or never awaited"),
         of(
             "M17",
             Structure,
             Error,
             "a message, field, function or type that the program does not have, or that is never published or read",
         ),
-        of("M18", Exploration, Warning, "a guard on a message that need not have come"),
+        of("M18", Exploration, Warning, "a guard on a message that may not have arrived"),
         of(
             "M19",
             Structure,
             Warning,
-            "a timer that is read but not started, not read, or started again before it can expire",
+            "a timer that is read but not started, not read, or restarted before it can expire",
         ),
-        of("M20", Structure, Warning, "a HISTORY that may be entered with nothing recorded and no default"),
+        of("M20", Structure, Warning, "a HISTORY without a default that may be entered before its composite"),
         of(
             "M21",
             Exploration,
             Error,
-            "an activity that the program does not have, or that runs twice at once and publishes; more of them than the pool runs",
+            "an activity that the program does not have, or that runs twice at once and publishes; more activities than the pool runs",
         ),
         of(
             "M22",
@@ -182,7 +172,7 @@ impl CheckReport {
         unreadable(vec![diagnostic])
     }
 
-    /// Whether the model could not be read; then nothing was checked.
+    /// Whether the model could not be read; then no checks were run.
     pub fn is_unreadable(&self) -> bool {
         self.what.is_none()
     }
@@ -241,7 +231,7 @@ fn scxml(source: &Arc<Source>, settings: &CheckSettings) -> CheckReport {
     }
 }
 
-/// Checks a chart with YASE expressions, and its messages.
+/// Checks a chart with YASE expressions and its messages.
 fn about(
     (subject, made): (CheckedModel, Vec<Diagnostic>),
     variables: &[Variable],

@@ -17,25 +17,25 @@ use aseme_models::convert::{self, Model};
 use aseme_models::iac::Iac;
 use source_spans::SourceSpans;
 
-/// Charts up to this size have their parts named as briefly as can be; to find the shortest name
-/// takes long in larger ones.
+/// The largest chart whose nodes get the shortest unique path: the search for it is slow in large
+/// charts.
 const BRIEF: usize = 400;
 
 /// A chart that is checked.
 pub(crate) struct CheckedModel {
     pub(crate) chart: Statechart,
     pub(crate) places: SourceSpans,
-    /// How it is read.
+    /// The semantics in which the chart is interpreted.
     pub(crate) semantics: Semantics,
-    /// The formulas that it was made from.
+    /// The formulas that the chart was generated from.
     pub(crate) liveness: Option<Liveness>,
-    /// The transitions out of each node, in the order in which they are tried.
+    /// The transitions out of each node, in selection order.
     pub(crate) outgoing: Vec<Vec<TransitionId>>,
     /// The transitions into each node.
     pub(crate) incoming: Vec<Vec<TransitionId>>,
 }
 
-/// The chart of a role, as far as it can be made, and what does not fit.
+/// Builds the chart of a role as far as possible, and reports what does not fit.
 pub(crate) fn of_role(role: &Srm) -> (CheckedModel, Vec<Diagnostic>) {
     let (mut chart, mut nodes, mut found) = transform::expanded(&role.liveness);
     if found.iter().any(Diagnostic::is_error) {
@@ -45,7 +45,7 @@ pub(crate) fn of_role(role: &Srm) -> (CheckedModel, Vec<Diagnostic>) {
     let (chosen, mut unmatched) = aseme::refine::refine_placed(&mut chart, &role.transitions);
     unmatched.extend(aseme::refine::refine_states(&mut chart, &role.states));
     found.extend(unmatched.into_iter().map(|unmatched| unmatched.diagnostic));
-    // what `history` has added stands where its composite does
+    // a HISTORY node has the span of its composite
     for (_, node) in chart.nodes().skip(nodes.len()) {
         let owner = node.parent.and_then(|parent| nodes.get(parent.0 as usize)).copied();
         nodes.push(owner.unwrap_or_default());
@@ -62,15 +62,15 @@ pub(crate) fn of_role(role: &Srm) -> (CheckedModel, Vec<Diagnostic>) {
     (CheckedModel { liveness: Some(role.liveness.clone()), ..subject }, found)
 }
 
-/// A transition that no entry refines stands where the formula names its source, or what it leads
-/// to if that is known by its place alone.
+/// The span of a transition without a refinement: its source in the formula, or its target if only
+/// that has a span.
 fn begin(chart: &Statechart, nodes: &[Span], transition: &Transition) -> Span {
     let named = |node: &NodeId| !chart.node(*node).name.is_empty();
     let node = [transition.source, transition.target].into_iter().find(named).unwrap_or(transition.source);
     nodes.get(node.0 as usize).copied().unwrap_or_default()
 }
 
-/// The chart of a file of its own.
+/// The chart of a model in the format IAC.
 pub(crate) fn of_chart(iac: &Iac) -> (CheckedModel, Vec<Diagnostic>) {
     let (chart, found) = iac.to_statechart();
     let count = iac.nodes.len();
@@ -88,7 +88,7 @@ pub(crate) fn of_chart(iac: &Iac) -> (CheckedModel, Vec<Diagnostic>) {
     (CheckedModel::new(chart, places, Semantics::yase()), found)
 }
 
-/// The chart of an SCXML document, which does not say where its parts stand.
+/// The chart of an SCXML document, which has no spans.
 pub(crate) fn of_scxml(document: &yase_scxml::Document) -> CheckedModel {
     CheckedModel::new(document.statechart().clone(), SourceSpans::default(), Semantics::scxml())
 }
@@ -168,7 +168,7 @@ impl CheckedModel {
         matches!(self.kind(node), NodeKind::Or | NodeKind::And | NodeKind::Basic)
     }
 
-    /// Whether a node lies in another or is it.
+    /// Whether a node is another or lies inside it.
     pub(crate) fn contains(&self, outer: NodeId, inner: NodeId) -> bool {
         outer == inner || self.chart.ancestors(inner).any(|ancestor| ancestor == outer)
     }
@@ -178,7 +178,7 @@ impl CheckedModel {
         self.chart.node(node).parent.is_some_and(|parent| self.kind(parent) == NodeKind::And)
     }
 
-    /// The AND in two different regions of which two nodes lie, and these regions.
+    /// The AND that separates two nodes into different regions, with these regions.
     pub(crate) fn apart(&self, one: NodeId, other: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
         let way = |node: NodeId| -> Vec<NodeId> {
             let mut way: Vec<NodeId> = std::iter::once(node).chain(self.chart.ancestors(node)).collect();
@@ -191,7 +191,7 @@ impl CheckedModel {
         (self.kind(around) == NodeKind::And).then_some((around, one[fork], other[fork]))
     }
 
-    /// What a node is called.
+    /// The path of a node in diagnostics.
     pub(crate) fn path(&self, node: NodeId) -> String {
         match self.chart.nodes().len() <= BRIEF {
             true if !self.chart.node(node).name.is_empty() || node == Statechart::ROOT => {
@@ -202,7 +202,7 @@ impl CheckedModel {
         }
     }
 
-    /// A node without a name, by its kind and the composite around it.
+    /// The description of a node without a name: its kind and its composite.
     fn place_in_parent(&self, node: NodeId) -> String {
         let kind = self.kind(node);
         let Some(parent) = self.chart.node(node).parent else { return String::new() };
@@ -229,7 +229,7 @@ impl CheckedModel {
         format!("{} -> {}", self.path(transition.source), self.path(transition.target))
     }
 
-    /// The events that a node of the chart waits for in a trigger, written out.
+    /// The trigger of a transition, with inherited events resolved.
     pub(crate) fn trigger(&self, id: TransitionId) -> Option<&Trigger> {
         self.transition(id).expression.trigger.as_ref()
     }

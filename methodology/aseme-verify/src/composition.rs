@@ -40,12 +40,11 @@ use product::{GlobalProduct, MessageRoute};
 
 pub use team_trace::{PlayedStep, TeamTrace};
 
-/// How messages go from robot to robot.
+/// Properties of the channels between robots.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct Channels {
-    /// How many messages are on their way at once from one robot to another; one more, and the
-    /// oldest is lost.
+    /// How many messages from one robot to another may be in transit; one more drops the oldest.
     pub capacity: usize,
     /// Whether any message may be lost.
     pub may_lose: bool,
@@ -63,13 +62,13 @@ impl Default for Channels {
 pub struct Composition {
     /// The findings, by robot.
     pub findings: Vec<Finding>,
-    /// Each robot, and how many states of its own were looked at.
+    /// Each robot, and how many states of its own chart were explored.
     pub robots: Vec<(String, usize)>,
-    /// What passes: from whom, to whom, and the message's name.
+    /// The routes: sender, receiver and name of the message.
     pub passing: Vec<(String, String, String)>,
-    /// How many states of all together were found.
+    /// How many states of the composition were found.
     pub states: usize,
-    /// Whether these are all.
+    /// Whether the exploration is complete.
     pub is_finished: bool,
     /// Whether the robots are taken for agents of one process: none reads a message by the name of
     /// another, and some read messages that others publish.
@@ -77,16 +76,16 @@ pub struct Composition {
 }
 
 impl Composition {
-    /// Whether something is wrong that is an error.
+    /// Whether any finding is an error.
     pub fn has_errors(&self) -> bool {
         self.findings.iter().any(|finding| finding.diagnostic.is_error())
     }
 }
 
-/// Looks at all that robots can do together: names, each once, and their models.
+/// Explores the composition of several robots, given as unique names and models.
 ///
 /// # Errors
-/// What keeps a model from being explored.
+/// The errors that prevent exploring a model.
 pub fn compose(
     models: &[(String, Arc<Source>)],
     channels: Channels,
@@ -176,7 +175,7 @@ fn prepare(
     Ok((subject, abstraction.with_events(&settings.events)))
 }
 
-/// What each robot does, explored alone.
+/// Explores the behaviour of each robot alone.
 fn behaviours(
     robots: &[ComposedRobot],
     passages: &[MessageRoute],
@@ -198,18 +197,17 @@ fn route_names(robots: &[ComposedRobot], passage: &MessageRoute) -> (String, Str
     (from.name.clone(), robots[passage.to].name.clone(), name)
 }
 
-/// The error if messages of a robot cannot be distinguished.
+/// An error if the messages of a robot cannot be distinguished.
 fn unexplorable(robot: &ComposedRobot) -> Option<Diagnostic> {
     robot.ambiguous().or_else(|| {
         let way = composed_robot::wildcard_trigger(&robot.subject.chart)?;
-        let message =
-            format!("`{}` takes whatever event comes: it is not known which messages those are", robot.name);
+        let message = format!("`{}` matches every event: it is unknown which messages those are", robot.name);
         let found = Diagnostic::error("E0935", robot.subject.places.transition(way), message);
         Some(found.with_hint("name the events").in_source(&robot.source))
     })
 }
 
-/// Messages that are waited for, and that no model says.
+/// Messages that a chart waits for and that no model sends.
 fn unsent_messages<'a>(
     robots: &'a [ComposedRobot],
     passages: &'a [MessageRoute],
@@ -226,11 +224,11 @@ fn unsent_messages<'a>(
 fn no_sender(robot: &ComposedRobot, hearing: &ReceivedMessage) -> Diagnostic {
     let (host, name) = (&hearing.called.host, hearing.called.word.name());
     let message = format!(
-        "the chart of `{host}` does not say `{name}`, which `{}` waits for: it may come at any time",
+        "the chart of `{host}` does not send `{name}`, which `{}` waits for: it is assumed to arrive at any time",
         robot.name
     );
     let found = Diagnostic::warning("E0934", robot.subject.places.transition(hearing.way), message);
-    found.with_hint("with `--linked` the program says what activities publish").in_source(&robot.source)
+    found.with_hint("`--linked` takes the topics of activities from the program").in_source(&robot.source)
 }
 
 /// A deadlock to which the robots can come, or why that is not known.
@@ -268,19 +266,19 @@ fn confirmed_deadlock(product: &GlobalProduct<'_>, found: &Deadlock, state: usiz
         .collect();
     let message = match waits.as_slice() {
         [one] => format!("{one}, which never comes"),
-        several => format!("{}: none of it ever comes", several.join(", ")),
+        several => format!("{}: none of these messages ever arrives", several.join(", ")),
     };
     let (robot, wait) = found.waits.first().copied().unwrap_or_default();
     let robot = &product.robots[robot];
     let place =
         robot.waits.get(wait).map_or(Span::default(), |wait| robot.subject.places.transition(wait.way));
     let diagnostic = Diagnostic::error("E0930", place, message)
-        .with_hint("let one of them go on by itself: say its message first, or wait no longer than a timer")
+        .with_hint("let one of them continue alone: send its message first, or limit the wait by a timer")
         .in_source(&robot.source);
     Finding { diagnostic, trace: Some(product.trace_text(&product.path_to(state))) }
 }
 
-/// The way to an edge, and that.
+/// The trace to an edge and including it.
 fn trace_to_edge(product: &GlobalProduct<'_>, edge: usize) -> Option<String> {
     let edge = product.edges.get(edge)?;
     let mut way = product.path_to(edge.from);
@@ -293,10 +291,9 @@ fn dropped(product: &GlobalProduct<'_>, passage: usize, edge: usize) -> Finding 
     let robot = &product.robots[product.passages[passage].to];
     let hearing = product.passages[passage].waited.and_then(|hearing| robot.received.get(hearing));
     let place = hearing.map_or(Span::default(), |hearing| robot.subject.places.transition(hearing.way));
-    let message =
-        format!("`{name}` of `{from}` may come to `{to}` where nothing waits for it: then it is lost");
+    let message = format!("`{name}` of `{from}` may arrive at `{to}` where no state reads it, and is lost");
     let found = Diagnostic::warning("E0931", place, message);
-    let hint = "defer it in the states before, or wait for it there too";
+    let hint = "defer it in the states before, or wait for it there";
     Finding {
         diagnostic: found.with_hint(hint).in_source(&robot.source),
         trace: trace_to_edge(product, edge),
@@ -313,10 +310,10 @@ fn channel_overflow(product: &GlobalProduct<'_>, passage: usize, edge: usize, ch
     };
     let most = channels.capacity;
     let message = format!(
-        "`{from}` may say more than {most} messages before `{to}` has heard the first: `{name}` is lost then"
+        "`{from}` may send more than {most} messages before `{to}` receives the first: `{name}` is lost then"
     );
     let found = Diagnostic::warning("E0932", place, message);
-    let hint = "wait for an answer before the next one is said, or let the channel hold more (`--channel`)";
+    let hint = "wait for an answer before sending the next one, or enlarge the channel (`--channel`)";
     Finding {
         diagnostic: found.with_hint(hint).in_source(&robot.source),
         trace: trace_to_edge(product, edge),
@@ -329,17 +326,17 @@ fn not_decided(robots: &[ComposedRobot], behaviours: &[Behaviour], product: &Glo
         Some((robot, behaviour)) => {
             let states = behaviour.found.states().len();
             format!(
-                "it is not decided whether the robots wait for ever: `{}` alone has more than {states} states",
+                "undecided whether the robots deadlock: `{}` alone has more than {states} states",
                 robot.name
             )
         }
         None => format!(
-            "it is not decided whether the robots wait for ever: together they have more than {} states",
+            "undecided whether the robots deadlock: together they have more than {} states",
             product.states.len()
         ),
     };
     let found = Diagnostic::error("E0933", Span::default(), message);
-    let found = found.with_hint("look at more with `--states`, or at fewer robots at once");
+    let found = found.with_hint("raise the limit with `--states`, or compose fewer robots");
     match robots.first() {
         Some(robot) => found.in_source(&robot.source).into(),
         None => found.into(),

@@ -11,7 +11,7 @@
 use yase::expression::{Action, ActionKind, Expression, ExpressionKind, Trigger};
 use yase::{NodeId, NodeKind, Statechart};
 
-/// The regions that influence none of the mentioned regions and nothing these wait for.
+/// The regions that influence neither the mentioned regions nor their events.
 pub(crate) fn idle_but(chart: &Statechart, is_spoken_of: &dyn Fn(NodeId) -> bool) -> Vec<NodeId> {
     if reads_active_states(chart) {
         return Vec::new();
@@ -27,7 +27,7 @@ pub(crate) fn is_within(chart: &Statechart, node: NodeId, outer: NodeId) -> bool
     node == outer || chart.ancestors(node).any(|ancestor| ancestor == outer)
 }
 
-/// Whether any guard asks which states are active.
+/// Whether any guard reads active states.
 fn reads_active_states(chart: &Statechart) -> bool {
     chart.transitions().any(|(_, it)| it.expression.guard.as_ref().is_some_and(mentions_states))
 }
@@ -36,7 +36,7 @@ fn mentions_states(guard: &Expression) -> bool {
     guard.find_map(&mut |part| matches!(part.kind, ExpressionKind::In(_)).then_some(())).is_some()
 }
 
-/// Whether anything leads out of an AND, or out of what it lies in.
+/// Whether an AND, or a node around it, has an exit.
 fn is_left(chart: &Statechart, and: NodeId) -> bool {
     chart.transitions().any(|(_, it)| {
         let leaves_outer = is_within(chart, and, it.source) && !it.expression.is_never();
@@ -45,7 +45,7 @@ fn is_left(chart: &Statechart, and: NodeId) -> bool {
     })
 }
 
-/// Whether a region has no effect outside except by messages, whose values are free anyway.
+/// Whether a region affects others only by messages, whose values are free inputs anyway.
 fn has_no_outside_effect(chart: &Statechart, region: NodeId) -> bool {
     let is_inside = |node| is_within(chart, node, region);
     let transitions_stay = chart.transitions().all(|(_, it)| {
@@ -64,7 +64,7 @@ fn is_quiet(action: &Action) -> bool {
     !matches!(action.kind, ActionKind::Raise(_))
 }
 
-/// Whether a trigger outside waits for a timer of a region, or for whatever comes.
+/// Whether a trigger outside the region waits for one of its timers, or matches every event.
 fn is_waited_for(chart: &Statechart, region: NodeId) -> bool {
     let inside = chart.transitions().filter(|(_, it)| is_within(chart, it.source, region));
     let nodes = chart.nodes().filter(|(id, _)| is_within(chart, *id, region));

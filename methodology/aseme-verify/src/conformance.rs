@@ -21,45 +21,45 @@ use formula_points::FormulaPoints;
 use graph::{Graph, Observable};
 use infinite_traces::{InfiniteTraceResult, endlessly};
 
-/// So many pairs of states and rests are looked at.
+/// Limit of explored pairs of states and residuals.
 const MOST: usize = 400_000;
 
-/// A way in which a chart and its formulas differ.
+/// A difference between a chart and its formulas.
 #[derive(Clone, Debug)]
 pub(crate) struct ConformanceDifference {
     /// The activities that have returned before, in order.
     pub(crate) before: Vec<String>,
-    /// What differs then.
+    /// The kind of the difference.
     pub(crate) kind: DifferenceKind,
     /// A trace that leads there, for what the chart does.
     pub(crate) trace: Option<Trace>,
 }
 
-/// What differs.
+/// Kinds of differences.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) enum DifferenceKind {
     /// The chart does an activity that the formulas do not allow.
     NotAllowed(NodeId),
-    /// The chart ends where the formulas go on.
+    /// The chart ends where the formulas continue.
     EndsEarly,
     /// The formulas allow an activity that the chart cannot do.
     NeverDone(String),
-    /// The formulas may end, and the chart cannot.
+    /// The formulas may end, but the chart cannot.
     NeverEnds,
-    /// What the formulas do again and again the chart can no longer do: these `x~`, or something
-    /// that comes once.
+    /// The chart can no longer repeat what the formulas repeat forever: these `x~`, or an activity
+    /// that occurs once.
     Starves(Vec<String>),
 }
 
 impl DifferenceKind {
-    /// Whether the chart does something; else there is something that it does not do.
+    /// Whether the chart does something the formulas do not allow, as opposed to the reverse.
     pub(crate) fn is_of_what_is_done(&self) -> bool {
         matches!(self, DifferenceKind::NotAllowed(_) | DifferenceKind::EndsEarly)
     }
 }
 
-/// The first difference in each direction: what the chart does, then what it cannot do. And whether
-/// all was judged: of what is too large, nothing is known.
+/// The first difference in each direction, chart against formulas first, and whether the comparison
+/// is complete.
 pub(crate) fn differences(
     chart: &Statechart,
     found: &Exploration,
@@ -69,8 +69,8 @@ pub(crate) fn differences(
     compared(chart, found, Language::new(liveness), false, is_stopped)
 }
 
-/// The first thing that the chart does and formulas do not allow, even if composites may be left
-/// before they are done: those of such names.
+/// The first activity of the chart that the formulas do not allow, even if the named composites may
+/// be left before they are done.
 pub(crate) fn difference_beyond(
     chart: &Statechart,
     found: &Exploration,
@@ -84,8 +84,7 @@ pub(crate) fn difference_beyond(
     comparison.follow_chart(&full, all).0.difference()
 }
 
-/// The same for a chart that may be left early: ending where the formulas continue is no
-/// difference.
+/// The differences of a chart that may be left early: it may end where the formulas continue.
 pub(crate) fn differences_of_what_is_left_early(
     chart: &Statechart,
     found: &Exploration,
@@ -106,7 +105,7 @@ fn compared(
     let mut comparison = ConformanceComparison { chart, found, language, may_end_early, is_stopped };
     let small = full.collapsed();
     let (does, cannot) = comparison.check_both_directions(small.as_ref().unwrap_or(&full), all);
-    // classes tell that there is a difference, and only states the way there
+    // classes decide whether there is a difference, but only states yield a trace to it
     let does = match (does, small) {
         (InclusionResult::Differs(brief), Some(_)) => match comparison.chart_included(&full, all) {
             InclusionResult::Differs(whole) => InclusionResult::Differs(whole),
@@ -128,17 +127,17 @@ struct ConformanceComparison<'a> {
     chart: &'a Statechart,
     found: &'a Exploration,
     language: Language,
-    /// Whether it may end where the formulas go on.
+    /// Whether the chart may end where the formulas continue.
     may_end_early: bool,
     /// Whether the caller wants it to end.
     is_stopped: &'a dyn Fn() -> bool,
 }
 
-/// What is known in one direction.
+/// The result in one direction.
 enum InclusionResult {
     Same,
     Differs(ConformanceDifference),
-    /// It is too large to be judged.
+    /// The comparison exceeded its limit.
     Unknown,
 }
 
@@ -153,20 +152,20 @@ impl InclusionResult {
 
 type ResidualSet = BTreeSet<Residual>;
 
-/// A state of the chart, and what may be left of the formulas there.
+/// A state of the chart with the residuals of the formulas there.
 type ProductState = (usize, ResidualSet);
 
-/// What was reached.
+/// The reached product states.
 #[derive(Default)]
 struct Reached {
-    /// In the order in which it was.
+    /// In the order of discovery.
     order: Vec<ProductState>,
-    /// From where, and along which edge.
+    /// The predecessor of each, and the edge from it.
     from: BTreeMap<ProductState, Option<(ProductState, usize)>>,
 }
 
 impl Reached {
-    /// Whether it is new.
+    /// Adds a state. Returns whether it is new.
     fn visit(&mut self, at: ProductState, from: Option<(ProductState, usize)>) -> bool {
         let is_new = !self.from.contains_key(&at);
         if is_new {
@@ -185,7 +184,7 @@ impl ConformanceComparison<'_> {
         (does, cannot)
     }
 
-    /// What the chart does: each step of it, then what it can go on with.
+    /// Chart against formulas: first each step, then infinite continuations.
     fn chart_included(&mut self, graph: &Graph, all: Residual) -> InclusionResult {
         match self.follow_chart(graph, all) {
             (InclusionResult::Same, came) if self.found.is_finished() => {
@@ -195,7 +194,7 @@ impl ConformanceComparison<'_> {
         }
     }
 
-    /// Looks whether the formulas can still be met from wherever the chart has come.
+    /// Checks that the formulas can still be satisfied from every reached state.
     fn check_completable(&mut self, graph: &Graph, all: Residual, came: &Reached) -> InclusionResult {
         match endlessly(graph, &mut self.language, all, &came.order, self.may_end_early) {
             InfiniteTraceResult::Met => InclusionResult::Same,
@@ -207,7 +206,7 @@ impl ConformanceComparison<'_> {
         }
     }
 
-    /// Follows the chart, and looks whether the formulas allow it; with all that it came to.
+    /// Checks each step of the chart against the formulas. Also returns the reached states.
     fn follow_chart(&mut self, graph: &Graph, all: Residual) -> (InclusionResult, Reached) {
         let mut came = Reached::default();
         for &state in &graph.initial {
@@ -319,7 +318,7 @@ fn reached(graph: &Graph, states: &BTreeSet<usize>, letter: Symbol) -> BTreeSet<
     ways.filter(|way| way.observable == Observable::Letter(letter)).map(|way| way.to).collect()
 }
 
-/// All states that are reached without an activity's return.
+/// All states that are reached without the return of an activity.
 fn internal_closure(graph: &Graph, mut states: BTreeSet<usize>) -> BTreeSet<usize> {
     let mut open: Vec<usize> = states.iter().copied().collect();
     while let Some(state) = open.pop() {
@@ -345,7 +344,7 @@ mod tests {
 
     use super::*;
 
-    /// A formula in which no name stands twice.
+    /// A formula in which every name occurs once.
     #[derive(Clone, Debug)]
     enum SampleFormula {
         Name,
@@ -386,8 +385,8 @@ mod tests {
         })
     }
 
-    /// The chart of formulas in which every choice is free: of the ways out of a node all but the
-    /// last have a guard that may hold or not.
+    /// The chart of formulas in which every choice is free: all exits of a node but the last have a
+    /// guard that may hold or not.
     fn free(text: &str) -> (Statechart, Liveness, Vec<TransitionId>) {
         let (liveness, _) = aseme::liveness::parse(text);
         let (mut chart, _) = aseme::liveness_to_statechart(&liveness);
@@ -408,7 +407,7 @@ mod tests {
         chart.transition_mut(way).expression = parse_transition(&format!("[{guard}]")).0;
     }
 
-    /// The differences, if the chart is small enough to be explored.
+    /// The differences, if the chart is small enough for exploration.
     fn found_in(chart: &Statechart, liveness: &Liveness) -> Option<Vec<DifferenceKind>> {
         let vocabulary = TypeEnvironment { scripts: true, ..TypeEnvironment::default() };
         let compiled = Arc::new(chart.compile(&vocabulary).unwrap());
@@ -424,7 +423,7 @@ mod tests {
         found.is_finished().then(kinds)
     }
 
-    /// The templates of formulas, judged by another way to say what formulas mean.
+    /// The templates of formulas are compared with an independent definition of their traces.
     #[test]
     fn charts_do_what_their_formulas_say_and_nothing_else() {
         let mut runner = TestRunner::deterministic();
@@ -440,8 +439,7 @@ mod tests {
         assert!(judged >= 60, "only {judged} were small enough");
     }
 
-    /// Charts with one guard closed are found to differ, or not to, by their classes as by their
-    /// states.
+    /// For charts with one guard closed, classes and states yield the same differences.
     #[test]
     fn classes_of_states_have_the_traces_of_the_states() {
         let mut runner = TestRunner::deterministic();
@@ -450,7 +448,7 @@ mod tests {
             let formula = formula().new_tree(&mut runner).unwrap().current();
             let text = format!("r = {}", formula.text(&mut 0));
             let (mut chart, liveness, guarded) = free(&text);
-            // what is done waits, so that there are steps that no trace shows
+            // returned activities wait, so that there are unobservable steps
             let done: Vec<TransitionId> = (chart.transitions())
                 .filter(|(id, it)| chart.node(it.source).kind == NodeKind::Basic && !guarded.contains(id))
                 .map(|(id, _)| id)
@@ -482,8 +480,8 @@ mod tests {
             };
             let (by_states, by_classes) = (kinds(&full), kinds(&small));
             assert_eq!(by_states[1], by_classes[1], "{text}");
-            // of the ways that lead to what is not allowed, equally short ones may come in another
-            // order
+            // of several equally short traces to a difference the two searches may find different
+            // ones
             let is_some = |it: &Option<(usize, DifferenceKind)>| it.is_some();
             assert_eq!(is_some(&by_states[0]), is_some(&by_classes[0]), "{text}");
             smaller += usize::from(small.ways.len() < full.ways.len());

@@ -10,9 +10,9 @@
 //! - [`mutation`] makes the mutants of a chart, by which scenarios are evaluated.
 //!
 //! A chart is explored without its program: conditions on data become free inputs, as far as
-//! [`logic`] finds them satisfiable together ([`explorable`]). What is proved so holds forevery
-//! program; what is found comes with a trace that [`yase_explore::replay`] replays on that
-//! abstraction. An exploration that reaches its limit reports so, and is no proof.
+//! [`logic`] finds them satisfiable together ([`explorable`]). A proof therefore holds for every
+//! program. A fault comes with a trace that [`yase_explore::replay`] replays on that abstraction.
+//! An exploration that reaches its limit reports so and proves nothing.
 //!
 //! [`Monitor`]: properties::Monitor
 //!

@@ -42,7 +42,7 @@ use formula::{ConditionReader, NegationNormalForm, Polarity};
 pub(crate) use search::GuardModel;
 use search::SatisfiabilitySearch;
 
-/// How many alternatives are looked at before the answer is that it is unknown.
+/// Limit of alternatives that are searched before the answer is unknown.
 const ALTERNATIVES: usize = 500;
 
 /// The same for the conditions of a whole run.
@@ -53,39 +53,39 @@ const MANY_ALTERNATIVES: usize = 20_000;
 pub enum Claim<'a> {
     /// It is true.
     Holds(&'a Expression),
-    /// It is false: all that decides it is known.
+    /// It is false, and every value it depends on is known.
     IsFalse(&'a Expression),
     /// It is false or unknown.
     DoesNotHold(&'a Expression),
 }
 
-/// Whether something can be.
+/// Whether claims can hold together.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Satisfiability {
-    /// It can: so.
+    /// They can, as the example shows.
     Yes(Example),
-    /// It cannot.
+    /// They cannot.
     No,
-    /// It is outside of what can be judged.
+    /// They are outside the decidable theory.
     Unknown,
 }
 
 impl Satisfiability {
-    /// Whether it surely can.
+    /// Whether the claims are satisfiable for certain.
     pub fn is_yes(&self) -> bool {
         matches!(self, Satisfiability::Yes(_))
     }
 
-    /// Whether it surely cannot.
+    /// Whether the claims are unsatisfiable for certain.
     pub fn is_no(&self) -> bool {
         *self == Satisfiability::No
     }
 }
 
-/// Values under which something is so.
+/// Values that satisfy the claims.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Example {
-    /// What each is, by its name, in the order of names.
+    /// The value of each name, ordered by name.
     pub values: Vec<(String, String)>,
 }
 
@@ -103,19 +103,19 @@ impl fmt::Display for Example {
     }
 }
 
-/// What is known of the names in conditions.
+/// Decides the satisfiability of guards.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GuardSolver<'a> {
     constants: &'a [Constant],
 }
 
 impl<'a> GuardSolver<'a> {
-    /// With the constants of a model.
+    /// A solver with the constants of a model.
     pub fn new(constants: &'a [Constant]) -> GuardSolver<'a> {
         GuardSolver { constants }
     }
 
-    /// Whether all of this can be so at one moment, on one blackboard.
+    /// Whether all claims can hold at the same time, on one blackboard.
     pub fn together(&self, claims: &[Claim<'_>]) -> Satisfiability {
         SatisfiabilitySearch::new(ALTERNATIVES).answer(self.all(claims))
     }
@@ -136,7 +136,7 @@ impl<'a> GuardSolver<'a> {
         NegationNormalForm::All(formulas.collect())
     }
 
-    /// Whether one condition holds only when another does: yes, or it is not known to.
+    /// Whether one condition implies another; `false` if that is not known.
     pub fn implies(&self, one: &Expression, other: &Expression) -> bool {
         self.together(&[Claim::Holds(one), Claim::DoesNotHold(other)]).is_no()
     }

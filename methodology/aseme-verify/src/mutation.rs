@@ -7,10 +7,10 @@
 //! the model is unchanged at that place; its description names the change and what a scenario has
 //! to distinguish.
 //!
-//! Changes without effect are no mutants: a transition that is never taken (`[false]`) gets no
-//! other target, the order of transitions of which only one can be enabled is kept, and equal
-//! changes are made once. Mutants that may be equivalent are made; the developer decides about
-//! those that no scenario detects.
+//! Changes without effect yield no mutants: a transition that is never taken (`[false]`) gets no
+//! other target, the order of transitions is kept if only one can be enabled, and equal changes
+//! yield one mutant. Possibly equivalent mutants are kept; the developer decides about those that
+//! no scenario detects.
 //!
 //! ```
 //! use yase::Source;
@@ -46,27 +46,27 @@ use aseme::path::shortest_transition;
 /// What was changed.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum MutationKind {
-    /// A guard says the contrary.
+    /// A guard is negated.
     GuardNegated,
-    /// A guard is gone.
+    /// A guard is removed.
     GuardRemoved,
-    /// A comparison is its neighbour: `<` is `<=`, `==` is `!=`.
+    /// A comparison is replaced by a similar one: `<` by `<=`, `==` by `!=`.
     Comparison,
-    /// One part of `a && b` or `a || b` is gone.
+    /// One operand of `a && b` or `a || b` is removed.
     PartDropped,
     /// `&&` becomes `||`, or vice versa.
     AndOr,
-    /// A number in a guard, or a constant that guards name, is a little larger or smaller.
+    /// A number in a guard, or a constant used by guards, is slightly larger or smaller.
     Number,
-    /// A timer runs half as long, or twice, or is never started.
+    /// A timer runs half or twice as long, or is never started.
     Timeout,
-    /// An action is gone.
+    /// An action is removed.
     ActionRemoved,
-    /// A transition leads to a sibling of where it should.
+    /// A transition leads to a sibling of its target.
     Target,
     /// A transition is never taken.
     TransitionRemoved,
-    /// Of two ways the one that is tried later is tried first.
+    /// Two transitions out of one node change places in the selection order.
     Priority,
 }
 
@@ -86,7 +86,7 @@ impl MutationKind {
         MutationKind::Priority,
     ];
 
-    /// The word for it in names of mutants and in reports.
+    /// The word for the kind in names of mutants and in reports.
     pub const fn word(self) -> &'static str {
         match self {
             MutationKind::GuardNegated => "guard-negated",
@@ -104,22 +104,21 @@ impl MutationKind {
     }
 }
 
-/// A chart with one thing changed.
+/// A chart with one change.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct Mutant {
-    /// What was changed.
+    /// The kind of change.
     pub kind: MutationKind,
-    /// What it is called: where the change is, `#`, the kind, and a number from the second of that
-    /// kind there on.
+    /// The name: the changed element, `#`, the kind, and a number from the second of that kind on.
     pub name: String,
-    /// What was changed, in the words of the model.
+    /// The change, in the notation of the model.
     pub description: String,
-    /// What a scenario has to tell apart so as to notice it.
+    /// What a scenario has to distinguish to detect it.
     pub wanted: String,
-    /// Where what was changed stands in the model's text; its beginning for what stands nowhere.
+    /// The span of the changed element in the model's text; the beginning if it has none.
     pub span: Span,
-    /// The chart.
+    /// The changed chart.
     pub chart: Statechart,
 }
 
@@ -127,7 +126,7 @@ pub struct Mutant {
 /// constants.
 ///
 /// # Errors
-/// What keeps the model from being read, and of models of a kind that has no chart that.
+/// The errors that prevent reading the model, or an error if its kind has no chart.
 pub fn mutants(source: &Arc<Source>) -> Result<Vec<Mutant>, Vec<Diagnostic>> {
     let (chart, places) = crate::checked_model::chart_and_places(source)?;
     let mut making =
@@ -142,12 +141,12 @@ pub fn mutants(source: &Arc<Source>) -> Result<Vec<Mutant>, Vec<Diagnostic>> {
     Ok(making.named())
 }
 
-/// The mutants so far.
+/// Collects mutants.
 struct MutantCollector<'a> {
     source: &'a Arc<Source>,
     chart: &'a Statechart,
     places: &'a [Span],
-    /// What each has changed, so that none is made twice.
+    /// The changes so far, to skip duplicates.
     known: BTreeSet<String>,
     made: Vec<(String, Mutant)>,
 }
@@ -155,7 +154,7 @@ struct MutantCollector<'a> {
 /// The description of a mutant.
 struct MutantDescription {
     kind: MutationKind,
-    /// What is changed into what, without where that is.
+    /// The change without its location.
     change: String,
     wanted: String,
 }
@@ -166,18 +165,23 @@ impl MutantCollector<'_> {
         shortest_transition(self.chart, id)
     }
 
-    /// A mutant in which one transition is another.
+    /// Adds a mutant with one transition replaced.
     fn transition(
         &mut self,
         id: TransitionId,
-        told: MutantDescription,
+        mutation: MutantDescription,
         change: impl FnOnce(&mut Transition),
     ) {
-        self.changed(id, told, |chart| change(chart.transition_mut(id)));
+        self.changed(id, mutation, |chart| change(chart.transition_mut(id)));
     }
 
-    /// A mutant in which one transition is another, and what goes with it.
-    fn changed(&mut self, id: TransitionId, told: MutantDescription, change: impl FnOnce(&mut Statechart)) {
+    /// Adds a mutant with one transition and dependent elements replaced.
+    fn changed(
+        &mut self,
+        id: TransitionId,
+        mutation: MutantDescription,
+        change: impl FnOnce(&mut Statechart),
+    ) {
         let mut chart = self.chart.clone();
         change(&mut chart);
         if chart.transition(id) == self.chart.transition(id) {
@@ -186,20 +190,20 @@ impl MutantCollector<'_> {
         let it = chart.transition(id);
         let what = format!("{} {} {} {}", id.0, it.target.0, it.priority, it.expression);
         let span = self.places.get(id.0 as usize).copied().unwrap_or_default();
-        self.add(&what, self.arrow(id), span, told, chart);
+        self.add(&what, self.arrow(id), span, mutation, chart);
     }
 
-    /// A mutant, unless it is one that is there.
-    fn add(&mut self, what: &str, place: String, span: Span, told: MutantDescription, chart: Statechart) {
+    /// Adds a mutant unless an equal one exists.
+    fn add(&mut self, what: &str, place: String, span: Span, mutation: MutantDescription, chart: Statechart) {
         if !self.known.insert(what.to_owned()) {
             return;
         }
-        let MutantDescription { kind, change, wanted } = told;
+        let MutantDescription { kind, change, wanted } = mutation;
         let description = format!("{place}: {change}");
         self.made.push((place, Mutant { kind, name: String::new(), description, wanted, span, chart }));
     }
 
-    /// The mutants with their names.
+    /// Assigns names to the mutants.
     fn named(self) -> Vec<Mutant> {
         let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
         let name = |(place, mutant): (String, Mutant)| {
@@ -213,7 +217,7 @@ impl MutantCollector<'_> {
     }
 }
 
-/// A guard as it stands on a transition.
+/// A guard in brackets.
 fn bracketed(guard: Option<&Expression>) -> String {
     guard.map_or_else(|| String::from("no guard"), |guard| format!("`[{guard}]`"))
 }

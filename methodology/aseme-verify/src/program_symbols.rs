@@ -5,16 +5,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use yase::TypeEnvironment;
 use yase::expression::Path;
 
-/// The words of a program and its activities.
+/// The symbols of a program and its activities.
 #[derive(Clone, Debug, Default)]
 pub struct ProgramSymbols {
     /// Topics, messages, enumerations and functions.
     pub vocabulary: TypeEnvironment,
-    /// Each activity, and the paths of the topics that it publishes, if it says so.
+    /// The paths of the topics that each activity publishes, if it declares them.
     pub activities: BTreeMap<String, Option<BTreeSet<String>>>,
-    /// The paths of the topics that each activity reads, if it says so.
+    /// The paths of the topics that each activity reads, if it declares them.
     pub readers: BTreeMap<String, Option<BTreeSet<String>>>,
-    /// The paths of the topics that others than activities publish or read: bodies, the runtime.
+    /// The paths of the topics that are published or read outside activities: by bodies or the
+    /// runtime.
     pub elsewhere: BTreeSet<String>,
 }
 

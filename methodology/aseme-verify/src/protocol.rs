@@ -31,16 +31,16 @@ use aseme_models::transformations::{
     ShapeMatch, conditions, participant_formula, participants, protocol_formulas, same_shape,
 };
 
-/// So many states are explored of one chart.
+/// Limit of explored states per chart.
 const STATES: usize = 100_000;
 
 /// The result of a conformance check.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 #[non_exhaustive]
 pub struct Conformance {
-    /// What does not conform (E0860 to E0869), in the order of the chart.
+    /// The deviations (E0860 to E0869), in the order of the chart.
     pub findings: Vec<Diagnostic>,
-    /// What was explored, and how far that came.
+    /// The explored charts and the extent of each exploration.
     pub explored: Vec<(String, ExplorationExtent)>,
 }
 
@@ -55,7 +55,7 @@ impl Conformance {
     }
 }
 
-/// Whether the chart of a protocol (EAC) is that protocol.
+/// Checks whether the chart of a protocol (EAC) conforms to the protocol.
 pub fn chart_conforms(eac: &Iac, aip: &Aip) -> Conformance {
     let mut found = Conformance::default();
     let Some(protocol) = protocol_of(eac, aip, &mut found) else { return found };
@@ -68,19 +68,14 @@ pub fn chart_conforms(eac: &Iac, aip: &Aip) -> Conformance {
         match (parts.iter().find(|&&part| eac.nodes[part].name == name), part) {
             (Some(&node), Some(part)) => chart_part(eac, node, expected, index, part, &mut found),
             _ => {
-                let message = format!("`{name}` of the protocol `{}` is not in its chart", protocol.name);
-                found.report("E0861", Span::default(), message, "each participant has a region of its own");
+                let message = format!("`{name}` of the protocol `{}` is missing in its chart", protocol.name);
+                found.report("E0861", Span::default(), message, "each participant has its own region");
             }
         }
     }
     for &part in parts.iter().filter(|&&part| part_named(aip, protocol, &eac.nodes[part].name).is_none()) {
         let message = format!("`{}` takes no part in the protocol `{}`", eac.nodes[part].name, protocol.name);
-        found.report(
-            "E0861",
-            eac.nodes[part].place.0,
-            message,
-            "name it among the participants, or take it away",
-        );
+        found.report("E0861", eac.nodes[part].place.0, message, "add it to the participants, or remove it");
     }
     if found.is_given() {
         traces(eac, &liveness::parse(&protocol_formulas(aip, protocol).0).0, &protocol.name, &mut found);
@@ -88,8 +83,8 @@ pub fn chart_conforms(eac: &Iac, aip: &Aip) -> Conformance {
     found
 }
 
-/// Whether a player's chart (IAC) contains its parts in a protocol as the chart of that has them,
-/// and does nothing in them that the protocol does not allow.
+/// Checks whether a player's chart (IAC) contains its parts in a protocol as the protocol's chart
+/// has them, and does nothing in them that the protocol does not allow.
 pub fn player_conforms(player: &Iac, eac: &Iac, aip: &Aip) -> Conformance {
     let mut found = Conformance::default();
     let Some(protocol) = protocol_of(eac, aip, &mut found) else { return found };
@@ -114,13 +109,13 @@ pub fn player_conforms(player: &Iac, eac: &Iac, aip: &Aip) -> Conformance {
     }
     if !takes_part {
         let message = format!("`{}` takes no part in the protocol `{}`", player.name, protocol.name);
-        let hint = "a part is a composite that is called like a participant: merge the protocol's chart into the player's";
+        let hint = "a part is a composite with the name of a participant: merge the protocol's chart into the player's";
         found.report("E0861", Span::default(), message, hint);
     }
     found
 }
 
-/// The parts that a protocol's chart has, each with whether a player takes it.
+/// The parts of a protocol's chart, each with whether a player takes it.
 pub fn parts_taken(player: &Iac, eac: &Iac) -> Vec<(String, bool)> {
     let takes = |name: &str| player.nodes.iter().any(|node| node.kind == "OR" && node.name == name);
     let names = participants(eac).into_iter().map(|part| eac.nodes[part].name.clone());
@@ -155,9 +150,8 @@ fn chart_part(
 ) {
     let name = &part.name;
     if let Err((wanted, there)) = same_shape(expected, wanted, eac, node, ShapeMatch::Same) {
-        let message =
-            format!("`{name}` does not do what the protocol says: {there} stands where {wanted} would be");
-        return found.report("E0862", eac.nodes[node].place.0, message, "its formula is the protocol's");
+        let message = format!("`{name}` differs from the protocol: {there} instead of {wanted}");
+        return found.report("E0862", eac.nodes[node].place.0, message, "use the formula of the protocol");
     }
     let borders = BoundaryTransitions::of(eac, node);
     for rule in conditions(&part.engaging_rules).into_iter().flatten() {
@@ -196,8 +190,8 @@ impl BoundaryTransitions<'_> {
         for way in &self.into {
             let is_ruled = guard(way).is_some_and(|guard| logic.implies(&guard, rule));
             if !is_ruled {
-                let message = format!("`{name}` may be engaged in while `{rule}` does not hold");
-                found.report("E0863", way.place.0, message, "guard the way into it by the engagement rule");
+                let message = format!("`{name}` may be entered while `{rule}` does not hold");
+                found.report("E0863", way.place.0, message, "guard its entry by the engaging rule");
             }
         }
     }
@@ -206,9 +200,9 @@ impl BoundaryTransitions<'_> {
         let logic = GuardSolver::new(&chart.constants);
         let leads_out = |guard: Expression| logic.implies(outcome, &guard);
         if !self.out.iter().filter_map(|way| guard(way)).any(leads_out) {
-            let message = format!("the outcome `{outcome}` is no exit of `{name}`");
+            let message = format!("`{name}` has no exit for the outcome `{outcome}`");
             let place = self.out.first().map_or(Span::default(), |way| way.place.0);
-            found.report("E0864", place, message, "let a transition lead out of it when that is so");
+            found.report("E0864", place, message, "add a transition out of it with the outcome as guard");
         }
     }
 
@@ -218,7 +212,7 @@ impl BoundaryTransitions<'_> {
             let Some(guard) = guard(way) else { continue };
             if !outcomes.iter().any(|outcome| logic.implies(&guard, outcome)) {
                 let message = format!("`{name}` is left when `{guard}`, which is no outcome of the protocol");
-                found.report("E0865", way.place.0, message, "make it an outcome, or take the exit away");
+                found.report("E0865", way.place.0, message, "make it an outcome, or remove the exit");
             }
         }
     }
@@ -229,8 +223,8 @@ fn guard(transition: &IacTransition) -> Option<Expression> {
     parse_transition(&transition.te).0.guard
 }
 
-/// Explores a chart and holds its traces against formulas. What is left early by an exit is a trace
-/// cut short, as it is meant to be.
+/// Explores a chart and compares its traces with formulas. A trace that ends early by an exit is
+/// allowed.
 fn traces(chart: &Iac, liveness: &Liveness, name: &str, found: &mut Conformance) {
     let (subject, made) = checked_model::of_chart(chart);
     let abstraction = match Abstraction::new(&subject) {
@@ -255,18 +249,21 @@ fn traces(chart: &Iac, liveness: &Liveness, name: &str, found: &mut Conformance)
         let (code, what) = match difference.kind {
             DifferenceKind::NotAllowed(node) => (
                 "E0867",
-                format!("`{}` is done, which the protocol does not allow", subject.chart.node(node).name),
+                format!(
+                    "`{}` is executed where the protocol does not allow it",
+                    subject.chart.node(node).name
+                ),
             ),
-            DifferenceKind::EndsEarly => ("E0867", "it ends, and the protocol goes on".into()),
+            DifferenceKind::EndsEarly => ("E0867", "it ends where the protocol continues".into()),
             DifferenceKind::NeverDone(activity) => {
-                ("E0868", format!("the protocol allows `{activity}`, and the chart never does it"))
+                ("E0868", format!("the protocol allows `{activity}`, but the chart never executes it"))
             }
-            DifferenceKind::NeverEnds => ("E0868", "the protocol may end, and the chart never does".into()),
+            DifferenceKind::NeverEnds => ("E0868", "the protocol may end, but the chart cannot".into()),
             DifferenceKind::Starves(_) => {
-                ("E0868", "what the protocol goes on with can never come, whatever happens".into())
+                ("E0868", "the chart can never continue as the protocol requires".into())
             }
         };
         let message = format!("in `{name}`, {before} {what}");
-        found.report(code, Span::default(), message, "some guard or transition is not as in the protocol");
+        found.report(code, Span::default(), message, "a guard or transition differs from the protocol");
     }
 }

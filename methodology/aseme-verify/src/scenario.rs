@@ -23,20 +23,20 @@
 //! | cause | what happens |
 //! |---|---|
 //! | `start` | the chart is started |
-//! | `messages` | nothing but that messages come |
-//! | `event NAME` | an event comes |
-//! | `return STATE`, `ongoing STATE`, `fail STATE` | the state's activity is done, wants to be called again, or fails |
+//! | `messages` | messages arrive and nothing else happens |
+//! | `event NAME` | an event arrives |
+//! | `return STATE`, `ongoing STATE`, `fail STATE` | the state's activity completes, requests another call, or fails |
 //! | `wait 100ms` | time passes; `timer NAME` waits until that timer expires |
 //!
-//! | below | what it says |
+//! | indented line | meaning |
 //! |---|---|
-//! | `Ball.found = true; Ball.x = 2` | messages come with the step: the newest ones with these fields changed |
-//! | `publish.Kick` | a message comes as it is |
-//! | `in A, B`, `not in A` | these states are active when the step is over, or none of them is |
+//! | `Ball.found = true; Ball.x = 2` | messages arrive with the step: the newest ones with these fields changed |
+//! | `publish.Kick` | a message arrives unchanged |
+//! | `in A, B`, `not in A` | these states are active after the step, or none of them is |
 //! | `starts A, B`, `starts nothing` | these activities are started in the step, and no others |
 //! | `publishes Goal`, `publishes nothing` | the chart publishes these messages in the step, and no others |
-//! | `[Goal.mine == true]` | the newest messages say so when it is over |
-//! | `timer NAME: 80ms`, `timer NAME: over`, `timer NAME: unset` | so long is left, it is over, it has not been started |
+//! | `[Goal.mine == true]` | the condition holds for the newest messages after the step |
+//! | `timer NAME: 80ms`, `timer NAME: over`, `timer NAME: unset` | the time left, it has expired, it was not started |
 //!
 //! States are referred to by [paths](aseme::path), timers by their names, prefixed with the state
 //! whose blackboard holds them if several have one name. An activity runs until the scenario ends
@@ -60,23 +60,23 @@ use yase::{NodeId, Outcome, Source, Span, TopicId};
 #[derive(Clone, PartialEq, Debug)]
 pub struct ScenarioText {
     source: Arc<Source>,
-    /// The model that it is about.
+    /// The model whose chart is run.
     pub model: Option<ScenarioLink>,
-    /// The scenario that comes first.
+    /// The scenario that is run first.
     pub after: Option<ScenarioLink>,
     steps: Vec<StepLines>,
 }
 
-/// A file that a scenario names.
+/// A reference to a file.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct ScenarioLink {
-    /// The path, as it is written.
+    /// The path as written.
     pub path: String,
     /// Its position in the source.
     pub span: Span,
 }
 
-/// A cause, and what stands below it.
+/// A stimulus and the lines below it.
 #[derive(Clone, PartialEq, Debug)]
 struct StepLines {
     cause: Span,
@@ -88,45 +88,45 @@ struct StepLines {
 pub struct ScenarioPart {
     /// The scenario.
     pub source: Arc<Source>,
-    /// Where it stands in it.
+    /// Its span in the source.
     pub span: Span,
 }
 
 impl ScenarioPart {
-    /// What is written there, without comments.
+    /// Its text, without comments.
     pub fn text(&self) -> &str {
         self.source.text.get(self.span.start..self.span.end).unwrap_or_default()
     }
 
-    /// The line it stands on, from 1.
+    /// Its line, from 1.
     pub fn line(&self) -> usize {
         self.source.position(self.span.start).0
     }
 }
 
-/// A step of a scenario that a chart can be taken through.
+/// A step of a scenario with resolved names.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct ScenarioStep {
     /// Its position in the source.
     pub passage: ScenarioPart,
-    /// Why it happens.
+    /// Its stimulus.
     pub cause: StepStimulus,
-    /// What messages come with it: only [`Effect::Assign`] and [`Effect::Publish`], each with where
-    /// it stands.
+    /// The messages that arrive with it: only [`Effect::Assign`] and [`Effect::Publish`], each with
+    /// its position.
     pub data: Vec<(Effect, ScenarioPart)>,
-    /// What is to be so when it is over.
+    /// The expectations after it.
     pub expected: Vec<Expectation>,
 }
 
-/// Why a step happens.
+/// The stimulus of a step.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum StepStimulus {
     /// The chart is started.
     Start,
-    /// Messages come.
+    /// Messages arrive.
     Messages,
-    /// An event comes.
+    /// An event arrives.
     Event(String),
     /// The activity of a state returns.
     Return(NodeId, Outcome),
@@ -139,23 +139,23 @@ pub enum StepStimulus {
 /// A timer.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct TimerReference {
-    /// The root or the region whose blackboard it lies on.
+    /// The node of the scope whose blackboard holds it.
     pub region: NodeId,
     /// Its name.
     pub name: String,
 }
 
-/// Something that is to be so.
+/// An expected property of the state after a step.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct Expectation {
     /// Its position in the source.
     pub passage: ScenarioPart,
-    /// What it is.
+    /// Its kind.
     pub kind: ExpectationKind,
 }
 
-/// What is to be so.
+/// The kinds of expectations.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum ExpectationKind {
@@ -165,21 +165,21 @@ pub enum ExpectationKind {
     NotIn(Vec<NodeId>),
     /// The activities of these states are started in the step, and no others.
     Starts(Vec<NodeId>),
-    /// Messages are published on these topics by the chart in the step, and on no others.
+    /// The chart publishes on these topics in the step, and on no others.
     Publishes(Vec<TopicId>),
-    /// The newest messages say so.
+    /// The condition holds for the newest messages.
     Holds(Guard),
-    /// A timer is as far as that.
+    /// The state of a timer.
     Timer(TimerReference, ExpectedTimer),
 }
 
-/// How far a timer is.
+/// The expected state of a timer.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum ExpectedTimer {
-    /// It was never started, or is forgotten.
+    /// It was never started, or was discarded.
     Unset,
-    /// It will be over after so long.
+    /// It expires after this time.
     Runs(Duration),
-    /// It is over.
+    /// It has expired.
     Over,
 }

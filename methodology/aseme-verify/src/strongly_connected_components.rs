@@ -1,7 +1,7 @@
 //! Strongly connected components of a graph.
 
-/// The strongly connected component of each place, by Tarjan's algorithm, without recursion. `next`
-/// has for each place where its steps lead.
+/// The strongly connected component of each node, by Tarjan's algorithm without recursion. `next`
+/// lists the successors of each node.
 pub(crate) fn strongly_connected_components<Step>(next: &[Vec<(usize, Step)>]) -> Vec<usize> {
     const UNSEEN: usize = usize::MAX;
     let count = next.len();

@@ -7,13 +7,13 @@ use yase_export::notation::{depth_first, kind_word};
 
 use crate::names::{names, transition_name};
 
-/// The chart as one JSON object.
+/// The chart as a JSON object.
 ///
-/// `{"model", "nodes": [{"label", "name", "type", "parent"}], "transitions": [{"source", "target", "name", "te"}]}`:
-/// nodes with a parent before its children and its children in order, `parent`, `source` and
-/// `target` being labels; transitions in the chart's order, `te` being `null` where nothing is
-/// said. Nodes that have a place in drawings say it as `"at": [right, down]` and
-/// `"size": [width, height]`, transitions that have corners as `"via": [[right, down], ...]`.
+/// `{"model", "nodes": [{"label", "name", "type", "parent"}], "transitions": [{"source", "target",
+/// "name", "te"}]}`: nodes in pre-order; `parent`, `source` and `target` are labels; transitions in
+/// the chart's order, `te` is `null` for an empty expression. Nodes with a layout have `"at":
+/// [right, down]` and `"size": [width, height]`, transitions with corners `"via": [[right, down],
+/// ...]`.
 pub fn to_json(chart: &Statechart) -> Value {
     let (names, labels) = (names(chart), chart.labels());
     let nodes: Vec<Value> = depth_first(chart).map(|id| node(chart, id, &names, &labels)).collect();

@@ -7,11 +7,11 @@ pub const FRAME_KEYS: [&str; 2] = ["at", "size"];
 /// Key of a transition's layout.
 pub const BENDS_KEY: &str = "via";
 /// The form of a position, for hints.
-pub const AT: &str = "a place is two numbers of pixels, to the right and down, such as `40 120`";
+pub const AT: &str = "a position is two numbers of pixels, right and down, such as `40 120`";
 /// The form of a size, for hints.
-pub const SIZE: &str = "a size is two numbers of pixels, a width and a height, such as `160 60`";
+pub const SIZE: &str = "a size is two numbers of pixels, width and height, such as `160 60`";
 /// The form of corners, for hints.
-pub const VIA: &str = "corners are places with commas between, such as `40 80, 120 80`";
+pub const VIA: &str = "corners are positions separated by commas, such as `40 80, 120 80`";
 
 /// The largest coordinate, in pixels.
 const LARGEST: f64 = 100_000.0;
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read() {
+    fn written_files_are_read_back() {
         let frame = Frame { at: Some((0.1, 3.0)), size: None };
         assert_eq!(frame_settings(&frame), [("at", "0.1 3".to_owned())]);
         let corners = [(1.0, 2.5), (3.0, 4.0)];

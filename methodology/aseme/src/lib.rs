@@ -89,8 +89,8 @@ use yase::{Diagnostic, Source, Statechart};
 
 /// The statechart that the text of a role describes, and all findings about the text, in its order.
 ///
-/// If the formulas have errors, the refinements are not checked: the states they refer to are not
-/// known.
+/// If the formulas have errors, the refinements are not checked, because the states they refer to
+/// are unknown.
 pub fn statechart_of_role(source: &Arc<Source>) -> (Statechart, Vec<Diagnostic>) {
     let (file, mut diagnostics) = SrmFile::parse(source.text.as_str());
     let (chart, findings) = match have_formula_errors(&diagnostics) {

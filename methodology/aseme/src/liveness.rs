@@ -43,30 +43,30 @@ use crate::text;
 /// The deepest accepted nesting of states.
 pub const MAX_LEVELS: usize = 256;
 
-/// A term, by its place in the arena of its [`Liveness`].
+/// A term, as an index into the arena of its [`Liveness`].
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct TermId(u32);
 
 /// One term of a formula.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Term {
-    /// An activity, or what the formula of that name says.
+    /// An activity, or a reference to the formula of that name.
     Name(String),
-    /// `x . y`: one after the other.
+    /// `x . y`: in sequence.
     Sequence(Vec<TermId>),
-    /// `x | y`: one of them.
+    /// `x | y`: exactly one of them.
     Choice(Vec<TermId>),
-    /// `x || y`: all together.
+    /// `x || y`: all in parallel.
     Parallel(Vec<TermId>),
-    /// `[x]`: it or nothing.
+    /// `[x]`: zero or one time.
     Optional(TermId),
-    /// `x*`: any number of times.
+    /// `x*`: zero or more times.
     ZeroOrMore(TermId),
-    /// `x+`: once or more often.
+    /// `x+`: one or more times.
     OneOrMore(TermId),
-    /// `x~`: again and again without end.
+    /// `x~`: repeated without end.
     Forever(TermId),
-    /// `|x~|n`: copies of a term that goes on forever, all together.
+    /// `|x~|n`: parallel copies of an endless term.
     Copies {
         /// The term that is copied; of kind [`Forever`](Term::Forever).
         term: TermId,
@@ -82,9 +82,9 @@ pub enum Term {
 pub struct Formula {
     /// The left-hand side.
     pub name: String,
-    /// Where the left-hand side stands.
+    /// The span of the left-hand side.
     pub name_span: Span,
-    /// The right-hand side; none when nothing of it could be understood.
+    /// The right-hand side; `None` if it could not be parsed at all.
     pub expression: Option<TermId>,
     /// From the left-hand side to the end of the last line.
     pub span: Span,
@@ -100,13 +100,13 @@ pub struct Liveness {
     spans: Vec<Span>,
 }
 
-/// Reads formulas. What is not understood is skipped and reported; codes are E0201 to E0219.
+/// Parses formulas. Invalid parts are skipped and reported; codes are E0201 to E0219.
 pub fn parse(text: &str) -> (Liveness, Vec<Diagnostic>) {
     parse_section(&text::without_comments(text), Span::new(0, text.len()))
 }
 
-/// Reads the formulas that stand in a part of a text whose comments are blank already; spans count
-/// from the beginning of the text.
+/// Parses the formulas in a section of a text whose comments are blanked; spans are relative to the
+/// whole text.
 pub fn parse_section(blanked: &str, section: Span) -> (Liveness, Vec<Diagnostic>) {
     let mut liveness = Liveness::default();
     let mut diagnostics = Vec::new();
@@ -139,12 +139,12 @@ impl Liveness {
         &self.terms[id.0 as usize]
     }
 
-    /// Where a term stands.
+    /// The span of a term.
     pub fn span(&self, id: TermId) -> Span {
         self.spans[id.0 as usize]
     }
 
-    /// Each name that stands in a formula, with its place, in the order of the text.
+    /// The names in a formula with their spans, in the order of the text.
     pub fn names(&self, formula: &Formula) -> impl Iterator<Item = (&str, Span)> {
         formula.terms.clone().filter_map(|index| match &self.terms[index] {
             Term::Name(name) => Some((name.as_str(), self.spans[index])),
@@ -152,7 +152,7 @@ impl Liveness {
         })
     }
 
-    /// The formulas by their left-hand sides; of two with the same one, the first.
+    /// The indices of the formulas by left-hand side; of duplicates, the first.
     pub fn by_name(&self) -> BTreeMap<&str, usize> {
         let mut by_name = BTreeMap::new();
         for (index, formula) in self.formulas.iter().enumerate() {
@@ -168,7 +168,7 @@ impl Liveness {
     }
 }
 
-/// The lines of one formula: its left-hand side, and everything after `=` up to the next formula.
+/// The lines of one formula: its left-hand side, and the text after `=` up to the next formula.
 struct FormulaLines {
     name: Span,
     body: Span,
@@ -192,7 +192,7 @@ fn split(text: &str, section: Span, diagnostics: &mut Vec<Diagnostic>) -> Vec<Fo
             (None, Some(formula)) => formula.body.end = line.end,
             (None, None) => diagnostics.push(
                 Diagnostic::error("E0201", content, "this line belongs to no formula")
-                    .with_hint("a formula begins with `name =`"),
+                    .with_hint("a formula starts with `name =`"),
             ),
         }
     }
@@ -210,7 +210,7 @@ fn begin(text: &str, line: Span, equals: usize, diagnostics: &mut Vec<Diagnostic
     let mut body = Span::new(equals + 1, line.end);
     if let Some(second) = text[body.start..body.end].find('=') {
         let place = Span::new(body.start + second, body.end);
-        let hint = "each formula has a line of its own";
+        let hint = "each formula starts on its own line";
         diagnostics.push(Diagnostic::error("E0203", place, "a second `=` in one formula").with_hint(hint));
         body.end = place.start;
     }

@@ -1,4 +1,4 @@
-//! Names as the model files of the thesis's tools encode them.
+//! Names as encoded by the model files of the thesis's tools.
 //!
 //! A chart keeps the names of its states as written in the formula (`decision~`). Model files
 //! encode them into letters (`decision_forever_`) and use the label for a node without a name. Both
@@ -20,7 +20,7 @@ const ENCODING: [(&str, &str); 10] = [
     ("]", "_close_option_"),
 ];
 
-/// A term's text without its operators: `(a.b)+` is
+/// The encoded text of a term: `(a.b)+` is
 /// `_open_group_a_sequence_b_close_group__one_or_more_times_`.
 pub fn encode(term: &str) -> String {
     let mut rest = term;
@@ -41,8 +41,8 @@ pub fn encode(term: &str) -> String {
     encoded
 }
 
-/// The term that an encoded name was made of: the one without underscores at the operators; none if
-/// the name has no operators, or is none that [`encode`] makes of a formula.
+/// The term of an encoded name. `None` if the name contains no operators or is not an output of
+/// [`encode`].
 pub fn decode(name: &str) -> Option<String> {
     let mut rest = name;
     let mut term = String::with_capacity(name.len());
@@ -66,7 +66,7 @@ pub fn decode(name: &str) -> Option<String> {
     (is_same && term != name && encode(&term) == name).then_some(term)
 }
 
-/// The encoded name of each node, by its id; a node without a name of its own has its label.
+/// The encoded name of each node, by its id; a node without a name has its label.
 pub fn names(chart: &Statechart) -> Vec<String> {
     let name = |(node, label): (&Node, String)| if node.name.is_empty() { label } else { encode(&node.name) };
     chart.nodes().map(|(_, node)| node).zip(chart.labels()).map(name).collect()
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_encoded_is_decoded() {
+    fn encoding_and_decoding_round_trips() {
         for term in ["([I]|R)+", "a||b*", "|a~|3", "(a.b)~", "[Stare+]"] {
             assert_eq!(decode(&encode(term)).as_deref(), Some(term));
         }

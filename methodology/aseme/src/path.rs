@@ -1,4 +1,4 @@
-//! Paths: references to states and transitions of a chart that was made from formulas.
+//! Paths: references to states and transitions of a chart generated from formulas.
 //!
 //! A path is a sequence of state names as written in the formula, separated by `/`; the last one is
 //! the state referred to: `takeAction/TrackBall`. Blanks are ignored and `ω` is `~`, as in
@@ -44,11 +44,11 @@ enum SegmentPattern {
     AnyParallel,
 }
 
-/// No chart has states nested deeper than this.
+/// The deepest nesting of states in a chart.
 const MAX_SEGMENTS: usize = crate::liveness::MAX_LEVELS;
 
 impl Path {
-    /// Reads a path, or says why it is none (E0241).
+    /// Parses a path; errors are E0241.
     pub fn parse(text: &str) -> Result<Path, Diagnostic> {
         let segments =
             text.split('/').map(PatternSegment::parse).collect::<Result<Vec<PatternSegment>, String>>();
@@ -59,16 +59,16 @@ impl Path {
         };
         let place = trimmed(text, Span::new(0, text.len()));
         let hint =
-            "a path is names of states from the formula with `/` between, such as `takeAction/TrackBall`";
+            "a path is names of states from the formula separated by `/`, such as `takeAction/TrackBall`";
         Err(Diagnostic::error("E0241", place, reason).with_hint(hint))
     }
 
-    /// The same path, seen from a state that `scope` names.
+    /// The path relative to the state that `scope` names.
     pub fn within(&self, scope: &Path) -> Path {
         Path { segments: scope.segments.iter().chain(&self.segments).cloned().collect() }
     }
 
-    /// Whether it may name several states on purpose.
+    /// Whether it may match several states on purpose.
     pub fn has_wildcard(&self) -> bool {
         let is_wildcard = |pattern: &SegmentPattern| {
             matches!(
@@ -79,7 +79,7 @@ impl Path {
         self.segments.iter().any(|segment| is_wildcard(&segment.pattern))
     }
 
-    /// Whether it names a node of a chart.
+    /// Whether it matches a node.
     pub fn matches(&self, chart: &Statechart, node: NodeId) -> bool {
         ends_with(chart, node, &self.segments)
     }
@@ -103,7 +103,7 @@ impl Path {
             .map(|(_, name)| name)
     }
 
-    /// The last `length` names on the way to a node, `thorough` with ANDs and regions.
+    /// The last `length` names on the path to a node; `thorough` includes ANDs and regions.
     fn to(chart: &Statechart, node: NodeId, length: usize, thorough: bool) -> Path {
         let way = std::iter::once(node).chain(chart.ancestors(node));
         let named = way.filter(|&id| id == node || thorough || !may_be_left_out(chart, id));
@@ -128,7 +128,7 @@ impl fmt::Display for Path {
 }
 
 impl PatternSegment {
-    /// The segment, or in a sentence why it is none.
+    /// Parses a segment; the error is a sentence.
     fn parse(text: &str) -> Result<PatternSegment, String> {
         let name = canonical_name(text);
         if name.is_empty() {
@@ -136,13 +136,13 @@ impl PatternSegment {
         }
         let foreign = |c: &char| !is_name_character(*c) && !".|*+~()[]".contains(*c);
         if let Some(foreign) = name.chars().find(foreign) {
-            return Err(format!("`{foreign}` has no place in a path"));
+            return Err(format!("`{foreign}` cannot occur in a path"));
         }
         let (name, occurrence) = split_occurrence(&name);
         Ok(PatternSegment { pattern: SegmentPattern::of(name), occurrence })
     }
 
-    /// The segment that names a node in its parent and nothing else.
+    /// The segment that matches a node and none of its siblings.
     fn of(chart: &Statechart, node: NodeId) -> PatternSegment {
         let pattern = match (chart.node(node).name.as_str(), chart.node(node).kind) {
             ("", NodeKind::Or) => SegmentPattern::Name(place(chart, node).to_string()),
@@ -164,7 +164,7 @@ impl PatternSegment {
     }
 }
 
-/// `name[2]` is the name and 2; but `[2]` alone, or after an operator, is an option of the formula.
+/// Splits `name[2]` into the name and 2; `[2]` alone, or after an operator, is an optional term.
 fn split_occurrence(name: &str) -> (&str, Option<usize>) {
     let split = || {
         let (before, number) = name.strip_suffix(']')?.rsplit_once('[')?;
@@ -215,7 +215,7 @@ impl SegmentPattern {
     }
 }
 
-/// Whether the way to a node ends with these segments.
+/// Whether the path to a node ends with these segments.
 fn ends_with(chart: &Statechart, node: NodeId, segments: &[PatternSegment]) -> bool {
     let Some((last, before)) = segments.split_last() else { return true };
     if !last.matches(chart, node) {
@@ -258,7 +258,7 @@ fn siblings(chart: &Statechart, node: NodeId) -> &[NodeId] {
     chart.node(node).parent.map_or(&[], |parent| chart.children(parent))
 }
 
-/// The siblings of a node that a pattern fits, itself among them.
+/// The siblings of a node that match a pattern, including itself.
 fn alike<'a>(
     chart: &'a Statechart,
     node: NodeId,
@@ -267,7 +267,7 @@ fn alike<'a>(
     siblings(chart, node).iter().copied().filter(|&sibling| pattern.matches(chart, sibling))
 }
 
-/// The transitions whose source and target two paths name.
+/// The transitions whose source and target match two paths.
 pub fn transitions<'a>(
     chart: &'a Statechart,
     source: &'a Path,
@@ -279,8 +279,8 @@ pub fn transitions<'a>(
     chart.transitions().filter(move |(_, transition)| fits(transition)).map(|(id, _)| id)
 }
 
-/// The shortest `path -> path` that names one transition and no other, but those between the same
-/// two ends.
+/// The shortest `path -> path` that matches one transition and no others, except those with the
+/// same ends.
 pub fn shortest_transition(chart: &Statechart, transition: TransitionId) -> String {
     let Transition { source, target, .. } = *chart.transition(transition);
     let longest = 1 + chart.ancestors(source).count().max(chart.ancestors(target).count());
@@ -297,7 +297,7 @@ pub fn shortest_transition(chart: &Statechart, transition: TransitionId) -> Stri
     first_or_last(paths, is_unique).map_or(String::new(), |(source, target)| format!("{source} -> {target}"))
 }
 
-/// The shortest path that names one node and no other.
+/// The shortest path that matches one node and no other.
 pub fn shortest_path(chart: &Statechart, node: NodeId) -> String {
     let paths = lengths(1 + chart.ancestors(node).count())
         .map(|(length, thorough)| Path::to(chart, node, length, thorough));
@@ -305,12 +305,12 @@ pub fn shortest_path(chart: &Statechart, node: NodeId) -> String {
     first_or_last(paths, is_unique).map_or(String::new(), |path| path.to_string())
 }
 
-/// Lengths of paths from the shortest on, first without ANDs and regions, then with them.
+/// Increasing lengths of paths, first without ANDs and regions, then with them.
 fn lengths(longest: usize) -> impl Iterator<Item = (usize, bool)> {
     [false, true].into_iter().flat_map(move |thorough| (1..=longest).map(move |length| (length, thorough)))
 }
 
-/// The first thing that is accepted, else the last.
+/// The first accepted element, or the last.
 fn first_or_last<T>(things: impl Iterator<Item = T>, accepts: impl Fn(&T) -> bool) -> Option<T> {
     let mut last = None;
     for thing in things {
@@ -335,7 +335,7 @@ mod tests {
         crate::liveness_to_statechart(&crate::liveness::parse(formulas).0).0
     }
 
-    /// How many nodes a path names.
+    /// The number of nodes that a path matches.
     fn count(chart: &Statechart, text: &str) -> usize {
         chart.nodes().filter(|(id, _)| path(text).matches(chart, *id)).count()
     }

@@ -1,5 +1,5 @@
-//! Refinement of a chart: applies the entries of a role to the transitions and states that its
-//! formulas make.
+//! Refinement of a chart: applies the entries of a role to the transitions and states generated
+//! from its formulas.
 //!
 //! An entry refers to its transition or state by [`Path`]s, never by label, so it stays valid when
 //! the formula is edited, as long as its paths match exactly one element. An entry that does not is
@@ -152,12 +152,12 @@ struct RefinementTarget<'a, Id> {
     thing: &'static str,
     has_wildcard: bool,
     named: Vec<Id>,
-    /// What it may have meant, should it name nothing.
+    /// Suggestions if it matches nothing.
     near: Vec<String>,
 }
 
 impl<Id> RefinementTarget<'_, Id> {
-    /// Whether it names nothing, or several things without a wildcard.
+    /// Whether it matches nothing, or several elements without a wildcard.
     fn is_ambiguous_or_unmatched(&self) -> bool {
         self.named.is_empty() || self.named.len() > 1 && !self.has_wildcard
     }
@@ -207,8 +207,8 @@ fn near_names<'a>(chart: &'a Statechart, path: &'a Path) -> impl Iterator<Item =
     path.unknown_names(chart).filter_map(move |name| nearest(name, names())).map(String::from)
 }
 
-/// If a name is misspelt, the right one; else the transitions that share the source, then those
-/// that share the target.
+/// Corrections of misspelt names, otherwise the transitions with the same source, then those with
+/// the same target.
 fn similar_transitions(chart: &Statechart, source: &Path, target: &Path) -> Vec<String> {
     let names: Vec<String> = near_names(chart, source).chain(near_names(chart, target)).collect();
     if !names.is_empty() {
@@ -222,7 +222,7 @@ fn similar_transitions(chart: &Statechart, source: &Path, target: &Path) -> Vec<
     near.take(CANDIDATES).collect()
 }
 
-/// Which entry is for which thing, and which entries are for none, in order.
+/// Assigns entries to elements. Also returns the unmatched entries, in order.
 fn assign_entries<Id: Copy + Ord>(
     wishes: &[RefinementTarget<'_, Id>],
     text_of: impl Fn(&Id) -> String,
@@ -249,7 +249,7 @@ fn assign_entries<Id: Copy + Ord>(
     (chosen, unmatched.into_values().collect())
 }
 
-/// An entry that names nothing, or several things without a wildcard.
+/// The report for an entry that matches nothing, or several elements without a wildcard.
 fn unmatched_entry<Id>(wish: &RefinementTarget<'_, Id>, text_of: impl Fn(&Id) -> String) -> UnmatchedEntry {
     let (code, number, candidates) = match wish.named.len() {
         0 => ("E0250", "no", wish.near.clone()),
@@ -267,7 +267,7 @@ fn unmatched_entry<Id>(wish: &RefinementTarget<'_, Id>, text_of: impl Fn(&Id) ->
 fn hint(candidates: &[String]) -> Option<String> {
     let mut quoted: Vec<String> = Vec::new();
     for candidate in candidates.iter().map(|candidate| format!("`{candidate}`")) {
-        // A loop's two ends are near the same name.
+        // Both ends of a loop are similar to the same name.
         if !quoted.contains(&candidate) {
             quoted.push(candidate);
         }
@@ -279,18 +279,18 @@ fn hint(candidates: &[String]) -> Option<String> {
     }
 }
 
-/// An entry for something that another one is for already.
+/// The report for an entry whose element already has one.
 fn duplicate_entry<Id>(
     wish: &RefinementTarget<'_, Id>,
     earlier: &RefinementTarget<'_, Id>,
     named: &str,
 ) -> UnmatchedEntry {
-    let message = format!("`{}` is for `{named}`, as `{}` is", wish.text, earlier.text);
+    let message = format!("`{}` and `{}` both refer to `{named}`", wish.text, earlier.text);
     let diagnostic = Diagnostic::error("E0252", wish.span, message).with_hint("keep one of the two");
     UnmatchedEntry { text: wish.text.into(), candidates: vec![named.into()], diagnostic }
 }
 
-/// An entry that gives an activity, or what belongs to one, to a state that is made of others.
+/// The report for an entry that sets an activity, or an attribute of one, on a composite.
 fn composite(wish: &RefinementTarget<'_, NodeId>, named: String) -> UnmatchedEntry {
     let message = format!("`{named}` consists of other states and runs no activity of its own");
     let diagnostic = Diagnostic::error("E0253", wish.span, message);
@@ -299,9 +299,9 @@ fn composite(wish: &RefinementTarget<'_, NodeId>, named: String) -> UnmatchedEnt
     UnmatchedEntry { text: wish.text.into(), candidates: vec![named], diagnostic }
 }
 
-/// An entry that has a state remember what was active inside, where there is nothing inside.
+/// The report for an entry that sets a history on a state without children.
 fn childless(wish: &RefinementTarget<'_, NodeId>, named: String) -> UnmatchedEntry {
-    let message = format!("`{named}` has no states inside that it could remember");
+    let message = format!("`{named}` has no states inside");
     let diagnostic = Diagnostic::error("E0254", wish.span, message);
     let diagnostic = diagnostic.with_hint("history belongs to composites");
     UnmatchedEntry { text: wish.text.into(), candidates: vec![named], diagnostic }

@@ -60,7 +60,7 @@ pub use constants::constant_value;
 pub use sections::Section;
 pub use states::{duration, events};
 
-/// A role: what it does, and how the chart of that is refined.
+/// A role: its formulas and the refinements of their chart.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Srm {
     /// Its name, which may have blanks; for bare formulas the left-hand side of the first.
@@ -69,13 +69,13 @@ pub struct Srm {
     pub protocols: Vec<ProtocolRole>,
     /// Its formulas.
     pub liveness: Liveness,
-    /// Values that its expressions may name.
+    /// The constants of its expressions.
     pub constants: Vec<Constant>,
     /// Refinements of transitions.
     pub transitions: Vec<TransitionEntry>,
     /// Refinements of states.
     pub states: Vec<StateEntry>,
-    /// Where states and transitions are drawn.
+    /// The layout of states and transitions.
     pub layout: Vec<LayoutEntry>,
 }
 
@@ -91,21 +91,21 @@ pub struct ProtocolRole {
 /// A refinement of one transition, or with wildcards of several.
 #[derive(Clone, PartialEq, Debug)]
 pub struct TransitionEntry {
-    /// The node it leaves.
+    /// The source.
     pub source: Path,
-    /// The node it leads to.
+    /// The target.
     pub target: Path,
-    /// Whether it is another transition beside the one that is named.
+    /// Whether it adds a transition parallel to the one it names.
     pub also: bool,
-    /// Higher is tried first; 0 unless said.
+    /// Higher priorities are tried first; the default is 0.
     pub priority: i32,
     /// The weight of a probabilistic branch.
     pub weight: Option<f64>,
-    /// Whether it may leave a state whose activity still runs.
+    /// Whether it may exit a state whose activity is running.
     pub interrupts: bool,
-    /// Whether it happens inside its source, without leaving it.
+    /// Whether it is internal: it does not exit its source.
     pub internal: bool,
-    /// Trigger, guard and actions; places count from the beginning of the file.
+    /// Trigger, guard and actions; spans are relative to the whole file.
     pub expression: TransitionExpression,
     /// The entry as it is written, on one line, without comments.
     pub text: String,
@@ -114,7 +114,7 @@ pub struct TransitionEntry {
 }
 
 impl TransitionEntry {
-    /// Whether it is for whatever its paths name.
+    /// Whether its paths contain wildcards.
     pub fn has_wildcard(&self) -> bool {
         self.source.has_wildcard() || self.target.has_wildcard()
     }
@@ -137,15 +137,15 @@ pub struct StateEntry {
     pub activity: Option<String>,
     /// The priority of its activity.
     pub priority: Option<i32>,
-    /// What happens whenever it is entered.
+    /// Its entry actions.
     pub entry: Option<Vec<Action>>,
-    /// What happens whenever it is left.
+    /// Its exit actions.
     pub exit: Option<Vec<Action>>,
-    /// Events kept for later while it is active.
+    /// Events that are deferred while it is active.
     pub defer: Option<Vec<String>>,
     /// How long its activity takes in simulated time.
     pub duration: Option<std::time::Duration>,
-    /// Of a composite: the kind of HISTORY that it is entered by.
+    /// For composites: the kind of HISTORY by which it is entered.
     pub history: Option<NodeKind>,
     /// The entry as it is written, on one line, without comments.
     pub text: String,
@@ -154,7 +154,7 @@ pub struct StateEntry {
 }
 
 impl StateEntry {
-    /// Whether it says what only a state without children can have.
+    /// Whether it has settings that only apply to states without children.
     pub(crate) fn is_about_activity(&self) -> bool {
         self.activity.is_some() || self.priority.is_some() || self.duration.is_some()
     }
@@ -178,14 +178,14 @@ impl StateEntry {
     }
 }
 
-/// Where one state or transition is drawn, or by wildcards several.
+/// The layout of a state or transition, or of several by wildcards.
 #[derive(Clone, PartialEq, Debug)]
 pub struct LayoutEntry {
-    /// What is drawn there.
+    /// The element.
     pub of: LayoutTarget,
-    /// Of a state: its place and size.
+    /// For a state: its position and size.
     pub frame: Frame,
-    /// Of a transition: its corners.
+    /// For a transition: its corners.
     pub bends: Vec<Point>,
     /// The entry as it is written, on one line, without comments.
     pub text: String,
@@ -193,7 +193,7 @@ pub struct LayoutEntry {
     pub span: Span,
 }
 
-/// What a layout has a place for.
+/// An element with a layout.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum LayoutTarget {
     /// A state or a connector.
@@ -204,14 +204,13 @@ pub enum LayoutTarget {
         source: Path,
         /// The node it leads to.
         target: Path,
-        /// 0 for the one that the formulas make; from 1 on those that were added beside it, in
-        /// order.
+        /// 0 for the transition of the formulas; from 1 on for those added in parallel, in order.
         beside: usize,
     },
 }
 
-/// Has what leads into a composite from outside lead to a HISTORY in it, behind its other children,
-/// so that their labels stay.
+/// Redirects transitions from outside a composite to a new HISTORY in it. The HISTORY follows the
+/// other children, so that their labels stay the same.
 fn remember(chart: &mut Statechart, id: NodeId, kind: NodeKind) {
     let is_inside = |node: NodeId| node == id || chart.ancestors(node).any(|ancestor| ancestor == id);
     let into = chart.transitions().filter(|(_, it)| it.target == id && !is_inside(it.source));
@@ -220,19 +219,19 @@ fn remember(chart: &mut Statechart, id: NodeId, kind: NodeKind) {
     into.into_iter().for_each(|id| chart.transition_mut(id).target = history);
 }
 
-/// One entry of a file and its place, without the comment behind it.
+/// An entry of a file with its span, without its comment.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct SrmEntry {
-    /// The section it stands in.
+    /// Its section.
     pub section: Section,
-    /// Its first to its last letter.
+    /// Its span.
     pub span: Span,
 }
 
-/// A role's file: the text as it is, the role that it describes, and where each entry stands.
+/// A role's file: the text, the role, and the spans of its entries.
 ///
-/// Tools that change a file do so by [`replace_entry`](SrmFile::replace_entry): everything else,
-/// comments too, stays as it was.
+/// Tools change a file by [`replace_entry`](SrmFile::replace_entry), which keeps the remaining text
+/// including comments.
 #[derive(Clone, PartialEq, Debug)]
 pub struct SrmFile {
     text: String,
@@ -241,7 +240,7 @@ pub struct SrmFile {
 }
 
 impl SrmFile {
-    /// Reads a role. What is not understood is skipped and reported; codes are E0201 to E0219 for
+    /// Parses a role. Invalid parts are skipped and reported; codes are E0201 to E0219 for
     /// formulas, E0230 to E0249 for the rest, and those of expressions.
     pub fn parse(text: impl Into<String>) -> (SrmFile, Vec<Diagnostic>) {
         let text = text.into();
@@ -270,8 +269,8 @@ impl SrmFile {
         &self.entries
     }
 
-    /// The file with another text in the place of an entry. Comments that stood between the lines
-    /// of the entry move above it.
+    /// The file with an entry replaced by another text. Comments between the lines of the entry
+    /// move above it.
     pub fn replace_entry(&self, entry: SrmEntry, replacement: &str) -> (SrmFile, Vec<Diagnostic>) {
         let Span { start, end } = entry.span;
         let comments = text::comments_within(&self.text, entry.span).into_iter();
@@ -280,7 +279,7 @@ impl SrmFile {
     }
 }
 
-/// A reading in progress.
+/// The state of the parser.
 #[derive(Default)]
 struct Reader {
     srm: Srm,
@@ -355,7 +354,7 @@ impl Reader {
                 }
                 _ => {
                     let message = format!("`{part}` is not a part in a protocol");
-                    let hint = "write `protocol: participant`, several with commas between, or `N/A`";
+                    let hint = "write `protocol: participant`, several separated by commas, or `N/A`";
                     self.report(Diagnostic::error("E0235", span, message).with_hint(hint));
                 }
             }

@@ -24,7 +24,7 @@ pub fn without_comments(text: &str) -> String {
     blanked
 }
 
-/// Whether a part of a line has no comment and no open quote, so that it reads back unchanged.
+/// Whether a part of a line has no comment and no open quote, so that it can be written unchanged.
 pub fn is_plain(text: &str) -> bool {
     let mut quotes = QuoteScanner::default();
     let is_plain = |character: char| {
@@ -66,7 +66,7 @@ pub fn outside_quotes(text: &str, wanted: &str) -> Option<usize> {
     letters.find(|&(at, letter)| !quotes.hold(letter) && text[at..].starts_with(wanted)).map(|(at, _)| at)
 }
 
-/// The comments that begin within a span, in order, each with its `#`.
+/// The comments that start within a span, in order, each with its `#`.
 pub fn comments_within(text: &str, span: Span) -> Vec<&str> {
     let blanked = without_comments(text);
     lines_of(text, span).filter_map(|line| comment_of(text, &blanked, line)).collect()
@@ -109,7 +109,7 @@ pub fn trimmed(text: &str, span: Span) -> Span {
     Span::new(start, start + part.trim().len())
 }
 
-/// Whether a character may stand in a name.
+/// Whether a character may occur in a name.
 pub fn is_name_character(character: char) -> bool {
     character.is_ascii_alphanumeric() || character == '_'
 }
@@ -119,12 +119,12 @@ pub fn is_name(text: &str) -> bool {
     !text.is_empty() && text.chars().all(is_name_character)
 }
 
-/// Whether a character means "forever".
+/// Whether a character is a notation of "forever".
 pub fn is_forever(character: char) -> bool {
     matches!(character, '~' | 'ω' | 'Ω' | '\u{2126}')
 }
 
-/// The spelling under which a chart keeps the name of a term: no blanks, `~` for forever, no `^`.
+/// The normalised text of a term: no blanks, `~` for forever, no `^`.
 pub fn canonical_name(text: &str) -> String {
     let letters = text.chars().filter(|character| !character.is_whitespace() && *character != '^');
     letters.map(|character| if is_forever(character) { '~' } else { character }).collect()

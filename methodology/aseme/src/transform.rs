@@ -27,11 +27,10 @@ use yase::{Diagnostic, Node, NodeId, NodeKind, Span, Statechart, Transition};
 use crate::liveness::{Liveness, MAX_LEVELS, Term, TermId};
 use crate::srm::Srm;
 
-/// The most memory that a chart's nodes and their names may take: copies of copies grow without
-/// bound.
+/// The memory limit of a chart's nodes and names: nested copies grow exponentially.
 const MAX_BYTES: usize = 16 << 20;
 
-/// What a node costs besides its name.
+/// The memory of a node besides its name.
 const NODE_BYTES: usize = 256;
 
 /// The statechart of a role: its formulas expanded, its transitions and states refined, with its
@@ -59,7 +58,7 @@ pub fn liveness_to_statechart(liveness: &Liveness) -> (Statechart, Vec<Diagnosti
     (chart, diagnostics)
 }
 
-/// The same, with the position in the formulas that each node comes from, by [`NodeId`].
+/// Expands formulas. Also returns the span in the formulas of each node, by [`NodeId`].
 pub fn expanded(liveness: &Liveness) -> (Statechart, Vec<Span>, Vec<Diagnostic>) {
     let name = liveness.formulas().first().map_or("", |formula| formula.name.as_str());
     let mut expansion = Expansion {
@@ -78,17 +77,16 @@ pub fn expanded(liveness: &Liveness) -> (Statechart, Vec<Span>, Vec<Diagnostic>)
     (expansion.chart, expansion.spans, expansion.refused.into_iter().collect())
 }
 
-/// A chart in the making.
+/// A chart under construction.
 struct Expansion<'a> {
     liveness: &'a Liveness,
     formulas: BTreeMap<&'a str, usize>,
     chart: Statechart,
-    /// The place that each node comes from.
+    /// The span of each node.
     spans: Vec<Span>,
-    /// The place of the term that is being expanded.
+    /// The span of the current term.
     here: Span,
-    /// The formulas that are being expanded around the present node: one that refines itself is not
-    /// followed again.
+    /// The formulas that contain the current node; a recursive formula is not expanded again.
     open: Vec<usize>,
     bytes: usize,
     refused: Option<Diagnostic>,
@@ -133,7 +131,7 @@ impl<'a> Expansion<'a> {
         term
     }
 
-    /// Whether nothing more can be added, saying why at the first time.
+    /// Whether a limit is reached; reported once.
     fn refuses(&mut self, term: TermId, level: usize) -> bool {
         if self.refused.is_none() {
             self.refused = refusal(self.liveness.span(term), level, self.bytes);
@@ -147,9 +145,9 @@ fn refusal(span: Span, level: usize, bytes: usize) -> Option<Diagnostic> {
         let message = format!("states would nest more than {MAX_LEVELS} levels deep");
         return Some(Diagnostic::error("E0220", span, message).with_hint("flatten the formula"));
     }
-    let hint = "a name with a formula is expanded wherever it stands; share less, or copy fewer times";
+    let hint = "every occurrence of a name with a formula is expanded; share less, or copy fewer times";
     (bytes > MAX_BYTES)
-        .then(|| Diagnostic::error("E0221", span, "the chart grows too large here").with_hint(hint))
+        .then(|| Diagnostic::error("E0221", span, "the chart becomes too large here").with_hint(hint))
 }
 
 /// The templates.
@@ -252,12 +250,12 @@ impl Expansion<'_> {
         self.chart.add(parent, Node::new(kind, name))
     }
 
-    /// A node that is known by its place alone.
+    /// Adds a connector without a name.
     fn connector(&mut self, parent: NodeId, kind: NodeKind) -> NodeId {
         self.add(parent, kind, String::new())
     }
 
-    /// The node of an operand, not yet expanded.
+    /// Adds the node of an operand, not yet expanded.
     fn state(&mut self, parent: NodeId, term: TermId) -> NodeId {
         let name = self.liveness.compact(term);
         let kind = if self.is_activity(term) { NodeKind::Basic } else { NodeKind::Or };

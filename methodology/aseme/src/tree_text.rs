@@ -39,7 +39,7 @@ pub fn to_text(chart: &Statechart) -> String {
     text
 }
 
-/// What a node is called in a tree: its name and kind, or its kind and its place.
+/// The title of a node: its name and kind, or its kind and index.
 fn title(chart: &Statechart, id: NodeId) -> String {
     let node = chart.node(id);
     let kind = kind_word(node.kind);
@@ -50,7 +50,7 @@ fn title(chart: &Statechart, id: NodeId) -> String {
     }
 }
 
-/// What a node is called by an arrow that leads to it.
+/// The name of a node as the target of an arrow.
 fn target(chart: &Statechart, id: NodeId) -> String {
     let node = chart.node(id);
     if node.name.is_empty() { kind_word(node.kind).into() } else { node.name.clone() }

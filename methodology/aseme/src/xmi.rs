@@ -1,14 +1,14 @@
-//! XML of models, read with the position of each element and attribute.
+//! XML parsing with the position of each element and attribute.
 
 use std::ops::Range;
 
 use roxmltree::{Document, Node, ParsingOptions};
 use yase::{Diagnostic, Span};
 
-/// More elements and attributes than any model has.
+/// Limit of elements and attributes.
 const MOST_NODES: u32 = 4_000_000;
 
-/// Whether a text is XML, by its first character.
+/// Whether a text is XML, judged by its first character.
 pub fn is_xml(text: &str) -> bool {
     text.trim_start_matches('\u{feff}').trim_start().starts_with('<')
 }
@@ -70,8 +70,7 @@ pub fn decoded(text: &str, value: Range<usize>) -> String {
     decoded
 }
 
-/// The character that a reference at the beginning of a text stands for, and the length of the
-/// reference.
+/// The character of a reference at the start of a text, and the length of the reference.
 fn character_reference(text: &str) -> Option<(char, usize)> {
     let (name, _) = text.strip_prefix('&')?.split_once(';')?;
     let character = match name {

@@ -248,7 +248,7 @@ impl AgentReader<'_> {
             let values = Values::of(element, self.grammar);
             if values.given("thread_frequency").is_none() {
                 let message = format!("agent `{}` has activities and no `thread_frequency`", agent.name);
-                let hint = "say how many cycles a second it has: `thread_frequency=\"10\"`";
+                let hint = "add its cycles per second: `thread_frequency=\"10\"`";
                 self.diagnostics.push(element.error("E0305", element.name_span(), message).with_hint(hint));
             }
         }
@@ -262,7 +262,7 @@ impl AgentReader<'_> {
         if !name.is_empty() && self.setup.agents.iter().any(|agent| agent.name == name) {
             let named = element.children_named("name").next().unwrap_or(element);
             let message = format!("another agent is named `{name}`");
-            let hint = "each agent of a host has a name of its own";
+            let hint = "give each agent of a host a unique name";
             self.diagnostics.push(element.error("E0311", named.text_span(), message).with_hint(hint));
         }
     }

@@ -233,7 +233,7 @@ fn setting(text: &str, grammar: &Grammar) -> Result<Element, Box<Diagnostic>> {
     let Some(rule) =
         grammar.roots().iter().find_map(|root| grammar.element(root).filter(|_| *root == first.text))
     else {
-        let message = format!("there is nothing called `{}` to set", first.text);
+        let message = format!("there is no setting `{}`", first.text);
         let roots: Vec<&str> =
             grammar.roots().iter().copied().filter(|root| !is_group(grammar, root)).collect();
         let near = yase::diagnostic::nearest(&first.text, roots.iter().copied());
@@ -311,18 +311,18 @@ impl SettingWriter<'_> {
                 rest
             }
             (_, []) => {
-                let message = format!("the setting does not say which `{}`", rule.name);
+                let message = format!("the setting does not name the `{}`", rule.name);
                 return Err((name.span, message, example_of(rule)));
             }
         };
         match rest {
             [] => {
-                let message = format!("the setting does not say what of `{}`", rule.name);
+                let message = format!("the setting does not name an attribute of `{}`", rule.name);
                 Err((name.span, message, example_of(rule)))
             }
             [key] if is_identity(rule, &key.text) => {
                 let message =
-                    format!("the `{}` of `{}` tells it from others and cannot be set", key.text, rule.name);
+                    format!("the `{}` of `{}` identifies it and cannot be set", key.text, rule.name);
                 Err((key.span, message, "change it in the file".into()))
             }
             [key] => {

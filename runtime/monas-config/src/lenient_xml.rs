@@ -115,7 +115,7 @@ impl<'a> RepairWriter<'a> {
         } else if rest.starts_with("<?") {
             self.skip_to("?>", "this declaration is not closed");
         } else if rest.starts_with("<!") {
-            self.report(self.at..self.at + 2, "document types are not read", "leave it out");
+            self.report(self.at..self.at + 2, "document types are not supported", "leave it out");
             self.skip_to(">", "this document type is not closed");
         } else if rest.starts_with("</") {
             self.closing_tag();
@@ -167,7 +167,7 @@ impl<'a> RepairWriter<'a> {
     /// Text up to the next tag; a `<` that begins no tag is escaped and reported.
     fn text(&mut self) {
         if self.rest().starts_with('<') {
-            self.report(self.at..self.at + 1, "`<` begins no tag here", "write `&lt;`");
+            self.report(self.at..self.at + 1, "`<` starts no tag here", "write `&lt;`");
             self.insert("&lt;");
             self.at += 1;
         }
@@ -175,8 +175,8 @@ impl<'a> RepairWriter<'a> {
         let text = &self.source[self.at..end];
         if self.open.is_empty() && !text.trim().is_empty() {
             let start = self.at + (text.len() - text.trim_start().len());
-            let hint = "a text stands between tags: `<name>text</name>`";
-            self.report(start..start + text.trim().len(), "text outside of an element", hint);
+            let hint = "text must be inside an element: `<name>text</name>`";
+            self.report(start..start + text.trim().len(), "text outside an element", hint);
         }
         self.escaped_to(end);
     }
@@ -274,7 +274,7 @@ impl<'a> RepairWriter<'a> {
         if self.too_deep == 0 {
             let message = format!("`<{name}>` is nested more than {DEPTH} levels deep");
             let diagnostic = Diagnostic::error("E0302", span, message);
-            self.out.diagnostics.push(diagnostic.with_hint("no configuration is as deep as that"));
+            self.out.diagnostics.push(diagnostic.with_hint("no configuration nests this deep"));
         }
         self.skip_to(">", "this tag is not closed");
         if !self.source[..self.at].ends_with("/>") {
@@ -302,7 +302,7 @@ impl<'a> RepairWriter<'a> {
             } else {
                 let wrong = rest.chars().next().map_or(0, char::len_utf8);
                 let message = format!("`{}` has no meaning here", &rest[..wrong]);
-                self.report(self.at..self.at + wrong, message, "in a tag stand `name=\"value\"` and its end");
+                self.report(self.at..self.at + wrong, message, "a tag contains `name=\"value\"` pairs");
                 self.at += wrong;
             }
         }
@@ -322,8 +322,8 @@ impl<'a> RepairWriter<'a> {
         let repeated = seen.contains(&name);
         let length = self.out.text.len();
         if repeated {
-            let diagnostic = Diagnostic::error("E0307", span, format!("attribute `{name}` is given twice"));
-            self.out.diagnostics.push(diagnostic.with_hint("leave one of them out"));
+            let diagnostic = Diagnostic::error("E0307", span, format!("attribute `{name}` is repeated"));
+            self.out.diagnostics.push(diagnostic.with_hint("remove one of them"));
         } else {
             seen.push(name);
             self.insert(" ");

@@ -15,11 +15,11 @@
 //!
 //! | attribute of `agent` and `provider` | means |
 //! |---|---|
-//! | `thread_frequency` | cycles a second, 0 for as many as there can be; needed by a list of activities |
+//! | `thread_frequency` | cycles per second, 0 for no limit; required for a list of activities |
 //! | `is_real_time`, `priority` | whether the system's real-time scheduling is wanted for its threads, and how urgent they are then, from 1 to 99; where it is not permitted the log says so, and they run on like others |
-//! | `cores` | the numbers of the cores that its threads may run on, such as `2 3`; any, if it is not said |
-//! | `stats_cycle` | after how many cycles its times are written to the log; 0 for never |
-//! | `workers` | how many threads the activities of its statecharts have in real time; as many as can be active at once, at most twelve, if it is not said |
+//! | `cores` | the numbers of the cores that its threads may run on, such as `2 3`; by default any |
+//! | `stats_cycle` | number of cycles between reports of its times in the log; 0 for none |
+//! | `workers` | number of threads for the activities of its statecharts in real time; by default as many as can be active at once, at most twelve |
 //! | `enable` | `0` leaves it out |
 //! | `on_failure` | what happens when an activity fails: `restart`, `skip`, `stop-agent`, `safe-state` |
 //!
@@ -77,13 +77,13 @@
 //!
 //! | attribute of `link` | means |
 //! |---|---|
-//! | `name` | the name of this end; that of the host if it is not said |
+//! | `name` | the name of this end; by default that of the host |
 //! | `transport` | `local`, sockets of one computer; or `zenoh`, in programs that have it |
-//! | `folder` | of `local`: where the sockets are; `$XDG_RUNTIME_DIR/monas` if it is not said |
+//! | `folder` | of `local`: the folder of the sockets; by default `$XDG_RUNTIME_DIR/monas` |
 //! | `beat` | interval of the link's progress reports; default 200 ms |
 //! | `clock` | the name of the other end whose time the run takes for its own, for processes of one robot; in real time only |
 //! | `access` | a file that lists who may publish what, see [`AccessList`](monas_link::AccessList); default everyone |
-//! | `guests` | `1` lets programs without a link of their own send |
+//! | `guests` | `1` accepts messages of programs without a link |
 //! | `realm`, `scouting`, `shared_memory` | `zenoh` only: the first segment of keys; `1` discovers peers by multicast; `0` keeps large messages out of shared memory |
 //! | `enable` | `0` leaves it out |
 //!

@@ -112,8 +112,7 @@ impl LinkReader<'_> {
         }
         if draft.settings.send.is_empty() && draft.settings.receive.is_empty() {
             let message = "the link neither sends nor receives anything";
-            let hint =
-                "say what crosses it: `<send topics=\"soccer/*\"/>`, `<receive topics=\"soccer/ball\"/>`";
+            let hint = "add topics: `<send topics=\"soccer/*\"/>`, `<receive topics=\"soccer/ball\"/>`";
             self.diagnostics.push(element.error("E0330", element.name_span(), message).with_hint(hint));
         }
     }
@@ -190,7 +189,7 @@ impl LinkReader<'_> {
         let message = format!("`{text}` is no endpoint");
         let hint = match listens {
             true => {
-                "`tcp/127.0.0.1:7447` or `tls/0.0.0.0:7447`; a port alone, such as `7447`, is for this computer only"
+                "`tcp/127.0.0.1:7447` or `tls/0.0.0.0:7447`; a port alone, such as `7447`, is local to this computer"
             }
             false => "`tcp/192.168.1.20:7447` or `tls/robot_2:7447`",
         };
@@ -238,18 +237,18 @@ impl LinkReader<'_> {
         let way = if zenoh { "zenoh" } else { "local" };
         for given in element.attributes() {
             if keys.iter().any(|key| given.is(key)) {
-                let message = format!("`{}` means nothing where the transport is `{way}`", given.name);
+                let message = format!("`{}` has no effect with the transport `{way}`", given.name);
                 let hint = match zenoh {
-                    true => "the sockets of a `folder` are those of `transport=\"local\"`",
-                    false => "other computers are reached with `transport=\"zenoh\"`",
+                    true => "a `folder` is for `transport=\"local\"`",
+                    false => "use `transport=\"zenoh\"` to reach other computers",
                 };
                 self.diagnostics.push(given.name_error("E0335", message).with_hint(hint));
             }
         }
         for child in element.children().iter().filter(|_| !zenoh) {
             if OF_ZENOH.iter().any(|name| child.is(name)) {
-                let message = format!("`<{}>` means nothing where the transport is `local`", child.name());
-                let hint = "other computers are reached with `transport=\"zenoh\"`";
+                let message = format!("`<{}>` has no effect with the transport `local`", child.name());
+                let hint = "use `transport=\"zenoh\"` to reach other computers";
                 self.diagnostics.push(element.error("E0335", child.name_span(), message).with_hint(hint));
             }
         }
@@ -275,7 +274,7 @@ impl LinkReader<'_> {
     ) -> LinkTransport {
         self.lacking_zenoh(element);
         if endpoints.listen.is_empty() && endpoints.connect.is_empty() && !endpoints.scouting {
-            let message = "the link neither listens nor connects, and does not look for others";
+            let message = "the link neither listens nor connects, and discovery is off";
             let hint =
                 "add `<listen>7447</listen>`, `<connect>tcp/192.168.1.20:7447</connect>` or `scouting=\"1\"`";
             self.diagnostics.push(element.error("E0333", element.name_span(), message).with_hint(hint));
@@ -283,16 +282,15 @@ impl LinkReader<'_> {
         let secured = |endpoint: &String| endpoint.starts_with("tls/");
         let is_secured = endpoints.listen.iter().chain(&endpoints.connect).any(secured);
         if is_secured && endpoints.certificates.is_none() {
-            let message = "an endpoint begins with `tls/`, and the link has no certificates";
+            let message = "an endpoint starts with `tls/`, but the link has no certificates";
             let hint =
                 "`<certificates authority=\"team.pem\" certificate=\"robot_1.pem\" key=\"robot_1.key\"/>`";
             self.diagnostics.push(element.error("E0333", element.name_span(), message).with_hint(hint));
         }
         let open = endpoints.listen.iter().chain(&endpoints.connect).find(|endpoint| !secured(endpoint));
         if let (Some(open), Some(_)) = (open, &endpoints.certificates) {
-            let message =
-                format!("the link has certificates, and its endpoint `{open}` does not ask for them");
-            let hint = "endpoints that ask for certificates begin with `tls/`";
+            let message = format!("the link has certificates, but its endpoint `{open}` does not use them");
+            let hint = "endpoints with certificates start with `tls/`";
             self.diagnostics.push(element.error("E0333", element.name_span(), message).with_hint(hint));
         }
         if self.errors() == errors {
@@ -304,8 +302,8 @@ impl LinkReader<'_> {
     /// The program is built without zenoh.
     #[cfg(not(feature = "zenoh"))]
     fn lacking_zenoh(&mut self, element: &Element) {
-        let message = "the transport `zenoh` is not in this program";
-        let hint = "build it with `--features zenoh`; between processes of one computer there is `transport=\"local\"`";
+        let message = "this program was built without the transport `zenoh`";
+        let hint = "build it with `--features zenoh`, or use `transport=\"local\"` on one computer";
         self.diagnostics.push(match element.attribute("transport") {
             Some(given) => given.error("E0337", message).with_hint(hint),
             None => element.error("E0337", element.name_span(), message).with_hint(hint),

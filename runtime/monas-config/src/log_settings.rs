@@ -65,14 +65,11 @@ impl LogSettings {
                 ElementRule::new("message_log_file", "the file of the log")
                     .text("message_log_file", Kind::Text),
             )
-            .root(flag("message_log_cerr", "whether the console shows it too"))
+            .root(flag("message_log_cerr", "whether to log to the console too"))
             .root(flag("message_log_cerr_color", "whether the console has colours"))
             .root(
-                ElementRule::new(
-                    "message_log_filter",
-                    "the activities and agents whose messages are wanted, or `all`",
-                )
-                .text("message_log_filter", Kind::List),
+                ElementRule::new("message_log_filter", "the activities and agents to log, or `all`")
+                    .text("message_log_filter", Kind::List),
             )
             .root(
                 ElementRule::new(
@@ -82,7 +79,7 @@ impl LogSettings {
                 .text("log_file_verbosity_level", verbosity),
             )
             .root(
-                ElementRule::new("message_log_format", "how lines of the file look")
+                ElementRule::new("message_log_format", "the format of lines in the file")
                     .text("message_log_format", Kind::Word(vec!["text", "json"])),
             )
     }

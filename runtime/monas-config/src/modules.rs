@@ -51,7 +51,7 @@ fn module(reader: &mut AgentReader<'_>, element: &Element) -> Option<Module> {
                 element.error("E0316", element.text_span(), format!("no module `{}`", element.text()));
             reader.diagnostics.push(match near {
                 Some(near) => diagnostic.with_hint(format!("did you mean `{near}`?")),
-                None => diagnostic.with_hint("`monas module build` builds modules, and says where they are"),
+                None => diagnostic.with_hint("`monas module build` builds modules and prints their paths"),
             });
             return None;
         }
@@ -78,8 +78,8 @@ fn module(reader: &mut AgentReader<'_>, element: &Element) -> Option<Module> {
 /// Rejects a second module of the same name.
 fn other_of_its_name(reader: &mut AgentReader<'_>, element: &Element, module: Module) -> Option<Module> {
     let Some(other) = reader.registry.module(module.name()) else { return Some(module) };
-    let message = format!("another module is called `{}`: {}", module.name(), other.file().display());
-    let hint = "a module says another name with `monas::module!(name = other_eyes)`";
+    let message = format!("another module has the name `{}`: {}", module.name(), other.file().display());
+    let hint = "change the name of a module by `monas::module!(name = other_eyes)`";
     reader.diagnostics.push(element.error("E0365", element.text_span(), message).with_hint(hint));
     None
 }

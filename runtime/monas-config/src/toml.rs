@@ -28,7 +28,7 @@ pub(crate) fn parse(source: &Arc<Source>, grammar: &Grammar) -> (Vec<Element>, V
     for error in errors {
         let span = error.span().unwrap_or_default();
         let message = format!("not TOML: {}", first_line(error.message()));
-        let hint = "a line is `key = value`, a text stands in quotes: `name = \"Motion\"`";
+        let hint = "a line is `key = value`, texts are quoted: `name = \"Motion\"`";
         reader.report("E0342", span.into(), message, hint);
     }
     let mut elements = Vec::new();
@@ -136,7 +136,7 @@ impl TomlReader<'_> {
                     (None, None) => self.elements(place, value, &mut element.children),
                     _ => {
                         let message = format!("`{}` is an array, expected one value", place.name);
-                        self.report("E0343", span, message, "leave one of them and the brackets out");
+                        self.report("E0343", span, message, "keep one of them, without brackets");
                     }
                 }
             }

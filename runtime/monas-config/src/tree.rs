@@ -118,7 +118,7 @@ fn node<T: FromStr, A: FromStr, K: FromStr + Ord>(
     };
     let attributes = element.attributes().iter().map(|given| {
         let key = given.name.parse().map_err(|_| {
-            let message = format!("the attribute's name `{}` is no {}", given.name, type_name::<K>());
+            let message = format!("the attribute's name `{}` is not {}", given.name, type_name::<K>());
             ValueError::new(given.name_error("E0306", message))
         })?;
         Ok((key, attribute_value(given)?))

@@ -113,7 +113,7 @@ impl XmlConfig {
     pub fn save(&self) -> io::Result<()> {
         if !self.is_loaded && self.path.exists() {
             return Err(io::Error::other(format!(
-                "{} could not be read: it is left alone",
+                "{} could not be read and is not changed",
                 self.path.display()
             )));
         }
@@ -208,7 +208,8 @@ impl XmlConfig {
         match names.find(|name| !lenient_xml::is_name(name)) {
             Some(name) => {
                 let message = format!("`{name}` cannot be the name of an element or attribute");
-                let hint = "a name begins with a letter or `_`; letters, digits, `_`, `-` and `.` follow";
+                let hint =
+                    "a name starts with a letter or `_`, followed by letters, digits, `_`, `-` and `.`";
                 Err(ValueError::new(Diagnostic::error("E0309", 0..0, message).with_hint(hint)))
             }
             None => Ok(()),
@@ -221,7 +222,7 @@ fn check_encodable(text: &str) -> Result<(), ValueError> {
     let is_unsayable = |c: &char| c.is_ascii_control() && !matches!(c, '\t' | '\n' | '\r');
     match text.chars().find(|c| is_unsayable(c) || matches!(c, '\u{fffe}' | '\u{ffff}')) {
         Some(character) => {
-            let message = format!("XML has no way to write the character U+{:04X}", character as u32);
+            let message = format!("XML cannot represent the character U+{:04X}", character as u32);
             Err(ValueError::new(Diagnostic::error("E0309", 0..0, message)))
         }
         None => Ok(()),

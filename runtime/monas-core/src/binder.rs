@@ -230,7 +230,7 @@ fn in_order(
 fn unbound(path: &str, name: &str, span: Span, error: &Error) -> Diagnostic {
     let message = match error.kind() {
         ErrorKind::UnknownActivity => format!("no activity `{name}` is registered for the state `{path}`"),
-        _ => format!("{error}, so the state `{path}` has none"),
+        _ => format!("{error}; the state `{path}` has no activity"),
     };
     let diagnostic = Diagnostic::error("E0318", span, message);
     match error.hint() {

@@ -194,7 +194,7 @@ impl ChartRunner {
     /// Enters the root. The first transitions are those of the first step.
     pub fn start(&mut self, now: Timestamp) {
         self.host.now = now;
-        self.machine.start(yase_moment(now), &mut self.host);
+        self.machine.start(yase_timestamp(now), &mut self.host);
     }
 
     /// Notes a published message; `origin` is the activity of a chart that published it, if any.
@@ -229,7 +229,7 @@ impl ChartRunner {
     /// When the chart next acts by itself: a step, a call of a waiting activity, or the return of a
     /// call.
     pub fn due(&self, now: Timestamp) -> Timestamp {
-        let by_itself = match self.machine.needs_step(yase_moment(now)) {
+        let by_itself = match self.machine.needs_step(yase_timestamp(now)) {
             true => now,
             false => {
                 let deadline = self.machine.next_deadline();
@@ -242,7 +242,7 @@ impl ChartRunner {
     }
 
     fn is_step_due(&self, now: Timestamp) -> bool {
-        self.machine.needs_step(yase_moment(now)) || self.tick() <= now
+        self.machine.needs_step(yase_timestamp(now)) || self.tick() <= now
     }
 
     /// Steps and calls activities until nothing is left to do at this time.
@@ -412,7 +412,7 @@ impl ChartRunner {
     /// The step does not terminate; the machine has stopped.
     pub fn step(&mut self, now: Timestamp) -> Result<(), MachineError> {
         self.host.begin_step(now);
-        let summary = self.machine.run_to_completion(yase_moment(now), &mut self.host)?;
+        let summary = self.machine.run_to_completion(yase_timestamp(now), &mut self.host)?;
         self.micro_steps += u64::from(summary.micro_steps);
         if let (Some(monitors), Some(seen)) = (&mut self.monitors, &self.host.observation) {
             monitors.step(&self.machine, seen, &RootScope(&self.host), now);
@@ -654,6 +654,6 @@ pub fn call_record(activation: Activation) -> records::Call {
     records::Call { node: activation.node.0, number: activation.number }
 }
 
-fn yase_moment(moment: Timestamp) -> yase::Moment {
-    yase::Moment::from_nanos(moment.as_nanos())
+fn yase_timestamp(time: Timestamp) -> yase::Timestamp {
+    yase::Timestamp::from_nanos(time.as_nanos())
 }

@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_frequency_is_brought_within_bounds() {
+    fn invalid_frequencies_are_clamped() {
         for cycles in [-1.0, f64::NAN, f64::NEG_INFINITY] {
             assert_eq!(Hz(cycles).hertz(), Frequency::LOWEST);
         }

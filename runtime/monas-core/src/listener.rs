@@ -61,7 +61,13 @@ impl ListenerSet {
         ListenerSet { shared: (!listeners.is_empty()).then(|| Arc::new(Mutex::new(listeners))) }
     }
 
-    pub(crate) fn tell(&self, host: &str, agent: &str, chart: &CompiledChart, record: &TraceRecord<'_>) {
+    pub(crate) fn micro_step(
+        &self,
+        host: &str,
+        agent: &str,
+        chart: &CompiledChart,
+        record: &TraceRecord<'_>,
+    ) {
         let Some(shared) = &self.shared else { return };
         let mut listeners = shared.lock().unwrap_or_else(PoisonError::into_inner);
         for listener in listeners.iter_mut() {

@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rises_in_each_window_grows_and_is_said_once() {
+    fn memory_that_rises_in_each_window_is_reported_once() {
         assert_eq!(growing(|call| 100 * call, 1000), (true, 1));
         assert_eq!(growing(|call| 100 * call, 200), (false, 0), "that may be a history that fills");
         assert_eq!(
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_not_counted() {
+    fn mismatches_are_not_counted() {
         let account = Account::default();
         let owner = account.open();
         let same_row: Vec<usize> =

@@ -203,7 +203,7 @@ impl PropertyViolation {
         let property = &self.property;
         match self.is_lost {
             true => {
-                tracing::warn!(%robot, %agent, cycle, %property, "property is followed no more at {now}: too much of it is open")
+                tracing::warn!(%robot, %agent, cycle, %property, "property is no longer monitored at {now}: too many open obligations")
             }
             false => tracing::error!(%robot, %agent, cycle, %property, "property violated at {now}"),
         }
@@ -242,11 +242,9 @@ fn one(
         |guard: &Guard| guard.sources().iter().any(|it| it.origin != yase::expression::Origin::Own);
     if guards.iter().flatten().any(is_foreign) {
         let message =
-            format!("the property `{}` reads what a certain host or activity publishes", property.name);
+            format!("the property `{}` reads the message of a specific host or activity", property.name);
         let wrong = Diagnostic::error("E0325", property.formula.span(), message);
-        return Err(vec![
-            wrong.with_hint("a property reads messages of its own host, whoever publishes them"),
-        ]);
+        return Err(vec![wrong.with_hint("a property reads messages of its own host from any publisher")]);
     }
     Ok(MonitoredProperty {
         monitor: Monitor::new(plan),
@@ -278,11 +276,10 @@ fn evaluate_step(
 
 /// A diagnostic if the agent does not have exactly one chart.
 pub fn needs_one_chart(agent: &str, charts: usize) -> Option<Diagnostic> {
-    let message =
-        format!("agent `{agent}` has {charts} statecharts: nobody knows whose properties these are");
+    let message = format!("agent `{agent}` has {charts} statecharts: the properties are ambiguous");
     let hint = match charts {
         0 => "give the properties to an agent with a statechart",
-        _ => "put the `monitor` into the `statechart` that is to keep to it",
+        _ => "put the `monitor` into one `statechart`",
     };
     (charts != 1).then(|| Diagnostic::error("E0324", Span::default(), message).with_hint(hint))
 }

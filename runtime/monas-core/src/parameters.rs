@@ -157,7 +157,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_asked_for_in_the_right_form_is_no_fault() {
+    fn correct_usage_is_no_error() {
         let parameters =
             Parameters::new().with("speed", "0.3").with("far", "1").with("name", "x").with("wait", "2s");
         assert_eq!(parameters.number("speed"), Some(0.3));

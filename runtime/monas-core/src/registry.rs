@@ -164,7 +164,8 @@ impl Registry {
             if let Some((taken, _)) = makers.and_then(<[_]>::first) {
                 let message =
                     format!("activity `{}` of module `{}` is also in {taken}", activity.name, module.name());
-                let hint = format!("call it otherwise: `monas::activity!(.. as \"Other{}\")`", activity.name);
+                let hint =
+                    format!("give it another name: `monas::activity!(.. as \"Other{}\")`", activity.name);
                 return Err(Error::new(ErrorKind::Module, message).with_hint(hint));
             }
             let made = *activity;
@@ -378,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_registered_is_linked() {
+    fn registered_activities_are_linked() {
         let registry = Registry::linked();
         assert!(registry.activity_names().any(|name| name == "RegistryTestStand"));
         for name in ["abs", "max", "min"] {
@@ -388,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn what_expressions_know_by_themselves_needs_no_registry() {
+    fn built_in_functions_need_no_registry() {
         let names: Vec<String> = Registry::empty().function_names().map(String::from).collect();
         assert_eq!(names, ["abs", "max", "min"]);
         let role = "Liveness:\nr = a | b\nConstants:\nnear = 0.3\nTransitions:\nCONDITION -> a : [abs(0 - near) < max(1, 2)]\n";
@@ -398,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_name_comes_with_the_nearest() {
+    fn an_unknown_name_is_reported_with_the_nearest() {
         let error = of_two_crates().activity("Kik").err().unwrap();
         assert_eq!((error.kind(), error.hint()), (ErrorKind::UnknownActivity, Some("did you mean `Kick`?")));
         assert_eq!(error.to_string(), "unknown activity `Kik`");

@@ -118,7 +118,7 @@ impl ScenarioRunner {
         chart.compile(&self.vocabulary).map(Arc::new)
     }
 
-    /// Executes the steps of a scenario and returns the deviations of the chart. `told` is called
+    /// Executes the steps of a scenario and returns the deviations of the chart. Calls `observe`
     /// after each step with its result. An impossible stimulus, such as the return of an activity
     /// that is not running, ends the execution.
     ///
@@ -131,9 +131,9 @@ impl ScenarioRunner {
         &self,
         chart: &Arc<CompiledChart>,
         steps: &[ScenarioStep],
-        told: impl FnMut(StepResult<'_>),
+        observe: impl FnMut(StepResult<'_>),
     ) -> Result<Vec<ScenarioDifference>, Error> {
-        scenario_run::ScenarioRun::new(chart, &self.functions, true)?.all(steps, told)
+        scenario_run::ScenarioRun::new(chart, &self.functions, true)?.all(steps, observe)
     }
 
     /// The first deviation from a scenario, if any. Faster than [`play`](Self::play), since nothing

@@ -24,7 +24,7 @@ pub struct HostPublishers<'a> {
 pub fn out_of_reach(chart: &CompiledChart, reach: &HostPublishers<'_>) -> Vec<Diagnostic> {
     let model = &chart.statechart().name;
     let own = reach.hub.host();
-    let told = chart.sources().filter_map(|source| {
+    let warnings = chart.sources().filter_map(|source| {
         let (host, publisher) = meant(&source.origin);
         let slot = TopicSlot::new(source.topic.0);
         let topic = reach.hub.declaration(slot).map_or("?", |topic| topic.path());
@@ -37,7 +37,7 @@ pub fn out_of_reach(chart: &CompiledChart, reach: &HostPublishers<'_>) -> Vec<Di
             _ => None,
         }
     });
-    told.collect()
+    warnings.collect()
 }
 
 impl HostPublishers<'_> {
@@ -57,15 +57,15 @@ fn meant(origin: &Origin) -> (Option<&str>, Option<&str>) {
 }
 
 fn of_host(said: &str, topic: &str, host: &str, own: &str) -> Diagnostic {
-    let message = format!("{said} of the host `{host}`, of which nothing arrives on `{own}`");
+    let message = format!("{said} of the host `{host}`, whose messages do not reach `{own}`");
     let hint = format!(
-        "a link brings it: `<receive topics=\"{topic}\"/>`; without a host in front the chart's own is meant"
+        "add a link: `<receive topics=\"{topic}\"/>`, or remove the host to read the chart's own messages"
     );
     Diagnostic::error("E0320", Span::default(), message).with_hint(hint)
 }
 
 fn of_publisher(said: &str, name: &str, own: &str, publishers: &[String]) -> Diagnostic {
-    let message = format!("{said} of `{name}`, but nobody publishes under that name on `{own}`");
+    let message = format!("{said} of `{name}`, but `{own}` has no publisher of that name");
     let known: Vec<String> = publishers.iter().map(|name| format!("`{name}`")).collect();
     Diagnostic::error("E0321", Span::default(), message)
         .with_hint(format!("agents publish under their own names: {}", known.join(", ")))

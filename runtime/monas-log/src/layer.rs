@@ -146,7 +146,9 @@ impl LoggerShared {
         let dropped = queue.take_dropped();
         if dropped > 0 {
             outputs.add(
-                &Record::of_logger(format_args!("{dropped} messages were dropped here: they came too fast")),
+                &Record::of_logger(format_args!(
+                    "{dropped} messages were dropped here: the rate was too high"
+                )),
                 batch,
             );
         }

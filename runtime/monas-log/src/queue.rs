@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_there_is_no_record_for_is_dropped_and_counted() {
+    fn log_lines_without_a_free_record_are_dropped_and_counted() {
         let queue = RecordQueue::new();
         (0..RECORDS + 3).for_each(|number| {
             queue.put(|record| {
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_comes_after_all_that_was_left() {
+    fn the_end_follows_all_remaining_messages() {
         let queue = RecordQueue::new();
         queue.put(|_| true);
         queue.end();

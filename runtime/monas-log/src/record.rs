@@ -188,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_too_long_is_cut_between_letters_and_marked_and_takes_no_memory() {
+    fn long_lines_are_truncated_at_characters_without_allocation() {
         let mut text = BoundedText::of(7);
         let memory = text.text.capacity();
         text.append(format_args!("{}{}", "naïve", "té and more"));

@@ -28,7 +28,7 @@ impl ModuleFile {
         check_topics(&topics, name)?;
         if activities.is_empty() {
             let message = format!("module `{name}` has no activity");
-            let hint = "`monas::activity!(Name)` beside a type or function makes it one";
+            let hint = "register one by `monas::activity!(Name)`";
             return Err(vec![Diagnostic::error("E0364", 0..0, message).with_hint(hint)]);
         }
         Ok(Module::new(&self.path, self.digest(), self.note().clone(), activities))
@@ -44,7 +44,7 @@ fn enter(bytes: &[u8], name: &str) -> Result<&'static ModuleAbi, LoadError> {
 
     let refused = |reason: String| {
         let message = format!("module `{name}` cannot be loaded: {reason}");
-        let hint = "its copy lies in the folder for temporary files, which TMPDIR names, and has to be allowed to run there";
+        let hint = "its copy is in the folder for temporary files (TMPDIR), which must permit execution";
         vec![Diagnostic::error("E0362", 0..0, message).with_hint(hint)]
     };
     let copy = tempfile::Builder::new().prefix(&format!("{name}-")).suffix(".so").tempfile();
@@ -64,12 +64,12 @@ fn enter(bytes: &[u8], name: &str) -> Result<&'static ModuleAbi, LoadError> {
     std::mem::forget(library);
     // SAFETY: the pointer refers to the mapping, which is never removed. The version is the first
     // field and is checked before the others are used.
-    unsafe { gate.as_ref() }.ok_or_else(|| refused("its gate is nowhere".into()))
+    unsafe { gate.as_ref() }.ok_or_else(|| refused("it has no module interface".into()))
 }
 
 #[cfg(not(target_os = "linux"))]
 fn enter(_: &[u8], name: &str) -> Result<&'static ModuleAbi, LoadError> {
-    let message = format!("module `{name}` cannot be loaded: that is for Linux only");
+    let message = format!("module `{name}` cannot be loaded: modules need Linux");
     let hint = "link its crate into the program: `use its_name as _;`";
     Err(vec![Diagnostic::error("E0362", 0..0, message).with_hint(hint)])
 }
@@ -80,14 +80,14 @@ fn check_compatibility(gate: &ModuleAbi, name: &str) -> Result<(), LoadError> {
     if gate.version != module_abi::VERSION {
         let (found, expected) = (gate.version, module_abi::VERSION);
         return Err(vec![error(format!(
-            "module `{name}` talks to programs in way {found}, this one in way {expected}"
+            "module `{name}` has interface version {found}, this program {expected}"
         ))]);
     }
     let own = module_abi::fingerprints();
     let mut found = vec![0; own.len()];
     let count = (gate.fingerprints)(found.as_mut_ptr(), found.len());
     if count != own.len() {
-        return Err(vec![error(format!("module `{name}` names {count} types, this program {}", own.len()))]);
+        return Err(vec![error(format!("module `{name}` has {count} types, this program {}", own.len()))]);
     }
     let differing: Vec<Diagnostic> = own
         .iter()
@@ -108,7 +108,7 @@ fn open(gate: &ModuleAbi, name: &str) -> Result<ModuleContents, LoadError> {
     let reason = match handed {
         Some(Ok(contents)) => return Ok(contents),
         Some(Err(reason)) => reason,
-        None => "it hands nothing over".into(),
+        None => "it exports nothing".into(),
     };
     Err(vec![Diagnostic::error("E0364", 0..0, format!("module `{name}` cannot be opened: {reason}"))])
 }
@@ -117,8 +117,8 @@ fn open(gate: &ModuleAbi, name: &str) -> Result<ModuleContents, LoadError> {
 fn check_topics(topics: &[TopicDeclaration], name: &str) -> Result<(), LoadError> {
     let known = |topic: &&TopicDeclaration| !TOPICS.iter().any(|known| known.path() == topic.path());
     let unknown = topics.iter().filter(known).map(|topic| {
-        let message = format!("module `{name}` has the topic `{}`, which this program has not", topic.path());
-        let hint = "topics are those of the program: have the program link the crate that declares it";
+        let message = format!("module `{name}` has the topic `{}`, which this program lacks", topic.path());
+        let hint = "link the crate that declares the topic into the program";
         Diagnostic::error("E0364", 0..0, message).with_hint(hint)
     });
     let unknown: LoadError = unknown.collect();
@@ -173,8 +173,8 @@ mod tests {
     #[test]
     fn another_type_is_refused_by_its_name() {
         let gate = ModuleAbi { fingerprints: other_types, ..ModuleAbi::new(silent) };
-        let expected = "error[E0363]: module `eyes` was built with another `narukom::Moment` than this program \
-                        (`monas module build` builds it as this program is built)";
+        let expected = "error[E0363]: module `eyes` was built with another `narukom::Timestamp` than this program \
+                        (build it like this program by `monas module build`)";
         assert_eq!(codes(check_compatibility(&gate, "eyes")), [expected]);
         assert_eq!(codes(check_compatibility(&ModuleAbi::new(silent), "eyes")), [""; 0]);
     }
@@ -182,14 +182,14 @@ mod tests {
     #[test]
     fn another_way_to_talk_is_refused_before_anything_is_called() {
         let gate = ModuleAbi { version: 9, fingerprints: few_types, ..ModuleAbi::new(silent) };
-        assert!(codes(check_compatibility(&gate, "eyes"))[0].contains("way 9, this one in way 1"));
+        assert!(codes(check_compatibility(&gate, "eyes"))[0].contains("interface version 9, this program 1"));
         let gate = ModuleAbi { fingerprints: few_types, ..ModuleAbi::new(silent) };
-        assert!(codes(check_compatibility(&gate, "eyes"))[0].contains("names 2 types, this program 8"));
+        assert!(codes(check_compatibility(&gate, "eyes"))[0].contains("has 2 types, this program 8"));
     }
 
     #[test]
     fn a_module_that_hands_nothing_over_is_refused() {
-        assert!(codes(open(&ModuleAbi::new(silent), "eyes"))[0].contains("it hands nothing over"));
+        assert!(codes(open(&ModuleAbi::new(silent), "eyes"))[0].contains("it exports nothing"));
         assert!(open(&ModuleAbi::new(opens), "eyes").is_ok_and(|contents| !contents.activities.is_empty()));
     }
 
@@ -198,14 +198,14 @@ mod tests {
         use narukom::State;
         let topic = TopicDeclaration::new::<State<monas_core::records::Change>>;
         let unknown = codes(check_topics(&[topic("eyes/seen", "eyes")], "eyes"));
-        assert!(unknown[0].contains("the topic `eyes/seen`, which this program has not"), "{unknown:?}");
+        assert!(unknown[0].contains("the topic `eyes/seen`, which this program lacks"), "{unknown:?}");
         let other = codes(check_topics(&[topic("monas/host", "eyes")], "eyes"));
         assert!(other[0].contains("declared with two message types"), "{other:?}");
         assert_eq!(codes(check_topics(&TOPICS, "eyes")), [""; 0]);
     }
 
     #[test]
-    fn what_the_system_does_not_take_is_refused_with_its_reason() {
+    fn settings_rejected_by_the_system_have_a_reason() {
         let refused = codes(enter(b"no library", "eyes").map(|_| ()));
         assert!(refused[0].starts_with("error[E0362]: module `eyes` cannot be loaded: "), "{refused:?}");
     }

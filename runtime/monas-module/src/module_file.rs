@@ -13,7 +13,7 @@ use monas_core::module::note::{self, BuildFingerprint, FingerprintMismatch};
 const MOST: u64 = 1 << 30;
 
 /// How to build a compatible module.
-pub(crate) const HINT: &str = "`monas module build` builds it as this program is built";
+pub(crate) const HINT: &str = "build it like this program by `monas module build`";
 
 /// The bytes of a module and the note in them.
 #[derive(Clone)]
@@ -103,7 +103,7 @@ fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
 
 fn unread(path: &Path, reason: &str) -> Vec<Diagnostic> {
     let message = format!("{}: {reason}", path.display());
-    vec![Diagnostic::error("E0360", 0..0, message).with_hint("a module is what `monas module build` writes")]
+    vec![Diagnostic::error("E0360", 0..0, message).with_hint("modules are written by `monas module build`")]
 }
 
 fn damaged(path: &Path, reason: &str) -> Vec<Diagnostic> {
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_note_of_monas_is_refused_with_its_reason() {
+    fn a_library_without_a_fingerprint_is_rejected() {
         for (bytes, reason) in [
             (elf(".note.other", &note()), "it has no note"),
             (elf(note::SECTION, b"short"), "its note is cut off"),
@@ -239,7 +239,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn whatever_the_bytes_are_reading_them_ends_well(bytes in prop::collection::vec(any::<u8>(), 0..4096)) {
+        fn arbitrary_bytes_are_parsed_without_panic(bytes in prop::collection::vec(any::<u8>(), 0..4096)) {
             let _ = read_fingerprint(&bytes);
             for is_little in [true, false] {
                 let _ = note::text_in(&bytes, is_little);

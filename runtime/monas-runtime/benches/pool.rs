@@ -33,12 +33,12 @@ fn main() {
     // Under `cargo test` every benchmark runs once, without output.
     if std::env::args().any(|argument| argument == "--bench") {
         println!("one interleaved run; median (least to most)");
-        tell_round_trips("at once", None);
-        tell_round_trips("after a rest of 500 us", Some(Duration::from_micros(500)));
-        tell_activities("on all cores");
-        on_one_core(|| tell_activities("on one core"));
-        tell_regions();
-        tell_idle();
+        report_round_trips("at once", None);
+        report_round_trips("after a rest of 500 us", Some(Duration::from_micros(500)));
+        report_activities("on all cores");
+        on_one_core(|| report_activities("on one core"));
+        report_regions();
+        report_idle();
     }
     divan::main();
 }
@@ -57,7 +57,7 @@ fn channel_and_back(bencher: Bencher<'_, '_>) {
 
 #[divan::bench(args = [1, 3], sample_count = 20, sample_size = 1)]
 fn activities(bencher: Bencher<'_, '_>, regions: usize) {
-    let looping = Looping::new(regions);
+    let looping = LoopingAgent::new(regions);
     bencher.counter(ItemsCount::new(BATCH)).bench_local(|| looping.batch());
 }
 
@@ -90,7 +90,7 @@ impl Drop for Channels {
 }
 
 /// An agent whose regions call an empty activity repeatedly.
-struct Looping {
+struct LoopingAgent {
     /// Receives the time after each batch of calls.
     batches: Receiver<Instant>,
     running: RealTimeRun,
@@ -107,15 +107,15 @@ fn count(calls: &AtomicU64, batches: &Sender<Instant>) {
     }
 }
 
-impl Looping {
-    fn new(regions: usize) -> Looping {
+impl LoopingAgent {
+    fn new(regions: usize) -> LoopingAgent {
         let (sender, batches) = channel();
         let calls = Arc::new(AtomicU64::new(0));
         let registry = Registry::empty().with("A", move || {
             let (sender, calls) = (sender.clone(), calls.clone());
             move |_: &mut Blackboard| count(&calls, &sender)
         });
-        let looping = Looping {
+        let looping = LoopingAgent {
             batches,
             running: start(registry, &format!("m = {}", ["A~"].repeat(regions).join(" || "))),
         };
@@ -135,15 +135,15 @@ fn start(registry: Registry, formula: &str) -> RealTimeRun {
 }
 
 /// Samples, in seconds or another unit.
-struct Figures(Vec<f64>);
+struct Samples(Vec<f64>);
 
-impl Figures {
+impl Samples {
     fn median(&mut self) -> f64 {
         self.0.sort_by(f64::total_cmp);
         self.0[self.0.len() / 2]
     }
 
-    fn told(&mut self, scale: f64) -> String {
+    fn text(&mut self, scale: f64) -> String {
         let median = self.median();
         let (least, most) = (self.0[0], self.0[self.0.len() - 1]);
         format!("{:.2} ({:.2} to {:.2})", median * scale, least * scale, most * scale)
@@ -167,10 +167,10 @@ fn seconds_a_call(calls: u32, rest: Option<Duration>, mut call: impl FnMut()) ->
     taken.as_secs_f64() / f64::from(calls)
 }
 
-fn tell_round_trips(when: &str, rest: Option<Duration>) {
+fn report_round_trips(when: &str, rest: Option<Duration>) {
     let (mut pool, mut channels) = (RoundTrip::new().unwrap(), Channels::new());
     let calls = if rest.is_some() { 200 } else { 5_000 };
-    let (mut ours, mut theirs, mut ratios) = (Figures(vec![]), Figures(vec![]), Figures(vec![]));
+    let (mut ours, mut theirs, mut ratios) = (Samples(vec![]), Samples(vec![]), Samples(vec![]));
     for _ in 0..15 {
         let our = seconds_a_call(calls, rest, || pool.call().unwrap());
         let their = seconds_a_call(calls, rest, || channels.call());
@@ -178,8 +178,8 @@ fn tell_round_trips(when: &str, rest: Option<Duration>) {
         theirs.0.push(their);
         ratios.0.push(our / their);
     }
-    println!("round trip {when}, us: pool {}, crossbeam {}", ours.told(1e6), theirs.told(1e6));
-    println!("    pool to crossbeam {}", ratios.told(1.0));
+    println!("round trip {when}, us: pool {}, crossbeam {}", ours.text(1e6), theirs.text(1e6));
+    println!("    pool to crossbeam {}", ratios.text(1.0));
 }
 
 /// A hand-written pool without a chart: jobs and results behind a mutex and a condition variable
@@ -267,22 +267,22 @@ fn rates(batches: &Receiver<Instant>) -> Vec<f64> {
     (0..5).map(rate).collect()
 }
 
-fn tell_activities(where_: &str) {
+fn report_activities(where_: &str) {
     for regions in [1, 3] {
-        let (mut ours, mut theirs, mut ratios) = (Figures(vec![]), Figures(vec![]), Figures(vec![]));
+        let (mut ours, mut theirs, mut ratios) = (Samples(vec![]), Samples(vec![]), Samples(vec![]));
         for _ in 0..9 {
             let by_hand = ByHand::new(regions);
-            let mut their = Figures(rates(&by_hand.batches));
+            let mut their = Samples(rates(&by_hand.batches));
             by_hand.stop();
-            let looping = Looping::new(regions);
-            let mut our = Figures(rates(&looping.batches));
+            let looping = LoopingAgent::new(regions);
+            let mut our = Samples(rates(&looping.batches));
             looping.running.stop();
             ratios.0.push(our.median() / their.median());
             ours.0.append(&mut our.0);
             theirs.0.append(&mut their.0);
         }
-        println!("thousands of activities a second in {regions} regions, {where_}: {}", ours.told(1e-3));
-        println!("    by hand without a chart {}, pool to it {}", theirs.told(1e-3), ratios.told(1.0));
+        println!("thousands of activities a second in {regions} regions, {where_}: {}", ours.text(1e-3));
+        println!("    by hand without a chart {}, pool to it {}", theirs.text(1e-3), ratios.text(1.0));
     }
 }
 
@@ -326,12 +326,12 @@ fn hundred_milliseconds() -> u64 {
 }
 
 /// Start and end of a call.
-type Told = (Instant, Instant);
+type CallTimes = (Instant, Instant);
 
-fn tell_regions() {
+fn report_regions() {
     let rounds = hundred_milliseconds();
     let violations = Arc::new(AtomicU64::new(0));
-    let (mut after, mut beside, mut ratios) = (Figures(vec![]), Figures(vec![]), Figures(vec![]));
+    let (mut after, mut beside, mut ratios) = (Samples(vec![]), Samples(vec![]), Samples(vec![]));
     for _ in 0..5 {
         let one_by_one = three_works("m = A . B . C", rounds, &violations);
         let together = three_works("m = A || B || C", rounds, &violations);
@@ -341,35 +341,35 @@ fn tell_regions() {
     }
     println!(
         "three works of about 100 ms, ms: one after the other {}, in three regions {}",
-        after.told(1e3),
-        beside.told(1e3)
+        after.text(1e3),
+        beside.text(1e3)
     );
     println!(
         "    regions to sequence {}, lock violations {}",
-        ratios.told(1.0),
+        ratios.text(1.0),
         violations.load(Ordering::SeqCst)
     );
 }
 
 /// Duration of three units of work, from the start of the first to the end of the last.
 fn three_works(formula: &str, rounds: u64, violations: &Arc<AtomicU64>) -> f64 {
-    let (sender, told) = channel();
+    let (sender, times) = channel();
     let registry = ["A", "B", "C"].into_iter().fold(Registry::empty(), |registry, name| {
         let (sender, violations) = (sender.clone(), violations.clone());
         let inside = Arc::new(AtomicBool::new(false));
         registry.with(name, move || worker(rounds, sender.clone(), inside.clone(), violations.clone()))
     });
     let running = start(registry, formula);
-    let told: Vec<Told> = (0..3).map(|_| told.recv().unwrap()).collect();
+    let times: Vec<CallTimes> = (0..3).map(|_| times.recv().unwrap()).collect();
     running.stop();
-    let began = told.iter().map(|(began, _)| *began).min().unwrap();
-    let ended = told.iter().map(|(_, ended)| *ended).max().unwrap();
+    let began = times.iter().map(|(began, _)| *began).min().unwrap();
+    let ended = times.iter().map(|(_, ended)| *ended).max().unwrap();
     (ended - began).as_secs_f64()
 }
 
 fn worker(
     rounds: u64,
-    sender: Sender<Told>,
+    sender: Sender<CallTimes>,
     inside: Arc<AtomicBool>,
     violations: Arc<AtomicU64>,
 ) -> impl FnMut(&mut Blackboard) -> Result<(), BoxError> + Send {
@@ -383,7 +383,7 @@ fn worker(
 }
 
 /// Prints the CPU time of a chart in which all activities wait, where the system provides it.
-fn tell_idle() {
+fn report_idle() {
     let (sender, called) = channel();
     let registry = Registry::empty().with("A", move || {
         let sender = sender.clone();
@@ -397,7 +397,7 @@ fn tell_idle() {
     // All threads sleep by then.
     let _ = called.recv_timeout(Duration::from_millis(100));
     let (Some(before), began) = (processor_ticks(), Instant::now()) else {
-        return println!("an idle chart: this system does not tell what it costs");
+        return println!("an idle chart: this system does not provide the processor time");
     };
     let _ = called.recv_timeout(Duration::from_secs(3));
     let ticks = processor_ticks().unwrap_or(before) - before;

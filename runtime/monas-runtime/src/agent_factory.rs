@@ -86,7 +86,7 @@ impl AgentFactory {
         let Agent { name, policy, frequency, activities, charts, compiled, own, .. } = agent;
         let (mut generated, semantics) = (agent.generated, agent.semantics);
         if frequency.is_none() && !activities.is_empty() {
-            let message = format!("agent `{name}` has activities, but nothing says how often they run");
+            let message = format!("agent `{name}` has activities but no frequency");
             return Err(Error::new(ErrorKind::NoFrequency, message).with_hint("say so with `every`"));
         }
         let place = ChartSite { context: ground, names, agent: &name, elsewhere: &agent.elsewhere, now };
@@ -110,7 +110,7 @@ impl AgentFactory {
         let part = part(count);
         let list =
             (!activities.is_empty()).then(|| self.list((&name, part), policy, activities, &ground.hub));
-        let teller = CycleRecorder::new(&ground.hub, &name)?;
+        let recorder = CycleRecorder::new(&ground.hub, &name)?;
         Ok(PreparedAgent {
             policy,
             frequency,
@@ -124,7 +124,7 @@ impl AgentFactory {
             stuck_after: agent.stuck_after,
             list,
             charts,
-            recorder: teller,
+            recorder,
             name,
         })
     }

@@ -47,21 +47,12 @@ struct ScheduledList {
 impl AgentInstance {
     /// Takes over an agent and starts its charts.
     pub(crate) fn new(member: PreparedAgent, now: Timestamp) -> AgentInstance {
-        let PreparedAgent { name, policy, frequency, list, charts, recorder: teller, .. } = member;
+        let PreparedAgent { name, policy, frequency, list, charts, recorder, .. } = member;
         let list = list.zip(frequency).map(|(list, frequency)| ScheduledList::new(list, frequency, now));
         let defaults = AgentDefaults { frequency, policy, ..AgentDefaults::default() };
         let start = |runner| SimulatedChart::new(runner, defaults.clone(), now);
         let charts = charts.into_iter().map(start).collect();
-        AgentInstance {
-            name,
-            policy,
-            frequency,
-            list,
-            charts,
-            recorder: teller,
-            pauses: false,
-            stopped: None,
-        }
+        AgentInstance { name, policy, frequency, list, charts, recorder, pauses: false, stopped: None }
     }
 
     pub(crate) fn has_list(&self) -> bool {
@@ -341,10 +332,10 @@ impl ScheduledList {
         }
     }
 
-    fn cycle(&mut self, now: Timestamp, teller: &mut CycleRecorder) -> CycleOutcome {
+    fn cycle(&mut self, now: Timestamp, recorder: &mut CycleRecorder) -> CycleOutcome {
         self.next += 1;
         self.list.begin(now);
-        teller.record(now, Delivery::all(self.list.blackboard(), 0));
+        recorder.record(now, Delivery::all(self.list.blackboard(), 0));
         self.list.cycle(now, None)
     }
 }
@@ -375,8 +366,7 @@ impl ChartDriver for SimulatedDriver<'_> {
         self.calls.count += 1;
         if self.calls.count > MAX_CALLS {
             let activity = call.name();
-            let reason =
-                format!("activity `{activity}` is called at one moment after {MAX_CALLS} other calls");
+            let reason = format!("activity `{activity}` is called more than {MAX_CALLS} times at one time");
             return Dispatch::Refused(Some(call), reason);
         }
         let until = now + call.duration;

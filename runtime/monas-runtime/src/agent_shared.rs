@@ -166,9 +166,9 @@ impl AgentShared {
 
     /// Notifies the supervisor that a thread has nothing left to do. An agent or a chart that was
     /// stopped by command may be started again, so it does not count as finished.
-    pub(crate) fn mark_finished(&self, part: &ThreadShared, was_told: bool) {
-        let was_told = was_told || self.reason().as_deref() == Some(STOPPED_BY_REQUEST);
-        if !part.is_over.swap(true, Ordering::SeqCst) && !was_told {
+    pub(crate) fn mark_finished(&self, part: &ThreadShared, was_requested: bool) {
+        let was_requested = was_requested || self.reason().as_deref() == Some(STOPPED_BY_REQUEST);
+        if !part.is_over.swap(true, Ordering::SeqCst) && !was_requested {
             // Without a supervisor the run has ended.
             let _ = self.supervisor.send(SupervisorRequest::ThreadFinished);
         }
@@ -288,7 +288,7 @@ impl AgentShared {
         let Some((part, WatchedCall { since, cycle, activity, .. })) = stuck else {
             if self.is_stuck.swap(false, Ordering::SeqCst) {
                 *locked(&self.stuck) = None;
-                tracing::warn!(agent = %self.name, "is stuck no more");
+                tracing::warn!(agent = %self.name, "is no longer stuck");
             }
             return false;
         };
@@ -345,8 +345,9 @@ impl AgentShared {
         let part = locked(&self.parts).charts.get(place).cloned();
         let part = part.ok_or_else(|| format!("`{}` has no such statechart", self.name))?;
         let (_, answered) = part.enqueue(AgentUpdate { look: true, ..AgentUpdate::default() });
-        let told = answered.recv_timeout(patience).map_err(|_| format!("`{}` does not answer", self.name))?;
-        told.map_err(|reasons| reasons.join("; "))
+        let answer =
+            answered.recv_timeout(patience).map_err(|_| format!("`{}` does not answer", self.name))?;
+        answer.map_err(|reasons| reasons.join("; "))
     }
 
     /// Sends every thread its share of the update, and waits until all have applied it.
@@ -370,13 +371,13 @@ impl AgentShared {
                 Ok(answer) => said.extend(answer?),
                 Err(RecvTimeoutError::Disconnected) => return Err(vec!["the run has ended".into()]),
                 Err(RecvTimeoutError::Timeout) if is_own && part.withdraw(number) => {
-                    return Err(vec![format!(
-                        "`{}` is in the middle of a cycle that does not end",
-                        self.name
-                    )]);
+                    return Err(vec![format!("`{}` is in a cycle that does not end", self.name)]);
                 }
                 Err(RecvTimeoutError::Timeout) => {
-                    said.push(format!("`{}` follows when its cycle, which takes long, has ended", self.name));
+                    said.push(format!(
+                        "`{}` applies the change after its current cycle, which takes long",
+                        self.name
+                    ));
                 }
             }
         }

@@ -131,7 +131,7 @@ impl Default for ChartStatus {
 }
 
 /// Stop reason of an agent that was stopped by a command.
-pub(crate) const STOPPED_BY_REQUEST: &str = "it was told to";
+pub(crate) const STOPPED_BY_REQUEST: &str = "by request";
 
 impl AgentUpdate {
     /// An update that consists of commands only.
@@ -153,7 +153,7 @@ impl AgentUpdate {
             change: asked,
             ..
         } = self;
-        let told = |place: Option<usize>| {
+        let chart_update = |place: Option<usize>| {
             let is_meant = only.is_none() || place == only;
             let directives = if is_meant { directives.clone() } else { Vec::new() };
             let is_chart = place.is_some() && is_meant;
@@ -163,7 +163,11 @@ impl AgentUpdate {
         let mut shares = Vec::new();
         if has_list {
             let is_own = !edits.is_empty();
-            shares.push(ThreadUpdate { place: None, update: AgentUpdate { edits, ..told(None) }, is_own });
+            shares.push(ThreadUpdate {
+                place: None,
+                update: AgentUpdate { edits, ..chart_update(None) },
+                is_own,
+            });
         }
         let (mut runners, mut swap, mut own, mut instances) = (runners.into_iter(), swap, own, instances);
         for place in 0..charts {
@@ -173,8 +177,13 @@ impl AgentUpdate {
             let is_own = swap.is_some() || own.is_some() || !fresh.is_empty();
             let is_meant = only.is_none_or(|only| only == place);
             let charts = if is_meant { runners.next().into_iter().collect() } else { Vec::new() };
-            let orders =
-                AgentUpdate { charts, swap, chart_settings: own, instances: fresh, ..told(Some(place)) };
+            let orders = AgentUpdate {
+                charts,
+                swap,
+                chart_settings: own,
+                instances: fresh,
+                ..chart_update(Some(place))
+            };
             shares.push(ThreadUpdate { place: Some(place), update: orders, is_own });
         }
         shares.retain(|ThreadUpdate { update: orders, is_own, .. }| {

@@ -32,7 +32,7 @@ pub(crate) struct RunClock {
 
 impl RunClock {
     /// A clock that starts now.
-    #[expect(clippy::disallowed_methods, reason = "the runtime is who hands time in")]
+    #[expect(clippy::disallowed_methods, reason = "the runtime supplies the time")]
     pub(crate) fn start() -> RunClock {
         RunClock { start: Instant::now(), begin: Timestamp::ZERO }
     }

@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn what_runs_freely_is_always_due_and_never_late() {
+    fn free_running_agents_are_always_due_and_never_late() {
         let mut deadlines = Deadlines::new(Hz(0), at(0));
         assert_eq!((deadlines.next(), deadlines.ended(at(500)), deadlines.next()), (at(0), None, at(0)));
         assert_eq!((deadlines.overruns(), deadlines.missed()), (0, 0));

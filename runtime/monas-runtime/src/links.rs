@@ -100,8 +100,8 @@ pub(crate) fn time_of_other(hub: &Hub, config: &LinkConfig, other: &str) -> Resu
         }
         waiting.wait_until(own.now() + LOOK, &own);
     }
-    let message = format!("the link `{}` of `{}` does not learn the time of `{other}`", link.name, link.host);
-    let hint = "is that run there, and does its link send or receive anything of this one?";
+    let message = format!("the link `{}` of `{}` has no clock of `{other}`", link.name, link.host);
+    let hint = "is that run active, and does its link exchange topics with this one?";
     Err(Error::new(ErrorKind::Link, message).with_hint(hint))
 }
 
@@ -127,13 +127,11 @@ impl ResolvedTransport {
                 Err(error) => refused(&error.to_string()),
             },
             #[cfg(not(unix))]
-            LinkTransport::Local { .. } => refused("local sockets are those of Unix"),
+            LinkTransport::Local { .. } => refused("local sockets need Unix"),
             #[cfg(feature = "zenoh")]
             LinkTransport::Zenoh(endpoints) => Ok(ResolvedTransport::Zenoh(endpoints.settings())),
             #[cfg(not(feature = "zenoh"))]
-            LinkTransport::Zenoh(_) => {
-                refused("this program has no zenoh; one that is built with `--features zenoh` has it")
-            }
+            LinkTransport::Zenoh(_) => refused("this program was built without `--features zenoh`"),
         }
     }
 

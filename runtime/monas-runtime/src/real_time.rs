@@ -221,7 +221,7 @@ fn run_clock(stations: &[PreparedHost]) -> Result<RunClock, Error> {
         (None, _) => Ok(RunClock::start()),
         (Some((hub, link, other)), None) => time_of_other(hub, link, other),
         (Some((.., one)), Some((.., other))) => {
-            let message = format!("links say that the time is that of `{one}`, and that of `{other}`");
+            let message = format!("links follow the clocks of both `{one}` and `{other}`");
             Err(Error::new(ErrorKind::Link, message))
         }
     }

@@ -51,7 +51,7 @@ const SHUTDOWN: Duration = Duration::from_secs(3);
 const NAP: Duration = Duration::from_millis(2);
 
 /// Sleeps for one polling interval.
-#[expect(clippy::disallowed_methods, reason = "threads do not tell when they end")]
+#[expect(clippy::disallowed_methods, reason = "threads do not report their end")]
 pub(crate) fn poll_pause() {
     thread::sleep(NAP);
 }
@@ -298,7 +298,7 @@ impl AgentThreads {
         list_part: Option<Arc<ThreadShared>>,
         chart_parts: Vec<Arc<ThreadShared>>,
     ) -> Result<Vec<JoinHandle<AgentStatistics>>, Error> {
-        let PreparedAgent { name, policy, frequency, workers, list, charts, recorder: teller, .. } = member;
+        let PreparedAgent { name, policy, frequency, workers, list, charts, recorder, .. } = member;
         let (statistics_every, scheduling) = (member.statistics_every, member.scheduling);
         let sharing = charts.iter().filter(|runner| runner.own().workers.is_none());
         let useful = sharing.map(ChartRunner::max_activities).sum();
@@ -318,12 +318,12 @@ impl AgentThreads {
             };
             let own_pool = runner.own().workers.map(|workers| own_pool(workers.get()));
             let (unit, pool) = (unit.clone(), own_pool.unwrap_or_else(|| pool.clone()));
-            let teller = teller.of_part(runner.part())?;
-            threads.push(self.spawn_chart(unit, part, runner, of_agent.clone(), pool, teller)?);
+            let recorder = recorder.of_part(runner.part())?;
+            threads.push(self.spawn_chart(unit, part, runner, of_agent.clone(), pool, recorder)?);
         }
         if let (Some(list), Some(frequency), Some(part)) = (list, frequency, list_part) {
             let list = ListSpawn { list, frequency, statistics_every, scheduling };
-            threads.push(self.spawn_list(unit.clone(), part, list, &teller)?);
+            threads.push(self.spawn_list(unit.clone(), part, list, &recorder)?);
         }
         Ok(threads)
     }
@@ -333,10 +333,10 @@ impl AgentThreads {
         unit: Arc<AgentShared>,
         part: Arc<ThreadShared>,
         list: ListSpawn,
-        teller: &CycleRecorder,
+        recorder: &CycleRecorder,
     ) -> Result<JoinHandle<AgentStatistics>, Error> {
         let ListSpawn { list, frequency, statistics_every, scheduling } = list;
-        let teller = teller.of_part(list.blackboard().part())?;
+        let recorder = recorder.of_part(list.blackboard().part())?;
         let name = unit.name.clone();
         let thread = ListThread {
             host: self.hub.host().into(),
@@ -346,7 +346,7 @@ impl AgentThreads {
             deadlines: Deadlines::new(frequency, self.clock.now().max(self.clock.begin())),
             statistics_every,
             scheduling,
-            recorder: teller,
+            recorder,
             clock: self.clock,
             cycles: 0,
             timing: Timing::default(),
@@ -367,11 +367,11 @@ impl AgentThreads {
         mut runner: ChartRunner,
         of_agent: AgentDefaults,
         pool: Arc<ActivityPool>,
-        teller: CycleRecorder,
+        recorder: CycleRecorder,
     ) -> Result<JoinHandle<AgentStatistics>, Error> {
         let name = unit.name.clone();
         runner.set_defaults(of_agent);
-        let driver = PoolDriver::new(unit, part, pool, teller, self.clock);
+        let driver = PoolDriver::new(unit, part, pool, recorder, self.clock);
         let thread = ChartThread::new(runner, driver);
         let clock = self.clock;
         let hosting = LogHosts::real([&self.hub], move || clock.now());
@@ -385,8 +385,8 @@ impl AgentThreads {
     /// Records the requester of a starting agent, for each of its threads.
     fn record_change_request(&self, member: &PreparedAgent, asked: &ChangeRef) -> Result<(), Error> {
         for runner in &member.charts {
-            let mut teller = member.recorder.of_part(runner.part())?;
-            teller.record_change_request(self.clock.now(), asked, asked.ready_at, runner.place());
+            let mut recorder = member.recorder.of_part(runner.part())?;
+            recorder.record_change_request(self.clock.now(), asked, asked.ready_at, runner.place());
         }
         member.list.iter().try_for_each(|list| self.record_list_change_request(&member.recorder, list, asked))
     }
@@ -394,13 +394,13 @@ impl AgentThreads {
     /// Records the requester of a starting list, and the position from which on signals reach it.
     fn record_list_change_request(
         &self,
-        teller: &CycleRecorder,
+        recorder: &CycleRecorder,
         list: &ActivityList,
         asked: &ChangeRef,
     ) -> Result<(), Error> {
         let blackboard = list.blackboard();
-        let mut teller = teller.of_part(blackboard.part())?;
-        teller.record_change_request(self.clock.now(), asked, blackboard.position(), 0);
+        let mut recorder = recorder.of_part(blackboard.part())?;
+        recorder.record_change_request(self.clock.now(), asked, blackboard.position(), 0);
         Ok(())
     }
 
@@ -409,7 +409,7 @@ impl AgentThreads {
         let part = Arc::new(ThreadShared::new(0));
         let Some(worker) = self.agent_handle(agent) else { return Err(format!("`{agent}` is not there")) };
         let Some(frequency) = worker.frequency else {
-            return Err(format!("nothing says how often `{agent}` runs"));
+            return Err(format!("`{agent}` has no frequency"));
         };
         if let Some(asked) = asked {
             self.record_list_change_request(&worker.recorder, &list, asked)
@@ -550,9 +550,7 @@ impl AgentControl for AgentThreads {
         if !worker.is_finished() {
             // It stops permanently when its cycle ends; until then it remains listed.
             self.handles.insert(place, worker);
-            return Err(format!(
-                "`{agent}` is in the middle of a cycle that does not end: it stops when that ends"
-            ));
+            return Err(format!("`{agent}` is in a cycle that does not end: it stops when that ends"));
         }
         self.set_waker();
         self.removed.extend(worker.join());

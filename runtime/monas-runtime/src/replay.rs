@@ -157,7 +157,7 @@ impl Replay {
         number.map(ReplayChannel)
     }
 
-    /// Proceeds to the next recorded message. `told` is called with each difference that is
+    /// Proceeds to the next recorded message. Calls `on_difference` with each difference that is
     /// definite by now.
     ///
     /// # Errors
@@ -167,23 +167,23 @@ impl Replay {
         &mut self,
         input: ReplayChannel,
         message: RecordedMessage<'_>,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
         self.now = message.received;
         let _time = SimulatedTimeGuard::begin(self.now);
         match &mut self.course {
-            ReplayMode::Simulated(course) => course.feed(input.0, message, told),
-            ReplayMode::RealTime(course) => course.feed(input.0, message, told),
+            ReplayMode::Simulated(course) => course.feed(input.0, message, on_difference),
+            ReplayMode::RealTime(course) => course.feed(input.0, message, on_difference),
         }
     }
 
     /// Marks the end of the recorded run: later records were published while its agents were being
     /// stopped.
-    pub fn end(&mut self, moment: Timestamp, told: &mut dyn FnMut(ReplayDifference)) {
+    pub fn end(&mut self, moment: Timestamp, on_difference: &mut dyn FnMut(ReplayDifference)) {
         self.now = moment;
         let _time = SimulatedTimeGuard::begin(moment);
         match &mut self.course {
-            ReplayMode::Simulated(course) => course.end(moment, told),
+            ReplayMode::Simulated(course) => course.end(moment, on_difference),
             // The recording contains how each agent stopped.
             ReplayMode::RealTime(_) => {}
         }
@@ -198,12 +198,12 @@ impl Replay {
     pub fn finish(
         self,
         is_whole: bool,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<Vec<ComparisonCounts>, Error> {
         let _time = SimulatedTimeGuard::begin(self.now);
         match self.course {
-            ReplayMode::Simulated(course) => course.finish(is_whole, told),
-            ReplayMode::RealTime(course) => course.finish(is_whole, told),
+            ReplayMode::Simulated(course) => course.finish(is_whole, on_difference),
+            ReplayMode::RealTime(course) => course.finish(is_whole, on_difference),
         }
     }
 }

@@ -212,7 +212,7 @@ impl RunHandle {
     /// # Errors
     /// Why the query cannot be answered.
     pub fn manage(&self, inquiry: &[u8]) -> Result<Vec<u8>, String> {
-        let inquiry = Inquiry::decode(inquiry).map_err(|_| "what is asked is not understood".to_owned())?;
+        let inquiry = Inquiry::decode(inquiry).map_err(|_| "invalid request".to_owned())?;
         let host = (!inquiry.host.is_empty()).then_some(inquiry.host.as_str());
         let mut reply = Reply::default();
         if inquiry.agents {
@@ -240,7 +240,7 @@ impl RunHandle {
             (Some(only), true) => Ok(only),
             (None, _) => Err(format!("no agent is named `{agent}`")),
             (Some(last), false) => {
-                Err(format!("`{agent}` is on several hosts: say which of {}, {last}", hosts.join(", ")))
+                Err(format!("`{agent}` is on several hosts: name one of {}, {last}", hosts.join(", ")))
             }
         }
     }
@@ -254,7 +254,7 @@ impl RunHandle {
         match &hosts[..] {
             [only] => Ok(only.clone()),
             [] => Err("the run has no host".into()),
-            several => Err(format!("there are several hosts: say which of {}", several.join(", "))),
+            several => Err(format!("there are several hosts: name one of {}", several.join(", "))),
         }
     }
 }

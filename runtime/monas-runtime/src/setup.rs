@@ -81,7 +81,7 @@ fn with_modules(registry: Registry, hosts: &[HostConfig]) -> Result<Registry, Er
         Some(known) if known.digest() == module.digest() => Ok(registry),
         Some(known) => {
             let (one, other) = (known.file().display(), module.file().display());
-            let message = format!("two modules are called `{}`: {one} and {other}", module.name());
+            let message = format!("two modules have the name `{}`: {one} and {other}", module.name());
             Err(Error::new(ErrorKind::Module, message))
         }
         None => registry.with_module(module.clone()),
@@ -115,7 +115,7 @@ impl AgentFactory {
         let mut others: Vec<String> = names_on(&self.publishers, hub.host()).collect();
         others.extend(body.iter().map(|_| BodyBridge::PUBLISHER.to_owned()));
         let ground = HostContext { linked_topics: LinkedTopics::by(&links, &hub)?, others, hub: hub.clone() };
-        refuse_changes_from_strangers(&ground, &links)?;
+        reject_changes_over_links(&ground, &links)?;
         let names: Vec<String> = agents.iter().map(|agent| agent.name.clone()).collect();
         let profiles = agents.iter().map(AgentProfile::of).collect();
         let members = agents
@@ -130,7 +130,7 @@ impl AgentFactory {
 /// host controls its agents, and messages that a link delivers as the host's own may be changes, so
 /// the link must name the permitted peers and grant them that permission. Over a network, names are
 /// trusted only if certificates prove them.
-fn refuse_changes_from_strangers(ground: &HostContext, links: &[LinkConfig]) -> Result<(), Error> {
+fn reject_changes_over_links(ground: &HostContext, links: &[LinkConfig]) -> Result<(), Error> {
     for link in links {
         let brought = LinkedTopics::by(std::slice::from_ref(link), &ground.hub)?;
         if !brought.own.iter().any(|slot| Some(*slot) == ground.hub.topic(CHANGE.path())) {
@@ -144,17 +144,21 @@ fn refuse_changes_from_strangers(ground: &HostContext, links: &[LinkConfig]) -> 
         let host = ground.hub.host();
         let (message, hint) = match (access.is_open(), stranger) {
             (true, _) => (
-                format!("a link of `{host}` lets anybody change its agents"),
-                "give the link an `access` list that says who may, or do not receive `monas/change` as its own".into(),
+                format!("a link of `{host}` lets any peer change its agents"),
+                "give the link an `access` list, or do not receive `monas/change` as its own".into(),
             ),
             (false, Some(stranger)) => (
-                format!("a link of `{host}` lets `{stranger}` publish changes of its agents, who may not manage them"),
-                format!("add `{stranger} manage` to the access list, or name the topics that `{stranger}` may publish"),
+                format!(
+                    "a link of `{host}` lets `{stranger}` publish changes of its agents without the right to manage them"
+                ),
+                format!(
+                    "add `{stranger} manage` to the access list, or name the topics that `{stranger}` may publish"
+                ),
             ),
             (false, None) if is_believed(&link.transport) => continue,
             (false, None) => (
-                format!("a link of `{host}` lets anybody change its agents who takes the name of one who may manage them"),
-                "give the link `certificates`, and endpoints that begin with `tls/`".into(),
+                format!("a link of `{host}` lets any peer change its agents under the name of a manager"),
+                "give the link `certificates` and `tls/` endpoints".into(),
             ),
         };
         return Err(Error::new(ErrorKind::Link, message).with_hint(hint));

@@ -54,10 +54,8 @@ mod system {
         })?;
         match thread_schedule_policy_param(thread) {
             Ok((is, _)) if is == policy => Ok(()),
-            Ok((is, _)) => {
-                Err(format!("the system says it would schedule by {policy:?}, and schedules by {is:?}"))
-            }
-            Err(error) => Err(format!("the system does not say how it schedules: {error}")),
+            Ok((is, _)) => Err(format!("the system accepted the scheduling {policy:?} but uses {is:?}")),
+            Err(error) => Err(format!("the scheduling cannot be read: {error}")),
         }
     }
 
@@ -67,15 +65,15 @@ mod system {
             [] => (0..CpuSet::MAX_CPU).for_each(|core| wanted.set(core)),
             cores => cores.iter().filter(|core| **core < CpuSet::MAX_CPU).for_each(|core| wanted.set(*core)),
         }
-        sched_setaffinity(None, &wanted)
-            .map_err(|error| format!("it cannot be kept on the cores {cores:?} ({error}): it runs on any"))?;
-        let is = sched_getaffinity(None)
-            .map_err(|error| format!("the system does not say on which cores: {error}"))?;
+        sched_setaffinity(None, &wanted).map_err(|error| {
+            format!("it cannot be bound to the cores {cores:?} ({error}): it runs on any")
+        })?;
+        let is = sched_getaffinity(None).map_err(|error| format!("its cores cannot be read: {error}"))?;
         match cores.iter().all(|core| is.is_set(*core))
             && (cores.is_empty() || is.count() as usize <= cores.len())
         {
             true => Ok(()),
-            false => Err(format!("the system says it would keep it on the cores {cores:?}, and does not")),
+            false => Err(format!("the system accepted the cores {cores:?} but does not use them")),
         }
     }
 }
@@ -85,10 +83,10 @@ mod system {
     use super::Scheduling;
 
     pub(crate) fn schedule(_: &Scheduling) -> Result<(), String> {
-        Err("real-time scheduling is that of Linux: its thread is scheduled like any other".into())
+        Err("real-time scheduling needs Linux: its thread is scheduled like any other".into())
     }
 
     pub(crate) fn pin(_: &[usize]) -> Result<(), String> {
-        Err("keeping threads on cores is that of Linux: it runs on any".into())
+        Err("binding threads to cores needs Linux: it runs on any".into())
     }
 }

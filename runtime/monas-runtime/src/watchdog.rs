@@ -79,7 +79,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_under_way_is_told_until_it_ends() {
+    fn running_calls_are_reported_until_they_end() {
         let pulse = Watchdog::default();
         assert_eq!(pulse.current_call(Timestamp::from_nanos(5)), None);
         pulse.start_cycle(Timestamp::ZERO, 7);
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_ended_since_it_was_looked_at_is_not_given_up_nor_what_came_after_it() {
+    fn a_call_that_ended_meanwhile_is_not_abandoned() {
         let pulse = Watchdog::default();
         pulse.start_cycle(Timestamp::ZERO, 1);
         let seen = pulse.current_call(Timestamp::from_nanos(5)).unwrap();

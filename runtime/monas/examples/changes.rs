@@ -36,7 +36,7 @@ fn main() -> ExitCode {
     for round in 1..=rounds {
         for count in [0, CHANGES] {
             match run(count, Duration::from_secs(seconds), round) {
-                Ok(told) => println!("{round:>5}  {told}"),
+                Ok(row) => println!("{round:>5}  {row}"),
                 Err(error) => {
                     eprintln!("{error}");
                     return ExitCode::FAILURE;
@@ -105,7 +105,7 @@ fn run(count: u64, length: Duration, seed: u64) -> Result<String, Error> {
     let agents = running.stop().agents;
     let missed = OTHERS.map(|(name, hertz)| {
         let agent = agents.iter().find(|agent| agent.agent == name);
-        format!("{:>22}", agent.map_or_else(String::new, |agent| told(agent, hertz, took)))
+        format!("{:>22}", agent.map_or_else(String::new, |agent| missed_cycles(agent, hertz, took)))
     });
     Ok(format!("{count:>7}  {made:>5}  {:>7.1}  {}", took.as_secs_f64(), missed.join("  ")))
 }
@@ -117,7 +117,7 @@ fn wait(length: Duration) {
 }
 
 /// The number of missing cycles; for a chart, of periods without a wake-up.
-fn told(agent: &AgentStatistics, hertz: f64, took: Duration) -> String {
+fn missed_cycles(agent: &AgentStatistics, hertz: f64, took: Duration) -> String {
     let due = (took.as_secs_f64() * hertz) as u64;
     let missed = due.saturating_sub(agent.cycles).max(agent.missed);
     format!("{missed} of {due}")

@@ -54,7 +54,7 @@ fn to(file: &Path) -> LogSettings {
     LogSettings { file: Some(file.into()), verbosity: Severity::ExtraExtraInfo, ..LogSettings::default() }
 }
 
-/// What is written into the file while `speak` runs.
+/// The content of the file after `speak` has run.
 fn written(settings: impl FnOnce(LogSettings) -> LogSettings, speak: impl FnOnce()) -> String {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("log.txt");
@@ -74,8 +74,8 @@ fn settings_in(name: &str, text: &str) -> (LogSettings, Vec<String>) {
     let file = folder.path().join(name);
     std::fs::write(&file, text).unwrap();
     let (settings, diagnostics) = LogSettings::load(file);
-    let told = diagnostics.iter().map(|found| format!("{}: {}", found.code, found.message));
-    (settings, told.collect())
+    let messages = diagnostics.iter().map(|found| format!("{}: {}", found.code, found.message));
+    (settings, messages.collect())
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn the_listing_of_the_thesis_is_a_log_s_settings_as_it_is_printed() {
 }
 
 #[test]
-fn toml_says_the_same_and_what_is_not_understood_is_told() {
+fn toml_is_equivalent_and_errors_are_reported() {
     let text = "message_log_file = \"a.log\"\nmessage_log_filter = \"Vision Motion\"\nlog_file_verbosity_level = -3\n\
                 message_log_format = \"json\"\n";
     let (settings, wrong) = settings_in("logger.toml", text);
@@ -169,7 +169,7 @@ fn team() -> Talws {
 }
 
 #[test]
-fn a_line_says_which_activity_of_which_robot_wrote_it_and_when_and_the_same_run_writes_the_same() {
+fn a_line_has_robot_activity_and_time_and_is_reproducible() {
     let run = || team().simulate(1).unwrap().run_until(Timestamp::from_nanos(30_000_000)).unwrap();
     let log = written(|settings| settings, run);
     let again = written(|settings| settings, run);
@@ -195,7 +195,7 @@ fn a_line_says_which_activity_of_which_robot_wrote_it_and_when_and_the_same_run_
     assert_eq!(of(&["Behaviour"]).lines().count(), 1);
 }
 
-/// A dispatch whose logger writes nothing and publishes this.
+/// A dispatch whose logger writes nothing and publishes lines of this severity.
 fn publishing(least_grave: Option<Severity>) -> Dispatch {
     let (layer, logger) = logger::layer();
     let dispatch = Dispatch::new(tracing_subscriber::registry().with(layer));
@@ -204,7 +204,7 @@ fn publishing(least_grave: Option<Severity>) -> Dispatch {
     dispatch
 }
 
-/// What is published of a run of so many cycles at 100 Hz, and its hash.
+/// The lines published by a run of some cycles at 100 Hz, and its hash.
 fn published(talws: Talws, least_grave: Option<Severity>, cycles: u64) -> (Vec<(String, Log)>, String) {
     let (lines, hash) = (Arc::new(Mutex::new(Vec::new())), RunHash::new());
     let (mut talws, seen) = (talws, lines.clone());
@@ -331,7 +331,7 @@ fn a_line_is_a_line_and_steers_no_terminal() {
 }
 
 #[test]
-fn who_writes_allocates_nothing_and_what_comes_too_fast_is_counted() {
+fn logging_does_not_allocate_and_excess_lines_are_counted() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("log.txt");
     let (dispatch, logger) = begun(to(&file));
@@ -354,23 +354,23 @@ fn who_writes_allocates_nothing_and_what_comes_too_fast_is_counted() {
 }
 
 #[test]
-fn a_log_begins_once() {
+fn a_log_starts_once() {
     let folder = tempfile::tempdir().unwrap();
     let (_, logger) = begun(to(&folder.path().join("a")));
-    assert!(logger.begin(LogSettings::default()).unwrap_err().to_string().contains("has begun"));
+    assert!(logger.begin(LogSettings::default()).unwrap_err().to_string().contains("was started already"));
     logger.end();
     let (_, other) = logger::layer::<tracing_subscriber::Registry>();
     assert!(other.begin(to(&folder.path().join("no/folder"))).is_err());
 }
 
-/// Names the file of a process that is killed.
-const DOOMED: &str = "MONAS_LOG_OF_THE_DOOMED";
+/// The variable with the file of the process that is killed.
+const CHILD_LOG: &str = "MONAS_CHILD_LOG";
 
-/// In a process of its own that runs this very test: writes two lines and says so, and comes to its
-/// end. Here: what the file holds when that process is gone. `is_killed` says whether it is killed
-/// from here.
-fn of_the_doomed(test: &str, is_killed: bool, end: fn()) -> String {
-    if let Some(file) = std::env::var_os(DOOMED) {
+/// Runs this test in a child process, which writes two lines, reports that, and ends by `end`.
+/// Returns the content of the file after the child has ended; `is_killed` says whether the child is
+/// killed.
+fn file_after_end(test: &str, is_killed: bool, end: fn()) -> String {
+    if let Some(file) = std::env::var_os(CHILD_LOG) {
         let (dispatch, _logger) =
             begun(LogSettings { verbosity: Severity::FatalError, ..to(Path::new(&file)) });
         tracing::dispatcher::with_default(&dispatch, || {
@@ -386,7 +386,7 @@ fn of_the_doomed(test: &str, is_killed: bool, end: fn()) -> String {
     let file = folder.path().join("log.txt");
     let mut process = Command::new(std::env::current_exe().unwrap())
         .args([test, "--exact", "--nocapture"])
-        .env(DOOMED, &file)
+        .env(CHILD_LOG, &file)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
@@ -403,14 +403,14 @@ fn of_the_doomed(test: &str, is_killed: bool, end: fn()) -> String {
 
 #[test]
 fn errors_are_on_the_disk_when_a_process_aborts() {
-    let log = of_the_doomed("errors_are_on_the_disk_when_a_process_aborts", false, || std::process::abort());
+    let log = file_after_end("errors_are_on_the_disk_when_a_process_aborts", false, || std::process::abort());
     assert_eq!(without_times(&log), ["ERROR one leg is gone", "FATAL so is the other"]);
 }
 
 #[test]
 fn errors_are_on_the_disk_when_a_process_is_killed() {
     let wait = || drop(std::io::stdin().read_line(&mut String::new()));
-    let log = of_the_doomed("errors_are_on_the_disk_when_a_process_is_killed", true, wait);
+    let log = file_after_end("errors_are_on_the_disk_when_a_process_is_killed", true, wait);
     assert_eq!(without_times(&log), ["ERROR one leg is gone", "FATAL so is the other"]);
 }
 
@@ -418,7 +418,7 @@ fn errors_are_on_the_disk_when_a_process_is_killed() {
 #[test]
 #[cfg(unix)]
 #[expect(clippy::disallowed_methods, reason = "somebody has to read what others write")]
-fn what_comes_faster_than_it_can_be_written_is_dropped_and_that_is_said() {
+fn lines_beyond_the_write_rate_are_dropped_and_reported() {
     let folder = tempfile::tempdir().unwrap();
     let pipe = folder.path().join("log.txt");
     assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
@@ -440,7 +440,7 @@ fn what_comes_faster_than_it_can_be_written_is_dropped_and_that_is_said() {
     drop((dispatch, logger));
     let lines = reading.join().unwrap();
     let dropped = lines.iter().filter_map(|line| {
-        let said = line.strip_suffix(" messages were dropped here: they came too fast")?;
+        let said = line.strip_suffix(" messages were dropped here: the rate was too high")?;
         said.rsplit(' ').next()?.parse::<usize>().ok()
     });
     let dropped: Vec<usize> = dropped.collect();

@@ -30,7 +30,7 @@ fn game() -> ElementRule {
         .attribute(AttributeRule::new(
             "half",
             half,
-            "how long a half is; as the simulator's rules say if it is not said",
+            "how long a half is; by default as in the simulator's rules",
         ))
         .children("team")
 }

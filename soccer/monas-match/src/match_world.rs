@@ -25,7 +25,7 @@ impl MatchWorld {
         MatchWorld { pitch, seen_events: 0, score: Score::default() }
     }
 
-    fn tell(&mut self, blackboard: &mut Blackboard) -> Result<(), BoxError> {
+    fn publish_state(&mut self, blackboard: &mut Blackboard) -> Result<(), BoxError> {
         let MatchWorld { pitch, seen_events, score } = self;
         pitch.with_world(|world| {
             if world.steps() % TRUTH_EVERY == 0 {
@@ -55,12 +55,12 @@ impl World for MatchWorld {
     }
 
     fn start(&mut self, blackboard: &mut Blackboard) -> Result<(), BoxError> {
-        self.tell(blackboard)
+        self.publish_state(blackboard)
     }
 
     fn advance(&mut self, _now: Timestamp, blackboard: &mut Blackboard) -> Result<(), BoxError> {
         self.pitch.step();
-        self.tell(blackboard)
+        self.publish_state(blackboard)
     }
 }
 

@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn a_kick_strikes_once_and_ends_standing() {
+    fn a_kick_hits_once_and_ends_standing() {
         let mut body = body(Motion::Kick(Side::Left));
         assert_eq!(run(&mut body, 0.7), vec![]);
         assert_eq!(body.phase, BodyPhase::Kicking(Side::Left));
@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn a_skill_asked_for_during_another_is_forgotten() {
+    fn a_skill_requested_during_another_is_ignored() {
         let mut body = body(Motion::Kick(Side::Left));
         run(&mut body, 1.0);
         body.command.motion = Motion::Dive(Side::Left);

@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn a_single_post_does_not_tell_its_side() {
+    fn a_single_post_has_no_side() {
         let mut stage = stage(Vector::new(-1.0, 0.0));
         stage.robots[0].pose = Pose::new(2.0, 0.0, 0.6);
         let sightings = stage.look(&mut RandomStream::new(1, "camera"));

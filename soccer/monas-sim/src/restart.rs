@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_throw_in_is_set_back_against_who_touched_last() {
+    fn a_throw_in_is_set_back_against_the_last_toucher() {
         let field = FieldGeometry::default();
         let at = |x, y, against| throw_in(&field, 1.0, Vector::new(x, y), against);
         assert_eq!(at(0.5, 2.1, None), Vector::new(0.5, 1.6));

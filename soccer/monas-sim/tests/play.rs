@@ -107,7 +107,7 @@ fn two_robots_that_run_into_each_other_fall() {
 }
 
 #[test]
-fn a_fallen_robot_stands_up_when_told() {
+fn a_fallen_robot_stands_up_on_command() {
     let mut world = playing(3);
     clear_field(&mut world, &[0]);
     world.place_robot(0, Pose::new(-2.8, 0.0, 0.0)).unwrap();

@@ -94,7 +94,7 @@ fn shirts_can_be_kept() {
 }
 
 #[test]
-fn a_ball_over_the_touch_line_is_thrown_in_against_who_touched_it() {
+fn a_ball_over_the_touch_line_is_thrown_in_against_the_last_toucher() {
     let mut world = playing(5);
     clear_field(&mut world, &[1]);
     world.place_robot(1, Pose::new(1.0, 1.5, std::f64::consts::FRAC_PI_2)).unwrap();
@@ -131,7 +131,7 @@ fn penalties(world: &SimulatedWorld) -> Vec<(usize, Offence)> {
 }
 
 #[test]
-fn a_defender_in_its_goal_area_is_sent_off_and_comes_back() {
+fn a_defender_in_its_goal_area_is_sent_off_and_returns() {
     let mut world = playing(7);
     clear_field(&mut world, &[0, 2]);
     world.place_robot(0, Pose::new(-2.8, -0.5, 0.0)).unwrap();

@@ -26,7 +26,7 @@ use narukom::AnyMessage;
 use rustix::time::{ClockId, clock_gettime};
 use yase::expression::{CallError, MessageSource};
 use yase::{
-    Activation, CompiledChart, FieldId, FunctionId, Host, Machine, Moment, Outcome, ScopeId, Source,
+    Activation, CompiledChart, FieldId, FunctionId, Host, Machine, Outcome, ScopeId, Source, Timestamp,
     TraceRecord, TypeEnvironment, Value,
 };
 
@@ -56,7 +56,7 @@ fn compile(role: &str, vocabulary: &TypeEnvironment) -> CompiledChart {
 trait Contestant {
     fn name(&self) -> &'static str;
 
-    /// Plays a tenth of a second of the role, and says how many micro-steps that took.
+    /// Executes a tenth of a second of the role. Returns the number of micro-steps.
     fn cycle(&mut self) -> u64;
 }
 
@@ -70,7 +70,7 @@ struct Messages {
     started: Vec<Activation>,
     traces: bool,
     traced: u64,
-    /// What the micro-steps of a cycle did, if it is being recorded.
+    /// The effects of the micro-steps of a cycle, while it is recorded.
     recorded: Option<Vec<RecordedStep>>,
 }
 
@@ -119,7 +119,7 @@ impl Host for Messages {
     }
 }
 
-/// A machine that plays a role, at rest while the game is on.
+/// A machine of a role, stable during play.
 struct Role {
     machine: Machine,
     host: Messages,
@@ -160,7 +160,7 @@ impl Role {
                 ..Ball::default()
             },
         );
-        role.machine.start(Moment::ZERO, &mut role.host);
+        role.machine.start(Timestamp::ZERO, &mut role.host);
         for _ in 0..20 {
             role.cycle();
         }
@@ -178,7 +178,7 @@ impl Role {
     }
 
     fn step(&mut self) -> u64 {
-        let now = Moment::from_nanos(self.now);
+        let now = Timestamp::from_nanos(self.now);
         u64::from(self.machine.run_to_completion(now, &mut self.host).expect("it comes to rest").micro_steps)
     }
 }
@@ -193,7 +193,7 @@ impl Contestant for Role {
         self.now = self.beat * 100_000_000;
         let mut micro_steps = self.step();
         while let Some(activation) = self.host.started.pop() {
-            // returns are told one by one, each a bit later, or time would stand still for ever
+            // returns are reported one by one at increasing times, or the time would not advance
             self.now += 1;
             assert!(self.machine.activity_returned(activation, Outcome::Done));
             micro_steps += self.step();
@@ -202,7 +202,7 @@ impl Contestant for Role {
     }
 }
 
-/// The micro-steps of a recorded cycle, done again and again without finding out what they are.
+/// Repeats the effects of recorded micro-steps without selecting transitions.
 struct Table {
     steps: Vec<RecordedStep>,
     active: Vec<bool>,

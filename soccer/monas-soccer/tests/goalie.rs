@@ -31,7 +31,7 @@ fn shoot(offset: f64) -> (Shared, Vec<Skill>, Option<f64>) {
 }
 
 #[test]
-fn it_throws_itself_to_the_side_of_the_shot_and_comes_back() {
+fn it_dives_to_the_side_of_the_shot_and_returns() {
     for (offset, skills) in [
         (0.22, [Skill::FallLeft, Skill::DiveLeft]),
         (0.45, [Skill::DiveLeft, Skill::DiveLeft]),

@@ -9,7 +9,7 @@ use super::words::{constants, functions, messages, timers, values};
 /// The chart, with a function for each of its guards and values.
 ///
 /// # Errors
-/// Only if it was changed by hand and no longer fits together.
+/// Only if it was edited and is inconsistent.
 pub fn chart() -> Result<TypedChart, Vec<Diagnostic>> {
     let mut chart = TypedChartBuilder::new("player");
     words(&mut chart);
@@ -18,7 +18,7 @@ pub fn chart() -> Result<TypedChart, Vec<Diagnostic>> {
     chart.finish()
 }
 
-/// The words of the guards and actions.
+/// The names that guards and actions use.
 fn words(chart: &mut TypedChartBuilder) {
     chart.reads(messages::GAME_STATE, SourceDeclaration::own("soccer/game_state", "GameState"));
     chart.reads(messages::BALL, SourceDeclaration::own("soccer/ball", "Ball"));

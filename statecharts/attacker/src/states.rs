@@ -2,8 +2,8 @@
 
 use ::monas::generated::NodeId;
 
-/// The nodes of the chart, in its order. Each is called after the end of its path, from itself outwards, that no other has.
-#[allow(non_camel_case_types, clippy::upper_case_acronyms)] // the names are the model's
+/// The nodes of the chart, in its order. Each is named by the shortest unique end of its path.
+#[allow(non_camel_case_types, clippy::upper_case_acronyms)] // names as in the model
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum State {
     /// OR: `player`

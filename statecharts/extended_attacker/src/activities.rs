@@ -1,4 +1,4 @@
-//! The activities of the states. One that is not there is an error here.
+//! The activities of the states. A missing one is a compile error here.
 
 use ::monas::generated::Instance;
 use ::monas_soccer::activities::{

@@ -1,7 +1,7 @@
-//! What guards and actions speak of: each a constant with the model's own name.
+//! The names that guards and actions use: each a constant named as in the model.
 
 /// The constants of the model.
-#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers as in the model
 pub(crate) mod constants {
     /// `near`
     pub(crate) const near: f64 = 0.25;
@@ -14,7 +14,7 @@ pub(crate) mod constants {
 }
 
 /// The functions that expressions call.
-#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers as in the model
 pub(crate) mod functions {
     use ::monas::generated::Function;
 
@@ -23,7 +23,7 @@ pub(crate) mod functions {
 }
 
 /// The messages that are read and written.
-#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers as in the model
 pub(crate) mod messages {
     use ::monas::generated::Source;
 
@@ -36,7 +36,7 @@ pub(crate) mod messages {
 }
 
 /// The timers.
-#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers as in the model
 pub(crate) mod timers {
     use ::monas::generated::Timer;
 
@@ -55,7 +55,7 @@ pub(crate) mod timers {
 }
 
 /// The values of enumerations.
-#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers as in the model
 pub(crate) mod values {
     /// `AttackPart.CENTER`
     pub(crate) const CENTER: i32 = 1;

@@ -1,4 +1,4 @@
-//! How one comes from one state of the chart to another.
+//! The transitions of the chart.
 
 use ::monas::generated::TypedChartBuilder;
 

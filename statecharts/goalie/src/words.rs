@@ -1,7 +1,7 @@
-//! What guards and actions speak of: each a constant with the model's own name.
+//! The names that guards and actions use: each a constant named as in the model.
 
 /// The constants of the model.
-#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers as in the model
 pub(crate) mod constants {
     /// `act_within`
     pub(crate) const act_within: f64 = 1.0;
@@ -12,7 +12,7 @@ pub(crate) mod constants {
 }
 
 /// The functions that expressions call.
-#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers as in the model
 pub(crate) mod functions {
     use ::monas::generated::Function;
 
@@ -21,7 +21,7 @@ pub(crate) mod functions {
 }
 
 /// The messages that are read and written.
-#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers as in the model
 pub(crate) mod messages {
     use ::monas::generated::Source;
 
@@ -32,7 +32,7 @@ pub(crate) mod messages {
 }
 
 /// The timers.
-#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers as in the model
 pub(crate) mod timers {
     use ::monas::generated::Timer;
 
@@ -51,7 +51,7 @@ pub(crate) mod timers {
 }
 
 /// The values of enumerations.
-#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's
+#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers as in the model
 pub(crate) mod values {
     /// `PlayerState.PLAYING`
     pub(crate) const PLAYING: i32 = 3;

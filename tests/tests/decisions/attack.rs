@@ -8,7 +8,7 @@ use std::time::Duration;
 use monas::MicroStep;
 use monas_match::{MatchOptions, MatchSource};
 use monas_tests::root;
-use yase::{CompiledChart, Moment, NodeKind, TransitionId};
+use yase::{CompiledChart, NodeKind, Timestamp, TransitionId};
 
 /// The names of the protocol's parts in the chart.
 const PARTS: [&str; 2] = ["center", "center_for"];
@@ -16,7 +16,7 @@ const PARTS: [&str; 2] = ["center", "center_for"];
 /// A robot enters or leaves a part.
 #[derive(Clone, PartialEq, Eq, Debug)]
 struct Turn {
-    at: Moment,
+    at: Timestamp,
     host: String,
     part: &'static str,
     /// The guard by which the part is left, empty if it is completed; none if the part is entered.

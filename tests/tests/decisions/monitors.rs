@@ -23,12 +23,12 @@ fn stopped(properties: Option<&str>) -> Option<String> {
 }
 
 #[test]
-fn what_exploration_has_found_to_hold_holds_in_a_match() {
+fn explored_properties_hold_in_a_match() {
     assert_eq!(stopped(None), None);
 }
 
 #[test]
-fn a_match_that_violates_a_property_stops_who_did() {
+fn a_violated_property_stops_its_agent() {
     let strict = "property \"it does not track\": always not entering TrackBall\n";
     let reason = stopped(Some(strict)).expect("it tracks the ball");
     assert!(reason.starts_with("the property `it does not track` was violated in cycle "), "{reason}");

@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_or_is_not_whole_is_refused() {
+    fn mismatched_or_incomplete_input_is_rejected() {
         let fault = parse("f".into(), TEXT).unwrap();
         assert!(apply(&fault, |_| Ok("one\n2\n".into())).is_err());
         assert!(parse("f".into(), &TEXT.replace("Rule", "Role")).is_err());

@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn a_finding_says_why() {
+    fn a_finding_has_a_reason() {
         let member = Crate {
             name: "yase".into(),
             folder: "charts/yase".into(),
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn one_folder_may_be_excepted() {
+    fn a_folder_can_be_exempt() {
         let member = Crate {
             name: "monas-tape".into(),
             folder: "messages/monas-tape".into(),

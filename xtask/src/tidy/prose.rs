@@ -17,14 +17,18 @@ pub(crate) struct ProseLine {
 
 /// The prose of a file; code blocks are left out.
 pub(crate) fn prose(file: &TextFile) -> Vec<ProseLine> {
-    if file.path.starts_with("statecharts") {
-        return Vec::new(); // generated: the names of states are their formulas
+    if is_generated(file) {
+        return Vec::new(); // the names of states are their formulas
     }
     match file.path.extension().and_then(|extension| extension.to_str()) {
         Some("rs" | "proto") => comment_lines(&file.text),
         Some("md") => blocks(file.text.lines().map(|line| (line, line))),
         _ => Vec::new(),
     }
+}
+
+fn is_generated(file: &TextFile) -> bool {
+    file.path.starts_with("statecharts") || file.path.iter().any(|folder| folder == "generated")
 }
 
 fn comment_lines(text: &str) -> Vec<ProseLine> {
@@ -71,6 +75,12 @@ mod tests {
     fn comments_are_prose_and_literals_are_not() {
         let text = "//! One.\nlet a = \"// no\"; // Two `code`.\n    /// ```\n    /// code\n    /// ```\n";
         assert_eq!(lines("a.rs", text), [(1, "One.".into(), 8), (2, "Two .".into(), 0)]);
+    }
+
+    #[test]
+    fn generated_files_have_no_prose() {
+        assert_eq!(lines("statecharts/a/src/lib.rs", "// One.\n"), []);
+        assert_eq!(lines("a/tests/golden/generated/b.rs", "// One.\n"), []);
     }
 
     #[test]

@@ -7,8 +7,8 @@ use yase::expression::{CallError, EventId, MessageSource, ScriptId, parse_action
 use yase::statechart::{Node, NodeId, NodeKind, Transition};
 use yase::vocabulary::{FieldEntry, MessageEntry, TopicEntry, TopicKind, ValueType};
 use yase::{
-    Activation, CompiledChart, FieldId, Host, Machine, Moment, ScopeId, ScriptContext, Statechart, TopicId,
-    TraceRecord, TypeEnvironment, Value,
+    Activation, CompiledChart, FieldId, Host, Machine, ScopeId, ScriptContext, Statechart, Timestamp,
+    TopicId, TraceRecord, TypeEnvironment, Value,
 };
 
 use crate::counts::{Counts, Event, FLAT, HIER, ORTHO, Toggle};
@@ -185,8 +185,8 @@ impl Ours {
         let toggle = chart.events().find("toggle").expect("it is named");
         let mut world = World::new(&chart);
         let mut machine = Machine::new(chart);
-        machine.start(Moment::ZERO, &mut world);
-        machine.run_to_completion(Moment::ZERO, &mut world).expect("it rests");
+        machine.start(Timestamp::ZERO, &mut world);
+        machine.run_to_completion(Timestamp::ZERO, &mut world).expect("it rests");
         world.counts = Counts::default();
         Ours { machine, world, now: 0, toggle }
     }
@@ -196,7 +196,7 @@ impl Toggle for Ours {
     fn handle(&mut self, event: Event) {
         // a machine whose time does not advance is stopped as a livelock
         self.now += 1;
-        let now = Moment::from_nanos(self.now);
+        let now = Timestamp::from_nanos(self.now);
         match event {
             Event::Toggle => {
                 self.machine.dispatch(self.toggle);

@@ -75,17 +75,18 @@ impl RustEmitter<'_> {
         };
         self.lines(&format!(
             "\
-//! {chart}, flattened: generated, so that what is changed here is lost when that is done again.
+//! {chart}, flattened. Generated: changes here are lost.
 //!
-//! `State::start` begins, `State::handle` says what an event leads to. What it asks and does on the way are the methods of `World`.
-#![allow(dead_code, clippy::all)] // not every program asks for everything, and generated code has one style
+//! `State::start` returns the initial state, `State::handle` reacts to an event.
+//! Conditions and actions are methods of `World`.
+#![allow(dead_code, clippy::all)] // unused items are allowed, and generated code has one style
 
 "
         ));
     }
 
     fn events(&mut self) {
-        self.lines("/// What comes from outside.\n#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]\npub enum Event {\n");
+        self.lines("/// The external events.\n#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]\npub enum Event {\n");
         for (event, name) in self.flat.events.iter().zip(&self.names.events.clone()) {
             let about = match event {
                 FlatEvent::Named(text) => format!("/// `{}`", in_words(text)),
@@ -99,13 +100,13 @@ impl RustEmitter<'_> {
     }
 
     fn world(&mut self) {
-        self.lines("/// What the chart asks, and what it has done.\npub trait World {\n");
+        self.lines("/// The conditions and actions of the chart.\npub trait World {\n");
         for (text, name) in self.flat.conditions.iter().zip(&self.names.conditions.clone()) {
-            self.line(1, &format!("/// Whether this holds: `{}`", in_words(text)));
+            self.line(1, &format!("/// The condition `{}`", in_words(text)));
             self.line(1, &format!("fn {name}(&self) -> bool;"));
         }
         for (text, name) in self.flat.actions.iter().zip(&self.names.actions.clone()) {
-            self.line(1, &format!("/// Does this: `{}`", in_words(text)));
+            self.line(1, &format!("/// The action `{}`", in_words(text)));
             self.line(1, &format!("fn {name}(&mut self);"));
         }
         self.end();
@@ -121,18 +122,18 @@ impl RustEmitter<'_> {
 
     fn states(&mut self) {
         self.lines(
-            "/// What is active.\n#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]\npub enum State {\n",
+            "/// The configurations.\n#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]\npub enum State {\n",
         );
         let states = self.flat.states.iter().zip(self.names.states.clone());
         for (state, name) in states.clone() {
             self.line(1, &about(&state.leaves));
             self.line(1, &format!("{name},"));
         }
-        self.lines("}\n\nimpl State {\n    /// Begins.\n");
+        self.lines("}\n\nimpl State {\n    /// The initial state.\n");
         self.start();
-        self.lines("\n    /// Does what an event leads to.\n");
+        self.lines("\n    /// Reacts to an event.\n");
         self.handle();
-        self.lines("\n    /// The innermost states that are active, by their paths; none when it is over.\n");
+        self.lines("\n    /// The paths of the innermost active states; none after the end.\n");
         self.line(1, "pub const fn active(self) -> &'static [&'static str] {");
         self.line(2, "match self {");
         for (state, name) in states {
@@ -271,13 +272,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_empty_stands_in_one_line() {
+    fn empty_items_are_on_one_line() {
         let mut chart = yase::Statechart::new("");
         let start = chart.add(yase::Statechart::ROOT, yase::Node::new(yase::NodeKind::Start, ""));
         let only = chart.add(yase::Statechart::ROOT, yase::Node::new(yase::NodeKind::Basic, "only"));
         chart.connect(yase::Transition::new(start, only));
         let code = crate::flatten::flatten(&chart, yase::Semantics::yase(), 1).unwrap().to_rust();
-        assert!(code.starts_with("//! A statechart, flattened: "), "{code}");
+        assert!(code.starts_with("//! A statechart, flattened. "), "{code}");
         assert!(code.contains("pub enum Event {}\n\n") && code.contains("pub trait World {}\n\n"), "{code}");
     }
 

@@ -78,14 +78,14 @@ impl FlatSearch<'_> {
         self.steps += 1;
         let most = self.limit.saturating_mul(STEPS);
         if self.steps > most {
-            return Err(too_many(format!("it has more than {most} ways")));
+            return Err(too_many(format!("it has more than {most} paths")));
         }
         let mut machine = from.clone();
         let mut recorder = RecordingHost::new(self.scripts, planned);
         advance_and_step(&mut machine, cause, Vec::new(), &mut recorder)
             .map_err(|error| endless(from, &error))?;
         if !machine.chooser().choices().is_empty() {
-            let message = "which of its transitions wins is left to chance".to_owned();
+            let message = "a conflict of its transitions is resolved at random".to_owned();
             return Err(Diagnostic::error("E0160", Span::default(), message));
         }
         let to = self.number(machine)?;
@@ -157,16 +157,13 @@ fn state(machine: &Machine) -> FlatState {
 
 fn too_many(message: String) -> Diagnostic {
     Diagnostic::error("E0161", Span::default(), message)
-        .with_hint("a chart whose regions have many states runs on a machine, which keeps them apart")
+        .with_hint("execute a chart with many states in its regions on a machine")
 }
 
 fn endless(from: &Machine, error: &MachineError) -> Diagnostic {
     let active =
         from.configuration().iter().map(|&node| from.chart().short_path(node)).collect::<Vec<_>>().join(", ");
-    let place = if active.is_empty() {
-        String::from("when it is started")
-    } else {
-        format!("where active are {active}")
-    };
-    Diagnostic::error("E0162", Span::default(), format!("a step has no end, {place}: {error}"))
+    let place =
+        if active.is_empty() { String::from("when it is started") } else { format!("with {active} active") };
+    Diagnostic::error("E0162", Span::default(), format!("a livelock, {place}: {error}"))
 }

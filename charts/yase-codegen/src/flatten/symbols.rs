@@ -181,13 +181,13 @@ pub(crate) fn not_known_beforehand(chart: &Statechart) -> Vec<Diagnostic> {
         let guard =
             expression.guard.as_ref().and_then(|guard| guard.find_map(&mut |part| looks_at_timer(part)));
         let what = [
-            (transition.weight.is_some(), "is taken at random"),
+            (transition.weight.is_some(), "is selected at random"),
             (expression.actions.iter().any(starts_timer), "starts a timer"),
-            (guard.is_some(), "looks at a timer"),
+            (guard.is_some(), "reads a timer"),
             (expression.actions.iter().any(writes_state), "writes whether a state is active"),
             (
                 expression.guard.as_ref().is_some_and(reads_conditions),
-                "reckons with whether a state is active",
+                "computes with the activity of a state",
             ),
         ];
         found.extend(report_unsupported(&what, || of_transition(chart, id)));
@@ -198,7 +198,7 @@ pub(crate) fn not_known_beforehand(chart: &Statechart) -> Vec<Diagnostic> {
 fn report_unsupported(what: &[(bool, &str)], of: impl Fn() -> String) -> Vec<Diagnostic> {
     let so = what.iter().filter(|(is_so, _)| *is_so);
     so.map(|(_, what)| {
-        let message = format!("{} {what}: a flat chart knows events and conditions only", of());
+        let message = format!("{} {what}: a flat chart has events and conditions only", of());
         Diagnostic::error("E0160", Span::default(), message)
             .with_hint("run it on a machine, or generate its crate with `monas generate`")
     })
@@ -207,7 +207,7 @@ fn report_unsupported(what: &[(bool, &str)], of: impl Fn() -> String) -> Vec<Dia
 
 fn of_transition(chart: &Statechart, id: TransitionId) -> String {
     let transition = chart.transition(id);
-    format!("what leads from `{}` to `{}`", chart.path(transition.source), chart.path(transition.target))
+    format!("the transition from `{}` to `{}`", chart.path(transition.source), chart.path(transition.target))
 }
 
 fn starts_timer(action: &Action) -> bool {
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn what_may_be_unknown_is_asked_for_with_its_negation() {
+    fn conditions_that_may_be_unknown_have_a_separate_negation() {
         let cases: [(&str, &str, &[&str]); 6] = [
             ("!Ball.found", r#"script("condition 0")"#, &["!Ball.found"]),
             (r#"!script("x")"#, r#"!script("condition 0")"#, &["x"]),
@@ -260,9 +260,9 @@ mod tests {
     #[test]
     fn states_that_are_part_of_a_value_are_refused() {
         for (text, why) in [
-            ("e [In(s) == true]", "reckons with whether a state is active"),
-            ("e [!(In(s) == Ball.found)]", "reckons with whether a state is active"),
-            ("e [Ball.found && !(In(s) && f(In(s)))]", "reckons with whether a state is active"),
+            ("e [In(s) == true]", "computes with the activity of a state"),
+            ("e [!(In(s) == Ball.found)]", "computes with the activity of a state"),
+            ("e [Ball.found && !(In(s) && f(In(s)))]", "computes with the activity of a state"),
             ("e / Ball.found = !In(s)", "writes whether a state is active"),
         ] {
             let (chart, _) = chart(text);

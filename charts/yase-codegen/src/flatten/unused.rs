@@ -30,11 +30,11 @@ impl FlatMachine {
     }
 }
 
-fn for_each_piece(way: &mut FlatPath, told: &mut dyn FnMut(&mut FlatOp)) {
+fn for_each_piece(way: &mut FlatPath, visit: &mut dyn FnMut(&mut FlatOp)) {
     for piece in &mut way.pieces {
-        told(piece);
+        visit(piece);
         if let FlatOp::If(_, other) = piece {
-            for_each_piece(other, told);
+            for_each_piece(other, visit);
         }
     }
 }

@@ -205,7 +205,7 @@ impl TypedChartBuilder {
             Some(ActionLocation::Transition(id)) => Some(id),
             _ => None,
         };
-        self.expect(id.is_some(), || "what belongs to a transition follows none".to_owned());
+        self.expect(id.is_some(), || "the call must follow a transition".to_owned());
         id
     }
 
@@ -218,7 +218,7 @@ impl TypedChartBuilder {
     /// The node with this number; the root, with a diagnostic, if there is none.
     fn known(&mut self, id: NodeId) -> NodeId {
         let is_known = (id.0 as usize) < self.chart.nodes().len();
-        self.expect(is_known, || format!("there is no node {} so far", id.0));
+        self.expect(is_known, || format!("node {} is not declared yet", id.0));
         if is_known { id } else { Statechart::ROOT }
     }
 

@@ -237,7 +237,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_compare_by_value_whatever_their_width() {
+    fn numbers_of_all_widths_compare_by_value() {
         assert_eq!(equal(3_u32, 3.0_f32), Ok(true));
         assert_eq!(less(-1_i64, 0_u64), Ok(true));
         assert_eq!(more(f64::NAN, 0.0), Err(GuardError::NotANumber.into()));

@@ -9,8 +9,8 @@ use yase::expression::{
 };
 use yase::statechart::Statechart;
 use yase::{
-    Activation, ActiveStates, CompiledChart, ConflictResolution, Host, Machine, Moment, ScopeId,
-    ScriptContext, Status, TypeEnvironment,
+    Activation, ActiveStates, CompiledChart, ConflictResolution, Host, Machine, ScopeId, ScriptContext,
+    Status, Timestamp, TypeEnvironment,
 };
 use yase_codegen::flatten::{FlatEvent, FlatMachine, FlatOp, FlatPath, flatten};
 
@@ -167,12 +167,12 @@ impl Host for World<'_> {
 fn play(chart: &Arc<CompiledChart>, flat: &FlatMachine, events: &[String], seed: u64) -> Vec<Line> {
     let mut machine = Machine::new(chart.clone());
     let mut world = World { chart, seed, step: 0, deeds: Vec::new() };
-    machine.start(Moment::ZERO, &mut world);
-    machine.run_to_completion(Moment::ZERO, &mut world).expect("it comes to rest");
+    machine.start(Timestamp::ZERO, &mut world);
+    machine.run_to_completion(Timestamp::ZERO, &mut world).expect("it comes to rest");
     let mut lines = vec![line(&machine, flat, std::mem::take(&mut world.deeds))];
     for (event, step) in events.iter().zip(1..) {
         world.step = step;
-        let now = Moment::from_nanos(step as u64);
+        let now = Timestamp::from_nanos(step as u64);
         machine.dispatch_name(event);
         machine.run_to_completion(now, &mut world).expect("it comes to rest");
         lines.push(line(&machine, flat, std::mem::take(&mut world.deeds)));

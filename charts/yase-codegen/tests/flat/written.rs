@@ -1,9 +1,10 @@
-//! The statechart `c`, flattened: generated, so that what is changed here is lost when that is done again.
+//! The statechart `c`, flattened. Generated: changes here are lost.
 //!
-//! `State::start` begins, `State::handle` says what an event leads to. What it asks and does on the way are the methods of `World`.
-#![allow(dead_code, clippy::all)] // not every program asks for everything, and generated code has one style
+//! `State::start` returns the initial state, `State::handle` reacts to an event.
+//! Conditions and actions are methods of `World`.
+#![allow(dead_code, clippy::all)] // unused items are allowed, and generated code has one style
 
-/// What comes from outside.
+/// The external events.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Event {
     /// `go`
@@ -16,21 +17,21 @@ pub enum Event {
     Back,
 }
 
-/// What the chart asks, and what it has done.
+/// The conditions and actions of the chart.
 pub trait World {
-    /// Whether this holds: `ready`
+    /// The condition `ready`
     fn ready(&self) -> bool;
-    /// Whether this holds: `tired`
+    /// The condition `tired`
     fn tired(&self) -> bool;
-    /// Does this: `move`
+    /// The action `move`
     fn move_(&mut self);
-    /// Does this: `stop`
+    /// The action `stop`
     fn stop(&mut self);
-    /// Does this: `leave A`
+    /// The action `leave A`
     fn leave_a(&mut self);
 }
 
-/// What is active.
+/// The configurations.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum State {
     /// In `both/one/A`, `both/two/C`.
@@ -48,12 +49,12 @@ pub enum State {
 }
 
 impl State {
-    /// Begins.
+    /// The initial state.
     pub fn start(_world: &mut impl World) -> State {
         State::AC
     }
 
-    /// Does what an event leads to.
+    /// Reacts to an event.
     #[inline]
     pub fn handle(&mut self, event: Event, world: &mut impl World) {
         match (*self, event) {
@@ -105,7 +106,7 @@ impl State {
         }
     }
 
-    /// The innermost states that are active, by their paths; none when it is over.
+    /// The paths of the innermost active states; none after the end.
     pub const fn active(self) -> &'static [&'static str] {
         match self {
             State::AC => &["both/one/A", "both/two/C"],

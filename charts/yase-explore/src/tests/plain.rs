@@ -95,7 +95,7 @@ fn steps(machine: &Machine, cause: &StepCause, found: &mut ReferenceExploration)
         next.set_chooser(Chooser::declared());
         found.taken.extend(&host.notes.taken);
         found.entered.extend(&host.notes.entered);
-        let told = (host.notes.taken.clone(), host.notes.held.clone());
+        let observed = (host.notes.taken.clone(), host.notes.held.clone());
         let decided: Vec<(ScriptId, bool)> =
             host.step_decisions().iter().map(|it| (it.script, it.value)).collect();
         let decisions: Vec<bool> = decided.iter().map(|it| it.1).collect();
@@ -107,7 +107,7 @@ fn steps(machine: &Machine, cause: &StepCause, found: &mut ReferenceExploration)
             plans.extend((1..made[index].1).map(|other| (values.clone(), [&before[..], &[other]].concat())));
         }
         match result {
-            Ok(()) => steps.push((format!("{cause:?} {decided:?} {made:?} {told:?}"), next)),
+            Ok(()) => steps.push((format!("{cause:?} {decided:?} {made:?} {observed:?}"), next)),
             Err(error) => {
                 found.failures.insert(format!("{:?}", error.kind()));
             }
@@ -229,7 +229,7 @@ fn charts_of_chance_are_explored_as_by_the_plain_way() {
 
 /// Timers that have expired differ from those never started where a chart distinguishes them.
 #[test]
-fn what_a_chart_can_tell_apart_is_not_one() {
+fn distinguishable_states_are_not_merged() {
     let states = |guard: &str| {
         let mut sketch = ChartSketch::new();
         sketch.states(Statechart::ROOT, &["a", "b"]);

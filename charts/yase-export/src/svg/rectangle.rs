@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_leaves_by_the_side_that_it_looks_at() {
+    fn a_line_leaves_by_the_facing_side() {
         let area = Rectangle::new((0.0, 0.0), (40.0, 20.0));
         assert_eq!(area.border_towards((100.0, 10.0)), (40.0, 10.0));
         assert_eq!(area.border_towards((-100.0, 10.0)), (0.0, 10.0));

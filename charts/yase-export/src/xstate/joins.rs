@@ -23,7 +23,10 @@ pub(crate) fn joins<'a>(
         let Some(around) = common_ancestor(chart, segments) else { continue };
         let triggers = segments.iter().filter_map(|it| it.expression.trigger.as_ref());
         if triggers.clone().any(|trigger| triggers.clone().any(|other| other != trigger)) {
-            lost.report_omitted(format!("the ways into `{}` wait for different events", chart.path(join)));
+            lost.report_omitted(format!(
+                "the transitions into `{}` wait for different events",
+                chart.path(join)
+            ));
             continue;
         }
         completions(chart, segments, lost);

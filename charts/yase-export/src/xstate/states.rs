@@ -110,7 +110,7 @@ impl XStateWriter<'_> {
         for (index, way) in ways.iter().enumerate() {
             let Some(first) = way.segments.first() else { continue };
             for connector in way.via(self.chart) {
-                self.lost.kind(connector, "nothing, as it lies on the way from a history to its default");
+                self.lost.kind(connector, "nothing, because it is on the path from a history to its default");
             }
             let says_more = way.segments.iter().any(|segment| !segment.expression.is_empty());
             if index > 0 {

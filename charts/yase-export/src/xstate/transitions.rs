@@ -86,7 +86,7 @@ impl<'a> TransitionResolver<'a> {
             let Some(&last) = way.last() else { continue };
             if self.left == 0 {
                 lost.report_omitted(format!(
-                    "there are too many ways; the one that ends with {}",
+                    "there are too many paths; the one that ends with {}",
                     lost.arrow(last)
                 ));
                 continue;
@@ -101,7 +101,7 @@ impl<'a> TransitionResolver<'a> {
                     lost.report_omitted(format!("{} leads nowhere", lost.arrow(last)));
                 }
                 ConnectorRole::Branch if way.len() == MAX_SEGMENTS => {
-                    lost.report_omitted(format!("{} is on a way that does not end", lost.arrow(last)));
+                    lost.report_omitted(format!("{} is on a path that does not end", lost.arrow(last)));
                 }
                 ConnectorRole::Branch => {
                     let next = self.outgoing(target).iter().rev();
@@ -134,7 +134,7 @@ impl<'a> TransitionResolver<'a> {
         }
         if targets.is_empty() {
             let word = kind_word(self.chart.node(fork).kind);
-            lost.report_omitted(format!("no way leads on from {word} `{}`", self.chart.path(fork)));
+            lost.report_omitted(format!("no path continues from {word} `{}`", self.chart.path(fork)));
             return None;
         }
         Some(ResolvedTransition { joined: vec![], segments, targets })

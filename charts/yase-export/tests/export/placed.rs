@@ -56,7 +56,7 @@ fn arrows(svg: &str) -> Vec<Vec<Point>> {
 }
 
 #[test]
-fn states_stand_where_they_were_put_and_are_as_large_as_said() {
+fn states_have_their_given_positions_and_sizes() {
     let mut light = machine();
     put(&mut light, "light/START", Some((0.0, 0.0)), None);
     put(&mut light, "off", Some((10.0, 60.0)), Some((200.0, 50.0)));
@@ -86,7 +86,7 @@ fn states_stand_where_they_were_put_and_are_as_large_as_said() {
 }
 
 #[test]
-fn what_was_not_put_anywhere_stands_below_what_was() {
+fn elements_without_positions_are_below_the_others() {
     let mut light = machine();
     put(&mut light, "off", Some((0.0, 0.0)), None);
     let svg = to_svg(&light);

@@ -195,7 +195,7 @@ proptest! {
 }
 
 #[test]
-fn a_broken_tree_is_said() {
+fn a_broken_tree_is_reported() {
     let mut chart = Statechart::new("c");
     let a = chart.add(Statechart::ROOT, Node::new(NodeKind::Or, "a"));
     chart.node_mut(a).parent = Some(a);

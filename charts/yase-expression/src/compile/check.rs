@@ -60,7 +60,7 @@ impl NameContext<'_> {
             return Ok(BooleanTerm::Absent(source.message_source()));
         };
         let message = format!("`{}` is a field; only whole messages can be absent", field.text);
-        let hint = "compare what stands before it with NULL";
+        let hint = "compare the message before it with NULL";
         Err(vec![Diagnostic::error("E0138", field.place.0, message).with_hint(hint)])
     }
 
@@ -178,7 +178,7 @@ fn refuse_order(kind: &ValueType, comparison: Comparison, span: Span) -> Compile
         }
         _ if sameness => Ok(()),
         other => {
-            let message = format!("`{comparison}` needs numbers, but here stands {}", describe(other));
+            let message = format!("`{comparison}` needs numbers, found {}", describe(other));
             Err(vec![Diagnostic::error("E0137", span, message).with_hint("compare by `==` or `!=`")])
         }
     }
@@ -205,7 +205,7 @@ fn needed_hint(found: &ValueType, needed: &ValueType) -> String {
         (ValueType::Message(_), _) => "name a field of the message".to_owned(),
         (_, ValueType::Bool) => "compare it with something".to_owned(),
         (_, ValueType::Enumeration(name)) => format!("write the name of a value of `{name}`"),
-        (_, ValueType::Text) => "a text stands in double quotes".to_owned(),
+        (_, ValueType::Text) => "put texts into double quotes".to_owned(),
         (_, ValueType::Number) => "write a number, or a field that holds one".to_owned(),
         (_, ValueType::Message(name)) => format!("write `{name}`, or its topic"),
     }
@@ -221,6 +221,6 @@ fn comparison_hint(one: &ValueType, other: &ValueType) -> String {
         (ValueType::Enumeration(name), _) | (_, ValueType::Enumeration(name)) => {
             format!("write the name of a value of `{name}`")
         }
-        _ => "numbers stand without quotes, texts in quotes".to_owned(),
+        _ => "write numbers without quotes, texts with quotes".to_owned(),
     }
 }

@@ -68,7 +68,7 @@ impl NameContext<'_> {
             }
             _ => (
                 path.place,
-                format!("`{path}` is a message of one publisher; all of its host are events, or none"),
+                format!("`{path}` is a message of one publisher; events are the messages of all publishers"),
             ),
         };
         Err(vec![
@@ -87,7 +87,7 @@ impl NameContext<'_> {
             [topic] => Ok(Some(topic)),
             several => {
                 let forms: Vec<_> = several.iter().map(|topic| full_form(topic)).collect();
-                let message = format!("several topics are called `{}`", name.text);
+                let message = format!("several topics have the name `{}`", name.text);
                 let diagnostic = Diagnostic::error("E0133", name.place.0, message);
                 Err(vec![diagnostic.with_hint(format!("write {}", forms.join(" or ")))])
             }

@@ -68,10 +68,9 @@ impl<'a> NameContext<'a> {
                 None => &topic.message,
                 Some(ValueType::Message(message)) => message,
                 Some(other) => {
-                    let text =
-                        format!("`{}` is asked of {}, which has no fields", name.text, describe(other));
+                    let text = format!("{} has no field `{}`", describe(other), name.text);
                     let diagnostic = Diagnostic::error("E0134", name.place.0, text);
-                    return Err(vec![diagnostic.with_hint(format!("leave `.{}` out", name.text))]);
+                    return Err(vec![diagnostic.with_hint(format!("remove `.{}`", name.text))]);
                 }
             };
             let entries = self.entry_of(message).map_or(&[][..], |entry| &entry.fields);

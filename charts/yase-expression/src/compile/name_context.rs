@@ -56,7 +56,7 @@ impl<'a> NameContext<'a> {
         if self.vocabulary.scripts {
             return Ok(self.scripts.borrow_mut().intern(text));
         }
-        let diagnostic = Diagnostic::error("E0147", span, "what runs this chart has no scripts");
+        let diagnostic = Diagnostic::error("E0147", span, "the host of this chart has no scripts");
         Err(vec![diagnostic.with_hint("write it as a condition or an action, or as a registered function")])
     }
 
@@ -181,7 +181,7 @@ impl<'a> NameContext<'a> {
             let form = "see the definition of the enumeration";
             return unknown(Diagnostic::error("E0130", span, message), name, known, form);
         }
-        let message = format!("there is nothing called `{name}` here");
+        let message = format!("there is no `{name}` here");
         if let Some(hint) = self.hint_for_unknown(name, expected) {
             return Diagnostic::error("E0130", span, message).with_hint(hint);
         }

@@ -39,7 +39,7 @@ impl Cursor<'_> {
         }
     }
 
-    /// Parses one action, which may stand for two: `publish.Message.set_x(1)` assigns and
+    /// Parses one action, which may expand to two: `publish.Message.set_x(1)` assigns and
     /// publishes.
     fn action(&mut self, actions: &mut Vec<Action>) -> Parsed<()> {
         let start = self.span().start;

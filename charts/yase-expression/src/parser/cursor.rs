@@ -63,7 +63,7 @@ impl<'t> Cursor<'t> {
             TokenKind::Unclosed => {
                 let quote = if self.here().starts_with('"') { "\"" } else { "`" };
                 let span = Span::new(self.span().start, self.span().start + quote.len());
-                let message = format!("what {quote} begins is not closed");
+                let message = format!("{quote} is not closed");
                 Some(Diagnostic::error("E0102", span, message).with_hint(format!("close it with {quote}")))
             }
             _ => None,
@@ -184,7 +184,7 @@ impl<'t> Cursor<'t> {
     fn refuse_closing(&mut self, code: &'static str, open: Span, opening: &str, closing: &str) -> Parsed<()> {
         if opening == "[" && self.at(Symbol::CloseParenthesis) {
             let diagnostic = Diagnostic::error("E0109", self.span(), "`)` closes nothing");
-            return self.refuse(diagnostic.with_hint("leave it out, or add `(`"));
+            return self.refuse(diagnostic.with_hint("remove it, or add `(`"));
         }
         if matches!(
             self.kind(),

@@ -15,11 +15,7 @@ impl Cursor<'_> {
     /// `a`, `a.b`, `` `x.y`.c ``, and with getters `a.b()`, `a.b().c()`.
     pub(crate) fn path(&mut self) -> Parsed<Path> {
         if self.word().is_some_and(|word| RESERVED.contains(&word)) {
-            return self.refuse_here(
-                "E0115",
-                "a name",
-                "a name that is a word of the language stands in backquotes",
-            );
+            return self.refuse_here("E0115", "a name", "put a name that is a keyword into backquotes");
         }
         let start = self.span().start;
         let mut segments = vec![self.name()?];
@@ -40,7 +36,7 @@ impl Cursor<'_> {
             _ => self.refuse_here(
                 "E0115",
                 "a name",
-                "a name is letters, digits and `_`; blanks stand around `lt`, `gt` and the like",
+                "a name is letters, digits and `_`; put blanks around `lt`, `gt` and the like",
             ),
         }
     }

@@ -62,10 +62,8 @@ impl Cursor<'_> {
 
     fn refuse_trigger<T>(&mut self) -> Parsed<T> {
         let hint = match self.kind() {
-            TokenKind::Symbol(Symbol::Comma | Symbol::Semicolon) => {
-                "one of several events is written `a | b`"
-            }
-            _ => "an event is a name; conditions stand in brackets, actions after `/`",
+            TokenKind::Symbol(Symbol::Comma | Symbol::Semicolon) => "alternative events are written `a | b`",
+            _ => "an event is a name; conditions are in brackets, actions after `/`",
         };
         let message = match self.kind() {
             TokenKind::End => "an event is expected, not the end".to_owned(),

@@ -47,7 +47,7 @@ fn a_topic_is_named_in_every_way() {
 }
 
 #[test]
-fn what_stands_before_a_message_says_whose_it_is() {
+fn the_prefix_of_a_message_is_its_origin() {
     let host = || "striker".into();
     let publisher = || "Vision".into();
     for (variable, origin) in [

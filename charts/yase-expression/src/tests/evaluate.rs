@@ -49,7 +49,7 @@ fn conjunction_disjunction_and_negation_are_kleenes() {
 }
 
 #[test]
-fn whatever_reads_a_missing_message_is_unknown() {
+fn expressions_of_missing_messages_are_unknown() {
     let world = World::new();
     for condition in [
         "Ball.distance > 0",
@@ -106,7 +106,7 @@ fn states_are_active_or_not() {
 }
 
 #[test]
-fn numbers_compare_by_value_whatever_their_width() {
+fn numbers_of_all_widths_compare_by_value() {
     for (left, comparison, right, expected) in [
         (Value::Int(2), "==", "2", true),
         (Value::Uint(2), "==", "2.0", true),
@@ -161,7 +161,7 @@ fn arithmetic_is_whole_as_long_as_it_is_exact() {
 }
 
 #[test]
-fn what_has_no_result_is_an_error() {
+fn an_operation_without_a_result_is_an_error() {
     let with = |value| World::new().with(BALL, &[DISTANCE], value);
     for (world, condition, error) in [
         (with(Value::Int(0)), "1 / Ball.distance > 0", GuardError::DivisionByZero),
@@ -190,7 +190,7 @@ fn what_has_no_result_is_an_error() {
 }
 
 #[test]
-fn what_is_decided_is_not_looked_at_further() {
+fn decided_properties_are_not_evaluated_again() {
     let world = World::new();
     assert_eq!(world.holds("false && 1 / 0 > 1"), Ok(false));
     assert_eq!(world.holds("true || 1 / 0 > 1"), Ok(true));
@@ -220,7 +220,7 @@ fn texts_and_truths_compare_for_sameness() {
 
 /// A comparison of a field with a constant reads the field once.
 #[test]
-fn what_does_not_hold_is_a_value_too() {
+fn false_is_a_value() {
     for (found, is_so, is_not_so) in
         [(Some(true), Some(true), Some(false)), (Some(false), Some(false), Some(true)), (None, None, None)]
     {
@@ -231,7 +231,7 @@ fn what_does_not_hold_is_a_value_too() {
 }
 
 #[test]
-fn a_guard_knows_what_it_reads_wherever_that_stands() {
+fn a_guard_lists_all_its_reads() {
     let topics = |condition: &str| guard(condition).reads().to_vec();
     let both = [BALL, GAME];
     for condition in [

@@ -71,7 +71,7 @@ fn nothing_is_the_empty_expression() {
 }
 
 #[test]
-fn each_part_stands_alone_or_with_the_others() {
+fn each_part_is_valid_alone_or_with_the_others() {
     let trigger = Some(Trigger::OneOf(vec![path("e")]));
     let guard = Some(variable("g"));
     let actions = vec![Action { kind: ActionKind::PublishAll, place: TextPosition::default() }];
@@ -297,7 +297,7 @@ fn places_are_bytes_of_the_larger_text() {
 }
 
 #[test]
-fn what_is_sound_is_kept_beside_what_is_refused() {
+fn valid_parts_are_kept_beside_rejected_ones() {
     let (expression, diagnostics) = parse_transition("a, b [c d] / M.f = ; publish_all; x, process_messages");
     let codes: Vec<_> = diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
     assert_eq!(codes, ["E0116", "E0107", "E0106", "E0118"]);
@@ -307,7 +307,7 @@ fn what_is_sound_is_kept_beside_what_is_refused() {
 }
 
 #[test]
-fn slips_that_are_plain_are_said_and_read_as_meant() {
+fn obvious_slips_are_reported_and_corrected() {
     let (expression, diagnostics) = parse_transition("[a = 1 | b & c]");
     assert_eq!(diagnostics.len(), 3);
     assert_eq!(expression.guard, Some(condition("a == 1 || b && c")));
@@ -363,7 +363,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_read_without_complaint_prints_as_itself(text in shuffled_pieces()) {
+    fn valid_texts_round_trip(text in shuffled_pieces()) {
         let (expression, diagnostics) = parse_transition(&text);
         if diagnostics.is_empty() {
             prop_assert_eq!(parse_transition(&expression.to_string()), (expression, vec![]));

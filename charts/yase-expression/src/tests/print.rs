@@ -164,7 +164,7 @@ fn transition() -> impl Strategy<Value = TransitionExpression> {
 
 proptest! {
     #[test]
-    fn what_is_printed_reads_back_as_the_same_tree(expression in transition()) {
+    fn printed_trees_parse_to_the_same_tree(expression in transition()) {
         let text = expression.to_string();
         let (read, diagnostics) = parse_transition(&text);
         prop_assert_eq!(diagnostics, vec![], "{}", text);

@@ -13,14 +13,14 @@ use parsing::PARSING;
 type Table = &'static [(&'static str, &'static [&'static str])];
 
 #[test]
-fn what_cannot_be_read_is_refused_with_a_reason() {
+fn unreadable_input_is_rejected_with_a_reason() {
     for (text, expected) in PARSING {
         assert_eq!(said(text, &parse_transition(text).1), *expected, "{text}");
     }
 }
 
 #[test]
-fn what_has_no_meaning_is_refused_with_a_reason() {
+fn meaningless_input_is_rejected_with_a_reason() {
     for (text, expected) in COMPILING {
         let wrong = compile_with(text, &mut EventInterner::new()).expect_err(text);
         assert_eq!(said(text, &wrong), *expected, "{text}");

@@ -5,12 +5,12 @@ use std::time::Duration;
 use yase::expression::parse_actions;
 use yase::statechart::{Node, NodeId, NodeKind};
 
-use super::Maker;
+use super::ChartGenerator;
 
 /// Charts with this many nodes get no more composites.
 const MANY: usize = 28;
 
-impl Maker<'_, '_> {
+impl ChartGenerator<'_, '_> {
     /// The children of an OR.
     pub(crate) fn composite(&mut self, composite: NodeId, depth: usize) {
         let without = depth > 0 && self.makes_uml() && self.choices.percent(12);
@@ -62,7 +62,7 @@ impl Maker<'_, '_> {
         }
     }
 
-    /// Entry and exit points and history of a composite.
+    /// Adds entry and exit points and a history to a composite.
     fn borders(&mut self, composite: NodeId) {
         for (kind, prefix, percent) in [
             (NodeKind::ShallowHistory, "h", 15),

@@ -1,6 +1,6 @@
-//! R10 to R13: leaving, acting, entering, and the end.
+//! R10 to R13: exits, effects, entries and the end.
 
-use yase::{Activation, Host, Machine, Moment, Status};
+use yase::{Activation, Host, Machine, Status, Timestamp};
 
 use crate::{check, compare};
 use yase_reference::world::World;
@@ -124,8 +124,7 @@ fn r10_no_state_exits_or_enters_twice_in_a_transition_across_levels() {
 
 #[test]
 fn r10_a_region_that_another_transition_has_left_does_not_fire() {
-    // the AND is left by one region; the other, which takes the event too, is preempted and does
-    // nothing
+    // one region exits the AND; the other reacts to the same event, is preempted and does nothing
     let log = script::play(
         &chart(
             "
@@ -160,10 +159,10 @@ fn r10_entering_stops_at_start_whose_way_out_is_the_next_micro_step_of_the_same_
     let chart = chart("START\nP\n  START\n  A\nB\nc/START -> B\nB -> P : e\nP/START -> A\n");
     let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);
-    machine.start(Moment::ZERO, &mut world);
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    machine.start(Timestamp::ZERO, &mut world);
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     machine.dispatch_name("e");
-    let summary = machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    let summary = machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     assert_eq!((summary.micro_steps, summary.transitions, summary.started), (2, 2, 0));
     compare(
         &world.log[2..],
@@ -261,16 +260,16 @@ fn r13_at_root_end_a_chart_is_finished_and_idles_until_started_again() {
     let chart = chart("START\nA\nEND\nc/START -> A\nA -> c/END : e / raise(never)\n");
     let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);
-    assert_eq!((machine.status(), machine.needs_step(Moment::ZERO)), (Status::Idle, false));
+    assert_eq!((machine.status(), machine.needs_step(Timestamp::ZERO)), (Status::Idle, false));
     for _ in 0..2 {
-        machine.start(Moment::ZERO, &mut world);
+        machine.start(Timestamp::ZERO, &mut world);
         machine.dispatch_name("e");
         machine.dispatch_name("e");
-        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
         assert!(machine.is_finished());
         machine.dispatch_name("e");
-        assert!(!machine.needs_step(Moment::from_millis(1)));
-        assert_eq!(machine.run_to_completion(Moment::ZERO, &mut world).unwrap().micro_steps, 0);
+        assert!(!machine.needs_step(Timestamp::from_millis(1)));
+        assert_eq!(machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap().micro_steps, 0);
     }
     let once = "0.000 s start; enter c, START
                 0.000 s -: START -> A; exit START; enter A
@@ -283,31 +282,31 @@ fn r13_stop_cancels_and_what_returns_later_is_not_for_the_next_run() {
     let chart = chart("START\nA | run\nB\nc/START -> A\nA -> B\n");
     let mut machine = Machine::new(script::compile(&chart));
     let mut world = World { activities: World::new(&chart).activities, ..World::default() };
-    machine.start(Moment::ZERO, &mut world);
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
-    let first: Activation = world.jobs[0].activation;
+    machine.start(Timestamp::ZERO, &mut world);
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+    let first: Activation = world.running[0].activation;
     machine.stop(&mut world);
     assert_eq!(machine.status(), Status::Stopped);
     assert!(!machine.is_running(first.region));
-    machine.start(Moment::ZERO, &mut world);
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    machine.start(Timestamp::ZERO, &mut world);
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     assert!(!machine.activity_returned(first, yase::Outcome::Done));
-    let second = world.jobs[1].activation;
+    let second = world.running[1].activation;
     assert!(machine.activity_returned(second, yase::Outcome::Done));
     assert!(!machine.activity_returned(second, yase::Outcome::Done));
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     assert!(machine.is_active(chart::find(&chart, "B")));
     world.cancel(first);
 }
 
 #[test]
-fn r13_what_has_been_asked_to_return_is_not_asked_again() {
+fn r13_a_cancelled_activity_is_not_cancelled_again() {
     let chart = chart("START\nA | run | for=50ms\nX\nc/START -> A\nA -> X {interrupts} : e\n");
     let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);
-    machine.start(Moment::ZERO, &mut world);
+    machine.start(Timestamp::ZERO, &mut world);
     machine.dispatch_name("e");
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     machine.stop(&mut world);
     machine.stop(&mut world);
     assert_eq!(world.log.iter().filter(|line| line.contains("cancel A")).count(), 1, "{:?}", world.log);

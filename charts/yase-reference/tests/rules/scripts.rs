@@ -4,15 +4,15 @@ use std::sync::Arc;
 
 use yase::expression::{CallError, EventId, ScriptId, parse_actions, parse_transition};
 use yase::{
-    ActionLocation, Activation, ActiveStates, CompiledChart, Host, Machine, MicroStep, Moment, NodeId,
-    ScopeId, ScriptContext, ScriptLocation, Semantics, Statechart, TransitionId, TypeEnvironment,
+    ActionLocation, Activation, ActiveStates, CompiledChart, Host, Machine, MicroStep, NodeId, ScopeId,
+    ScriptContext, ScriptLocation, Semantics, Statechart, Timestamp, TransitionId, TypeEnvironment,
 };
 
 use yase_reference::chart;
 use yase_reference::chart::find;
 
-/// Understands `in PATH` as a condition, `fail` as both, and `raise NAME TOKEN`, `look PATH` and
-/// `see:LABEL` as actions.
+/// A host language with the condition `in PATH`, the actions `raise NAME TOKEN`, `look PATH` and
+/// `see:LABEL`, and `fail` as both.
 struct Reader {
     chart: Arc<CompiledChart>,
     lines: Vec<String>,
@@ -133,8 +133,8 @@ fn scripts_know_where_they_stand_and_what_is_active() {
             ("raise g.h 8", vec![action(way, 1)]),
         ]
     );
-    machine.start(Moment::ZERO, &mut reader);
-    machine.run_to_completion(Moment::from_millis(3), &mut reader).unwrap();
+    machine.start(Timestamp::ZERO, &mut reader);
+    machine.run_to_completion(Timestamp::from_millis(3), &mut reader).unwrap();
     assert_eq!(
         reader.lines,
         [
@@ -149,7 +149,7 @@ fn scripts_know_where_they_stand_and_what_is_active() {
 }
 
 #[test]
-fn names_match_by_tokens_where_that_is_meant_and_tokens_come_along() {
+fn names_match_by_tokens_if_configured() {
     let text = "
         START
         A
@@ -161,11 +161,11 @@ fn names_match_by_tokens_where_that_is_meant_and_tokens_come_along() {
     ";
     let offered = |semantics, names: &[&str]| -> Vec<String> {
         let (mut machine, mut reader) = machine(&chart(text), semantics);
-        machine.start(Moment::ZERO, &mut reader);
+        machine.start(Timestamp::ZERO, &mut reader);
         for (name, token) in names.iter().zip(1..) {
             machine.dispatch_with(name, token);
         }
-        machine.run_to_completion(Moment::ZERO, &mut reader).unwrap();
+        machine.run_to_completion(Timestamp::ZERO, &mut reader).unwrap();
         reader.lines
     };
     let mut tokens = Semantics::yase();
@@ -188,7 +188,7 @@ fn names_match_by_tokens_where_that_is_meant_and_tokens_come_along() {
 }
 
 #[test]
-fn events_are_deferred_by_tokens_where_that_is_meant() {
+fn events_are_deferred_by_tokens_if_configured() {
     let text = "
         START
         A | defer=w
@@ -202,11 +202,11 @@ fn events_are_deferred_by_tokens_where_that_is_meant() {
         let mut semantics = Semantics::yase();
         semantics.matching = matching;
         let (mut machine, mut reader) = machine(&chart(text), semantics);
-        machine.start(Moment::ZERO, &mut reader);
-        machine.run_to_completion(Moment::ZERO, &mut reader).unwrap();
+        machine.start(Timestamp::ZERO, &mut reader);
+        machine.run_to_completion(Timestamp::ZERO, &mut reader).unwrap();
         let mut play = |name: &str| {
             machine.dispatch_name(name);
-            machine.run_to_completion(Moment::ZERO, &mut reader).unwrap().transitions
+            machine.run_to_completion(Timestamp::ZERO, &mut reader).unwrap().transitions
         };
         vec![play("w.x"), play("go"), play("w.x")]
     };
@@ -225,10 +225,10 @@ fn failures_are_events_by_their_cause_or_every_time() {
     ";
     let offered = |semantics| -> Vec<String> {
         let (mut machine, mut reader) = machine(&chart(text), semantics);
-        machine.start(Moment::ZERO, &mut reader);
+        machine.start(Timestamp::ZERO, &mut reader);
         for event in ["x", "x", "e"] {
             machine.dispatch_name(event);
-            machine.run_to_completion(Moment::ZERO, &mut reader).ok();
+            machine.run_to_completion(Timestamp::ZERO, &mut reader).ok();
         }
         reader.lines.iter().map(|line| line.split(' ').nth(1).unwrap().to_owned()).collect()
     };
@@ -239,8 +239,8 @@ fn failures_are_events_by_their_cause_or_every_time() {
     assert_eq!(offered(every), ["?", "error.execution", "error.execution"], "until the limit");
 }
 
-/// Composites, side by side and nested, whose actions write down what is active: one action,
-/// several, and none.
+/// Parallel and nested composites whose actions record the active states: one action, several, and
+/// none.
 const SEEING: &str = "
     START
     P | entry=script(\"see:+P\") | exit=script(\"see:-P\"),script(\"see:-P2\")
@@ -277,14 +277,14 @@ const SEEING: &str = "
 fn r10_an_action_sees_what_has_been_left_and_entered_so_far() {
     let lines = |long: bool| -> Vec<String> {
         let (mut machine, mut reader) = machine(&chart(SEEING), Semantics::yase());
-        machine.start(Moment::ZERO, &mut reader);
-        machine.run_to_completion(Moment::ZERO, &mut reader).unwrap();
+        machine.start(Timestamp::ZERO, &mut reader);
+        machine.run_to_completion(Timestamp::ZERO, &mut reader).unwrap();
         for event in ["in", "out", "e", "e", "f", "back", "across", "x"] {
             machine.dispatch_name(event);
             if long {
-                while machine.micro_step(Moment::ZERO, &mut reader).unwrap() == MicroStep::Progressed {}
+                while machine.micro_step(Timestamp::ZERO, &mut reader).unwrap() == MicroStep::Progressed {}
             } else {
-                machine.run_to_completion(Moment::ZERO, &mut reader).unwrap();
+                machine.run_to_completion(Timestamp::ZERO, &mut reader).unwrap();
             }
         }
         reader.lines.retain(|line| line.starts_with("see:"));

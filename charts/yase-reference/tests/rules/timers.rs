@@ -4,7 +4,7 @@ use crate::{check, refusal};
 
 #[test]
 fn r21_a_timer_is_over_from_its_deadline_until_it_is_set_again() {
-    // a loop as in the thesis: the bare name is true while the timer was never set
+    // a loop as in the thesis: the bare name is true before the timer is started
     check(
         "
         START
@@ -144,7 +144,7 @@ fn r21_expiry_raises_an_event_that_matches_only_triggers_that_name_it() {
 
 #[test]
 fn r21_setting_a_timer_again_withdraws_its_queued_expiry() {
-    // the expiry is held while S runs; what returns first sets the timer again
+    // the expiry is held while S runs; the first return restarts the timer
     let chart = |action: &str| {
         format!(
             "
@@ -248,21 +248,21 @@ fn r21_a_deferred_expiry_is_withdrawn_too() {
 
 #[test]
 fn r21_the_clock_never_runs_backwards() {
-    use yase::{Machine, Moment};
+    use yase::{Machine, Timestamp};
 
     use yase_reference::{World, chart, script};
 
     let chart = chart("START\nS\nc/START -> S\nS -> S {internal} : e / StartTimeout(v, 10ms)\n");
     let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);
-    machine.start(Moment::from_millis(20), &mut world);
+    machine.start(Timestamp::from_millis(20), &mut world);
     machine.dispatch_name("e");
-    machine.run_to_completion(Moment::from_millis(5), &mut world).unwrap();
-    assert_eq!(machine.next_deadline(), Some(Moment::from_millis(30)));
+    machine.run_to_completion(Timestamp::from_millis(5), &mut world).unwrap();
+    assert_eq!(machine.next_deadline(), Some(Timestamp::from_millis(30)));
 }
 
 #[test]
-fn r22_of_timers_that_expire_at_one_moment_the_chooser_says_which_is_first() {
+fn r22_the_chooser_orders_timers_that_expire_together() {
     use yase::{Chooser, Machine};
     use yase_reference::{World, script};
     let chart = yase_reference::chart(

@@ -1,8 +1,8 @@
-//! R23: a record for every micro-step.
+//! R23: one record per micro-step.
 
 use yase::statechart::TransitionId;
 use yase::{
-    ActionLocation, Activation, CompiledChart, Host, Machine, MicroStepCause, Moment, NodeId, TraceRecord,
+    ActionLocation, Activation, CompiledChart, Host, Machine, MicroStepCause, NodeId, Timestamp, TraceRecord,
 };
 
 use crate::compare;
@@ -20,7 +20,7 @@ const CHART: &str = "
     c1 -> A
 ";
 
-/// Keeps what records hold.
+/// Stores the content of records.
 #[derive(Default)]
 struct Listener {
     occasions: Vec<MicroStepCause>,
@@ -29,7 +29,7 @@ struct Listener {
     effects: Vec<ActionLocation>,
     segments: Vec<TransitionId>,
     guards: Vec<(TransitionId, Option<bool>)>,
-    times: Vec<Moment>,
+    times: Vec<Timestamp>,
 }
 
 impl Host for Listener {
@@ -62,9 +62,9 @@ fn r23_a_record_names_what_was_taken_left_done_and_entered() {
     let mut machine = Machine::new(script::compile(&chart));
     let mut listener = Listener::default();
     let node = |path: &str| chart::find(&chart, path);
-    machine.start(Moment::from_millis(3), &mut listener);
+    machine.start(Timestamp::from_millis(3), &mut listener);
     machine.dispatch_name("e");
-    machine.run_to_completion(Moment::from_millis(5), &mut listener).unwrap();
+    machine.run_to_completion(Timestamp::from_millis(5), &mut listener).unwrap();
     let event = |name: &str| MicroStepCause::Event(machine.chart().events().find(name).unwrap());
     assert_eq!(
         listener.occasions,
@@ -77,8 +77,8 @@ fn r23_a_record_names_what_was_taken_left_done_and_entered() {
             event("entered")
         ]
     );
-    assert_eq!(listener.times[0], Moment::from_millis(3));
-    assert!(listener.times[1..].iter().all(|&time| time == Moment::from_millis(5)));
+    assert_eq!(listener.times[0], Timestamp::from_millis(3));
+    assert!(listener.times[1..].iter().all(|&time| time == Timestamp::from_millis(5)));
     assert_eq!(listener.exits, [node("START"), node("A")]);
     assert_eq!(listener.entries, [node("c"), node("START"), node("A"), node("B")].map(|node| node));
     assert_eq!(listener.segments, [0, 1, 2].map(TransitionId));
@@ -111,9 +111,9 @@ fn r23_a_record_shows_the_guards_that_were_read() {
 }
 
 #[test]
-fn r23_nothing_is_written_down_for_a_host_that_does_not_want_it() {
-    struct Deaf;
-    impl Host for Deaf {
+fn r23_no_record_is_made_for_a_host_without_traces() {
+    struct MutedHost;
+    impl Host for MutedHost {
         fn start(&mut self, _: Activation) {}
         fn cancel(&mut self, _: Activation) {}
         fn stop(&mut self, _: Activation) {}
@@ -123,7 +123,7 @@ fn r23_nothing_is_written_down_for_a_host_that_does_not_want_it() {
     }
     let chart = chart(&CHART.replace("on the way", "through"));
     let mut machine = Machine::new(script::compile(&chart));
-    machine.start(Moment::ZERO, &mut Deaf);
+    machine.start(Timestamp::ZERO, &mut MutedHost);
     machine.dispatch_name("e");
-    assert_eq!(machine.run_to_completion(Moment::ZERO, &mut Deaf).unwrap().micro_steps, 2);
+    assert_eq!(machine.run_to_completion(Timestamp::ZERO, &mut MutedHost).unwrap().micro_steps, 2);
 }

@@ -1,15 +1,16 @@
-//! A run-to-completion step in one call does what it does one micro-step at a time, traced or not.
+//! A run-to-completion step in one call equals its micro-steps, with and without a trace.
 
 use std::time::Duration;
 
-use yase::{Machine, Moment};
+use yase::{Machine, Timestamp};
 
 use crate::check;
 use yase_reference::chart;
 use yase_reference::script::{self, ByMicroSteps, Interpreter, Script};
 use yase_reference::world::World;
 
-/// Plays a script in whole steps and in micro-steps, and returns the log, guards included.
+/// Executes a script in complete steps and in micro-steps, and returns the log with the reads of
+/// guards.
 fn with_reads(text: &str, script: &str) -> Vec<String> {
     let (chart, script) = (chart(text), Script::parse(script));
     let played = |machine: &mut dyn Play| {
@@ -46,9 +47,9 @@ fn r23_guards_that_are_read_stand_in_the_record() {
         B -> A : e
     ";
     let log = with_reads(text, "1 A=0; 2 e; 3 A=1; 4 e; 5 e; 6");
-    let told: Vec<&str> = log[2..].iter().map(|line| line.trim()).collect();
+    let lines: Vec<&str> = log[2..].iter().map(|line| line.trim()).collect();
     assert_eq!(
-        told,
+        lines,
         [
             "0.002 s e: dropped; read A -> B = false, A -> A = false",
             "0.004 s e: A -> B; exit A; enter B; read A -> B = true",
@@ -58,7 +59,7 @@ fn r23_guards_that_are_read_stand_in_the_record() {
 }
 
 #[test]
-fn r03_a_guard_that_failed_is_read_again_and_told_again_when_what_it_reads_has_changed() {
+fn r03_a_failed_guard_is_evaluated_and_reported_again_after_its_input_changed() {
     check(
         "
         START
@@ -101,13 +102,13 @@ fn r21_a_timer_that_was_over_long_ago_expires_in_the_next_step() {
     for silent in [false, true] {
         let mut world = World { silent, ..World::new(&chart) };
         let mut machine = Machine::new(script::compile(&chart));
-        machine.start(Moment::ZERO, &mut world);
-        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut world);
+        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
         machine.dispatch_name("set");
-        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
-        assert_eq!(machine.next_deadline(), Some(Moment::from_millis(10)));
+        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+        assert_eq!(machine.next_deadline(), Some(Timestamp::from_millis(10)));
         machine.dispatch_name("e");
-        let late = Moment::ZERO + Duration::from_millis(25);
+        let late = Timestamp::ZERO + Duration::from_millis(25);
         let summary = machine.run_to_completion(late, &mut world).unwrap();
         assert_eq!((summary.transitions, machine.next_deadline()), (2, None), "B -> C at e, C -> A at v");
     }
@@ -143,10 +144,10 @@ fn r13_beside_others_nothing_fires_after_the_end_of_the_chart() {
     let played = [false, true].map(|silent| {
         let mut world = World { silent, ..World::new(&chart) };
         let mut machine = Machine::new(script::compile(&chart));
-        machine.start(Moment::ZERO, &mut world);
-        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut world);
+        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
         machine.dispatch_name("go");
-        let summary = machine.run_to_completion(Moment::from_millis(1), &mut world).unwrap();
+        let summary = machine.run_to_completion(Timestamp::from_millis(1), &mut world).unwrap();
         (summary.transitions, machine.status(), machine.configuration())
     });
     assert_eq!(played[0], played[1]);
@@ -154,8 +155,8 @@ fn r13_beside_others_nothing_fires_after_the_end_of_the_chart() {
 }
 
 #[test]
-fn r10_what_leaves_nothing_does_not_fire_when_another_has_left_its_source_before() {
-    // the transition of `P` comes first, in the order of the document
+fn r10_an_internal_transition_does_not_fire_after_its_source_was_exited() {
+    // the transition of `P` is first in document order
     check(
         "
         START
@@ -188,7 +189,7 @@ fn r10_what_leaves_nothing_does_not_fire_when_another_has_left_its_source_before
 }
 
 #[test]
-fn r14_what_an_event_led_to_goes_on_without_an_event() {
+fn r14_completion_transitions_follow_an_event() {
     let text = "
         START
         A
@@ -218,25 +219,25 @@ fn r14_what_an_event_led_to_goes_on_without_an_event() {
     for silent in [false, true] {
         let mut world = World { silent, ..World::new(&chart) };
         let mut machine = Machine::new(script::compile(&chart));
-        machine.start(Moment::ZERO, &mut world);
-        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut world);
+        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
         let counts = [1, 2].map(|millis| {
             machine.dispatch_name("e");
-            let summary = machine.run_to_completion(Moment::from_millis(millis), &mut world).unwrap();
+            let summary = machine.run_to_completion(Timestamp::from_millis(millis), &mut world).unwrap();
             (summary.micro_steps, summary.transitions)
         });
         assert_eq!(counts, [(3, 4), (2, 4)]);
-        machine.start(Moment::ZERO, &mut world);
-        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut world);
+        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
         machine.dispatch_name("e");
         machine.dispatch_name("e");
-        let summary = machine.run_to_completion(Moment::from_millis(1), &mut world).unwrap();
+        let summary = machine.run_to_completion(Timestamp::from_millis(1), &mut world).unwrap();
         assert_eq!((summary.micro_steps, summary.transitions), (5, 8));
     }
 }
 
 #[test]
-fn r10_what_one_state_does_at_an_event_says_nothing_of_others() {
+fn r10_the_reaction_of_one_state_is_independent_of_others() {
     let text = "
         A
         START
@@ -260,19 +261,18 @@ fn r10_what_one_state_does_at_an_event_says_nothing_of_others() {
     for silent in [false, true] {
         let mut world = World { silent, ..World::new(&chart) };
         let mut machine = Machine::new(script::compile(&chart));
-        machine.start(Moment::ZERO, &mut world);
-        machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut world);
+        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
         let transitions = [1, 2, 3].map(|millis| {
             machine.dispatch_name("e");
-            machine.run_to_completion(Moment::from_millis(millis), &mut world).unwrap().transitions
+            machine.run_to_completion(Timestamp::from_millis(millis), &mut world).unwrap().transitions
         });
         assert_eq!(transitions, [1, 3, 1]);
     }
 }
 
 #[test]
-fn r03_a_guard_that_failed_is_told_again_when_its_own_blackboard_was_written_and_not_when_another_topic_was()
-{
+fn r03_a_failed_guard_is_reported_again_only_after_a_write_to_its_topics() {
     check(
         "
         START
@@ -300,7 +300,7 @@ fn r03_a_guard_that_failed_is_told_again_when_its_own_blackboard_was_written_and
     );
 }
 
-/// What one call takes: how many micro-steps, and where it leads.
+/// The micro-steps of one call, and the reached configuration.
 fn handled(prepare: impl Fn(&mut Machine), at: u64) -> (u32, String) {
     let text = "
         START
@@ -315,11 +315,11 @@ fn handled(prepare: impl Fn(&mut Machine), at: u64) -> (u32, String) {
     let chart = chart(text);
     let mut machine = Machine::new(script::compile(&chart));
     let mut world = World { silent: true, ..World::new(&chart) };
-    machine.start(Moment::ZERO, &mut world);
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    machine.start(Timestamp::ZERO, &mut world);
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     prepare(&mut machine);
     machine.dispatch_name("e");
-    let summary = machine.run_to_completion(Moment::from_millis(at), &mut world).unwrap();
+    let summary = machine.run_to_completion(Timestamp::from_millis(at), &mut world).unwrap();
     let leaf = machine.configuration().pop().unwrap();
     (summary.micro_steps, machine.chart().short_path(leaf))
 }

@@ -1,7 +1,7 @@
-//! R18: what wakes a chart.
+//! R18: the causes of a step.
 
 use yase::expression::EventId;
-use yase::{Host, Machine, Moment, Outcome, ScopeId, TopicId};
+use yase::{Host, Machine, Outcome, ScopeId, Timestamp, TopicId};
 
 use crate::check;
 use yase_reference::world::World;
@@ -15,9 +15,9 @@ fn machine(text: &str) -> (Machine, World) {
     let chart = chart(text);
     let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);
-    machine.start(Moment::ZERO, &mut world);
-    assert!(machine.needs_step(Moment::ZERO), "a start is a reason to step");
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    machine.start(Timestamp::ZERO, &mut world);
+    assert!(machine.needs_step(Timestamp::ZERO), "a start is a reason to step");
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     (machine, world)
 }
 
@@ -35,27 +35,27 @@ const WAITING: &str = "
 #[test]
 fn r18_the_machine_sleeps_until_something_happens() {
     let (mut machine, mut world) = machine(WAITING);
-    let activation = world.jobs[0].activation;
-    assert!(!machine.needs_step(Moment::from_millis(1)), "an activity runs");
+    let activation = world.running[0].activation;
+    assert!(!machine.needs_step(Timestamp::from_millis(1)), "an activity runs");
 
     machine.activity_returned(activation, Outcome::Done);
-    assert!(machine.needs_step(Moment::from_millis(1)), "an activity has returned");
-    machine.run_to_completion(Moment::from_millis(1), &mut world).unwrap();
-    assert!(!machine.needs_step(Moment::from_millis(1)));
+    assert!(machine.needs_step(Timestamp::from_millis(1)), "an activity has returned");
+    machine.run_to_completion(Timestamp::from_millis(1), &mut world).unwrap();
+    assert!(!machine.needs_step(Timestamp::from_millis(1)));
 
     world.send(A, 1, [ScopeId::ROOT].into_iter());
     machine.message_arrived(A, 1);
-    assert!(machine.needs_step(Moment::from_millis(2)), "a guard reads it");
-    machine.run_to_completion(Moment::from_millis(2), &mut world).unwrap();
+    assert!(machine.needs_step(Timestamp::from_millis(2)), "a guard reads it");
+    machine.run_to_completion(Timestamp::from_millis(2), &mut world).unwrap();
 
-    assert!(!machine.needs_step(Moment::from_millis(51)));
-    assert_eq!(machine.next_deadline(), Some(Moment::from_millis(52)));
-    assert!(machine.needs_step(Moment::from_millis(52)), "a timer expires");
-    machine.run_to_completion(Moment::from_millis(52), &mut world).unwrap();
-    assert_eq!((machine.needs_step(Moment::from_millis(60)), machine.next_deadline()), (false, None));
+    assert!(!machine.needs_step(Timestamp::from_millis(51)));
+    assert_eq!(machine.next_deadline(), Some(Timestamp::from_millis(52)));
+    assert!(machine.needs_step(Timestamp::from_millis(52)), "a timer expires");
+    machine.run_to_completion(Timestamp::from_millis(52), &mut world).unwrap();
+    assert_eq!((machine.needs_step(Timestamp::from_millis(60)), machine.next_deadline()), (false, None));
 
     assert!(machine.dispatch_name("e"));
-    assert!(machine.needs_step(Moment::from_millis(60)), "an event was raised");
+    assert!(machine.needs_step(Timestamp::from_millis(60)), "an event was raised");
 }
 
 #[test]
@@ -64,9 +64,9 @@ fn r18_only_topics_that_a_guard_or_a_trigger_reads_wake_it() {
     assert_eq!([A, B, C].map(|topic| machine.reads_topic(topic)), [true, true, false]);
     machine.message_arrived(C, 1);
     machine.message_arrived(A, 0);
-    assert!(!machine.needs_step(Moment::ZERO));
+    assert!(!machine.needs_step(Timestamp::ZERO));
     machine.message_arrived(B, 1);
-    assert!(machine.needs_step(Moment::ZERO));
+    assert!(machine.needs_step(Timestamp::ZERO));
 }
 
 #[test]
@@ -91,16 +91,16 @@ fn r18_a_message_that_arrives_while_its_region_is_locked_is_not_lost() {
 }
 
 #[test]
-fn r18_what_arrives_during_a_step_makes_another_one_due() {
+fn r18_an_arrival_during_a_step_makes_another_step_due() {
     let (mut machine, mut world) = machine(WAITING);
-    let activation = world.jobs[0].activation;
+    let activation = world.running[0].activation;
     machine.activity_returned(activation, Outcome::Done);
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
-    // nothing to do: but before the caller falls asleep the message comes
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+    // nothing is due, but the message arrives before the caller sleeps
     machine.message_arrived(A, 1);
     world.send(A, 1, [ScopeId::ROOT].into_iter());
-    assert!(machine.needs_step(Moment::ZERO));
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    assert!(machine.needs_step(Timestamp::ZERO));
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     assert!(world.log.last().unwrap().contains("S -> T"), "{:?}", world.log);
 }
 
@@ -112,14 +112,14 @@ fn r18_events_by_number_or_by_name_are_the_same() {
     machine.dispatch(event);
     assert!(machine.dispatch_name("e"));
     assert!(!machine.dispatch_name("strange"), "no expression names it, but `not e` takes it");
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     let lines: Vec<&str> = world.log.iter().skip(2).map(String::as_str).collect();
     assert_eq!(lines, ["0.000 s e: S -> S", "0.000 s e: S -> S", "0.000 s ?: S -> S"]);
     assert!(world.wants_trace());
 }
 
 #[test]
-fn r14_what_ran_before_a_start_is_forgotten() {
+fn r14_activities_before_a_restart_are_discarded() {
     let chart = chart(
         "
         START
@@ -132,19 +132,19 @@ fn r14_what_ran_before_a_start_is_forgotten() {
     );
     let mut world = World::new(&chart);
     let mut machine = Machine::new(script::compile(&chart));
-    machine.start(Moment::ZERO, &mut world);
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
-    let first = world.jobs[0].activation;
+    machine.start(Timestamp::ZERO, &mut world);
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+    let first = world.running[0].activation;
     machine.activity_returned(first, Outcome::Done);
     machine.dispatch_name("e");
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
-    assert_eq!(machine.next_deadline(), Some(Moment::from_millis(10)));
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+    assert_eq!(machine.next_deadline(), Some(Timestamp::from_millis(10)));
 
-    machine.start(Moment::from_millis(1), &mut world);
-    machine.run_to_completion(Moment::from_millis(1), &mut world).unwrap();
+    machine.start(Timestamp::from_millis(1), &mut world);
+    machine.run_to_completion(Timestamp::from_millis(1), &mut world).unwrap();
     assert_eq!(machine.next_deadline(), None);
-    assert_eq!(world.jobs.len(), 2, "the activity is started again");
-    machine.start(Moment::from_millis(2), &mut world);
-    machine.run_to_completion(Moment::from_millis(2), &mut world).unwrap();
-    assert_eq!(world.jobs.len(), 3, "also if it has not returned");
+    assert_eq!(world.running.len(), 2, "the activity is started again");
+    machine.start(Timestamp::from_millis(2), &mut world);
+    machine.run_to_completion(Timestamp::from_millis(2), &mut world).unwrap();
+    assert_eq!(world.running.len(), 3, "also if it has not returned");
 }

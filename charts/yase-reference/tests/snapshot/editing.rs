@@ -1,9 +1,9 @@
-//! Snapshots are inspected, changed and restored.
+//! Snapshots are inspected, edited and restored.
 
 use yase::snapshot::{ActivityPhase, EventName, Snapshot};
-use yase::{Chooser, Moment};
+use yase::{Chooser, Timestamp};
 
-use crate::fixture::Stage;
+use crate::fixture::MachineFixture;
 
 const LAMP: &str = "
     START
@@ -20,7 +20,7 @@ const LAMP: &str = "
 
 #[test]
 fn a_snapshot_is_text_that_a_person_can_read() {
-    let mut stage = Stage::new(LAMP, &["e", "g"]);
+    let mut stage = MachineFixture::new(LAMP, &["e", "g"]);
     stage.machine.dispatch_name("x");
     let found = serde_json::to_value(stage.machine.snapshot()).unwrap();
     let occurrence = |name: &str, number: u64| {
@@ -79,12 +79,12 @@ fn a_snapshot_is_text_that_a_person_can_read() {
 }
 
 #[test]
-fn what_is_in_it_can_be_asked_for() {
-    let mut stage = Stage::new(LAMP, &["e"]);
+fn contents_can_be_queried() {
+    let mut stage = MachineFixture::new(LAMP, &["e"]);
     let snapshot = stage.machine.snapshot();
     assert!(snapshot.is_active("c/on") && !snapshot.is_active("c/off"));
     let timer = snapshot.timer("c", "v").unwrap();
-    assert_eq!((timer.deadline, timer.expired), (Moment::from_millis(50), false));
+    assert_eq!((timer.deadline, timer.expired), (Timestamp::from_millis(50), false));
     assert_eq!((snapshot.timer("c", "w"), snapshot.timer("c/on", "v")), (None, None));
     stage.event("f");
     let snapshot = stage.machine.snapshot();
@@ -94,9 +94,9 @@ fn what_is_in_it_can_be_asked_for() {
 
 #[test]
 fn a_timer_is_set_to_another_time() {
-    let mut stage = Stage::new(LAMP, &["e"]);
-    stage.edit(|snapshot| assert!(snapshot.set_timer("c", "v", Moment::from_millis(70))));
-    assert_eq!(stage.machine.next_deadline(), Some(Moment::from_millis(70)));
+    let mut stage = MachineFixture::new(LAMP, &["e"]);
+    stage.edit(|snapshot| assert!(snapshot.set_timer("c", "v", Timestamp::from_millis(70))));
+    assert_eq!(stage.machine.next_deadline(), Some(Timestamp::from_millis(70)));
     stage.step(69);
     assert_eq!(stage.active(), "on");
     stage.step(70);
@@ -105,7 +105,7 @@ fn a_timer_is_set_to_another_time() {
 
 #[test]
 fn a_timer_that_is_set_again_or_unset_forgets_its_expiry() {
-    // `held` keeps the expiry from being taken
+    // `held` prevents the expiry from being processed
     let chart = "
         START
         a | run=work | for=90ms
@@ -113,19 +113,19 @@ fn a_timer_that_is_set_again_or_unset_forgets_its_expiry() {
         START -> a : / StartTimeout(v, 50ms)
         a -> b : v
     ";
-    let held = |stage: &mut Stage| {
+    let held = |stage: &mut MachineFixture| {
         stage.step(50);
         assert_eq!(stage.machine.snapshot().held.len(), 1);
     };
-    let mut stage = Stage::new(chart, &[]);
+    let mut stage = MachineFixture::new(chart, &[]);
     held(&mut stage);
-    stage.edit(|snapshot| assert!(snapshot.set_timer("c", "v", Moment::from_millis(80))));
+    stage.edit(|snapshot| assert!(snapshot.set_timer("c", "v", Timestamp::from_millis(80))));
     stage.returns();
     assert_eq!(stage.active(), "a");
     stage.step(80);
     assert_eq!(stage.active(), "b");
 
-    let mut stage = Stage::new(chart, &[]);
+    let mut stage = MachineFixture::new(chart, &[]);
     held(&mut stage);
     stage.edit(|snapshot| assert!(snapshot.unset_timer("c", "v") && !snapshot.unset_timer("c", "v")));
     stage.returns();
@@ -135,12 +135,12 @@ fn a_timer_that_is_set_again_or_unset_forgets_its_expiry() {
 
 #[test]
 fn a_deferred_event_is_dropped_or_put_in() {
-    let mut stage = Stage::new(LAMP, &["e", "g"]);
+    let mut stage = MachineFixture::new(LAMP, &["e", "g"]);
     stage.edit(|snapshot| snapshot.deferred.clear());
     stage.step(50);
     assert_eq!(stage.active(), "off");
 
-    let mut stage = Stage::new(LAMP, &["e"]);
+    let mut stage = MachineFixture::new(LAMP, &["e"]);
     stage.edit(|snapshot| {
         snapshot.occurrences += 1;
         let text = serde_json::json!(
@@ -156,7 +156,7 @@ fn a_deferred_event_is_dropped_or_put_in() {
 
 #[test]
 fn another_state_is_made_active() {
-    let mut stage = Stage::new(LAMP, &[]);
+    let mut stage = MachineFixture::new(LAMP, &[]);
     stage.edit(|snapshot| snapshot.configuration[1] = "c/on".into());
     stage.event("f");
     assert_eq!(stage.active(), "dim");
@@ -164,23 +164,23 @@ fn another_state_is_made_active() {
 
 #[test]
 fn an_activity_is_given_up_and_queued_again() {
-    let mut stage = Stage::new(LAMP, &["g"]);
-    assert_eq!(stage.world.jobs.len(), 1);
-    stage.world.jobs.clear();
+    let mut stage = MachineFixture::new(LAMP, &["g"]);
+    assert_eq!(stage.world.running.len(), 1);
+    stage.world.running.clear();
     stage.edit(|snapshot| {
         let activity = &mut snapshot.activities[0];
         assert_eq!(activity.phase, ActivityPhase::Running);
         activity.phase = ActivityPhase::Queued;
         snapshot.due = true;
     });
-    assert!(stage.machine.needs_step(Moment::ZERO));
+    assert!(stage.machine.needs_step(Timestamp::ZERO));
     stage.step(0);
-    let [job] = &stage.world.jobs[..] else { panic!("it was started once more") };
+    let [job] = &stage.world.running[..] else { panic!("it was started once more") };
     assert_eq!((job.name.as_str(), job.activation.number), ("fade", 1));
 }
 
 #[test]
-fn siblings_of_one_name_are_told_apart() {
+fn siblings_of_one_name_are_distinguished() {
     let chart = "
         START
         a
@@ -197,9 +197,9 @@ fn siblings_of_one_name_are_told_apart() {
     }
     let mut world = yase_reference::World::new(&chart);
     let mut machine = yase::Machine::new(yase_reference::script::compile(&chart));
-    machine.start(Moment::ZERO, &mut world);
+    machine.start(Timestamp::ZERO, &mut world);
     machine.dispatch_name("f");
-    machine.run_to_completion(Moment::ZERO, &mut world).unwrap();
+    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     let snapshot: Snapshot = machine.snapshot();
     assert_eq!(snapshot.configuration, ["c", "c/a#2"]);
     assert_eq!(snapshot.bound.recent, [["c/START -> c/b"], ["c/b -> c/a#2"]]);
@@ -207,7 +207,7 @@ fn siblings_of_one_name_are_told_apart() {
     assert!(restored.is_active(twins[1]));
 }
 
-/// Two timers that expire at one moment: the chooser says which is first.
+/// Two timers that expire at the same time; the chooser decides which is first.
 const RACE: &str = "
     START
     a
@@ -220,11 +220,11 @@ const RACE: &str = "
 ";
 
 #[test]
-fn a_chooser_goes_on_choosing_where_it_was() {
+fn a_restored_chooser_continues_its_sequence() {
     for chooser in [Chooser::seeded(7), Chooser::scripted(vec![1, 0, 1, 1, 0, 0, 1, 0]), Chooser::declared()]
     {
         let play = |cut: bool| {
-            let mut stage = Stage::new(RACE, &[]);
+            let mut stage = MachineFixture::new(RACE, &[]);
             stage.machine.set_chooser(chooser.clone());
             for time in 1..=30 {
                 stage.step(10 * time);
@@ -241,7 +241,7 @@ fn a_chooser_goes_on_choosing_where_it_was() {
 
 #[test]
 fn tokens_and_unknown_names_are_kept() {
-    let mut stage = Stage::new(LAMP, &[]);
+    let mut stage = MachineFixture::new(LAMP, &[]);
     stage.machine.dispatch_with("x", 7);
     stage.machine.dispatch_with("e", 8);
     let kept: Vec<_> =

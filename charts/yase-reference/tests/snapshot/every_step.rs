@@ -1,26 +1,26 @@
-//! Random runs, under all semantics, that are interrupted at every micro-step: captured as text,
-//! and continued by a machine restored from the text.
+//! Random runs under all semantics, interrupted at every micro-step: captured as text and continued
+//! by a machine restored from it.
 
 use std::sync::Arc;
 
 use yase::snapshot::Snapshot;
-use yase::{Activation, Chooser, CompiledChart, Machine, MicroStep, Moment, Outcome, TopicId};
+use yase::{Activation, Chooser, CompiledChart, Machine, MicroStep, Outcome, Timestamp, TopicId};
 
-use yase_reference::chance::Freedom;
+use yase_reference::chance::ChoicePolicy;
 use yase_reference::random::Case;
 use yase_reference::script::{self, Interpreter};
 use yase_reference::world::{World, vocabulary};
 
 const RUNS: u64 = 1000;
 
-/// In this many runs each interruption is also continued without further ones.
+/// The number of runs in which each interruption is also continued without further ones.
 const WHOLE_RUNS: u64 = 10;
 
 #[test]
 fn a_machine_that_is_restored_at_every_micro_step_writes_the_same_lines() {
     let counts = std::thread::scope(|threads| {
-        let second = threads.spawn(|| cut_everywhere(RUNS / 2..RUNS));
-        let first = cut_everywhere(0..RUNS / 2);
+        let second = threads.spawn(|| interrupt_everywhere(RUNS / 2..RUNS));
+        let first = interrupt_everywhere(0..RUNS / 2);
         let second = second.join().expect("it does not panic");
         [first.0 + second.0, first.1 + second.1]
     });
@@ -30,13 +30,13 @@ fn a_machine_that_is_restored_at_every_micro_step_writes_the_same_lines() {
 }
 
 /// How many snapshots were taken, and how many of them in the middle of a step.
-fn cut_everywhere(numbers: std::ops::Range<u64>) -> (u64, u64) {
+fn interrupt_everywhere(numbers: std::ops::Range<u64>) -> (u64, u64) {
     let (mut all, mut mid_step) = (0, 0);
     for number in numbers {
         let case = Case::numbered(number);
         let chart = compile(&case);
         let expected = run(&mut machine(&chart, &case), &case);
-        let mut cut = Cut::new(machine(&chart, &case), None);
+        let mut cut = RestoredMachine::new(machine(&chart, &case), None);
         let found = run(&mut cut, &case);
         assert!(expected == found, "case {number}: {}", difference(&expected, &found));
         all += cut.snapshots;
@@ -46,15 +46,15 @@ fn cut_everywhere(numbers: std::ops::Range<u64>) -> (u64, u64) {
 }
 
 #[test]
-fn a_machine_that_is_restored_once_goes_on_to_the_end() {
+fn a_machine_restored_once_runs_to_the_end() {
     let mut restored = 0;
     for number in RUNS..RUNS + WHOLE_RUNS {
         let case = Case::numbered(number);
         let chart = compile(&case);
-        let mut whole = Cut::new(machine(&chart, &case), Some(u64::MAX));
+        let mut whole = RestoredMachine::new(machine(&chart, &case), Some(u64::MAX));
         let expected = run(&mut whole, &case);
         for at in 0..whole.calls {
-            let mut cut = Cut::new(machine(&chart, &case), Some(at));
+            let mut cut = RestoredMachine::new(machine(&chart, &case), Some(at));
             let found = run(&mut cut, &case);
             assert!(expected == found, "case {number} at {at}: {}", difference(&expected, &found));
             restored += cut.snapshots;
@@ -74,9 +74,9 @@ fn compile(case: &Case) -> Arc<CompiledChart> {
 fn machine(chart: &Arc<CompiledChart>, case: &Case) -> Machine {
     let mut machine = Machine::new(chart.clone());
     machine.set_chooser(match &case.freedom {
-        Freedom::Declared => Chooser::declared(),
-        Freedom::Seeded(seed) => Chooser::seeded(*seed),
-        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
+        ChoicePolicy::Declared => Chooser::declared(),
+        ChoicePolicy::Seeded(seed) => Chooser::seeded(*seed),
+        ChoicePolicy::Scripted(choices) => Chooser::scripted(choices.clone()),
     });
     machine
 }
@@ -94,8 +94,8 @@ fn difference(expected: &[String], found: &[String]) -> String {
     format!("\n{before}\nexpected {}\nfound    {}", one(expected), one(found))
 }
 
-/// A machine that is replaced by its restored copy before every call, or before one of these calls.
-struct Cut {
+/// A machine that is replaced by its restored copy before all or selected calls.
+struct RestoredMachine {
     machine: Machine,
     only: Option<u64>,
     calls: u64,
@@ -103,9 +103,9 @@ struct Cut {
     mid_step: u64,
 }
 
-impl Cut {
-    fn new(machine: Machine, only: Option<u64>) -> Cut {
-        Cut { machine, only, calls: 0, snapshots: 0, mid_step: 0 }
+impl RestoredMachine {
+    fn new(machine: Machine, only: Option<u64>) -> RestoredMachine {
+        RestoredMachine { machine, only, calls: 0, snapshots: 0, mid_step: 0 }
     }
 
     fn cut(&mut self) -> &mut Machine {
@@ -131,8 +131,8 @@ impl Cut {
     }
 }
 
-impl Interpreter for Cut {
-    fn start(&mut self, now: Moment, world: &mut World) {
+impl Interpreter for RestoredMachine {
+    fn start(&mut self, now: Timestamp, world: &mut World) {
         self.cut().start(now, world);
     }
 
@@ -152,7 +152,7 @@ impl Interpreter for Cut {
         self.cut().activity_resumed(activation)
     }
 
-    fn step(&mut self, now: Moment, world: &mut World) -> Result<(), String> {
+    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
         loop {
             match self.cut().micro_step(now, world).map_err(|error| error.to_string())? {
                 MicroStep::Progressed => {}
@@ -161,11 +161,11 @@ impl Interpreter for Cut {
         }
     }
 
-    fn needs_step(&self, now: Moment) -> bool {
+    fn needs_step(&self, now: Timestamp) -> bool {
         self.machine.needs_step(now)
     }
 
-    fn next_deadline(&self) -> Option<Moment> {
+    fn next_deadline(&self) -> Option<Timestamp> {
         self.machine.next_deadline()
     }
 

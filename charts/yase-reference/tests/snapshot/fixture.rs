@@ -1,27 +1,27 @@
-//! A machine in the reference's world.
+//! A machine with the host of the reference tests.
 
 use yase::snapshot::{RestoreError, Snapshot};
-use yase::{Machine, Moment, Outcome, Semantics};
+use yase::{Machine, Outcome, Semantics, Timestamp};
 
 use yase_reference::world::World;
 
-pub(crate) struct Stage {
+pub(crate) struct MachineFixture {
     pub(crate) machine: Machine,
     pub(crate) world: World,
 }
 
-impl Stage {
-    /// Starts a chart and lets events happen to it at time 0.
-    pub(crate) fn new(chart: &str, events: &[&str]) -> Stage {
-        Stage::with(Semantics::yase(), chart, events)
+impl MachineFixture {
+    /// Starts a chart and raises events at time 0.
+    pub(crate) fn new(chart: &str, events: &[&str]) -> MachineFixture {
+        MachineFixture::with(Semantics::yase(), chart, events)
     }
 
-    pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> Stage {
+    pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> MachineFixture {
         let chart = yase_reference::chart(chart);
         let mut world = World::new(&chart);
         let mut machine = Machine::new(yase_reference::script::compile_with(&chart, semantics));
-        machine.start(Moment::ZERO, &mut world);
-        let mut stage = Stage { machine, world };
+        machine.start(Timestamp::ZERO, &mut world);
+        let mut stage = MachineFixture { machine, world };
         stage.step(0);
         for event in events {
             stage.event(event);
@@ -30,7 +30,7 @@ impl Stage {
     }
 
     pub(crate) fn step(&mut self, millis: u64) {
-        self.world.now = Moment::from_millis(millis);
+        self.world.now = Timestamp::from_millis(millis);
         self.machine.run_to_completion(self.world.now, &mut self.world).unwrap();
     }
 
@@ -39,9 +39,9 @@ impl Stage {
         self.step(0);
     }
 
-    /// The only activity that runs returns.
+    /// The only running activity returns.
     pub(crate) fn returns(&mut self) {
-        let job = self.world.jobs.remove(0);
+        let job = self.world.running.remove(0);
         assert!(self.machine.activity_returned(job.activation, Outcome::Done));
         self.step(0);
     }
@@ -50,7 +50,7 @@ impl Stage {
         Machine::restore(self.machine.chart().clone(), snapshot)
     }
 
-    /// Goes on with a snapshot of it that was changed.
+    /// Continues with an edited snapshot.
     pub(crate) fn edit(&mut self, change: impl FnOnce(&mut Snapshot)) {
         let mut snapshot = self.machine.snapshot();
         change(&mut snapshot);

@@ -1,4 +1,4 @@
-//! Machines are inspected, captured and restored: by micro-step, by name, and as text.
+//! Machines are inspected, captured and restored, by micro-step and by name.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // the functions around the tests are tests too
 

@@ -1,8 +1,8 @@
-//! A run-to-completion step, taken one micro-step at a time.
+//! A run-to-completion step executed as micro-steps.
 
 use std::num::NonZeroU32;
 
-use yase::{Machine, MachineErrorKind, MicroStep, Moment, Semantics, Status, StepSummary};
+use yase::{Machine, MachineErrorKind, MicroStep, Semantics, Status, StepSummary, Timestamp};
 
 use yase_reference::world::World;
 
@@ -20,7 +20,7 @@ fn begun(semantics: Semantics) -> (Machine, World) {
     let chart = yase_reference::chart(RELAY);
     let mut world = World::new(&chart);
     let mut machine = Machine::new(yase_reference::script::compile_with(&chart, semantics));
-    machine.start(Moment::ZERO, &mut world);
+    machine.start(Timestamp::ZERO, &mut world);
     (machine, world)
 }
 
@@ -28,18 +28,18 @@ fn begun(semantics: Semantics) -> (Machine, World) {
 fn micro_steps_one_by_one_are_the_step() {
     let (mut whole, mut whole_world) = begun(Semantics::yase());
     whole.dispatch_name("e");
-    let summary = whole.run_to_completion(Moment::from_millis(5), &mut whole_world).unwrap();
+    let summary = whole.run_to_completion(Timestamp::from_millis(5), &mut whole_world).unwrap();
 
     let (mut machine, mut world) = begun(Semantics::yase());
     machine.dispatch_name("e");
     let mut made = 0;
     let found = loop {
-        // the time stands still from the first one on
-        match machine.micro_step(Moment::from_millis(5 + made), &mut world).unwrap() {
+        // later calls of the same step use the time of the first
+        match machine.micro_step(Timestamp::from_millis(5 + made), &mut world).unwrap() {
             MicroStep::Progressed => made += 1,
             MicroStep::Stable(summary) => break summary,
         }
-        assert!(machine.is_mid_step() && machine.needs_step(Moment::ZERO));
+        assert!(machine.is_mid_step() && machine.needs_step(Timestamp::ZERO));
         assert!(!world.log.iter().any(|line| line.contains("start c")), "activities start at the end");
     };
     assert_eq!((made, found, &world.log), (3, summary, &whole_world.log));
@@ -50,8 +50,8 @@ fn micro_steps_one_by_one_are_the_step() {
 fn the_rest_of_a_step_can_be_taken_in_one_go() {
     let (mut machine, mut world) = begun(Semantics::yase());
     machine.dispatch_name("e");
-    assert_eq!(machine.micro_step(Moment::ZERO, &mut world), Ok(MicroStep::Progressed));
-    let summary = machine.run_to_completion(Moment::from_millis(9), &mut world).unwrap();
+    assert_eq!(machine.micro_step(Timestamp::ZERO, &mut world), Ok(MicroStep::Progressed));
+    let summary = machine.run_to_completion(Timestamp::from_millis(9), &mut world).unwrap();
     assert_eq!((summary.micro_steps, summary.transitions, summary.started), (3, 3, 1));
     assert!(world.log.iter().all(|line| line.starts_with("0.000 s") || line.starts_with("  ")));
 }
@@ -59,11 +59,11 @@ fn the_rest_of_a_step_can_be_taken_in_one_go() {
 #[test]
 fn a_machine_that_does_not_run_has_no_micro_steps() {
     let (mut machine, mut world) = begun(Semantics::yase());
-    assert_eq!(machine.micro_step(Moment::ZERO, &mut world), Ok(MicroStep::Progressed));
+    assert_eq!(machine.micro_step(Timestamp::ZERO, &mut world), Ok(MicroStep::Progressed));
     machine.stop(&mut world);
     assert!(!machine.is_mid_step(), "the step is given up");
     let nothing = Ok(MicroStep::Stable(StepSummary::default()));
-    assert_eq!(machine.micro_step(Moment::ZERO, &mut world), nothing);
+    assert_eq!(machine.micro_step(Timestamp::ZERO, &mut world), nothing);
 }
 
 #[test]
@@ -72,8 +72,8 @@ fn the_bound_on_micro_steps_is_that_of_the_step() {
     semantics.limit = NonZeroU32::new(2).unwrap();
     let (mut machine, mut world) = begun(semantics);
     machine.dispatch_name("e");
-    assert_eq!(machine.micro_step(Moment::ZERO, &mut world), Ok(MicroStep::Progressed));
-    assert_eq!(machine.micro_step(Moment::ZERO, &mut world), Ok(MicroStep::Progressed));
-    let error = machine.micro_step(Moment::ZERO, &mut world).unwrap_err();
+    assert_eq!(machine.micro_step(Timestamp::ZERO, &mut world), Ok(MicroStep::Progressed));
+    assert_eq!(machine.micro_step(Timestamp::ZERO, &mut world), Ok(MicroStep::Progressed));
+    let error = machine.micro_step(Timestamp::ZERO, &mut world).unwrap_err();
     assert_eq!((error.kind(), machine.status()), (MachineErrorKind::NeverRests, Status::Stopped));
 }

@@ -153,7 +153,7 @@ fn scripts_assign() {
 }
 
 #[test]
-fn what_cannot_be_assigned_is_an_error() {
+fn unassignable_values_are_errors() {
     assert_eq!(fault("_event = 1", "1"), "`_event` cannot be assigned");
     assert_eq!(fault("_name.x = 1", "1"), "`_name` cannot be assigned");
     assert_eq!(fault("var a = 1; a.b.c = 2", "1"), "`c` is assigned to what is no object");
@@ -164,7 +164,7 @@ fn what_cannot_be_assigned_is_an_error() {
 }
 
 #[test]
-fn what_is_no_ecmascript_is_told_from_what_is_not_understood() {
+fn invalid_and_unsupported_ecmascript_are_distinguished() {
     let refusal = |text: &str| parse_program(text).unwrap_err();
     for text in
         ["return", "'open", "{p1: 'v1'", "1 +", "a b", "(1", "var 1", "1x", "\"foo", "#", "f(,)", "1 = 2"]
@@ -259,7 +259,7 @@ fn work_and_memory_are_limited() {
 }
 
 #[test]
-fn what_is_out_of_reach_is_freed() {
+fn unreachable_objects_are_freed() {
     let mut memory = ScriptMemory::new();
     let program =
         parse_program("a = {self: 0, text: 'xxxxxxxx'.concat('y')}; a.self = a; b = [1, 2, 3]").unwrap();

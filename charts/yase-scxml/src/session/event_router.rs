@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use super::event::ScxmlEvent;
-use yase::Moment;
+use yase::Timestamp;
 
 /// A session, numbered in the order of their starts.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -52,7 +52,7 @@ pub(crate) struct DelayedEvent {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EventRouter {
     queue: VecDeque<RouterItem>,
-    delayed: BTreeMap<(Moment, u64), DelayedEvent>,
+    delayed: BTreeMap<(Timestamp, u64), DelayedEvent>,
     count: u64,
     sessions: u32,
     /// Sessions with a cancelled invocation, which end after the step.
@@ -113,17 +113,17 @@ impl EventRouter {
         self.queue.len() + self.delayed.len() >= MAX_EVENTS
     }
 
-    pub(crate) fn delay(&mut self, due: Moment, delayed: DelayedEvent) {
+    pub(crate) fn delay(&mut self, due: Timestamp, delayed: DelayedEvent) {
         self.count += 1;
         self.delayed.insert((due, self.count), delayed);
     }
 
-    pub(crate) fn next_deadline(&self) -> Option<Moment> {
+    pub(crate) fn next_deadline(&self) -> Option<Timestamp> {
         self.delayed.keys().next().map(|&(due, _)| due)
     }
 
     /// The oldest event that is due.
-    pub(crate) fn take_due(&mut self, now: Moment) -> Option<DelayedEvent> {
+    pub(crate) fn take_due(&mut self, now: Timestamp) -> Option<DelayedEvent> {
         let entry = self.delayed.first_entry().filter(|entry| entry.key().0 <= now)?;
         Some(entry.remove())
     }

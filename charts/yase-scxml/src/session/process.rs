@@ -10,7 +10,7 @@ use super::execute::ContentExecutor;
 use super::prepare::PreparedDocument;
 use super::session_host::{ActiveNodes, SessionHost};
 use crate::language::{DataValue, PropertyMap, ScriptMemory};
-use yase::Moment;
+use yase::Timestamp;
 use yase::statechart::{NodeId, Statechart};
 use yase::{Machine, Status};
 
@@ -27,7 +27,7 @@ pub(crate) struct Process {
 #[derive(Debug)]
 pub(crate) struct SessionState {
     pub(crate) number: SessionNumber,
-    pub(crate) now: Moment,
+    pub(crate) now: Timestamp,
     /// The id of the invocation that started it.
     pub(crate) invoke_id: Option<String>,
     /// Initial values of variables given by the invoking session.
@@ -88,7 +88,7 @@ impl Process {
     ) -> Process {
         let book = SessionState {
             number,
-            now: Moment::ZERO,
+            now: Timestamp::ZERO,
             invoke_id,
             given,
             raised: Vec::new(),
@@ -125,7 +125,7 @@ impl Process {
     }
 
     /// Starts the document.
-    pub(crate) fn start(&mut self, now: Moment, exchange: &mut EventRouter, platform: &mut dyn Platform) {
+    pub(crate) fn start(&mut self, now: Timestamp, exchange: &mut EventRouter, platform: &mut dyn Platform) {
         self.state.now = now;
         if let Err(fault) = self.set_system_variables() {
             self.state.fatal = Some(fault);

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 use std::path::Path;
 
-use yase::{Moment, Source};
+use yase::{Source, Timestamp};
 use yase_scxml::{Session, read};
 
 use crate::suites::Neighbours;
 
 /// Time limit: a document that has not finished by then hangs.
-const PATIENCE: Moment = Moment::from_millis(120_000);
+const PATIENCE: Timestamp = Timestamp::from_millis(120_000);
 
 /// A row of the suite's `index.csv`.
 #[derive(Clone, Debug)]
@@ -90,7 +90,7 @@ fn outcome(path: &Path, pass_state: &str) -> std::result::Result<(), String> {
     let platform = Neighbours { folder, ..Neighbours::default() };
     let mut session = Session::new(&document, platform)
         .map_err(|found| found.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))?;
-    session.start(Moment::ZERO).map_err(|error| error.to_string())?;
+    session.start(Timestamp::ZERO).map_err(|error| error.to_string())?;
     session.advance_to(PATIENCE).map_err(|error| error.to_string())?;
     match session.configuration().as_slice() {
         [state] if *state == pass_state => Ok(()),

@@ -12,12 +12,12 @@ fn around(inside: &str) -> String {
 /// The diagnostics of a document, as `code [underlined text] message (hint)`.
 fn said(text: &str) -> Vec<String> {
     let (_, found) = read(&Source::new("d.scxml", text));
-    let told = found.iter().map(|found| {
+    let texts = found.iter().map(|found| {
         let place = &text[found.span.start..found.span.end];
         let hint = found.hint.as_ref().map(|hint| format!(" ({hint})")).unwrap_or_default();
         format!("{} [{place}] {}{hint}", found.code, found.message)
     });
-    told.collect()
+    texts.collect()
 }
 
 #[track_caller]
@@ -32,7 +32,7 @@ fn document(text: &str) -> Document {
 }
 
 #[test]
-fn misspelt_words_are_said_with_the_nearest_right_one() {
+fn misspelt_words_are_reported_with_the_nearest_one() {
     refused(
         "<stat id='a'/><state/>",
         "E0602 [stat] unknown element `stat` in `scxml` (did you mean `state`?)",
@@ -53,7 +53,7 @@ fn misspelt_words_are_said_with_the_nearest_right_one() {
 }
 
 #[test]
-fn what_is_missing_or_too_much_is_said() {
+fn missing_and_superfluous_elements_are_reported() {
     refused("", "E0604 [scxml] the document has no states");
     refused(
         "<state><onentry><raise/></onentry></state>",
@@ -103,7 +103,7 @@ fn targets_must_be_possible() {
 }
 
 #[test]
-fn broken_documents_are_said_to_be() {
+fn broken_documents_are_reported() {
     for text in [
         "",
         "<scxml",
@@ -160,7 +160,7 @@ fn other_languages_are_refused() {
 }
 
 #[test]
-fn what_is_no_ecmascript_is_a_warning() {
+fn invalid_ecmascript_is_a_warning() {
     let (document, found) =
         read(&Source::new("d", around("<state><onentry><log expr='1 +'/></onentry></state>")));
     assert!(document.is_some());
@@ -176,7 +176,7 @@ fn errors_inside_invoked_documents_have_their_place() {
 }
 
 #[test]
-fn elements_of_others_are_left_out_and_said() {
+fn foreign_elements_are_skipped_and_reported() {
     refused(
         "<state><b:box xmlns:b='urn:b'/></state>",
         "E0618 [b:box] `box` is no element of SCXML and is left out",

@@ -169,7 +169,7 @@ proptest! {
 }
 
 #[test]
-fn what_scxml_cannot_say_is_refused_by_name() {
+fn features_without_scxml_are_rejected_by_name() {
     let mut chart = Statechart::new("c");
     let start = chart.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));
     let a = chart
@@ -192,12 +192,12 @@ fn what_scxml_cannot_say_is_refused_by_name() {
     let refused: Vec<String> = write(&chart).unwrap_err().into_iter().map(|found| found.message).collect();
     let expected = [
         "`c/b~` has a name that cannot be an id in SCXML",
-        "a transition out of `c/b~` has a priority, which SCXML cannot say",
-        "`c/a` has an activity, which SCXML cannot say",
+        "a transition out of `c/b~` has a priority, which SCXML cannot represent",
+        "`c/a` has an activity, which SCXML cannot represent",
         "`c/3` cannot be the target of a transition in SCXML",
         "the action `StartTimeout(t, 10ms)` cannot be said in SCXML",
         "the guard `Ball.found` cannot be said in SCXML",
-        "`c/3` is a Choice, which SCXML cannot say",
+        "`c/3` is a Choice, which SCXML cannot represent",
         "`not e` out of `c/b~` cannot be said in SCXML",
     ];
     assert_eq!(refused, expected);
@@ -219,7 +219,7 @@ fn texts_keep_their_odd_characters() {
 }
 
 #[test]
-fn what_a_document_without_namespaces_holds_is_written_once_and_for_all() {
+fn a_document_without_namespaces_is_written_stably() {
     let text = "<scxml version='1.0'><state id='a'><invoke type='scxml'><content><scxml version='1.0'><final/></scxml></content></invoke></state></scxml>";
     let written = read_back(text).write().unwrap();
     assert!(written.contains("<scxml xmlns=\"\" version=\"1.0\"><final/></scxml>"), "{written}");

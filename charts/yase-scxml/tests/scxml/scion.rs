@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use serde_json::Value as Json;
 use yase::expression::{ActionKind, ExpressionKind};
-use yase::{Moment, NodeKind, Semantics, Source, Statechart};
+use yase::{NodeKind, Semantics, Source, Statechart, Timestamp};
 use yase_scxml::{DataValue, Document, ScxmlEvent, Session, read};
 
 use crate::suites::{self, Neighbours};
@@ -90,9 +90,9 @@ fn play(case: &Case, document: &Document, semantics: Semantics) -> Result<(), St
         Err(found) => return Err(found.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")),
     };
     let chart = document.statechart();
-    session.start(Moment::ZERO).map_err(|error| error.to_string())?;
+    session.start(Timestamp::ZERO).map_err(|error| error.to_string())?;
     compare(&session, chart, &case.trace["initialConfiguration"], "at the beginning")?;
-    let mut now = Moment::ZERO;
+    let mut now = Timestamp::ZERO;
     for (index, step) in case.trace["events"].as_array().unwrap().iter().enumerate() {
         if let Some(after) = step["after"].as_u64() {
             now = now + Duration::from_millis(after);

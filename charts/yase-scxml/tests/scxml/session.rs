@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use yase::{Moment, Semantics, Source};
+use yase::{Semantics, Source, Timestamp};
 use yase_scxml::{DataValue, Platform, ScxmlEvent, Session, SessionError, read};
 
 /// A platform with files that records all calls.
 #[derive(Debug, Default)]
-struct Desk {
+struct RecordingPlatform {
     files: BTreeMap<String, String>,
     notes: Vec<String>,
 }
 
-impl Platform for Desk {
+impl Platform for RecordingPlatform {
     fn read(&mut self, uri: &str) -> Result<String, String> {
         self.files.get(uri).cloned().ok_or_else(|| "there is no such file".into())
     }
@@ -33,15 +33,15 @@ fn document(inside: &str) -> String {
     format!("<scxml xmlns='http://www.w3.org/2005/07/scxml' version='1.0' name='test'>{inside}</scxml>")
 }
 
-fn session(inside: &str) -> Session<Desk> {
-    session_with(inside, Desk::default())
+fn session(inside: &str) -> Session<RecordingPlatform> {
+    session_with(inside, RecordingPlatform::default())
 }
 
-fn session_with(inside: &str, desk: Desk) -> Session<Desk> {
+fn session_with(inside: &str, platform: RecordingPlatform) -> Session<RecordingPlatform> {
     let (document, found) = read(&Source::new("test.scxml", document(inside)));
     assert!(!found.iter().any(yase::Diagnostic::is_error), "{found:?}");
-    let mut session = Session::new(&document.unwrap(), desk).unwrap();
-    let _ = session.start(Moment::ZERO);
+    let mut session = Session::new(&document.unwrap(), platform).unwrap();
+    let _ = session.start(Timestamp::ZERO);
     session
 }
 
@@ -51,13 +51,13 @@ fn notes(inside: &str, events: &[&str]) -> Vec<String> {
     for event in events {
         session.send(ScxmlEvent::new(*event)).unwrap();
     }
-    session.advance_to(Moment::from_millis(60_000)).unwrap();
+    session.advance_to(Timestamp::from_millis(60_000)).unwrap();
     std::mem::take(&mut session.platform_mut().notes)
 }
 
 fn fails(inside: &str) -> SessionError {
     let mut session = session(inside);
-    let error = session.advance_to(Moment::from_millis(60_000)).unwrap_err();
+    let error = session.advance_to(Timestamp::from_millis(60_000)).unwrap_err();
     assert!(!session.is_running() && !session.is_finished());
     assert_eq!(session.send(ScxmlEvent::new("e")), Err(error.clone()), "it stays so");
     error
@@ -104,10 +104,10 @@ fn delayed_events_come_at_their_moment() {
     let mut session = session(
         "<state id='a'><onentry><send event='e' delay='1.5s'/></onentry><transition event='e' target='b'/></state><final id='b'/>",
     );
-    assert_eq!(session.next_deadline(), Some(Moment::from_millis(1500)));
-    session.advance_to(Moment::from_millis(1499)).unwrap();
+    assert_eq!(session.next_deadline(), Some(Timestamp::from_millis(1500)));
+    session.advance_to(Timestamp::from_millis(1499)).unwrap();
     assert_eq!(session.configuration(), ["a"]);
-    session.advance_to(Moment::from_millis(1500)).unwrap();
+    session.advance_to(Timestamp::from_millis(1500)).unwrap();
     assert_eq!((session.configuration(), session.is_finished()), (vec!["b"], true));
     assert_eq!(session.next_deadline(), None);
 }
@@ -177,7 +177,7 @@ fn an_empty_finalize_takes_over_what_is_named() {
 }
 
 #[test]
-fn an_error_in_finalize_comes_after_the_event() {
+fn an_error_in_finalize_follows_the_event() {
     let noted = notes(
         "<state id='s'><invoke id='i'><content><scxml><state id='t'><onentry><send target='#_parent' event='e'/></onentry></state></scxml></content>
             <finalize><assign location='nowhere' expr='1'/></finalize></invoke>
@@ -199,7 +199,7 @@ fn done_invoke_brings_what_the_end_gives() {
 }
 
 #[test]
-fn what_a_cancelled_session_says_is_not_heard() {
+fn events_of_a_cancelled_session_are_dropped() {
     let mut session = session(
         "<state id='s'><invoke id='i'><content><scxml><state id='t'>
             <onentry><send event='later' delay='1s'/><send target='#_parent' event='late' delay='1s'/></onentry>
@@ -208,7 +208,7 @@ fn what_a_cancelled_session_says_is_not_heard() {
          <state id='u'><transition event='*'><log expr='_event.name'/></transition></state>",
     );
     session.send(ScxmlEvent::new("go")).unwrap();
-    session.advance_to(Moment::from_millis(5000)).unwrap();
+    session.advance_to(Timestamp::from_millis(5000)).unwrap();
     assert_eq!(session.platform().notes, ["error.communication", "  inner leaving"]);
     assert_eq!(session.next_deadline(), None, "what it wanted to send later is forgotten");
 }
@@ -267,8 +267,8 @@ fn late_variables_get_their_values_at_the_first_entry() {
            <transition event='e' target='a'/></state>";
     let text = document(inside).replace("version", "binding='late' version");
     let (document, _) = read(&Source::new("d", text));
-    let mut session = Session::new(&document.unwrap(), Desk::default()).unwrap();
-    session.start(Moment::ZERO).unwrap();
+    let mut session = Session::new(&document.unwrap(), RecordingPlatform::default()).unwrap();
+    session.start(Timestamp::ZERO).unwrap();
     assert_eq!(session.value("x"), Some(DataValue::Undefined));
     for _ in 0..3 {
         session.send(ScxmlEvent::new("e")).unwrap();
@@ -285,12 +285,12 @@ fn scripts_and_data_come_from_elsewhere() {
         ("words.txt", " some \n words "),
     ];
     let files = files.map(|(name, text)| (name.to_owned(), text.to_owned()));
-    let desk = Desk { files: files.into(), ..Desk::default() };
+    let platform = RecordingPlatform { files: files.into(), ..RecordingPlatform::default() };
     let session = session_with(
         "<datamodel><data id='a' src='data.json'/><data id='b' src='words.txt'/><data id='c' src='nowhere'/></datamodel><script src='lib.js'/>
          <state id='s'><onentry><log expr='twice(a[1])'/><log expr='b'/></onentry>
            <transition event='error.execution'><log expr='_event.data'/></transition></state>",
-        desk,
+        platform,
     );
     assert_eq!(
         session.platform().notes,
@@ -301,7 +301,7 @@ fn scripts_and_data_come_from_elsewhere() {
 #[test]
 fn a_script_that_cannot_be_had_is_refused() {
     let (document, _) = read(&Source::new("d", document("<script src='nowhere'/><state/>")));
-    let refused = Session::new(&document.unwrap(), Desk::default()).unwrap_err();
+    let refused = Session::new(&document.unwrap(), RecordingPlatform::default()).unwrap_err();
     assert_eq!(
         refused[0].to_string(),
         "error[E0621]: the script `nowhere` cannot be had: there is no such file"
@@ -320,7 +320,7 @@ fn other_kinds_of_targets_are_the_platforms() {
 }
 
 #[test]
-fn what_never_rests_is_stopped() {
+fn a_livelock_is_stopped() {
     let eventless =
         fails("<state id='a'><transition target='b'/></state><state id='b'><transition target='a'/></state>");
     assert!(
@@ -349,8 +349,9 @@ fn sessions_do_not_nest_for_ever() {
     let own = document(
         "<state id='s'><invoke src='self'/><transition event='error.communication'><log expr='_event.data'/></transition></state>",
     );
-    let desk = Desk { files: [("self".to_owned(), own)].into(), ..Desk::default() };
-    let session = session_with("<state id='s'><invoke src='self'/></state>", desk);
+    let platform =
+        RecordingPlatform { files: [("self".to_owned(), own)].into(), ..RecordingPlatform::default() };
+    let session = session_with("<state id='s'><invoke src='self'/></state>", platform);
     assert_eq!(session.inner_sessions(), 15);
     assert_eq!(session.platform().notes, ["  inner sessions nest deeper than 16"]);
 }
@@ -386,7 +387,7 @@ fn two_runs_are_the_same() {
         <transition event='never'/></state>";
     let run = || {
         let mut session = session(inside);
-        session.advance_to(Moment::from_millis(300)).unwrap();
+        session.advance_to(Timestamp::from_millis(300)).unwrap();
         std::mem::take(&mut session.platform_mut().notes)
     };
     let first = run();
@@ -396,7 +397,7 @@ fn two_runs_are_the_same() {
 }
 
 #[test]
-fn another_reading_of_the_chart_can_be_asked_for() {
+fn another_semantics_can_be_selected() {
     let text = document(
         "<state id='a'><transition event='e' target='b'/></state>
          <state id='b'><onentry><assign location='x' expr='x + 1'/></onentry><transition cond='x == 1' target='c'/></state><state id='c'/>
@@ -405,8 +406,9 @@ fn another_reading_of_the_chart_can_be_asked_for() {
     let (document, _) = read(&Source::new("d", text));
     for semantics in [Semantics::scxml(), Semantics::yase(), Semantics::uml()] {
         let mut session =
-            Session::with_semantics(&document.clone().unwrap(), Desk::default(), semantics).unwrap();
-        session.start(Moment::ZERO).unwrap();
+            Session::with_semantics(&document.clone().unwrap(), RecordingPlatform::default(), semantics)
+                .unwrap();
+        session.start(Timestamp::ZERO).unwrap();
         session.send(ScxmlEvent::new("e")).unwrap();
         assert_eq!(session.configuration(), ["c"]);
     }

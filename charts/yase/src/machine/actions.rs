@@ -7,9 +7,9 @@ use crate::ids::{ActionLocation, ScopeId};
 use crate::machine::script::ScriptedMachine;
 use crate::machine::step::Macrostep;
 use crate::machine::view::ScopeView;
-use crate::moment::Moment;
 use crate::script::ScriptContext;
 use crate::semantics::{TimerScope, WriteVisibility};
+use crate::timestamp::Timestamp;
 use crate::vocabulary::{FieldId, TopicId, Value};
 
 /// The context of an action list: its location, its scope, and the state that owns the timers it
@@ -94,7 +94,7 @@ impl<H: Host> Macrostep<'_, H> {
         }
     }
 
-    fn start_timer(&mut self, timer: TimerId, deadline: Moment, scene: ActionContext) {
+    fn start_timer(&mut self, timer: TimerId, deadline: Timestamp, scene: ActionContext) {
         let timer = self.chart.regions[scene.region.index()].timers + timer.0 as usize;
         if self.run.timers.set(timer, deadline) {
             self.run.queues.withdraw(timer);

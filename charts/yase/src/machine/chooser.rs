@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chooser_that_is_brought_back_goes_on() {
+    fn a_restored_chooser_continues() {
         let mut chooser = Chooser::seeded(7);
         assert_eq!(chooser.seed(), Some(7));
         let draw = |times: usize, chooser: &mut Chooser| -> Vec<usize> {

@@ -3,7 +3,7 @@
 use std::num::NonZeroU32;
 
 use crate::ids::CompoundTransitionId;
-use crate::moment::Moment;
+use crate::timestamp::Timestamp;
 
 /// The number of recent transitions kept, to identify a cycle.
 pub(crate) const MEMORY: usize = 64;
@@ -12,7 +12,7 @@ pub(crate) const MEMORY: usize = 64;
 #[derive(Clone, Debug)]
 pub(crate) struct LivelockLimit {
     pub(crate) micro_steps: u32,
-    pub(crate) instant: Moment,
+    pub(crate) instant: Timestamp,
     pub(crate) steps: u32,
     recent: [CompoundTransitionId; MEMORY],
     taken: usize,
@@ -21,16 +21,16 @@ pub(crate) struct LivelockLimit {
 impl LivelockLimit {
     pub(crate) fn new() -> LivelockLimit {
         let recent = [CompoundTransitionId(0); MEMORY];
-        LivelockLimit { micro_steps: 0, instant: Moment::ZERO, steps: 0, recent, taken: 0 }
+        LivelockLimit { micro_steps: 0, instant: Timestamp::ZERO, steps: 0, recent, taken: 0 }
     }
 
-    pub(crate) fn reset(&mut self, now: Moment) {
+    pub(crate) fn reset(&mut self, now: Timestamp) {
         (self.micro_steps, self.instant, self.steps, self.taken) = (0, now, 0, 0);
     }
 
     /// Begins a step.
     #[inline]
-    pub(crate) fn begin(&mut self, now: Moment) {
+    pub(crate) fn begin(&mut self, now: Timestamp) {
         self.micro_steps = 0;
         if self.instant != now {
             (self.instant, self.steps, self.taken) = (now, 0, 0);

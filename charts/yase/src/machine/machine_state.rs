@@ -15,15 +15,15 @@ use crate::machine::queues::{EventQueues, QueuedEvent};
 use crate::machine::regions_to_enter::RegionsToEnter;
 use crate::machine::timers::TimerTable;
 use crate::machine::{Status, StepSummary};
-use crate::moment::Moment;
 use crate::semantics::FailureEvents;
 use crate::statechart::{NodeId, NodeKind, TransitionId};
+use crate::timestamp::Timestamp;
 use crate::vocabulary::TopicId;
 
 #[derive(Clone, Debug)]
 pub(crate) struct MachineState {
     pub(crate) status: Status,
-    pub(crate) now: Moment,
+    pub(crate) now: Timestamp,
     /// Whether a step is due for reasons other than events and timers.
     pub(crate) needs_step: bool,
     /// The summary so far of a step that is executed by micro-steps and has not ended.
@@ -175,7 +175,7 @@ impl MachineState {
         let regions = chart.regions.len();
         MachineState {
             status: Status::Idle,
-            now: Moment::ZERO,
+            now: Timestamp::ZERO,
             needs_step: false,
             step_in_progress: None,
             active: BitSet::new(places),
@@ -315,7 +315,7 @@ impl MachineState {
     }
 
     /// Discards everything except the number of activities started so far.
-    pub(crate) fn reset(&mut self, now: Moment) {
+    pub(crate) fn reset(&mut self, now: Timestamp) {
         self.status = Status::Running;
         self.now = now;
         self.needs_step = true;

@@ -2,9 +2,9 @@
 
 use crate::compile::CompiledChart;
 use crate::machine::machine_state::MachineState;
-use crate::moment::Moment;
 use crate::script::{ActiveStates, ScriptMachine};
 use crate::statechart::NodeId;
+use crate::timestamp::Timestamp;
 
 /// A chart and its state, lent to a script.
 #[derive(Debug)]
@@ -23,7 +23,7 @@ impl ScriptMachine for ScriptedMachine<'_> {
         place.is_some_and(|place| self.run.is_active(place) && self.run.is_complete(self.chart, place))
     }
 
-    fn now(&self) -> Moment {
+    fn now(&self) -> Timestamp {
         self.run.now
     }
 

@@ -37,7 +37,7 @@
 //! use std::sync::Arc;
 //! use yase::expression::parse_transition;
 //! use yase::snapshot::Snapshot;
-//! use yase::{Activation, Host, Machine, Moment, Node, NodeKind, Statechart, Transition, TypeEnvironment};
+//! use yase::{Activation, Host, Machine, Timestamp, Node, NodeKind, Statechart, Transition, TypeEnvironment};
 //!
 //! let mut lamp = Statechart::new("lamp");
 //! let start = lamp.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));
@@ -61,17 +61,17 @@
 //!
 //! let chart = Arc::new(lamp.compile(&TypeEnvironment::default()).expect("the chart is in order"));
 //! let mut machine = Machine::new(chart.clone());
-//! machine.start(Moment::ZERO, &mut Dark);
+//! machine.start(Timestamp::ZERO, &mut Dark);
 //! machine.dispatch_name("button");
-//! machine.run_to_completion(Moment::ZERO, &mut Dark)?;
+//! machine.run_to_completion(Timestamp::ZERO, &mut Dark)?;
 //!
 //! let text = serde_json::to_string_pretty(&machine.snapshot())?;
 //! let mut snapshot: Snapshot = serde_json::from_str(&text)?;
 //! assert_eq!(snapshot.configuration, ["lamp", "lamp/on"]);
-//! assert!(snapshot.set_timer("lamp", "enough", Moment::from_millis(500)));
+//! assert!(snapshot.set_timer("lamp", "enough", Timestamp::from_millis(500)));
 //!
 //! let mut machine = Machine::restore(chart.clone(), &snapshot)?;
-//! machine.run_to_completion(Moment::from_millis(500), &mut Dark)?;
+//! machine.run_to_completion(Timestamp::from_millis(500), &mut Dark)?;
 //! assert!(machine.is_active(off));
 //!
 //! // no state `dim`, and two states at once
@@ -91,8 +91,8 @@ mod validate;
 use serde::{Deserialize, Serialize};
 
 use crate::machine::{Status, StepSummary};
-use crate::moment::Moment;
 use crate::semantics::Semantics;
+use crate::timestamp::Timestamp;
 
 pub use error::{RestoreError, RestoreIssue, RestoreIssueKind};
 pub(crate) use paths::{PathTable, event_name, find_event, ways};
@@ -118,7 +118,7 @@ pub struct Snapshot {
     /// The status of the machine.
     pub status: Status,
     /// The time of its last step.
-    pub now: Moment,
+    pub now: Timestamp,
     /// Whether a step is due for reasons other than events and timers.
     pub due: bool,
     /// The summary so far of a step [in progress](crate::Machine::micro_step): a restored machine
@@ -208,7 +208,7 @@ pub struct TimerRecord {
     /// The timer.
     pub timer: TimerName,
     /// The time at which it expires or has expired.
-    pub deadline: Moment,
+    pub deadline: Timestamp,
     /// Whether a step has processed the expiry.
     pub expired: bool,
     /// The state on whose exit it is discarded.
@@ -317,7 +317,7 @@ pub struct LivelockRecord {
     /// The number of micro-steps of the last step.
     pub micro_steps: u32,
     /// The time of the last step.
-    pub instant: Moment,
+    pub instant: Timestamp,
     /// The number of steps with an effect at that time.
     pub steps: u32,
     /// The most recent transitions, to identify a cycle.
@@ -379,7 +379,7 @@ impl Snapshot {
 
     /// Changes the deadline of a timer that is set, as setting it again would: a pending expiry is
     /// discarded. Returns whether the timer was set.
-    pub fn set_timer(&mut self, region: &str, name: &str, deadline: Moment) -> bool {
+    pub fn set_timer(&mut self, region: &str, name: &str, deadline: Timestamp) -> bool {
         let Some(record) = self.timers.iter_mut().find(|record| record.timer.is(region, name)) else {
             return false;
         };

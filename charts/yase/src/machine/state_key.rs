@@ -10,11 +10,11 @@ use crate::machine::activities::{ActivityState, InvocationPhase};
 use crate::machine::queues::PoppedEvent;
 use crate::machine::timers::ArmedTimer;
 use crate::machine::{Machine, Status};
-use crate::moment::Moment;
 use crate::statechart::NodeId;
+use crate::timestamp::Timestamp;
 
 /// The deadline of timers that have not been chosen to expire.
-const LATER: Moment = Moment::from_nanos(u64::MAX);
+const LATER: Timestamp = Timestamp::from_nanos(u64::MAX);
 
 /// The parts of a machine's state that can affect its later steps.
 ///
@@ -36,7 +36,7 @@ impl RelevantState {
         let mut told_apart = BitSet::new(chart.timers.len());
         for scoped in &chart.guards {
             let first = chart.regions[scoped.region.index()].timers;
-            let timers = scoped.guard.timers_told_apart();
+            let timers = scoped.guard.timers_distinguished_from_unset();
             timers.iter().for_each(|timer| told_apart.insert(first + timer.0 as usize));
         }
         RelevantState { distinguished_timers: told_apart }
@@ -135,8 +135,8 @@ impl Machine {
 
     /// A time after the last step: the number of steps at one time is limited, and an exploration
     /// makes many.
-    pub fn next_moment(&self) -> Moment {
-        Moment::from_nanos(self.run.now.as_nanos().saturating_add(1))
+    pub fn next_moment(&self) -> Timestamp {
+        Timestamp::from_nanos(self.run.now.as_nanos().saturating_add(1))
     }
 
     /// Postpones all timers that are set until they are chosen to expire.

@@ -3,19 +3,19 @@
 use crate::compile::NodeIndex;
 use crate::expression::TimerState;
 use crate::machine::chooser::Chooser;
-use crate::moment::Moment;
+use crate::timestamp::Timestamp;
 
 /// The timers of a chart, by index.
 #[derive(Clone, Debug)]
 pub(crate) struct TimerTable {
     pub(crate) slots: Box<[Option<ArmedTimer>]>,
     /// The earliest deadline whose expiry has not been processed.
-    next: Option<Moment>,
+    next: Option<Timestamp>,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ArmedTimer {
-    pub(crate) moment: Moment,
+    pub(crate) moment: Timestamp,
     /// Whether its expiry has been processed.
     pub(crate) expired: bool,
     /// The state on whose exit it is discarded.
@@ -39,7 +39,7 @@ impl TimerTable {
     }
 
     /// Sets a deadline, and returns whether the previous expiry had been processed.
-    pub(crate) fn set(&mut self, timer: usize, moment: Moment) -> bool {
+    pub(crate) fn set(&mut self, timer: usize, moment: Timestamp) -> bool {
         let Some(slot) = self.slots.get_mut(timer) else { return false };
         let before = slot.replace(ArmedTimer { moment, expired: false, owner: None });
         match before {
@@ -67,7 +67,7 @@ impl TimerTable {
     }
 
     #[inline]
-    pub(crate) fn state(&self, timer: usize, now: Moment) -> TimerState {
+    pub(crate) fn state(&self, timer: usize, now: Timestamp) -> TimerState {
         match self.slots.get(timer) {
             Some(Some(deadline)) if deadline.moment <= now => TimerState::Over,
             Some(Some(_)) => TimerState::Running,
@@ -77,13 +77,13 @@ impl TimerTable {
 
     /// The earliest deadline whose expiry has not been processed.
     #[inline]
-    pub(crate) fn next_deadline(&self) -> Option<Moment> {
+    pub(crate) fn next_deadline(&self) -> Option<Timestamp> {
         self.next
     }
 
     /// Processes the earliest unprocessed expiry up to `now`; among several at one time, the first
     /// timer or the one that the chooser selects.
-    pub(crate) fn expire(&mut self, now: Moment, chooser: &mut Chooser) -> Option<usize> {
+    pub(crate) fn expire(&mut self, now: Timestamp, chooser: &mut Chooser) -> Option<usize> {
         let next = self.next.filter(|&next| next <= now)?;
         let is_due = |slot: &Option<ArmedTimer>| slot.is_some_and(|at| !at.expired && at.moment == next);
         let chosen = match chooser.is_declared() {

@@ -109,7 +109,7 @@ pub(crate) enum ModelCommand {
     /// Refinements that still match are kept. The others are listed, and stay in the text as
     /// comments.
     #[command(after_help = "Example: monas model regenerate role.srm -o role.srm
-What another role, or a chart from an editor, says is taken in by --from: monas model regenerate role.srm --from edited.stct")]
+Apply the refinements of another role or chart by --from: monas model regenerate role.srm --from edited.stct")]
     Regenerate(RegenerateArguments),
     /// Test scenarios by mutation: change a chart in one place at a time, and report which changes
     /// no scenario detects.

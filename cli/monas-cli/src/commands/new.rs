@@ -89,7 +89,7 @@ fn module(
     if format == Format::Text {
         writeln!(
             console.err,
-            "next: `monas module build {package}`, then `monas module load` what that prints"
+            "next: `monas module build {package}`, then `monas module load` with the printed file"
         )?;
     }
     Ok(Exit::Success)

@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn failures_are_told_in_the_format_asked_for() {
+    fn failures_are_reported_in_the_requested_format() {
         let failed = |format| CommandFailure::Failed(format, "no room".into());
         assert_eq!(reported(failed(Format::Text)), (Exit::Failure, "error: no room\n".into()));
         let (_, line) = reported(failed(Format::Json));

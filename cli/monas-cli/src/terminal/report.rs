@@ -219,7 +219,7 @@ error[E0201]: `Serch` is unknown
     }
 
     #[test]
-    fn colours_are_there_when_asked_for() {
+    fn colours_are_used_on_request() {
         assert!(drawn(&finding(), true).contains('\x1b'));
     }
 

@@ -144,7 +144,7 @@ fn a_match_in_simulated_time_is_changed_by_host_and_looking_on_changes_nothing()
         (agents[0]["host"].as_str().expect("a name"), agents[0]["agent"].as_str().expect("a name"));
     let which = ask(&["pause", agent]);
     assert_eq!(which.code, Some(1));
-    assert!(which.err.contains("there are several hosts: say which of "), "{}", which.err);
+    assert!(which.err.contains("there are several hosts: name one of "), "{}", which.err);
     assert_eq!(ask(&["pause", agent, "--host", host]).code, Some(0));
     let paused = objects(&ask(&["list", agent, "--host", host, "--format", "json"]).out);
     assert_eq!(paused[0]["state"], "pauses");

@@ -52,7 +52,7 @@ fn coming_from_elsewhere() {
 }
 
 #[test]
-fn what_must_always_be_so() {
+fn invariants() {
     read("properties.md", 4);
 }
 

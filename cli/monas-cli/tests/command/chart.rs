@@ -10,7 +10,7 @@ const LAMP: &str = "Role: lamp\nLiveness:\nlamp = (LedHandler . MotionController
     LedHandler -> MotionController : button / StartTimeout(enough, 60s)\nMotionController -> END : enough\n";
 
 #[test]
-fn a_chart_is_looked_into_and_an_event_is_raised_in_it_and_on_the_tape() {
+fn a_chart_is_inspected_and_a_raised_event_is_recorded() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).display().to_string();
     fs::write(folder.path().join("lamp.srm"), LAMP).expect("a file");

@@ -39,7 +39,7 @@ fn robots_that_stand_still_are_shown_by_a_way_that_can_be_played() {
 }
 
 #[test]
-fn robots_that_do_not_are_said_not_to() {
+fn deadlocking_robots_are_reported() {
     let (passer, receiver) = (model("near", "passer.srm"), model("near", "receiver.srm"));
     let answer = monas(&["model", "compose", &passer, &receiver]);
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));

@@ -39,7 +39,7 @@ fn at(folder: &Path, name: &str) -> String {
 const AGENTS: &str = "<agent thread_frequency=10 priority=1>\n  <name>Motion</name>\n  <activity gait=quick>NobodyKnowsIt</activity>\n</agent>\n";
 
 #[test]
-fn every_value_is_shown_with_where_it_comes_from() {
+fn every_value_is_shown_with_its_origin() {
     let robot = "[[agent]]\nname = \"Motion\"\npriority = 4\n";
     let folder = folder(&[("config/agents.xml", AGENTS), ("config/robots/one.toml", robot)]);
     let file = at(folder.path(), "config/agents.xml");
@@ -86,7 +86,7 @@ fn a_match_is_shown_with_its_robots_field_and_simulator() {
 }
 
 #[test]
-fn what_is_said_in_a_robot_goes_over_its_role() {
+fn robot_settings_override_role_settings() {
     let robot = "<robot number=\"2\" role=\"config/roles/attacker.xml\"/>";
     let own = "<robot number=\"2\" role=\"config/roles/attacker.xml\"><agent priority='9'><name>Attacker</name></agent></robot>";
     let (folder, line) = changed("config/match.xml", robot, own);
@@ -210,7 +210,7 @@ fn a_match_in_toml_is_the_match_in_xml() {
 }
 
 #[test]
-fn what_is_shown_of_the_shipped_configurations_is_in_order() {
+fn shipped_configurations_are_valid() {
     for name in [
         "config/match.xml",
         "config/match_generated.xml",

@@ -33,7 +33,7 @@ fn a_chart_goes_through_every_format_and_back() {
 }
 
 #[test]
-fn what_would_get_lost_is_listed_and_needs_a_word() {
+fn losses_are_listed_and_need_confirmation() {
     let folder = tempfile::tempdir().expect("a folder");
     let input =
         file(folder.path(), "a.txt", &CHART.replace("Scan BASIC\n", "Scan BASIC\n      priority = 5\n"));
@@ -76,7 +76,7 @@ fn a_chart_of_events_goes_to_rust_and_others_are_refused() {
     let output = folder.path().join("a.rs").display().to_string();
     let refused = monas(&["model", "convert", &input, &output]);
     assert_eq!(refused.code, Some(3));
-    let why = "`r/Scan` has an activity: a flat chart knows events and conditions only";
+    let why = "`r/Scan` has an activity: a flat chart has events and conditions only";
     assert!(refused.err.contains("E0160") && refused.err.contains(why), "{}", refused.err);
     assert!(!Path::new(&output).exists());
 }

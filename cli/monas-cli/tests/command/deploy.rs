@@ -287,7 +287,7 @@ fn a_robot_with_systemd_gets_a_unit_that_starts_the_current_release() {
 }
 
 #[test]
-fn what_arrives_changed_is_not_used_and_a_robot_that_is_not_there_is_said_to_be() {
+fn corrupt_files_are_rejected_and_unreachable_robots_are_reported() {
     let Some(site) = Site::open() else { return };
     // A transport that changes one word.
     let way = script(
@@ -315,7 +315,7 @@ fn what_arrives_changed_is_not_used_and_a_robot_that_is_not_there_is_said_to_be(
 }
 
 #[test]
-fn mistakes_are_told_before_anything_is_brought() {
+fn errors_are_reported_before_the_copy() {
     let folder = tempfile::tempdir().expect("a folder");
     for part in ["config", "models"] {
         copy(&root().join(part), &folder.path().join(part));

@@ -44,7 +44,7 @@ fn a_configuration_that_is_wrong_ends_with_3_and_is_explained() {
 }
 
 #[test]
-fn ports_of_links_are_looked_up() {
+fn ports_of_links_are_checked() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("agents.xml");
     fs::write(&path, "<link transport='zenoh'><listen>7447</listen><send topics='a/b'/></link>")

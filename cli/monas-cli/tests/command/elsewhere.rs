@@ -91,7 +91,7 @@ fn the_vision_of_a_robot_runs_in_a_second_process() {
 }
 
 #[test]
-fn topics_are_looked_at_and_published_over_a_link() {
+fn topics_are_inspected_and_published_over_a_link() {
     let folder = tempfile::tempdir().expect("a folder");
     project(folder.path());
     let game = folder.path().join("config/elsewhere/match.xml").display().to_string();
@@ -129,7 +129,7 @@ fn topics_are_looked_at_and_published_over_a_link() {
 
 /// Properties of messages that arrive over a link are checked on arrival.
 #[test]
-fn a_property_is_followed_with_what_comes_from_another_process() {
+fn a_property_is_monitored_with_messages_of_another_process() {
     let folder = tempfile::tempdir().expect("a folder");
     project(folder.path());
     let role = folder.path().join("config/elsewhere/attacker.xml");

@@ -76,7 +76,7 @@ fn properties_of_generated_charts_are_followed_in_a_match_as_those_of_interprete
 }
 
 #[test]
-fn what_is_committed_is_what_the_models_give() {
+fn committed_charts_equal_the_generated_ones() {
     let project = project();
     for model in ["models/goalie.srm", "models/attacker.srm", "models/extended_attacker.srm"] {
         assert_eq!(generate(project.path(), model), (Some(0), "nothing has changed\n".into(), String::new()));
@@ -132,7 +132,7 @@ fn a_skeleton_is_shared() {
 }
 
 #[test]
-fn what_cannot_be_generated_is_refused_and_nothing_is_written() {
+fn a_failed_generation_writes_nothing() {
     let project = project();
     let folder = project.path();
     let scout = "Liveness:\nscout = Vision . Stand\nTransitions:\nVision -> Stand : [Ball.fund]\n";

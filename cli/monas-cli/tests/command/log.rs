@@ -17,7 +17,7 @@ fn run(folder: &Path, settings: &str) -> Answer {
 }
 
 #[test]
-fn a_run_is_logged_as_the_file_says() {
+fn a_run_is_logged_as_configured() {
     let folder = tempfile::tempdir().expect("a folder");
     let settings = "<MessageLogFile>a.log</MessageLogFile><LogFileVerbosityLevel>4</LogFileVerbosityLevel>";
     let answer = run(folder.path(), settings);
@@ -109,7 +109,7 @@ fn the_settings_that_are_shipped_show_robot_agent_activity_and_cycle_and_leave_n
 }
 
 #[test]
-fn what_the_file_says_wrongly_is_told_before_anything_runs() {
+fn configuration_errors_are_reported_before_the_run() {
     let folder = tempfile::tempdir().expect("a folder");
     let answer =
         run(folder.path(), "<MessageLogFilter>all</MessageLogFilter>\n<MessageLogFyle>a</MessageLogFyle>");

@@ -117,7 +117,7 @@ fn a_missing_file_is_answered_with_the_one_that_is_there() {
 }
 
 #[test]
-fn what_a_check_finds_ends_with_5_and_a_warning_with_0() {
+fn findings_exit_with_5_and_warnings_with_0() {
     let folder = tempfile::tempdir().expect("a folder");
     let roles = "Role: r\nLiveness:\nr = look . (turn | walk)\nTransitions:\n";
     let weights = file(
@@ -154,7 +154,7 @@ fn findings_are_written_as_sarif() {
 }
 
 #[test]
-fn what_is_good_to_know_is_said_when_asked_for() {
+fn information_is_printed_on_request() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = "Role: r\nLiveness:\nr = look . walk\nTransitions:\nSTART -> look : [Ball.found]\n";
     let path = file(folder.path(), "waits.srm", text);
@@ -194,7 +194,7 @@ fn a_way_to_a_finding_is_written_and_played() {
 }
 
 #[test]
-fn an_exploration_that_was_not_finished_says_so() {
+fn an_incomplete_exploration_is_reported() {
     let answer = monas(&["model", "check", ROLES[0], "--states", "50"]);
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
     assert!(answer.out.contains("exploration not finished: 50 states"), "{}", answer.out);
@@ -247,7 +247,7 @@ message Attack {
 }
 
 #[test]
-fn variables_that_are_no_messages_and_messages_kept_in_two_ways_are_told() {
+fn invalid_variables_and_conflicting_retentions_are_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = |guard: &str, kind: &str| {
         format!(
@@ -273,7 +273,7 @@ fn variables_that_are_no_messages_and_messages_kept_in_two_ways_are_told() {
 }
 
 #[test]
-fn the_coverage_of_tapes_is_told_added_up_and_drawn() {
+fn the_coverage_of_tapes_is_summed_reported_and_drawn() {
     let folder = tempfile::tempdir().expect("a folder");
     let tape = |seed: &str| folder.path().join(format!("{seed}.mcap")).display().to_string();
     let (one, two) = (tape("1"), tape("2"));

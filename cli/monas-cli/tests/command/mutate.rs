@@ -97,18 +97,18 @@ fn lamp(scenario: &str, more: &[&str]) -> Answer {
 const DARK: &str = "model lamp.srm\nstart\nreturn Look\n  Ball.distance = 1\n  starts On\n";
 
 #[test]
-fn people_are_told_what_a_scenario_would_have_to_show() {
+fn survivors_are_reported_with_a_distinguishing_case() {
     let Answer { code, out, err } = lamp(DARK, &[]);
     assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
     let first = out.lines().next().unwrap_or_default();
     assert!(first.contains("lamp.srm: 1 scenario notices ") && first.ends_with(" %)"), "{out}");
-    let survivor = "lamp.srm:5: CONDITION -> On: the guard `[Ball.distance < 3]` becomes `[Ball.distance <= 3]`\n    a scenario would have to show a moment at which `Ball.distance` is exactly `3`\n";
+    let survivor = "lamp.srm:5: CONDITION -> On: the guard `[Ball.distance < 3]` becomes `[Ball.distance <= 3]`\n    a scenario would have to show a case in which `Ball.distance` equals `3`\n";
     assert!(out.contains(survivor), "{out}");
     assert!(!out.contains("CONDITION -> On: it is never taken"), "that is noticed\n{out}");
 }
 
 #[test]
-fn what_cannot_run_is_told_apart() {
+fn invalid_mutants_are_reported_separately() {
     let folder = beside_the_models(DARK);
     let model = folder.path().join("lamp.srm").to_string_lossy().into_owned();
     let states = "On -> END : [over]\nStates:\nOn : entry = StartTimeout(over, 1s)\n";
@@ -117,7 +117,7 @@ fn what_cannot_run_is_told_apart() {
     let Answer { code, out, err } = monas(&["model", "mutate", &model, "--scenarios", &here]);
     assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
     assert!(out.lines().next().is_some_and(|line| line.ends_with("; 1 more cannot run")), "{out}");
-    let refused = "On entry: `over` is never started\n    there is nothing called `over` here";
+    let refused = "On entry: `over` is never started\n    there is no `over` here";
     assert!(out.contains("cannot run:\n") && out.contains(refused), "{out}");
 }
 

@@ -129,7 +129,7 @@ fn texts(folder: &Path) -> std::collections::BTreeMap<String, String> {
 }
 
 #[test]
-fn what_cannot_be_made_is_refused_and_nothing_is_written() {
+fn a_failed_creation_writes_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::create_dir(folder.path().join("full")).expect("the folder takes folders");
     fs::write(folder.path().join("full/a.txt"), "mine").expect("the folder takes files");

@@ -23,14 +23,14 @@ fn the_player_is_made_from_role_and_protocol_and_conforms() {
         answer.out,
         "models/attack.eac: `Attack` conforms; all of its 20 states were explored\n\
          models/extended_attacker.iac: `center` conforms; all of its 3 states were explored\n\
-         models/extended_attacker.iac: `center in all that player does` conforms; all of its 39 states were explored\n\
+         models/extended_attacker.iac: `center within player` conforms; all of its 39 states were explored\n\
          models/extended_attacker.iac: `center_for` conforms; all of its 4 states were explored\n\
-         models/extended_attacker.iac: `center_for in all that player does` conforms; all of its 39 states were explored\n"
+         models/extended_attacker.iac: `center_for within player` conforms; all of its 39 states were explored\n"
     );
 }
 
 #[test]
-fn what_does_not_conform_is_refused_with_its_place() {
+fn nonconformance_is_reported_with_positions() {
     let folder = tempfile::tempdir().expect("a folder");
     let chart = fs::read_to_string(root().join(EAC)).expect("it is there");
     let unguarded = folder.path().join("unguarded.eac");

@@ -76,9 +76,23 @@ fn spelt_once(properties: &Map<String, Value>) -> impl Iterator<Item = (&str, &M
     properties.filter(|(name, _)| !name.contains(|letter: char| letter.is_ascii_uppercase()))
 }
 
+/// A paragraph in lines of at most 100 columns.
+fn wrapped(text: &str) -> String {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) if line.len() + 1 + word.len() <= 100 => *line += &format!(" {word}"),
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines.join("\n")
+}
+
 fn add_element(name: &str, schema: &Map<String, Value>, page: &mut String) {
     let text = |key: &str| schema.get(key).and_then(Value::as_str).unwrap_or_default();
-    let _ = write!(page, "\n## `<{name}>`\n\n{}.\n", text("description").trim_end_matches('.'));
+    let description = format!("{}.", text("description").trim_end_matches('.'));
+    let _ = write!(page, "\n## `<{name}>`\n\n{}\n", wrapped(&description));
     // Either a text, or a table with that text and more.
     let either = schema.get("anyOf").and_then(Value::as_array).into_iter().flatten();
     let table = either.filter_map(Value::as_object).chain([schema]).find_map(|one| one.get("properties"));
@@ -97,7 +111,7 @@ fn add_element(name: &str, schema: &Map<String, Value>, page: &mut String) {
     }
     if !inside.is_empty() {
         let names: Vec<String> = inside.iter().map(|(name, _)| format!("`<{name}>`")).collect();
-        let _ = write!(page, "\nInside: {}.\n", names.join(", "));
+        let _ = write!(page, "\n{}\n", wrapped(&format!("Inside: {}.", names.join(", "))));
     }
 }
 
@@ -105,11 +119,13 @@ fn add_element(name: &str, schema: &Map<String, Value>, page: &mut String) {
 fn the_page_of_configurations_is_up_to_date() {
     let answer = monas(&["config", "schema", "--json"]);
     let schema: Value = serde_json::from_str(&answer.out).expect("it is JSON");
-    let mut page = String::from(
-        "# Configuration\n\nWhat a configuration may hold, in XML; in TOML attributes are keys and elements are tables. Names may be spelt as the thesis \
-         does, too: `thread_frequency` or `ThreadFrequency`. `monas config schema` writes the same for editors, and `monas config show` says where each value of \
-         a configuration comes from.\n",
+    let introduction = wrapped(
+        "The elements and attributes of a configuration, in XML; in TOML attributes are keys and elements are \
+         tables. The spelling of the thesis is accepted, too: `thread_frequency` or `ThreadFrequency`. \
+         `monas config schema` writes the same for editors, and `monas config show` prints the origin of each \
+         value of a configuration.",
     );
+    let mut page = format!("# Configuration\n\n{introduction}\n");
     let elements = schema["$defs"].as_object().expect("definitions");
     for (name, schema) in elements {
         add_element(name, schema.as_object().expect("a schema"), &mut page);

@@ -24,7 +24,7 @@ fn file(folder: &Path, name: &str, text: &str) -> String {
 }
 
 #[test]
-fn what_differs_is_told_drawn_and_ends_with_5() {
+fn differences_are_reported_drawn_and_exit_with_5() {
     let folder = tempfile::tempdir().expect("a folder");
     let before = file(folder.path(), "before.srm", ROLE);
     let after = file(folder.path(), "after.srm", &ROLE.replace("[Ball.found]", "[Ball.found && up]"));
@@ -99,7 +99,7 @@ fn a_layout_is_drawn_converted_and_survives_an_edit() {
 }
 
 #[test]
-fn what_a_chart_says_is_taken_into_a_role_and_into_a_newer_chart() {
+fn refinements_of_a_chart_are_applied_to_a_role_and_to_a_newer_chart() {
     let folder = tempfile::tempdir().expect("a folder");
     let role = file(folder.path(), "role.srm", ROLE);
     let chart = folder.path().join("chart.stct").display().to_string();

@@ -145,7 +145,7 @@ fn each_mistake_is_found_before_anything_runs() {
 }
 
 #[test]
-fn what_can_never_be_heard_is_found_before_anything_runs() {
+fn unreachable_sources_are_found_before_the_run() {
     let guard = "CONDITION -> SearchBall : [!Ball.found]";
     for (other, said) in [
         ("CONDITION -> SearchBall : [!striker.ball.State.Ball.found]", ["E0320", "host `striker`"]),

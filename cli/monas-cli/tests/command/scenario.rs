@@ -80,7 +80,7 @@ fn each_step_is_shown_with_what_differs_from_it() {
 }
 
 #[test]
-fn programs_are_told_an_object_a_step() {
+fn json_output_has_one_object_per_step() {
     let folder = beside_the_models("model models/goalie.srm\nstart\n  in active\n");
     let Answer { code, out, .. } = run(folder.path(), &["--format", "json"]);
     assert_eq!(code, Some(5));
@@ -91,7 +91,7 @@ fn programs_are_told_an_object_a_step() {
 }
 
 #[test]
-fn names_that_nobody_knows_are_told_with_their_places() {
+fn unknown_names_are_reported_with_positions() {
     let text = "model models/goalie.srm\nstart\n  Bal.found = true\n  Ball.fond = true\n  in RightDve\n";
     let folder = beside_the_models(text);
     let Answer { code, err, .. } = run(folder.path(), &["--format", "json"]);

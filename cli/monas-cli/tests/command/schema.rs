@@ -42,7 +42,7 @@ fn every_shipped_configuration_is_allowed_by_the_xml_schema() {
 }
 
 #[test]
-fn what_the_reader_refuses_is_refused_by_the_xml_schema() {
+fn the_xml_schema_rejects_what_the_reader_rejects() {
     let schema = schema("--xsd");
     let agent = |attributes: &str, inner: &str| format!("<agent {attributes}><name>a</name>{inner}</agent>");
     for (text, expected) in [
@@ -72,7 +72,7 @@ fn what_the_reader_refuses_is_refused_by_the_xml_schema() {
 }
 
 #[test]
-fn the_json_schema_says_the_same_of_toml() {
+fn the_json_schema_accepts_the_same_toml() {
     let schema: serde_json::Value = serde_json::from_str(&schema("--json")).expect("the schema is JSON");
     let fine = "[[agent]]\nname = \"a\"\nThreadFrequency = 10\nis_real_time = true\n\
                 activity = [\"Vision\", { name = \"Walk\", gait = \"quick\" }]\n\

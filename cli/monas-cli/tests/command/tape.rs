@@ -80,7 +80,7 @@ fn fresh(name: &str) -> (tempfile::TempDir, PathBuf) {
 }
 
 #[test]
-fn info_tells_run_files_and_channels() {
+fn info_reports_run_files_and_channels() {
     let answer = done(&["tape", "info", &tape()]);
     for part in [
         "finished",
@@ -171,7 +171,7 @@ fn a_changed_threshold_shows_as_the_first_message_that_differs() {
 }
 
 #[test]
-fn what_cannot_be_replayed_says_why() {
+fn an_impossible_replay_has_a_reason() {
     let (_folder, part) = fresh("part.mcap");
     done(&["tape", "cut", &tape(), "--from", "5s", "-o", &text(&part)]);
     let answer = monas(&["tape", "replay", &text(&part)]);
@@ -187,7 +187,7 @@ fn live(folder: &Path) -> String {
 }
 
 #[test]
-fn what_was_recorded_in_real_time_is_replayed() {
+fn real_time_recordings_are_replayed() {
     let folder = tempfile::tempdir().expect("a folder");
     let live = live(folder.path());
     let info = done(&["tape", "info", &live]);
@@ -318,7 +318,7 @@ fn a_match_cut_by_time_and_merged_again_is_the_match() {
 
 #[test]
 #[cfg(unix)]
-fn the_tape_of_a_killed_match_is_mended_and_replayed() {
+fn the_tape_of_a_killed_match_is_recovered_and_replayed() {
     let (_folder, path) = fresh("killed.mcap");
     let file = text(&path);
     let mut child = command(&["run", MATCH, "--seed", "7", "--record", &file])
@@ -345,7 +345,7 @@ fn the_tape_of_a_killed_match_is_mended_and_replayed() {
 }
 
 #[test]
-fn what_is_no_tape_is_named() {
+fn files_that_are_no_tape_are_named() {
     let (_folder, path) = fresh("text.mcap");
     fs::write(&path, "no tape").expect("the folder takes files");
     for verb in ["info", "recover", "export", "replay"] {

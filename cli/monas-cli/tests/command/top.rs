@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::running::{Running, ask, objects};
 
 #[test]
-fn what_agents_do_and_how_often_is_told() {
+fn top_reports_agents_and_their_rates() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("agents.xml");
     fs::write(&file, "<agent frequency=\"50\"><name>Lights</name><activity>LedHandler</activity></agent>")

@@ -24,7 +24,7 @@ fn folder() -> tempfile::TempDir {
 }
 
 #[test]
-fn a_running_match_is_looked_at() {
+fn a_running_match_is_inspected() {
     let folder = folder();
     let run = play(folder.path());
     let ask = |arguments: &[&str]| ask(folder.path(), arguments);
@@ -205,7 +205,7 @@ fn looking_on_changes_nothing_and_what_is_published_is_recorded() {
 }
 
 #[test]
-fn a_hostile_tool_harms_nobody() {
+fn a_hostile_tool_does_no_harm() {
     let folder = folder();
     let _run = play(folder.path());
     let socket = folder.path().join("monas/game.sock");

@@ -89,7 +89,7 @@ fn each_exit_code_means_one_thing() {
 /// Commands without computation answer at once. One of several attempts has to, since the machine
 /// may be busy.
 #[test]
-fn what_needs_no_computing_takes_under_50_ms() {
+fn commands_without_computation_take_under_50_ms() {
     for arguments in [
         &["--version"][..],
         &["--help"],
@@ -111,7 +111,7 @@ fn what_needs_no_computing_takes_under_50_ms() {
 }
 
 #[test]
-fn nothing_is_coloured_where_nobody_watches() {
+fn output_to_a_pipe_has_no_colours() {
     for arguments in [&["--help"][..], &["rum"], &["model", "check", "nowhere.srm"]] {
         let plain = monas(arguments);
         let asked: crate::kit::Answer =

@@ -49,7 +49,7 @@ fn last(folder: &Path, run: &str, topic: &str) -> Option<u64> {
 }
 
 #[test]
-fn the_vision_of_a_robot_is_reached_over_zenoh_and_comes_back_after_it_was_killed() {
+fn the_vision_of_a_robot_is_reached_over_zenoh_and_reconnects_after_a_kill() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let port = port();
@@ -138,7 +138,7 @@ fn certificates_and_an_access_list_are_those_of_the_configuration() {
 }
 
 #[test]
-fn what_zenoh_cannot_use_is_said_before_it_is_opened() {
+fn invalid_zenoh_settings_are_reported_before_opening() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let certificates =
@@ -187,7 +187,7 @@ fn stands(folder: &Path, run: &str, agent: &str, state: &str) -> bool {
 }
 
 #[test]
-fn agents_are_changed_over_zenoh_by_whom_the_access_list_lets_and_whose_certificate_says_so() {
+fn agents_are_changed_over_zenoh_only_with_access_and_certificate() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let access = "robot_1 publish monas/changed\nrobot_2 publish monas/change\nrobot_2 manage\nlaptop publish soccer/**\n";

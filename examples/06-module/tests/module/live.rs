@@ -116,7 +116,7 @@ fn the_set_up_is_saved_with_its_modules() {
 }
 
 #[test]
-fn what_a_file_says_of_itself_is_for_programs_too() {
+fn a_files_description_is_available_as_json() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = eyes().display().to_string();
     let said = ask(folder.path(), &["module", "show", &file, "--format", "json"]);

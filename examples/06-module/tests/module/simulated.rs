@@ -44,7 +44,7 @@ fn blind_robot() -> Simulation {
 }
 
 #[test]
-fn what_a_module_publishes_is_read_as_what_it_is() {
+fn messages_of_a_module_are_read_with_their_types() {
     let module = ModuleFile::read(eyes()).and_then(|file| file.load()).expect("it fits");
     assert_eq!((module.name(), module.activity_names().collect::<Vec<_>>()), ("eyes", vec!["Eyes"]));
     let registry = Registry::linked().with_module(module).expect("no name is taken");
@@ -195,7 +195,7 @@ fn a_configuration_names_modules_beside_itself() {
 }
 
 #[test]
-fn what_is_wrong_with_a_module_is_said_where_it_is_named() {
+fn module_errors_are_reported_at_the_reference() {
     let text =
         "<module>eye.so</module>\n<module enable='0'>nowhere.so</module>\n<module>robot.xml</module>\n";
     let (_folder, path) = configured("robot.xml", text);

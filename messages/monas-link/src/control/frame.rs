@@ -47,7 +47,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read() {
+    fn written_files_are_read_back() {
         let mut bytes = Vec::new();
         write(&request(), &mut bytes).unwrap();
         append(&request(), &mut bytes);
@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_long_cut_off_or_nonsense_is_refused() {
+    fn long_truncated_and_malformed_packets_are_rejected() {
         let mut bytes = Vec::new();
         append(&request(), &mut bytes);
         let kind = |bytes: &[u8], limit| read::<Request>(&mut &*bytes, limit).unwrap_err().kind();

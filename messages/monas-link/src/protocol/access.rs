@@ -143,7 +143,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_no_rule_allows_is_forbidden() {
+    fn access_is_denied_without_a_rule() {
         let (list, errors) = AccessList::parse(
             "# the team\nrobot_2 publish soccer/** # all\nlaptop manage\n* publish soccer/hello\n",
         );

@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_not_believed() {
+    fn impossible_values_are_rejected() {
         let mut filter = ClockFilter::default();
         filter.measure(at(100), at(5), at(4), at(200));
         filter.measure(at(100), at(5), at(50_000_200), at(101));

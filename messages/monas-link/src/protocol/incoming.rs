@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_no_longer_come_is_a_gap() {
+    fn messages_that_can_no_longer_arrive_are_a_gap() {
         let mut incoming = IncomingStream::new(true, 0);
         assert_eq!(deliver(&mut incoming, &[2, 6]), [0; 0]);
         assert_eq!(head(&mut incoming, 5, 7), [2]);
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_delivered_by_a_stream_before_is_not_taken_back() {
+    fn messages_delivered_by_a_stream_are_not_withdrawn() {
         let mut incoming = IncomingStream::new(true, 0);
         assert!(!incoming.reject_delivered());
         assert_eq!(incoming.counted(), IncomingStream::new(true, 0).counted());

@@ -36,17 +36,17 @@ fn only_the_team_is_heard(stranger: &str, settings: impl FnOnce(ZenohSettings) -
 }
 
 #[test]
-fn who_has_another_authoritys_certificate_is_not_heard() {
+fn peers_with_certificates_of_other_authorities_are_rejected() {
     only_the_team_is_heard("stranger", |connecting| ZenohSettings { tls: tls("stranger"), ..connecting });
 }
 
 #[test]
-fn who_has_an_expired_certificate_is_not_heard() {
+fn peers_with_expired_certificates_are_rejected() {
     only_the_team_is_heard("robot_4", |connecting| ZenohSettings { tls: tls("expired"), ..connecting });
 }
 
 #[test]
-fn who_shows_no_certificate_is_not_heard() {
+fn peers_without_certificates_are_rejected() {
     only_the_team_is_heard("nobody", |connecting| {
         let mut config = connecting;
         config.connect[0] = config.connect[0].replace("tls/", "tcp/");
@@ -55,7 +55,7 @@ fn who_shows_no_certificate_is_not_heard() {
 }
 
 #[test]
-fn who_listens_with_a_wrong_or_expired_certificate_is_not_believed() {
+fn listeners_with_invalid_certificates_are_rejected() {
     for wrong in ["stranger", "expired"] {
         let (listening, connecting) = pair("tls");
         let own = pair("tls").0;
@@ -89,7 +89,7 @@ fn a_certificate_that_cannot_be_used_is_an_error_that_names_it() {
 }
 
 #[test]
-fn who_keeps_its_certificate_to_itself_is_turned_away() {
+fn peers_that_withhold_their_certificate_are_rejected() {
     let (listening, connecting) = pair("tls");
     let _first = End::new("robot_1", &ZenohSettings { tls: tls("robot_1"), ..listening });
     // Knows the authority, and has no key.

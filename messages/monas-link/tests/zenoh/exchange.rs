@@ -113,7 +113,7 @@ fn large_messages_go_through_shared_memory_where_both_sides_may() {
 }
 
 #[test]
-fn what_is_longer_than_the_line_takes_is_counted_and_holds_nothing_up() {
+fn oversized_messages_are_counted_and_block_nothing() {
     let (listening, connecting) = pair("tcp");
     let listening = ZenohSettings { largest: 100_000, ..listening };
     let (first, second) = (End::new("robot_1", &listening), End::new("robot_2", &connecting));
@@ -131,7 +131,7 @@ fn what_is_longer_than_the_line_takes_is_counted_and_holds_nothing_up() {
 }
 
 #[test]
-fn a_host_that_is_restarted_is_heard_again() {
+fn a_restarted_host_is_received_again() {
     let (listening, connecting) = pair("tcp");
     let first = End::new("robot_1", &listening);
     for life in 1..4 {

@@ -26,7 +26,7 @@ fn noise(length: usize, seed: u64) -> Vec<u8> {
 }
 
 #[test]
-fn noise_on_the_port_disturbs_nobody() {
+fn noise_on_the_port_has_no_effect() {
     let (listening, connecting) = pair("tcp");
     let first = End::new("robot_1", &listening);
     let second = End::new("robot_2", &connecting);
@@ -94,7 +94,7 @@ impl Drop for Stops<'_> {
 }
 
 #[test]
-fn a_flood_is_dropped_and_counted_and_the_link_goes_on() {
+fn a_flood_is_dropped_and_counted_and_the_link_continues() {
     let (listening, connecting) = pair("tcp");
     let first = End::new("robot_1", &listening);
     let second = End::new("robot_2", &connecting);

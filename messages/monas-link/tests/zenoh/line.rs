@@ -84,7 +84,7 @@ fn pass(mut from: TcpStream, mut to: TcpStream, delay: Duration) {
 }
 
 #[test]
-fn what_is_said_while_the_line_is_cut_comes_when_it_is_mended_or_is_a_counted_gap() {
+fn messages_during_an_outage_arrive_later_or_are_counted_as_a_gap() {
     let target = port();
     let listening =
         ZenohSettings { listen: vec![format!("tcp/127.0.0.1:{target}")], ..ZenohSettings::default() };
@@ -155,7 +155,7 @@ impl Transport for Rough {
 }
 
 #[test]
-fn each_message_comes_once_and_in_order_over_a_rough_line() {
+fn each_message_arrives_once_and_in_order_over_a_lossy_line() {
     let (listening, connecting) = pair("tcp");
     let done = Arc::new(Done::default());
     let rough = |seed: u8, done: Arc<Done>| {

@@ -11,7 +11,7 @@ fn readable(bytes: Vec<u8>) -> usize {
 }
 
 #[test]
-fn a_cut_anywhere_leaves_what_stands_before_it() {
+fn a_truncated_file_keeps_its_prefix() {
     let bytes = recorded(30);
     let whole = readable(bytes.clone());
     let mut before = 0;
@@ -40,7 +40,7 @@ fn damage_inside_a_chunk_is_noticed() {
 }
 
 #[test]
-fn what_is_no_tape_is_refused() {
+fn files_that_are_no_tape_are_rejected() {
     for bytes in [&b""[..], b"<match/>", &mcap::MAGIC[..7]] {
         let error = Recording::from_bytes(bytes.to_vec()).messages().unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Damaged);

@@ -56,7 +56,7 @@ fn a_whole_tape_copied_is_equal() {
 }
 
 #[test]
-fn what_follows_damage_is_kept() {
+fn records_after_damage_are_kept() {
     let (_folder, path) = folder();
     let whole = tape(&path("a.mcap"), &["one"], 60);
     let mut bytes = std::fs::read(path("a.mcap")).unwrap();
@@ -137,7 +137,7 @@ fn tapes_are_merged_by_time_and_what_they_share_is_there_once() {
 }
 
 #[test]
-fn what_cannot_be_written_leaves_what_was_there() {
+fn a_failed_write_keeps_the_old_file() {
     let (_folder, path) = folder();
     tape(&path("a.mcap"), &["one"], 2);
     let error = recover(path("a.mcap"), path("nowhere/b.mcap")).unwrap_err();

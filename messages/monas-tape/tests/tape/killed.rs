@@ -45,7 +45,7 @@ fn counted(recording: &Recording) -> u64 {
 }
 
 #[test]
-fn the_tape_of_a_killed_process_is_read_up_to_the_cut_and_mended() {
+fn the_tape_of_a_killed_process_is_read_and_recovered() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("killed.mcap");
     let mut child = Command::new(std::env::current_exe().unwrap())

@@ -183,7 +183,7 @@ fn what_comes_from_other_hosts_is_recorded_too() {
 }
 
 #[test]
-fn what_parts_of_one_publisher_say_is_told_apart() {
+fn parts_of_one_publisher_are_distinguished() {
     let output = Shared::default();
     let tape = Tape::to_writer(output.clone()).unwrap();
     let hub = hub("robot");
@@ -248,7 +248,7 @@ impl Write for Held {
 }
 
 #[test]
-fn in_real_time_nobody_waits_for_a_slow_disk_and_what_is_left_out_is_counted() {
+fn in_real_time_a_slow_disk_delays_no_publisher_and_losses_are_counted() {
     let (hold, held) = std::sync::mpsc::channel();
     // The magic number and the header; then no more.
     (0..64).for_each(|_| hold.send(()).unwrap());
@@ -290,7 +290,7 @@ fn await_ball(written: &std::sync::mpsc::Receiver<Vec<u8>>, distance: f64) {
 }
 
 #[test]
-fn what_is_a_second_old_is_written_whether_anything_follows_or_not() {
+fn data_older_than_a_second_is_flushed() {
     // By the time of the run, only a message a second later ends a chunk.
     let (sender, written) = std::sync::mpsc::channel();
     let tape = Tape::to_writer(ChannelWriter(sender)).unwrap();

@@ -8,7 +8,7 @@ use super::code::{RustCode, WIDTH, quoted};
 use super::name_table::NameTable;
 use super::names::identifier;
 
-/// An assignment: its value, what puts it into its message, and what that message is.
+/// An assignment: the functions that compute its value and set its field, and its message.
 #[derive(PartialEq, Eq)]
 pub(crate) struct AssignmentBody {
     pub(crate) value: RustCode,
@@ -26,22 +26,22 @@ pub(crate) struct GeneratedFunctions {
     taken: BTreeSet<String>,
     guards: BTreeMap<TransitionId, String>,
     values: BTreeMap<(ActionLocation, usize), [String; 3]>,
-    /// By what they do: the names of functions that set fields.
+    /// The names of functions that set fields, by their bodies.
     puts: BTreeMap<(String, String), String>,
     text: Vec<String>,
 }
 
-/// A name's part longer than this is not repeated in the names of functions.
+/// The longest part of a path that is used in names of functions.
 const LONG: usize = 24;
 
 impl GeneratedFunctions {
-    /// The function that a guard is.
+    /// The function of a guard.
     pub(crate) fn guard_of(&self, id: TransitionId) -> Option<&str> {
         self.guards.get(&id).map(String::as_str)
     }
 
-    /// The values of the actions of a place: the number of the action, the message, the function
-    /// that gives the value, and the one that puts it into the message.
+    /// The values of the actions at a location: the index of the action, the message, the function
+    /// that computes the value, and the function that sets it.
     pub(crate) fn values_at(&self, place: ActionLocation) -> impl Iterator<Item = (usize, &[String; 3])> {
         let actions = self.values.range((place, 0)..=(place, usize::MAX));
         actions.map(|((_, index), names)| (*index, names))
@@ -135,7 +135,7 @@ impl GeneratedFunctions {
     }
 }
 
-/// What functions take from the runtime, and the text they then hold.
+/// The names that functions use from the runtime, with the text that reveals the use.
 const RUNTIME: [(&str, &str); 26] = [
     ("CallError", "CallError"),
     ("Computed", "Computed<"),
@@ -165,7 +165,7 @@ const RUNTIME: [(&str, &str); 26] = [
     ("World", "World<"),
 ];
 
-/// The names of those whose text stands in the code, at the beginning of a word.
+/// The known names whose text occurs in the code at a word boundary.
 fn used<'a>(code: &str, known: &[(&'a str, &str)]) -> Vec<&'a str> {
     let code: String = code.lines().filter(|line| !line.starts_with("///")).collect::<Vec<_>>().join("\n");
     let begins = |at: usize| {
@@ -180,12 +180,12 @@ fn used<'a>(code: &str, known: &[(&'a str, &str)]) -> Vec<&'a str> {
     names
 }
 
-/// What a function that does not look at the world calls it.
+/// The name of the parameter `world`: `_` if the function does not use it.
 fn parameter(code: &RustCode) -> &'static str {
     if code.flat().contains("world.") { "world" } else { "_" }
 }
 
-/// A name for a node in the names of functions; none if it would be long.
+/// The name of a node in function names; none if it would be too long.
 fn short(chart: &CompiledChart, node: NodeId) -> Option<String> {
     let path = chart.short_path(node);
     let name = identifier(&[path.rsplit('/').next().unwrap_or_default()]);

@@ -20,7 +20,7 @@ pub(crate) fn file(
     let nodes: String =
         chart.nodes().flat_map(|(id, _)| writer.node(id)).map(|code| code.statement()).collect();
     let parts = [
-        ("words", "The words of the guards and actions.", declarations),
+        ("words", "The names that guards and actions use.", declarations),
         ("states", "The states and connectors, in the order of the document.", nodes),
     ];
     let mut calls = String::new();
@@ -41,7 +41,7 @@ pub(crate) fn file(
     format!(
         "//! The structure of the chart.\n\n{}\n\
          /// The chart, with a function for each of its guards and values.\n///\n/// # Errors\n\
-         /// Only if it was changed by hand and no longer fits together.\n\
+         /// Only if it was edited and is inconsistent.\n\
          pub fn chart() -> Result<TypedChart, Vec<Diagnostic>> {{\n\
          \x20   let {is_mutated}chart = TypedChartBuilder::new({});\n{root}{calls}    chart.finish()\n}}\n{text}",
         imports(glossary, &text, &["Diagnostic", "TypedChart"], chart.transitions().len() > 0),
@@ -49,7 +49,7 @@ pub(crate) fn file(
     )
 }
 
-/// The transitions; nothing if there are none.
+/// The file of transitions; none if there are none.
 pub(crate) fn transitions(
     chart: &Statechart,
     states: &GeneratedStates,
@@ -61,7 +61,7 @@ pub(crate) fn transitions(
     let statements: String = chart.transitions().flat_map(of).map(|code| code.statement()).collect();
     (!statements.is_empty()).then(|| {
         format!(
-            "//! How one comes from one state of the chart to another.\n\n{}\n\
+            "//! The transitions of the chart.\n\n{}\n\
              /// The transitions, in the order of the document, each with its guard.\n\
              pub(crate) fn transitions(chart: &mut TypedChartBuilder) {{\n{statements}}}\n",
             imports(glossary, &statements, &[], false)
@@ -69,7 +69,7 @@ pub(crate) fn transitions(
     })
 }
 
-/// What the text names, and of the runtime these names beside.
+/// The imports of a file: the states, transitions and runtime names that its text uses.
 fn imports(glossary: &NameTable<'_>, text: &str, beside: &[&'static str], has_transitions: bool) -> String {
     let mut imports = String::new();
     if text.contains("Duration::") {
@@ -131,7 +131,7 @@ impl ChartCodeWriter<'_> {
         RustCode::Plain(format!("State::{}", self.states.variant(node)))
     }
 
-    /// The statements about a node.
+    /// The statements that declare a node.
     fn node(&self, id: NodeId) -> Vec<RustCode> {
         let node = self.chart.node(id);
         let about = |method: &str, value: String| {
@@ -166,7 +166,7 @@ impl ChartCodeWriter<'_> {
         code
     }
 
-    /// The statements about a transition.
+    /// The statements that declare a transition.
     fn transition(&self, id: TransitionId, transition: &Transition) -> Vec<RustCode> {
         let text = match transition.expression.is_empty() {
             true => String::new(),

@@ -4,14 +4,14 @@
 pub(crate) const WIDTH: usize = 110;
 const INDENT: usize = 4;
 
-/// A piece of Rust.
+/// A Rust expression.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) enum RustCode {
-    /// What stands on one line.
+    /// An expression on one line.
     Plain(String),
     /// `name(arguments)` and what follows it.
     Call { name: String, arguments: Vec<RustCode>, after: String },
-    /// `!` and its like before something.
+    /// A prefix operator and its operand.
     Before(&'static str, Box<RustCode>),
     /// `&[items]`.
     List(Vec<RustCode>),
@@ -31,7 +31,7 @@ impl RustCode {
         RustCode::Call { name: name.into(), arguments, after: String::new() }
     }
 
-    /// The result that `?` would have opened.
+    /// The expression without its `?`.
     pub(crate) fn untried(self) -> RustCode {
         match self {
             RustCode::Call { name, arguments, after } if after == "?" => RustCode::call(name, arguments),
@@ -50,8 +50,8 @@ impl RustCode {
         }
     }
 
-    /// From a column on, in lines that are indented by so much, with room for so many more
-    /// characters at the end of the last.
+    /// The expression starting at a column, its further lines indented, with room for some
+    /// characters after the last.
     pub(crate) fn laid_out(&self, indent: usize, column: usize, room: usize) -> String {
         let flat = self.flat();
         if column + flat.chars().count() + room <= WIDTH {
@@ -94,12 +94,12 @@ fn broken(items: &[RustCode], indent: usize) -> String {
     format!("{}\n{:indent$}", items.iter().map(line).collect::<String>(), "")
 }
 
-/// A text as Rust writes it.
+/// A string literal.
 pub(crate) fn literal(text: &str) -> String {
     format!("{text:?}")
 }
 
-/// What fits into a line of documentation, in the font of code.
+/// A text as inline code for a line of documentation.
 pub(crate) fn quoted(text: &str) -> String {
     let text = text.replace('\n', " ");
     if text.contains('`') { format!("`` {text} ``") } else { format!("`{text}`") }
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_too_long_has_an_argument_a_line() {
+    fn long_calls_have_one_argument_per_line() {
         let long = |letter: &str| RustCode::plain(letter.repeat(60));
         let code = RustCode::call("Ok", vec![RustCode::tried("all!", vec![long("a"), long("b")])]);
         let expected =
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fits_stays_on_its_line() {
+    fn matching_entries_keep_their_lines() {
         let code = RustCode::Before("!", Box::new(RustCode::tried("holds", vec![RustCode::plain("x")])));
         assert_eq!(code.statement(), "    !holds(x)?;\n");
     }

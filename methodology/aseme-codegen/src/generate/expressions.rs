@@ -62,7 +62,7 @@ pub(crate) fn functions(
 fn differs(chart: &CompiledChart, id: TransitionId) -> Diagnostic {
     let transition = chart.statechart().transition(id);
     let message = format!(
-        "a name in the guard from `{}` to `{}` means one thing on one blackboard and another on the next",
+        "a name in the guard from `{}` to `{}` has different meanings in the scopes of its source",
         chart.short_path(transition.source),
         chart.short_path(transition.target)
     );
@@ -115,13 +115,13 @@ fn collect(expression: &Expression, names: &mut BTreeSet<String>) {
     }
 }
 
-/// Writes one expression, on one blackboard.
+/// Writes the code of one expression in one scope.
 struct ExpressionWriter<'a, 'g, 'w> {
     chart: &'a CompiledChart,
     states: &'a GeneratedStates,
     glossary: &'g mut NameTable<'w>,
     region: ScopeId,
-    /// The names it was written with: which numbers are constants of the model.
+    /// The bare names of its text, to recognise constants of the model.
     named: BTreeSet<String>,
 }
 
@@ -203,8 +203,8 @@ impl ExpressionWriter<'_, '_, '_> {
         })
     }
 
-    /// From left to right; what is missing on the left does not keep what fails on the right from
-    /// failing.
+    /// Evaluates from left to right; a missing message on the left does not hide an error on the
+    /// right.
     fn chain<'t>(
         &mut self,
         first: &ValueTerm,
@@ -241,7 +241,7 @@ impl ExpressionWriter<'_, '_, '_> {
         Ok(if is_value { code } else { RustCode::tried("given", vec![code]) })
     }
 
-    /// Whether it is a message inside a message.
+    /// Whether a term is a message nested in a message.
     fn is_whole(&self, term: &ValueTerm) -> bool {
         let ValueTerm::Field(source, path) = term else { return false };
         matches!(self.glossary.fields(source, path), Some((_, ValueType::Message(_))))
@@ -284,7 +284,7 @@ impl ExpressionWriter<'_, '_, '_> {
         })
     }
 
-    /// `message.field = value`: the value, and what puts it into its message.
+    /// `message.field = value`: the code of the value and the function that sets it.
     fn assignment(
         &mut self,
         target: &MessageSource,
@@ -316,7 +316,7 @@ impl ExpressionWriter<'_, '_, '_> {
         })
     }
 
-    /// Whether a term is written as what gives a [`Value`](yase::Value).
+    /// Whether a term is written as an expression of type [`Value`](yase::Value).
     fn argument_like(&self, term: &ValueTerm) -> bool {
         matches!(
             term,
@@ -325,7 +325,7 @@ impl ExpressionWriter<'_, '_, '_> {
     }
 }
 
-/// The contrary.
+/// The negation.
 fn not(code: RustCode) -> RustCode {
     match code {
         RustCode::Before("!", code) => *code,
@@ -350,12 +350,12 @@ fn word(comparison: Comparison) -> &'static str {
     }
 }
 
-/// Whether it may have no value because a message is missing.
+/// Whether a term may have no value because a message is missing.
 fn may_be_missing(term: &ValueTerm) -> bool {
     !matches!(term, ValueTerm::Literal(_))
 }
 
-/// Whether it may fail.
+/// Whether the evaluation of a term may fail.
 fn may_fail(term: &ValueTerm) -> bool {
     match term {
         ValueTerm::Literal(_) | ValueTerm::Field(..) | ValueTerm::Message(_) => false,

@@ -15,7 +15,7 @@ pub(crate) fn library(chart: &Statechart, words: &RustBindings) -> String {
     let origin = match words.origin.as_str() {
         "" => String::new(),
         origin => format!(
-            "\n//!\n//! Generated from {}: what is changed here is lost when that is done again.",
+            "\n//!\n//! Generated from {}: changes here are lost when it is generated again.",
             quoted(origin)
         ),
     };
@@ -28,15 +28,15 @@ pub(crate) fn library(chart: &Statechart, words: &RustBindings) -> String {
     };
     format!(
         "//! The statechart {}.{origin}\n//!\n\
-         //! [`State`] lists its states; the modules `chart` and `transitions` say how they hang together, `guards` what the guards ask and\n\
-         //! what is assigned, `words` what these speak of.\n\n\
+         //! [`State`] lists its states; the modules `chart` and `transitions` define its structure,\n\
+         //! `guards` its guards and assigned values, `words` the names that they use.\n\n\
          {activities}mod chart;\nmod guards;\nmod states;\n{transitions}mod words;\n\n\
          pub use chart::chart;\npub use states::State;\n{registration}",
         quoted(&chart.name)
     )
 }
 
-/// What makes the activities, and skeletons for those that are not there.
+/// The module that creates the activities, with skeletons for those without implementation.
 pub(crate) fn activities(
     chart: &Statechart,
     states: &GeneratedStates,
@@ -64,7 +64,7 @@ pub(crate) fn activities(
     });
     let lines: Vec<String> = instances.map(|code| format!("        {},\n", code.laid_out(8, 8, 1))).collect();
     let text = format!(
-        "//! The activities of the states. One that is not there is an error here.\n\n{}{}\n{}\
+        "//! The activities of the states. A missing one is a compile error here.\n\n{}{}\n{}\
          /// A new instance for each state that has an activity.\npub(crate) fn instances() -> Vec<Instance> {{\n{}}}\n",
         made.modules(),
         made.imports(),
@@ -81,9 +81,9 @@ pub(crate) fn activities(
 
 #[derive(Default)]
 struct ActivityFiles {
-    /// What each is called in the module, by its name in the chart.
+    /// The name of each activity in the module, by its name in the chart.
     called: BTreeMap<String, RustActivity>,
-    /// Names by the module they are taken from.
+    /// Imported names by module.
     imported: BTreeMap<String, Vec<String>>,
     own: BTreeSet<String>,
     files: CrateFiles,
@@ -91,7 +91,7 @@ struct ActivityFiles {
 }
 
 impl ActivityFiles {
-    /// Two of one name in Rust are both written with their paths.
+    /// Imports an activity, or uses its full path if another has the same Rust name.
     fn known(&mut self, name: &str, activity: &RustActivity) {
         let (module, rust) = activity.path.rsplit_once("::").unwrap_or(("", &activity.path));
         let is_taken = self.called.values().any(|other| other.path == rust);
@@ -142,7 +142,7 @@ fn skeleton_text(name: &str, rust: &str, words: &RustBindings) -> String {
     let about = match subjects {
         [] => String::new(),
         subjects => format!(
-            "//!\n//! What it is about, by the model:\n//!\n{}",
+            "//!\n//! Its variables in the model:\n//!\n{}",
             subjects.iter().map(subject).collect::<String>()
         ),
     };
@@ -154,7 +154,7 @@ fn skeleton_text(name: &str, rust: &str, words: &RustBindings) -> String {
     };
     format!(
         "//! The activity {}.\n{about}\nuse monas::{{Activity, Blackboard, BoxError, Progress{word}}};\n{uses}\n\
-         /// Has nothing to do so far.\n#[derive(Clone, Copy, Debug, Default)]\npub struct {rust};\n\n\
+         /// To be implemented.\n#[derive(Clone, Copy, Debug, Default)]\npub struct {rust};\n\n\
          impl Activity for {rust} {{\n\
          \x20   fn execute(&mut self, _: &mut Blackboard) -> Result<Progress, BoxError> {{\n\
          \x20       Ok(Progress::Done)\n    }}\n{declared}}}\n\nmonas::activity!({registered});\n",
@@ -162,7 +162,7 @@ fn skeleton_text(name: &str, rust: &str, words: &RustBindings) -> String {
     )
 }
 
-/// The constant of the topic that a variable's type `topic.Kind.Message` is about.
+/// The constant of the topic in a variable's type `topic.Kind.Message`.
 fn topic_of<'a>(kind: &str, words: &'a RustBindings) -> Option<&'a str> {
     let (topic, message) = (kind.split('.').next()?, kind.rsplit('.').next()?);
     let fits = |path: &str| path.rsplit('/').next() == Some(topic);
@@ -179,7 +179,8 @@ fn uses(topics: &BTreeSet<&str>) -> String {
     modules.iter().map(|(module, constants)| import(module, constants)).collect()
 }
 
-/// The topics that the activity reads; the developer adds those that it publishes.
+/// The declaration of the topics that an activity reads; the developer adds those that it
+/// publishes.
 fn declared(topics: &BTreeSet<&str>) -> String {
     let last = |topic: &&str| topic.rsplit("::").next().unwrap_or_default().to_owned();
     let calls = topics.iter().map(|topic| format!(".reads({})", last(topic)));
@@ -189,7 +190,7 @@ fn declared(topics: &BTreeSet<&str>) -> String {
     )
 }
 
-/// In the style of Rust's types.
+/// `UpperCamelCase`.
 fn camel(name: &str) -> String {
     let capital = |word: &str| {
         let mut letters = word.chars();
@@ -200,7 +201,7 @@ fn camel(name: &str) -> String {
     identifier(&[name]).split('_').map(capital).collect()
 }
 
-/// In the style of Rust's modules.
+/// `snake_case`.
 fn snake(name: &str) -> String {
     let mut text = String::new();
     for letter in camel(name).chars() {

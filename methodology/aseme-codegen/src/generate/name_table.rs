@@ -12,7 +12,7 @@ use super::code::{RustCode, literal, quoted};
 use super::names::identifier;
 use super::{RustBindings, refusal};
 
-/// The words that were needed so far.
+/// Collects the names that functions use.
 pub(crate) struct NameTable<'a> {
     pub(crate) words: &'a RustBindings,
     chart: &'a Statechart,
@@ -20,7 +20,7 @@ pub(crate) struct NameTable<'a> {
     timers: Vec<String>,
     functions: Vec<String>,
     constants: BTreeSet<String>,
-    /// Enumeration, name and number, by what they are called.
+    /// Enumeration, name and number of each value, by its Rust name.
     values: BTreeMap<String, (String, String, i32)>,
 }
 
@@ -51,8 +51,7 @@ impl<'a> NameTable<'a> {
         self.words.vocabulary.messages.iter().find(|message| message.name == name)
     }
 
-    /// The names of the fields that a path leads through in the messages of a source, and the type
-    /// of the last.
+    /// The field names along a path in the messages of a source, and the type of the last.
     pub(crate) fn fields(
         &self,
         source: &MessageSource,
@@ -71,13 +70,13 @@ impl<'a> NameTable<'a> {
         Some((names, kind?))
     }
 
-    /// The constant that stands for a source, and the Rust type of its messages.
+    /// The constant of a source, and the Rust type of its messages.
     pub(crate) fn source(&mut self, source: &MessageSource) -> Result<(String, String), Diagnostic> {
         if let Some(known) = self.sources.iter().find(|known| known.source == *source) {
             return Ok((format!("messages::{}", known.constant), known.rust.clone()));
         }
         let unknown = |message: &str| {
-            let text = format!("nothing says which Rust type the message `{message}` is");
+            let text = format!("the Rust type of the message `{message}` is unknown");
             refusal("E0921", text, "link the crate that declares the message")
         };
         let topic = self.topic(source).ok_or_else(|| unknown("?"))?;
@@ -102,7 +101,7 @@ impl<'a> NameTable<'a> {
         Ok((format!("messages::{constant}"), rust))
     }
 
-    /// The constant that stands for a timer.
+    /// The constant of a timer.
     pub(crate) fn timer(&mut self, name: &str) -> String {
         if !self.timers.iter().any(|known| known == name) {
             self.timers.push(name.to_owned());
@@ -110,7 +109,7 @@ impl<'a> NameTable<'a> {
         format!("timers::{}", identifier(&[name]))
     }
 
-    /// The constant that stands for a function.
+    /// The constant of a function.
     pub(crate) fn function(&mut self, id: FunctionId) -> Option<String> {
         let function = self.words.vocabulary.functions.iter().find(|function| function.id == id)?;
         if !self.functions.contains(&function.name) {
@@ -119,7 +118,7 @@ impl<'a> NameTable<'a> {
         Some(format!("functions::{}", identifier(&[&function.name])))
     }
 
-    /// The constant of the model that has this value, among those that an expression names.
+    /// The constant of the model that has this value, among the names in an expression.
     pub(crate) fn constant(&mut self, named: &BTreeSet<String>, value: &ConstantValue) -> Option<String> {
         let mut constants = self.chart.constants.iter().filter(|constant| named.contains(&constant.name));
         let constant = constants.find(|constant| constant.value == *value)?;
@@ -127,7 +126,7 @@ impl<'a> NameTable<'a> {
         Some(format!("constants::{}", identifier(&[&constant.name])))
     }
 
-    /// The constant that stands for a value of an enumeration; none for a number without a name.
+    /// The constant of an enumeration value; none for a number without a name.
     pub(crate) fn value(&mut self, enumeration: &str, number: i32) -> Option<String> {
         let known = self.words.vocabulary.enumerations.iter().find(|known| known.name == enumeration)?;
         let (name, _) = known.values.iter().find(|(_, value)| *value == number)?;
@@ -198,7 +197,7 @@ impl<'a> NameTable<'a> {
 
     pub(crate) fn file(&self) -> String {
         let mut text = String::from(
-            "//! What guards and actions speak of: each a constant with the model's own name.\n",
+            "//! The names that guards and actions use: each a constant named as in the model.\n",
         );
         let runtime = &self.words.runtime;
         let mut module = |name: &str, about: &str, uses: &str, lines: Vec<String>| {
@@ -208,7 +207,7 @@ impl<'a> NameTable<'a> {
             let uses =
                 if uses.is_empty() { String::new() } else { format!("    use {runtime}::{uses};\n\n") };
             text += &format!(
-                "\n/// {about}\n#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers are the model's\n\
+                "\n/// {about}\n#[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers as in the model\n\
                  pub(crate) mod {name} {{\n{uses}{}}}\n",
                 lines.concat()
             );
@@ -267,7 +266,7 @@ fn constant_text(value: &ConstantValue) -> String {
     }
 }
 
-/// In the style of Rust's constants, with nothing but letters, digits and underscores.
+/// `UPPER_SNAKE_CASE`, reduced to letters, digits and underscores.
 fn shouted(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
     let text: String = name.chars().map(plain).collect();

@@ -1,10 +1,10 @@
 //! Mapping between paths of states and Rust identifiers, in both directions.
 //!
-//! Letters, digits, and underscores between these, stand for themselves. Everything else is a word
-//! between double underscores, so that a name without any stays what it is: `Stand` is `Stand`,
-//! `RobotController~` is `RobotController__ever__`, the START in `active` is `START__of__active`.
+//! Letters, digits and inner underscores are kept. Every other character becomes a word between
+//! double underscores: `Stand` is `Stand`, `RobotController~` is `RobotController__ever__`, and the
+//! START in `active` is `START__of__active`.
 
-/// Characters with words of their own; longer ones first.
+/// The words for characters; longer sequences first.
 const WORDS: [(&str, &str); 13] = [
     ("||", "par"),
     ("|", "or"),
@@ -21,12 +21,12 @@ const WORDS: [(&str, &str); 13] = [
     ("/", "slash"),
 ];
 
-/// Between the segments of a path, and for a segment without a character.
+/// Separates the segments of a path; also a segment without characters.
 const OF: &str = "of";
 const EMPTY: &str = "empty";
 
-/// The identifier of a path, whose segments are given from the innermost outwards. No two paths
-/// have the same, and [`path_of`] finds the path again.
+/// The identifier of a path, whose segments are given from the innermost outwards. The mapping is
+/// injective; [`path_of`] inverts it.
 pub fn identifier(path: &[&str]) -> String {
     let segments: Vec<String> = path.iter().map(|segment| encoded(segment)).collect();
     let text = segments.join(&format!("__{OF}__"));
@@ -39,8 +39,7 @@ pub fn identifier(path: &[&str]) -> String {
     }
 }
 
-/// The path whose identifier this is, from the innermost segment outwards; none if it is that of no
-/// path.
+/// The path of an identifier, from the innermost segment outwards; `None` if no path has it.
 pub fn path_of(identifier: &str) -> Option<Vec<String>> {
     let mut path = vec![String::new()];
     let mut rest = identifier;
@@ -106,7 +105,7 @@ fn decoded(word: &str) -> Option<String> {
     char::from_u32(number).map(String::from)
 }
 
-/// Keywords, which are no identifiers, in any edition.
+/// The keywords of all editions, which are no identifiers.
 const KEYWORDS: [&str; 54] = [
     "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do",
     "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop",
@@ -163,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_for_no_path_is_none() {
+    fn identifiers_of_no_path_are_rejected() {
         for text in ["a__", "a__b", "a__never__", "__u61__", "a__uffffffff__b", "type", "2"] {
             assert_eq!(path_of(text), None, "{text}");
         }

@@ -8,14 +8,14 @@ use super::RustBindings;
 use super::code::quoted;
 use super::names::identifier;
 
-/// What each node is called in Rust.
+/// The Rust names of the nodes.
 pub(crate) struct GeneratedStates {
     variants: Vec<String>,
     labels: Vec<String>,
 }
 
 impl GeneratedStates {
-    /// Each node is called after as much of its path, from itself outwards, as no other node has.
+    /// Names each node by the shortest unique end of its path.
     pub(crate) fn new(chart: &Statechart) -> GeneratedStates {
         let segments = segments(chart);
         let path = |node: NodeId| {
@@ -50,8 +50,8 @@ impl GeneratedStates {
             .collect();
         format!(
             "//! The states.\n\nuse {runtime}::NodeId;\n\n\
-             /// The nodes of the chart, in its order. Each is called after the end of its path, from itself outwards, that no other has.\n\
-             #[allow(non_camel_case_types, clippy::upper_case_acronyms)] // the names are the model's\n\
+             /// The nodes of the chart, in its order. Each is named by the shortest unique end of its path.\n\
+             #[allow(non_camel_case_types, clippy::upper_case_acronyms)] // names as in the model\n\
              #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]\n\
              pub enum State {{\n{variants}}}\n\n\
              impl From<State> for NodeId {{\n    fn from(state: State) -> NodeId {{\n        NodeId(state as u32)\n    }}\n}}\n",
@@ -61,7 +61,7 @@ impl GeneratedStates {
     }
 }
 
-/// The last part of each node's path; what has the same as an older sibling is numbered.
+/// The last segment of each node's path, numbered if an older sibling has the same.
 fn segments(chart: &Statechart) -> Vec<String> {
     let mut segments = vec![String::new(); chart.nodes().len()];
     segments[Statechart::ROOT.0 as usize] = chart.node(Statechart::ROOT).name.clone();
@@ -89,7 +89,7 @@ fn segment(chart: &Statechart, node: NodeId, number: usize) -> String {
     }
 }
 
-/// How a kind is called where nodes are listed.
+/// The word for a kind in the list of nodes.
 fn kind(kind: NodeKind) -> &'static str {
     match kind {
         NodeKind::Or => "OR",

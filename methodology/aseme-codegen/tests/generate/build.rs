@@ -1,4 +1,4 @@
-//! The way of build scripts: a model into a folder, as a module.
+//! Generation in build scripts: a model becomes a module in a folder.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use aseme_codegen::build::generate;
 
 use crate::words::soccer;
 
-/// A folder of its own for each test, in cargo's place for those.
+/// A separate folder for each test below cargo's temporary folder.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("build").join(name);
     fs::create_dir_all(&folder).expect("writable");
@@ -36,7 +36,7 @@ fn the_module_of_a_model_is_written_where_it_is_included_from() {
 }
 
 #[test]
-fn what_is_wrong_with_a_model_is_said_with_its_place() {
+fn model_errors_have_positions() {
     let folder = folder("wrong");
     let text = "Role: r\nLiveness:\nr = look . dive\nTransitions:\nlook -> drive : [Ball.approaching]\n";
     let error = generate(model(&folder, "wrong.srm", text)).into(&folder).write().expect_err("it is wrong");
@@ -49,7 +49,7 @@ fn what_is_wrong_with_a_model_is_said_with_its_place() {
 }
 
 #[test]
-fn an_activity_that_nobody_has_written_is_no_skeleton_in_a_folder_that_nobody_edits() {
+fn a_missing_activity_gets_no_skeleton_in_a_build_folder() {
     let folder = folder("missing");
     let words = aseme_codegen::generate::RustBindings {
         registers: true,
@@ -74,6 +74,6 @@ fn files_that_are_not_there_or_cannot_be_modules_are_named() {
         generate(folder.join(name)).into(&folder).write().expect_err("it is refused").to_string()
     };
     assert!(said("none.srm").contains("cannot read"), "{}", said("none.srm"));
-    assert!(said("my-role.srm").contains("small letters"), "{}", said("my-role.srm"));
-    assert!(said("match.srm").contains("small letters"), "a keyword");
+    assert!(said("my-role.srm").contains("lower-case letters"), "{}", said("my-role.srm"));
+    assert!(said("match.srm").contains("lower-case letters"), "a keyword");
 }

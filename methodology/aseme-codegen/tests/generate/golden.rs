@@ -1,4 +1,4 @@
-//! Charts as Rust, in `tests/golden/generated`. With `MONAS_BLESS=1` the files are written anew.
+//! Generated charts in `tests/golden/generated`. `MONAS_BLESS=1` rewrites the files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -30,8 +30,8 @@ fn check(folder: &str, files: &CrateFiles) {
     }
 }
 
-/// Everything a chart may hold: names that are no identifiers of Rust, timers, assignments, events,
-/// what happens on entry and exit.
+/// A chart with every element: names that are no Rust identifiers, timers, assignments, events,
+/// entry and exit actions.
 #[test]
 fn a_patrol_as_rust() {
     let model = "

@@ -1,4 +1,4 @@
-//! Statecharts as Rust crates: folders of files to be read, and names that are mapped one to one.
+//! Generated crates and the mapping of names.
 
 #![allow(clippy::expect_used, clippy::panic)] // the functions around the tests are tests too
 

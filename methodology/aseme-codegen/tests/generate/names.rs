@@ -1,5 +1,5 @@
-//! Names as identifiers: any path is found again, no two are the same, and each is one that Rust
-//! takes.
+//! The mapping from paths to identifiers is injective and invertible, and yields valid Rust
+//! identifiers.
 
 use aseme_codegen::generate::{identifier, path_of};
 use proptest::prelude::*;
@@ -59,7 +59,7 @@ proptest! {
     }
 
     #[test]
-    fn whatever_is_read_back_is_written_so(text in "[a-z_]{0,4}(__(of|par|or|u61|u7e|empty|x)__){0,2}[a-z_0-9]{0,4}") {
+    fn parsed_models_are_written_equally(text in "[a-z_]{0,4}(__(of|par|or|u61|u7e|empty|x)__){0,2}[a-z_0-9]{0,4}") {
         if let Some(path) = path_of(&text) {
             prop_assert_eq!(written(&path), text);
         }

@@ -1,4 +1,4 @@
-//! What cannot be written as Rust, and what is not a chart.
+//! Elements that cannot be represented in Rust, and texts that are no chart.
 
 use aseme_codegen::generate::{RustBindings, generate};
 use yase::{Diagnostic, Source, TypeEnvironment};
@@ -14,7 +14,7 @@ fn refused(transitions: &str, words: &RustBindings) -> Vec<String> {
 }
 
 #[test]
-fn what_is_misspelt_is_said_before_any_code_is_written() {
+fn misspelt_names_are_reported_before_generation() {
     let found = refused("a -> b : [Ball.fund]", &soccer());
     assert_eq!(found, ["E0134 the message `Ball` has no field `fund` (from `p/a` to `p/b`)"]);
 }
@@ -23,7 +23,7 @@ fn what_is_misspelt_is_said_before_any_code_is_written() {
 fn a_message_without_a_type_is_refused() {
     let words = RustBindings { messages: [].into(), ..soccer() };
     let found = refused("a -> b : [Ball.found]", &words);
-    assert_eq!(found, ["E0921 nothing says which Rust type the message `Ball` is"]);
+    assert_eq!(found, ["E0921 the Rust type of the message `Ball` is unknown"]);
 }
 
 #[test]

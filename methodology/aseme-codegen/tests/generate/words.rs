@@ -1,4 +1,4 @@
-//! The words of the thesis's roles, without the crates that declare them.
+//! Bindings for the roles of the thesis, without the crates that declare the messages.
 
 use aseme_codegen::generate::RustBindings;
 use yase::vocabulary::{

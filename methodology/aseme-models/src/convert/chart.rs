@@ -10,8 +10,7 @@ use crate::roles::SystemRoles;
 use crate::xmi;
 use aseme::liveness;
 
-/// The statechart of a text that is not a role's own, and all findings about it; none if it is one,
-/// which is read elsewhere.
+/// The statechart of a text and all findings; `None` if the text is a refined role.
 pub(crate) fn chart_of(source: &Arc<Source>) -> Option<(Statechart, Vec<Diagnostic>)> {
     if !is_other_than_role(&source.text) {
         return None;
@@ -38,13 +37,13 @@ fn is_other_than_role(text: &str) -> bool {
 
 fn of_system(system: &SystemRoles) -> (Statechart, Vec<Diagnostic>) {
     match system.roles.as_slice() {
-        // What is wrong with the formulas was said when the model was read.
+        // Findings of the formulas were reported when the model was read.
         [role] => aseme::liveness_to_statechart(&liveness::parse(&role.liveness).0),
         roles => {
             let message = format!("the model has {} roles, each of which has a statechart", roles.len());
             let place = roles.get(1).map_or(yase::Span::default(), |role| role.place.0);
             let found =
-                Diagnostic::error("E0248", place, message).with_hint("keep each role in a file of its own");
+                Diagnostic::error("E0248", place, message).with_hint("put each role into its own file");
             (Statechart::new(""), vec![found])
         }
     }

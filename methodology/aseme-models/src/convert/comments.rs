@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::document::{Comments, Item, ItemDocument, Line};
 
-/// Gives a text the comments of an older one: each goes to the item of the same header, there to
-/// the line that says the same thing; what finds no such place goes to the item, and else to the
-/// end.
+/// Copies the comments of an older text: each goes to the equal line of the item with the same
+/// header, else to that item, else to the end.
 pub(crate) fn transfer_comments(old: &ItemDocument, new: &mut ItemDocument) {
     let mut places: BTreeMap<(String, String, usize), usize> = BTreeMap::new();
     let mut seen = BTreeMap::new();
@@ -23,7 +22,7 @@ pub(crate) fn transfer_comments(old: &ItemDocument, new: &mut ItemDocument) {
     new.tail.extend(old.tail.iter().cloned());
 }
 
-/// The header of an item, and the how manieth of its like it is.
+/// The header of an item and its index among equal headers.
 fn key(item: &Item, seen: &mut BTreeMap<(String, String), usize>) -> (String, String, usize) {
     let header = (item.word.text.clone(), item.name.text.clone());
     let count = seen.entry(header.clone()).or_default();
@@ -49,7 +48,8 @@ fn transfer_item_comments(old: &Item, new: &mut Item) {
     new.comments.above.extend(homeless);
 }
 
-/// What a line is about: its key, or the ends of its transition, or all of it, without blanks.
+/// The key of a line: the key of its setting, the ends of its transition, or its text, without
+/// blanks.
 fn line_key(line: &Line, seen: &mut BTreeMap<String, usize>) -> (String, usize) {
     let text = &line.content.text;
     let end = match text.find("->") {

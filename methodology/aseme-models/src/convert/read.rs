@@ -58,7 +58,7 @@ fn from_xml(source: &Arc<Source>) -> ReadResult {
         }
         "scxml" => scxml(source),
         other => {
-            let message = format!("`{other}` is no kind of model");
+            let message = format!("`{other}` is not a kind of model");
             let kinds = ["SAGmodel", "SUCmodel", "AIPmodel", "SRMmodel", "Model", "XMI", "scxml"];
             let hint = format!("models are {}", kinds.join(", "));
             let found = Diagnostic::error("E0801", xmi::tag(root), message).with_hint(hint);
@@ -89,12 +89,13 @@ fn scxml(source: &Arc<Source>) -> ReadResult {
     (chart.map(|chart| (Model::Chart(chart), Format::Scxml)), diagnostics)
 }
 
-/// What an SCXML document says besides its chart, which no other format has a place for.
+/// Content of an SCXML document beside its chart, which no other format can represent.
 fn beside_the_chart(document: &yase_scxml::Document) -> Option<Diagnostic> {
     let mut plain = yase_scxml::Document::from(document.statechart().clone());
     (plain.name, plain.binding) = (document.name.clone(), document.binding);
     plain.data_model = document.data_model;
-    let message = "the document has variables, invocations, scripts of its own or data of its ends: a chart cannot say that";
+    let message =
+        "the document has variables, invocations, scripts or final data: a chart cannot represent them";
     (plain != *document).then(|| Diagnostic::warning("E0850", Span::default(), message))
 }
 
@@ -129,10 +130,10 @@ fn from_words(text: &str) -> ReadResult {
     (found, diagnostics)
 }
 
-/// The headers that a text of the shared form begins with.
+/// The headers that a text in the shared form starts with.
 pub(crate) const KINDS: [&str; 7] = ["SAG", "SUC", "AIP", "SRM", "FT", "EAC", "IAC"];
 
-/// The word before the first colon of a text that begins with one.
+/// The word before the first colon of a text.
 pub(crate) fn first_word(text: &str) -> String {
     let blanked = text::without_comments(text);
     let line = blanked.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
@@ -175,7 +176,7 @@ fn role_formulas(liveness: &str, span: Span, text: &str) -> Vec<Diagnostic> {
     }
 }
 
-/// The first formula of a participant has no left-hand side.
+/// Adds the left-hand side to the first formula of a participant.
 fn participant_formulas(name: &str, liveness: &str, span: Span) -> Vec<Diagnostic> {
     if let Some(found) = open_operators(liveness, span) {
         return vec![found];
@@ -183,15 +184,15 @@ fn participant_formulas(name: &str, liveness: &str, span: Span) -> Vec<Diagnosti
     within(liveness::parse(&participant_formula(name, liveness)).1, span)
 }
 
-/// Operators that are still to be chosen.
+/// Operators that are still placeholders.
 fn open_operators(liveness: &str, span: Span) -> Option<Diagnostic> {
     let count = liveness.matches(OPEN_OPERATOR).count();
-    let hint = "`.` for one after the other, `|` for one of them, `||` for both together";
-    let message = format!("`{OPEN_OPERATOR}` stands for an operator that is to be chosen, {count} times");
+    let hint = "`.` for a sequence, `|` for a choice, `||` for parallel";
+    let message = format!("`{OPEN_OPERATOR}` is a placeholder for an operator, {count} times");
     (count > 0).then(|| Diagnostic::warning("E0219", span, message).with_hint(hint))
 }
 
-/// Findings about a text that stands somewhere in a place.
+/// Findings about an embedded text, positioned at its span.
 fn within(findings: Vec<Diagnostic>, span: Span) -> Vec<Diagnostic> {
     findings.into_iter().map(|finding| Diagnostic { span, ..finding }).collect()
 }

@@ -10,8 +10,8 @@ use crate::iac::Iac;
 use aseme::layout::frame_settings;
 use aseme::names::encode;
 
-/// The chart as SCXML. Where SCXML cannot say all of it, the text is of the nearest chart that it
-/// can say.
+/// The chart as SCXML. If SCXML cannot represent it completely, the text represents the nearest
+/// chart.
 ///
 /// # Errors
 /// The errors of the chart, or what SCXML cannot represent.
@@ -31,13 +31,12 @@ pub(crate) fn write(model: &Iac) -> Result<WrittenModel, Vec<Diagnostic>> {
     }
 }
 
-/// What a model file says besides the chart: labels, names of transitions and the rest that a chart
-/// does not need.
+/// Content of a model file beside the chart, such as labels and names of transitions.
 fn beside_the_chart(model: &Iac, chart: &Statechart) -> Vec<Diagnostic> {
     let plain = Iac::from_statechart(chart, model.kind);
     let mut lost = Vec::new();
     let mut add = |place: yase::expression::TextPosition, what: String| {
-        let message = format!("{what}: SCXML cannot say that");
+        let message = format!("{what}: SCXML cannot represent it");
         lost.push(Diagnostic::warning("E0850", place.0, message));
     };
     for (node, usual) in model.nodes.iter().zip(&plain.nodes) {
@@ -51,7 +50,7 @@ fn beside_the_chart(model: &Iac, chart: &Statechart) -> Vec<Diagnostic> {
             add(node.place, format!("the {what} of `{}`, `{text}`", node.name));
         }
         for (key, value) in frame_settings(&node.frame) {
-            add(node.place, format!("where `{}` is drawn, `{key} = {value}`", node.name));
+            add(node.place, format!("the layout of `{}`, `{key} = {value}`", node.name));
         }
         if !node.variables.is_empty() {
             add(node.place, format!("the variables of `{}`", node.name));
@@ -62,7 +61,7 @@ fn beside_the_chart(model: &Iac, chart: &Statechart) -> Vec<Diagnostic> {
             add(transition.place, format!("the name of the transition `{}`", transition.name));
         }
         if !transition.bends.is_empty() {
-            add(transition.place, format!("the way of `{}` in a drawing", transition.name));
+            add(transition.place, format!("the layout of `{}`", transition.name));
         }
         if !transition.metadata.is_empty() {
             add(transition.place, format!("the metadata of `{}`", transition.name));
@@ -103,7 +102,7 @@ fn nearest(chart: &Statechart) -> Statechart {
     for (_, transition) in chart.transitions() {
         outgoing.entry(transition.source).or_default().push(transition);
     }
-    // A START that decides something gets a state behind it that does.
+    // A START with a guard is followed by a state that evaluates it.
     let mut deciders: BTreeMap<NodeId, NodeId> = BTreeMap::new();
     for (id, node) in chart.nodes() {
         let made = plain_node(node, &names[id.0 as usize]);
@@ -175,7 +174,7 @@ fn can_say_action(action: &Action) -> bool {
     can_say(TransitionExpression { actions: vec![action.clone()], ..TransitionExpression::default() })
 }
 
-/// Whether a chart of one state can have this on a transition.
+/// Whether a chart of one state can have this expression on a transition.
 fn can_say(expression: TransitionExpression) -> bool {
     let mut chart = Statechart::new("c");
     let start = chart.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));
@@ -185,7 +184,7 @@ fn can_say(expression: TransitionExpression) -> bool {
     yase_scxml::write(&chart).is_ok()
 }
 
-/// A name for each node that no other has, of letters, digits and underscores.
+/// A unique name for each node, of letters, digits and underscores.
 fn ids(chart: &Statechart) -> Vec<String> {
     let mut seen: BTreeMap<String, ()> = BTreeMap::new();
     let id = |(node, label): (&Node, String)| {

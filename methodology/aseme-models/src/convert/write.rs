@@ -27,7 +27,7 @@ pub struct WrittenModel {
 type WriteResult = Result<WrittenModel, Vec<Diagnostic>>;
 
 impl Model {
-    /// The model in the text form shared by all models; a refined role has a form of its own.
+    /// The model in the text form shared by all models; a refined role has its own form.
     pub fn to_text(&self) -> String {
         match (self.document(), self) {
             (Some(document), _) => document.to_string(),
@@ -36,11 +36,11 @@ impl Model {
         }
     }
 
-    /// The model in a format, as far as the format can say it. The comments of the text it was read
-    /// from are kept if the format has comments.
+    /// The model in a format, as far as the format can represent it. Comments of the original text
+    /// are kept if the format has comments.
     ///
     /// # Errors
-    /// The format is none for this kind of model (E0851), or the model cannot be written at all.
+    /// The format does not exist for this kind of model (E0851), or the model cannot be written.
     pub fn write(&self, format: Format, original: &str) -> WriteResult {
         let mut written = match (self, format) {
             (Model::Role(role), Format::Role | Format::Text) => return Ok(WrittenModel::of(role.text())),
@@ -130,7 +130,7 @@ fn chart_xmi(chart: &iac::Iac, dialect: Dialect) -> WriteResult {
     Ok(WrittenModel { text: chart.to_xmi(dialect)?, lost: chart.lost_in_xmi(dialect) })
 }
 
-/// The chart as code: it means what it means where it comes from.
+/// The chart as Rust code.
 fn rust(chart: &iac::Iac, original: &str) -> WriteResult {
     let (chart, findings) = chart.to_statechart();
     if findings.iter().any(Diagnostic::is_error) {
@@ -145,14 +145,14 @@ fn is_scxml(original: &str) -> bool {
         && xmi::parse(original).is_ok_and(|document| document.root_element().tag_name().name() == "scxml")
 }
 
-/// XML has comments, but the editors of models drop them.
+/// Reports comments, because the editors of models drop XML comments.
 fn lost_comments(original: &str) -> Vec<Diagnostic> {
     if xmi::is_xml(original) {
         return Vec::new();
     }
     let comments = text::comments(original);
     let lost = |(span, comment): (Span, &str)| {
-        let message = format!("the comment `{comment}`: XML that editors of models write has none");
+        let message = format!("the comment `{comment}`: the editors of models drop XML comments");
         Diagnostic::warning("E0850", span, message)
     };
     comments.into_iter().map(lost).collect()

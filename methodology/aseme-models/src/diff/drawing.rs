@@ -1,4 +1,4 @@
-//! Two charts in one drawing.
+//! One drawing of two charts.
 
 use std::collections::BTreeMap;
 
@@ -26,7 +26,7 @@ pub fn picture(before: &Statechart, after: &Statechart, difference: &ChartDiffer
             places.insert(id, later);
             continue;
         }
-        // a parent stands before its children, so it has its place
+        // parents precede their children, so the parent was added
         let parent = node.parent.and_then(|parent| places.get(&parent)).copied().unwrap_or(Statechart::ROOT);
         places.insert(id, picture.chart.add(parent, node.clone()));
     }
@@ -46,7 +46,7 @@ pub fn picture(before: &Statechart, after: &Statechart, difference: &ChartDiffer
             }
             (_, element) => element,
         };
-        // what is new stays so, whatever else is said of it
+        // an added element keeps that mark
         if !matches!(element, Element::Node(id) if picture.marks.has(id)) {
             picture.marks.set(&picture.chart, element, mark);
         }

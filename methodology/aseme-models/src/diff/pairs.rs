@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use yase::{NodeId, NodeKind, Statechart};
 use yase_export::notation::{depth_first, kind_word};
 
-/// States of two charts that are the same.
+/// The matching states of two charts.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) struct NodePairs {
     later: Vec<Option<NodeId>>,
@@ -13,9 +13,9 @@ pub(crate) struct NodePairs {
 }
 
 impl NodePairs {
-    /// The roots are the same; of two that are the same, so are children with the same name; then
-    /// composites in the same place with mostly the same states inside; then states of a name that
-    /// has gone from one place only and come at one.
+    /// Matches states in this order: the roots; children of matched states with the same name;
+    /// composites with the same parent and mostly the same states inside; states whose name
+    /// disappeared from exactly one place and appeared in exactly one.
     pub(crate) fn between(before: &Statechart, after: &Statechart) -> NodePairs {
         let pairs =
             NodePairs { later: vec![None; before.nodes().len()], earlier: vec![None; after.nodes().len()] };
@@ -44,7 +44,7 @@ struct NodePairing<'a> {
     before: &'a Statechart,
     after: &'a Statechart,
     pairs: NodePairs,
-    /// Pairs whose children have not been looked at.
+    /// Pairs whose children are not matched yet.
     open: VecDeque<(NodeId, NodeId)>,
 }
 
@@ -66,7 +66,7 @@ impl NodePairing<'_> {
         }
     }
 
-    /// The children of an earlier state that are no later one's yet.
+    /// The unmatched children of an earlier state.
     fn gone(&self, old: NodeId) -> Vec<NodeId> {
         self.before.children(old).iter().copied().filter(|&id| self.pairs.later(id).is_none()).collect()
     }
@@ -75,8 +75,7 @@ impl NodePairing<'_> {
         self.after.children(new).iter().copied().filter(|&id| self.pairs.earlier(id).is_none()).collect()
     }
 
-    /// Composites that have another name because their formula is another. Says whether there are
-    /// any.
+    /// Matches composites whose name changed with their formula. Returns whether there are any.
     fn renamed(&mut self) -> bool {
         let parents: Vec<(NodeId, NodeId)> =
             self.before.nodes().filter_map(|(id, _)| Some((id, self.pairs.later(id)?))).collect();
@@ -86,7 +85,7 @@ impl NodePairing<'_> {
             for new in come {
                 let best = gone.iter().copied().filter(|&old| self.pairs.later(old).is_none());
                 let best = best.map(|old| (self.shared(old, new), old));
-                // of equals the first, since places count downwards
+                // of equally good candidates the first
                 let best = best.max_by_key(|&(count, old)| (count, std::cmp::Reverse(old)));
                 if let Some((_, old)) = best.filter(|&(count, _)| count > 0) {
                     self.join(old, new);
@@ -97,7 +96,7 @@ impl NodePairing<'_> {
         found
     }
 
-    /// How many names two composites of one kind have in common inside.
+    /// The number of names that two composites of one kind share.
     fn shared(&self, old: NodeId, new: NodeId) -> usize {
         if self.before.node(old).kind != self.after.node(new).kind {
             return 0;
@@ -105,7 +104,7 @@ impl NodePairing<'_> {
         names_inside(self.before, old).intersection(&names_inside(self.after, new)).count()
     }
 
-    /// States whose name has gone from one place and come at another. Says whether there are any.
+    /// Matches states that moved. Returns whether there are any.
     fn moved(&mut self) -> bool {
         let gone = depth_first(self.before).filter(|&id| self.pairs.later(id).is_none());
         let come = depth_first(self.after).filter(|&id| self.pairs.earlier(id).is_none());
@@ -113,7 +112,7 @@ impl NodePairing<'_> {
         let gone = by_name(self.before, gone);
         let one = |ids: &[NodeId]| <[NodeId; 1]>::try_from(ids).ok().map(|[id]| id);
         let found = gone.iter().filter_map(|(name, ids)| Some((one(ids)?, one(come.get(name)?)?)));
-        // outermost first: what lies inside may follow by itself
+        // outermost first, since inner states may be matched as its children
         let Some((old, new)) = found.min() else { return false };
         self.join(old, new);
         true
@@ -141,7 +140,7 @@ fn names_inside(chart: &Statechart, id: NodeId) -> BTreeSet<&str> {
     names
 }
 
-/// Children by what they are called; of several the first, the second and so on.
+/// Children by name and index among equal names.
 fn keyed(chart: &Statechart, children: &[NodeId]) -> BTreeMap<(String, usize), NodeId> {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     let mut keyed = BTreeMap::new();
@@ -154,8 +153,8 @@ fn keyed(chart: &Statechart, children: &[NodeId]) -> BTreeMap<(String, usize), N
     keyed
 }
 
-/// What a state is called among its siblings: a region after the first state in it, what has no
-/// name after its kind.
+/// The name of a state among its siblings: a region has the name of its first state, a node without
+/// a name that of its kind.
 pub(crate) fn key(chart: &Statechart, id: NodeId) -> String {
     let node = chart.node(id);
     let first = || {

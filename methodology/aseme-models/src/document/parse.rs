@@ -6,7 +6,7 @@ use super::{Comments, Item, ItemDocument, Line, SpannedText};
 use aseme::text;
 
 impl ItemDocument {
-    /// Reads a text. What belongs to no item is reported (E0260).
+    /// Parses a text. Lines that belong to no item are reported (E0260).
     pub(crate) fn parse(text: &str) -> (ItemDocument, Vec<Diagnostic>) {
         let mut document = ItemDocument::default();
         let mut diagnostics = Vec::new();
@@ -42,25 +42,23 @@ impl ItemDocument {
             }
             (_, Some(item)) => {
                 if indent == 0 {
-                    let message = format!("`{}` is neither a header nor further in than one", content.text);
-                    let hint = format!(
-                        "a header is `Word: name`; what belongs to `{}:` begins with blanks",
-                        item.word.text
-                    );
+                    let message = format!("`{}` is neither a header nor indented below one", content.text);
+                    let hint =
+                        format!("a header is `Word: name`; lines of `{}:` are indented", item.word.text);
                     diagnostics.push(Diagnostic::error("E0260", content.span, message).with_hint(hint));
                 }
                 item.lines.push(Line { comments, indent: indent.max(1), content });
             }
             (_, None) => {
-                let message = format!("`{}` stands before the first header", content.text);
-                let hint = "a model begins with a line such as `SAG:` or `IAC: name`";
+                let message = format!("`{}` precedes the first header", content.text);
+                let hint = "a model starts with a line such as `SAG:` or `IAC: name`";
                 diagnostics.push(Diagnostic::error("E0260", content.span, message).with_hint(hint));
             }
         }
     }
 }
 
-/// Whether nothing but a byte order mark stands in front of a line's content.
+/// Whether only a byte order mark precedes the content of the first line.
 fn starts_text(text: &str, line: Span, content: Span) -> bool {
     text[line.start..content.start].trim_start_matches('\u{feff}').is_empty()
 }
@@ -97,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn what_belongs_to_nothing_is_reported() {
+    fn stray_lines_are_reported() {
         let (document, findings) = ItemDocument::parse("\u{feff}a = b\nGoal: Win\nc = d\n");
         assert_eq!(findings.iter().map(|finding| finding.code).collect::<Vec<_>>(), ["E0260", "E0260"]);
         assert_eq!(document.items[0].lines.len(), 1);

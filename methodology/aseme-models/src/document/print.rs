@@ -5,8 +5,7 @@ use std::fmt;
 use super::{Comments, Item, ItemDocument};
 
 impl fmt::Display for ItemDocument {
-    /// Items with an empty line between, lines as far in as they were made, comments where they
-    /// belong.
+    /// Separates items by empty lines and keeps indentation and comments.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, item) in self.items.iter().enumerate() {
             if index > 0 {

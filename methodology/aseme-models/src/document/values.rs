@@ -3,7 +3,7 @@
 use super::SpannedText;
 use aseme::text::{self, QuoteScanner};
 
-/// A value as it is written: bare where it reads back the same, else in quotes.
+/// A value as text: without quotes if it parses back to the same value, otherwise quoted.
 pub(crate) fn value_text(value: &str) -> String {
     let bare = !value.is_empty() && !value.starts_with('"') && text::is_plain(value);
     if bare { value.into() } else { quoted(value) }
@@ -26,8 +26,7 @@ pub(crate) fn quoted(text: &str) -> String {
     quoted
 }
 
-/// What a value means: itself, or what stands between its quotes. None if the quotes or an escape
-/// are wrong.
+/// The content of a bare or quoted value. `None` if the quotes or an escape are invalid.
 pub(crate) fn unquoted(value: &str) -> Option<String> {
     if !value.starts_with('"') {
         return Some(value.into());
@@ -36,7 +35,7 @@ pub(crate) fn unquoted(value: &str) -> Option<String> {
     rest.is_empty().then_some(text)
 }
 
-/// The quoted text that a text begins with, and what follows it.
+/// The quoted text at the start of a text, and the text after it.
 fn leading_text(text: &str) -> Option<(String, &str)> {
     let mut meant = String::new();
     let mut rest = text.strip_prefix('"')?;
@@ -55,7 +54,7 @@ fn leading_text(text: &str) -> Option<(String, &str)> {
     }
 }
 
-/// The letter that an escape stands for, and what follows it.
+/// The character of an escape sequence, and the text after it.
 fn escape(text: &str) -> Option<(char, &str)> {
     let letter = text.chars().next()?;
     let after = &text[letter.len_utf8()..];
@@ -73,7 +72,7 @@ fn escape(text: &str) -> Option<(char, &str)> {
     Some((meant, after))
 }
 
-/// The k-th thing of a name, from 1.
+/// A reference to the k-th element of a name, from 1.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(crate) struct Reference {
     pub(crate) name: String,
@@ -81,7 +80,7 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    /// What a word of a list refers to; none if it cannot be read.
+    /// Parses an element of a list; `None` if it is invalid.
     pub(crate) fn parse(text: &str) -> Option<Reference> {
         let (name, rest) = match text.starts_with('"') {
             true => leading_text(text)?,
@@ -100,14 +99,14 @@ impl Reference {
     }
 }
 
-/// A reference as it is written.
+/// A reference as text.
 pub(crate) fn reference(name: &str, number: usize) -> String {
     let bare = !name.is_empty() && value_text(name) == name && !name.contains([',', '[', ']', '"']);
     let name = if bare { name.into() } else { quoted(name) };
     if number == 1 { name } else { format!("{name}[{number}]") }
 }
 
-/// The words of a list, between commas that stand in no quotes.
+/// The elements of a list, separated by commas outside quotes.
 pub(crate) fn list(value: &SpannedText) -> Vec<SpannedText> {
     if value.text.is_empty() {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Conversion between a model file's chart and its meaning.
+//! Conversion between an [`Iac`] and a [`Statechart`].
 
 use yase::expression::{Action, TextPosition, TransitionExpression, parse_actions_at, parse_transition_at};
 use yase::{Diagnostic, Node, NodeId, NodeKind, Span, Statechart, Transition};
@@ -28,13 +28,13 @@ const KINDS: [NodeKind; 15] = [
 ];
 
 impl Iac {
-    /// The chart that the model means: encoded names read as terms of formulas, expressions
-    /// understood.
+    /// The statechart of the model: encoded names are decoded to terms of formulas, expressions are
+    /// parsed.
     ///
-    /// A BASIC node runs the activity of its name unless text says another. Findings are about
-    /// types that no chart has (E0817), actions and events that cannot be read (E0818), nodes
-    /// beside the root (E0811), and expressions (E0101 and on). What a chart has no place for
-    /// (labels, names of transitions, functionalities, variables, descriptions) stays in the model.
+    /// A BASIC node runs the activity of its name unless another is set. Findings concern unknown
+    /// types (E0817), actions and events that cannot be parsed (E0818), nodes beside the root
+    /// (E0811), and expressions (E0101 and following). Labels, names of transitions,
+    /// functionalities, variables and descriptions remain in the model only.
     pub fn to_statechart(&self) -> (Statechart, Vec<Diagnostic>) {
         let mut builder = StatechartBuilder {
             chart: Statechart::new(self.name.clone()),
@@ -121,7 +121,7 @@ fn actions_text(actions: &[Action]) -> String {
 
 struct StatechartBuilder {
     chart: Statechart,
-    /// The node of each node of the model.
+    /// The statechart node of each node of the model.
     ids: Vec<NodeId>,
     diagnostics: Vec<Diagnostic>,
 }
@@ -134,7 +134,7 @@ impl StatechartBuilder {
     fn node(&mut self, node: &IacNode, label: &str) {
         let kind = KINDS.into_iter().find(|kind| kind_word(*kind) == node.kind);
         if kind.is_none() {
-            let message = format!("`{}` is of the type `{}`, which no chart has", node.name, node.kind);
+            let message = format!("`{}` has the unknown type `{}`", node.name, node.kind);
             let found = Diagnostic::error("E0817", node.place.0, message);
             self.report(found.with_nearest(&node.kind, KINDS.into_iter().map(kind_word)));
         }
@@ -146,7 +146,7 @@ impl StatechartBuilder {
                 *self.chart.node_mut(Statechart::ROOT) = made;
                 Statechart::ROOT
             }
-            // A second root was reported when the model was read.
+            // A second root was reported when the model was parsed.
             None => self.chart.add(Statechart::ROOT, made),
         };
         if !node.frame.is_empty() {
@@ -194,7 +194,7 @@ impl StatechartBuilder {
             let message = format!("`{text}` names no events");
             self.report(
                 Diagnostic::error("E0818", node.place.0, message)
-                    .with_hint("names of events, with blanks between"),
+                    .with_hint("names of events, separated by blanks"),
             );
             Vec::new()
         })
@@ -220,8 +220,8 @@ impl StatechartBuilder {
         }
     }
 
-    /// Places within an expression are those of the file where it stands there letter by letter,
-    /// else the whole.
+    /// Positions within an expression are exact only if the file contains its text verbatim;
+    /// otherwise they are the whole expression.
     fn expression(&self, transition: &IacTransition) -> (TransitionExpression, Vec<Diagnostic>) {
         let TextPosition(span) = transition.te_place;
         let literal = span.end - span.start == transition.te.len() && span != Span::default();

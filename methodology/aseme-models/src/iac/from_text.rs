@@ -62,7 +62,7 @@ struct Reader {
     chart: Iac,
     variables: BTreeMap<Reference, usize>,
     by_label: bool,
-    /// Nodes without a name of their own.
+    /// Nodes without a name.
     named_by_label: Vec<usize>,
     /// Nodes with an explicit label.
     labelled: BTreeSet<usize>,
@@ -97,7 +97,7 @@ impl Reader {
         unquoted(&value.text).unwrap_or_else(|| {
             let message = format!("`{}` cannot be read", value.text);
             let hint =
-                "what begins with a quote ends with one; within, `\\n`, `\\t`, `\\\"` and `\\\\` are known";
+                "a quoted text ends with a quote and may contain the escapes `\\n`, `\\t`, `\\\"` and `\\\\`";
             self.report(Diagnostic::error("E0264", value.span, message).with_hint(hint));
             value.text.clone()
         })
@@ -125,7 +125,7 @@ impl Reader {
         }
     }
 
-    /// Lines that are settings; others are reported.
+    /// Lines that are settings; other lines are reported.
     fn settings<'a>(&mut self, lines: &'a [Line]) -> Vec<KeyValue<'a>> {
         let mut understood = Vec::new();
         for setting in settings(lines) {
@@ -207,7 +207,8 @@ impl Reader {
         let is_kind = !kind.is_empty() && kind.bytes().all(|byte| byte.is_ascii_uppercase() || byte == b'_');
         if !is_kind {
             let message = format!("`{}` is no state", content.text);
-            let hint = "write a name and a type, such as `Scan BASIC`; what has no name has its type alone";
+            let hint =
+                "write a name and a type, such as `Scan BASIC`, or the type alone for a node without a name";
             self.report(Diagnostic::error("E0270", content.span, message).with_hint(hint));
             return None;
         }
@@ -222,7 +223,7 @@ impl Reader {
         Some(self.chart.nodes.len() - 1)
     }
 
-    /// Labels that are not said are the usual ones, and so are the names of nodes without a name.
+    /// Fills in default labels, and names of nodes without a name.
     fn labels(&mut self) {
         let usual = self.chart.labels();
         for &node in &self.named_by_label {
@@ -289,7 +290,7 @@ impl Reader {
         found
     }
 
-    /// Lines with an arrow, and below each its settings.
+    /// Lines with an arrow, each with its settings below.
     fn transitions(&mut self, lines: &[Line]) {
         let (paths, labels) = (NodePaths::new(&self.chart), self.chart.labels());
         let mut last: Option<(usize, usize)> = None;
@@ -379,7 +380,7 @@ impl Reader {
             }
         }
         for word in wrong {
-            let message = format!("`{word}` is not understood after a target");
+            let message = format!("`{word}` is no modifier of a transition");
             let hint = "a target may be followed by `!priority`, `%weight`, `interrupts` and `internal`";
             self.report(Diagnostic::error("E0242", modifiers.span, message).with_hint(hint));
         }
@@ -404,7 +405,7 @@ fn set<T>(place: &mut T, value: T) -> bool {
     true
 }
 
-/// `key = value`, which no node looks like: a name with `=` stands in quotes.
+/// `key = value`. A node cannot look like this, since a name with `=` must be quoted.
 fn node_setting(line: &Line) -> Option<(SpannedText, SpannedText)> {
     let text = &line.content.text;
     let equals = text.find('=')?;
@@ -413,7 +414,7 @@ fn node_setting(line: &Line) -> Option<(SpannedText, SpannedText)> {
     is_key.then(|| (line.content.part(0..equals), line.content.part(equals + 1..text.len())))
 }
 
-/// Where the path of a target ends: it has no blanks outside of quotes, `!` or `%`.
+/// The end of a target's path: the first `!`, `%` or blank outside quotes.
 fn modifiers_start(head: &str) -> usize {
     let words = [" !", " %", " interrupts", " internal"];
     words.iter().filter_map(|word| outside_quotes(head, word)).min().unwrap_or(head.len())

@@ -25,7 +25,7 @@ pub(crate) fn from_xmi(document: &Document<'_>) -> (Iac, Vec<Diagnostic>) {
     (chart, diagnostics)
 }
 
-/// What lies too deep goes to the deepest level that there may be.
+/// Moves nodes that nest too deep to the deepest allowed level.
 fn flatten(chart: &mut Iac) -> Option<Diagnostic> {
     let mut levels: Vec<usize> = Vec::with_capacity(chart.nodes.len());
     let mut found = None;
@@ -46,7 +46,7 @@ pub(crate) fn too_deep(span: Span) -> Diagnostic {
     Diagnostic::error("E0815", span, message).with_hint("flatten the chart")
 }
 
-/// A reading in progress.
+/// The state of the parser.
 pub(crate) struct Reader {
     pub(crate) paths: XmiPaths,
     pub(crate) nodes: BTreeMap<usize, usize>,
@@ -55,7 +55,7 @@ pub(crate) struct Reader {
     pub(crate) diagnostics: Vec<Diagnostic>,
 }
 
-/// The features of a model, a node, a transition and a variable in any dialect.
+/// The attributes of models, nodes, transitions and variables in all dialects.
 pub(crate) const MODEL: [&str; 3] = ["name", "description", "metadata"];
 pub(crate) const NODE: [&str; 9] =
     ["name", "label", "type", "activity", "variables", "Father_of", "Father", "actions", "metadata"];
@@ -114,14 +114,14 @@ impl Reader {
         }
     }
 
-    /// What the element of the model says itself.
+    /// Reads the attributes of the model.
     pub(crate) fn about(&mut self, element: Node<'_, '_>) {
         let text = |name| element.attribute(name).unwrap_or_default().to_owned();
         (self.chart.name, self.chart.description) = (text("name").trim().to_owned(), text("description"));
         self.chart.metadata = text("metadata");
     }
 
-    /// A node and all nodes in it, each before those that lie in it.
+    /// A node and its descendants in pre-order.
     fn tree<'a, 'input>(&mut self, element: Node<'a, 'input>) -> Vec<Node<'a, 'input>> {
         let mut open = vec![(element, None, 1)];
         let mut elements = Vec::new();
@@ -160,7 +160,7 @@ impl Reader {
         index
     }
 
-    /// What a node says of others.
+    /// Reads the references of a node to other nodes.
     pub(crate) fn links(&mut self, index: usize, element: Node<'_, '_>) {
         if let Some(attribute) = element.attribute_node("variables") {
             let span = xmi::value_span(&attribute);
@@ -178,13 +178,13 @@ impl Reader {
         }
     }
 
-    /// `Father_of` stands at a child and names its father.
+    /// Reads `Father_of`, by which a child names its parent.
     fn father(&mut self, index: usize, attribute: &Attribute<'_, '_>) {
         let span = xmi::value_span(attribute);
         let Some(word) = attribute.value().split_whitespace().next() else { return };
         if attribute.value().split_whitespace().nth(1).is_some() {
-            let message = "a node lies in one other";
-            self.report(Diagnostic::warning("E0812", span, message).with_hint("the first is taken"));
+            let message = "a node has one parent";
+            self.report(Diagnostic::warning("E0812", span, message).with_hint("the first is used"));
         }
         let Some(&father) = self.paths.find(word).and_then(|id| self.nodes.get(&id)) else {
             return self.dangling(word, "node", span);
@@ -192,23 +192,21 @@ impl Reader {
         match self.chart.nodes[index].parent {
             None => {
                 if father >= index {
-                    let message = "a node stands before the one it lies in";
-                    let hint = "the tools that read this dialect need it the other way round";
+                    let message = "a node precedes its parent";
+                    let hint = "the tools for this dialect require the opposite order";
                     self.report(Diagnostic::warning("E0812", span, message).with_hint(hint));
                 }
                 self.chart.nodes[index].parent = Some(father);
             }
             Some(parent) if parent == father => {}
             Some(_) => {
-                let message = "a node lies in another than it says";
-                self.report(
-                    Diagnostic::error("E0812", span, message).with_hint("the place in the file is taken"),
-                );
+                let message = "the nesting of a node contradicts its reference to its parent";
+                self.report(Diagnostic::error("E0812", span, message).with_hint("the nesting is used"));
             }
         }
     }
 
-    /// Nodes that lie in themselves become roots, which is a fault again.
+    /// Turns nodes that contain themselves into roots, which is reported as another fault.
     fn cut_cycles(&mut self) {
         let mut settled = vec![false; self.chart.nodes.len()];
         for start in 0..self.chart.nodes.len() {
@@ -225,7 +223,7 @@ impl Reader {
                 node.parent = None;
                 let message = format!("`{}` lies in itself", node.name);
                 let span = node.place.0;
-                self.report(Diagnostic::error("E0812", span, message).with_hint("one node lies in no other"));
+                self.report(Diagnostic::error("E0812", span, message).with_hint("one node has no parent"));
             }
         }
     }
@@ -260,7 +258,7 @@ impl Reader {
     fn end(&mut self, element: Node<'_, '_>, name: &str) -> Option<usize> {
         let Some(attribute) = element.attribute_node(name) else {
             let message = format!("a transition has no `{name}`");
-            let hint = format!("add `{name}=\"//@nodes.0\"` or take the transition out");
+            let hint = format!("add `{name}=\"//@nodes.0\"` or remove the transition");
             self.report(Diagnostic::error("E0809", xmi::tag(element), message).with_hint(hint));
             return None;
         };
@@ -273,11 +271,11 @@ impl Reader {
 
     pub(crate) fn dangling(&mut self, word: &str, what: &str, span: Span) {
         let message = format!("`{word}` is not a {what} of the model");
-        let hint = "references count from 0, and change when something is taken out before them";
+        let hint = "references count from 0 and change when an earlier element is removed";
         self.report(Diagnostic::error("E0807", span, message).with_hint(hint));
     }
 
-    /// Attributes that no dialect has.
+    /// Reports attributes that no dialect has.
     pub(crate) fn known(&mut self, element: Node<'_, '_>, what: &str, names: &[&str]) {
         for attribute in xmi::features(element).filter(|attribute| !names.contains(&attribute.name())) {
             let message = format!("a {what} has no `{}`", attribute.name());

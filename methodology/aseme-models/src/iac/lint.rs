@@ -4,10 +4,10 @@ use yase::{Diagnostic, Span};
 
 use super::Iac;
 
-/// The types that files of the old tools have.
+/// The types in files of the original tools.
 const TYPES: [&str; 8] = ["OR", "AND", "BASIC", "START", "END", "CONDITION", "HISTORY", "SHALLOW_HISTORY"];
 
-/// The types that charts have besides.
+/// Further types of charts.
 const MORE_TYPES: [&str; 7] = ["JUNCTION", "CHOICE", "FORK", "JOIN", "TERMINATE", "ENTRY", "EXIT"];
 
 /// The structural faults of a chart (E0811, E0813, E0814, E0816).
@@ -31,7 +31,7 @@ fn roots(chart: &Iac, file: Span) -> Vec<Diagnostic> {
         found.push(Diagnostic::warning("E0814", root.place.0, message));
     }
     for other in roots {
-        let message = format!("`{}` lies in no node, as `{}` does", other.name, root.name);
+        let message = format!("`{}` is a second root beside `{}`", other.name, root.name);
         found.push(Diagnostic::error("E0811", other.place.0, message).with_hint("a chart has one root"));
     }
     found
@@ -42,7 +42,7 @@ fn labels(chart: &Iac) -> Vec<Diagnostic> {
     let wrong = chart.nodes.iter().zip(&usual).filter(|(node, usual)| node.label != **usual);
     let message = |label: &str, usual: &str| match label {
         "" => format!("a node has no label, which would be `{usual}`"),
-        label => format!("the label `{label}` stands where `{usual}` would be"),
+        label => format!("the label is `{label}` instead of `{usual}`"),
     };
     wrong
         .map(|(node, usual)| Diagnostic::warning("E0813", node.place.0, message(&node.label, usual)))
@@ -63,7 +63,7 @@ fn types(chart: &Iac) -> Vec<Diagnostic> {
     unknown.map(finding).collect()
 }
 
-/// What may lie in what.
+/// Checks the nesting of types.
 fn places(chart: &Iac) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let mut report = |span, message: String| found.push(Diagnostic::warning("E0816", span, message));
@@ -71,7 +71,7 @@ fn places(chart: &Iac) -> Vec<Diagnostic> {
         let count = |kind: &str| children.iter().filter(|&&child| chart.nodes[child].kind == kind).count();
         let (name, span) = (&node.name, node.place.0);
         match node.kind.as_str() {
-            "OR" if children.is_empty() => report(span, format!("`{name}` is an OR without nodes in it")),
+            "OR" if children.is_empty() => report(span, format!("`{name}` is an OR without children")),
             "OR" => {
                 if count("START") != 1 {
                     report(span, format!("`{name}` has {} STARTs instead of one", count("START")));
@@ -83,11 +83,11 @@ fn places(chart: &Iac) -> Vec<Diagnostic> {
             "AND" => {
                 for &child in children.iter().filter(|&&child| chart.nodes[child].kind != "OR") {
                     let child = &chart.nodes[child];
-                    report(child.place.0, format!("`{}` lies in an AND, and is no OR", child.name));
+                    report(child.place.0, format!("`{}` is a child of an AND, but no OR", child.name));
                 }
             }
             kind if !children.is_empty() => {
-                report(span, format!("`{name}` is of the type {kind}, but has nodes in it"))
+                report(span, format!("`{name}` is of the type {kind}, but has children"))
             }
             _ => {}
         }
@@ -95,7 +95,7 @@ fn places(chart: &Iac) -> Vec<Diagnostic> {
     found
 }
 
-/// Where transitions may lead.
+/// Checks the sources and targets of transitions.
 fn ends(chart: &Iac) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for transition in &chart.transitions {

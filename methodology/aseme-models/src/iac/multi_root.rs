@@ -31,11 +31,11 @@ pub(crate) fn read(reader: &mut Reader, root: Node<'_, '_>) {
         let label = element.attribute("label").unwrap_or_default();
         let parent = label.rsplit_once('.').and_then(|(parent, _)| labels.get(parent).copied());
         if parent.is_none() && label.contains('.') {
-            let message = format!("no node has the label that `{label}` lies in");
+            let message = format!("no node has the label of the parent of `{label}`");
             reader.report(Diagnostic::error("E0811", xmi::tag(*element), message));
         }
         if labels.insert(label, index).is_some() {
-            let message = format!("another node has the label `{label}` too");
+            let message = format!("another node has the label `{label}`");
             reader.report(Diagnostic::error("E0813", xmi::tag(*element), message));
         }
         reader.node(*element, parent);
@@ -60,7 +60,7 @@ pub(crate) fn read(reader: &mut Reader, root: Node<'_, '_>) {
     }
 }
 
-/// Nodes by the numbers of their labels: a parent before its children, these in order.
+/// Nodes sorted by label, which puts parents before children.
 fn by_label<'a, 'input>(mut nodes: Vec<Node<'a, 'input>>) -> Vec<Node<'a, 'input>> {
     let key = |node: &Node<'_, '_>| -> Vec<u64> {
         let label = node.attribute("label").unwrap_or_default();
@@ -70,7 +70,7 @@ fn by_label<'a, 'input>(mut nodes: Vec<Node<'a, 'input>>) -> Vec<Node<'a, 'input
     nodes
 }
 
-/// The model lists what belongs to it, and that is the order of its transitions.
+/// The transitions in the order in which the model lists them.
 fn transitions_in_order<'a, 'input>(
     reader: &mut Reader,
     models: &[Node<'a, 'input>],

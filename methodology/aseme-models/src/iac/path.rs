@@ -7,11 +7,11 @@ use crate::document::{quoted, unquoted};
 use aseme::names::encode;
 use aseme::text::{self, QuoteScanner};
 
-/// The names of all nodes of a chart, ready to be looked up.
+/// Index of the paths of all nodes of a chart.
 pub(crate) struct NodePaths {
     segments: Vec<String>,
     parents: Vec<Option<usize>>,
-    /// The nodes whose path ends so.
+    /// The nodes by the last segment of their path.
     by_last: BTreeMap<String, Vec<usize>>,
 }
 
@@ -32,14 +32,14 @@ impl NodePaths {
         NodePaths { segments, parents: chart.nodes.iter().map(|node| node.parent).collect(), by_last }
     }
 
-    /// As much of the path of a node as makes it the only one.
+    /// The shortest unique end of a node's path.
     pub(crate) fn shortest(&self, node: usize) -> String {
         let way: Vec<usize> = std::iter::successors(Some(node), |&node| self.parents[node]).collect();
         let mut rivals: Vec<usize> = self.by_last.get(&self.segments[node]).cloned().unwrap_or_default();
         rivals.retain(|&rival| rival != node);
         let mut length = 1;
         while !rivals.is_empty() && length < way.len() {
-            // Each rival stands for a node so many levels above it.
+            // Each rival represents a node that many levels below it.
             rivals = rivals.into_iter().filter_map(|rival| self.parents[rival]).collect();
             let segment = &self.segments[way[length]];
             rivals.retain(|&rival| self.segments[rival] == *segment);
@@ -51,7 +51,7 @@ impl NodePaths {
         format!("{root}{}", parts.join("/"))
     }
 
-    /// The nodes that a path names.
+    /// The nodes that a path refers to.
     pub(crate) fn find(&self, path: &str) -> Vec<usize> {
         let (from_root, path) = path.strip_prefix('/').map_or((false, path), |path| (true, path));
         let steps = steps(path);
@@ -60,7 +60,7 @@ impl NodePaths {
         candidates.iter().copied().filter(|&node| self.fits(node, &steps, from_root)).collect()
     }
 
-    /// What nodes are called, for those who misspell it.
+    /// The names of nodes, for suggestions.
     pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
         self.by_last.keys().map(String::as_str)
     }
@@ -77,7 +77,7 @@ impl NodePaths {
     }
 }
 
-/// What a node is called among its siblings.
+/// The name of a node among its siblings.
 fn segment(node: &super::IacNode, label: &str) -> String {
     if node.name != *label || node.parent.is_none() {
         return name_text(node);
@@ -88,7 +88,7 @@ fn segment(node: &super::IacNode, label: &str) -> String {
     }
 }
 
-/// Siblings of the same name are distinguished by numbers.
+/// Numbers siblings of the same name.
 fn number(segments: &mut [String], siblings: &[usize]) {
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     for &sibling in siblings {
@@ -100,7 +100,7 @@ fn number(segments: &mut [String], siblings: &[usize]) {
     }
 }
 
-/// The name of a node as it is written in text: as a formula has it where that says the same.
+/// The name of a node as text: in the notation of formulas if that decodes to the same name.
 pub(crate) fn name_text(node: &super::IacNode) -> String {
     let composite = matches!(node.kind.as_str(), "OR" | "AND");
     let name = node.written();
@@ -108,7 +108,7 @@ pub(crate) fn name_text(node: &super::IacNode) -> String {
     if encoded == node.name && is_bare(&name) { name } else { quoted(&node.name) }
 }
 
-/// What a name in text means, in a node of some type; none if its quotes are wrong.
+/// The name that a text denotes for a node of some type; `None` if its quotes are invalid.
 pub(crate) fn name_of(text: &str, kind: &str) -> Option<String> {
     match (text.starts_with('"'), kind) {
         (false, "OR" | "AND") => Some(encode(&text::canonical_name(text))),
@@ -131,7 +131,7 @@ fn is_bare(name: &str) -> bool {
         && !name.contains("->")
 }
 
-/// The steps of a path, between slashes that stand in no quotes.
+/// The segments of a path, separated by slashes outside quotes.
 fn steps(path: &str) -> Vec<String> {
     let (mut steps, mut step) = (Vec::new(), String::new());
     let mut quotes = QuoteScanner::default();

@@ -62,7 +62,7 @@ fn constants(chart: &Iac) -> Option<Item> {
     (!item.lines.is_empty()).then_some(item)
 }
 
-/// In files of 2010 transitions are named by labels.
+/// The default name of a transition in files of 2010, which consists of labels.
 pub(crate) fn label_name(labels: &[String], transition: &IacTransition) -> String {
     format!("{}TO{}", labels[transition.source], labels[transition.target])
 }
@@ -130,7 +130,7 @@ fn settings(node: &IacNode, label: &str, variables: &[String], indent: usize, it
     texts.into_iter().for_each(|(key, value)| set(item, indent, key, value));
 }
 
-/// Milliseconds where they say it all, else nanoseconds.
+/// The duration in milliseconds if that is exact, otherwise in nanoseconds.
 fn duration_text(duration: std::time::Duration) -> String {
     match duration.as_nanos() {
         nanoseconds if nanoseconds % 1_000_000 == 0 => format!("{}ms", nanoseconds / 1_000_000),
@@ -138,7 +138,7 @@ fn duration_text(duration: std::time::Duration) -> String {
     }
 }
 
-/// How each variable is referred to.
+/// The reference to each variable.
 fn variable_references(chart: &Iac) -> Vec<String> {
     let mut seen = std::collections::BTreeMap::new();
     let refer = |variable: &super::Variable| {

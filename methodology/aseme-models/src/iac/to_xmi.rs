@@ -12,8 +12,7 @@ const IAC: &str = "http://www.amcl.tuc.gr/aseme/metamodels/IAC";
 const IAC_2010: &str = "http://mi.parisdescartes.fr/ASEME/metamodels/IAC";
 
 impl Iac {
-    /// The chart in a dialect of XMI. What the dialect cannot say is left out: [`Iac::lost_in_xmi`]
-    /// lists it.
+    /// The chart in a dialect of XMI. [`Iac::lost_in_xmi`] lists what the dialect cannot represent.
     ///
     /// # Errors
     /// Texts with characters that XML does not have (E0810).
@@ -59,7 +58,7 @@ impl Dialect {
     }
 }
 
-/// What gets lost.
+/// Collects what a dialect cannot represent.
 struct LossReport {
     dialect: Dialect,
     found: Vec<Diagnostic>,
@@ -67,7 +66,7 @@ struct LossReport {
 
 impl LossReport {
     fn add(&mut self, place: yase::expression::TextPosition, what: impl std::fmt::Display) {
-        let message = format!("{what}: {} cannot say that", self.dialect.name());
+        let message = format!("{what}: {} cannot represent it", self.dialect.name());
         self.found.push(Diagnostic::warning("E0850", place.0, message));
     }
 
@@ -91,7 +90,7 @@ impl LossReport {
             chart.variables.iter().for_each(|it| self.add(it.place, format!("the variable `{}`", it.name)));
         }
         if chart.kind == super::ChartKind::Inter {
-            self.add(start, "that this is the chart of a protocol");
+            self.add(start, "the kind: a chart of a protocol");
         }
     }
 
@@ -113,7 +112,7 @@ impl LossReport {
             self.add(node.place, format!("the {what} of `{}`, `{text}`", node.name));
         }
         for (key, value) in frame_settings(&node.frame) {
-            self.add(node.place, format!("where `{}` is drawn, `{key} = {value}`", node.name));
+            self.add(node.place, format!("the layout of `{}`, `{key} = {value}`", node.name));
         }
         if let Some(activity) = &refinement.activity {
             self.add(node.place, format!("the activity of `{}`, `{activity}`", node.name));
@@ -129,7 +128,7 @@ impl LossReport {
             ("weight", refinement.weight.is_some()),
             ("word `interrupts`", refinement.interrupts),
             ("word `internal`", refinement.internal),
-            ("way in a drawing", !transition.bends.is_empty()),
+            ("layout", !transition.bends.is_empty()),
             ("metadata", !transition.metadata.is_empty() && self.dialect != Dialect::Nested2018),
         ];
         for (what, _) in said.into_iter().filter(|(_, said)| *said) {
@@ -167,7 +166,7 @@ fn nested(chart: &Iac, with_metadata: bool) -> String {
     writer.into_text()
 }
 
-/// One root and all below it, as deep as [`MAX_LEVELS`](super::MAX_LEVELS).
+/// Writes a node and its descendants, up to [`MAX_LEVELS`](super::MAX_LEVELS).
 fn tree(chart: &Iac, children: &[Vec<usize>], index: usize, with_metadata: bool, writer: &mut XmiWriter) {
     let node = &chart.nodes[index];
     writer.open(if node.parent.is_none() { "nodes" } else { "Children" });
@@ -241,7 +240,7 @@ fn multi_root(chart: &Iac) -> String {
         writer.open("IAC:Node");
         writer.attribute_if_any("name", &node.name);
         writer.attribute_if_any("type", &node.kind);
-        // The label says what the node lies in.
+        // The label determines the parent.
         writer.attribute_if_any("label", &label);
         writer.attribute("activity", &null(&node.functionality));
         writer.close();
@@ -294,7 +293,7 @@ fn unwritable(chart: &Iac) -> Vec<Diagnostic> {
     wrong
         .map(|(place, text)| {
             let message = format!("{text:?} has a character that XML does not have");
-            Diagnostic::error("E0810", place.0, message).with_hint("take the character out")
+            Diagnostic::error("E0810", place.0, message).with_hint("remove the character")
         })
         .collect()
 }

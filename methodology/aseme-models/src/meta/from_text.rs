@@ -24,7 +24,7 @@ pub(crate) fn from_text(metamodel: &Metamodel, document: &ItemDocument) -> (Mode
 
 struct Reader<'a> {
     metamodel: &'a Metamodel,
-    /// For each class, the place of the k-th object of a name.
+    /// For each class, the index of the k-th object of a name.
     titles: Vec<BTreeMap<Reference, usize>>,
     diagnostics: Vec<Diagnostic>,
 }
@@ -34,7 +34,7 @@ impl Reader<'_> {
         self.diagnostics.push(diagnostic);
     }
 
-    /// The items of each class; the first item says the kind of the model.
+    /// The items of each class; the first item names the kind of the model.
     fn sorted<'a>(&mut self, document: &'a ItemDocument) -> Vec<Vec<&'a Item>> {
         let mut sorted: Vec<Vec<&Item>> = self.metamodel.classes.iter().map(|_| Vec::new()).collect();
         for (index, item) in document.items.iter().enumerate() {
@@ -54,13 +54,13 @@ impl Reader<'_> {
         sorted
     }
 
-    /// The header of the model has neither a name nor lines.
+    /// Checks that the header of the model has neither a name nor lines.
     fn kind(&mut self, item: &Item) {
         let too_much = (!item.name.text.is_empty()).then_some(item.name.span);
         if let Some(span) = too_much.or(item.lines.first().map(|line| line.content.span)) {
-            let message = format!("nothing belongs to `{}:` itself", item.word.text);
+            let message = format!("`{}:` has no settings", item.word.text);
             self.report(
-                Diagnostic::error("E0262", span, message).with_hint("begin an item with a header of its own"),
+                Diagnostic::error("E0262", span, message).with_hint("start an item with its own header"),
             );
         }
     }
@@ -73,7 +73,7 @@ impl Reader<'_> {
             let number = seen.entry(name.clone()).or_default();
             *number += 1;
             if *number == 2 && !name.is_empty() && self.metamodel.is_linked(class) {
-                let message = format!("`{name}` is the name of another {} too", class.word);
+                let message = format!("another {} has the name `{name}`", class.word);
                 let hint = format!("give it another name, or refer to it as `{name}[2]`");
                 self.report(Diagnostic::warning("E0263", item.span(), message).with_hint(hint));
             }
@@ -82,12 +82,12 @@ impl Reader<'_> {
         titles
     }
 
-    /// What a value means.
+    /// The content of a value.
     fn plain(&mut self, value: &SpannedText) -> String {
         unquoted(&value.text).unwrap_or_else(|| {
             let message = format!("`{}` cannot be read", value.text);
             let hint =
-                "a value in quotes ends with a quote; within, `\\n`, `\\t`, `\\\"` and `\\\\` are known";
+                "a quoted value ends with a quote and may contain the escapes `\\n`, `\\t`, `\\\"` and `\\\\`";
             self.report(Diagnostic::error("E0264", value.span, message).with_hint(hint));
             value.text.clone()
         })

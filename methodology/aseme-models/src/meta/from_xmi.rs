@@ -25,7 +25,7 @@ pub(crate) fn from_xmi(metamodel: &Metamodel, document: &Document<'_>) -> (Model
 struct Reader<'m> {
     metamodel: &'m Metamodel,
     paths: XmiPaths,
-    /// The class of each object's element, and its place among its like.
+    /// The class of each object's element, and its index in the class.
     objects: BTreeMap<usize, (usize, usize)>,
     instance: ModelInstance,
     diagnostics: Vec<Diagnostic>,
@@ -115,7 +115,7 @@ impl Reader<'_> {
         self.instance.objects[class][index] = object;
     }
 
-    /// What older metamodels said by a class of its own.
+    /// Converts a class of an older metamodel to a choice.
     fn subclass(&mut self, class: &Class, element: Node<'_, '_>, object: &mut Object) {
         let Some(attribute) = element.attribute_node((XSI, "type")) else { return };
         let name = attribute.value().rsplit(':').next().unwrap_or_default();
@@ -166,7 +166,7 @@ impl Reader<'_> {
         links.into_iter().take(if most == MANY { usize::MAX } else { most }).collect()
     }
 
-    /// The object that a reference means.
+    /// The object that a reference denotes.
     fn link(&mut self, class: usize, word: &str, span: Span) -> Option<usize> {
         let wanted = &self.metamodel.classes[class];
         let found = self.paths.find(word).map(|node| self.objects.get(&node).copied());
@@ -181,14 +181,14 @@ impl Reader<'_> {
         let count = self.instance.of(class).len();
         let hint = match count {
             0 => format!("the model has no {}", wanted.word),
-            _ => format!("`{}` go from `//@{}.0` to `//@{0}.{}`", wanted.feature, wanted.feature, count - 1),
+            _ => format!("the {} are `//@{}.0` to `//@{0}.{}`", wanted.feature, wanted.feature, count - 1),
         };
         self.report(Diagnostic::error("E0807", span, fault).with_hint(hint));
         None
     }
 
-    /// Before 2015 the functionality of an activity was a text: that becomes the description of a
-    /// functionality.
+    /// Converts the functionality of an activity, a text before 2015, to a functionality with that
+    /// description.
     fn text_of_older(&mut self, class: usize, value: &str, span: Span) -> Option<usize> {
         let metaclass = &self.metamodel.classes[class];
         let is_text = metaclass.feature == "functionalities" && !value.starts_with(['/', '#']);
@@ -209,7 +209,7 @@ impl Reader<'_> {
         Some(self.instance.of(class).len() - 1)
     }
 
-    /// What a file says from the other end must be what it says from this one.
+    /// Checks that opposite features agree.
     fn opposites(&mut self, elements: &[(usize, Node<'_, '_>)]) {
         for (class, element) in elements {
             for attribute in xmi::features(*element) {
@@ -236,17 +236,18 @@ impl Reader<'_> {
             let Some(linked) = self.link(there, word, span) else { continue };
             if !self.instance.objects[there][linked].links(feature).contains(&here) {
                 let name = self.metamodel.classes[there].features[feature].name;
-                let message = format!("`{word}` is named here, but does not say so in its `{name}`");
+                let message =
+                    format!("`{word}` is named here, but lacks the opposite reference in its `{name}`");
                 self.report(
                     Diagnostic::warning("E0808", span, message)
-                        .with_hint("both ends are written in a file; what one says is taken"),
+                        .with_hint("a file contains both ends of a link; this one is used"),
                 );
                 self.answer(there, linked, feature, here);
             }
         }
     }
 
-    /// Makes a link that only the other end has, if there is room for it.
+    /// Adds a link that only its opposite has, if the multiplicity allows it.
     fn answer(&mut self, class: usize, object: usize, feature: usize, target: usize) {
         let FeatureKind::Links { most, .. } = self.metamodel.classes[class].features[feature].kind else {
             return;
@@ -258,7 +259,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Links whose other end does not name them, if the file has that end at all.
+    /// Reports links that are missing in their opposite, if the file has the opposite feature at
+    /// all.
     fn unanswered(&mut self, elements: &[(usize, Node<'_, '_>)]) {
         let mut found = Vec::new();
         for (class, element) in elements {
@@ -285,7 +287,7 @@ impl Reader<'_> {
                     );
                     found.push(
                         Diagnostic::warning("E0808", xmi::tag(*element), message)
-                            .with_hint("both ends are written in a file; what one says is taken"),
+                            .with_hint("a file contains both ends of a link; this one is used"),
                     );
                 }
             }
@@ -293,7 +295,7 @@ impl Reader<'_> {
         self.diagnostics.extend(found);
     }
 
-    /// As many objects and links as the metamodel asks for.
+    /// Checks the multiplicities of the metamodel.
     fn multiplicities(&mut self, root: Node<'_, '_>) {
         let mut found = Vec::new();
         for (class, objects) in self.metamodel.classes.iter().zip(&self.instance.objects) {

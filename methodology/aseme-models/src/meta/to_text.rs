@@ -17,7 +17,7 @@ pub(crate) fn to_text(metamodel: &Metamodel, instance: &ModelInstance) -> ItemDo
     ItemDocument { items, tail: Vec::new() }
 }
 
-/// How each object of a class is referred to.
+/// The reference to each object of a class.
 fn references(metamodel: &Metamodel, instance: &ModelInstance, class: usize) -> Vec<String> {
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     let refer = |object: &Object| {
@@ -57,7 +57,7 @@ fn item(class: &Class, object: &Object, titles: &[Vec<String>]) -> Item {
     item
 }
 
-/// Whether formulas read back the same when they are written as lines.
+/// Whether formulas parse back to the same text when they are written as lines.
 fn is_block(text: &str) -> bool {
     let is_line = |line: &str| !line.is_empty() && text::is_plain(line);
     text.ends_with('\n') && text[..text.len() - 1].split('\n').all(is_line)

@@ -66,8 +66,7 @@ fn unwritable(metamodel: &Metamodel, instance: &ModelInstance) -> Vec<Diagnostic
                         feature.word, class.word
                     );
                     refused.push(
-                        Diagnostic::error("E0810", object.place.0, message)
-                            .with_hint("take the character out"),
+                        Diagnostic::error("E0810", object.place.0, message).with_hint("remove the character"),
                     );
                 }
             }

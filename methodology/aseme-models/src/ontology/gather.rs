@@ -6,7 +6,7 @@ use yase::{Diagnostic, Span, Statechart};
 use super::{Ontology, OntologyField, OntologyFieldKind, OntologyMessage, OntologyTopic, is_kind, parts};
 use crate::iac::Variable;
 
-/// What has been found so far.
+/// Collects the messages of a chart.
 pub(crate) struct Gatherer<'a> {
     constants: Vec<&'a str>,
     ontology: Ontology,
@@ -28,8 +28,9 @@ impl<'a> Gatherer<'a> {
             Some((topic, kind, message)) => self.message(message, Some((topic, kind)), variable.place.0),
             None => {
                 let (name, kind) = (&variable.name, &variable.kind);
-                let text = format!("the variable `{name}` is of the type `{kind}`, which is no message");
-                let hint = "types of messages are written topic.State.Message, topic.Signal.Message or topic.Data.Message";
+                let text = format!("the variable `{name}` has the type `{kind}`, which is no message");
+                let hint =
+                    "message types are topic.State.Message, topic.Signal.Message or topic.Data.Message";
                 self.found.push(Diagnostic::warning("E0880", variable.place.0, text).with_hint(hint));
             }
         }
@@ -62,15 +63,15 @@ impl<'a> Gatherer<'a> {
         }
     }
 
-    /// A trigger may name a message, where it says how that is kept; other names are those of
-    /// events.
+    /// A trigger that names a retention (`State`, `Signal`, `Data`) refers to a message; other
+    /// triggers are events.
     fn arrival(&mut self, event: &Path) {
         if event.segments.iter().any(|segment| is_kind(&segment.text)) {
             self.path(event, &OntologyFieldKind::Unknown);
         }
     }
 
-    /// An expression that is used as something.
+    /// Visits an expression that is used as a certain kind.
     fn visit(&mut self, expression: &Expression, used_as: &OntologyFieldKind) {
         match &expression.kind {
             ExpressionKind::Or(operands) | ExpressionKind::And(operands) => {
@@ -108,7 +109,7 @@ impl<'a> Gatherer<'a> {
         }
     }
 
-    /// What something is that is compared with this, or gets this as its value.
+    /// The kind of a field that is compared with this expression or assigned from it.
     fn kind_of(&self, expression: &Expression) -> OntologyFieldKind {
         match &expression.kind {
             ExpressionKind::Integer(_)
@@ -136,7 +137,7 @@ impl<'a> Gatherer<'a> {
         }
     }
 
-    /// A path to a message or to one of its fields. A bare name is something else.
+    /// Records a path to a message or one of its fields. A bare name is neither.
     fn path(&mut self, path: &Path, kind: &OntologyFieldKind) {
         let names: Vec<&str> = path.segments.iter().map(|segment| segment.text.as_str()).collect();
         let kept =
@@ -156,7 +157,7 @@ impl<'a> Gatherer<'a> {
         note(&mut known.fields, &names[at + 1..], kind);
     }
 
-    /// A message that is met, perhaps on a topic.
+    /// Records a message, perhaps with its topic.
     fn message(&mut self, name: &str, topic: Option<(&str, &str)>, place: Span) {
         let messages = &mut self.ontology.messages;
         let index = messages.iter().position(|known| known.name == name).unwrap_or_else(|| {
@@ -169,15 +170,17 @@ impl<'a> Gatherer<'a> {
             return;
         }
         if let Some(known) = topics.iter().find(|known| known.name == topic) {
-            let text =
-                format!("`{name}` is kept as `{kind}` on `{topic}` here, and as `{}` elsewhere", known.kind);
+            let text = format!(
+                "`{name}` has the retention `{kind}` on `{topic}` here, and `{}` elsewhere",
+                known.kind
+            );
             self.found.push(Diagnostic::warning("E0884", place, text));
         }
         topics.push(OntologyTopic { name: topic.to_owned(), kind: kind.to_owned() });
     }
 }
 
-/// Notes a field, and the fields in it.
+/// Records a field and its nested fields.
 fn note(fields: &mut Vec<OntologyField>, names: &[&str], kind: &OntologyFieldKind) {
     let [name, rest @ ..] = names else { return };
     let index = fields.iter().position(|field| field.name == *name).unwrap_or_else(|| {
@@ -199,8 +202,8 @@ fn note(fields: &mut Vec<OntologyField>, names: &[&str], kind: &OntologyFieldKin
             let new = more.iter().filter(|value| !values.contains(value)).cloned().collect::<Vec<_>>();
             values.extend(new);
         }
-        // what was said first counts; what is asked by itself is only then a condition if nothing
-        // else is known of it
+        // the first specific kind counts; a field used alone is a condition only if nothing else is
+        // known
         (known @ (OntologyFieldKind::Unknown | OntologyFieldKind::Condition), kind)
             if *kind != OntologyFieldKind::Unknown =>
         {

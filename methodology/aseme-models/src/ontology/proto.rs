@@ -5,11 +5,11 @@ use std::fmt::Write;
 use super::{Ontology, OntologyField, OntologyFieldKind, OntologyMessage};
 
 impl Ontology {
-    /// The messages as a `.proto` file of a package (`proto3`). What is not known of a field is
-    /// left to the reader, who finds a comment there.
+    /// The messages as a `.proto` file of a package (`proto3`). Fields of unknown type get a
+    /// comment.
     pub fn to_proto(&self, package: &str) -> String {
         let mut text = format!(
-            "// What statecharts are about: made from their expressions, to be completed by hand.\nsyntax = \"proto3\";\n\npackage {package};\n"
+            "// The messages of statecharts: derived from expressions, to be completed by hand.\nsyntax = \"proto3\";\n\npackage {package};\n"
         );
         for message in &self.messages {
             text.push('\n');
@@ -24,7 +24,7 @@ impl Ontology {
 
 fn block(text: &mut String, depth: usize, message: &OntologyMessage) {
     if message.fields.is_empty() {
-        line(text, depth, "// No field of it is used.");
+        line(text, depth, "// No field is used.");
         line(text, depth, &format!("message {} {{}}", message.name));
         return;
     }
@@ -36,7 +36,7 @@ fn block(text: &mut String, depth: usize, message: &OntologyMessage) {
     line(text, depth, "}");
 }
 
-/// The types that a field brings along.
+/// The nested types that a field requires.
 fn types(text: &mut String, depth: usize, field: &OntologyField) {
     match &field.kind {
         OntologyFieldKind::OneOf(values) => {
@@ -62,7 +62,7 @@ fn types(text: &mut String, depth: usize, field: &OntologyField) {
 fn member(text: &mut String, depth: usize, field: &OntologyField, number: usize) {
     let kind = match &field.kind {
         OntologyFieldKind::Unknown => {
-            line(text, depth, "// Nothing says what this is.");
+            line(text, depth, "// The type is unknown.");
             "double".to_owned()
         }
         OntologyFieldKind::Condition => "bool".to_owned(),
@@ -78,7 +78,7 @@ fn line(text: &mut String, depth: usize, content: &str) {
     _ = writeln!(text, "{:indent$}{content}", "", indent = depth * 2);
 }
 
-/// In the style of types: `player_state` is `PlayerState`.
+/// `UpperCamelCase`: `player_state` becomes `PlayerState`.
 fn camel(name: &str) -> String {
     let capital = |word: &str| {
         let mut letters = word.chars();

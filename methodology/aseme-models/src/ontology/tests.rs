@@ -26,7 +26,7 @@ fn fields_are_what_they_are_used_as() {
                  && Ball.x - Ball.y > 0 && Ball.owner == Game.owner] / Goal.count = Goal.count + 1, Goal.ours = true";
     let (ontology, found) = gathered(guard, &[]);
     assert_eq!(found, [""; 0]);
-    let told: Vec<String> = ontology
+    let messages: Vec<String> = ontology
         .messages
         .iter()
         .flat_map(|message| {
@@ -34,7 +34,7 @@ fn fields_are_what_they_are_used_as() {
         })
         .collect();
     assert_eq!(
-        told,
+        messages,
         [
             "Ball.found Condition",
             "Ball.distance Number",
@@ -55,10 +55,10 @@ fn topics_come_from_paths_and_from_variables() {
     let variables = [variable("gsm", "worldstate.State.GameState"), variable("ok", "bool")];
     let (ontology, found) =
         gathered("[vision.Data.Ball.place.x > 1 && worldstate.State.GameState.over]", &variables);
-    assert_eq!(found, ["the variable `ok` is of the type `bool`, which is no message"]);
+    assert_eq!(found, ["the variable `ok` has the type `bool`, which is no message"]);
     assert_eq!(
         ontology.to_proto("team"),
-        "// What statecharts are about: made from their expressions, to be completed by hand.\nsyntax = \"proto3\";\n\npackage team;\n\n\
+        "// The messages of statecharts: derived from expressions, to be completed by hand.\nsyntax = \"proto3\";\n\npackage team;\n\n\
          // On `worldstate`, kept as `State`.\nmessage GameState {\n  bool over = 1;\n}\n\n\
          // On `vision`, kept as `Data`.\nmessage Ball {\n  message Place {\n    double x = 1;\n  }\n  Place place = 1;\n}\n"
     );
@@ -67,7 +67,7 @@ fn topics_come_from_paths_and_from_variables() {
 #[test]
 fn a_topic_may_carry_several_messages_but_keeps_each_in_one_way() {
     let (ontology, found) = gathered("[a.State.Ball.x > 0 && a.Data.Ball.x > 1 && a.State.Game.over]", &[]);
-    assert_eq!(found, ["`Ball` is kept as `Data` on `a` here, and as `State` elsewhere"]);
+    assert_eq!(found, ["`Ball` has the retention `Data` on `a` here, and `State` elsewhere"]);
     assert_eq!(ontology.messages.iter().map(|message| message.topics.len()).collect::<Vec<_>>(), [2, 1]);
 }
 
@@ -85,20 +85,20 @@ fn variables_are_held_against_what_a_program_knows() {
         functions: vec![],
         scripts: false,
     };
-    let told = |kind: &str| {
+    let messages = |kind: &str| {
         let found = check(&[variable("v", kind)], &vocabulary);
         found.iter().map(|found| format!("{} {}", found.code, found.message)).collect::<String>()
     };
-    assert_eq!(told("ball.State.Ball"), "");
-    assert_eq!(told("elsewhere.State.GameState"), "");
-    assert_eq!(told("ball.State.Bal"), "E0881 the variable `v` has the unknown message type `Bal`");
+    assert_eq!(messages("ball.State.Ball"), "");
+    assert_eq!(messages("elsewhere.State.GameState"), "");
+    assert_eq!(messages("ball.State.Bal"), "E0881 the variable `v` has the unknown message type `Bal`");
     assert_eq!(
-        told("ball.State.GameState"),
+        messages("ball.State.GameState"),
         "E0882 the variable `v` is of `GameState`, but `soccer/ball` carries `Ball`"
     );
     assert_eq!(
-        told("ball.Data.Ball"),
-        "E0883 the variable `v` is kept as `Data`, but `soccer/ball` as `State`"
+        messages("ball.Data.Ball"),
+        "E0883 the variable `v` has the retention `Data`, but `soccer/ball` has `State`"
     );
 }
 

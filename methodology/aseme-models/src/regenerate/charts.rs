@@ -7,10 +7,9 @@ use crate::diff::pairs::NodePairs;
 use crate::iac::{Iac, IacNode};
 use aseme::layout::{bends_text, frame_settings};
 
-/// Gives a chart what an older one says and it does not: of states the functionality, the
-/// variables, metadata and refinements, of transitions expression, refinements and metadata. States
-/// are the same as in [`diff`](crate::diff): also those that have another name because the formula
-/// around them is another.
+/// Copies to a chart what only an older one has: functionality, variables, metadata and refinements
+/// of states; expression, refinements and metadata of transitions. States are matched as in
+/// [`diff`](crate::diff), including those whose name changed with the formula around them.
 ///
 /// Attributes without a counterpart in the newer chart, and those that differ there, are returned
 /// with their old text (E0852).
@@ -34,7 +33,7 @@ struct ChartTransfer<'a> {
 impl ChartTransfer<'_> {
     fn report_lost(&mut self, place: Span, what: String) {
         let found = Diagnostic::warning("E0852", place, what);
-        self.lost.push(found.with_hint("say it in the newer model by hand, if it is still meant"));
+        self.lost.push(found.with_hint("add it to the newer model if it is still valid"));
     }
 
     fn header(&mut self) {
@@ -71,7 +70,7 @@ impl ChartTransfer<'_> {
                 Some(new) => self.state(old, new.0 as usize, &before.path(id)),
                 None => self.report_lost(
                     old.place.0,
-                    format!("`{}` is gone, and with it: {}", before.path(id), state_content(old, self.older)),
+                    format!("`{}` was removed, with: {}", before.path(id), state_content(old, self.older)),
                 ),
             }
         }
@@ -117,14 +116,11 @@ impl ChartTransfer<'_> {
             ));
         }
         for text in differing {
-            self.report_lost(
-                old.place.0,
-                format!("of `{path}` the newer chart says another thing than `{text}`"),
-            );
+            self.report_lost(old.place.0, format!("the newer chart differs for `{path}` from `{text}`"));
         }
     }
 
-    /// Those with the same ends; several between the same two are matched in order.
+    /// Matches transitions with the same ends; several between the same two are matched in order.
     fn transitions(&mut self, before: &Statechart) {
         let mut used = vec![false; self.newer.transitions.len()];
         for old in &self.older.transitions {
@@ -156,7 +152,7 @@ impl ChartTransfer<'_> {
                 )
             };
             let Some(place) = place else {
-                self.report_lost(old.place.0, format!("there is no such transition any more: `{}`", arrow()));
+                self.report_lost(old.place.0, format!("the transition was removed: `{}`", arrow()));
                 continue;
             };
             let new = &mut self.newer.transitions[place];
@@ -175,7 +171,7 @@ impl ChartTransfer<'_> {
                 differs = true;
             }
             if differs {
-                let text = format!("the newer chart says another thing than `{}`", arrow());
+                let text = format!("the newer chart differs from `{}`", arrow());
                 self.report_lost(old.place.0, text);
             }
         }
@@ -187,7 +183,7 @@ fn frame_text(frame: &Frame) -> String {
     settings.collect::<Vec<_>>().join(", ")
 }
 
-/// All that a file says of a state.
+/// The content of a state in a file.
 fn state_content(node: &IacNode, iac: &Iac) -> String {
     let refinement = &node.refinement;
     let variables: Vec<&str> = node

@@ -10,7 +10,7 @@ use aseme::refine::place_among_twins;
 use aseme::srm::{Section, SrmFile};
 use aseme::text;
 
-/// What one model says and another can take in, in the order in which it is taken in.
+/// The sections that are transferred from one model to another, in this order.
 pub(crate) const CARRIED: [Section; 4] =
     [Section::Constants, Section::Transitions, Section::States, Section::Layout];
 
@@ -22,7 +22,7 @@ pub fn entries_of_role(file: &SrmFile) -> Vec<(Section, String)> {
     entries.map(|entry| (entry.section, one_line(&blanked[entry.span.start..entry.span.end]))).collect()
 }
 
-/// The refinements of a chart, that is everything its formulas do not make, each with its shortest
+/// The refinements of a chart: everything that its formulas do not define, each with its shortest
 /// path.
 pub fn entries_of_chart(chart: &Statechart) -> Vec<(Section, String)> {
     let constants = chart.constants.iter().map(|constant| {
@@ -56,8 +56,7 @@ fn transition(chart: &Statechart, id: TransitionId, transition: &Transition) -> 
     one_line(&format!("{path}{also}{}{colon}", modifiers(transition)))
 }
 
-/// `source -> target`; in a role it is the composite that is entered where a chart has a way to
-/// what remembers inside.
+/// `source -> target`. A transition to a HISTORY is written in a role as one to its composite.
 fn ends(chart: &Statechart, id: TransitionId) -> String {
     let transition = chart.transition(id);
     match history_of(chart, transition.target) {
@@ -70,7 +69,7 @@ fn ends(chart: &Statechart, id: TransitionId) -> String {
     }
 }
 
-/// Where states and transitions are drawn.
+/// The layout entries of a chart.
 fn layout(chart: &Statechart) -> impl Iterator<Item = String> {
     let states = chart.layout.frames.iter().filter(|(_, frame)| !frame.is_empty()).map(|(&id, frame)| {
         let settings = frame_settings(frame).into_iter().map(|(key, value)| format!("{key} = {value}"));
@@ -110,8 +109,7 @@ fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The text of a role with lines at the end of one of its sections, which is made where it is
-/// missing.
+/// The text of a role with lines added at the end of a section, which is created if it is missing.
 pub(crate) fn inserted(text: &str, section: Section, lines: &[&str]) -> String {
     if lines.is_empty() {
         return text.to_owned();
@@ -120,7 +118,7 @@ pub(crate) fn inserted(text: &str, section: Section, lines: &[&str]) -> String {
     let block = lines.join("\n");
     let last = file.entries().iter().rfind(|entry| entry.section == section);
     if let Some(last) = last {
-        // behind the comment on the same line
+        // after the comment on the same line
         let end = text[last.span.end..].find('\n').map_or(text.len(), |at| last.span.end + at);
         return format!("{}\n{block}{}", &text[..end], &text[end..]);
     }

@@ -8,13 +8,12 @@ use crate::aip::{Aip, Participant, Protocol};
 use crate::iac::{ChartKind, Iac, IacTransition};
 use aseme::{liveness, transform};
 
-/// A chart for each protocol: its participants side by side, each doing what its formulas say. A
+/// A chart for each protocol: one region per participant with the translation of its formulas. A
 /// participant without formulas is an activity.
 ///
-/// Rules and outcomes that are conditions, each in brackets, become guards of the ways into the
-/// parts and exits of them. Those in plain words go into the chart's description, for the person
-/// who writes them as guards and exits. Findings are those about formulas, at the participant they
-/// belong to.
+/// Rules and outcomes that are conditions in brackets become guards of the entries and exits of the
+/// parts. Those in prose go into the chart's description, for the developer to formalise. Findings
+/// about formulas are positioned at their participant.
 pub fn aip_to_eac(aip: &Aip) -> (Vec<Iac>, Vec<Diagnostic>) {
     let mut diagnostics = Vec::new();
     let eac = |protocol: &Protocol| eac(aip, protocol, &mut diagnostics);
@@ -45,8 +44,8 @@ fn eac(aip: &Aip, protocol: &Protocol, diagnostics: &mut Vec<Diagnostic>) -> Iac
     eac
 }
 
-/// The formulas of a protocol and of its participants as one text, and what each part of it up to
-/// an end is about.
+/// The formulas of a protocol and its participants as one text, and the participant of each section
+/// with its end.
 pub fn protocol_formulas(aip: &Aip, protocol: &Protocol) -> (String, Vec<(usize, Span)>) {
     let participants: Vec<&Participant> =
         protocol.participants.iter().filter_map(|&index| aip.participants.get(index)).collect();
@@ -61,8 +60,8 @@ pub fn protocol_formulas(aip: &Aip, protocol: &Protocol) -> (String, Vec<(usize,
     (formulas, places)
 }
 
-/// Rules and outcomes that are written as conditions, each in brackets with any words between; none
-/// if they are in plain words.
+/// Rules and outcomes that are conditions in brackets, possibly with words between; `None` if they
+/// are in prose.
 pub fn conditions(text: &str) -> Option<Vec<Expression>> {
     if !text.trim_start().starts_with('[') {
         return None;
@@ -71,8 +70,8 @@ pub fn conditions(text: &str) -> Option<Vec<Expression>> {
     Some(groups.filter_map(|group| parse_transition(&format!("[{group}]")).0.guard).collect())
 }
 
-/// Rules become guards of the way into a part, and each outcome an exit of it (E0838 where they
-/// cannot be read).
+/// Makes rules the guards of the transition into a part, and outcomes its exits (E0838 if they
+/// cannot be parsed).
 fn exits(eac: &mut Iac, participant: &Participant) -> Vec<Diagnostic> {
     let texts = [&participant.engaging_rules, &participant.outcomes];
     let mut found = Vec::new();
@@ -82,7 +81,7 @@ fn exits(eac: &mut Iac, participant: &Participant) -> Vec<Diagnostic> {
             let findings = parse_transition(&format!("[{inner}]")).1;
             if !closed || findings.iter().any(Diagnostic::is_error) {
                 let message = format!("`[{inner}` of `{}` is no condition", participant.name);
-                let hint = "write each condition in brackets, as on a transition, or all in plain words";
+                let hint = "write all conditions in brackets, as on a transition, or all in prose";
                 found.push(Diagnostic::error("E0838", participant.place.0, message).with_hint(hint));
             }
         }
@@ -116,7 +115,7 @@ fn exits(eac: &mut Iac, participant: &Participant) -> Vec<Diagnostic> {
     found
 }
 
-/// Rules and outcomes, each once.
+/// Rules and outcomes without duplicates.
 fn description(participants: &[&Participant]) -> String {
     let mut sentences: Vec<String> = Vec::new();
     for participant in participants {

@@ -10,9 +10,9 @@ use aseme::liveness::{self, Liveness};
 use aseme::srm::Srm;
 
 impl SystemRoles {
-    /// A system of one role: what its formulas name are activities, what refines them are
-    /// capabilities. All activities share a functionality of which nothing is said. What a role
-    /// says besides is listed (E0850).
+    /// A system of one role: the names in its formulas are activities, its refining formulas are
+    /// capabilities. All activities share one functionality without a description. Refinements
+    /// cannot be represented and are listed (E0850).
     pub fn from_role(srm: &Srm) -> (SystemRoles, Vec<Diagnostic>) {
         let mut system =
             SystemRoles { functionalities: vec![Functionality::default()], ..SystemRoles::default() };
@@ -59,7 +59,8 @@ impl SystemRoles {
         self.activities.len() - 1
     }
 
-    /// The text of the system's only role, to be refined and run, and what it does not say (E0850).
+    /// The text of the system's only role, for refinement and execution, and what it cannot
+    /// represent (E0850).
     ///
     /// # Errors
     /// There is no role, or more than one (E0247, E0248), or the formulas have errors.
@@ -69,7 +70,7 @@ impl SystemRoles {
             let found = match self.roles.len() {
                 0 => Diagnostic::error("E0247", second, "the model has no role"),
                 count => Diagnostic::error("E0248", second, format!("the model has {count} roles"))
-                    .with_hint("keep each role in a file of its own"),
+                    .with_hint("put each role into its own file"),
             };
             return Err(vec![found]);
         };
@@ -86,17 +87,17 @@ impl SystemRoles {
         let mut lost = self.lost_to(&derived);
         if again.srm().role != role.name {
             let message =
-                format!("the name of the role, `{}`: the text of a role cannot say that", role.name);
+                format!("the name of the role, `{}`: the text of a role cannot represent it", role.name);
             lost.push(Diagnostic::warning("E0850", role.place.0, message));
         }
         Ok((text, lost))
     }
 
-    /// What another model that was derived does not say.
+    /// What a derived model lacks.
     fn lost_to(&self, derived: &SystemRoles) -> Vec<Diagnostic> {
         let mut lost = Vec::new();
         let mut add = |place: TextPosition, what: String| {
-            let message = format!("{what}: the text of a role cannot say that");
+            let message = format!("{what}: the text of a role cannot represent it");
             lost.push(Diagnostic::warning("E0850", place.0, message));
         };
         for it in self
@@ -120,7 +121,7 @@ impl SystemRoles {
                 Some(other) if self.names(&it.activities) != derived.names(&other.activities) => {
                     add(
                         it.place,
-                        format!("the activities of `{}`, which are not those of its formula", it.name),
+                        format!("the activities of `{}`, which differ from those of its formula", it.name),
                     );
                 }
                 Some(_) => {}
@@ -138,7 +139,7 @@ impl SystemRoles {
     }
 }
 
-/// Formulas as files have them: no blanks, one a line.
+/// Formulas in the format of files: no blanks, one per line.
 pub(crate) fn compact(liveness: &Liveness) -> String {
     let line = |formula: &liveness::Formula| {
         let term = formula.expression.map_or(String::new(), |term| liveness.compact(term));
@@ -149,7 +150,7 @@ pub(crate) fn compact(liveness: &Liveness) -> String {
 
 fn lost_of_role(srm: &Srm) -> Vec<Diagnostic> {
     let lost = |span: Span, what: String| {
-        let message = format!("{what}: a System Roles Model cannot say that");
+        let message = format!("{what}: a System Roles Model cannot represent it");
         Diagnostic::warning("E0850", span, message)
     };
     let protocols = srm

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use crate::functionality::{FunctionalityRow, FunctionalityTable};
 use crate::roles::SystemRoles;
 
-/// By what each activity of each role is done: first those of the role itself, then those of its
-/// capabilities.
+/// The functionality of each activity of each role: first activities of the role itself, then those
+/// of its capabilities.
 pub fn functionality_table(srm: &SystemRoles) -> FunctionalityTable {
     let mut rows = Vec::new();
     for role in &srm.roles {
@@ -57,8 +57,8 @@ const HEADS: [&str; 8] = [
 ];
 
 impl FunctionalityTable {
-    /// A table in columns, without those in which nothing stands. Roles and capabilities are
-    /// written where they begin.
+    /// A table in text, without empty columns. Roles and capabilities are written once, in their
+    /// first row.
     pub fn to_table(&self) -> String {
         let shown = self.shown();
         let rows: Vec<[String; 8]> = self.without_repetitions();
@@ -76,7 +76,7 @@ impl FunctionalityTable {
         head + &rows.iter().map(line).collect::<String>()
     }
 
-    /// A table of HTML, to be put into a page; roles and capabilities span their rows.
+    /// An HTML table; roles and capabilities span their rows.
     pub fn to_html(&self) -> String {
         let shown = self.shown();
         let mut html = String::from("<table>\n  <tr>");
@@ -99,13 +99,13 @@ impl FunctionalityTable {
         html + "</table>\n"
     }
 
-    /// Comma-separated values after RFC 4180, every column, every cell filled.
+    /// Comma-separated values according to RFC 4180, with all columns and cells filled.
     pub fn to_csv(&self) -> String {
         let line = |cells: [&str; 8]| format!("{}\r\n", cells.map(csv_cell).join(","));
         line(HEADS) + &self.rows.iter().map(|row| line(row.cells())).collect::<String>()
     }
 
-    /// The columns in which something stands, the first four always.
+    /// The columns that are not empty, and always the first four.
     fn shown(&self) -> Vec<usize> {
         let is_used =
             |column: &usize| *column < 4 || self.rows.iter().any(|row| !row.cells()[*column].is_empty());
@@ -123,7 +123,7 @@ impl FunctionalityTable {
         self.rows.iter().enumerate().map(|(index, row)| cells(index, row)).collect()
     }
 
-    /// How many rows the role or capability of a row goes on for; 0 if it began before.
+    /// The number of rows that the role or capability of a row spans; 0 in its further rows.
     fn rows_of(&self, index: usize, column: usize) -> usize {
         let key = |row: &FunctionalityRow| {
             row.cells()[..=column].iter().map(ToString::to_string).collect::<Vec<String>>()

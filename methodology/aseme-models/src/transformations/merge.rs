@@ -8,9 +8,8 @@ use yase::{Diagnostic, Span};
 
 use crate::iac::{Iac, IacNode, IacTransition};
 
-/// Puts what is written on a protocol's chart onto the chart of a role: wherever the role has a
-/// composite called as a participant is, its states and transitions get the variables and
-/// refinements of those at the same place in the participant.
+/// Merges a protocol's chart into the chart of a role: each composite with the name of a
+/// participant gets the variables and refinements of the participant's states and transitions.
 ///
 /// The rule of the protocol becomes a guard on each way into the part, beside the guard that the
 /// role has there, and each outcome an exit. A part that the role repeats directly (`part~`), or
@@ -55,7 +54,7 @@ pub fn merge_eac(iac: &mut Iac, eac: &Iac) -> (Vec<String>, Vec<Diagnostic>) {
             .collect::<Vec<_>>()
             .join(", ");
         let message = format!("`{}` has none of the parts of `{}`: {names}", iac.name, eac.name);
-        let hint = "a part is found by its name; the role's formulas must refine that";
+        let hint = "a part is found by its name, which the role's formulas must refine";
         diagnostics.push(Diagnostic::warning("E0837", Span::default(), message).with_hint(hint));
     }
     (merged, diagnostics)
@@ -74,7 +73,7 @@ pub fn participants(eac: &Iac) -> Vec<usize> {
     if inside.is_empty() { of_kind(top, "OR") } else { inside }
 }
 
-/// The variable of the role for each of the protocol, made where it is missing.
+/// The variable of the role for each variable of the protocol, added if it is missing.
 fn shared_variables(iac: &mut Iac, eac: &Iac) -> Vec<usize> {
     eac.variables.iter().map(|variable| iac.variable(variable)).collect()
 }
@@ -147,10 +146,10 @@ impl ChartMerge<'_> {
     fn mismatch(&mut self, participant: usize, place: usize, wanted: &str, found: &str) {
         let name = &self.eac.nodes[participant].name;
         let message = format!(
-            "`{name}` of `{}` is not that of `{}`: {found} stands where {wanted} would be",
+            "`{name}` of `{}` differs from `{}`: {found} instead of {wanted}",
             self.iac.name, self.eac.name
         );
-        let hint = "take the formula of the participant over as it is";
+        let hint = "copy the formula of the participant";
         let span = self.iac.nodes[place].place.0;
         self.diagnostics.push(Diagnostic::error("E0835", span, message).with_hint(hint));
     }
@@ -361,17 +360,17 @@ fn copy_refinement(theirs: &IacTransition, own: &mut IacTransition) -> Option<Di
     found
 }
 
-/// How alike two composites are to be.
+/// How similar two composites must be.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum ShapeMatch {
     /// The same.
     Same,
-    /// The second may do in several steps what is an activity of the first.
+    /// The second may refine activities of the first into several steps.
     Refined,
 }
 
-/// For each node in one composite the node at the same place in another, the composites themselves
-/// first; or the first two that differ.
+/// The corresponding node for each node of a composite, starting with the composites themselves, or
+/// the first two nodes that differ.
 pub fn same_shape(
     eac: &Iac,
     participant: usize,
@@ -409,7 +408,7 @@ fn is_refined(eac: &Iac, a: usize, iac: &Iac, b: usize) -> bool {
     theirs.name == own.name && theirs.kind == "BASIC" && matches!(own.kind.as_str(), "OR" | "AND")
 }
 
-/// What a node is, apart from its label.
+/// The content of a node except its label.
 fn node_content(chart: &Iac, node: usize) -> String {
     let node = &chart.nodes[node];
     if node.name == node.label { node.kind.clone() } else { format!("{} {}", node.written(), node.kind) }

@@ -6,11 +6,9 @@ use crate::iac::{ChartKind, Iac};
 use crate::roles::{Role, SystemRoles};
 use aseme::{liveness, transform};
 
-/// A chart for each role: its formulas expanded, and on each activity the description of the
-/// functionality it is done by.
+/// A chart for each role: its formulas expanded, with the functionality of each activity.
 ///
-/// Findings are those about formulas, at the role they belong to, and activities that the model
-/// does not have (E0249).
+/// Findings about formulas are positioned at their role; unknown activities are E0249.
 pub fn roles_to_iac(srm: &SystemRoles) -> (Vec<Iac>, Vec<Diagnostic>) {
     let mut diagnostics = Vec::new();
     let charts = srm.roles.iter().map(|role| chart(srm, role, &mut diagnostics)).collect();

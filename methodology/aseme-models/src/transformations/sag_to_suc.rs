@@ -5,8 +5,8 @@ use yase::Diagnostic;
 use crate::sag::{ActorGoal, Sag};
 use crate::suc::{Suc, SystemRole, UseCase};
 
-/// A role for each actor and a use case for each goal, in order. In a use case takes part whose
-/// goal it is, and then those who are to reach it. What plays a role is not known yet.
+/// A role for each actor and a use case for each goal, in order. The participants of a use case are
+/// the owner of the goal and the actors it depends on. The kinds of roles remain open.
 ///
 /// A goal without an actor is an error (E0830).
 pub fn sag_to_suc(sag: &Sag) -> (Suc, Vec<Diagnostic>) {
@@ -25,7 +25,7 @@ pub fn sag_to_suc(sag: &Sag) -> (Suc, Vec<Diagnostic>) {
     let nobodys = sag.goals.iter().filter(|goal| goal.depender.is_none());
     let faults = nobodys.map(|goal| {
         let message = format!("the goal `{}` has no actor", goal.name);
-        Diagnostic::error("E0830", goal.place.0, message).with_hint("say whose by `depender = actor`")
+        Diagnostic::error("E0830", goal.place.0, message).with_hint("name it by `depender = actor`")
     });
     (Suc { roles, usecases }, faults.collect())
 }

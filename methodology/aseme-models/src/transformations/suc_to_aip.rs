@@ -6,8 +6,8 @@ use super::{joined, system_participants};
 use crate::aip::{Aip, Participant, Protocol};
 use crate::suc::{Suc, UseCase};
 
-/// A protocol for each use case that consists of others and in which more than one role of the
-/// system takes part; a role whose kind is not said may be one.
+/// A protocol for each use case that includes others and has several participants of the system; a
+/// role of unspecified kind counts as one.
 ///
 /// A model without such a use case is reported (E0831).
 pub fn suc_to_aip(suc: &Suc) -> (Aip, Vec<Diagnostic>) {

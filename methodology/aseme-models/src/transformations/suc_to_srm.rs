@@ -9,18 +9,18 @@ use crate::roles::{Capability, Functionality, Role, RoleActivity, SystemRoles};
 use crate::suc::{RoleKind, Suc, UseCase};
 use aseme::liveness;
 
-/// The roles of the system, with their capabilities and activities; parts in protocols are taken
-/// from an AIP if there is one.
+/// The roles of the system with their capabilities and activities. Formulas of protocols come from
+/// an AIP if there is one.
 ///
-/// A use case that consists of others becomes a capability of each role that takes part, called
-/// `usecase_role` if there are several such roles of the system; its formula has what it includes
-/// and the role begins (is the first participant of). Any other use case becomes an activity, done
-/// by the functionality that `specified_by` describes. The first formula of a role has its
-/// capabilities, and then the activities that belong to none of them.
+/// A use case that includes others becomes a capability of each participating role, named
+/// `usecase_role` if several roles of the system take part; its formula has the included use cases
+/// of which the role is the first participant. Any other use case becomes an activity with the
+/// functionality in `specified_by`. The first formula of a role has its capabilities, followed by
+/// the activities that belong to none.
 ///
-/// In an AIP the participant `role`, or one whose name has `_role` in it, says the formula of that
-/// name; one that is no role's becomes a capability with its formulas as description. Findings are
-/// about capabilities in which a role begins nothing (E0832).
+/// The participant of an AIP that is named after a role, or whose name contains `_role`, provides
+/// the formula of that name; a participant without a role becomes a capability with its formulas as
+/// description. A capability in which a role is never the first participant is reported (E0832).
 pub fn suc_to_srm(suc: &Suc, aip: Option<&Aip>) -> (SystemRoles, Vec<Diagnostic>) {
     let mut making = SrmBuilder { suc, srm: SystemRoles::default(), diagnostics: Vec::new() };
     let system = suc.roles.iter().enumerate().filter(|(_, role)| role.kind == RoleKind::System);
@@ -71,7 +71,7 @@ impl<'a> SrmBuilder<'a> {
         self.srm.roles.push(made);
     }
 
-    /// What a use case is called among what a role can do.
+    /// The name of a use case among a role's capabilities and activities.
     fn name_for(&self, role: usize, usecase: &UseCase) -> String {
         let is_capability = !usecase.includes.is_empty() && usecase.participants.contains(&role);
         match is_capability && system_participants(self.suc, usecase).count() > 1 {
@@ -115,18 +115,18 @@ impl<'a> SrmBuilder<'a> {
         let capability = self.name_for(role, usecase);
         if names.is_empty() {
             let message = format!(
-                "`{}` begins nothing of what `{}` includes, so `{capability}` has no formula",
+                "`{}` is the first participant of nothing that `{}` includes, so `{capability}` has no formula",
                 suc.roles[role].name, usecase.name
             );
-            let hint = "the first participant of a use case is the role that begins it";
+            let hint = "the first participant of a use case performs it";
             self.diagnostics.push(Diagnostic::warning("E0832", usecase.place.0, message).with_hint(hint));
             return None;
         }
         Some(format!("{capability}={}\n", joined(names.iter().map(String::as_str))))
     }
 
-    /// The activity of a name, case aside; a new one is done by the functionality that is described
-    /// so, or by a new one if nothing is said.
+    /// The activity of a name, ignoring case. A new one gets the functionality with this
+    /// description, or a new functionality without one.
     fn activity(&mut self, name: &str, described: Option<&str>) -> usize {
         let known = self.srm.activities.iter().position(|activity| activity.name.eq_ignore_ascii_case(name));
         known.unwrap_or_else(|| {
@@ -179,7 +179,7 @@ impl<'a> SrmBuilder<'a> {
         names.iter().map(|name| self.activity(name, None)).collect()
     }
 
-    /// A part that no role of the use cases plays is there for roles that are written later.
+    /// Adds a participant without a role as a capability, for roles that are added later.
     fn free_participant(&mut self, participant: &Participant) {
         let activities = self.activities_of(participant);
         let (name, description) = (participant.name.clone(), participant.liveness.clone());
@@ -187,7 +187,7 @@ impl<'a> SrmBuilder<'a> {
     }
 }
 
-/// Formulas in which that of a name says something else; it is added if there was none.
+/// Formulas in which the formula of a name is replaced, or added if it is missing.
 fn with_formula(liveness: &str, name: &str, expression: &str) -> String {
     let formula = format!("{name}={}\n", expression.trim_end());
     let is_it =

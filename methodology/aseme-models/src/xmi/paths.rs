@@ -6,16 +6,16 @@ use roxmltree::{Document, Node};
 
 use super::{XMI, elements};
 
-/// The ways to all elements of a document.
+/// Index of the elements of a document.
 pub(crate) struct XmiPaths {
     roots: Vec<usize>,
-    /// The elements of a name in an element.
+    /// The child elements by parent and name.
     children: BTreeMap<(usize, String), Vec<usize>>,
     ids: BTreeMap<String, usize>,
 }
 
 impl XmiPaths {
-    /// The ways of a document. In one whose root is `xmi:XMI`, the elements in that are the roots.
+    /// Indexes a document. The children of the root `xmi:XMI` are roots themselves.
     pub(crate) fn new(document: &Document<'_>) -> XmiPaths {
         let root = document.root_element();
         let roots = match has_many_roots(root) {
@@ -35,7 +35,7 @@ impl XmiPaths {
         paths
     }
 
-    /// The element that one reference means; none if there is none there.
+    /// The element that a reference denotes.
     pub(crate) fn find(&self, reference: &str) -> Option<usize> {
         let reference = reference.strip_prefix('#').unwrap_or(reference);
         let Some(path) = reference.strip_prefix('/') else {

@@ -1,10 +1,10 @@
 //! Writer of XMI in the layout of the Eclipse tools.
 
-/// A document in the making.
+/// Writes a document.
 pub(crate) struct XmiWriter {
     text: String,
     open: Vec<String>,
-    /// Whether the tag of the innermost element is not closed yet.
+    /// Whether the start tag of the innermost element is still open.
     in_tag: bool,
 }
 
@@ -15,7 +15,7 @@ impl XmiWriter {
         XmiWriter { text, open: Vec::new(), in_tag: false }
     }
 
-    /// Begins an element.
+    /// Starts an element.
     pub(crate) fn open(&mut self, name: &str) {
         self.end_tag();
         self.text.push_str(&"  ".repeat(self.open.len()));
@@ -24,7 +24,7 @@ impl XmiWriter {
         self.in_tag = true;
     }
 
-    /// Begins the root element, with the attributes that each document has.
+    /// Starts the root element, with the attributes of every document.
     pub(crate) fn root(&mut self, prefix: &str, name: &str, namespace: &str) {
         self.open(&format!("{prefix}:{name}"));
         self.attribute("xmi:version", "2.0");
@@ -32,7 +32,7 @@ impl XmiWriter {
         self.attribute(&format!("xmlns:{prefix}"), namespace);
     }
 
-    /// Adds an attribute to the element that was begun last.
+    /// Adds an attribute to the element that was started last.
     pub(crate) fn attribute(&mut self, name: &str, value: &str) {
         self.text.extend([" ", name, "=\""]);
         for letter in value.chars() {
@@ -56,7 +56,7 @@ impl XmiWriter {
         }
     }
 
-    /// Ends the element that was begun last.
+    /// Ends the innermost element.
     pub(crate) fn close(&mut self) {
         let Some(name) = self.open.pop() else { return };
         if std::mem::take(&mut self.in_tag) {
@@ -82,7 +82,7 @@ impl XmiWriter {
     }
 }
 
-/// Whether a text can stand in XML at all.
+/// Whether XML can represent all characters of a text.
 pub(crate) fn fits_xml(text: &str) -> bool {
     let control = |letter: char| u32::from(letter) < 0x20 && !"\t\n\r".contains(letter);
     !text.contains(|letter| control(letter) || matches!(letter, '\u{fffe}' | '\u{ffff}'))

@@ -26,7 +26,7 @@ fn chart(text: &str) -> Statechart {
     chart
 }
 
-/// The differences after texts of the role were replaced.
+/// The differences after replacements in the role's text.
 fn said(replacements: &[(&str, &str)]) -> Vec<String> {
     let edited = replacements.iter().fold(ROLE.to_owned(), |role, (text, other)| {
         assert!(role.contains(text), "{text}");
@@ -113,7 +113,7 @@ fn the_order_in_which_ways_out_are_tried_is_compared() {
 }
 
 #[test]
-fn regions_are_told_apart_by_what_is_in_them() {
+fn regions_are_distinguished_by_their_content() {
     let before = chart("r = a~ || b~");
     let said = |text: &str| -> Vec<String> {
         diff(&before, &chart(text)).changes.iter().map(ToString::to_string).collect()

@@ -1,6 +1,6 @@
-//! Faults in the structure of files are reported, each where it is.
+//! Structural faults of files are reported with their positions.
 
-use crate::kit::{read, told};
+use crate::kit::{codes_and_texts, read};
 
 const HEAD: &str = r#"<statechart:Model xmlns:xmi="http://www.omg.org/XMI" xmlns:statechart="http://statechart/1.0" name="m">"#;
 
@@ -15,7 +15,7 @@ fn flat(body: &str) -> String {
 #[track_caller]
 fn check(text: &str, expected: &[(&str, &str)]) {
     let (.., findings) = read(text);
-    assert_eq!(told(text, &findings), expected, "{findings:#?}\n{text}");
+    assert_eq!(codes_and_texts(text, &findings), expected, "{findings:#?}\n{text}");
 }
 
 const ROOT: &str =

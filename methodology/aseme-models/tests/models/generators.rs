@@ -1,10 +1,10 @@
-//! Whatever is in a file is answered with findings.
+//! Every input yields findings and never a panic.
 
 use aseme_models::convert::{self, Format};
 use proptest::prelude::*;
 use yase::Source;
 
-/// Reads a text and writes what it was understood as in every format.
+/// Parses a text and writes the model in every format.
 fn exercise(text: &str) {
     let (found, findings) = convert::read(&Source::new("any", text));
     for finding in &findings {
@@ -13,7 +13,7 @@ fn exercise(text: &str) {
     let Some((model, _)) = found else { return assert!(!findings.is_empty()) };
     for (_, format) in Format::WORDS {
         match model.write(format, text) {
-            // The text of a role is a model of its own, and Rust is none.
+            // The text of a role is parsed as another kind of model, and Rust cannot be parsed.
             Ok(written)
                 if written.lost.is_empty()
                     && !matches!(format, Format::Role | Format::Rust)

@@ -1,9 +1,9 @@
-//! What the tests share.
+//! Functions shared by the tests.
 
 use aseme_models::convert::{self, Format, Model};
 use yase::{Diagnostic, Source};
 
-/// The model in a text and the format it is in.
+/// Parses a text: model, format and findings.
 pub(crate) fn read(text: &str) -> (Model, Format, Vec<Diagnostic>) {
     let (found, findings) = convert::read(&Source::new("model", text));
     for finding in &findings {
@@ -13,21 +13,21 @@ pub(crate) fn read(text: &str) -> (Model, Format, Vec<Diagnostic>) {
     (model, format, findings)
 }
 
-/// The model in a text of which nothing is to be said.
+/// Parses a text that must have no findings.
 pub(crate) fn clean(text: &str) -> Model {
     let (model, _, findings) = read(text);
     assert_eq!(findings, [], "{text}");
     model
 }
 
-/// A model in a format that says all of it.
+/// Writes a model in a format that represents it completely.
 pub(crate) fn whole(model: &Model, format: Format) -> String {
     let written = model.write(format, "<").unwrap_or_else(|refused| panic!("{refused:?}"));
     assert_eq!(written.lost, [], "{format:?}");
     written.text
 }
 
-/// The codes of findings, and the places they speak of.
-pub(crate) fn told<'a>(text: &'a str, findings: &[Diagnostic]) -> Vec<(&'static str, &'a str)> {
+/// The codes of findings, and the texts at their spans.
+pub(crate) fn codes_and_texts<'a>(text: &'a str, findings: &[Diagnostic]) -> Vec<(&'static str, &'a str)> {
     findings.iter().map(|finding| (finding.code, &text[finding.span.start..finding.span.end])).collect()
 }

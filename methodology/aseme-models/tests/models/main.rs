@@ -1,4 +1,4 @@
-//! Models of all kinds: read, written, converted there and back.
+//! Models of all kinds: parsed, written, and converted in both directions.
 
 #![allow(
     clippy::expect_used,

@@ -41,13 +41,13 @@ fn chart(text: &str) -> Statechart {
 }
 
 #[test]
-fn what_fits_stays_letter_by_letter() {
+fn matching_entries_stay_unchanged() {
     let RegeneratedRole { text, kept, lost, .. } = comment_out_refinements(&file(ROLE)).unwrap();
     assert_eq!((text.as_str(), kept, lost.len()), (ROLE, 6, 0));
 }
 
 #[test]
-fn what_no_longer_fits_becomes_a_comment_with_its_reason() {
+fn unmatched_entries_become_comments_with_reasons() {
     let edited = ROLE
         .replace("act = Track . Kick", "act = Track . [Align] . Kick")
         .replace("Search | act", "Find | act");
@@ -109,7 +109,7 @@ fn a_composite_with_history_is_entered_where_it_was_left() {
     assert!(chart.transitions().all(|(_, it)| it.target != act(&chart)));
     let (_, found) = role_to_statechart(file(&ROLE.replace("act : history", "Track : history")).srm());
     let found: Vec<&str> = found.iter().map(|found| found.message.as_str()).collect();
-    assert_eq!(found, ["`Track` has no states inside that it could remember"]);
+    assert_eq!(found, ["`Track` has no states inside"]);
     let (_, found) = SrmFile::parse(ROLE.replace("= deep", "= far"));
     assert_eq!(
         found[0].to_string(),
@@ -117,9 +117,9 @@ fn a_composite_with_history_is_entered_where_it_was_left() {
     );
 }
 
-/// The chart that a role's text describes, with all of it said in entries.
+/// Entries represent all refinements of a chart.
 #[test]
-fn a_chart_says_its_refinements_as_entries_and_a_role_takes_them_in() {
+fn refinements_of_a_chart_become_entries_of_a_role() {
     let formulas = &ROLE[..ROLE.find("Constants:").unwrap()];
     let entries = entries_of_chart(&chart(ROLE));
     let made = apply_refinements(&file(formulas), &entries).unwrap();
@@ -137,7 +137,7 @@ fn a_chart_says_its_refinements_as_entries_and_a_role_takes_them_in() {
 }
 
 #[test]
-fn what_the_role_says_itself_holds_and_the_other_is_listed() {
+fn entries_of_the_role_take_precedence_and_others_are_listed() {
     let own = "Role: player\nLiveness:\nplayer = Stand . (Search | act)\nact = Track . [Align] . Kick\nTransitions:\nCONDITION -> act : [up]\n";
     let made = apply_refinements(&file(own), &entries_of_role(&file(ROLE))).unwrap();
     let lost: Vec<&str> = made.lost.iter().map(|lost| lost.text.as_str()).collect();
@@ -185,16 +185,15 @@ fn a_chart_keeps_what_only_its_file_can_say() {
     assert_eq!(
         lost,
         [
-            "`player/(Search|act)/Search` is gone, and with it: functionality = vision, metadata = at 10 20 of Search",
-            "there is no such transition any more: `player/(Search|act)/CONDITION -> player/(Search|act)/Search : [lost]`",
+            "`player/(Search|act)/Search` was removed, with: functionality = vision, metadata = at 10 20 of Search",
+            "the transition was removed: `player/(Search|act)/CONDITION -> player/(Search|act)/Search : [lost]`",
         ]
     );
 }
 
-/// What the engine knows of a transition, a role can say, and a chart's refinements come back as
-/// entries.
+/// Internal transitions are written as entries and restored from them.
 #[test]
-fn a_way_that_does_not_leave_its_state_is_said_and_carried() {
+fn internal_transitions_become_entries_and_are_restored() {
     let role = "Role: r\nLiveness:\nr = a~ . b\nTransitions:\na -> a interrupts internal : more\na~ -> b also !2 %0.5 : stop\n";
     let own = chart(role);
     let (_, loop_of_a) = own.transitions().find(|(_, it)| it.internal).unwrap();
@@ -264,7 +263,7 @@ fn places_of_what_is_gone_become_comments_and_those_that_differ_are_listed() {
 }
 
 #[test]
-fn a_layout_that_is_not_understood_is_said() {
+fn an_invalid_layout_is_reported() {
     for (line, code, what) in [
         ("a : at = 10", "E0245", "`10` is not a value for `at`"),
         ("a : size = 0 5", "E0245", "`0 5` is not a value for `size`"),
@@ -272,11 +271,11 @@ fn a_layout_that_is_not_understood_is_said() {
         ("a -> END : via = 1 2 3", "E0245", "`1 2 3` is not a value for `via`"),
         ("a : via = 1 2", "E0244", "the layout of a state has no `via`"),
         ("a -> END : at = 1 2", "E0244", "the layout of a transition has no `at`"),
-        ("a -> END !2 : via = 1 2", "E0242", "`!2` is not understood after a target"),
+        ("a -> END !2 : via = 1 2", "E0242", "`!2` is no modifier of a transition"),
         ("a", "E0243", "an entry has a path, `:` and settings"),
         ("b : at = 1 2", "E0250", "names no state of the chart"),
         ("a -> END also : via = 1 2", "E0250", "names no transition of the chart"),
-        ("a : at = 1 2\na : at = 1 2", "E0252", "as `a : at = 1 2` is"),
+        ("a : at = 1 2\na : at = 1 2", "E0252", "both refer to `a`"),
     ] {
         let (read, mut found) = SrmFile::parse(format!("Role: r\nLiveness:\nr = a\nLayout:\n{line}\n"));
         found.extend(role_to_statechart(read.srm()).1);
@@ -302,7 +301,7 @@ fn a_newer_model_file_keeps_the_places_of_an_older_one() {
     other.nodes[a].frame.at = Some((7.0, 7.0));
     let lost = transfer_refinements(&newer, &mut other);
     assert_eq!(lost.len(), 1, "{lost:?}");
-    assert!(lost[0].message.contains("than `at = 10 20, size = 100 40`"), "{}", lost[0].message);
+    assert!(lost[0].message.contains("from `at = 10 20, size = 100 40`"), "{}", lost[0].message);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! There and back is equal, for models of all kinds.
+//! Round trips of all kinds of models.
 
 use aseme_models::aip::{Aip, Participant};
 use aseme_models::convert::{Format, Model};
@@ -15,7 +15,7 @@ use yase::statechart::Frame;
 
 use crate::kit::{read, whole};
 
-/// What people may write, and what nobody would.
+/// Ordinary and unusual texts.
 fn text() -> impl Strategy<Value = String> {
     prop_oneof![
         3 => "[a-z]{0,6}",
@@ -28,7 +28,7 @@ fn name() -> impl Strategy<Value = String> {
     prop_oneof![4 => "[a-c]", 1 => text()]
 }
 
-/// Links to some of so many things, each once.
+/// Links to some of a number of objects, each at most once.
 fn links(count: usize) -> impl Strategy<Value = Vec<usize>> {
     prop::collection::vec(any::<Index>(), 0..4).prop_map(move |links| {
         let mut kept: Vec<usize> = Vec::new();
@@ -200,8 +200,8 @@ fn chart() -> impl Strategy<Value = Iac> {
     )
 }
 
-/// Adds a node somewhere on the way to the last one, so that every node stands behind its parent's
-/// other descendants.
+/// Adds a node below the path to the last one, so that every node follows the other descendants of
+/// its parent.
 fn grow(chart: &mut Iac, (name, kind, place, functionality, by_label, variables): Choices) {
     let parent = chart.nodes.len().checked_sub(1).map(|last| {
         let way: Vec<usize> = std::iter::successors(Some(last), |&node| chart.nodes[node].parent).collect();

@@ -1,4 +1,4 @@
-//! Model files as the original tools wrote them, where the folder with them is at hand.
+//! Model files written by the original tools; skipped if their folder is absent.
 
 use std::path::{Path, PathBuf};
 
@@ -68,9 +68,9 @@ fn formats(model: &Model) -> Vec<Format> {
     }
 }
 
-/// What these tools wrote is what is written, letter by letter, but for the encoding in the first
-/// line and empty expressions. Files of 2010 break lines within elements, and one of 2011 has its
-/// nodes in the order in which they were made.
+/// Files of the tools are reproduced byte by byte, except the encoding in the first line and empty
+/// expressions. Files of 2010 break lines within elements, and one of 2011 has its nodes in the
+/// order of their creation.
 #[test]
 fn files_of_the_tools_are_written_as_they_were() {
     let Some(files) = files() else {

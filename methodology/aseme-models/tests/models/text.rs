@@ -1,9 +1,9 @@
-//! The text form of each kind of model, beside its XMI.
+//! The text form of each kind of model, compared with its XMI.
 
 use aseme_models::convert::Format;
 use yase::Diagnostic;
 
-use crate::kit::{clean, read, told, whole};
+use crate::kit::{clean, codes_and_texts, read, whole};
 
 const SAG: &str = r#"SAG:
 
@@ -128,10 +128,18 @@ fn each_kind_reads_and_prints_as_it_is_written() {
         assert_eq!(clean(text).to_text(), text);
     }
     let (model, _, findings) = read(IAC);
-    assert_eq!(told(IAC, &findings), [("E0813", "END")], "its label is another than the usual one");
+    assert_eq!(
+        codes_and_texts(IAC, &findings),
+        [("E0813", "END")],
+        "its label is another than the usual one"
+    );
     assert_eq!(model.to_text(), IAC);
     let (model, _, findings) = read(SAG);
-    assert_eq!(told(SAG, &findings), [("E0263", "Actor: Player")], "the second of a name is said to be one");
+    assert_eq!(
+        codes_and_texts(SAG, &findings),
+        [("E0263", "Actor: Player")],
+        "the second of a name is said to be one"
+    );
     assert_eq!(model.to_text(), SAG);
 }
 
@@ -158,7 +166,7 @@ fn comments_stay_where_they_are() {
     );
     let lost = model.write(Format::Xmi, text).unwrap().lost;
     assert_eq!(
-        told(text, &lost).iter().map(|(_, place)| *place).collect::<Vec<_>>(),
+        codes_and_texts(text, &lost).iter().map(|(_, place)| *place).collect::<Vec<_>>(),
         ["# who", "# what", "# one", "# two", "# three", "# end"]
     );
 }
@@ -203,7 +211,7 @@ fn faults_of_texts_are_placed() {
         ("IAC: c\nConstants:\n  a = wide\nStates:\n  r OR\n    START\n", "E0239", "wide"),
     ] {
         let (.., findings) = read(text);
-        assert!(told(text, &findings).contains(&(code, place)), "{text}\n{findings:?}");
+        assert!(codes_and_texts(text, &findings).contains(&(code, place)), "{text}\n{findings:?}");
     }
 }
 

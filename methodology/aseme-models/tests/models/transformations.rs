@@ -1,5 +1,5 @@
-//! Inputs and outputs of the transformations side by side, in the folders of `tests/golden`. With
-//! `MONAS_BLESS=1` the outputs are written anew.
+//! Inputs and outputs of the transformations in `tests/golden`. `MONAS_BLESS=1` rewrites the
+//! outputs.
 
 use std::path::{Path, PathBuf};
 
@@ -27,8 +27,7 @@ fn check(name: &str, actual: &str) {
     assert!(actual == expected, "{name} differs from its golden file; MONAS_BLESS=1 accepts it:\n{actual}");
 }
 
-/// An output is a model of which nothing more is to be said than the operators that are to be
-/// chosen, and reads back as it is.
+/// Asserts that an output has no findings but open operators, and survives a round trip.
 #[track_caller]
 fn check_model(name: &str, model: &Model) {
     let text = model.to_text();
@@ -66,7 +65,7 @@ fn goals_become_use_cases() {
 }
 
 #[test]
-fn a_goal_of_nobody_is_refused() {
+fn a_goal_without_an_actor_is_rejected() {
     let text = "SAG:\nGoal: Win\nActor: a\n";
     let Model::Sag(sag) = clean(text) else { panic!("goals") };
     let (_, findings) = transformations::sag_to_suc(&sag);
@@ -186,7 +185,7 @@ fn broken_protocols_are_refused() {
     let (merged, findings) = transformations::merge_eac(&mut iac, &chart(&swapped));
     assert_eq!((merged.len(), codes(&findings)), (1, vec!["E0835"]));
     assert!(
-        findings[0].message.contains("WalkTowardsGoal BASIC stands where StandStill BASIC would be"),
+        findings[0].message.contains("WalkTowardsGoal BASIC instead of StandStill BASIC"),
         "{}",
         findings[0]
     );
@@ -199,7 +198,7 @@ fn broken_protocols_are_refused() {
 }
 
 #[test]
-fn the_protocol_holds_where_the_role_says_another_thing() {
+fn the_protocol_takes_precedence_over_the_role() {
     let mut iac = extended_attacker();
     let inside = iac
         .transitions

@@ -1,4 +1,4 @@
-//! XMI as it may be written: any order of attributes, all ways of referring, older metamodels.
+//! Variants of XMI: orders of attributes, kinds of references, older metamodels.
 
 use aseme_models::convert::{Format, Model};
 use aseme_models::iac::Dialect;
@@ -84,7 +84,7 @@ fn the_namespace_of_protocols_is_misspelt_as_the_tools_have_it() {
     clean(&text.replace("acml", "amcl"));
 }
 
-/// All that only text can say.
+/// Settings that only the text form represents.
 const SAID: &str = "\
 IAC: m
 
@@ -113,7 +113,7 @@ Transitions:
 ";
 
 #[test]
-fn what_no_dialect_can_say_is_listed_thing_by_thing() {
+fn losses_of_dialects_are_listed_individually() {
     let model = clean(SAID);
     for (_, format) in Format::WORDS {
         let Format::Statechart(dialect) = format else { continue };
@@ -128,15 +128,15 @@ fn what_no_dialect_can_say_is_listed_thing_by_thing() {
             "the exit action of `a`, `raise(off)`",
             "the deferred events of `a`, `stop`",
             "the duration of `a`, `250ms`",
-            "where `a` is drawn, `at = 10 20`",
-            "where `a` is drawn, `size = 90 30`",
+            "the layout of `a`, `at = 10 20`",
+            "the layout of `a`, `size = 90 30`",
             "the priority of `0.1 -> a`",
             "the weight of `0.1 -> a`",
             "the word `interrupts` of `0.1 -> a`",
             "the word `internal` of `a -> a`",
-            "the way in a drawing of `a -> 0.3`",
+            "the layout of `a -> 0.3`",
         ] {
-            let whole = format!("{what}: {} cannot say that", dialect.name());
+            let whole = format!("{what}: {} cannot represent it", dialect.name());
             assert!(lost.contains(&whole), "{whole}\nis not in\n{}", lost.join("\n"));
         }
         assert_eq!(lost.len(), 14, "{}", lost.join("\n"));
@@ -150,8 +150,7 @@ fn what_no_dialect_can_say_is_listed_thing_by_thing() {
         "deferred events",
         "interrupts",
         "duration",
-        "is drawn",
-        "the way of",
+        "the layout of",
         "a weight",
     ] {
         assert!(lost.iter().any(|it| it.contains(what)), "{what} is not in\n{}", lost.join("\n"));

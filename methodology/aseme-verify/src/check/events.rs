@@ -15,7 +15,7 @@ use crate::checked_model::CheckedModel;
 
 pub(crate) fn check(subject: &CheckedModel, settings: &CheckSettings) -> Vec<Diagnostic> {
     if has_scripts(subject) {
-        // a script raises what it likes
+        // a script can raise any event
         return Vec::new();
     }
     let (waited, raised, timers) = (waited(subject), raised(subject), started(subject));
@@ -27,13 +27,11 @@ pub(crate) fn check(subject: &CheckedModel, settings: &CheckSettings) -> Vec<Dia
     };
     let never_raised = waited.iter().filter(|(name, _)| !comes(name)).map(|(name, &span)| {
         let found =
-            Diagnostic::warning("M16", span, format!("nothing in the chart raises the event `{name}`"));
+            Diagnostic::warning("M16", span, format!("no action of the chart raises the event `{name}`"));
         let candidates = raised.keys().chain(timers.keys()).map(String::as_str);
         match nearest(name, candidates) {
             Some(near) => found.with_hint(format!("did you mean `{near}`?")),
-            None => found.with_hint(
-                "if it comes from outside, from an activity or another agent, say so when checking",
-            ),
+            None => found.with_hint("declare it as external if an activity or another agent raises it"),
         }
     });
     let takes_any = subject
@@ -53,7 +51,7 @@ fn has_scripts(subject: &CheckedModel) -> bool {
     actions(subject).any(|(action, _)| matches!(action.kind, ActionKind::Script(_)))
 }
 
-/// Every action of the chart, with the place to point at.
+/// All actions of the chart with their spans.
 pub(crate) fn actions(subject: &CheckedModel) -> impl Iterator<Item = (&Action, Span)> {
     let of_transitions = subject.chart.transitions().flat_map(|(id, transition)| {
         let span = subject.places.transition(id);
@@ -86,13 +84,13 @@ fn started(subject: &CheckedModel) -> BTreeMap<String, Span> {
     started
 }
 
-/// The events that triggers name, by the first transition that does.
+/// The events that triggers name, each with the span of its first trigger.
 pub(crate) fn waited(subject: &CheckedModel) -> BTreeMap<String, Span> {
     let mut waited = BTreeMap::new();
     for (id, transition) in subject.chart.transitions() {
         let events: &[Path] = match &transition.expression.trigger {
             Some(Trigger::OneOf(events)) => events,
-            // whatever else happens is taken by `not e`, whether e happens or not
+            // `not e` matches every other event
             _ => &[],
         };
         for event in events {
@@ -102,7 +100,7 @@ pub(crate) fn waited(subject: &CheckedModel) -> BTreeMap<String, Span> {
     waited
 }
 
-/// Whether what a trigger names is, or may be, the arrival of a message or an event of the engine.
+/// Whether a trigger names, or may name, the arrival of a message or an event of the engine.
 fn comes_by_itself(name: &str) -> bool {
     let first = name.chars().next();
     let of_engine = ["error.", "done."].iter().any(|begin| name.starts_with(begin));

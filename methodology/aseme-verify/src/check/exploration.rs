@@ -30,8 +30,8 @@ use dead_by_design::DeadByDesign;
 /// The default number of activities that an agent's pool runs at once.
 const POOL: usize = 12;
 
-/// What exploration finds, what the findings before it being known, and how far it came; nothing if
-/// the chart cannot be explored.
+/// Findings of the exploration and its extent, or none if the chart cannot be explored. `known`
+/// holds the findings of the other checks.
 pub(crate) fn check(
     subject: &CheckedModel,
     settings: &CheckSettings,
@@ -58,10 +58,10 @@ pub(crate) fn check(
     (checks.all(settings, &explored), Some(explored))
 }
 
-/// Reports why a chart is not explored: silence would look like a chart without faults.
+/// Reports why a chart is not explored; otherwise it would look free of faults.
 fn not_explored(subject: &CheckedModel, reason: Diagnostic) -> Finding {
     if reason.code.starts_with('M') {
-        // a fault of the structure that only shows when ways through connectors are put together
+        // a structural fault that shows only when segments are joined into compound transitions
         let span =
             if reason.span == Span::default() { subject.places.node(Statechart::ROOT) } else { reason.span };
         return Diagnostic { span, ..reason }.into();
@@ -75,10 +75,9 @@ struct ExplorationCheck<'a> {
     abstraction: &'a Abstraction,
     found: &'a Exploration,
     intended: DeadByDesign,
-    /// The places of what other checks have found already: what follows from that is not said
-    /// again.
+    /// The spans of earlier findings; their consequences are not reported again.
     blamed: BTreeSet<Span>,
-    /// Whether no other check has found anything that matters.
+    /// Whether no other check has a finding above information.
     is_whole: bool,
 }
 
@@ -119,7 +118,7 @@ impl ExplorationCheck<'_> {
         Finding { diagnostic, trace: Some(trace.to_string()) }
     }
 
-    /// M13: a step that never comes to rest. It is proven if what it asks of data can be.
+    /// M13: a livelock. It is proven if the values that it requires of data are satisfiable.
     fn livelocks(&self) -> Vec<Finding> {
         let is_exact = |it: &&FailedStep| it.from.is_none_or(|from| self.found.states()[from].is_exact);
         let failures = self.found.failures().iter().filter(|it| it.kind == MachineErrorKind::NeverRests);
@@ -135,12 +134,11 @@ impl ExplorationCheck<'_> {
         let mut cycle: Vec<TransitionId> = failure.cycle.clone();
         cycle.dedup();
         let arrows: Vec<String> = cycle.iter().map(|&id| format!("`{}`", self.subject.arrow(id))).collect();
-        let message =
-            format!("the chart never comes to rest: it takes {} again and again", arrows.join(", "));
+        let message = format!("livelock: the chart repeats {} again and again", arrows.join(", "));
         let span = cycle.first().map_or(Span::default(), |&id| self.subject.places.transition(id));
         let severity = if is_proven { Severity::Error } else { Severity::Warning };
         let found = Diagnostic { severity, ..Diagnostic::warning("M13", span, message) };
-        found.with_hint("let a transition of the circle wait: for an event, a timer, or an activity")
+        found.with_hint("let a transition of the cycle wait for an event, a timer or an activity")
     }
 
     /// M04: a JOIN whose sources are never active together.
@@ -156,12 +154,12 @@ impl ExplorationCheck<'_> {
             .map(|(id, _)| {
                 let message = format!("the sources of `{}` are never active together", self.subject.path(id));
                 let found = Diagnostic::error("M04", self.subject.places.node(id), message);
-                found.with_hint("each of its sources waits until the others have come").into()
+                found.with_hint("each source of a JOIN waits for the others").into()
             })
             .collect()
     }
 
-    /// M12 of states: the outermost of those that nothing leads to.
+    /// M12 for states: the outermost of the unreachable states.
     fn unreachable_nodes(&self) -> Vec<Finding> {
         let is_place = |id: NodeId| self.subject.is_state(id) || self.subject.kind(id) == NodeKind::End;
         let nodes = self.subject.chart.nodes().map(|(id, _)| id);
@@ -173,10 +171,10 @@ impl ExplorationCheck<'_> {
         outermost
             .filter(|&id| self.is_first_of_unreached(id))
             .map(|id| {
-                let message = format!("`{}` is never reached, whatever happens", self.subject.path(id));
+                let message = format!("`{}` is unreachable", self.subject.path(id));
                 let hint = match self.subject.incoming(id).is_empty() {
-                    true => "no transition leads there: add one, or take it away",
-                    false => "only what is never reached itself leads there",
+                    true => "no transition leads to it: add one, or remove the state",
+                    false => "only unreachable states lead to it",
                 };
                 self.subject.warn("M12", id, message).with_hint(hint).into()
             })
@@ -192,7 +190,7 @@ impl ExplorationCheck<'_> {
         })
     }
 
-    /// Whether a transition was where it could have been taken.
+    /// Whether the source of a transition was active when its trigger could match.
     fn was_possible(&self, id: TransitionId) -> bool {
         let source = self.subject.transition(id).source;
         match self.subject.kind(source) {
@@ -203,7 +201,7 @@ impl ExplorationCheck<'_> {
         }
     }
 
-    /// M12 of transitions: those that are never taken though their source is reached.
+    /// M12 for transitions: those that are never taken although their source is reachable.
     fn unreachable_transitions(&self, accounted: &BTreeSet<TransitionId>) -> Vec<Finding> {
         let ids = self.subject.chart.transitions().map(|(id, _)| id);
         let never = ids.filter(|&id| {
@@ -219,31 +217,31 @@ impl ExplorationCheck<'_> {
         });
         never
             .map(|id| {
-                let message = format!("`{}` is never taken, whatever happens", self.subject.arrow(id));
+                let message = format!("`{}` is never taken", self.subject.arrow(id));
                 let hint =
-                    "another transition always comes before it, or what it waits for never is so there";
+                    "another transition always precedes it, or its trigger or guard never occurs in that state";
                 self.subject.warn_of("M12", id, message).with_hint(hint).into()
             })
             .collect()
     }
 
-    /// M22: what would be taken but for activities that always run where it could be.
+    /// M22: transitions that are blocked only because activities always run.
     fn held(&self) -> Vec<(TransitionId, Finding)> {
         let ids = self.subject.chart.transitions().map(|(id, _)| id);
         let never = ids.filter(|&id| !self.found.was_taken(id) && !self.intended.is_never(id));
         let held = never.filter(|&id| self.found.was_held(id) || self.never_becomes_quiescent(id));
         held.map(|id| {
             let message = format!(
-                "`{}` can only be taken while an activity that it would leave runs: it never is",
+                "`{}` is never taken, because an activity inside its source always runs",
                 self.subject.arrow(id)
             );
-            let hint = "write `interrupts` behind its target, or let what runs inside come to rest";
+            let hint = "write `interrupts` after its target, or let the activities inside complete";
             (id, self.subject.warn_of("M22", id, message).with_hint(hint).into())
         })
         .collect()
     }
 
-    /// Whether a transition waits for a composite to be quiet in which something always runs.
+    /// Whether a transition waits for a composite to be quiescent in which an activity always runs.
     fn never_becomes_quiescent(&self, id: TransitionId) -> bool {
         let transition = self.subject.transition(id);
         let is_composite = matches!(self.subject.kind(transition.source), NodeKind::Or | NodeKind::And);
@@ -261,7 +259,7 @@ impl ExplorationCheck<'_> {
                 .all(|state| state.running.iter().any(runs_inside))
     }
 
-    /// The states that are reached, meant to be left, and never are.
+    /// The reachable states that have exits but are never left.
     fn stuck_states(&self) -> Vec<NodeId> {
         let leaves = self
             .subject
@@ -276,15 +274,15 @@ impl ExplorationCheck<'_> {
         stuck.collect()
     }
 
-    /// M14: a state that is never left, and no END.
+    /// M14: a state that is never left and is no END.
     fn dead_ends(&self, stuck: &[NodeId]) -> Vec<Finding> {
         let mut findings: Vec<Finding> = stuck
             .iter()
             .filter_map(|&id| {
                 let state = self.found.first(|state| state.is_active(id))?;
                 let message =
-                    format!("`{}` is reached and never left, though it is no END", self.subject.path(id));
-                let found = self.subject.warn("M14", id, message).with_hint("the trace shows a way there");
+                    format!("`{}` is reachable and never left, but is no END", self.subject.path(id));
+                let found = self.subject.warn("M14", id, message).with_hint("see the trace");
                 Some(Self::with_trace(found, &self.found.trace_to(state)))
             })
             .collect();
@@ -292,8 +290,8 @@ impl ExplorationCheck<'_> {
         findings
     }
 
-    /// M14 of the whole chart: a state of affairs that nothing changes any more, though its parts
-    /// are left at other times.
+    /// M14 for the whole chart: a configuration that is never left, although each of its states is
+    /// left in other configurations.
     fn standstill(&self, stuck: &[NodeId]) -> Option<Finding> {
         let states = self.found.states();
         let mut moves = vec![false; states.len()];
@@ -316,9 +314,8 @@ impl ExplorationCheck<'_> {
         let index = (0..states.len()).find(is_dead)?;
         let to_be_left = |node: &&NodeId| self.intended.must_be_exited(self.subject, **node);
         let &node = states[index].configuration.iter().find(to_be_left)?;
-        let message =
-            format!("with `{}` active, the chart can come to a standstill", self.subject.path(node));
-        let found = self.subject.warn("M14", node, message).with_hint("the trace shows a way there");
+        let message = format!("with `{}` active, the chart can deadlock", self.subject.path(node));
+        let found = self.subject.warn("M14", node, message).with_hint("see the trace");
         Some(Self::with_trace(found, &self.found.trace_to(index)))
     }
 
@@ -334,8 +331,8 @@ impl ExplorationCheck<'_> {
         let cut = self.cut_short();
         let found = differences.into_iter().map(|difference| {
             let does_more = difference.kind.is_of_what_is_done();
-            // what leaves a composite early cuts traces short, as it is meant to; what cannot come
-            // of that is told instead
+            // leaving a composite early cuts traces short, as intended; only differences beyond
+            // that are reported
             let beyond = match does_more && !cut.is_empty() {
                 true => conformance::difference_beyond(chart, self.found, liveness, cut.clone()),
                 false => None,
@@ -346,12 +343,11 @@ impl ExplorationCheck<'_> {
         found.chain(undecided.then(|| self.undecided().into())).collect()
     }
 
-    /// What is too large to be compared is not said to hold.
+    /// Reports that the comparison exceeded its limit.
     fn undecided(&self) -> Diagnostic {
-        let message =
-            "not decided: whether the chart does what its formulas say, which is too large to be compared";
+        let message = "undecided: the chart is too large to compare its traces with its formulas";
         let found = self.subject.warn("M24", Statechart::ROOT, message.into());
-        found.with_hint("check the parts of it that matter as roles of their own")
+        found.with_hint("check its important parts as separate roles")
     }
 
     fn difference(&self, difference: ConformanceDifference, is_meant: bool) -> Finding {
@@ -360,39 +356,39 @@ impl ExplorationCheck<'_> {
             names => format!("after `{}`", names.join(" ")),
         };
         let (node, says) = match &difference.kind {
-            DifferenceKind::NotAllowed(node) => {
-                (*node, format!("`{}` is done, which the formulas do not allow", self.subject.path(*node)))
-            }
+            DifferenceKind::NotAllowed(node) => (
+                *node,
+                format!("`{}` is executed where the formulas do not allow it", self.subject.path(*node)),
+            ),
             DifferenceKind::EndsEarly => {
-                (Statechart::ROOT, String::from("the chart ends, and the formulas go on"))
+                (Statechart::ROOT, String::from("the chart ends where the formulas continue"))
             }
             DifferenceKind::NeverDone(name) => {
-                (Statechart::ROOT, format!("the formulas allow `{name}`, and the chart never does it"))
+                (Statechart::ROOT, format!("the formulas allow `{name}`, but the chart never executes it"))
             }
             DifferenceKind::NeverEnds => {
-                (Statechart::ROOT, String::from("the formulas may end, and the chart never does"))
+                (Statechart::ROOT, String::from("the formulas may end, but the chart cannot"))
             }
-            DifferenceKind::Starves(names) if names.is_empty() => (
-                Statechart::ROOT,
-                String::from("what the formulas go on with can never come, whatever happens"),
-            ),
+            DifferenceKind::Starves(names) if names.is_empty() => {
+                (Statechart::ROOT, String::from("the chart can never continue as the formulas require"))
+            }
             DifferenceKind::Starves(names) => {
-                let said = format!("`{}` is never done again, whatever happens", names.join("` and `"));
+                let said = format!("`{}` is never executed again", names.join("` and `"));
                 (Statechart::ROOT, said)
             }
         };
         let found = self.subject.warn("M24", node, format!("{before} {says}"));
         let does_more = difference.kind.is_of_what_is_done();
-        // what ceases has been as the formulas say for as long as it went on
+        // the chart followed the formulas as long as the traces last
         let ceases = matches!(difference.kind, DifferenceKind::Starves(_));
         let severity = if is_meant || ceases { Severity::Warning } else { Severity::Error };
         let hint = match (does_more, is_meant) {
-            _ if ceases => "some way back is closed once this has happened, or the state is never left",
+            _ if ceases => "the trace closes the way back, or a state is never left",
             (true, true) => {
-                "a composite is left before it has completed: leave it by `[false]` or without a guard to have it do all"
+                "a composite is left before it has completed: use the guard `[false]` or no guard to let it complete"
             }
-            (true, false) => "some transition leads where the formulas do not",
-            (false, _) => "some guard or transition stands in the way",
+            (true, false) => "a transition leads where the formulas do not",
+            (false, _) => "a guard or transition prevents it",
         };
         let trace = difference.trace.map(|trace| trace.to_string());
         Finding { diagnostic: Diagnostic { severity, ..found }.with_hint(hint), trace }
@@ -434,9 +430,8 @@ impl ExplorationCheck<'_> {
         let most = self.found.states().iter().map(|state| state.running.len()).max()?;
         let message = format!("up to {most} activities run at once, and the pool runs {size}");
         let found = self.subject.warn("M21", Statechart::ROOT, message);
-        let found = found.with_hint(
-            "those that find no place wait: give the pool more threads, or the activities priorities",
-        );
+        let found =
+            found.with_hint("the others wait: give the pool more threads, or the activities priorities");
         Some(Self::with_trace(found, &self.found.trace_to(state)))
     }
 
@@ -455,7 +450,7 @@ impl ExplorationCheck<'_> {
         Diagnostic { severity: Severity::Information, ..found }
     }
 
-    /// What of the chart recordings have been through, if there are any of it.
+    /// The coverage of the chart by recordings, if there are any.
     fn recorded(&self, settings: &CheckSettings) -> String {
         let Some(recorded) = settings.recorded.iter().find(|it| it.chart == self.subject.chart) else {
             return String::new();
@@ -465,7 +460,7 @@ impl ExplorationCheck<'_> {
         let ways = self.subject.chart.transitions().filter(|(_, it)| !it.expression.is_never());
         let ways: Vec<TransitionId> = ways.map(|(id, _)| id).collect();
         format!(
-            "; recordings have been through {} of {} basic states and {} of {} transitions",
+            "; recordings cover {} of {} basic states and {} of {} transitions",
             states.iter().filter(|&id| recorded.entered.contains(id)).count(),
             states.len(),
             ways.iter().filter(|&id| recorded.fired.contains(id)).count(),

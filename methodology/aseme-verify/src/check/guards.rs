@@ -24,7 +24,7 @@ pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
     found
 }
 
-/// The guards of a chart, and how they are judged.
+/// The checks of the guards of a chart.
 struct GuardCheck<'a> {
     subject: &'a CheckedModel,
     logic: GuardSolver<'a>,
@@ -35,7 +35,7 @@ impl<'a> GuardCheck<'a> {
         self.subject.transition(id).expression.guard.as_ref()
     }
 
-    /// M09. What is written as `true` or `false` is meant so.
+    /// M09. Literal `true` and `false` are intended and not reported.
     fn never_or_always(&self, id: TransitionId) -> Option<Diagnostic> {
         use crate::logic::Claim::{Holds, IsFalse};
         let guard = self.guard(id)?;
@@ -43,9 +43,9 @@ impl<'a> GuardCheck<'a> {
             return None;
         }
         let (says, hint) = if self.logic.together(&[Holds(guard)]).is_no() {
-            ("can never hold", "write `[false]` if the transition is meant never to be taken")
+            ("can never hold", "write `[false]` if the transition is never to be taken")
         } else if self.logic.together(&[IsFalse(guard)]).is_no() {
-            ("holds whenever the messages it reads are there", "leave it out, or mend it")
+            ("always holds when its messages have arrived", "remove or correct it")
         } else {
             return None;
         };

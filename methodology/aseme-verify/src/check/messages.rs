@@ -18,7 +18,7 @@ use crate::finding::Finding;
 use crate::logic;
 use crate::program_symbols::ProgramSymbols;
 
-/// M17 and M21: names that the world does not have.
+/// M17 and M21: names that the program does not have.
 pub(crate) fn names(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagnostic> {
     let mut found = activities(subject, world);
     if let Err(wrong) = subject.chart.compile_with(&world.vocabulary, subject.semantics) {
@@ -110,7 +110,7 @@ pub(crate) fn same_step(subject: &CheckedModel) -> Vec<Diagnostic> {
     found
 }
 
-/// Whether two transitions live in different regions of one AND and may be taken in one step.
+/// Whether two transitions belong to different regions of one AND and may be taken in one step.
 fn may_fire_together(subject: &CheckedModel, one: TransitionId, other: TransitionId) -> bool {
     let (first, second) = (subject.transition(one), subject.transition(other));
     let apart = subject.apart(first.source, second.source).is_some();
@@ -133,12 +133,12 @@ fn written_in_same_step(
     message: &str,
 ) -> Diagnostic {
     let says = format!(
-        "`{}` reads `{message}`, which `{}` of another region may write in the same step: it sees it at the next one",
+        "`{}` reads `{message}`, which `{}` of another region may write in the same step: it is visible only in the next step",
         subject.arrow(reading),
         subject.arrow(writing)
     );
     let found = Diagnostic::warning("M11", subject.places.guard(reading), says);
-    found.with_hint("raise an event in the one and wait for it in the other, or keep both in one region")
+    found.with_hint("raise an event in one region and wait for it in the other, or use one region")
 }
 
 /// M18: a guard that waits for a message that is published only after it has held.
@@ -178,21 +178,20 @@ fn undelivered_at(
             let names: Vec<String> =
                 publishers.iter().map(|&node| format!("`{}`", subject.path(node))).collect();
             let says = format!(
-                "the guard of `{}` waits for a `{message}` that need not have come, and does not come while it waits: it is published by {}",
+                "the guard of `{}` waits for a `{message}` that may not have arrived and cannot arrive while it waits: it is published by {}",
                 subject.arrow(id),
                 names.join(", ")
             );
             let diagnostic = Diagnostic::warning("M18", subject.places.guard(id), says);
-            let hint =
-                format!("do what publishes it first, or say what is to be done when `{message} == NULL`");
+            let hint = format!("run its publisher before, or add a transition for `{message} == NULL`");
             return Some(Finding { diagnostic: diagnostic.with_hint(hint), trace: Some(way) });
         }
     }
     None
 }
 
-/// M21: two states whose activity is the same run at once, and both publish: what the one says the
-/// other overwrites.
+/// M21: two states run the same activity at once, and both publish: each overwrites the other's
+/// messages.
 pub(crate) fn concurrent_publishers(
     subject: &CheckedModel,
     world: &ProgramSymbols,
@@ -203,29 +202,28 @@ pub(crate) fn concurrent_publishers(
         let topic = world.activities.get(name)?.as_ref()?.first()?;
         Some((name, topic))
     };
-    let (mut told, mut findings) = (BTreeSet::new(), Vec::new());
+    let (mut reported, mut findings) = (BTreeSet::new(), Vec::new());
     for (number, state) in found.states().iter().enumerate() {
         for (index, &node) in state.running.iter().enumerate() {
             let Some((name, topic)) = publishing(node) else { continue };
             let same = |&&other: &&NodeId| publishing(other).is_some_and(|(it, _)| it == name);
             let Some(&other) = state.running[..index].iter().find(same) else { continue };
-            if !told.insert(name) {
+            if !reported.insert(name) {
                 continue;
             }
             let (one, other) = (subject.path(other), subject.path(node));
             let message =
                 format!("`{name}` may run in `{one}` and in `{other}` at once, and both publish `{topic}`");
-            let diagnostic = subject.warn("M21", node, message).with_hint(
-                "each state has an instance of its own: let one of them do it, or give the two topics of their own",
-            );
+            let diagnostic = subject
+                .warn("M21", node, message)
+                .with_hint("each state has its own instance: use one state, or separate topics");
             findings.push(Finding { diagnostic, trace: Some(found.trace_to(number).to_string()) });
         }
     }
     findings
 }
 
-/// The states whose activities publish a message, if these are all who do; none if that is not
-/// known.
+/// The states whose activities publish a message, or `None` if there may be other publishers.
 fn publishers(subject: &CheckedModel, world: &ProgramSymbols, message: &str) -> Option<BTreeSet<NodeId>> {
     let mut topics = world.vocabulary.topics.iter().filter(|topic| topic.message == message);
     let topic = topics.next().filter(|_| topics.next().is_none())?;
@@ -233,7 +231,7 @@ fn publishers(subject: &CheckedModel, world: &ProgramSymbols, message: &str) -> 
         |name: &str| -> Option<bool> { Some(world.activities.get(name)?.as_ref()?.contains(&topic.path)) };
     let own: BTreeSet<&str> =
         subject.chart.nodes().filter_map(|(_, node)| node.activity.as_deref()).collect();
-    // whoever says nothing may publish it, and so may whoever is not part of this chart
+    // activities that declare no topics and activities outside this chart may publish it
     for name in world.activities.keys() {
         let is_own = own.contains(name.as_str());
         if publishes(name)? && !is_own {
@@ -265,8 +263,8 @@ fn outgoing(found: &Exploration) -> BTreeMap<usize, Vec<usize>> {
     outgoing
 }
 
-/// Whether one of some activities may return while a state stays active: then a guard there only
-/// waits for it.
+/// Whether one of some activities may return while a state stays active; then a guard in that state
+/// only waits for it.
 fn may_return_while(
     found: &Exploration,
     outgoing: &BTreeMap<usize, Vec<usize>>,
@@ -289,7 +287,7 @@ fn may_return_while(
     false
 }
 
-/// A way to a state of which something is true, on which none of some activities has returned.
+/// A path to a state that satisfies a predicate, on which none of some activities has returned.
 fn path_without(
     found: &Exploration,
     outgoing: &BTreeMap<usize, Vec<usize>>,

@@ -7,7 +7,7 @@ use crate::checked_model::CheckedModel;
 
 pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
     if subject.semantics != Semantics::yase() {
-        // it is read as its own standard says
+        // an SCXML document has the semantics of its own standard
         return Vec::new();
     }
     let constructs: [(&str, Vec<Span>); 6] = [
@@ -16,19 +16,19 @@ pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
             left_by_guard(subject),
         ),
         (
-            "a START has a guard: in UML and SCXML the guard is read before the actions that lead into the composite",
+            "a START has a guard: UML and SCXML evaluate it before the actions that lead into the composite",
             guarded_starts(subject),
         ),
         (
-            "a transition without a guard stands before one with a guard and is tried after it: in UML and SCXML the order of the model counts",
+            "a transition without a guard precedes one with a guard but is tried after it: UML and SCXML use the order of the model",
             unguarded_first(subject),
         ),
         (
-            "a transition leads to a state around its source, which is left and entered again: in UML that state completes",
+            "a transition targets a state around its source, which is exited and entered again: in UML that state completes",
             to_ancestor(subject),
         ),
         (
-            "a JOIN waits for all its sources: in UML each of them is left when it arrives",
+            "a JOIN exits its sources together: in UML each is exited when it arrives",
             of_kind(subject, NodeKind::Join),
         ),
         ("a state defers events: SCXML has no deferral", deferring(subject)),
@@ -39,7 +39,7 @@ pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
         let found = Diagnostic { severity: Severity::Information, ..found };
         Some(match places.len() {
             1 => found,
-            count => found.with_hint(format!("{count} places are like that")),
+            count => found.with_hint(format!("{count} occurrences")),
         })
     });
     constructs.collect()

@@ -75,7 +75,7 @@ fn without_functionality(system: &SystemRoles) -> Vec<Diagnostic> {
     without
         .map(|activity| {
             let message = format!("the activity `{}` has no functionality", activity.name);
-            warning("S01", activity.place.0, message, "name the functionality by which it is done")
+            warning("S01", activity.place.0, message, "name the functionality that it uses")
         })
         .collect()
 }
@@ -91,13 +91,13 @@ fn unused_functionalities(system: &SystemRoles) -> Vec<Diagnostic> {
                 "S02",
                 functionality.place.0,
                 message,
-                "name it in the activities that it serves, or take it away",
+                "name it in the activities that use it, or remove it",
             )
         })
         .collect()
 }
 
-/// The names that formulas are over, those of formulas themselves left out.
+/// The names in the formulas of a role, without the names of the formulas themselves.
 fn names(role: &Role) -> BTreeSet<String> {
     let (liveness, _) = liveness::parse(&role.liveness);
     let formulas: BTreeSet<&str> = liveness.formulas().iter().map(|formula| formula.name.as_str()).collect();
@@ -110,9 +110,13 @@ fn in_no_formula(system: &SystemRoles) -> Vec<Diagnostic> {
     let unnamed = system.activities.iter().filter(|activity| !named.contains(&activity.name));
     unnamed
         .map(|activity| {
-            let message = format!("the activity `{}` stands in no formula", activity.name);
-            let found =
-                warning("S03", activity.place.0, message, "put it into the formula of the role that does it");
+            let message = format!("the activity `{}` occurs in no formula", activity.name);
+            let found = warning(
+                "S03",
+                activity.place.0,
+                message,
+                "add it to the formula of the role that executes it",
+            );
             found.with_nearest(&activity.name, named.iter().map(String::as_str))
         })
         .collect()

@@ -25,34 +25,32 @@ pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
     found
 }
 
-/// What is right, where the finding itself does not say it.
+/// A hint for codes whose finding has none.
 fn usual_hint(code: &str) -> Option<&'static str> {
     Some(match code {
-        "M01" => "a composite begins at its START, which leads to a state inside it",
-        "M02" => {
-            "START is where a composite begins and END where it ends: lead out of the one and into the other"
-        }
+        "M01" => "a composite has a START that leads to a state inside it",
+        "M02" => "START has only outgoing transitions, END only incoming ones",
         "M03" => "lead to a state, from a state that can be active when it is not",
         "M04" => "a FORK leads into several regions of one AND, a JOIN out of them",
-        "M06" => "each way through connectors leads to a state",
+        "M06" => "each path through connectors leads to a state",
         "M23" => "weights are shares, and sum to 1",
         _ => return None,
     })
 }
 
-/// M02: a state that nothing leads out of, and nothing around it is left either.
+/// M02: a state without an exit, inside composites that are never left either.
 fn sink(subject: &CheckedModel, id: NodeId) -> Option<Diagnostic> {
     let parent = subject.chart.node(id).parent?;
     let around = subject.chart.ancestors(id).filter(|&it| it != Statechart::ROOT);
     let stays = std::iter::once(id).chain(around).all(|it| subject.outgoing(it).is_empty());
     let is_sink = subject.is_state(id) && subject.kind(parent) == NodeKind::Or && stays;
-    // a composite that holds states goes on inside
+    // a composite that holds states continues inside
     let is_leaf = subject.chart.children(id).is_empty();
     (is_sink && is_leaf).then(|| {
-        let message = format!("nothing leads out of `{}`, which is no END", subject.path(id));
+        let message = format!("no transition leads out of `{}`, which is no END", subject.path(id));
         subject
             .warn("M02", id, message)
-            .with_hint("lead to END what ends there, or out by an event or a guard")
+            .with_hint("add a transition to END, or an exit with an event or a guard")
     })
 }
 
@@ -68,7 +66,7 @@ fn sibling_region(subject: &CheckedModel, id: TransitionId) -> Option<Diagnostic
         format!("`{}` leads from one region of `{}` into another", subject.arrow(id), subject.path(and));
     let found = subject.warn_of("M03", id, message);
     let hint = "regions are active together: raise an event for the other one, or leave the AND";
-    // SCXML says what that means: the AND is left and entered again
+    // in SCXML such a transition exits and re-enters the AND
     let severity = if is_scxml(subject) { found.severity } else { yase::Severity::Error };
     Some(Diagnostic { severity, ..found }.with_hint(hint))
 }
@@ -77,11 +75,11 @@ fn is_scxml(subject: &CheckedModel) -> bool {
     subject.semantics == Semantics::scxml()
 }
 
-/// M20: a HISTORY without a default that is reached before its composite has ever been active.
+/// M20: a HISTORY without a default that can be reached before its composite was active.
 fn history(subject: &CheckedModel, id: NodeId) -> Option<Diagnostic> {
     let owner = subject.chart.node(id).parent?;
     let is_history = matches!(subject.kind(id), NodeKind::ShallowHistory | NodeKind::DeepHistory);
-    // the `history` of a role says where it begins
+    // the `history` entry of a role defines the default
     if !is_history || subject.liveness.is_some() || !subject.outgoing(id).is_empty() {
         return None;
     }
@@ -89,15 +87,15 @@ fn history(subject: &CheckedModel, id: NodeId) -> Option<Diagnostic> {
     let first = subject.incoming(id).iter().find(|&&way| before.contains(&subject.transition(way).source))?;
     let source = subject.path(subject.transition(*first).source);
     let message = format!(
-        "`{}` has no default, and `{source}` leads to it when `{}` may not have been active yet",
+        "`{}` has no default, and `{source}` may lead to it before `{}` has been active",
         subject.path(id),
         subject.path(owner)
     );
-    let hint = "add a transition from the HISTORY to the state to begin with; without one it begins at START";
+    let hint = "add a transition from the HISTORY to a default state; without one it uses START";
     Some(subject.warn("M20", id, message).with_hint(hint))
 }
 
-/// The nodes that can be active before a composite has been, whatever guards say.
+/// The nodes that can be active before a composite has been active, with guards ignored.
 fn reached_without(subject: &CheckedModel, avoided: NodeId) -> BTreeSet<NodeId> {
     let mut reached = BTreeSet::from([Statechart::ROOT]);
     let mut open = vec![Statechart::ROOT];
@@ -110,7 +108,7 @@ fn reached_without(subject: &CheckedModel, avoided: NodeId) -> BTreeSet<NodeId> 
             }
         };
         let targets = subject.outgoing(node).iter().map(|&id| subject.transition(id).target);
-        // what is inside a state that is reached makes the states around it active too
+        // entering a state also activates the states around it
         let around = |target: NodeId| {
             std::iter::once(target).chain(subject.chart.ancestors(target)).collect::<Vec<_>>()
         };
@@ -123,7 +121,7 @@ fn reached_without(subject: &CheckedModel, avoided: NodeId) -> BTreeSet<NodeId> 
     reached
 }
 
-/// M23: of alternatives that are drawn, one cannot be tried before another.
+/// M23: alternatives with weights that also have an order.
 fn drawn(subject: &CheckedModel, id: NodeId) -> Vec<Diagnostic> {
     let drawn = subject.outgoing(id).iter().copied().filter(|&way| subject.transition(way).weight.is_some());
     let drawn: Vec<TransitionId> = drawn.collect();
@@ -133,7 +131,7 @@ fn drawn(subject: &CheckedModel, id: NodeId) -> Vec<Diagnostic> {
     lower
         .map(|way| {
             let message = format!(
-                "`{}` is drawn together with `{}`, but has another priority",
+                "`{}` has a weight like `{}`, but has another priority",
                 subject.arrow(way),
                 subject.arrow(first)
             );

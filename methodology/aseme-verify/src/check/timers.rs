@@ -26,9 +26,9 @@ pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
 struct TimerCheck<'a> {
     subject: &'a CheckedModel,
     started: BTreeMap<TimerKey, Span>,
-    /// Names that are read, whether in the form that is a timer without doubt, and where.
+    /// Names that are read: whether the form can only denote a timer, and where.
     read: BTreeMap<TimerKey, (bool, Span)>,
-    /// Names of events that are waited for or put off: an expiry is an event.
+    /// Names of events that are awaited or deferred: the expiry of a timer is an event.
     events: BTreeSet<String>,
 }
 
@@ -58,7 +58,7 @@ impl<'a> TimerCheck<'a> {
             .collect()
     }
 
-    /// A bare name may be a constant or a function too: then nothing is known of it.
+    /// A bare name may also be a constant or a function; such names are not reported.
     fn not_started(&self, board: NodeId, name: &str, is_sure: bool, span: Span) -> Option<Diagnostic> {
         let elsewhere = self.started.keys().find(|(_, other)| other == name);
         if let Some((other, _)) = elsewhere {
@@ -67,7 +67,7 @@ impl<'a> TimerCheck<'a> {
                 self.subject.path(board),
                 self.subject.path(*other)
             );
-            let hint = "regions have timers of their own: start it by a transition of the same region";
+            let hint = "each region has its own timers: start it by a transition of the same region";
             return Some(Diagnostic::warning("M19", span, message).with_hint(hint));
         }
         let near = nearest(
@@ -104,7 +104,7 @@ impl<'a> TimerCheck<'a> {
     }
 }
 
-/// The bare names in a condition that may be timers, and whether they are without doubt.
+/// The bare names in a condition that may be timers, and whether they can be nothing else.
 fn timers_read(guard: &Expression) -> Vec<(String, bool)> {
     let (mut found, mut open) = (Vec::new(), vec![guard]);
     while let Some(expression) = open.pop() {
@@ -119,7 +119,7 @@ fn timers_read(guard: &Expression) -> Vec<(String, bool)> {
     found
 }
 
-/// A loop that waits for one timer and starts a longer one again each time.
+/// A loop that waits for one timer and restarts a longer one in each iteration.
 fn overtaken(subject: &CheckedModel, id: TransitionId) -> Option<Diagnostic> {
     let transition = subject.transition(id);
     let guard = transition.expression.guard.as_ref()?;
@@ -130,19 +130,19 @@ fn overtaken(subject: &CheckedModel, id: TransitionId) -> Option<Diagnostic> {
     let started: Vec<(String, Duration)> = starts(&transition.expression.actions).collect();
     let (waited, short) = started.iter().find(|(name, _)| needed.contains(name))?;
     let (other, long) = started.iter().find(|(name, delay)| !needed.contains(name) && delay > short)?;
-    // another way out of the same state may leave the loop before
+    // another exit of the same state may leave the loop earlier
     let leaves = subject
         .outgoing(transition.source)
         .iter()
         .any(|&way| way != id && !subject.transition(way).expression.is_never());
     (!leaves).then(|| {
         let (long, short) = (long.as_millis(), short.as_millis());
-        let message = format!("`{other}` is started again before it can expire: {long} ms each time that `{waited}` is over, every {short} ms");
-        subject.warn_of("M19", id, message).with_hint("start the longer one where the loop is entered")
+        let message = format!("`{other}` is restarted before it can expire: {long} ms each time `{waited}` expires, every {short} ms");
+        subject.warn_of("M19", id, message).with_hint("start the longer timer where the loop is entered")
     })
 }
 
-/// The names that must be true for a condition to be.
+/// The names that must be true for a condition to hold.
 fn required(guard: &Expression) -> BTreeSet<String> {
     let (mut names, mut open) = (BTreeSet::new(), vec![guard]);
     while let Some(expression) = open.pop() {
@@ -164,8 +164,10 @@ fn twice(subject: &CheckedModel, id: TransitionId) -> Vec<Diagnostic> {
     let again = started.iter().enumerate().filter(|(index, name)| started[..*index].contains(name));
     again
         .map(|(_, name)| {
-            let message =
-                format!("`{}` starts the timer `{name}` twice: the second time counts", subject.arrow(id));
+            let message = format!(
+                "`{}` starts the timer `{name}` twice: only the second start counts",
+                subject.arrow(id)
+            );
             subject.warn_of("M19", id, message).with_hint("keep one of the two")
         })
         .collect()

@@ -33,7 +33,7 @@ pub(crate) fn unmet(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagn
     found
 }
 
-/// All topics that activities name; none if one of them says nothing, or there are none.
+/// All topics that activities declare, or `None` if one declares none or there are no activities.
 fn all_of(activities: &BTreeMap<String, Option<BTreeSet<String>>>) -> Option<BTreeSet<&str>> {
     let mut all = BTreeSet::new();
     for topics in activities.values() {
@@ -42,7 +42,7 @@ fn all_of(activities: &BTreeMap<String, Option<BTreeSet<String>>>) -> Option<BTr
     (!activities.is_empty()).then_some(all)
 }
 
-/// The topics of the own host that guards read and triggers wait for, and where.
+/// The topics of the own host that guards and triggers read, with their spans.
 fn read(subject: &CheckedModel, chart: &CompiledChart) -> BTreeMap<TopicId, Span> {
     let mut read = BTreeMap::new();
     for (transition, _, guard) in chart.guards() {
@@ -61,7 +61,7 @@ fn read(subject: &CheckedModel, chart: &CompiledChart) -> BTreeMap<TopicId, Span
     read
 }
 
-/// The topics that actions write or publish, and where.
+/// The topics that actions write or publish, with their spans.
 fn written(subject: &CheckedModel, chart: &CompiledChart) -> BTreeMap<TopicId, Span> {
     let mut written = BTreeMap::new();
     for (place, _, effects) in chart.effects() {
@@ -79,15 +79,13 @@ fn written(subject: &CheckedModel, chart: &CompiledChart) -> BTreeMap<TopicId, S
 }
 
 fn never_published(topic: &TopicEntry, place: Span) -> Diagnostic {
-    let message = format!("`{}` is read here, and no activity publishes it", topic.path);
+    let message = format!("`{}` is read here, but no activity publishes it", topic.path);
     let found = Diagnostic::warning("M17", place, message);
-    found.with_hint(
-        "write the activity that publishes it, or let the one that does say so (`Activity::topics`)",
-    )
+    found.with_hint("write an activity that publishes it, or declare the topic (`Activity::topics`)")
 }
 
 fn never_read(topic: &TopicEntry, place: Span) -> Diagnostic {
-    let message = format!("`{}` is written here, and neither the chart nor an activity reads it", topic.path);
+    let message = format!("`{}` is written here, but neither the chart nor an activity reads it", topic.path);
     let found = Diagnostic::warning("M17", place, message);
-    found.with_hint("let an activity read it, or write nothing there")
+    found.with_hint("let an activity read it, or remove the action")
 }

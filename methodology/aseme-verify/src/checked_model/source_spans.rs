@@ -2,14 +2,14 @@
 
 use yase::{Element, NodeId, Span, TransitionId};
 
-/// A span for each node and each transition; the beginning of the file for what stands nowhere.
+/// A span for each node and each transition; the beginning of the file if it has none.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub(crate) struct SourceSpans {
     /// By node.
     pub(crate) nodes: Vec<Span>,
     /// By transition.
     pub(crate) transitions: Vec<Span>,
-    /// The guard of each transition, where that has a place of its own.
+    /// The span of the guard of each transition, if it has one of its own.
     pub(crate) guards: Vec<Option<Span>>,
 }
 
@@ -22,7 +22,7 @@ impl SourceSpans {
         self.transitions.get(transition.0 as usize).copied().unwrap_or_default()
     }
 
-    /// The guard of a transition, else all of it.
+    /// The span of a transition's guard, or of the transition if the guard has none.
     pub(crate) fn guard(&self, transition: TransitionId) -> Span {
         let guard = self.guards.get(transition.0 as usize).copied().flatten();
         guard.unwrap_or_else(|| self.transition(transition))

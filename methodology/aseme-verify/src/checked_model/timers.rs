@@ -8,10 +8,10 @@ use yase::{NodeId, NodeKind, Span, Statechart, TransitionId};
 
 use super::CheckedModel;
 
-/// A name on a blackboard, which is known by the node it belongs to.
+/// A name on a blackboard, which is identified by the node of its scope.
 pub(crate) type TimerKey = (NodeId, String);
 
-/// The timers that actions start, each with the position of the first such action.
+/// The timers that actions start, each with the span of its first start.
 pub(crate) fn started(model: &CheckedModel) -> BTreeMap<TimerKey, Span> {
     let mut started = BTreeMap::new();
     for (id, transition) in model.chart.transitions() {
@@ -27,7 +27,7 @@ pub(crate) fn started(model: &CheckedModel) -> BTreeMap<TimerKey, Span> {
     started
 }
 
-/// The blackboard that a transition works on: that of its scope.
+/// The node of the scope whose blackboard a transition uses.
 pub(crate) fn blackboard(subject: &CheckedModel, id: TransitionId) -> NodeId {
     let transition = subject.transition(id);
     let holds = |&node: &NodeId| node != transition.target && subject.contains(node, transition.target);
@@ -36,7 +36,7 @@ pub(crate) fn blackboard(subject: &CheckedModel, id: TransitionId) -> NodeId {
     region_of(subject, scope.unwrap_or(Statechart::ROOT))
 }
 
-/// The region that a node lies in or is; the root if in none.
+/// The innermost region that contains a node, or the root.
 pub(crate) fn region_of(subject: &CheckedModel, node: NodeId) -> NodeId {
     let way = std::iter::once(node).chain(subject.chart.ancestors(node));
     way.into_iter().find(|&it| subject.is_region(it)).unwrap_or(Statechart::ROOT)

@@ -22,19 +22,19 @@ use crate::cone_of_influence;
 use crate::conformance::graph::{Graph, LabelledEdge, Observable};
 use crate::program_symbols::ProgramSymbols;
 
-/// What a field is set to, as far as that is known.
+/// A field and the value assigned to it, if that is known.
 pub(crate) type FieldSetting = (String, Option<String>);
 
-/// What a step of a robot is to the others.
+/// The effects of a step on the other robots.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
 pub(crate) struct StepInterface {
-    /// The message that it hears, by its place among those that the robot hears.
+    /// The message it receives, as an index into the robot's received messages.
     pub(crate) receives: Option<usize>,
-    /// Whether no state of the chart reads what it receives, now or later.
+    /// Whether no state of the chart reads the received message, now or later.
     pub(crate) drops: bool,
-    /// The conditions on messages of others that it reads, and their values.
+    /// The conditions on messages of others that it evaluates, and their values.
     pub(crate) conditions: Vec<(ScriptId, bool)>,
-    /// What it says, by place among what the robot says, with the fields that it sets.
+    /// The messages it sends, as indices into the robot's sent messages, with the fields it sets.
     pub(crate) sends: Vec<(usize, Vec<FieldSetting>)>,
     /// The waits that it ends.
     pub(crate) exited_waits: Vec<usize>,
@@ -46,35 +46,35 @@ impl StepInterface {
     }
 }
 
-/// A message of a robot, another one or itself, that a chart reads or waits for.
+/// A message of a robot (another or itself) that a chart reads or waits for.
 #[derive(Clone, Debug)]
 pub(crate) struct ReceivedMessage {
     pub(crate) called: MessageReference,
-    /// What its arrival is called in triggers, if any waits for it.
+    /// The name of its arrival in triggers, if a trigger waits for it.
     pub(crate) event: Option<String>,
     /// A transition that waits for it or reads it.
     pub(crate) way: TransitionId,
 }
 
-/// A state in which a chart waits for others.
+/// A state in which a chart waits for messages of others.
 #[derive(Clone, Debug)]
 pub(crate) struct WaitingState {
     pub(crate) node: NodeId,
-    /// What it waits for, by place among what the robot hears.
+    /// The message it waits for, as an index into the robot's received messages.
     pub(crate) received_message: usize,
-    /// The transition that would end it.
+    /// The transition that would end the wait.
     pub(crate) way: TransitionId,
 }
 
-/// A message that a chart says.
+/// A message that a chart sends.
 #[derive(Clone, Debug)]
 pub(crate) struct SentMessage {
     pub(crate) word: MessageName,
-    /// Wherever it does, one at least.
+    /// The actions and activities that send it, at least one.
     pub(crate) places: Vec<MessageUse>,
 }
 
-/// A robot that is ready to be put beside others.
+/// A robot prepared for composition.
 pub(crate) struct ComposedRobot {
     pub(crate) name: String,
     /// The host on which its agent runs; empty if all robots are agents of one process.
@@ -113,8 +113,8 @@ impl ComposedRobot {
         }
     }
 
-    /// What of the messages is written in more than one way, which would be two events here and is
-    /// one in a run.
+    /// An error if the chart refers to one message in two notations, which would be two events in
+    /// the exploration and one in a run.
     pub(crate) fn ambiguous(&self) -> Option<Diagnostic> {
         let events = || self.received.iter().enumerate().filter(|(_, it)| it.event.is_some());
         let twice = events().find(|(index, it)| {
@@ -125,13 +125,13 @@ impl ComposedRobot {
             })
         });
         twice.map(|(_, hearing)| {
-            let message = format!("`{}` is waited for under two names", hearing.called.prefix.text());
+            let message = format!("`{}` is awaited under two names", hearing.called.prefix.text());
             let found = Diagnostic::error("E0935", self.subject.places.transition(hearing.way), message);
-            found.with_hint("write it the same way in each trigger").in_source(&self.source)
+            found.with_hint("use the same notation in each trigger").in_source(&self.source)
         })
     }
 
-    /// Explores the chart. Of what it says only that counts which others hear.
+    /// Explores the chart. Only sent messages that other robots read are observable.
     pub(crate) fn explored(&self, settings: &CheckSettings, heard: &[bool]) -> Behaviour {
         let scripts = self.scripts_on_messages();
         let mut deeds: Vec<StepInterface> = vec![StepInterface::default()];
@@ -158,7 +158,7 @@ impl ComposedRobot {
         Behaviour { idle, ..Behaviour::new(found, deeds, &self.waits) }
     }
 
-    /// The regions that neither speak nor listen to others, nor to those that do.
+    /// The regions without effect on other robots, or on regions with such an effect.
     fn idle_regions(&self, heard: &[bool]) -> Vec<NodeId> {
         let chart = self.abstraction.chart.statechart();
         let said = self.sent.iter().zip(heard).filter(|(_, heard)| **heard);
@@ -173,7 +173,7 @@ impl ComposedRobot {
         })
     }
 
-    /// The conditions of the exploration that read a message of another.
+    /// Whether each condition of the exploration reads a message of another robot.
     fn scripts_on_messages(&self) -> Vec<bool> {
         let reads = |condition: &Expression| {
             paths(condition)
@@ -213,8 +213,8 @@ impl ComposedRobot {
         }
     }
 
-    /// What is published at the end of a step: what its actions have written, and what an activity
-    /// says that has returned.
+    /// The messages published at the end of a step: those written by its actions and those of an
+    /// activity that has returned.
     fn sent_messages(
         &self,
         seen: &StepObservation<'_>,
@@ -241,7 +241,7 @@ impl ComposedRobot {
         let by_activity =
             returned.map(|activity| message_names::messages_written_by(activity, world)).unwrap_or_default();
         for saying in by_activity.iter().filter_map(|word| self.sent_message_index(word)) {
-            // of what an activity writes nothing is known but that it comes
+            // the fields of a message written by an activity are unknown
             says.entry(saying).or_default().insert(String::new(), None);
         }
         says.retain(|&saying, _| heard.get(saying) == Some(&true));
@@ -253,13 +253,13 @@ impl ComposedRobot {
     }
 }
 
-/// Whether a path begins with another.
+/// Whether a path starts with another.
 pub(crate) fn begins_with(path: &yase::expression::Path, prefix: &yase::expression::Path) -> bool {
     path.segments.len() >= prefix.segments.len()
         && path.segments.iter().zip(&prefix.segments).all(|(one, other)| one.text == other.text)
 }
 
-/// A value that does not hang on anything, as text.
+/// The value of a constant expression, as text.
 fn literal(value: &Expression, constants: &[Constant]) -> Option<String> {
     match &value.kind {
         ExpressionKind::Bool(_)
@@ -316,8 +316,8 @@ impl<'a> MessageFilter<'a> {
         of_host.or_else(|| self.without_host(path, &self.neighbourhood.beside))
     }
 
-    /// The message that a trigger waits for: also one that the chart says to itself, without a name
-    /// in front.
+    /// The message that a trigger waits for. A message that the chart sends to itself may lack the
+    /// robot's name.
     fn awaited_message(&self, path: &yase::expression::Path) -> Option<MessageReference> {
         self.read(path).or_else(|| self.without_host(path, &self.sent))
     }
@@ -364,8 +364,8 @@ pub(crate) fn messages_to_send(chart: &Statechart, world: Option<&ProgramSymbols
     found
 }
 
-/// The places where a chart rests until something of another comes: states that have nothing else
-/// to do, and the end of composites that go on then.
+/// The states in which a chart waits for messages of others, including the completion of
+/// composites.
 fn waits(
     subject: &CheckedModel,
     hearings: &[ReceivedMessage],
@@ -387,7 +387,7 @@ fn waits(
     found
 }
 
-/// Where a chart rests when it is about to leave a node: connectors lie between.
+/// The stable states from which a node is about to be left: connectors are followed back.
 fn stable_nodes(subject: &CheckedModel, node: NodeId) -> Vec<NodeId> {
     let (mut found, mut open, mut seen) = (Vec::new(), vec![node], Vec::new());
     while let Some(node) = open.pop() {
@@ -408,28 +408,28 @@ fn stable_nodes(subject: &CheckedModel, node: NodeId) -> Vec<NodeId> {
     found
 }
 
-/// Whether a chart has triggers that take whatever comes.
+/// A transition whose trigger matches every event, if there is one.
 pub(crate) fn wildcard_trigger(chart: &Statechart) -> Option<TransitionId> {
     let takes = |trigger: &Trigger| matches!(trigger, Trigger::Any | Trigger::Not(_));
     chart.transitions().find(|(_, it)| it.expression.trigger.as_ref().is_some_and(takes)).map(|(id, _)| id)
 }
 
-/// What a robot does, in classes of states that are the same to the others. The last state of the
-/// graph is that before the start.
+/// The behaviour of a robot as classes of observably equivalent states. The last state of the graph
+/// is the one before the start.
 pub(crate) struct Behaviour {
     pub(crate) found: LabelledGraph,
     /// The blackboards of regions that were left out, by index.
     pub(crate) idle: Vec<bool>,
     pub(crate) step_interfaces: Vec<StepInterface>,
-    /// All states.
+    /// The graph of all states.
     full: Graph,
     /// The class of each state.
     classes: Vec<usize>,
-    /// Classes and the ways between them.
+    /// The graph of the classes.
     pub(crate) graph: Graph,
-    /// The waits that go on in each class.
+    /// The unfinished waits in each class.
     pub(crate) waiting: Vec<Vec<usize>>,
-    /// The waits of each class that could end if others said whatever it takes.
+    /// The waits of each class that can end if the other robots send suitable messages.
     pub(crate) may_end: Vec<Vec<bool>>,
 }
 
@@ -476,12 +476,12 @@ impl Behaviour {
         self.graph.initial.first().copied().unwrap_or(0)
     }
 
-    /// Whether the chart has not been started.
+    /// Whether the chart was not started.
     pub(crate) fn is_begin(&self, class: usize) -> bool {
         class == self.begin()
     }
 
-    /// The deed of a way.
+    /// The effects of an edge on other robots.
     pub(crate) fn deed(&self, way: &LabelledEdge) -> &StepInterface {
         match way.observable {
             Observable::Letter(letter) => &self.step_interfaces[letter as usize],
@@ -489,7 +489,7 @@ impl Behaviour {
         }
     }
 
-    /// The steps by which a state goes a way of its class, and where they lead.
+    /// The steps by which a state realises an edge of its class, and the state they lead to.
     pub(crate) fn steps(&self, state: usize, shows: Observable, to: usize) -> (Vec<usize>, usize) {
         let class = self.classes[state];
         let mut came: BTreeMap<usize, Option<(usize, usize)>> = BTreeMap::from([(state, None)]);
@@ -522,7 +522,7 @@ impl Behaviour {
     }
 }
 
-/// The initial partition of states: by whether the chart has ended, and by the messages it waits
+/// The initial partition of the states: by whether the chart has ended and by the messages it waits
 /// for.
 fn first_classes(full: &Graph, waiting: &[Vec<usize>], begin: usize) -> Vec<usize> {
     let mut numbers = BTreeMap::new();
@@ -535,7 +535,7 @@ fn first_classes(full: &Graph, waiting: &[Vec<usize>], begin: usize) -> Vec<usiz
         .collect()
 }
 
-/// From which classes a wait can come to its end, by some way or other.
+/// The classes from which a wait can end on some path.
 fn wait_end_classes(graph: &Graph, deeds: &[StepInterface], wait: usize) -> Vec<bool> {
     let ends = |way: &LabelledEdge| match way.observable {
         Observable::Letter(letter) => deeds[letter as usize].exited_waits.contains(&wait),

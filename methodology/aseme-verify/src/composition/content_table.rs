@@ -10,16 +10,16 @@ use super::composed_robot::{ComposedRobot, FieldSetting};
 use super::product::MessageRoute;
 use crate::logic::{Claim, GuardSolver};
 
-/// The content of a message that was never said.
+/// The content of a message that was never sent.
 pub(crate) const MISSING: u32 = 0;
 
-/// What is known of the fields of a message: the text of a value, or nothing.
+/// The fields of a message: the text of a value, or `None` if it is unknown.
 type KnownFields = BTreeMap<String, Option<String>>;
 
-/// A robot, what it asks, and what the messages are that it has heard last.
+/// A robot, the values of conditions, and the contents that it has received last.
 type ContentQuery = (usize, Vec<(ScriptId, bool)>, Vec<u32>);
 
-/// The contents of messages, each known by a number.
+/// Interns the contents of messages.
 pub(crate) struct ContentTable<'a> {
     robots: &'a [ComposedRobot],
     passages: &'a [MessageRoute],
@@ -30,12 +30,12 @@ pub(crate) struct ContentTable<'a> {
 
 impl<'a> ContentTable<'a> {
     pub(crate) fn new(robots: &'a [ComposedRobot], passages: &'a [MessageRoute]) -> ContentTable<'a> {
-        // the place of what was never said is taken
+        // index 0 is MISSING
         let list = vec![KnownFields::new()];
         ContentTable { robots, passages, list, numbers: BTreeMap::new(), known: BTreeMap::new() }
     }
 
-    /// A message with some fields set anew.
+    /// The content after assigning some fields.
     pub(crate) fn changed(&mut self, content: u32, settings: &[FieldSetting]) -> u32 {
         let mut content = self.list[content as usize].clone();
         for (field, value) in settings {
@@ -53,7 +53,7 @@ impl<'a> ContentTable<'a> {
         number
     }
 
-    /// Whether conditions of a robot may have such values, given what it has heard last.
+    /// Whether conditions of a robot can have these values, given the messages received last.
     pub(crate) fn allow(&mut self, robot: usize, asks: &[(ScriptId, bool)], newest: &[u32]) -> bool {
         if asks.is_empty() {
             return true;
@@ -79,7 +79,7 @@ impl<'a> ContentTable<'a> {
         !GuardSolver::new(&abstraction.constants).together(&claims).is_no()
     }
 
-    /// What a robot knows, as conditions in its own words.
+    /// The known field values as conditions in the notation of a robot.
     fn facts(&self, robot: usize, newest: &[u32]) -> Vec<Expression> {
         let mut facts = Vec::new();
         for (hearing, heard) in self.robots[robot].received.iter().enumerate() {
@@ -87,7 +87,7 @@ impl<'a> ContentTable<'a> {
                 self.passages.iter().zip(newest).filter(|(passage, _)| {
                     passage.to == robot && passage.received_messages.contains(&hearing)
                 });
-            // of two messages under one name it is not known which came last
+            // the order of two messages with one name is unknown
             if let (Some((_, &content)), None) = (coming.next(), coming.next()) {
                 self.add_facts(&heard.called.prefix, content, &mut facts);
             }
@@ -117,7 +117,7 @@ fn expression_of(kind: ExpressionKind) -> Expression {
     Expression { kind, place: TextPosition::default() }
 }
 
-/// That a field has a value.
+/// The condition that a field has a value.
 fn is(prefix: &Path, field: &str, value: &str) -> Option<Expression> {
     let names = field.split('.').map(|text| Name { text: text.to_owned(), place: TextPosition::default() });
     let segments = prefix.segments.iter().cloned().chain(names).collect();

@@ -14,7 +14,7 @@ pub(crate) struct Deadlock {
     pub(crate) waits: Vec<(usize, usize)>,
 }
 
-/// The deadlocks, each reported once, where most robots take part.
+/// The deadlocks, each reported once, in the state where most robots take part.
 pub(crate) fn deadlocks(product: &GlobalProduct<'_>) -> Vec<Deadlock> {
     let waits = product.robots.iter().enumerate();
     let waits: Vec<(usize, usize)> =
@@ -28,10 +28,10 @@ pub(crate) fn deadlocks(product: &GlobalProduct<'_>) -> Vec<Deadlock> {
         behaviour.waiting[class].contains(&wait) && behaviour.may_end[wait][class] && !ends[number][state]
     };
     let next = forwards(product);
-    let mut told = vec![false; waits.len()];
+    let mut reported = vec![false; waits.len()];
     let mut found = Vec::new();
     for state in 0..product.states.len() {
-        if !(0..waits.len()).any(|number| !told[number] && is_stuck(number, state)) {
+        if !(0..waits.len()).any(|number| !reported[number] && is_stuck(number, state)) {
             continue;
         }
         let stuck_in = |state: usize| (0..waits.len()).filter(|&it| is_stuck(it, state)).collect::<Vec<_>>();
@@ -59,8 +59,7 @@ fn forwards(product: &GlobalProduct<'_>) -> Vec<Vec<usize>> {
     next
 }
 
-/// From which states a wait can come to its end. Of states that were not looked at nothing bad is
-/// believed.
+/// The states from which a wait can end. Unexplored states count as such, to avoid false alarms.
 fn may_end(product: &GlobalProduct<'_>, before: &[Vec<usize>], robot: usize, wait: usize) -> Vec<bool> {
     let ends = |edge: &&ProductEdge| {
         let way = trace_of_deadlock(product, edge, robot);
@@ -86,7 +85,7 @@ fn trace_of_deadlock(product: &GlobalProduct<'_>, edge: &ProductEdge, robot: usi
     }
 }
 
-/// The nearest state with the most waits that never end: they only become more.
+/// The nearest state with the most endless waits; along a path their number never decreases.
 fn worst_from(state: usize, next: &[Vec<usize>], count: &dyn Fn(usize) -> usize) -> usize {
     let mut seen = std::collections::BTreeSet::from([state]);
     let mut open = std::collections::VecDeque::from([state]);

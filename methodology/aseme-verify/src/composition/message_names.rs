@@ -9,7 +9,7 @@ use yase::{NodeId, Statechart, Transition, TransitionId, TypeEnvironment};
 
 use crate::program_symbols::ProgramSymbols;
 
-/// What a message is called, without the host: by its topic, by its type, or by both.
+/// The name of a message without its host: by topic, by type, or by both.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(crate) struct MessageName {
     topic: Option<String>,
@@ -17,7 +17,7 @@ pub(crate) struct MessageName {
 }
 
 impl MessageName {
-    /// The word that a path begins with, and of how many names.
+    /// The message name at the start of a path, and how many segments it takes.
     fn of(names: &[Name]) -> Option<(MessageName, usize)> {
         let text = |name: &Name| Some(name.text.clone());
         let last = |name: &Name| name.text.rsplit('/').next().map(str::to_owned);
@@ -33,14 +33,14 @@ impl MessageName {
         }
     }
 
-    /// The message of a topic that an activity says it publishes.
+    /// The message of a topic that an activity declares to publish.
     fn of_topic(path: &str, world: &ProgramSymbols) -> MessageName {
         let topic = path.rsplit('/').next().map(str::to_owned);
         let entry = world.vocabulary.topics.iter().find(|entry| entry.path == path);
         MessageName { topic, message: entry.map(|entry| entry.message.clone()) }
     }
 
-    /// The same with topic and type, where a program knows the one by the other.
+    /// Completes topic or type from the symbols of the program.
     fn completed(self, vocabulary: Option<&TypeEnvironment>) -> MessageName {
         let Some(vocabulary) = vocabulary else { return self };
         let named = |path: &str| path.rsplit('/').next().map(str::to_owned);
@@ -58,8 +58,8 @@ impl MessageName {
         }
     }
 
-    /// Whether two words may mean one message: what both say is equal, and both say something of
-    /// the same.
+    /// Whether two names may denote one message: they share a component and do not contradict each
+    /// other.
     pub(crate) fn means(&self, other: &MessageName) -> bool {
         let same = |one: &Option<String>, other: &Option<String>| {
             one.as_ref().zip(other.as_ref()).map(|(a, b)| a == b)
@@ -82,7 +82,7 @@ fn is_type(name: &Name) -> bool {
     name.text.starts_with(char::is_uppercase)
 }
 
-/// What an action says: a message, and the field that it sets with its value.
+/// The message that an action sends, and the field that it sets with its value.
 pub(crate) fn message_written(
     action: &Action,
     world: Option<&ProgramSymbols>,
@@ -100,7 +100,7 @@ pub(crate) fn message_written(
     }
 }
 
-/// What an activity says when it returns, if it declares that.
+/// The messages that an activity declares to publish when it returns.
 pub(crate) fn messages_written_by(activity: &str, world: Option<&ProgramSymbols>) -> Vec<MessageName> {
     let declared = world.and_then(|world| Some((world, world.activities.get(activity)?.as_ref()?)));
     declared
@@ -113,17 +113,17 @@ fn text(names: &[Name]) -> String {
     names.iter().map(|name| name.text.as_str()).collect::<Vec<_>>().join(".")
 }
 
-/// A message of a robot, as a path calls it.
+/// A reference to a message of a robot in a path.
 #[derive(Clone, Debug)]
 pub(crate) struct MessageReference {
-    /// The robot that says it.
+    /// The robot that sends it.
     pub(crate) host: String,
     pub(crate) word: MessageName,
-    /// The path without what stands behind the message.
+    /// The path up to and including the message.
     pub(crate) prefix: Path,
 }
 
-/// The message of one of some robots that a path is about.
+/// Resolves a path to a message of one of the robots.
 pub(crate) fn message_reference<'h>(
     path: &Path,
     hosts: impl Iterator<Item = &'h str>,
@@ -147,7 +147,7 @@ pub(crate) fn message_reference<'h>(
     })
 }
 
-/// A message of a chart's own robot, as a path calls it without that one's name.
+/// Resolves a path without a robot's name to a message of the chart's own robot.
 pub(crate) fn own(path: &Path, robot: &str, world: Option<&ProgramSymbols>) -> Option<MessageReference> {
     let (word, count) = MessageName::of(&path.segments)?;
     let prefix = Path { segments: path.segments.get(..count)?.to_vec(), place: path.place };
@@ -180,14 +180,14 @@ pub(crate) fn triggers(transition: &Transition) -> &[Path] {
     }
 }
 
-/// Where actions stand.
+/// The element that contains an action.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(crate) enum MessageUse {
     Way(TransitionId),
     Node(NodeId),
 }
 
-/// All actions of a chart, with their places.
+/// All actions of a chart with the elements that contain them.
 pub(crate) fn actions(chart: &Statechart) -> impl Iterator<Item = (MessageUse, &Action)> {
     let of_ways = chart
         .transitions()

@@ -12,22 +12,22 @@ use super::content_table::{ContentTable, MISSING};
 use crate::check_settings::CheckSettings;
 use crate::conformance::graph::{LabelledEdge, Observable};
 
-/// A message that passes from one robot to another.
+/// A route of a message from one robot to another.
 #[derive(Clone, Debug)]
 pub(crate) struct MessageRoute {
     pub(crate) from: usize,
-    /// By place among what the one says.
+    /// Index into the sender's sent messages.
     pub(crate) sent_message: usize,
     pub(crate) to: usize,
-    /// By places among what the other hears.
+    /// Indices into the receiver's received messages.
     pub(crate) received_messages: Vec<usize>,
-    /// That of them which waits for its arrival.
+    /// The one of them whose arrival a trigger waits for.
     pub(crate) waited: Option<usize>,
-    /// Its channel.
+    /// Index of its channel.
     channel: usize,
 }
 
-/// Which messages pass between robots.
+/// The routes between robots.
 pub(crate) fn passages(robots: &[ComposedRobot]) -> Vec<MessageRoute> {
     let mut found: Vec<MessageRoute> = Vec::new();
     let mut channels: Vec<(usize, usize)> = Vec::new();
@@ -61,7 +61,7 @@ pub(crate) fn passages(robots: &[ComposedRobot]) -> Vec<MessageRoute> {
     found
 }
 
-/// A state of all together.
+/// A state of the composition.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(crate) struct GlobalState {
     /// The class of each robot.
@@ -70,22 +70,22 @@ pub(crate) struct GlobalState {
     pub(crate) newest: Vec<u32>,
     /// What was said last, by passage.
     last_sent: Vec<u32>,
-    /// What is on its way, by channel: passages and contents.
+    /// The messages in transit, by channel: routes and contents.
     channels: Vec<Vec<(usize, u32)>>,
 }
 
-/// What leads from one state of all to another.
+/// A transition between two states of the composition.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum GlobalEvent {
-    /// A robot makes a step of its own.
+    /// A robot makes a step without a message.
     Step { robot: usize, way: LabelledEdge },
-    /// What was on its way arrives; who waits for it makes a step.
+    /// A message arrives; a receiver that waits for it makes a step.
     Arrival { passage: usize, way: Option<LabelledEdge> },
-    /// What was on its way is lost.
+    /// A message in transit is lost.
     Loss { passage: usize },
 }
 
-/// A step of all.
+/// An edge of the product.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProductEdge {
     pub(crate) from: usize,
@@ -93,7 +93,7 @@ pub(crate) struct ProductEdge {
     pub(crate) by: GlobalEvent,
 }
 
-/// All that was found.
+/// The explored product.
 pub(crate) struct GlobalProduct<'a> {
     pub(crate) robots: &'a [ComposedRobot],
     pub(crate) behaviours: &'a [Behaviour],
@@ -102,13 +102,13 @@ pub(crate) struct GlobalProduct<'a> {
     pub(crate) contents: ContentTable<'a>,
     pub(crate) states: Vec<GlobalState>,
     pub(crate) edges: Vec<ProductEdge>,
-    /// Where each state was reached from.
+    /// The predecessor of each state on a shortest path.
     predecessor: Vec<Option<(usize, GlobalEvent)>>,
-    /// The states of which not every successor is known.
+    /// The states whose successors were not all explored.
     pub(crate) open_ended: Vec<usize>,
-    /// The first edge by which a message arrived that no state reads, by passage.
+    /// The first edge by which a message arrived that no state reads, by route.
     pub(crate) dropped: BTreeMap<usize, usize>,
-    /// The first edge by which a channel was too full, by the passage of what it lost.
+    /// The first edge by which a channel overflowed, by the route of the dropped message.
     pub(crate) overflows: BTreeMap<usize, usize>,
 }
 
@@ -145,7 +145,7 @@ struct CompositionSearch<'a> {
     settings: &'a CheckSettings,
 }
 
-/// A successor: what leads there, and what was lost on the way because a channel was full.
+/// A successor: the event that leads there, and the message dropped by a full channel.
 struct GlobalSuccessor {
     global: GlobalState,
     by: GlobalEvent,
@@ -227,8 +227,8 @@ impl<'a> CompositionSearch<'a> {
     fn successors(&mut self, global: &GlobalState) -> Vec<GlobalSuccessor> {
         let behaviours = self.found.behaviours;
         let mut found = Vec::new();
-        // what robots say while they start is heard by those that have started: all do, one after
-        // the other, before anything else
+        // all robots start one after the other before any other event, so that messages sent during
+        // the start of one reach those already started
         let starting = (0..behaviours.len()).find(|&it| behaviours[it].is_begin(global.classes[it]));
         let robots = starting.map_or(0..behaviours.len(), |robot| robot..robot + 1);
         robots.for_each(|robot| self.own_steps(global, robot, &mut found));
@@ -256,13 +256,13 @@ impl<'a> CompositionSearch<'a> {
         }
     }
 
-    /// Whether a robot of the composition says what another hears.
+    /// Whether another robot receives a message of a robot.
     fn is_routed(&self, robot: usize, hearing: usize) -> bool {
         self.found.passages.iter().any(|it| it.to == robot && it.received_messages.contains(&hearing))
     }
 
-    /// What comes next out of a channel. A message of which one waits in the chart already is taken
-    /// behind that: it stays where it is, and others may come before it.
+    /// The arrivals that are possible next in a channel. If the chart already holds a message of
+    /// that kind, it stays in the channel, and later messages may overtake it.
     fn arrivals(&mut self, global: &GlobalState, channel: usize, found: &mut Vec<GlobalSuccessor>) {
         let arrives = |&(passage, _): &(usize, u32)| !self.is_blocked(global, passage);
         let Some(place) = global.channels[channel].iter().position(arrives) else { return };
@@ -290,7 +290,7 @@ impl<'a> CompositionSearch<'a> {
         }
     }
 
-    /// What a robot may do when a message arrives that it waits for.
+    /// The steps that a robot may make when an awaited message arrives.
     fn receiving_steps(&self, global: &GlobalState, passage: usize) -> Vec<LabelledEdge> {
         let &MessageRoute { to, waited, .. } = &self.found.passages[passage];
         let behaviour = &self.found.behaviours[to];
@@ -298,16 +298,16 @@ impl<'a> CompositionSearch<'a> {
         behaviour.graph.ways[global.classes[to]].iter().filter(hears).copied().collect()
     }
 
-    /// Whether one of a kind waits in the chart already: then the chart is offered no other. One
-    /// that has ended waits for nothing.
+    /// Whether the chart already holds a message of the kind, so that it is offered no other. A
+    /// chart that has ended waits for nothing.
     fn is_blocked(&self, global: &GlobalState, passage: usize) -> bool {
         let &MessageRoute { to, waited, .. } = &self.found.passages[passage];
         let has_ended = self.found.behaviours[to].graph.ends[global.classes[to]];
         waited.is_some() && !has_ended && self.receiving_steps(global, passage).is_empty()
     }
 
-    /// A robot goes a way, and what it says is on its way. Gives what a full channel has lost by
-    /// that, too.
+    /// Applies a step of a robot and enqueues the messages it sends. Returns the message that a
+    /// full channel dropped.
     fn apply_step(
         &mut self,
         mut global: GlobalState,
@@ -339,8 +339,7 @@ impl<'a> CompositionSearch<'a> {
             let channel = &mut global.channels[passage.channel];
             let waiting = channel.iter_mut().find(|(other, _)| *other == number);
             match waiting.filter(|_| passage.waited.is_none()) {
-                // whoever only looks at the newest message misses nothing by not seeing the one
-                // before
+                // a receiver that reads only the newest message does not observe the skipped one
                 Some(waiting) => waiting.1 = content,
                 None => channel.push((number, content)),
             }
@@ -380,7 +379,7 @@ impl GlobalProduct<'_> {
         way
     }
 
-    /// A way as text: the steps of each robot behind its name, as [`super::joint`] reads it.
+    /// A path as text in the format of [`super::team_trace`].
     pub(crate) fn trace_text(&self, way: &[GlobalEvent]) -> String {
         let mut at: Vec<usize> = self.behaviours.iter().map(Behaviour::first_state).collect();
         let mut text = String::new();

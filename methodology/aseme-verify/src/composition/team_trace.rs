@@ -23,17 +23,17 @@ use yase_explore::{ParseError, Trace, replay};
 pub struct TeamTrace {
     /// The steps of each robot alone.
     traces: Vec<Trace>,
-    /// Whose step is next, each time.
+    /// The robot of each step, in the order of the trace.
     order: Vec<usize>,
 }
 
-/// What a step of one of several robots did.
+/// The result of one step of one robot.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct PlayedStep {
-    /// The robot, by its place.
+    /// The index of the robot.
     pub robot: usize,
-    /// The step, as it stands in the text.
+    /// The step, as written in the text.
     pub step: String,
     /// A line for each micro-step.
     pub records: Vec<String>,
@@ -42,19 +42,18 @@ pub struct PlayedStep {
 }
 
 impl TeamTrace {
-    /// Whether a text is one: its first step belongs to one of several robots.
+    /// Whether a text is a team trace: its first step names one of several robots.
     pub fn is_one(text: &str) -> bool {
         let first = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#'));
         first.is_some_and(|line| line.trim_end().ends_with(": start"))
     }
 
-    /// Reads a way of robots with such names and charts.
+    /// Parses a trace of robots with these names and charts.
     ///
     /// # Errors
-    /// The first line that names no robot, or that is not a step of its robot.
+    /// The first line that names no robot or is not a step of its robot.
     pub fn parse(robots: &[(&str, &Arc<CompiledChart>)], text: &str) -> Result<TeamTrace, ParseError> {
-        // each robot's part keeps the lines where they are, so that what is wrong is told by its
-        // line
+        // each part keeps the line numbers of the whole text, for error messages
         let mut parts = vec![String::new(); robots.len()];
         let (mut order, mut last) = (Vec::new(), None);
         for (index, line) in text.lines().enumerate() {
@@ -108,6 +107,6 @@ fn robot_of(robots: &[(&str, &Arc<CompiledChart>)], line: &str) -> Option<usize>
 
 fn unknown(robots: &[(&str, &Arc<CompiledChart>)], line: &str, number: usize) -> ParseError {
     let names: Vec<String> = robots.iter().map(|(name, _)| format!("`{name}:`")).collect();
-    let message = format!("`{}` belongs to no robot: a step begins with {}", line.trim(), names.join(" or "));
+    let message = format!("`{}` belongs to no robot: a step starts with {}", line.trim(), names.join(" or "));
     ParseError { line: number, message }
 }

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use aseme::liveness::{Liveness, Term, TermId};
 
-/// What is left of a formula, by its place in a [`Language`].
+/// A residual, as an index into a [`Language`].
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(crate) struct Residual(u32);
 
@@ -19,64 +19,63 @@ pub(crate) type Symbol = u32;
 /// An `x~`, by its index in [`Language::endless`].
 pub(crate) type LoopId = u32;
 
-/// What may be left when an activity has returned, and what that was for.
+/// A residual after the return of an activity, and the loops that the return belongs to.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(crate) struct DerivativeStep {
-    /// What is left.
+    /// The residual.
     pub(crate) rest: Residual,
-    /// Whether it was part of what goes on forever, and not of what comes once.
+    /// Whether the activity was inside an `x~`, as opposed to a part that occurs once.
     pub(crate) recurs: bool,
-    /// Each `x~` of which it began a turn.
+    /// Each `x~` of which it started an iteration.
     pub(crate) begun: BTreeSet<LoopId>,
 }
 
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum LanguageTerm {
-    /// Nothing is left.
+    /// The empty trace.
     Done,
     Name(Symbol),
     Sequence(Residual, Residual),
     Either(Residual, Residual),
     Shuffle(Residual, Residual),
-    /// Any number of times.
+    /// Zero or more repetitions.
     Star(Residual),
-    /// Again and again; each `x~` of the formulas has a number of its own.
+    /// Endless repetition. Each `x~` of the formulas has its own number.
     Forever(Residual, LoopId),
-    /// What is left of one turn of what goes on forever, and that.
+    /// The residual of one iteration of an `x~`, followed by that `x~`.
     Turn(Residual, Residual),
-    /// No more of it than anyone likes.
+    /// Any prefix of it.
     Cut(Residual),
 }
 
 /// Limit of distinct residuals.
 const MOST: usize = 50_000;
 
-/// The rests of the formulas of a role.
+/// The residuals of the formulas of a role.
 pub(crate) struct Language {
     expressions: Vec<LanguageTerm>,
     places: BTreeMap<LanguageTerm, Residual>,
     nullable: Vec<bool>,
-    /// Whether it has no end.
+    /// Whether each residual has no end.
     unending: Vec<bool>,
     letters: Vec<String>,
     numbers: BTreeMap<String, Symbol>,
-    /// The terms that go on forever, as they are written.
+    /// The texts of the `x~`.
     endless: Vec<String>,
     steps: BTreeMap<(Residual, Symbol), BTreeSet<DerivativeStep>>,
     derivatives: BTreeMap<(Residual, Symbol), BTreeSet<Residual>>,
-    /// The terms that may be left before they are done, by what states are called that stand for
-    /// them.
+    /// The terms that may be left before they are done, by the names of their states.
     cut: BTreeSet<String>,
 }
 
 impl Language {
-    /// The language of formulas and all of the first one; none if they refine each other in a
-    /// circle or are too large.
+    /// The language of formulas and the residual of the first one. `None` if formulas refine each
+    /// other in a cycle or are too large.
     pub(crate) fn new(liveness: &Liveness) -> Option<(Language, Residual)> {
         Language::with_cut(liveness, BTreeSet::new())
     }
 
-    /// The same, of formulas some terms of which may be left before they are done.
+    /// The language of formulas in which some terms may be left before they are done.
     pub(crate) fn with_cut(liveness: &Liveness, cut: BTreeSet<String>) -> Option<(Language, Residual)> {
         let mut language = Language {
             expressions: Vec::new(),
@@ -154,9 +153,9 @@ impl Language {
         }
     }
 
-    /// A term within a term: what nests deeper than any chart is not judged.
+    /// A nested term. Terms that nest deeper than any chart are rejected.
     fn nested(&mut self, liveness: &Liveness, id: TermId, open: &mut Vec<usize>) -> Option<Residual> {
-        // the formula that is refined stands for one level more
+        // the formula that is refined takes one level more
         open.push(usize::MAX);
         let rest = self.term(liveness, id, open);
         open.pop();
@@ -186,7 +185,7 @@ impl Language {
         letter
     }
 
-    /// The letter of an activity, if a formula names it.
+    /// The symbol of an activity that a formula names.
     pub(crate) fn find(&self, name: &str) -> Option<Symbol> {
         self.numbers.get(name).copied()
     }
@@ -219,7 +218,7 @@ impl Language {
         }
     }
 
-    /// What is left of a turn, and then the next.
+    /// The residual of an iteration, followed by the next one.
     fn turn(&mut self, left: Residual, forever: Residual) -> Residual {
         match self.expressions[left.0 as usize] {
             LanguageTerm::Done => forever,
@@ -268,7 +267,7 @@ impl Language {
         rest
     }
 
-    /// Whether nothing need come any more.
+    /// Whether the trace may end here.
     pub(crate) fn may_end(&self, rest: Residual) -> bool {
         self.nullable.get(rest.0 as usize).copied().unwrap_or(false)
     }
@@ -312,7 +311,7 @@ impl Language {
         derivatives
     }
 
-    /// The same, with what the activity was for.
+    /// The derivative with the loops that the activity belongs to.
     pub(crate) fn steps(&mut self, rest: Residual, letter: Symbol) -> BTreeSet<DerivativeStep> {
         if let Some(known) = self.steps.get(&(rest, letter)) {
             return known.clone();
@@ -340,7 +339,7 @@ impl Language {
                 all
             }
             LanguageTerm::Turn(left, forever) => {
-                // what has no end itself keeps the next turn from ever beginning
+                // a part without an end prevents the next iteration from starting
                 let recurs = !self.unending[left.0 as usize];
                 let steps = self.each(left, letter, |it, rest| it.turn(rest, forever));
                 let mut all: BTreeSet<DerivativeStep> = steps
@@ -380,13 +379,13 @@ impl Language {
         steps.into_iter().map(|step| DerivativeStep { rest: make(self, step.rest), ..step }).collect()
     }
 
-    /// Whether it has no end.
+    /// Whether a residual has no end.
     fn is_unending(&self, rest: Residual) -> bool {
         self.unending.get(rest.0 as usize).copied().unwrap_or(false)
     }
 
-    /// The `x~` that have to be gone through again and again from here on; none if before that
-    /// something has to come that comes once. One whose turns may be empty asks for nothing.
+    /// The `x~` that must be repeated forever from here on; `None` if a part that occurs once must
+    /// come first. An `x~` whose iterations may be empty requires nothing.
     pub(crate) fn owed_loops(&self, rest: Residual) -> Option<BTreeSet<LoopId>> {
         match self.expressions[rest.0 as usize] {
             LanguageTerm::Done | LanguageTerm::Star(_) | LanguageTerm::Cut(_) => Some(BTreeSet::new()),
@@ -404,12 +403,12 @@ impl Language {
         }
     }
 
-    /// An `x~` as it is written.
+    /// An `x~` as written in the formula.
     pub(crate) fn endless(&self, number: LoopId) -> &str {
         self.endless.get(number as usize).map_or("", String::as_str)
     }
 
-    /// What is left of any of several when an activity has returned.
+    /// The residuals of a set of residuals after the return of an activity.
     pub(crate) fn derivative_of_any(
         &mut self,
         rests: &BTreeSet<Residual>,
@@ -423,7 +422,7 @@ impl Language {
 mod tests {
     use super::*;
 
-    /// Whether a formula allows a trace, and whether that may be all of it.
+    /// Whether a formula allows a trace as a prefix, and as a complete trace.
     fn allows(formulas: &str, trace: &str) -> (bool, bool) {
         let (mut language, all) = Language::new(&aseme::liveness::parse(formulas).0).unwrap();
         let mut rests = BTreeSet::from([all]);
@@ -453,7 +452,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_short_may_end_at_any_time_and_what_comes_behind_it_begin() {
+    fn a_cut_term_may_end_at_any_time_and_its_successor_start() {
         let (liveness, _) = aseme::liveness::parse("r = (a . b~) . c");
         let allows = |cut: &[&str], trace: &str| {
             let cut = cut.iter().map(|&name| name.to_owned()).collect();
@@ -470,7 +469,7 @@ mod tests {
     }
 
     #[test]
-    fn what_goes_on_forever_is_owed_until_its_turn_has_begun() {
+    fn an_endless_term_is_required_until_an_iteration_starts() {
         let owed = |formulas: &str, trace: &str| {
             let (mut language, all) = Language::new(&aseme::liveness::parse(formulas).0).unwrap();
             let rests = trace.split_whitespace().fold(BTreeSet::from([all]), |rests, name| {

@@ -7,14 +7,14 @@ use yase_explore::Exploration;
 
 use crate::conformance::derivatives::Symbol;
 
-/// A way from one state to another.
+/// An edge of the graph.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct LabelledEdge {
-    /// What a trace shows of it.
+    /// The observation of the step.
     pub(crate) observable: Observable,
-    /// Where it leads.
+    /// The target state.
     pub(crate) to: usize,
-    /// An edge of the exploration that it stands for.
+    /// An edge of the exploration with this observation.
     pub(crate) edge: usize,
 }
 
@@ -23,23 +23,23 @@ pub(crate) struct LabelledEdge {
 pub(crate) enum Observable {
     /// No activity returned.
     Nothing,
-    /// One did that formulas name.
+    /// An activity returned that formulas name.
     Letter(Symbol),
-    /// One did that no formula names.
+    /// An activity returned that no formula names.
     Other,
 }
 
-/// States and ways.
+/// States and labelled edges.
 #[derive(Debug)]
 pub(crate) struct Graph {
     pub(crate) initial: Vec<usize>,
-    /// Whether the chart has ended in a state.
+    /// Whether the chart has ended in each state.
     pub(crate) ends: Vec<bool>,
-    /// The ways out of each state.
+    /// The edges out of each state.
     pub(crate) ways: Vec<Vec<LabelledEdge>>,
 }
 
-/// What a state has, as bits: the numbers of what ways show with where they lead.
+/// The signature of a state: a bit for each pair of observation and target class.
 type Signature = Vec<u64>;
 
 /// Limit of equivalence classes; minimising a chart with more gains little.
@@ -50,7 +50,7 @@ const MOST_CLASSES: usize = 2_000;
 const MOST_ROUNDS: usize = 200;
 
 impl Graph {
-    /// All that was found.
+    /// The graph of an exploration.
     pub(crate) fn of(found: &Exploration, shows: impl Fn(usize) -> Observable) -> Graph {
         let mut ways = vec![Vec::new(); found.states().len()];
         for (index, edge) in found.edges().iter().enumerate() {
@@ -63,13 +63,13 @@ impl Graph {
         Graph { initial: found.initial().collect(), ends, ways }
     }
 
-    /// The same traces with fewer states: those are one that are branching bisimilar. None if there
-    /// are too many left.
+    /// An equivalent graph with fewer states: the quotient by branching bisimilarity. `None` if too
+    /// many classes remain.
     ///
-    /// States are sorted into classes, which are split for as long as some states in one class have
-    /// what others do not have: a way that shows something or leads to another class, perhaps
-    /// behind steps within the class that show nothing. Loops that go on at a pace of their own,
-    /// which are what makes a player's chart large, are one state each by that.
+    /// Classes are split as long as some states of a class have a signature that others lack: an
+    /// observable edge, or an edge to another class, possibly after unobservable steps within the
+    /// class. This reduces loops that run at their own rate, which dominate the state space of a
+    /// player's chart, to one state each.
     pub(crate) fn collapsed(&self) -> Option<Graph> {
         let (classes, count) = self.classes(self.ends.iter().map(|&ends| usize::from(ends)).collect())?;
         Some(self.of_classes(&classes, count))
@@ -118,7 +118,7 @@ impl Graph {
         signatures
     }
 
-    /// Classes as states, and the ways between them.
+    /// The quotient graph.
     pub(crate) fn of_classes(&self, classes: &[usize], count: usize) -> Graph {
         let mut ways: Vec<BTreeMap<(Observable, usize), usize>> = vec![BTreeMap::new(); count];
         let mut ends = vec![false; count];
@@ -143,7 +143,7 @@ impl Graph {
     }
 }
 
-/// What a state has, those have too from which steps lead there that show nothing, within a class.
+/// Propagates signatures backwards along unobservable steps within a class.
 fn propagate_back(signatures: &mut [Signature], before: &[Vec<usize>]) {
     let mut open: Vec<usize> = (0..signatures.len()).collect();
     let mut is_open = vec![true; signatures.len()];

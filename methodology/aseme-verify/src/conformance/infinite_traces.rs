@@ -16,25 +16,25 @@ use super::{MOST, ProductState};
 use crate::conformance::derivatives::{Language, LoopId, Residual};
 use crate::strongly_connected_components::strongly_connected_components;
 
-/// A state of the chart with one of the rests of the formulas there.
+/// A state of the chart with one residual of the formulas there.
 type LoopProductState = (usize, Residual);
 
-/// Where a step leads, whether it can be part of what goes on forever, and what it begins a turn
-/// of.
+/// The target of a step, whether the step can be part of an endless repetition, and the `x~` of
+/// which it starts an iteration.
 type LoopProductStep = (usize, (bool, BTreeSet<LoopId>));
 
-/// The first of some states of affairs from which the formulas cannot be met any more, and which of
-/// their `x~` are not begun again; none of those if it is something else.
+/// Whether the formulas can be satisfied from all product states.
 pub(crate) enum InfiniteTraceResult {
-    /// They can be met from all of them.
+    /// They can be satisfied from each of them.
     Met,
-    /// From this one they cannot.
+    /// They cannot be satisfied from this one. The texts are the `x~` that are not repeated; empty
+    /// if the cause is something else.
     Missed(usize, Vec<String>),
-    /// There is too much to look at.
+    /// The product exceeded its limit.
     Unknown,
 }
 
-/// Looks at states of affairs in the order in which they are reached.
+/// Checks product states in the order in which they were reached.
 pub(crate) fn endlessly(
     graph: &Graph,
     language: &mut Language,
@@ -56,21 +56,22 @@ pub(crate) fn endlessly(
     }
 }
 
-/// All that chart and formulas can come to together.
+/// The product of the chart and the residuals of its formulas.
 struct LoopProduct {
     places: Vec<LoopProductState>,
     numbers: BTreeMap<LoopProductState, usize>,
     next: Vec<Vec<LoopProductStep>>,
 }
 
-/// The circles of what goes on forever: the component of each place, and what is begun in each.
+/// The strongly connected components of repeatable steps: the component of each state, and the `x~`
+/// that start in each.
 struct LoopComponents {
     of_place: Vec<usize>,
     begun: Vec<BTreeSet<LoopId>>,
 }
 
 impl LoopProduct {
-    /// None if it is too large.
+    /// `None` if it is too large.
     fn new(graph: &Graph, language: &mut Language, all: Residual) -> Option<LoopProduct> {
         let mut product = LoopProduct { places: Vec::new(), numbers: BTreeMap::new(), next: Vec::new() };
         for &state in &graph.initial {
@@ -126,8 +127,8 @@ impl LoopProduct {
         LoopComponents { of_place, begun }
     }
 
-    /// From which places the formulas can be met: from those where they are, and from those that
-    /// lead there.
+    /// The states from which the formulas can be satisfied: the accepting ones and their
+    /// predecessors.
     fn satisfying_states(
         &self,
         graph: &Graph,
@@ -142,7 +143,8 @@ impl LoopProduct {
         let is_met = |place: usize| {
             let (state, rest) = self.places[place];
             let has_ended = graph.ends[state] && (may_end_early || language.may_end(rest));
-            // with nothing owed it may be silent forever; whether it could end is another question
+            // without required loops the chart may be silent forever; whether it could end is
+            // checked elsewhere
             let is_satisfied = |owed: BTreeSet<LoopId>| owed.is_subset(&turns.begun[turns.of_place[place]]);
             has_ended || language.owed_loops(rest).is_some_and(is_satisfied)
         };
@@ -158,7 +160,7 @@ impl LoopProduct {
         met
     }
 
-    /// What is owed in a state of affairs and never begun again from there on, as it is written.
+    /// The `x~` that are required in a product state and never start again, as text.
     fn starved_loop(&self, language: &Language, turns: &LoopComponents, at: &ProductState) -> Vec<String> {
         let first: Vec<usize> =
             at.1.iter().filter_map(|&rest| self.numbers.get(&(at.0, rest)).copied()).collect();

@@ -1,6 +1,6 @@
 //! Difference-bound matrices in canonical (tightest) form.
 
-/// At most a number, or less than it.
+/// An upper bound, possibly strict.
 #[derive(Clone, Copy, PartialEq, Debug)]
 struct NumericBound {
     limit: f64,
@@ -10,7 +10,7 @@ struct NumericBound {
 const NONE: NumericBound = NumericBound { limit: f64::INFINITY, strict: true };
 const SAME: NumericBound = NumericBound { limit: 0.0, strict: false };
 
-/// Sums of limits that differ by less than this may differ by rounding alone.
+/// Sums of limits that differ by less than this may be equal up to rounding.
 const ROUNDING: f64 = 1e-9;
 
 impl NumericBound {
@@ -23,20 +23,20 @@ impl NumericBound {
     }
 }
 
-/// Whether bounds can hold together.
+/// Whether bounds are consistent.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum BoundsConsistency {
     Consistent,
     Contradiction,
-    /// It hangs on how sums are rounded.
+    /// The result depends on rounding.
     TooClose,
 }
 
-/// A matrix of bounds; the first number is zero.
+/// A matrix of difference bounds; the first variable is zero.
 #[derive(Clone, Debug)]
 pub(crate) struct DifferenceBounds {
     names: Vec<String>,
-    /// `at[i][j]` bounds number i minus number j.
+    /// `at[i][j]` bounds variable i minus variable j.
     at: Vec<Vec<NumericBound>>,
 }
 
@@ -60,7 +60,7 @@ impl DifferenceBounds {
         self.names.len() - 1
     }
 
-    /// Adds that a number minus another is at most a limit, or less.
+    /// Adds an upper bound on the difference of two variables.
     pub(crate) fn add(
         &mut self,
         more: Option<&str>,
@@ -95,7 +95,7 @@ impl DifferenceBounds {
         }
     }
 
-    /// Numbers within the bounds, in the order of the names.
+    /// Values within the bounds, ordered by name.
     pub(crate) fn example(mut self) -> Vec<(String, f64)> {
         let mut values = Vec::new();
         for index in 1..self.names.len() {
@@ -110,7 +110,7 @@ impl DifferenceBounds {
     }
 }
 
-/// A number between two, which are taken if they may be, a whole one if there is one near.
+/// A value between two bounds: a whole number if there is one nearby.
 fn between((lower, above): (f64, bool), (upper, below): (f64, bool)) -> f64 {
     let fits = |value: f64| {
         (value > lower || value == lower && !above) && (value < upper || value == upper && !below)
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn what_hangs_on_rounding_is_not_judged() {
+    fn results_that_depend_on_rounding_are_undecided() {
         let mut bounds = DifferenceBounds::new();
         bounds.add(Some("x"), Some("y"), 0.1, false);
         bounds.add(Some("y"), Some("z"), 0.2, false);

@@ -19,13 +19,13 @@ impl NegationNormalForm {
     }
 }
 
-/// Something that is so or not.
+/// A literal: an atom or its negation.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct GuardLiteral {
     pub(crate) atom: Atom,
     /// The messages that must have arrived for it to be known.
     pub(crate) messages: Vec<String>,
-    /// Whether it stands for all that it says: nothing else decides its value.
+    /// Whether the atom expresses the condition completely, so that nothing else decides its value.
     pub(crate) is_exact: bool,
 }
 
@@ -43,7 +43,7 @@ pub(crate) enum Atom {
     Present(String),
 }
 
-/// The value that a condition is to have.
+/// The value that a condition must have.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Polarity {
     True,
@@ -53,7 +53,7 @@ pub(crate) enum Polarity {
 }
 
 impl Polarity {
-    /// What is wanted of what is negated.
+    /// The polarity of the operand of a negation.
     fn negated(self) -> Polarity {
         match self {
             Polarity::True => Polarity::False,
@@ -67,13 +67,13 @@ impl Polarity {
         matches!(self, Polarity::True | Polarity::NotFalse)
     }
 
-    /// Whether it is enough that a message is missing.
+    /// Whether a missing message satisfies the polarity.
     fn may_be_unknown(self) -> bool {
         matches!(self, Polarity::NotTrue | Polarity::NotFalse)
     }
 }
 
-/// How conditions are read.
+/// Converts conditions to negation normal form.
 pub(crate) struct ConditionReader<'a> {
     pub(crate) constants: &'a [Constant],
 }
@@ -99,7 +99,7 @@ impl ConditionReader<'_> {
             ExpressionKind::TimeoutCheck(path) => {
                 flag(condition, format!("TimeoutCheck({})", path.text()), wanted, true)
             }
-            // states are not independent of each other, functions may be of anything
+            // states depend on each other and functions are unknown, so both are opaque
             _ => flag(condition, condition.to_string(), wanted, false),
         }
     }
@@ -139,7 +139,7 @@ impl ConditionReader<'_> {
         }
         let difference = LinearForm::of(left, self).minus(&LinearForm::of(right, self));
         let comparison = if wanted.is_positive() { comparison } else { comparison.contrary() };
-        // two fields that are compared for equality may be of any type
+        // two fields compared for equality may have any type
         let is_number = !(is_equality && is_field(left) && is_field(right));
         let bounds = difference.bounds(comparison).into_iter().map(|all| {
             NegationNormalForm::All(
@@ -196,7 +196,7 @@ impl ConditionReader<'_> {
         }
     }
 
-    /// A field that is compared with a text, or with a value of an enumeration.
+    /// The comparison of a field with a text or an enumeration value.
     fn symbol(&self, field: &Expression, value: &Expression) -> Option<(String, String)> {
         let ExpressionKind::Variable(path) = &field.kind else { return None };
         let value = match &value.kind {
@@ -247,7 +247,7 @@ fn is_field(expression: &Expression) -> bool {
     matches!(&expression.kind, ExpressionKind::Variable(path) if path.segments.len() > 1)
 }
 
-/// Whether an operand is a condition, whatever it reads.
+/// Whether an operand is a condition rather than a value.
 fn is_condition(expression: &Expression) -> bool {
     matches!(
         expression.kind,
@@ -281,7 +281,7 @@ fn known(whole: &Expression, wanted: Polarity, says: Vec<(Atom, bool)>) -> Negat
     or_unknown(whole, wanted, NegationNormalForm::All(literals))
 }
 
-/// What is known, or that a message is missing if that will do.
+/// The known literal, or also a missing message if the polarity allows it.
 fn or_unknown(whole: &Expression, wanted: Polarity, known: NegationNormalForm) -> NegationNormalForm {
     if !wanted.may_be_unknown() {
         return known;

@@ -7,12 +7,12 @@ use yase::statechart::ConstantValue;
 
 use super::formula::{Atom, ConditionReader};
 
-/// A number and multiples of names.
+/// A constant plus multiples of names.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct LinearForm {
     number: f64,
     terms: BTreeMap<String, f64>,
-    /// Whether each name is a field rather than text that stands for itself.
+    /// Whether each name is a field, as opposed to the text of an opaque term.
     is_exact: bool,
 }
 
@@ -25,7 +25,7 @@ impl LinearForm {
         LinearForm { number: 0.0, terms: BTreeMap::from([(name, 1.0)]), is_exact }
     }
 
-    /// What an operand is.
+    /// The linear form of an operand.
     pub(crate) fn of(expression: &Expression, reading: &ConditionReader<'_>) -> LinearForm {
         match &expression.kind {
             ExpressionKind::Integer(number) => LinearForm::constant(*number as f64),
@@ -73,7 +73,7 @@ impl LinearForm {
         self
     }
 
-    /// A product or quotient, if one of the two is a number.
+    /// A product or quotient, if one operand is a constant.
     fn by(self, operator: Multiplicative, other: &LinearForm) -> Option<LinearForm> {
         match operator {
             Multiplicative::Times if other.terms.is_empty() => Some(self.times(other.number)),
@@ -85,8 +85,8 @@ impl LinearForm {
         }
     }
 
-    /// What it means that this is less than 0, equal to 0 and so on: alternatives, each of bounds
-    /// that hold together, and whether they say all.
+    /// A comparison of the form with 0: alternatives, each a conjunction of bounds, each bound with
+    /// whether it is exact.
     pub(crate) fn bounds(&self, comparison: Comparison) -> Vec<Vec<(Atom, bool)>> {
         if !(self.number.is_finite() && self.terms.values().all(|factor| factor.is_finite())) {
             let says = Atom::Flag(format!("{self:?} {comparison:?}"), true);
@@ -104,7 +104,7 @@ impl LinearForm {
         }
     }
 
-    /// That this is at most 0, or less.
+    /// The bound that the form is at most, or less than, 0.
     fn at_most(&self, strict: bool) -> (Atom, bool) {
         let mut terms = self.terms.iter();
         let (says, is_simple) = match (terms.next(), terms.next(), terms.next()) {
@@ -116,8 +116,7 @@ impl LinearForm {
                 (bound(Some(more.clone()), Some(less.clone()), limit, strict), true)
             }
             (Some((_, &first)), ..) => {
-                // a sum of several is a name of its own, in a form that does not depend on how it
-                // is scaled
+                // a sum of several names becomes one name, normalised by scale
                 let scaled = self.terms.iter().map(|(name, factor)| format!("{} {name}", factor / first));
                 let name = scaled.collect::<Vec<_>>().join(" + ");
                 (single(name, first, -self.number, strict), false)
@@ -127,7 +126,7 @@ impl LinearForm {
     }
 }
 
-/// A multiple of a name is at most a number.
+/// An upper bound on a multiple of a name.
 fn single(name: String, factor: f64, limit: f64, strict: bool) -> Atom {
     match factor > 0.0 {
         true => bound(Some(name), None, limit / factor, strict),

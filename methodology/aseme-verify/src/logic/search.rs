@@ -6,11 +6,11 @@ use super::bounds::{BoundsConsistency, DifferenceBounds};
 use super::formula::{Atom, GuardLiteral, NegationNormalForm};
 use super::{Example, Satisfiability};
 
-/// A search.
+/// The state of a search.
 pub(crate) struct SatisfiabilitySearch {
-    /// How many alternatives may still be looked at.
+    /// How many alternatives may still be searched.
     left: usize,
-    /// Whether an alternative may be, of which not all is known, or was not looked at.
+    /// Whether an alternative was skipped or is satisfiable only if an unknown value permits it.
     is_open: bool,
     /// Whether values will do of which not all is known.
     takes_inexact: bool,
@@ -29,7 +29,7 @@ pub(crate) struct GuardModel {
     pub(crate) missing: BTreeSet<String>,
 }
 
-/// What is known in one alternative.
+/// The literals assumed in one alternative.
 #[derive(Clone)]
 struct Assumptions {
     flags: BTreeMap<String, bool>,
@@ -76,7 +76,7 @@ impl SatisfiabilitySearch {
         self.solve(facts, vec![formula], Vec::new())
     }
 
-    /// What is certain comes first; then one of the alternatives that are left to be chosen from.
+    /// Assumes the certain literals first, then branches on the remaining alternatives.
     fn solve<'f>(
         &mut self,
         mut facts: Assumptions,
@@ -108,7 +108,7 @@ impl SatisfiabilitySearch {
         None
     }
 
-    /// Whether the literals so far are consistent.
+    /// Adds a literal. Returns whether the assumptions are consistent.
     fn assume(&mut self, facts: &mut Assumptions, literal: &GuardLiteral) -> bool {
         facts.is_exact &= literal.is_exact;
         facts.present.extend(literal.messages.iter().cloned());
@@ -160,14 +160,14 @@ impl Assumptions {
         if holds { BoundsConsistency::Consistent } else { BoundsConsistency::Contradiction }
     }
 
-    /// A timer that was started and is over is over by its bare name too.
+    /// A timer that was started and has expired is also true by its bare name.
     fn timers_agree(&self, name: &str) -> bool {
         let bare = name.strip_prefix("TimeoutCheck(").and_then(|rest| rest.strip_suffix(')')).unwrap_or(name);
         let checked = self.flags.get(&format!("TimeoutCheck({bare})"));
         !(checked == Some(&true) && self.flags.get(bare) == Some(&false))
     }
 
-    /// Parts of a message arrive with it.
+    /// Whether a part of a present message is assumed missing: the parts arrive together.
     fn is_missing_what_is_present(&self) -> bool {
         let within = |inner: &str, outer: &str| {
             inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))

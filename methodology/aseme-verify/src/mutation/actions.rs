@@ -8,30 +8,30 @@ use yase::{Node, NodeId, Statechart, Transition, TransitionId};
 use super::{MutantCollector, MutantDescription, MutationKind};
 use aseme::path::shortest_path;
 
-/// A list of actions with one of them changed or gone.
+/// A list of actions with one of them changed or removed.
 struct ActionVariant {
     description: MutantDescription,
     actions: Vec<Action>,
-    /// The start of a timer that is gone from them.
+    /// The start of a timer that was removed.
     unstarted: Option<Action>,
 }
 
-/// All that can be done to what a transition does.
+/// All mutants of the actions of a transition.
 pub(crate) fn of_transition(making: &mut MutantCollector<'_>, id: TransitionId) {
     let transition = making.chart.transition(id);
     if transition.expression.is_never() {
         return;
     }
-    for ActionVariant { description: told, actions, unstarted } in variants(&transition.expression.actions) {
-        making.changed(id, told, |chart| {
+    for ActionVariant { description, actions, unstarted } in variants(&transition.expression.actions) {
+        making.changed(id, description, |chart| {
             chart.transition_mut(id).expression.actions = actions;
             unstarted.into_iter().for_each(|action| keep_known(chart, id, action));
         });
     }
 }
 
-/// A name that nothing starts is none of a timer, and nothing could read it: so the start stays,
-/// where it never happens.
+/// Keeps a removed timer start in the chart, at a place that is never executed, because reading a
+/// timer that nothing starts would not compile.
 fn keep_known(chart: &mut Statechart, id: TransitionId, action: Action) {
     let Transition { source, target, .. } = *chart.transition(id);
     let never = Expression { kind: ExpressionKind::Bool(false), place: action.place };
@@ -39,8 +39,7 @@ fn keep_known(chart: &mut Statechart, id: TransitionId, action: Action) {
     chart.connect(Transition { expression, ..Transition::new(source, target) });
 }
 
-/// All that can be done to what states do when they are entered and left. A model's text has no
-/// place for a state of its own.
+/// All mutants of the entry and exit actions of states. States have no span in a model's text.
 pub(crate) fn of_states(making: &mut MutantCollector<'_>) {
     let ids: Vec<NodeId> = making.chart.nodes().map(|(id, _)| id).collect();
     for id in ids {
@@ -56,12 +55,12 @@ fn of_node(
     actions: fn(&mut Node) -> &mut Vec<Action>,
 ) {
     let mut node = making.chart.node(id).clone();
-    for ActionVariant { description: told, actions: changed, .. } in variants(actions(&mut node)) {
+    for ActionVariant { description, actions: changed, .. } in variants(actions(&mut node)) {
         let mut chart = making.chart.clone();
         let what = format!("{when} {} {changed:?}", id.0);
         *actions(chart.node_mut(id)) = changed;
         let place = format!("{} {when}", shortest_path(making.chart, id));
-        making.add(&what, place, yase::Span::default(), told, chart);
+        making.add(&what, place, yase::Span::default(), description, chart);
     }
 }
 
@@ -73,8 +72,8 @@ fn variants(actions: &[Action]) -> Vec<ActionVariant> {
                 let mut changed = actions.to_vec();
                 changed[place].kind =
                     ActionKind::StartTimeout { timer: timer.clone(), delay: other, form: *form };
-                let told = timed(&timer.text(), *delay, other);
-                found.push(ActionVariant { description: told, actions: changed, unstarted: None });
+                let description = timed(&timer.text(), *delay, other);
+                found.push(ActionVariant { description, actions: changed, unstarted: None });
             }
         }
         let mut rest = actions.to_vec();
@@ -84,30 +83,30 @@ fn variants(actions: &[Action]) -> Vec<ActionVariant> {
     found
 }
 
-/// One of the actions is not there.
+/// A variant with one action removed.
 fn gone(action: &Action, rest: Vec<Action>) -> ActionVariant {
-    let wanted = format!("something that comes of `{action}`");
+    let wanted = format!("an effect of `{action}`");
     match &action.kind {
         ActionKind::StartTimeout { timer, .. } => {
             let change = format!("`{timer}` is never started");
-            let told = MutantDescription { kind: MutationKind::Timeout, change, wanted };
-            ActionVariant { description: told, actions: rest, unstarted: Some(action.clone()) }
+            let description = MutantDescription { kind: MutationKind::Timeout, change, wanted };
+            ActionVariant { description, actions: rest, unstarted: Some(action.clone()) }
         }
         _ => {
             let change = format!("the action `{action}` is removed");
-            let told = MutantDescription { kind: MutationKind::ActionRemoved, change, wanted };
-            ActionVariant { description: told, actions: rest, unstarted: None }
+            let description = MutantDescription { kind: MutationKind::ActionRemoved, change, wanted };
+            ActionVariant { description, actions: rest, unstarted: None }
         }
     }
 }
 
-/// The description of a timer with another delay.
+/// Describes a timer with another delay.
 fn timed(timer: &str, delay: Duration, other: Duration) -> MutantDescription {
     MutantDescription {
         kind: MutationKind::Timeout,
-        change: format!("`{timer}` runs {other:?} in place of {delay:?}"),
+        change: format!("`{timer}` runs {other:?} instead of {delay:?}"),
         wanted: format!(
-            "what is so between {:?} and {:?} after `{timer}` is started",
+            "the behaviour between {:?} and {:?} after the start of `{timer}`",
             delay.min(other),
             delay.max(other)
         ),

@@ -9,12 +9,12 @@ use yase::statechart::ConstantValue;
 use super::{MutantCollector, MutantDescription, MutationKind};
 use aseme::srm::{Section, SrmFile};
 
-/// Of a number the step is a tenth.
+/// The step relative to a number: a tenth.
 const SHARE: f64 = 0.1;
-/// So many digits tell steps apart, and no more are written.
+/// The significant digits of a step.
 const DIGITS: usize = 12;
 
-/// A number's neighbours: a tenth of it larger and smaller, of nothing one.
+/// A number a tenth larger and a tenth smaller; for zero, plus and minus one.
 pub(crate) fn around(value: f64) -> [f64; 2] {
     let step = if value == 0.0 { 1.0 } else { value.abs() * SHARE };
     [value + step, value - step].map(rounded)
@@ -25,7 +25,7 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.DIGITS$e}").parse().unwrap_or(value)
 }
 
-/// Every constant that some guard names.
+/// All mutants of constants that guards use.
 pub(crate) fn all(making: &mut MutantCollector<'_>) {
     let mut named = BTreeSet::new();
     for (_, transition) in making.chart.transitions() {
@@ -41,18 +41,18 @@ pub(crate) fn all(making: &mut MutantCollector<'_>) {
         for other in around(value) {
             let mut chart = making.chart.clone();
             chart.constants[place].value = ConstantValue::Number(other);
-            let told = MutantDescription {
+            let mutation = MutantDescription {
                 kind: MutationKind::Number,
-                change: format!("the constant is {other} in place of {value}"),
-                wanted: format!("a moment at which it matters that `{}` is not {other}", constant.name),
+                change: format!("the constant is {other} instead of {value}"),
+                wanted: format!("a case in which `{}` and {other} make a difference", constant.name),
             };
             let what = format!("constant {place} {other}");
-            making.add(&what, constant.name.clone(), span.unwrap_or_default(), told, chart);
+            making.add(&what, constant.name.clone(), span.unwrap_or_default(), mutation, chart);
         }
     }
 }
 
-/// The single names that a condition reads.
+/// The unqualified names that a condition reads.
 fn names(condition: &Expression, found: &mut BTreeSet<String>) {
     if let ExpressionKind::Variable(path) = &condition.kind {
         found.extend(path.bare().map(str::to_owned));
@@ -60,7 +60,7 @@ fn names(condition: &Expression, found: &mut BTreeSet<String>) {
     condition.parts().into_iter().for_each(|part| names(part, found));
 }
 
-/// Where each constant of a role stands; nothing for charts in files of their own.
+/// The span of each constant of a role; none for charts in files of their own.
 fn places(making: &MutantCollector<'_>) -> Vec<(String, Span)> {
     let (file, _) = SrmFile::parse(making.source.text.as_str());
     let of_constants = file.entries().iter().filter(|entry| entry.section == Section::Constants);

@@ -6,14 +6,14 @@ use yase::{NodeId, NodeKind, Statechart, Transition, TransitionId};
 use super::constants::around;
 use super::{MutantCollector, MutantDescription, MutationKind, bracketed};
 
-/// A guard with one part of it changed.
+/// A guard with one part changed.
 struct GuardVariant {
     kind: MutationKind,
     guard: Expression,
     wanted: String,
 }
 
-/// All that can be done to the guard of a transition.
+/// All mutants of the guard of a transition.
 pub(crate) fn of_transition(making: &mut MutantCollector<'_>, id: TransitionId) {
     let transition = making.chart.transition(id);
     let Some(guard) = transition.expression.guard.clone() else { return };
@@ -24,7 +24,7 @@ pub(crate) fn of_transition(making: &mut MutantCollector<'_>, id: TransitionId) 
         GuardVariant {
             kind: MutationKind::GuardNegated,
             guard: negated(&guard),
-            wanted: format!("a moment at which it matters that the guard is {}", bracketed(Some(&guard))),
+            wanted: format!("a case in which the guard must be {}", bracketed(Some(&guard))),
         },
     );
     let source = transition.source;
@@ -45,16 +45,16 @@ fn change(making: &mut MutantCollector<'_>, id: TransitionId, variant: GuardVari
 
 fn remove(making: &mut MutantCollector<'_>, id: TransitionId, guard: &Expression) {
     let before = bracketed(Some(guard));
-    let told = MutantDescription {
+    let mutation = MutantDescription {
         kind: MutationKind::GuardRemoved,
         change: format!("the guard {before} is removed"),
-        wanted: format!("a moment at which the transition is not taken only because {before} does not hold"),
+        wanted: format!("a case in which only the guard {before} prevents the transition"),
     };
-    making.transition(id, told, |it| it.expression.guard = None);
+    making.transition(id, mutation, |it| it.expression.guard = None);
 }
 
-/// Whether a state can ever complete, going by what it is made of. Without a guard an exit of one
-/// that cannot is never taken, as with `[false]`.
+/// Whether a state can complete, judged by its structure. Removing the guard of an exit that waits
+/// for completion has no effect if it cannot.
 fn completes(chart: &Statechart, node: NodeId) -> bool {
     let children = chart.children(node);
     match chart.node(node).kind {
@@ -67,8 +67,8 @@ fn completes(chart: &Statechart, node: NodeId) -> bool {
     }
 }
 
-/// Whether a transition that leads to an END beside its source can be taken: one that waits for its
-/// source to complete cannot, if that never does.
+/// Whether a transition to a sibling END can be taken: not if it waits for its source to complete
+/// and that never does.
 fn leaves(chart: &Statechart, transition: &Transition) -> bool {
     let TransitionExpression { trigger, guard, .. } = &transition.expression;
     trigger.is_some() || guard.is_some() || completes(chart, transition.source)
@@ -100,7 +100,7 @@ const fn neighbour(comparison: Comparison) -> Comparison {
     }
 }
 
-/// A condition with one part of it changed, in each way.
+/// All variants of a condition with one part changed.
 fn variants(condition: &Expression) -> Vec<GuardVariant> {
     let mut found = own(condition);
     for (place, part) in condition.parts().into_iter().enumerate() {
@@ -108,7 +108,7 @@ fn variants(condition: &Expression) -> Vec<GuardVariant> {
             let guard = with_part(condition, place, variant.guard);
             let wanted = match (variant.kind, &condition.kind) {
                 (MutationKind::Number, ExpressionKind::Compare(..)) => {
-                    format!("a moment at which `{condition}` and `{guard}` differ")
+                    format!("a case in which `{condition}` and `{guard}` differ")
                 }
                 _ => variant.wanted,
             };
@@ -118,7 +118,7 @@ fn variants(condition: &Expression) -> Vec<GuardVariant> {
     found
 }
 
-/// The ways in which a condition itself is changed, its parts staying what they are.
+/// The variants of a condition with its operands unchanged.
 fn own(condition: &Expression) -> Vec<GuardVariant> {
     match &condition.kind {
         ExpressionKind::Compare(left, comparison, right) => {
@@ -140,9 +140,9 @@ fn compared(
         ExpressionKind::Compare(Box::new(left.clone()), neighbour(comparison), Box::new(right.clone()));
     let wanted = match comparison {
         Comparison::Equal | Comparison::NotEqual => {
-            format!("a moment at which it matters that `{condition}` holds, or does not")
+            format!("a case in which the value of `{condition}` makes a difference")
         }
-        _ => format!("a moment at which `{left}` is exactly `{right}`"),
+        _ => format!("a case in which `{left}` equals `{right}`"),
     };
     GuardVariant {
         kind: MutationKind::Comparison,
@@ -151,7 +151,7 @@ fn compared(
     }
 }
 
-/// What becomes of `a && b` and `a || b`.
+/// The variants of `a && b` and `a || b`.
 fn joined(condition: &Expression, operands: &[Expression]) -> Vec<GuardVariant> {
     let is_and = matches!(condition.kind, ExpressionKind::And(_));
     let join = |operands: Vec<Expression>, all: bool| {
@@ -166,20 +166,20 @@ fn joined(condition: &Expression, operands: &[Expression]) -> Vec<GuardVariant> 
             _ => join(rest, is_and),
         };
         let wanted = match is_and {
-            true => format!("a moment at which all but `{operand}` holds"),
-            false => format!("a moment at which nothing but `{operand}` holds"),
+            true => format!("a case in which all operands but `{operand}` hold"),
+            false => format!("a case in which only `{operand}` holds"),
         };
         GuardVariant { kind: MutationKind::PartDropped, guard, wanted }
     });
     let turned = GuardVariant {
         kind: MutationKind::AndOr,
         guard: join(operands.to_vec(), !is_and),
-        wanted: format!("a moment at which only a part of `{condition}` holds"),
+        wanted: format!("a case in which only some operands of `{condition}` hold"),
     };
     dropped.chain([turned]).collect()
 }
 
-/// A number, a step larger and a step smaller.
+/// The variants of a number: one step larger and one step smaller.
 fn steps(number: &Expression) -> Vec<GuardVariant> {
     let stepped: Vec<Expression> = match number.kind {
         ExpressionKind::Integer(value) => {
@@ -195,11 +195,11 @@ fn steps(number: &Expression) -> Vec<GuardVariant> {
         }
         _ => Vec::new(),
     };
-    let told = |guard: Expression| {
-        let wanted = format!("a moment at which it matters that `{number}` is not `{guard}`");
+    let mutation = |guard: Expression| {
+        let wanted = format!("a case in which `{number}` and `{guard}` make a difference");
         GuardVariant { kind: MutationKind::Number, guard, wanted }
     };
-    stepped.into_iter().map(told).collect()
+    stepped.into_iter().map(mutation).collect()
 }
 
 fn decimal(value: f64, like: &Expression) -> Expression {
@@ -215,7 +215,7 @@ fn negative(number: Expression) -> Expression {
     Expression { place: number.place, kind: ExpressionKind::Negative(Box::new(number)) }
 }
 
-/// A condition with another part at a place among its [parts](Expression::parts).
+/// A condition with one of its [parts](Expression::parts) replaced.
 fn with_part(condition: &Expression, place: usize, part: Expression) -> Expression {
     let mut changed = condition.clone();
     let found = match &mut changed.kind {

@@ -15,8 +15,8 @@ fn of(text: &str) -> Vec<Mutant> {
     mutants(&Source::new("r.srm", text)).expect("the role is in order")
 }
 
-/// What was changed at a place, by the names of the mutants without it.
-fn told(mutants: &[Mutant], place: &str) -> Vec<String> {
+/// The descriptions of the mutants whose names start with an element.
+fn descriptions(mutants: &[Mutant], place: &str) -> Vec<String> {
     let here = mutants.iter().filter_map(|mutant| {
         let name = mutant.name.strip_prefix(place)?.strip_prefix(" #")?;
         Some(format!("{name}{}", &mutant.description[place.len()..]))
@@ -28,7 +28,7 @@ fn told(mutants: &[Mutant], place: &str) -> Vec<String> {
 fn a_guard_is_changed_in_every_part() {
     let guard = "the guard `[Ball.found && Ball.distance <= near]`";
     assert_eq!(
-        told(&of(ROLE), "CONDITION -> B"),
+        descriptions(&of(ROLE), "CONDITION -> B"),
         [
             format!("guard-negated: {guard} becomes `[!(Ball.found && Ball.distance <= near)]`"),
             format!("guard-removed: {guard} is removed"),
@@ -36,7 +36,7 @@ fn a_guard_is_changed_in_every_part() {
             format!("part-dropped-2: {guard} becomes `[Ball.found]`"),
             format!("and-or: {guard} becomes `[Ball.found || Ball.distance <= near]`"),
             format!("comparison: {guard} becomes `[Ball.found && Ball.distance < near]`"),
-            String::from("target: it leads to `C`"),
+            String::from("target: the target is `C`"),
             String::from("transition-removed: it is never taken"),
         ]
     );
@@ -55,8 +55,8 @@ fn numbers_go_a_step_up_and_a_step_down() {
         [
             "CONDITION -> C: the guard `[Ball.distance > 2]` becomes `[Ball.distance > 3]`",
             "CONDITION -> C: the guard `[Ball.distance > 2]` becomes `[Ball.distance > 1]`",
-            "near: the constant is 0.275 in place of 0.25",
-            "near: the constant is 0.225 in place of 0.25",
+            "near: the constant is 0.275 instead of 0.25",
+            "near: the constant is 0.225 instead of 0.25",
         ]
     );
     let of_constant = mutants.last().expect("there are some");
@@ -66,21 +66,21 @@ fn numbers_go_a_step_up_and_a_step_down() {
 #[test]
 fn a_timer_runs_another_time_or_is_not_started() {
     let actions: Vec<String> =
-        told(&of(ROLE), "A -> (B|C|D)").into_iter().filter(|it| !it.starts_with("guard")).collect();
+        descriptions(&of(ROLE), "A -> (B|C|D)").into_iter().filter(|it| !it.starts_with("guard")).collect();
     assert_eq!(
         actions,
         [
-            "timeout: `late` runs 50ms in place of 100ms",
-            "timeout-2: `late` runs 200ms in place of 100ms",
+            "timeout: `late` runs 50ms instead of 100ms",
+            "timeout-2: `late` runs 200ms instead of 100ms",
             "timeout-3: `late` is never started",
-            "target: it leads to `r/END`",
+            "target: the target is `r/END`",
             "transition-removed: it is never taken",
         ]
     );
 }
 
 #[test]
-fn each_mutant_stands_where_what_it_changes_does_and_is_made_once() {
+fn each_mutant_has_the_span_of_its_change_and_is_unique() {
     let source = Source::new("r.srm", ROLE);
     let mutants = of(ROLE);
     let (chart, _) = aseme_models::statechart_of(&source);
@@ -105,12 +105,12 @@ fn each_mutant_stands_where_what_it_changes_does_and_is_made_once() {
 }
 
 #[test]
-fn what_is_never_taken_may_only_be_taken() {
+fn a_disabled_transition_has_only_enabling_mutants() {
     let mutants =
         of("Liveness:\nr = A ~ || (B . C)\nTransitions:\n*~ -> END : [false]\n(B.C) -> END : [false]\n");
-    assert_eq!(told(&mutants, "A~ -> END"), ["guard-negated: the guard `[false]` becomes `[true]`"]);
+    assert_eq!(descriptions(&mutants, "A~ -> END"), ["guard-negated: the guard `[false]` becomes `[true]`"]);
     assert_eq!(
-        told(&mutants, "(B.C) -> END"),
+        descriptions(&mutants, "(B.C) -> END"),
         [
             "guard-negated: the guard `[false]` becomes `[true]`",
             "guard-removed: the guard `[false]` is removed"
@@ -120,11 +120,11 @@ fn what_is_never_taken_may_only_be_taken() {
 }
 
 #[test]
-fn the_order_is_turned_round_only_where_it_matters() {
+fn the_order_is_reversed_only_where_it_matters() {
     let role = |one: &str, other: &str| {
         let text =
             format!("Liveness:\nr = A | B\nTransitions:\nCONDITION -> A{one}\nCONDITION -> B{other}\n");
-        told(&of(&text), "CONDITION -> A")
+        descriptions(&of(&text), "CONDITION -> A")
             .into_iter()
             .filter(|it| it.starts_with("priority"))
             .collect::<Vec<_>>()
@@ -144,8 +144,8 @@ fn the_order_is_turned_round_only_where_it_matters() {
 #[test]
 fn entries_and_exits_lose_their_actions() {
     let mutants = of("Liveness:\nr = A\nStates:\nA : entry = StartTimeout(t, 2s), exit = raise(over)\n");
-    assert_eq!(told(&mutants, "A entry").len(), 3);
-    assert_eq!(told(&mutants, "A exit"), ["action-removed: the action `raise(over)` is removed"]);
+    assert_eq!(descriptions(&mutants, "A entry").len(), 3);
+    assert_eq!(descriptions(&mutants, "A exit"), ["action-removed: the action `raise(over)` is removed"]);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use super::{MutantCollector, MutantDescription, MutationKind};
 use crate::logic::{Claim, GuardSolver};
 use aseme::path::shortest_path;
 
-/// All that can be done to where a transition leads and when it is tried.
+/// All mutants of the target, presence and order of a transition.
 pub(crate) fn of_transition(making: &mut MutantCollector<'_>, id: TransitionId) {
     if making.chart.transition(id).expression.is_never() {
         return;
@@ -24,12 +24,12 @@ fn target(making: &mut MutantCollector<'_>, id: TransitionId) {
     let before = chart.transition(id).target;
     let Some(after) = sibling(chart, before) else { return };
     let (from, to) = (shortest_path(chart, before), shortest_path(chart, after));
-    let told = MutantDescription {
+    let mutation = MutantDescription {
         kind: MutationKind::Target,
-        change: format!("it leads to `{to}`"),
-        wanted: format!("that `{from}` is reached and not `{to}`"),
+        change: format!("the target is `{to}`"),
+        wanted: format!("that `{from}` is entered and not `{to}`"),
     };
-    making.transition(id, told, |it| it.target = after);
+    making.transition(id, mutation, |it| it.target = after);
 }
 
 /// The next sibling state of a node in document order, cyclically; none if there is no other.
@@ -49,24 +49,24 @@ fn sibling(chart: &Statechart, node: NodeId) -> Option<NodeId> {
 }
 
 fn removed(making: &mut MutantCollector<'_>, id: TransitionId) {
-    let told = MutantDescription {
+    let mutation = MutantDescription {
         kind: MutationKind::TransitionRemoved,
         change: String::from("it is never taken"),
-        wanted: String::from("a moment at which it is taken"),
+        wanted: String::from("a case in which it is taken"),
     };
     let never = Expression { kind: ExpressionKind::Bool(false), place: TextPosition::default() };
-    making.transition(id, told, |it| it.expression.guard = Some(never));
+    making.transition(id, mutation, |it| it.expression.guard = Some(never));
 }
 
-/// Has the way that is tried next tried before this one.
+/// Adds the mutant that tries the next transition before this one.
 fn priority(making: &mut MutantCollector<'_>, id: TransitionId) {
     let chart = making.chart;
     let Some(later) = next(chart, id).filter(|later| matters(chart, id, *later)) else { return };
     let (first, second) = (making.arrow(id), making.arrow(later));
-    let told = MutantDescription {
+    let mutation = MutantDescription {
         kind: MutationKind::Priority,
         change: format!("`{second}` is tried before it"),
-        wanted: format!("a moment at which `{first}` and `{second}` could both be taken"),
+        wanted: format!("a case in which `{first}` and `{second}` are both enabled"),
     };
     let (high, low) = (chart.transition(id).priority, chart.transition(later).priority);
     let mut changed = chart.clone();
@@ -78,10 +78,10 @@ fn priority(making: &mut MutantCollector<'_>, id: TransitionId) {
         }
     }
     let span = making.places.get(id.0 as usize).copied().unwrap_or_default();
-    making.add(&format!("priority {} {}", id.0, later.0), first, span, told, changed);
+    making.add(&format!("priority {} {}", id.0, later.0), first, span, mutation, changed);
 }
 
-/// The way out of the same node, for the same event, that is tried after a transition.
+/// The next transition of the same node, for the same event, in selection order.
 fn next(chart: &Statechart, id: TransitionId) -> Option<TransitionId> {
     let this = chart.transition(id);
     let is_beside = |it: &Transition| {
@@ -99,8 +99,8 @@ fn next(chart: &Statechart, id: TransitionId) -> Option<TransitionId> {
     ways.filter(|&other| rank(other) > rank(id)).min_by_key(|&other| rank(other))
 }
 
-/// Whether it matters which of two ways is tried first: both may be open, and they do not come to
-/// the same.
+/// Whether the order of two transitions has an effect: both may be enabled and their effects
+/// differ.
 fn matters(chart: &Statechart, first: TransitionId, second: TransitionId) -> bool {
     let (first, second) = (chart.transition(first), chart.transition(second));
     let is_same = first.target == second.target && first.expression.actions == second.expression.actions;

@@ -16,23 +16,23 @@ use crate::abstraction::abstracted;
 use crate::check_settings::CheckSettings;
 use crate::finding::Finding;
 
-/// What was found of one property.
+/// The result for one property.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct PropertyResult {
     /// Its name.
     pub name: String,
-    /// Whether it holds.
+    /// The outcome.
     pub outcome: PropertyOutcome,
-    /// How many states of the chart were looked at.
+    /// How many states of the chart were explored.
     pub states: usize,
 }
 
-/// Whether a property holds of all runs.
+/// Whether a property holds for all runs.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum PropertyOutcome {
-    /// It does.
+    /// It holds.
     Holds,
     /// There is a run that violates it: the machine has executed it, with values for all that it
     /// reads.
@@ -108,7 +108,7 @@ fn judged(
         ExplorationVerdict::Violated(trace, is_circle) => {
             let message = format!("the property `{name}` does not hold");
             let hint = match is_circle {
-                true => "the trace shows a run that goes round for ever without what must come",
+                true => "the trace shows a run that repeats forever without the required step",
                 false => "the trace shows a run that violates it",
             };
             let diagnostic = Diagnostic::error("E0870", place, message).with_hint(hint);
@@ -122,16 +122,16 @@ fn judged(
             (judgement(PropertyOutcome::NotConfirmed), Some(Finding { diagnostic, trace: Some(trace) }))
         }
         ExplorationVerdict::NotDecided => {
-            let message =
-                format!("the property `{name}` is not decided: after {states} states there are more");
-            let hint = "nothing that was looked at violates it; look at more with `--states`, or say less in one property";
+            let message = format!("the property `{name}` is undecided after {states} states");
+            let hint =
+                "no explored state violates it; raise the limit with `--states`, or split the property";
             let diagnostic = Diagnostic::error("E0871", place, message).with_hint(hint);
             (judgement(PropertyOutcome::NotDecided), Some(diagnostic.into()))
         }
     }
 }
 
-/// Fields that no guard of the chart reads: as likely misspelt as meant.
+/// Reports fields that no guard of the chart reads, since they may be misspelt.
 fn unread(bound: &BoundProperty, abstraction: &Abstraction) -> Vec<Diagnostic> {
     let mut known: BTreeSet<String> = BTreeSet::new();
     for condition in abstraction.conditions.iter().flatten() {
@@ -157,10 +157,10 @@ fn unread(bound: &BoundProperty, abstraction: &Abstraction) -> Vec<Diagnostic> {
     found
 }
 
-/// The fields and messages that a condition reads.
-fn fields<'a>(expression: &'a Expression, told: &mut impl FnMut(&'a Path)) {
+/// Visits the fields and messages that a condition reads.
+fn fields<'a>(expression: &'a Expression, visit: &mut impl FnMut(&'a Path)) {
     match &expression.kind {
-        ExpressionKind::Variable(path) if path.segments.len() > 1 => told(path),
-        _ => expression.parts().into_iter().for_each(|operand| fields(operand, told)),
+        ExpressionKind::Variable(path) if path.segments.len() > 1 => visit(path),
+        _ => expression.parts().into_iter().for_each(|operand| fields(operand, visit)),
     }
 }

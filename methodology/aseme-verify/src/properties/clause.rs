@@ -11,9 +11,9 @@
 
 use super::compiled_property::{BOUNDED, CompiledProperty, Subformula};
 
-/// So many clauses are kept.
+/// Limit of clauses kept between steps.
 pub(crate) const CLAUSES: usize = 64;
-/// So many clauses may be at hand in the midst of a step.
+/// Limit of clauses during a step.
 const ROOM: usize = 1_024;
 
 /// Obligations that must all be met.
@@ -21,12 +21,12 @@ const ROOM: usize = 1_024;
 pub(crate) struct Clause {
     /// A bit for each obligation.
     pub(crate) obligations: u32,
-    /// When the time of those with a bound is over; 0 for those that are not there.
+    /// The deadlines of bounded obligations; 0 for absent ones.
     pub(crate) deadlines: [u64; BOUNDED],
 }
 
 impl Clause {
-    /// Nothing is left to be met.
+    /// The clause without obligations.
     pub(crate) const TRUE: Clause = Clause { obligations: 0, deadlines: [0; BOUNDED] };
 
     pub(crate) fn is_true(&self) -> bool {
@@ -45,7 +45,7 @@ impl Clause {
         clause
     }
 
-    /// Both.
+    /// The conjunction of two clauses.
     fn and(&self, other: &Clause, plan: &CompiledProperty) -> Clause {
         let mut both = Clause { obligations: self.obligations | other.obligations, ..*self };
         for (obligation, place, is_until) in bounded(plan) {
@@ -59,7 +59,7 @@ impl Clause {
         both
     }
 
-    /// Whether whatever meets this clause meets the other.
+    /// Whether this clause implies the other.
     fn implies(&self, other: &Clause, plan: &CompiledProperty) -> bool {
         other.obligations & !self.obligations == 0
             && bounded(plan).all(|(obligation, place, is_until)| {
@@ -71,7 +71,7 @@ impl Clause {
             })
     }
 
-    /// What is left at a time that is not that of a step; nothing if it can no longer be met.
+    /// The clause at a time between steps; `None` if an obligation can no longer be met.
     pub(crate) fn at_time(&self, now: u64, plan: &CompiledProperty) -> Option<Clause> {
         let mut left = *self;
         for (obligation, place, is_until) in bounded(plan) {
@@ -86,7 +86,7 @@ impl Clause {
         Some(left)
     }
 
-    /// The deadlines counted from a later moment.
+    /// The deadlines relative to a later time.
     pub(crate) fn shifted(mut self, by: u64, plan: &CompiledProperty) -> Clause {
         for (obligation, place, _) in bounded(plan) {
             if self.has(obligation) {
@@ -96,7 +96,7 @@ impl Clause {
         self
     }
 
-    /// The first moment after which [`after`](Clause::after) says something else.
+    /// The first time after which [`at_time`](Clause::at_time) may return another result.
     pub(crate) fn first_deadline(&self, plan: &CompiledProperty) -> Option<u64> {
         bounded(plan)
             .filter(|(obligation, ..)| self.has(*obligation))
@@ -104,7 +104,7 @@ impl Clause {
             .min()
     }
 
-    /// Whether it waits for something that must come.
+    /// Whether an obligation requires something to happen.
     pub(crate) fn awaits(&self, plan: &CompiledProperty) -> bool {
         plan.obligations.iter().enumerate().any(|(obligation, &(term, _))| {
             self.has(obligation) && matches!(plan.terms[term], Subformula::Until { .. })
@@ -112,25 +112,25 @@ impl Clause {
     }
 }
 
-/// The obligations with a bound: which, the place of its deadline, and whether it is an `until`.
+/// The bounded obligations: index, index of the deadline, and whether it is an `until`.
 fn bounded(plan: &CompiledProperty) -> impl Iterator<Item = (usize, usize, bool)> {
     plan.obligations.iter().enumerate().filter_map(|(obligation, &(term, place))| {
         Some((obligation, place?, matches!(plan.terms[term], Subformula::Until { .. })))
     })
 }
 
-/// What is true of one step, and when it is.
+/// The atoms that are true of a step, and its time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TimedLetter {
     pub(crate) letter: u64,
     pub(crate) now: u64,
 }
 
-/// More clauses than there is room for.
+/// The limit of clauses was exceeded.
 #[derive(Debug)]
 pub(crate) struct Overflow;
 
-/// Where steps are made. It takes no more memory once it has been made.
+/// The working memory of steps. It does not grow after its construction.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch {
     clauses: Vec<Clause>,
@@ -141,7 +141,7 @@ impl Scratch {
         Scratch { clauses: Vec::with_capacity(ROOM) }
     }
 
-    /// The clauses that the last step left, none of which follows from another.
+    /// The clauses that the last step left; none implies another.
     pub(crate) fn clauses(&self) -> &[Clause] {
         &self.clauses
     }
@@ -154,7 +154,7 @@ impl Scratch {
         Ok(())
     }
 
-    /// A step from clauses on.
+    /// A step that starts from given clauses.
     pub(crate) fn step(
         &mut self,
         plan: &CompiledProperty,
@@ -178,8 +178,8 @@ impl Scratch {
         Ok(())
     }
 
-    /// Puts on top what is left of a term after a step; a temporal one may be older than the step,
-    /// and have its deadline.
+    /// Pushes the residual of a term after a step. A temporal term may be older than the step and
+    /// has its own deadline then.
     fn expand(
         &mut self,
         plan: &CompiledProperty,
@@ -234,8 +234,7 @@ impl Scratch {
         }
     }
 
-    /// Takes what stands from `begin` and what stands from `middle`, and leaves what meets one of
-    /// each.
+    /// Replaces the clauses from `begin` and from `middle` by their pairwise conjunctions.
     fn product(&mut self, begin: usize, middle: usize, plan: &CompiledProperty) -> Result<(), Overflow> {
         let end = self.clauses.len();
         for one in begin..middle {
@@ -249,13 +248,13 @@ impl Scratch {
         Ok(())
     }
 
-    /// Takes away what follows from another.
+    /// Removes clauses that are implied by others.
     fn simplify(&mut self, begin: usize, plan: &CompiledProperty) {
         let mut kept = begin;
         for index in begin..self.clauses.len() {
             let clause = self.clauses[index];
             let weaker = |other: &Clause| clause.implies(other, plan);
-            // of two that are equal the first stays
+            // of two equal clauses the first remains
             let is_needless = self.clauses[begin..kept].iter().any(weaker)
                 || self.clauses[index + 1..]
                     .iter()

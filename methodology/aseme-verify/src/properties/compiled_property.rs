@@ -14,7 +14,7 @@ pub(crate) const TEMPORAL: usize = 32;
 /// A clause has a deadline for each of these.
 pub(crate) const BOUNDED: usize = 8;
 
-/// What is true or false of one step.
+/// A proposition about one step.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum AtomicProposition {
@@ -39,13 +39,13 @@ pub struct CompiledProperty {
     pub(crate) terms: Vec<Subformula>,
     pub(crate) root: usize,
     pub(crate) atoms: Vec<AtomicProposition>,
-    /// The terms that are obligations, by their numbers, and which deadline of a clause is theirs.
+    /// The terms that are obligations, by index, and the index of their deadline in a clause.
     pub(crate) obligations: Vec<(usize, Option<usize>)>,
     /// Whether the property begins with `always`, so that repeating it adds no obligation.
     pub(crate) is_lasting: bool,
 }
 
-/// A part of a plan; parts are known by their places.
+/// A term of a property; operands are indices.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) enum Subformula {
     Constant(bool),
@@ -55,14 +55,14 @@ pub(crate) enum Subformula {
     },
     And(usize, usize),
     Or(usize, usize),
-    /// The right one comes, and the left one holds until then.
+    /// The right operand becomes true, and the left one is true until then.
     Until {
         obligation: usize,
         left: usize,
         right: usize,
         bound: Option<u64>,
     },
-    /// The right one holds until the left one has come, and then too.
+    /// The right operand is true up to and including the step in which the left one becomes true.
     Release {
         obligation: usize,
         left: usize,
@@ -71,7 +71,7 @@ pub(crate) enum Subformula {
     },
 }
 
-/// A property is larger than what can be followed: which limit it exceeds.
+/// A property exceeds a limit: its name and value.
 pub(crate) struct TooLarge(pub(crate) &'static str, pub(crate) usize);
 
 impl CompiledProperty {
@@ -80,17 +80,17 @@ impl CompiledProperty {
         &self.name
     }
 
-    /// What is asked of each step, in the order of the bits of a letter.
+    /// The atomic propositions, in the order of the bits of a letter.
     pub fn atoms(&self) -> &[AtomicProposition] {
         &self.atoms
     }
 
-    /// Whether it says something of time.
+    /// Whether the property has a time bound.
     pub fn is_bounded(&self) -> bool {
         self.bounds().next().is_some()
     }
 
-    /// The bounds in it, in nanoseconds.
+    /// The time bounds, in nanoseconds.
     pub(crate) fn bounds(&self) -> impl Iterator<Item = u64> {
         self.terms.iter().filter_map(|term| match term {
             Subformula::Until { bound, .. } | Subformula::Release { bound, .. } => *bound,
@@ -98,7 +98,7 @@ impl CompiledProperty {
         })
     }
 
-    /// The same with bounds in another unit of time.
+    /// The property with bounds in another unit of time.
     pub(crate) fn in_units(mut self, nanoseconds: u64) -> CompiledProperty {
         for term in &mut self.terms {
             if let Subformula::Until { bound: Some(bound), .. }
@@ -111,9 +111,9 @@ impl CompiledProperty {
     }
 }
 
-/// Makes plans of formulas.
+/// Lowers formulas to tables of terms.
 pub(crate) struct Lowering<F> {
-    /// The atom that a formula without parts is.
+    /// Returns the atom of a formula without operands.
     pub(crate) atom: F,
     pub(crate) plan: CompiledProperty,
     bounded: usize,
@@ -126,7 +126,7 @@ impl<F: FnMut(&PropertyFormula) -> Option<AtomicProposition>> Lowering<F> {
         Lowering { atom, plan, bounded: 0 }
     }
 
-    /// The plan of a formula, or of its contrary.
+    /// The table of a formula, or of its negation.
     pub(crate) fn finish(
         mut self,
         formula: &PropertyFormula,
@@ -167,7 +167,7 @@ impl<F: FnMut(&PropertyFormula) -> Option<AtomicProposition>> Lowering<F> {
     }
 
     fn literal(&mut self, formula: &PropertyFormula, holds: bool) -> Result<usize, TooLarge> {
-        // what is not known has been said; the plan is not used then
+        // the unknown name was reported, and the result is discarded
         let Some(atom) = (self.atom)(formula) else { return Ok(self.add(Subformula::Constant(false))) };
         let known = self.plan.atoms.iter().position(|other| *other == atom);
         let atom = match known {

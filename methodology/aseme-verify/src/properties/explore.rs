@@ -18,12 +18,12 @@ use crate::program_symbols::ProgramSymbols;
 use crate::run_replay::{MessageSources, RunReplay, Unconfirmed};
 use aseme::path::shortest_path;
 
-/// What an exploration says of a property.
+/// The result of an exploration for a property.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) enum ExplorationVerdict {
     Holds,
-    /// A run that violates it, as text that [`yase_explore::Trace::parse`] reads; and whether it
-    /// goes round in a circle.
+    /// A violating run, as text that [`yase_explore::Trace::parse`] reads, and whether it ends in a
+    /// cycle.
     Violated(String, bool),
     /// The exploration has such a run, but the machine is not known to make it: why.
     NotConfirmed(String, String),
@@ -31,7 +31,7 @@ pub(crate) enum ExplorationVerdict {
     NotDecided,
 }
 
-/// Explores a chart, looking at no more than `limit` states. Gives how many it found too.
+/// Explores a chart up to `limit` states. Also returns how many were found.
 pub(crate) fn explored(
     abstraction: &Abstraction,
     bound: &BoundProperty,
@@ -136,7 +136,7 @@ fn conditions(plan: &CompiledProperty) -> impl Iterator<Item = &Expression> {
     })
 }
 
-/// What is true of a step.
+/// The atoms that are true of a step, as bits.
 fn letter(plan: &CompiledProperty, seen: &StepObservation<'_>) -> u64 {
     let mut conditions = seen.conditions.iter();
     let holds = |atom: &AtomicProposition, next: &mut std::slice::Iter<'_, bool>| match atom {
@@ -152,7 +152,7 @@ fn letter(plan: &CompiledProperty, seen: &StepObservation<'_>) -> u64 {
         .fold(0, |letter, (bit, atom)| letter | u64::from(holds(atom, &mut conditions)) << bit)
 }
 
-/// What may happen around the chart. Conditions of the property stand behind those of the chart.
+/// The environment of the chart. Conditions of the property follow those of the chart.
 fn surroundings<'a>(
     abstraction: &'a Abstraction,
     plan: &'a CompiledProperty,
@@ -160,14 +160,14 @@ fn surroundings<'a>(
 ) -> Environment<'a> {
     let asked: Vec<&Expression> = conditions(plan).collect();
     let mut surroundings = abstraction.surroundings();
-    // a step of a part that is left to do nothing looks like one in which messages come
+    // a step of an idle region looks like one in which only messages arrive
     surroundings.messages |= has_idle || !asked.is_empty();
     surroundings.allows = Box::new(abstraction.satisfiable(&asked));
     surroundings.effects = abstraction.effects(&asked);
     surroundings
 }
 
-/// The largest unit of which every delay is a whole number.
+/// The largest unit of time that divides every delay.
 fn pace(chart: &Statechart, plan: &CompiledProperty) -> ClockModel {
     let of_transitions = chart.transitions().flat_map(|(_, it)| &it.expression.actions);
     let of_nodes = chart.nodes().flat_map(|(_, node)| node.entry.iter().chain(&node.exit));
@@ -197,7 +197,7 @@ fn greatest_common_divisor(mut one: u64, mut other: u64) -> u64 {
     one
 }
 
-/// A run as text: its steps, and as comments the propositions that hold and the time that passes.
+/// A run as text: its steps, with the true propositions and the elapsed time as comments.
 fn trace_text(
     found: &LabelledGraph,
     violation: &Violation,
@@ -211,7 +211,7 @@ fn trace_text(
     for (index, (&place, step)) in way.iter().zip(trace.steps()).enumerate() {
         let known = &found.steps()[place];
         if index == violation.prefix.len() {
-            text += "# from here on again and again\n";
+            text += "# repeats forever from here\n";
         }
         if let Some(pace) = pace.filter(|_| known.elapsed > 0) {
             let milliseconds = pace.tick.as_secs_f64() * known.elapsed as f64 * 1e3;
@@ -227,7 +227,7 @@ fn trace_text(
     text
 }
 
-/// What an atom says.
+/// The text of an atom.
 pub(crate) fn named(atom: &AtomicProposition, chart: &CompiledChart) -> String {
     let path = |node| shortest_path(chart.statechart(), node);
     match atom {
@@ -239,7 +239,7 @@ pub(crate) fn named(atom: &AtomicProposition, chart: &CompiledChart) -> String {
     }
 }
 
-/// The regions that cannot matter to a property.
+/// The regions without influence on a property.
 fn idle(chart: &Statechart, plan: &CompiledProperty) -> Vec<NodeId> {
     cone_of_influence::idle_but(chart, &|region| is_mentioned(chart, plan, region))
 }

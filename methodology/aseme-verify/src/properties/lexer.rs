@@ -3,10 +3,10 @@
 
 use yase::Span;
 
-/// What a token is. Its text is looked up by its span.
+/// The kind of a token. Its text is found by its span.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum PropertyTokenKind {
-    /// Letters, digits, `_`, `/` and `.`: a word of the language, a name, or a number.
+    /// Letters, digits, `_`, `/` and `.`: a keyword, a name, or a number.
     Word,
     /// A name in backquotes.
     Quoted,
@@ -14,7 +14,7 @@ pub(crate) enum PropertyTokenKind {
     Text,
     /// A condition with its brackets.
     Condition,
-    /// A quote or a bracket that nothing closes, with all that follows.
+    /// An unclosed quote or bracket and the text after it.
     Unclosed,
     /// `(`
     Open,
@@ -22,20 +22,20 @@ pub(crate) enum PropertyTokenKind {
     Close,
     /// `:`
     Colon,
-    /// A character that means nothing here.
+    /// A character that starts no token.
     Unknown,
     /// The end of the text.
     End,
 }
 
-/// A token and its bytes.
+/// A token and its span.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Token {
     pub(crate) kind: PropertyTokenKind,
     pub(crate) span: Span,
 }
 
-/// The words that are no names.
+/// The keywords.
 const KEYWORDS: [&str; 16] = [
     "property",
     "always",
@@ -55,17 +55,17 @@ const KEYWORDS: [&str; 16] = [
     "s",
 ];
 
-/// Whether a word has a meaning of its own.
+/// Whether a word is a keyword.
 pub(crate) fn is_keyword(word: &str) -> bool {
     KEYWORDS.contains(&word) || word == "ms"
 }
 
-/// The words that have a meaning of their own.
+/// The keywords.
 pub(crate) fn keywords() -> impl Iterator<Item = &'static str> {
     KEYWORDS.into_iter()
 }
 
-/// Whether a character may stand in a name without backquotes.
+/// Whether a character may occur in a name without backquotes.
 pub(crate) fn is_bare(character: char) -> bool {
     character.is_ascii_alphanumeric() || matches!(character, '_' | '/' | '.')
 }
@@ -85,7 +85,7 @@ pub(crate) fn tokens(text: &str) -> Vec<Token> {
     }
 }
 
-/// Blanks, and comments to the end of their line.
+/// The length of white space and comments.
 fn blanks(text: &str) -> usize {
     let mut rest = text.trim_start();
     while rest.starts_with('#') {
@@ -110,7 +110,7 @@ fn first(text: &str) -> (PropertyTokenKind, usize) {
     }
 }
 
-/// A quoted text ends in its line.
+/// A quoted text, which must end in its line.
 fn quoted(text: &str, quote: char, kind: PropertyTokenKind) -> (PropertyTokenKind, usize) {
     match text[1..].find([quote, '\n']) {
         Some(end) if text[1 + end..].starts_with(quote) => (kind, end + 2),
@@ -119,7 +119,7 @@ fn quoted(text: &str, quote: char, kind: PropertyTokenKind) -> (PropertyTokenKin
     }
 }
 
-/// A condition ends at the bracket that is outside of its texts and quoted names.
+/// A condition ends at the bracket that is outside its texts and quoted names.
 fn condition(text: &str) -> (PropertyTokenKind, usize) {
     let (mut quote, mut escaped) = (None, false);
     for (index, character) in text.char_indices().skip(1) {

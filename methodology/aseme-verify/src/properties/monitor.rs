@@ -5,24 +5,23 @@ use std::sync::Arc;
 use super::clause::{CLAUSES, Clause, Overflow, Scratch, TimedLetter};
 use super::compiled_property::CompiledProperty;
 
-/// What is known of a property after some steps of a run.
+/// The verdict on a property after a prefix of a run.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum MonitorVerdict {
-    /// It does not hold, however the run goes on.
+    /// Every continuation of the run violates it.
     Violated,
-    /// Something that must come has not come yet.
+    /// Something required has not happened yet.
     Awaited,
-    /// It holds so far: if the run ended here, it would hold.
+    /// It would hold if the run ended here.
     SoFar,
-    /// It holds, however the run goes on.
+    /// Every continuation of the run satisfies it.
     Satisfied,
-    /// There are more ways in which it may come to hold than are followed: nothing is known of it
-    /// any more.
+    /// The limit of clauses was exceeded; the property is no longer evaluated.
     Lost,
 }
 
-/// A property along a run. A step takes no memory.
+/// Evaluates a property along a run. A step does not allocate.
 ///
 /// ```
 /// use aseme_verify::properties::{Monitor, MonitorVerdict, bind, parse};
@@ -53,28 +52,28 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// A property before the first step.
+    /// A monitor before the first step.
     pub fn new(plan: Arc<CompiledProperty>) -> Monitor {
         let clauses = Vec::with_capacity(CLAUSES);
         Monitor { plan, clauses, stack: Scratch::new(), has_begun: false, verdict: MonitorVerdict::Awaited }
     }
 
-    /// What it follows.
+    /// The property that it evaluates.
     pub fn plan(&self) -> &CompiledProperty {
         &self.plan
     }
 
-    /// What is known.
+    /// The current verdict.
     pub fn verdict(&self) -> MonitorVerdict {
         self.verdict
     }
 
-    /// Whether more steps may change what is known.
+    /// Whether more steps may change the verdict.
     pub fn is_open(&self) -> bool {
         matches!(self.verdict, MonitorVerdict::Awaited | MonitorVerdict::SoFar)
     }
 
-    /// A step has happened: which atoms are true of it, and when it was, in nanoseconds.
+    /// Evaluates a step: the atoms that are true of it, and its time in nanoseconds.
     pub fn step(&mut self, letter: u64, now: u64) -> MonitorVerdict {
         if self.has_begun && !self.is_open() {
             return self.verdict;
@@ -98,7 +97,7 @@ impl Monitor {
         self.judge()
     }
 
-    /// Time passes without a step.
+    /// Evaluates the passage of time without a step.
     pub fn pass(&mut self, now: u64) -> MonitorVerdict {
         if self.has_begun && self.is_open() {
             let plan = &self.plan;
@@ -126,16 +125,15 @@ impl Monitor {
         }
     }
 
-    /// The last moment at which what is known is surely what [`pass`](Monitor::pass) says: after
-    /// it, ask again.
+    /// The last time until which the verdict of [`pass`](Monitor::pass) is unchanged; call it again
+    /// after that.
     pub fn deadline(&self) -> Option<u64> {
         let is_asked = self.has_begun && self.is_open();
         let deadlines = self.clauses.iter().filter_map(|clause| clause.first_deadline(&self.plan));
         deadlines.min().filter(|_| is_asked)
     }
 
-    /// Begins anew with the next step, if the property is one that says the same later on: one that
-    /// begins with `always`. Says whether it is.
+    /// Restarts with the next step if the property begins with `always`. Returns whether it does.
     pub fn try_restart(&mut self) -> bool {
         if self.plan.is_lasting {
             self.has_begun = false;

@@ -13,18 +13,18 @@ use super::compiled_property::{AtomicProposition, CompiledProperty, Lowering};
 use super::syntax::{Property, PropertyFormula, PropertyFormulaKind};
 use aseme::path::{Path, shortest_path};
 
-/// A property whose names a chart knows.
+/// A property with names resolved in a chart.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct BoundProperty {
-    /// What is to be followed.
+    /// The property to evaluate.
     pub plan: Arc<CompiledProperty>,
-    /// The contrary: what a run that violates the property does.
+    /// Its negation: the property of violating runs.
     pub(crate) contrary: CompiledProperty,
 }
 
-/// Looks up the states and events of a property in a chart. What conditions name is
-/// [another's](guards) to know.
+/// Resolves the states and events of a property in a chart. Names in conditions are resolved by
+/// [`guards`].
 ///
 /// # Errors
 /// Names that the chart does not have (E0845, E0846), timers in a condition (E0841), and a property
@@ -42,9 +42,9 @@ pub fn bind(property: &Property, chart: &CompiledChart) -> Result<BoundProperty,
         (Ok(plan), Ok(contrary)) if found.is_empty() => Ok(BoundProperty { plan: Arc::new(plan), contrary }),
         (Ok(_), Ok(_)) => Err(found),
         (Err(too_large), _) | (_, Err(too_large)) => {
-            let message = format!("`{}` says more than {} {}", property.name, too_large.1, too_large.0);
+            let message = format!("`{}` has more than {} {}", property.name, too_large.1, too_large.0);
             let wrong = Diagnostic::error("E0844", property.place.0, message);
-            found.push(wrong.with_hint("make several properties of it"));
+            found.push(wrong.with_hint("split it into several properties"));
             Err(found)
         }
     }
@@ -68,7 +68,7 @@ fn atom(
     looked_up.map_err(|wrong| found.push(wrong)).ok()
 }
 
-/// The state that a path names.
+/// Resolves the path of a state.
 pub(crate) fn state(name: &Name, chart: &CompiledChart) -> Result<NodeId, Diagnostic> {
     let place = name.place.0;
     let path = Path::parse(&name.text).map_err(|wrong| Diagnostic { span: place, ..wrong })?;
@@ -92,7 +92,7 @@ pub(crate) fn state(name: &Name, chart: &CompiledChart) -> Result<NodeId, Diagno
             let wrong = Diagnostic::error("E0845", place, message);
             Err(match nearest(last, names) {
                 Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
-                None => wrong.with_hint("a state is named by a path of names as its formula has them"),
+                None => wrong.with_hint("a state is named by a path of names from its formulas"),
             })
         }
         several => {
@@ -105,24 +105,23 @@ pub(crate) fn state(name: &Name, chart: &CompiledChart) -> Result<NodeId, Diagno
     }
 }
 
-/// The event of a name.
+/// Resolves the name of an event.
 pub(crate) fn event(name: &Name, chart: &CompiledChart) -> Result<EventId, Diagnostic> {
     let events = chart.events();
     if let Some(event) = events.find(&name.text) {
         return Ok(event);
     }
-    let message =
-        format!("nothing in the chart `{}` names an event `{}`", chart.statechart().name, name.text);
+    let message = format!("the chart `{}` has no event `{}`", chart.statechart().name, name.text);
     let wrong = Diagnostic::error("E0846", name.place.0, message);
     let known: Vec<&str> = events.ids().map(|event| events.name(event)).collect();
     Err(match nearest(&name.text, known.iter().copied()) {
         Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
-        None => wrong.with_hint("a chart is offered the events that its triggers and actions name"),
+        None => wrong.with_hint("the events of a chart are those that its triggers and actions name"),
     })
 }
 
-/// A condition that asks for no timer of the chart: what an exploration knows of a timer, and what
-/// a monitor could, is not the same.
+/// Rejects timers of the chart in a condition: exploration and monitors would evaluate them
+/// differently.
 fn without_timers(condition: &Expression, chart: &CompiledChart) -> Result<Expression, Diagnostic> {
     let timer = condition.find_map(&mut |part| match &part.kind {
         ExpressionKind::Variable(path) => {
@@ -134,18 +133,17 @@ fn without_timers(condition: &Expression, chart: &CompiledChart) -> Result<Expre
         None => Ok(condition.clone()),
         Some(timer) => {
             let message =
-                format!("`{timer}` is a timer of the chart and has no place in the condition of a property");
+                format!("`{timer}` is a timer of the chart and cannot occur in the condition of a property");
             let wrong = Diagnostic::error("E0841", condition.span(), message);
-            Err(wrong.with_hint("write `within` behind what must come in time"))
+            Err(wrong.with_hint("use `within` after `eventually` or `until`"))
         }
     }
 }
 
-/// The conditions of a compiled property in the order of its atoms, ready to be evaluated; none for
-/// other atoms.
+/// The compiled conditions of a property in the order of its atoms; `None` for other atoms.
 ///
 /// # Errors
-/// Whatever a guard with such a condition would be refused for.
+/// The errors of a guard with such a condition.
 pub fn guards(
     plan: &CompiledProperty,
     chart: &CompiledChart,

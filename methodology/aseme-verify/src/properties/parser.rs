@@ -10,7 +10,7 @@ use yase::{Diagnostic, Span};
 use super::lexer::{PropertyTokenKind, Token, is_keyword, keywords, tokens};
 use super::syntax::{Property, PropertyFormula, PropertyFormulaKind};
 
-/// Formulas nest no deeper.
+/// Limit of nesting.
 const DEEPEST: usize = 64;
 
 /// The longest bound, in milliseconds: a day.
@@ -30,7 +30,7 @@ pub fn parse(text: &str) -> (Vec<Property>, Vec<Diagnostic>) {
     (properties, parser.found)
 }
 
-/// What was wrong has been said.
+/// A syntax error that has been reported.
 struct ErrorReported;
 
 type Parsed<T> = Result<T, ErrorReported>;
@@ -54,7 +54,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Goes on at the next property.
+    /// Skips to the next property.
     fn skip(&mut self) {
         let begins =
             |token: &Token| token.kind == PropertyTokenKind::Word && self.text_of(token.span) == "property";
@@ -65,12 +65,12 @@ impl Parser<'_> {
     fn property(&mut self) -> Parsed<Property> {
         let begin = self.span();
         if !self.accept("property") {
-            let message = format!("{} stands where a property would begin", self.this());
+            let message = format!("{} found, expected a property", self.this());
             return self.refuse("E0840", begin, message, "a property is `property \"its name\": formula`");
         }
         let named = self.token();
         if named.kind != PropertyTokenKind::Text || named.span.end - named.span.start < 3 {
-            let message = format!("{} stands where the name of the property would be", self.this());
+            let message = format!("{} found, expected the name of the property", self.this());
             return self.refuse(
                 "E0840",
                 named.span,
@@ -80,7 +80,7 @@ impl Parser<'_> {
         }
         self.next += 1;
         if self.kind() != PropertyTokenKind::Colon {
-            let message = format!("{} stands where `:` would be", self.this());
+            let message = format!("{} found, expected `:`", self.this());
             return self.refuse(
                 "E0840",
                 self.span(),
@@ -97,16 +97,16 @@ impl Parser<'_> {
         Ok(Property { name, formula, place: TextPosition(begin.to(named.span)) })
     }
 
-    /// What follows a complete formula.
+    /// Reports the token after a complete formula.
     fn unexpected<T>(&mut self) -> Parsed<T> {
         let (message, hint) = match self.this_word() {
             "within" => (
-                "`within` follows what has no bound".to_owned(),
+                "`within` without `eventually` or `until`".to_owned(),
                 "`within` belongs to `eventually` or `until`",
             ),
-            "until" => ("`until` follows another".to_owned(), "say with parentheses which of them is meant"),
+            "until" => ("`until` follows another".to_owned(), "use parentheses"),
             _ if self.kind() == PropertyTokenKind::Close => {
-                (String::from("`)` closes nothing"), "leave it out, or open it")
+                (String::from("`)` closes nothing"), "remove it, or add the opening parenthesis")
             }
             _ => (
                 format!("{} follows a complete formula", self.this()),
@@ -224,12 +224,12 @@ impl Parser<'_> {
             "event" => self.named(PropertyFormulaKind::Event, "an event"),
             _ if is_known => self.missing(),
             _ => {
-                let message = format!("`{word}` says nothing by itself");
+                let message = format!("`{word}` is no formula");
                 let wrong = Diagnostic::error("E0841", begin, message);
                 let near = yase::diagnostic::nearest(&word, keywords());
                 self.found.push(wrong.with_hint(match near {
                     Some(near) => format!("did you mean `{near}`?"),
-                    None => format!("of a state, write `in {word}` or `entering {word}`; of an event, `event {word}`; of a message, `[{word}]`"),
+                    None => format!("for a state, write `in {word}` or `entering {word}`; for an event, `event {word}`; for a message, `[{word}]`"),
                 }));
                 Err(ErrorReported)
             }
@@ -244,8 +244,8 @@ impl Parser<'_> {
             PropertyTokenKind::Quoted if span.end - span.start > 2 => Span::new(span.start + 1, span.end - 1),
             PropertyTokenKind::Unclosed => return self.unclosed(),
             _ => {
-                let message = format!("{} stands where the name of {what} would be", self.this());
-                let hint = "a name that means something else, or has other characters, stands in backquotes";
+                let message = format!("{} found, expected the name of {what}", self.this());
+                let hint = "put keywords and names with other characters in backquotes";
                 return self.refuse("E0841", span, message, hint);
             }
         };
@@ -265,24 +265,20 @@ impl Parser<'_> {
             }
             Some(_) => Err(ErrorReported),
             None if is_wrong => Err(ErrorReported),
-            None => self.refuse(
-                "E0841",
-                span,
-                "there is no condition in the brackets".into(),
-                "write `[Ball.found]`",
-            ),
+            None => self.refuse("E0841", span, "the brackets are empty".into(), "write `[Ball.found]`"),
         }
     }
 
-    /// A condition is about messages: the rest has words of its own.
+    /// Rejects the parts of a condition that do not depend on messages, since propositions express
+    /// them.
     fn only_messages(&mut self, condition: &Expression) -> Parsed<()> {
         let Some((span, what)) = foreign(condition) else { return Ok(()) };
         let hint = match what {
-            "In" => "write `in STATE` outside of the brackets",
-            "TimeoutCheck" => "write `within` behind what must come in time",
-            _ => "say it by fields of messages",
+            "In" => "write `in STATE` outside the brackets",
+            "TimeoutCheck" => "use `within` after `eventually` or `until`",
+            _ => "use fields of messages",
         };
-        self.refuse("E0841", span, format!("`{what}` has no place in the condition of a property"), hint)
+        self.refuse("E0841", span, format!("`{what}` cannot occur in the condition of a property"), hint)
     }
 
     fn within(&mut self) -> Parsed<Option<Duration>> {
@@ -313,14 +309,14 @@ impl Parser<'_> {
     }
 
     fn missing<T>(&mut self) -> Parsed<T> {
-        let message = format!("{} stands where a formula would be", self.this());
+        let message = format!("{} found, expected a formula", self.this());
         let hint = match self.text_of(self.span()) {
             "!" => "write `not`",
             "&" => "write `and`",
             "|" => "write `or`",
             "-" | "=" => "write `implies`",
             _ => {
-                "a formula begins with `always`, `eventually`, `not`, `in`, `entering`, `leaving`, `event`, `[` or `(`"
+                "a formula starts with `always`, `eventually`, `not`, `in`, `entering`, `leaving`, `event`, `[` or `(`"
             }
         };
         self.refuse("E0841", self.span(), message, hint)
@@ -338,7 +334,7 @@ impl Parser<'_> {
     fn deeper<T>(&mut self, parse: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
         if self.depth == DEEPEST {
             let message = format!("formulas nest at most {DEEPEST} levels deep");
-            return self.refuse("E0844", self.span(), message, "make several properties of it");
+            return self.refuse("E0844", self.span(), message, "split it into several properties");
         }
         self.depth += 1;
         let parsed = parse(self);
@@ -347,7 +343,7 @@ impl Parser<'_> {
     }
 
     fn refuse<T>(&mut self, code: &'static str, span: Span, message: String, hint: &str) -> Parsed<T> {
-        // what nothing closes is the reason, whatever was expected there
+        // an unclosed quote or bracket is the cause of the error, whatever was expected
         if self.kind() == PropertyTokenKind::Unclosed && code != "E0842" {
             return self.unclosed();
         }
@@ -375,7 +371,7 @@ impl Parser<'_> {
         self.text_of(self.span())
     }
 
-    /// What stands here, for messages.
+    /// The current token in diagnostics.
     fn this(&self) -> String {
         match self.kind() {
             PropertyTokenKind::End => "the end of the file".into(),
@@ -404,7 +400,7 @@ fn spanning(
     PropertyFormula { kind: kind(Box::new(left), Box::new(right)), place }
 }
 
-/// `2`, `0.5` with the unit `s`; `500` with `ms`.
+/// Converts `2` or `0.5` with the unit `s`, or `500` with `ms`.
 fn milliseconds(digits: &str, unit: &str) -> Option<u64> {
     let (whole, fraction) = digits.split_once('.').unwrap_or((digits, "0"));
     let is_number = |text: &str| !text.is_empty() && text.chars().all(|character| character.is_ascii_digit());
@@ -422,7 +418,7 @@ fn milliseconds(digits: &str, unit: &str) -> Option<u64> {
     (parts % scale == 0 && (1..=LONGEST).contains(&bound)).then_some(bound)
 }
 
-/// The first part of a condition that is not about messages.
+/// The first part of a condition that does not depend on messages.
 fn foreign(expression: &Expression) -> Option<(Span, &'static str)> {
     expression.find_map(&mut |part| {
         let what = match &part.kind {

@@ -45,7 +45,7 @@ fn list(f: &mut fmt::Formatter<'_>, parts: &[PropertyFormula], between: &str) ->
     Ok(())
 }
 
-/// A part, in parentheses if it has parts itself.
+/// An operand, in parentheses if it has operands itself.
 struct OperandText<'a>(&'a PropertyFormula);
 
 impl fmt::Display for OperandText<'_> {
@@ -69,7 +69,7 @@ impl fmt::Display for OperandText<'_> {
     }
 }
 
-/// A name, in backquotes if it would be read as something else.
+/// A name, in backquotes if it would be parsed differently without them.
 struct QuotedName<'a>(&'a str);
 
 impl fmt::Display for QuotedName<'_> {
@@ -79,7 +79,7 @@ impl fmt::Display for QuotedName<'_> {
     }
 }
 
-/// A bound.
+/// A time bound.
 struct TimeBoundText(Option<Duration>);
 
 impl fmt::Display for TimeBoundText {

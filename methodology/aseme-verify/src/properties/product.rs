@@ -17,23 +17,22 @@ use super::compiled_property::{CompiledProperty, Subformula};
 use crate::run_replay::Unconfirmed;
 use crate::strongly_connected_components::strongly_connected_components;
 
-/// A run that violates a property, by its steps.
+/// A violating run, as steps.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) struct Violation {
     pub(crate) prefix: Vec<usize>,
-    /// The steps that repeat forever after that; empty if the run violates the property at its end,
-    /// or ends there.
+    /// The steps of the cycle at its end; empty if the run is finite.
     pub(crate) cycle: Vec<usize>,
 }
 
-/// What came of the search.
+/// The result of the search.
 pub(crate) enum SearchOutcome {
     Violation(Violation),
     /// Runs of the graph violate the property, but none of those that were tried is confirmed to be
     /// a run of the chart: the first one, and why not.
     NotConfirmed(Violation, String),
     Nothing,
-    /// There was more than was looked at.
+    /// The limit of states was reached.
     TooMuch,
 }
 
@@ -130,19 +129,19 @@ fn outgoing(found: &LabelledGraph) -> (Vec<Vec<usize>>, Vec<usize>) {
 struct ProductPosition {
     state: usize,
     clause: Clause,
-    /// The place before it and the step that led here first.
+    /// The predecessor and the step that first led here.
     predecessor: (Option<usize>, usize),
 }
 
 struct ProductSearch<'a> {
     found: &'a LabelledGraph,
     contrary: &'a CompiledProperty,
-    /// Whether parts of the chart are left to do nothing: then it is never at rest.
+    /// Whether idle regions were left out: then the chart is never stable.
     has_idle: bool,
     from: Vec<Vec<usize>>,
     places: Vec<ProductPosition>,
     numbers: BTreeMap<(usize, Clause), usize>,
-    /// Where each place leads, and by which step.
+    /// The successors of each product state and the steps to them.
     next: Vec<Vec<(usize, usize)>>,
     limit: usize,
     is_whole: bool,
@@ -186,7 +185,7 @@ impl<'a> ProductSearch<'a> {
         None
     }
 
-    /// Whether nothing need happen any more.
+    /// Whether the run may end in a state.
     fn may_end(&self, state: usize) -> bool {
         let it = &self.found.states()[state];
         it.status != Status::Running || (it.pending.is_empty() && !self.has_idle)
@@ -268,7 +267,7 @@ impl<'a> ProductSearch<'a> {
     }
 }
 
-/// The search for a circle, among places that are all known.
+/// The search for an accepting cycle in the explored product.
 struct CycleSearch<'a> {
     search: &'a ProductSearch<'a>,
     is_timed: bool,
@@ -281,7 +280,7 @@ impl CycleSearch<'_> {
         for (place, &component) in components.iter().enumerate() {
             members.entry(component).or_default().push(place);
         }
-        // the one that is reached first
+        // the component that was reached first
         let mut candidates: Vec<(usize, Vec<usize>)> = members.into_values().map(|it| (it[0], it)).collect();
         candidates.sort_unstable();
         candidates.into_iter().find_map(|(first, members)| {
@@ -300,7 +299,8 @@ impl CycleSearch<'_> {
         })
     }
 
-    /// What a circle has to go by to be a run that violates the property; none if it cannot.
+    /// The states and edges that a violating cycle must visit; `None` if there can be no such
+    /// cycle.
     fn stops(&self, inside: &BTreeSet<usize>) -> Option<Vec<CycleStop>> {
         let search = self.search;
         let mut stops = Vec::new();
@@ -340,7 +340,7 @@ impl CycleSearch<'_> {
         Some(stops)
     }
 
-    /// A circle from a place by all stops.
+    /// A cycle through a state and all stops.
     fn find_cycle(&self, first: usize, stops: &[CycleStop], inside: &BTreeSet<usize>) -> Option<Vec<usize>> {
         let (mut at, mut circle) = (first, Vec::new());
         for stop in stops {
@@ -389,7 +389,7 @@ impl CycleSearch<'_> {
     }
 }
 
-/// The edges of a cycle.
+/// What a cycle must visit.
 enum CycleStop {
     Place(usize),
     Step(usize, usize, usize),

@@ -8,31 +8,31 @@ use yase::expression::{Expression, Name, TextPosition};
 /// A property and its name.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Property {
-    /// What it is called, in the file once.
+    /// Its name, unique in the file.
     pub name: String,
-    /// What it says.
+    /// Its formula.
     pub formula: PropertyFormula,
     /// Its position in the source.
     pub place: TextPosition,
 }
 
-/// What a property says, or a part of it.
+/// A formula or a part of it.
 #[derive(Clone, PartialEq, Debug)]
 pub struct PropertyFormula {
-    /// What it says.
+    /// Its kind and operands.
     pub kind: PropertyFormulaKind,
     /// Its position in the source.
     pub place: TextPosition,
 }
 
 impl PropertyFormula {
-    /// The bytes it stands in.
+    /// The span of the formula.
     pub fn span(&self) -> Span {
         self.place.0
     }
 }
 
-/// What a [`PropertyFormula`] says.
+/// The kinds of formulas.
 #[derive(Clone, PartialEq, Debug)]
 pub enum PropertyFormulaKind {
     /// `true`, `false`.
@@ -45,13 +45,13 @@ pub enum PropertyFormulaKind {
     Leaving(Name),
     /// `event e`: the event was offered in this step.
     Event(Name),
-    /// `[c]`: what messages say.
+    /// `[c]`: a condition on messages.
     Condition(Expression),
     /// `not p`.
     Not(Box<PropertyFormula>),
-    /// `p and q and r`, two at least.
+    /// `p and q and r`, at least two operands.
     And(Vec<PropertyFormula>),
-    /// `p or q or r`, two at least.
+    /// `p or q or r`, at least two operands.
     Or(Vec<PropertyFormula>),
     /// `p implies q`.
     Implies(Box<PropertyFormula>, Box<PropertyFormula>),

@@ -7,14 +7,14 @@ use crate::logic::GuardSolver;
 use aseme_models::iac::{Iac, IacTransition};
 use aseme_models::transformations::{ShapeMatch, same_shape};
 
-/// Whether a node is another or lies in it.
+/// Whether a node is another or lies inside it.
 pub(crate) fn is_inside(chart: &Iac, node: usize, outer: usize) -> bool {
     let mut way = std::iter::successors(Some(node), |&node| chart.nodes.get(node)?.parent);
     way.any(|node| node == outer)
 }
 
-/// At a CONDITION inside a part: what may be left out is done by a guard only, and of a choice at
-/// most one is open to all.
+/// Checks the CONDITIONs inside a part: optional activities need a guard, and at most one branch of
+/// a choice may lack one.
 pub(crate) fn guarded(chart: &Iac, part: usize, found: &mut Conformance) {
     let conditions = (0..chart.nodes.len())
         .filter(|&node| chart.nodes[node].kind == "CONDITION" && is_inside(chart, node, part));
@@ -28,23 +28,22 @@ pub(crate) fn guarded(chart: &Iac, part: usize, found: &mut Conformance) {
         let spared = if may_be_left_out { 0 } else { 1 };
         for way in open.iter().skip(spared) {
             let name = chart.nodes[way.target].written();
-            let message = format!("`{name}` is done whatever happens: the way to it is unguarded");
-            let hint = "write in brackets when it is to be done";
+            let message = format!("`{name}` is always executed: its transition has no guard");
+            let hint = "add a guard";
             found.report("E0866", way.place.0, message, hint);
         }
     }
 }
 
-/// Whether a player's composite is the part of a protocol's chart: the states, the transitions
-/// between them, the rules to engage by and the exits.
+/// Checks that a player's composite equals the part of a protocol's chart: states, transitions,
+/// engaging rules and exits.
 pub(crate) fn contained(player: &Iac, place: usize, eac: &Iac, part: usize, found: &mut Conformance) {
     let name = &eac.nodes[part].name;
     let pairs = match same_shape(eac, part, player, place, ShapeMatch::Refined) {
         Ok(pairs) => pairs,
         Err((wanted, there)) => {
-            let message =
-                format!("`{name}` is not that of the protocol: {there} stands where {wanted} would be");
-            let hint = "take the formula of the participant over as it is";
+            let message = format!("`{name}` differs from the protocol: {there} instead of {wanted}");
+            let hint = "copy the formula of the participant";
             return found.report("E0862", player.nodes[place].place.0, message, hint);
         }
     };
@@ -65,12 +64,12 @@ pub(crate) fn contained(player: &Iac, place: usize, eac: &Iac, part: usize, foun
         };
         if let Some(guard) = guard(way).filter(|guard| !is_exit(guard)) {
             let message = format!("`{name}` is left when `{guard}`, which is no outcome of the protocol");
-            found.report("E0865", way.place.0, message, "make it an outcome, or take the exit away");
+            found.report("E0865", way.place.0, message, "make it an outcome, or remove the exit");
         }
     }
 }
 
-/// The transitions of the part, which are to be the player's, and no others.
+/// Checks that the transitions inside both parts are equal.
 fn inside(player: &Iac, eac: &Iac, pairs: &BTreeMap<usize, usize>, found: &mut Conformance) {
     let own: BTreeSet<usize> = pairs.values().copied().collect();
     let is_top = |node: usize| player.nodes[node].parent.is_none_or(|parent| !own.contains(&parent));
@@ -91,7 +90,7 @@ fn inside(player: &Iac, eac: &Iac, pairs: &BTreeMap<usize, usize>, found: &mut C
             None => {
                 let (from, to) = (eac.nodes[theirs.source].written(), eac.nodes[theirs.target].written());
                 let message =
-                    format!("the protocol has `{from} -> {to} : {}`, and the player does not", theirs.te);
+                    format!("the protocol has `{from} -> {to} : {}`, but the player does not", theirs.te);
                 found.report(
                     "E0867",
                     player.nodes[source].place.0,
@@ -104,13 +103,13 @@ fn inside(player: &Iac, eac: &Iac, pairs: &BTreeMap<usize, usize>, found: &mut C
     // one from the part to itself is a way into it
     for more in there.into_iter().filter(|it| !(it.source == it.target && is_top(it.source))) {
         let (from, to) = (player.nodes[more.source].written(), player.nodes[more.target].written());
-        let message = format!("the player has `{from} -> {to} : {}`, and the protocol does not", more.te);
+        let message = format!("the player has `{from} -> {to} : {}`, but the protocol does not", more.te);
         found.report("E0867", more.place.0, message, "merge the protocol's chart again");
     }
 }
 
-/// The player's part as a chart of its own. What the protocol calls an activity is one there,
-/// though the player does it in several steps.
+/// The player's part as a chart of its own. Activities of the protocol remain activities, even if
+/// the player refines them into several steps.
 pub(crate) fn alone(player: &Iac, place: usize, eac: &Iac, part: usize) -> Iac {
     let pairs = same_shape(eac, part, player, place, ShapeMatch::Refined).unwrap_or_default();
     let own: BTreeMap<usize, usize> = pairs.iter().map(|(&theirs, &own)| (own, theirs)).collect();

@@ -20,13 +20,14 @@ use aseme::liveness::Liveness;
 use aseme_models::iac::Iac;
 use aseme_models::transformations::{ShapeMatch, same_shape};
 
-/// What a step is to the part: each a bit, and above them what was done, one more than its letter.
+/// Bits of the observation of a step; the bits above them hold one more than the symbol of the
+/// returned activity.
 const ENTERS: u64 = 1;
 const LEAVES: u64 = 2;
 const DONE: u32 = 2;
 
-/// Holds a part of a player that is like that of a protocol's chart against formulas, wherever the
-/// player's whole chart engages in it.
+/// Compares a player's part with the formulas of the protocol wherever the player's whole chart
+/// engages in it.
 pub(crate) fn in_whole(
     player: &Iac,
     place: usize,
@@ -54,35 +55,29 @@ pub(crate) fn in_whole(
         TraceInclusion::Nothing if explored.is_finished() => return,
         TraceInclusion::Nothing | TraceInclusion::TooMuch => {
             let message = format!(
-                "`{}` is too large: after {states} states not all that it does as `{name}` is known",
+                "`{}` is too large: {states} states do not cover all its behaviour as `{name}`",
                 player.name
             );
             return found.report(
                 "E0869",
                 player.nodes[place].place.0,
                 message,
-                "make parts of it charts of their own",
+                "split it into several charts",
             );
         }
-        TraceInclusion::Beyond(done) => format!(
-            "`{}` does `{done}` while it is engaged as `{name}`, where the protocol does not allow it",
-            player.name
-        ),
+        TraceInclusion::Beyond(done) => {
+            format!("`{}` executes `{done}` as `{name}` where the protocol does not allow it", player.name)
+        }
     };
-    found.report(
-        "E0867",
-        player.nodes[place].place.0,
-        message,
-        "some way into the part leads into its middle",
-    );
+    found.report("E0867", player.nodes[place].place.0, message, "a transition enters the middle of the part");
 }
 
-/// What the steps of a player show of its part.
+/// Maps the steps of a player to symbols of the protocol.
 struct ProtocolAlphabet {
     part: NodeId,
-    /// The states whose activities the protocol names, with the letters of these.
+    /// The states whose activities the protocol names.
     activities: BTreeMap<NodeId, Symbol>,
-    /// The composites that the protocol takes for activities.
+    /// The composites that are activities in the protocol.
     composites: BTreeMap<NodeId, Symbol>,
 }
 
@@ -131,7 +126,7 @@ impl ProtocolAlphabet {
         explore_labelled(&abstraction.chart, &mut surroundings, &mut asked, STATES)
     }
 
-    /// What the protocol calls the activity that was done in a step.
+    /// The symbol of the activity that a step completed.
     fn done(
         &self,
         seen: &StepObservation<'_>,
@@ -153,12 +148,12 @@ impl ProtocolAlphabet {
 
 enum TraceInclusion {
     Nothing,
-    /// Something is done that may not be.
+    /// An activity that is not allowed.
     Beyond(String),
     TooMuch,
 }
 
-/// A state of the player, and what is left of the formulas if it is engaged.
+/// A state of the player, and the residuals of the formulas while it is engaged.
 type PartPosition = (usize, Option<BTreeSet<Residual>>);
 
 fn first_beyond(found: &LabelledGraph, mut language: Language, all: Residual) -> TraceInclusion {

@@ -17,18 +17,18 @@ use crate::properties::names;
 use aseme::srm::duration;
 use aseme::text;
 
-/// What a cause may be, for who has written something else.
+/// The hint for an unknown stimulus.
 const CAUSES: &str = "a step is `start`, `messages`, `event NAME`, `return STATE`, `ongoing STATE`, `fail STATE`, `wait 100ms` or `timer NAME`";
 
 type BindResult<T> = Result<T, Vec<Diagnostic>>;
 
 impl ScenarioText {
-    /// Looks up the names of a scenario.
+    /// Resolves the names of a scenario.
     ///
     /// # Errors
-    /// Lines that are none (E0890), states and events that the chart does not have (E0845, E0846),
-    /// states without an activity that are to return (E0893), what is no message to come (E0894),
-    /// timers (E0895), lengths of time (E0896), and whatever is wrong with values and conditions.
+    /// Invalid lines (E0890), states and events that the chart does not have (E0845, E0846), states
+    /// without an activity that return (E0893), actions that are no message (E0894), timers
+    /// (E0895), durations (E0896), and invalid values and conditions.
     pub fn bind(
         &self,
         chart: &CompiledChart,
@@ -57,7 +57,7 @@ struct ScenarioBinder<'a> {
     vocabulary: &'a TypeEnvironment,
 }
 
-/// What stands on an indented line.
+/// The parsed content of an indented line.
 enum StepDetail {
     Data(Vec<Effect>),
     Expected(ExpectationKind),
@@ -94,7 +94,7 @@ impl ScenarioBinder<'_> {
         &self.blanked[span.start..span.end]
     }
 
-    /// The first word of a line, and the rest.
+    /// The first word of a line and the remaining text.
     fn split(&self, span: Span) -> (&str, Span) {
         let text = self.text(span);
         let end = text.find(char::is_whitespace).unwrap_or(text.len());
@@ -143,7 +143,7 @@ impl ScenarioBinder<'_> {
         Name { text: self.text(span).to_owned(), place: TextPosition(span) }
     }
 
-    /// The parts between commas, at least one.
+    /// The parts between commas; there is at least one.
     fn list(&self, span: Span) -> Vec<Span> {
         let (mut parts, mut start) = (Vec::new(), span.start);
         for part in self.text(span).split(',') {
@@ -165,7 +165,7 @@ impl ScenarioBinder<'_> {
             None => {
                 let message = format!("the state `{}` has no activity", self.text(span));
                 Err(Diagnostic::error("E0893", span, message)
-                    .with_hint("what is started and returns is the activity of a state without others in it"))
+                    .with_hint("only a state without children has an activity"))
             }
         }
     }
@@ -199,7 +199,7 @@ impl ScenarioBinder<'_> {
         Ok(self.compiled(&actions)?.iter().filter_map(topic).collect())
     }
 
-    /// Messages that come.
+    /// Messages that arrive.
     fn data(&self, span: Span) -> BindResult<Vec<Effect>> {
         let (actions, wrong) = parse_actions_at(self.text(span), span.start);
         if wrong.iter().any(Diagnostic::is_error) {
@@ -208,10 +208,9 @@ impl ScenarioBinder<'_> {
         let is_data =
             |action: &&Action| !matches!(action.kind, ActionKind::Assign { .. } | ActionKind::Publish(_));
         if let Some(action) = actions.iter().find(is_data) {
-            let wrong =
-                Diagnostic::error("E0894", action.place.0, format!("`{action}` is no message that comes"));
+            let wrong = Diagnostic::error("E0894", action.place.0, format!("`{action}` is no message"));
             return Err(vec![
-                wrong.with_hint("messages come by `Message.field = value` or `publish.Message`"),
+                wrong.with_hint("write messages as `Message.field = value` or `publish.Message`"),
             ]);
         }
         self.compiled(&actions).map(Vec::from)
@@ -239,18 +238,18 @@ impl ScenarioBinder<'_> {
             return Err(wrong);
         }
         if !expression.actions.is_empty() {
-            let wrong = Diagnostic::error("E0890", span, "something follows the condition");
+            let wrong = Diagnostic::error("E0890", span, "unexpected text after the condition");
             return Err(vec![wrong.with_hint("an expectation is one condition in brackets")]);
         }
         let (mut events, mut scripts) = (EventInterner::new(), ScriptInterner::new());
         let compiled = expression.compile(&mut self.names(&mut events, &mut scripts))?;
-        let none = || vec![Diagnostic::error("E0890", span, "there is no condition in the brackets")];
+        let none = || vec![Diagnostic::error("E0890", span, "the brackets are empty")];
         let guard = compiled.guard.ok_or_else(none)?;
         match guard.sources().iter().all(|source| source.origin == Origin::Own) {
             true => Ok(guard),
             false => {
                 let wrong =
-                    Diagnostic::error("E0894", span, "it reads what a certain host or activity publishes");
+                    Diagnostic::error("E0894", span, "it reads the message of a specific host or activity");
                 Err(vec![
                     wrong.with_hint(
                         "in a scenario only the chart publishes: remove the prefix of the message",
@@ -262,7 +261,7 @@ impl ScenarioBinder<'_> {
 
     fn duration(&self, span: Span) -> Result<Duration, Diagnostic> {
         duration(self.text(span)).ok_or_else(|| {
-            let message = format!("`{}` is no length of time", self.text(span));
+            let message = format!("`{}` is no duration", self.text(span));
             Diagnostic::error("E0896", span, message).with_hint("write it as `100ms` or `2s`")
         })
     }
@@ -293,11 +292,12 @@ impl ScenarioBinder<'_> {
         let boards: Vec<String> =
             fitting.iter().map(|&node| format!("`{} {name}`", self.chart.names().name(node))).collect();
         if !boards.is_empty() {
-            let message = format!("`{}` does not say which timer is meant", self.text(span));
+            let message = format!("`{}` is ambiguous: several timers have this name", self.text(span));
             let wrong = Diagnostic::error("E0895", span, message);
             return wrong.with_hint(format!("write the blackboard before its name: {}", boards.join(", ")));
         }
-        let wrong = Diagnostic::error("E0895", span, format!("nothing in the chart starts a timer `{name}`"));
+        let wrong =
+            Diagnostic::error("E0895", span, format!("no action of the chart starts a timer `{name}`"));
         match nearest(name, self.chart.timers().map(|(_, timer)| timer)) {
             Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
             None => wrong.with_hint("a timer is one that an action `StartTimeout(name, 100ms)` starts"),
@@ -307,7 +307,7 @@ impl ScenarioBinder<'_> {
     /// `NAME: 80ms`, `NAME: over`, `NAME: unset`
     fn timer_left(&self, span: Span) -> Result<ExpectationKind, Diagnostic> {
         let Some(colon) = self.text(span).find(':') else {
-            let wrong = Diagnostic::error("E0895", span, "it is not said how far the timer is to be");
+            let wrong = Diagnostic::error("E0895", span, "the expected state of the timer is missing");
             return Err(
                 wrong.with_hint("write `timer NAME: 80ms`, `timer NAME: over` or `timer NAME: unset`")
             );
@@ -324,7 +324,7 @@ impl ScenarioBinder<'_> {
     }
 }
 
-/// All results, or all that went wrong.
+/// All results, or all errors.
 fn all<T>(results: impl Iterator<Item = Result<T, Diagnostic>>) -> BindResult<Vec<T>> {
     let (mut values, mut found) = (Vec::new(), Vec::new());
     for result in results {

@@ -39,11 +39,10 @@ impl Reader<'_> {
             (true, _) => self.script.steps.push(StepLines { cause: span, details: Vec::new() }),
             (false, _) => match self.script.steps.last_mut() {
                 Some(step) => step.details.push(span),
-                None => {
-                    self.report(Diagnostic::error("E0890", span, "this belongs to no step").with_hint(
-                        "a step begins at the beginning of a line, what is said of it is indented",
-                    ))
-                }
+                None => self.report(
+                    Diagnostic::error("E0890", span, "this line belongs to no step")
+                        .with_hint("a step starts at the beginning of a line, its details are indented"),
+                ),
             },
         }
     }
@@ -54,22 +53,23 @@ impl Reader<'_> {
         let link = ScenarioLink { path: path.to_owned(), span };
         let wrong = match (path.is_empty(), &place, self.script.steps.is_empty()) {
             (true, ..) => Some(format!("`{word}` names no file")),
-            (_, Some(_), _) => Some(format!("there is a `{word}` already")),
-            (_, _, false) => Some(format!("`{word}` stands behind a step")),
+            (_, Some(_), _) => Some(format!("a second `{word}`")),
+            (_, _, false) => Some(format!("`{word}` after a step")),
             _ => None,
         };
         match wrong {
             None => *place = Some(link),
-            Some(message) => self.report(Diagnostic::error("E0891", span, message).with_hint(
-                "a scenario begins with one line `model FILE`, and one `after FILE` if another comes first",
-            )),
+            Some(message) => self.report(
+                Diagnostic::error("E0891", span, message)
+                    .with_hint("a scenario starts with one line `model FILE` and optionally `after FILE`"),
+            ),
         }
     }
 
     fn finish(mut self) -> (ScenarioText, Vec<Diagnostic>) {
         if self.script.model.is_none() {
             let wrong = Diagnostic::error("E0891", Span::default(), "the scenario names no model");
-            self.report(wrong.with_hint("begin it with `model FILE`, as seen from its own folder"));
+            self.report(wrong.with_hint("start it with `model FILE`, relative to its own folder"));
         }
         self.starts();
         let Reader { script, found, .. } = self;
@@ -77,7 +77,7 @@ impl Reader<'_> {
         (script, found)
     }
 
-    /// A chart is started once: by the first step of all.
+    /// Checks that only the first step starts the chart.
     fn starts(&mut self) {
         let goes_on = self.script.after.is_some();
         let mut wrong = Vec::new();
@@ -85,11 +85,11 @@ impl Reader<'_> {
             let is_start = &self.blanked[step.cause.start..step.cause.end] == "start";
             if is_start != (place == 0 && !goes_on) {
                 let message = match is_start {
-                    true => "the chart has been started",
-                    false if place == 0 => "the chart has not been started",
+                    true => "the chart was started already",
+                    false if place == 0 => "the chart was not started",
                     false => continue,
                 };
-                let hint = "a scenario begins with the step `start`, unless it comes `after` another";
+                let hint = "a scenario starts with the step `start`, unless it is `after` another";
                 wrong.push(Diagnostic::error("E0892", step.cause, message).with_hint(hint));
             }
         }

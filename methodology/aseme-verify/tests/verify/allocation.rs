@@ -1,4 +1,4 @@
-//! Following a property takes no memory once it has been made ready.
+//! A monitor does not allocate after its construction.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -12,7 +12,7 @@ thread_local! {
 
 struct Counting;
 
-// SAFETY: the system's allocator does all the work.
+// SAFETY: every call is forwarded to the system's allocator.
 #[allow(unsafe_code, reason = "counting allocations takes an allocator")]
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {

@@ -1,6 +1,5 @@
-//! One folder for each check, by its code: `fault.*` has the fault and `near.*` nearly has it;
-//! `fault.txt` and `near.txt` are the findings about them. With `MONAS_BLESS=1` these are written
-//! anew.
+//! One folder per check, named by its code. `fault.*` contains the fault, `near.*` is similar
+//! without it; `fault.txt` and `near.txt` are the expected findings. `MONAS_BLESS=1` rewrites them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -16,7 +15,7 @@ fn folder(id: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/verify").join(id.to_lowercase())
 }
 
-/// The models in a folder whose names begin so, in order.
+/// The models in a folder whose names have a prefix, sorted.
 fn models(folder: &Path, begin: &str) -> Vec<PathBuf> {
     let files = folder.read_dir().unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut files: Vec<PathBuf> = files.map(|entry| entry.unwrap().path()).collect();
@@ -44,8 +43,7 @@ fn report(file: &Path) -> CheckReport {
     report
 }
 
-/// A run of the model in which nothing was entered but the first state, if its name says that there
-/// is one.
+/// The coverage of a run that entered only the first state, if the file name requests one.
 fn recorded(file: &Path) -> Vec<RecordedCoverage> {
     if !file.file_name().is_some_and(|name| name.to_string_lossy().contains("recorded")) {
         return Vec::new();
@@ -61,8 +59,8 @@ fn recorded(file: &Path) -> Vec<RecordedCoverage> {
     }]
 }
 
-/// A program with a ball, which Look publishes, and with news that nobody reads; whoever is called
-/// Hearsay says nothing of what it reads and publishes.
+/// A program in which Look publishes a ball and nothing reads the news. The activity Hearsay
+/// declares no topics.
 fn world(model: &str) -> ProgramSymbols {
     let field = |id, name: &str, kind| FieldEntry { id: FieldId(id), name: name.into(), kind };
     let topic = |id, path: &str, message: &str| TopicEntry {
@@ -109,7 +107,7 @@ fn world(model: &str) -> ProgramSymbols {
     }
 }
 
-/// A finding, and below it the way there.
+/// A finding and its trace.
 fn text(finding: &Finding) -> String {
     let trace = finding.trace.iter().flat_map(|trace| trace.lines());
     std::iter::once(format!("{finding}\n")).chain(trace.map(|line| format!("    {line}\n"))).collect()
@@ -174,7 +172,7 @@ fn the_table_is_in_order_and_names_each_check_once() {
 }
 
 #[test]
-fn what_cannot_be_explored_is_said_with_the_reason() {
+fn a_chart_that_cannot_be_explored_is_reported_with_the_reason() {
     let role = "Role: r\nLiveness:\nr = look . turn\nTransitions:\nlook -> turn : [In(nowhere)]\n";
     let report = check(&Source::new("r.srm", role), &CheckSettings::default());
     let found: Vec<String> = report.findings.iter().map(ToString::to_string).collect();

@@ -1,5 +1,5 @@
-//! Robots together: a folder for each case, with a model for each robot and `expected.txt`. With
-//! `MONAS_BLESS=1` that is written anew.
+//! Compositions: a folder per case, with a model per robot and `expected.txt`, which
+//! `MONAS_BLESS=1` rewrites.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ fn composed(case: &str, channels: Channels, states: usize) -> Composition {
     compose(&models(case), channels, &settings).unwrap_or_else(|wrong| panic!("{case}: {wrong:?}"))
 }
 
-/// All that is said, with the ways there.
+/// All findings with their traces.
 fn text(found: &Composition) -> String {
     let mut text = String::new();
     for (from, to, message) in &found.passing {
@@ -81,7 +81,7 @@ fn robots_that_wait_for_each_other_are_found_and_those_that_nearly_do_are_not() 
 }
 
 #[test]
-fn a_way_to_a_standstill_is_played_by_the_charts() {
+fn a_trace_to_a_deadlock_is_replayed_by_the_charts() {
     let models = models("deadlock");
     let found = composed("deadlock", Channels::default(), 10_000);
     let trace = found.findings[0].trace.as_deref().unwrap();
@@ -98,16 +98,16 @@ fn a_way_to_a_standstill_is_played_by_the_charts() {
     let refused = |text: &str| TeamTrace::parse(&robots, text).unwrap_err().to_string();
     assert_eq!(
         refused("passer: start\nkeeper: start\n"),
-        "line 2: `keeper: start` belongs to no robot: a step begins with `passer:` or `receiver:`"
+        "line 2: `keeper: start` belongs to no robot: a step starts with `passer:` or `receiver:`"
     );
     assert!(
         refused("passer: start\nreceiver: start\nreceiver: return Aim\n").starts_with("line 3: no state")
     );
 }
 
-/// Another region may say the same as a first one: neither is left out of what is explored.
+/// Two regions that send the same message are both explored.
 #[test]
-fn who_says_something_in_two_regions_is_heard_from_both() {
+fn messages_sent_in_two_regions_arrive_from_both() {
     let mut models = models("deadlock");
     let passer = "Role: passer\nLiveness:\npasser = (Aim . Pass) || (Stand . Shout)\nTransitions:\n\
         Pass -> END : receiver.ready.Signal.Ready / publish.passed.Signal.Passed\n\
@@ -119,9 +119,9 @@ fn who_says_something_in_two_regions_is_heard_from_both() {
     assert!(text(&found).contains(shouted), "{}", text(&found));
 }
 
-/// Of robots to which nothing passes no more is explored than whether they start.
+/// Of robots without routes only the start is explored.
 #[test]
-fn what_nobody_hears_is_left_out() {
+fn messages_without_a_receiver_are_not_explored() {
     let role =
         "Role: a\nLiveness:\na = b~ || c~ || d~\nTransitions:\nb -> b : / publish.noise.Signal.Noise\n";
     let models: Models = ["one", "two"].map(|name| (name.to_owned(), Source::new("a.srm", role))).into();
@@ -129,7 +129,7 @@ fn what_nobody_hears_is_left_out() {
     assert_eq!((codes(&found), found.robots[0].1 <= 3), (Vec::new(), true), "{}", text(&found));
 }
 
-/// What waits for an answer stands still if the answer may be lost.
+/// A robot that waits for an answer is deadlocked if the answer may be lost.
 #[test]
 fn a_handshake_without_a_timer_does_not_survive_a_loss() {
     let mut channels = Channels::default();
@@ -138,13 +138,13 @@ fn a_handshake_without_a_timer_does_not_survive_a_loss() {
 }
 
 #[test]
-fn what_was_not_looked_at_is_not_decided() {
+fn an_incomplete_composition_is_undecided() {
     let found = composed("near", Channels::default(), 8);
     assert_eq!((codes(&found), found.is_finished), (vec!["E0933"], false));
 }
 
 #[test]
-fn what_nobody_says_may_come_at_any_time() {
+fn messages_without_a_sender_arrive_at_any_time() {
     let mut models = models("deadlock");
     models[1].1 = Source::new("receiver.srm", "Role: receiver\nLiveness:\nreceiver = Stand\n");
     let found = compose(&models, Channels::default(), &CheckSettings::default()).unwrap();
@@ -152,7 +152,7 @@ fn what_nobody_says_may_come_at_any_time() {
 }
 
 #[test]
-fn messages_that_cannot_be_told_apart_are_refused() {
+fn indistinguishable_messages_are_rejected() {
     let mut models = models("deadlock");
     let text =
         "Role: receiver\nLiveness:\nreceiver = Listen . Take\nTransitions:\nListen -> Take : not other\n";
@@ -166,9 +166,9 @@ fn of_texts(texts: &[(&str, &str)]) -> Models {
     texts.iter().map(model).collect()
 }
 
-/// What a robot says to itself goes by a channel like any other message.
+/// A message that a robot sends to itself passes through a channel like any other.
 #[test]
-fn who_says_something_to_itself_hears_it_if_it_has_been_said() {
+fn a_message_to_itself_arrives_after_it_was_sent() {
     let speaks = "Role: echo\nLiveness:\necho = Call . Listen . Act\nTransitions:\n\
         Call -> Listen : / publish.word.Signal.Word\nListen -> Act : echo.word.Signal.Word\n";
     let found =
@@ -193,9 +193,9 @@ fn who_says_something_to_itself_hears_it_if_it_has_been_said() {
     assert!(said.contains("waits in `Listen` for `Word` of `echo`"), "{said}");
 }
 
-/// A robot that TERMINATE has stopped says nothing any more, and waits for nothing.
+/// A robot that TERMINATE has stopped neither sends nor waits.
 #[test]
-fn who_waits_for_a_robot_that_was_stopped_waits_for_ever() {
+fn waiting_for_a_terminated_robot_is_a_deadlock() {
     let receiver = |end: &str| {
         format!(
             "IAC: receiver\n\nStates:\n  receiver OR\n    START\n    Walk BASIC\n    Ready BASIC\n    halt {end}\n\n\

@@ -1,8 +1,8 @@
-//! A role as large as any team's.
+//! A role larger than those of a team.
 
 use std::fmt::Write;
 
-/// A role of 100 formulas, each a choice of three out of which two guards lead: about 2,000 states.
+/// A role of 100 formulas, each a choice with two guarded branches: about 2,000 states.
 pub(crate) fn large() -> String {
     let mut text = String::from("Role: large\nLiveness:\nlarge = ");
     let names: Vec<String> = (0..99).map(|number| format!("f{number}")).collect();

@@ -1,4 +1,4 @@
-//! The logic of guards, compared with what comes out when all values of small domains are tried.
+//! The logic of guards, compared with an exhaustive search of small domains.
 
 use aseme_verify::logic::{Claim, GuardSolver, Satisfiability};
 use proptest::prelude::*;
@@ -11,8 +11,7 @@ fn condition(text: &str) -> Expression {
     condition.unwrap()
 }
 
-/// A condition over two numbers, a value of three, and a flag, and what it says of a message that
-/// is there.
+/// A condition over two numbers, an enumeration and a flag, on a message that has arrived.
 #[derive(Clone, Debug)]
 enum Guard {
     Number(&'static str, &'static str, i8),
@@ -78,8 +77,8 @@ fn compare(left: f64, comparison: &str, right: f64) -> bool {
 }
 
 fn worlds() -> impl Iterator<Item = World> {
-    // quarters lie between whole limits in every order that two numbers and their difference can
-    // have
+    // quarters are enough for every order of two numbers and their difference relative to integer
+    // limits
     let numbers = || (-20..=20).map(|number| f64::from(number) / 4.0);
     numbers().flat_map(move |x| {
         numbers().flat_map(move |y| {
@@ -95,7 +94,7 @@ fn guard() -> impl Strategy<Value = Guard> {
         (prop::sample::select(vec!["x", "y"]), comparison(), -2_i8..=2)
             .prop_map(|(n, c, v)| Guard::Number(n, c, v)),
         (comparison(), -2_i8..=2).prop_map(|(comparison, value)| Guard::Difference(comparison, value)),
-        // the fourth is never named: it stands for the values that no guard knows
+        // the fourth value is in no guard: it represents all other values
         (any::<bool>(), prop::sample::select(PHASES[..3].to_vec()))
             .prop_map(|(same, p)| Guard::Phase(same, p)),
         Just(Guard::Found),
@@ -113,7 +112,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 150, ..ProptestConfig::default() })]
 
     #[test]
-    fn what_can_hold_is_what_holds_somewhere(one in guard(), other in guard()) {
+    fn satisfiable_conditions_hold_for_some_values(one in guard(), other in guard()) {
         let (first, second) = (condition(&one.text()), condition(&other.text()));
         let logic = GuardSolver::default();
         let both = worlds().any(|world| one.holds(world) && other.holds(world));
@@ -132,7 +131,7 @@ fn holds(texts: &[&str]) -> Satisfiability {
 }
 
 #[test]
-fn what_is_outside_is_unknown_unless_its_text_alone_decides() {
+fn opaque_terms_are_unknown_unless_equal_texts_decide() {
     assert_eq!(holds(&["seen(Ball.x)"]), Satisfiability::Unknown);
     assert_eq!(holds(&["seen(Ball.x) && !seen(Ball.x)"]), Satisfiability::No);
     assert_eq!(holds(&["abs(Ball.x) > 2", "abs(Ball.x) <= 2"]), Satisfiability::No);

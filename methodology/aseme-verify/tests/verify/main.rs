@@ -1,4 +1,4 @@
-//! `aseme_verify::check`: each check on a model that has the fault, and on one that nearly has it.
+//! Each check on a model with the fault and on a similar model without it.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,4 +1,4 @@
-//! Properties held against all that a chart can do.
+//! Properties checked by exploration.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ fn outcome(model: &str, formula: &str) -> PropertyOutcome {
     judgements[0].outcome
 }
 
-/// The run that violates a property, which must be one that can be run.
+/// The violating run of a property; asserts that it can be replayed.
 fn run_against(model: &str, formula: &str) -> String {
     let (source, _, findings) = judged(model, formula, &CheckSettings::default());
     let text = findings[0].trace.clone().unwrap_or_else(|| panic!("no run: {findings:?}"));
@@ -37,12 +37,12 @@ fn run_against(model: &str, formula: &str) -> String {
     text
 }
 
-/// Looks, and goes one way or the other, forever.
+/// Looks and takes one of two branches, forever.
 const WALKER: &str = "Role: walker\nLiveness:\nwalker = act~\nact = Look . (Turn | Walk)\nTransitions:\n\
     CONDITION -> Turn : [!Ball.found]\nCONDITION -> Walk : [Ball.found]\n";
 
 #[test]
-fn what_guards_say_holds_and_its_contrary_has_a_run() {
+fn a_property_implied_by_guards_holds_and_its_negation_is_violated() {
     assert_eq!(outcome(WALKER, "always (entering Walk implies [Ball.found])"), PropertyOutcome::Holds);
     assert_eq!(outcome(WALKER, "always not (in Walk and in Turn)"), PropertyOutcome::Holds);
     let text = run_against(WALKER, "always (entering Walk implies [!Ball.found])");
@@ -52,10 +52,10 @@ fn what_guards_say_holds_and_its_contrary_has_a_run() {
     );
 }
 
-/// What a region has read is old when the root's blackboard, which properties are about, has been
-/// written in the same step.
+/// A region does not see in a step what is written to the root's blackboard in it; properties read
+/// the root's blackboard.
 #[test]
-fn what_the_chart_writes_on_the_blackboard_of_the_root_is_not_what_a_region_has_read_before() {
+fn writes_to_the_root_blackboard_are_not_visible_to_earlier_reads_of_a_region() {
     let role = "Role: r\nLiveness:\nr = (a || b) . c\nTransitions:\n\
         b -> END : [Ball.found]\n(a||b) -> c : go / Ball.found = true\n";
     let text = run_against(role, "always (entering c implies not [Ball.found])");
@@ -63,10 +63,10 @@ fn what_the_chart_writes_on_the_blackboard_of_the_root_is_not_what_a_region_has_
 }
 
 #[test]
-fn what_need_never_come_is_a_run_that_goes_round() {
+fn an_optional_event_gives_a_violating_cycle() {
     let restless = WALKER.replace(" : [!Ball.found]", " :");
     let text = run_against(&restless, "always (entering Look implies eventually entering Walk)");
-    let (_, circle) = text.split_once("# from here on again and again\n").unwrap();
+    let (_, circle) = text.split_once("# repeats forever from here\n").unwrap();
     assert!(circle.contains("return ") && !circle.contains("entering Walk"), "{text}");
     let either = "always (entering Look implies eventually (entering Walk or entering Turn))";
     assert_eq!(outcome(WALKER, either), PropertyOutcome::Violated, "nobody need say where the ball is");
@@ -139,7 +139,7 @@ fn a_part_that_others_wait_for_is_not_left_out() {
 }
 
 #[test]
-fn what_is_not_looked_at_to_the_end_is_not_decided() {
+fn an_incomplete_exploration_is_undecided() {
     let mut settings = CheckSettings::default();
     settings.states = 2;
     let (_, judgements, findings) = judged(WALKER, "always not (in Walk and in Turn)", &settings);
@@ -149,10 +149,10 @@ fn what_is_not_looked_at_to_the_end_is_not_decided() {
     assert_eq!(judgements[0].outcome, PropertyOutcome::Violated, "a run that was found is one");
 }
 
-/// Code, what it speaks of, and the hint.
+/// Code, text at the span, and hint of each finding.
 fn said(model: &str, formula: &str, settings: &CheckSettings) -> Vec<(&'static str, String, String)> {
     let (_, _, findings) = judged(model, formula, settings);
-    let told = |it: &Finding| {
+    let summary = |it: &Finding| {
         let text = &it.diagnostic.source.as_ref().unwrap().text;
         let span = it.diagnostic.span;
         (
@@ -161,11 +161,11 @@ fn said(model: &str, formula: &str, settings: &CheckSettings) -> Vec<(&'static s
             it.diagnostic.hint.clone().unwrap_or_default(),
         )
     };
-    findings.iter().map(told).collect()
+    findings.iter().map(summary).collect()
 }
 
 #[test]
-fn names_that_the_chart_does_not_have_are_said_with_the_nearest() {
+fn unknown_names_are_reported_with_the_nearest_one() {
     let settings = CheckSettings::default();
     let one = |code, place: &str, hint: &str| vec![(code, place.to_owned(), hint.to_owned())];
     assert_eq!(said(WALKER, "always not in Wakl", &settings), one("E0845", "Wakl", "did you mean `Walk`?"));
@@ -190,7 +190,7 @@ fn timers_have_no_place_in_conditions() {
         let wrong = said(model, formula, &CheckSettings::default());
         assert_eq!(
             (wrong[0].0, wrong[0].2.as_str()),
-            ("E0841", "write `within` behind what must come in time")
+            ("E0841", "use `within` after `eventually` or `until`")
         );
     }
     let (_, judgements, findings) = judged(model, "always [ready]", &CheckSettings::default());
@@ -247,7 +247,8 @@ fn a_mistake_in_a_shipped_role_is_noticed() {
         "RightDive : [Ball.crossing_bearing < -dive_from]",
         "RightDive : [Ball.crossing_bearing > -dive_from]",
     );
-    // a ball far to the right opens no way now: when the next message comes it may have turned back
+    // a ball far to the right enables no exit now, and may have turned back when the next message
+    // arrives
     let both = ["no dive for a ball that stays away", "it dives to the side of the ball"];
     assert_eq!(broken("goalie", side), both);
     let slow = ("StartTimeout(robot_timeout, 100ms)", "StartTimeout(robot_timeout, 150ms)");

@@ -1,4 +1,4 @@
-//! The language of properties, and what it means along a run.
+//! The language of properties and its semantics on runs.
 
 use std::time::Duration;
 
@@ -58,7 +58,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn what_is_printed_reads_back_as_the_same(formula in any_of(atom())) {
+    fn printing_and_parsing_round_trips(formula in any_of(atom())) {
         let property = Property { name: "it is so".into(), formula, place: TextPosition::default() };
         let text = property.to_string();
         let (again, findings) = parse(&text);
@@ -78,9 +78,9 @@ proptest! {
         }
     }
 
-    /// Compared with what the words mean, position by position, on a run that goes on as it ended.
+    /// Compared with a direct evaluation of the semantics on a run whose last position repeats.
     #[test]
-    fn a_monitor_says_what_the_formula_means(
+    fn a_monitor_evaluates_the_semantics_of_its_formula(
         formula in any_of(prop::sample::select(vec!["a", "b", "c"]).prop_map(|state| formula(PropertyFormulaKind::In(name(state))))),
         run in prop::collection::vec((0..8_u64, 0..3_000_u64), 1..8)
     ) {
@@ -93,7 +93,7 @@ proptest! {
                 return Ok(());
             }
         };
-        // the letter of a step has the states in the order in which the plan asks for them
+        // the bits of a letter are in the order of the atoms
         let bits: Vec<u64> = plan.atoms().iter().map(|atom| match atom {
             aseme_verify::properties::AtomicProposition::In(state) => match chart.statechart().node(*state).name.as_str() {
                 "a" => 1,
@@ -126,7 +126,7 @@ proptest! {
     }
 }
 
-/// What a formula says at a position, where the last one is repeated forever, an hour apart.
+/// Whether a formula holds at a position, where the last one repeats forever, an hour apart.
 fn holds(formula: &PropertyFormula, run: &[(u64, u64)], at: usize) -> bool {
     let until = |left: &dyn Fn(usize) -> bool, right: &dyn Fn(usize) -> bool, bound: Option<Duration>| {
         let bound = bound.map_or(u64::MAX, |bound| bound.as_nanos() as u64);

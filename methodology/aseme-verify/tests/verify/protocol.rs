@@ -1,5 +1,5 @@
-//! The attack protocol of thesis 5.5: from its table to the chart of the player, and whether charts
-//! hold to it. With `MONAS_BLESS=1` the chart of the player in `models` is written anew.
+//! The attack protocol of thesis 5.5: from its table to the player's chart, and conformance of
+//! charts to it. `MONAS_BLESS=1` rewrites the player's chart in `models`.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use aseme_models::{Aip, Iac, regenerate, statechart_of, transformations};
 use aseme_verify::protocol::{Conformance, chart_conforms, player_conforms};
 use yase::Source;
 
-/// The model in a text that has no findings.
+/// Parses a model that must have no findings.
 fn clean(text: &str) -> Model {
     let (found, findings) = convert::read(&Source::new("model", text));
     assert_eq!(findings, [], "{text}");
@@ -51,7 +51,7 @@ fn role(text: &str) -> Iac {
     Iac::from_statechart(&chart, ChartKind::Intra)
 }
 
-/// The player with the protocol in it.
+/// The player with the protocol merged into it.
 fn merged(eac: &Iac) -> Iac {
     let mut player = player();
     let (places, found) = transformations::merge_eac(&mut player, eac);
@@ -107,7 +107,7 @@ fn the_role_as_text_is_the_chart_of_the_player() {
 }
 
 #[test]
-fn a_role_that_says_nothing_of_the_protocol_gets_its_rules_guards_and_exits() {
+fn a_role_without_protocol_entries_gets_rules_guards_and_exits() {
     let text = text("extended_attacker.srm");
     let lines = text.lines().filter(|line| !line.contains(" also : "));
     let lines = lines.map(|line| line.split_once(" : [Attack.").map_or(line, |(before, _)| before));
@@ -134,15 +134,15 @@ fn the_chart_of_the_protocol_and_that_of_the_player_conform() {
     let expected = [
         ("Attack", 20, true),
         ("center", 3, true),
-        ("center in all that player does", 39, true),
+        ("center within player", 39, true),
         ("center_for", 4, true),
-        ("center_for in all that player does", 39, true),
+        ("center_for within player", 39, true),
     ];
     assert_eq!(explored, expected);
 }
 
-/// The part itself is the protocol's, and so is the rule; only all that the player does shows that
-/// it begins in its middle.
+/// The part and its rule equal the protocol's; only the exploration of the whole player shows that
+/// it is entered in the middle.
 #[test]
 fn a_way_into_the_middle_of_a_part_is_found_in_all_that_the_player_does() {
     let whole = text("extended_attacker.iac");
@@ -152,13 +152,11 @@ fn a_way_into_the_middle_of_a_part_is_found_in_all_that_the_player_does() {
     let found = player_conforms(&player, &eac(), &aip());
     assert_eq!(
         said(&found),
-        [
-            "E0867: `player` does `passBall` while it is engaged as `center`, where the protocol does not allow it"
-        ]
+        ["E0867: `player` executes `passBall` as `center` where the protocol does not allow it"]
     );
 }
 
-/// What is said of the chart of the protocol after an edit.
+/// The findings for the protocol's chart after an edit.
 fn broken(edit: impl Fn(&str) -> String) -> Vec<String> {
     let (before, after) = (text("attack.eac"), edit(&text("attack.eac")));
     assert_ne!(before, after);
@@ -178,8 +176,8 @@ fn a_protocol_that_lacks_an_outcome_is_refused() {
     assert_eq!(
         found,
         [
-            "E0864: the outcome `Attack.opponent_has_ball` is no exit of `center`",
-            "E0864: the outcome `Attack.opponent_has_ball` is no exit of `center_for`",
+            "E0864: `center` has no exit for the outcome `Attack.opponent_has_ball`",
+            "E0864: `center_for` has no exit for the outcome `Attack.opponent_has_ball`",
         ]
     );
 }
@@ -198,21 +196,21 @@ fn a_protocol_with_its_parts_swapped_is_refused() {
     (other.participants[0].liveness, other.participants[1].liveness) =
         (aip.participants[1].liveness.clone(), aip.participants[0].liveness.clone());
     let found = said(&chart_conforms(&eac(), &other));
-    assert!(found[0].starts_with("E0862: `center` does not do what the protocol says: WalkTowardsBall BASIC stands where WalkTowardsGoal BASIC would be"), "{found:?}");
+    assert!(found[0].starts_with("E0862: `center` differs from the protocol: WalkTowardsBall BASIC instead of WalkTowardsGoal BASIC"), "{found:?}");
 }
 
 #[test]
 fn a_protocol_with_an_unguarded_pass_is_refused() {
     let found = broken(|text| text.replace(" : [Attack.pass_is_open]", ""));
-    assert_eq!(found, ["E0866: `passBall` is done whatever happens: the way to it is unguarded"]);
+    assert_eq!(found, ["E0866: `passBall` is always executed: its transition has no guard"]);
 }
 
-/// What is done in several steps is called as a formula has it, not as a file of the tools does.
+/// The name of a composite is the term of the formula, not a path of a file format.
 #[test]
 fn an_unguarded_composite_is_named_by_its_term() {
     let found = broken(|text| text.replace(" : [Attack.ball_is_passed]", ""));
     let name = "WalkTowardsBall.[kickBall]";
-    assert_eq!(found, [format!("E0866: `{name}` is done whatever happens: the way to it is unguarded")]);
+    assert_eq!(found, [format!("E0866: `{name}` is always executed: its transition has no guard")]);
 }
 
 #[test]
@@ -220,7 +218,7 @@ fn a_protocol_that_is_engaged_in_at_any_time_is_refused() {
     let found = broken(|text| text.replace("Attack.ball_is_free && ", ""));
     assert_eq!(found.len(), 2);
     assert!(
-        found[0].starts_with("E0863: `center` may be engaged in while `Attack.ball_is_free && "),
+        found[0].starts_with("E0863: `center` may be entered while `Attack.ball_is_free && "),
         "{found:?}"
     );
 }
@@ -238,7 +236,7 @@ fn a_protocol_of_which_a_part_can_never_be_done_is_refused() {
     assert_eq!(
         found,
         [
-            "E0868: in `Attack`, after `WalkTowardsBall` the protocol allows `passBall`, and the chart never does it"
+            "E0868: in `Attack`, after `WalkTowardsBall` the protocol allows `passBall`, but the chart never executes it"
         ]
     );
 }

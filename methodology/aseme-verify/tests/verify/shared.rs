@@ -1,4 +1,4 @@
-//! Documents of others, where the folder with them is at hand.
+//! Third-party documents; the tests are skipped if their folder is absent.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! How much the checks do for a large role, and for the project's own roles.
+//! The effort of the checks for a large role and for the project's roles.
 
 use std::path::Path;
 
@@ -20,8 +20,7 @@ fn a_large_role_is_checked() {
     assert!(!report.has_errors());
 }
 
-/// All their states are found, and all their traces compared with their formulas: so nothing may be
-/// left undecided.
+/// Asserts that all states are explored and all traces compared, so that nothing is undecided.
 fn is_explored_to_the_end(name: &str, configurations: usize) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name);
     let source = Source::new(name, std::fs::read_to_string(path).unwrap());

@@ -1,4 +1,4 @@
-//! The ways that explorations show: they are text, and lead there again.
+//! Traces of explorations can be parsed from their text and replayed.
 
 use std::sync::Arc;
 
@@ -37,13 +37,15 @@ fn a_way_to_a_livelock_ends_in_it() {
 }
 
 #[test]
-fn what_is_no_trace_is_refused_by_its_line() {
+fn an_invalid_trace_is_rejected_with_its_line() {
     let chart = explorable(&Source::new("r.iac", include_str!("m14/fault.iac"))).unwrap();
     let refused = |text: &str| Trace::parse(&chart, text).unwrap_err().to_string();
-    assert_eq!(refused(""), "line 1: a trace begins with `start`");
-    assert_eq!(refused("event kick"), "line 1: a trace begins with `start`");
-    assert_eq!(refused("  true  x\n"), "line 1: this belongs to no step: a trace begins with `start`");
-    assert!(refused("# a\nstart\nreturn x\n").starts_with("line 3: no state with an activity is called `x`"));
+    assert_eq!(refused(""), "line 1: a trace starts with `start`");
+    assert_eq!(refused("event kick"), "line 1: a trace starts with `start`");
+    assert_eq!(refused("  true  x\n"), "line 1: this line belongs to no step: a trace starts with `start`");
+    assert!(
+        refused("# a\nstart\nreturn x\n").starts_with("line 3: no state with an activity has the name `x`")
+    );
     assert!(refused("start\ntimer r x\n").starts_with("line 2: the chart has no timer `r x`"));
     assert!(refused("start\n  true  Ball.found\n").starts_with("line 2: no guard of the chart reads"));
     assert!(refused("start now\n").starts_with("line 1: `start now` is no step"));

@@ -38,7 +38,7 @@ pub(crate) fn check(liveness: &Liveness) -> Vec<Diagnostic> {
     diagnostics
 }
 
-/// For each formula the formulas it names, with the place.
+/// For each formula the formulas it names, with their spans.
 fn uses(liveness: &Liveness, by_name: &BTreeMap<&str, usize>) -> Vec<Vec<(usize, Span)>> {
     let of = |formula| {
         liveness.names(formula).filter_map(|(name, span)| Some((*by_name.get(name)?, span))).collect()
@@ -65,7 +65,7 @@ enum FormulaVisit {
     Done,
 }
 
-/// A depth-first search for cycles, with a stack of its own.
+/// A depth-first search for cycles, with an explicit stack.
 struct CycleDetector<'a> {
     liveness: &'a Liveness,
     uses: &'a [Vec<(usize, Span)>],
@@ -101,7 +101,7 @@ impl CycleDetector<'_> {
         let names = path.iter().map(|(formula, _)| *formula).skip_while(|formula| *formula != again);
         let cycle: Vec<&str> =
             names.chain([again]).map(|formula| self.liveness.formulas()[formula].name.as_str()).collect();
-        let message = format!("`{}` is part of what it consists of: {}", cycle[0], cycle.join(" -> "));
+        let message = format!("`{}` refines itself: {}", cycle[0], cycle.join(" -> "));
         let hint = "repetition is written `x~`, `x*` or `x+`";
         self.diagnostics.push(Diagnostic::error("E0214", span, message).with_hint(hint));
     }
@@ -161,7 +161,7 @@ fn unused(liveness: &Liveness, by_name: &BTreeMap<&str, usize>, reached: &[bool]
         .collect()
 }
 
-/// Activities whose name is that of a formula but for the case of letters.
+/// Activities whose name differs from that of a formula only in case.
 fn slips_of_case(liveness: &Liveness, by_name: &BTreeMap<&str, usize>) -> Vec<Diagnostic> {
     let folded: BTreeMap<String, &str> = by_name.keys().map(|name| (name.to_lowercase(), *name)).collect();
     let names = liveness.formulas().iter().flat_map(|formula| liveness.names(formula));

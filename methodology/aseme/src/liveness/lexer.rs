@@ -23,14 +23,14 @@ pub(crate) enum FormulaTokenKind {
     CloseOption,
 }
 
-/// A token and its place.
+/// A token and its span.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Token {
     pub(crate) kind: FormulaTokenKind,
     pub(crate) span: Span,
 }
 
-/// The tokens of a part of a text; what is none is reported.
+/// The tokens of a part of a text; other characters are reported.
 pub(crate) fn tokens(text: &str, part: Span, diagnostics: &mut Vec<Diagnostic>) -> Vec<Token> {
     let mut tokens = Vec::new();
     let mut at = part.start;
@@ -80,13 +80,13 @@ fn recognize(rest: &str, character: char) -> (Option<FormulaTokenKind>, usize) {
     (Some(kind), character.len_utf8())
 }
 
-/// Blanks, and the `^` that some write before an exponent.
+/// White space, and the `^` before an exponent.
 fn is_ignored(rest: &str, character: char) -> bool {
     let exponent = |c: char| is_forever(c) || matches!(c, '*' | '+') || c.is_ascii_digit();
     character.is_whitespace() || character == '^' && rest[1..].trim_start().starts_with(exponent)
 }
 
-/// Reports a foreign character, or lengthens the report about the one just before it.
+/// Reports an invalid character, or extends the report on the adjacent one.
 fn report(text: &str, span: Span, diagnostics: &mut Vec<Diagnostic>) {
     let span = match diagnostics.pop_if(|last| last.code == "E0204" && last.span.end == span.start) {
         Some(last) => last.span.to(span),

@@ -6,7 +6,7 @@ use super::lexer::{self, FormulaTokenKind, Token};
 use super::{Liveness, Term, TermId};
 use crate::text::is_name_character;
 
-/// Reads one expression; its terms are added to the arena, operands before what they stand in.
+/// Parses one expression; its terms are added to the arena, operands before their operator.
 pub(crate) fn parse_expression(
     text: &str,
     body: Span,
@@ -28,7 +28,7 @@ pub(crate) fn parse_expression(
     parser.finish()
 }
 
-/// What opened a level of nesting.
+/// The bracket that opened a nesting level.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Bracket {
     None,
@@ -57,15 +57,15 @@ impl Bracket {
     }
 }
 
-/// One level of nesting that is still open: operands of the three binary operators, the closest
-/// binding last.
+/// An open nesting level: the operands of the three binary operators, ordered by increasing
+/// precedence.
 struct Level {
     bracket: Bracket,
     opened: Span,
     parallel: Vec<TermId>,
     choice: Vec<TermId>,
     sequence: Vec<TermId>,
-    /// The binary operator whose right-hand side is still to come.
+    /// The binary operator that waits for its right operand.
     pending: Option<Span>,
     /// Whether an operand is expected next.
     expects: bool,
@@ -84,7 +84,7 @@ struct Parser<'a> {
     diagnostics: &'a mut Vec<Diagnostic>,
     top: Level,
     outer: Vec<Level>,
-    /// How many levels are open, by kind of bracket.
+    /// The number of open levels by kind of bracket.
     open: [usize; 4],
 }
 
@@ -120,7 +120,7 @@ impl Parser<'_> {
         self.open[bracket as usize] += 1;
     }
 
-    /// Takes the innermost level off, unless it is the outermost.
+    /// Removes the innermost level, unless it is the outermost.
     fn leave(&mut self) -> Option<Level> {
         let outer = self.outer.pop()?;
         let level = std::mem::replace(&mut self.top, outer);
@@ -130,12 +130,12 @@ impl Parser<'_> {
 
     fn close(&mut self, bracket: Bracket, token: Token) {
         if self.open[bracket as usize] == 0 {
-            let message = format!("nothing is open that `{}` could close", bracket.closing());
+            let message = format!("`{}` closes no bracket", bracket.closing());
             return self.error(
                 "E0206",
                 token.span,
                 message,
-                &format!("add a `{}` or take this away", bracket.opening()),
+                &format!("add a `{}` or remove this", bracket.opening()),
             );
         }
         while self.top.bracket != bracket {
@@ -146,8 +146,7 @@ impl Parser<'_> {
 
     fn postfix(&mut self, token: Token) {
         if self.top.expects {
-            let message =
-                format!("there is nothing before `{}` that it could repeat", self.spelled(token.span));
+            let message = format!("`{}` has no operand", self.spelled(token.span));
             return self.error("E0209", token.span, message, "write the activity or group first, as in `x~`");
         }
         let Some(operand) = self.top.sequence.pop() else { return };
@@ -164,7 +163,7 @@ impl Parser<'_> {
     fn binary(&mut self, token: Token) {
         if self.top.expects {
             let message = format!("there is nothing to the left of `{}`", self.spelled(token.span));
-            return self.error("E0205", token.span, message, "an operator stands between two terms");
+            return self.error("E0205", token.span, message, "an operator connects two terms");
         }
         self.leave_copies();
         match token.kind {
@@ -185,25 +184,25 @@ impl Parser<'_> {
     }
 }
 
-/// Operands and levels.
+/// Operands and nesting levels.
 impl Parser<'_> {
-    /// An operand begins: none must stand just before it.
+    /// Starts an operand; reports one directly before it.
     fn before_operand(&mut self, token: Token) {
         if !self.top.expects {
             self.leave_copies();
             let message = format!("there is no operator before `{}`", self.spelled(token.span));
-            let hint = "write `.` for one after the other, `|` for a choice, `||` for both together";
+            let hint = "write `.` for a sequence, `|` for a choice, `||` for parallel";
             self.error("E0208", token.span, message, hint);
         }
     }
 
-    /// An operand is complete; none if it was reported and left out.
+    /// Completes an operand; `None` if it was reported and skipped.
     fn operand(&mut self, id: Option<TermId>) {
         self.top.sequence.extend(id);
         (self.top.pending, self.top.expects) = (None, false);
     }
 
-    /// Ends the innermost level where its closing bracket stands.
+    /// Ends the innermost level at its closing bracket.
     fn end_level(&mut self, closing: Span) {
         let Some(level) = self.leave() else { return };
         let (bracket, span) = (level.bracket, level.opened.to(closing));
@@ -215,7 +214,7 @@ impl Parser<'_> {
         self.operand(id);
     }
 
-    /// Ends the innermost level although its closing bracket is missing.
+    /// Ends the innermost level whose closing bracket is missing.
     fn close_missing(&mut self, place: usize) {
         if self.top.bracket == Bracket::Copies {
             return self.leave_copies();
@@ -242,9 +241,9 @@ impl Parser<'_> {
     fn end_expression(&mut self, mut level: Level) -> Option<TermId> {
         if let Some(operator) = level.pending {
             let message = format!("there is nothing to the right of `{}`", self.spelled(operator));
-            self.error("E0205", operator, message, "an operator stands between two terms");
+            self.error("E0205", operator, message, "an operator connects two terms");
         } else if level.expects {
-            let message = format!("nothing stands after `{}`", level.bracket.opening());
+            let message = format!("nothing follows `{}`", level.bracket.opening());
             self.error("E0207", level.opened, message, "write at least the name of an activity");
         }
         let last = self.n_ary(level.sequence, Term::Sequence);
@@ -266,13 +265,13 @@ impl Parser<'_> {
         }
     }
 
-    /// Warns once about each outermost expression that mixes operators.
+    /// Warns once per outermost expression that mixes operators.
     fn warn_of_mixing(&mut self, operands: &[TermId], span: Span) {
         let is_bare = |id: &TermId| matches!(self.liveness.term(*id), Term::Sequence(_) | Term::Choice(_));
         if operands.iter().any(is_bare) {
             self.diagnostics.pop_if(|last| last.code == "E0210" && span.start <= last.span.start);
-            let message = "operators of several kinds stand side by side without parentheses";
-            let hint = "read with `.` before `|` before `||`; parentheses make it plain";
+            let message = "different operators are mixed without parentheses";
+            let hint = "`.` binds tighter than `|`, `|` tighter than `||`; add parentheses";
             self.diagnostics.push(Diagnostic::warning("E0210", span, message).with_hint(hint));
         }
     }
@@ -288,7 +287,7 @@ impl Parser<'_> {
 
 /// `|x~|n`.
 impl Parser<'_> {
-    /// Whether a term begins at a place: then a `|` before it, where a term is expected, begins
+    /// Whether a term starts at a token: then a `|` before it, where an operand is expected, starts
     /// copies.
     fn begins_term(&self, place: usize) -> bool {
         let rest = self.text[place..].trim_start();
@@ -307,14 +306,14 @@ impl Parser<'_> {
             self.error(
                 "E0212",
                 self.liveness.span(term),
-                "only what goes on forever is copied",
+                "only an endless term can be copied",
                 "write `|x~|n`",
             );
             return self.operand(Some(term));
         }
         let number = count.and_then(|count| self.spelled(count.span).parse().ok());
         let Some(count) = number.filter(|&number| number > 0) else {
-            let hint = "write a whole number from 1 after it, as in `|x~|3`";
+            let hint = "add a whole number from 1, as in `|x~|3`";
             self.error("E0211", span, "the number of copies is missing", hint);
             return self.operand(Some(term));
         };
@@ -322,12 +321,12 @@ impl Parser<'_> {
         self.operand(Some(id));
     }
 
-    /// Leaves open copies that no `|n` ended.
+    /// Removes an open level of copies that no `|n` ended.
     fn leave_copies(&mut self) {
         while self.top.bracket == Bracket::Copies {
             let Some(level) = self.leave() else { return };
             let hint = "copies are written `|x~|n`, of several terms `|(x . y)~|n`";
-            self.error("E0212", level.opened, "this `|` begins copies that no `|n` ends", hint);
+            self.error("E0212", level.opened, "this `|` starts copies that no `|n` ends", hint);
             let term = self.end_expression(level);
             self.operand(term);
         }

@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use super::{Liveness, Term, TermId};
 
 impl fmt::Display for Liveness {
-    /// One formula a line, blanks around binary operators, `~` for forever.
+    /// Writes one formula per line, with blanks around binary operators and `~` for forever.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for formula in &self.formulas {
             write!(f, "{} =", formula.name)?;
@@ -20,7 +20,7 @@ impl fmt::Display for Liveness {
 }
 
 impl Liveness {
-    /// A term as the name of its state: as it was written, without blanks, `~` for forever.
+    /// The name of a term's state: the term as written, without blanks, `~` for forever.
     pub fn compact(&self, term: TermId) -> String {
         let mut text = String::new();
         // writing to a String cannot fail
@@ -33,7 +33,7 @@ impl Liveness {
         let mut after_bar = false;
         while let Some(piece) = pieces.pop() {
             let is_bar = matches!(piece, Piece::Text("|"));
-            // copies of copies: two bars in a row would be another operator
+            // for nested copies, because two adjacent bars would be another operator
             if is_bar && after_bar {
                 out.write_str(style.pick("", " "))?;
             }
@@ -72,7 +72,7 @@ enum Piece {
     Term(TermId),
 }
 
-/// Pushes what a term consists of, last first, since the pieces are a stack.
+/// Pushes the pieces of a term in reverse order onto the stack.
 fn push_pieces(term: &Term, style: Style, pieces: &mut Vec<Piece>) {
     match term {
         Term::Name(_) => {}

@@ -73,7 +73,7 @@ fn transitions(chart: &mut Statechart, entries: &[LayoutEntry]) -> Vec<Unmatched
     unmatched
 }
 
-/// Of the transitions between the same two ends the one with this number.
+/// The transition with this index among those with the same ends.
 fn transition_wish<'a>(
     lookup: &Lookup<'_>,
     twins: &[usize],
@@ -91,7 +91,7 @@ fn transition_wish<'a>(
     RefinementTarget { text: &entry.text, span: entry.span, thing: "transition", has_wildcard, named, near }
 }
 
-/// How many transitions between the same two ends stand before this one.
+/// The index of a transition among those with the same ends.
 pub fn place_among_twins(chart: &Statechart, id: TransitionId) -> usize {
     let Transition { source, target, .. } = *chart.transition(id);
     let before = chart.transitions().take(id.0 as usize);

@@ -8,12 +8,12 @@ use yase::{Diagnostic, Span};
 use super::{Reader, Section, SrmEntry};
 use crate::text;
 
-/// Units that may follow a number, and what they are in metres, seconds or radians.
+/// Units that may follow a number, and their values in metres, seconds or radians.
 const UNITS: [(&str, f64); 7] =
     [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("s", 1.0), ("ms", 0.001), ("rad", 1.0), ("deg", PI / 180.0)];
 
 impl Reader {
-    /// One constant a line.
+    /// Parses one constant per line.
     pub(crate) fn constants(&mut self, blanked: &str, body: Span) {
         for line in text::lines_of(blanked, body) {
             let span = text::trimmed(blanked, line);
@@ -34,7 +34,7 @@ impl Reader {
         };
         if !text::is_name(name) || name.starts_with(|c: char| c.is_ascii_digit()) {
             let message = format!("`{name}` is not a name for a constant");
-            let hint = "a name begins with a letter and goes on with letters, digits and underscores";
+            let hint = "a name starts with a letter, followed by letters, digits and underscores";
             return self.report(Diagnostic::error("E0237", span, message).with_hint(hint));
         }
         if self.srm.constants.iter().any(|constant| constant.name == name) {
@@ -52,7 +52,7 @@ impl Reader {
     }
 }
 
-/// What the text of a value stands for, in SI units.
+/// The value of a text, in SI units.
 pub fn constant_value(text: &str) -> Option<ConstantValue> {
     match text {
         "true" => return Some(ConstantValue::Bool(true)),
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_value_is_refused() {
+    fn invalid_values_are_rejected() {
         for text in ["", "inf", "NaN", "1e999", "15 degrees", "\"a", "\"a\"b\"", "near"] {
             assert_eq!(constant_value(text), None, "{text}");
         }

@@ -8,7 +8,7 @@ use crate::path::Path;
 use crate::text;
 
 impl Reader {
-    /// Entries, each of which begins with the line that has its `->`.
+    /// Parses entries, each of which starts with the line that has its `->`.
     pub(crate) fn transitions(&mut self, blanked: &str, body: Span) {
         let begins = |line: &str| line.contains("->");
         for span in entry_spans(blanked, body, begins) {
@@ -48,7 +48,7 @@ impl Reader {
         });
     }
 
-    /// Everything before the expression.
+    /// Parses the text before the expression.
     fn ends(
         &mut self,
         blanked: &str,
@@ -72,7 +72,7 @@ impl Reader {
         }
     }
 
-    /// A path; if it is none, that is reported.
+    /// Parses a path; errors are reported.
     pub(crate) fn path(&mut self, blanked: &str, span: Span) -> Option<Path> {
         let path = Path::parse(&blanked[span.start..span.end]);
         path.map_err(|diagnostic| self.report(diagnostic.shifted(span.start))).ok()
@@ -83,7 +83,7 @@ impl Reader {
         let spaced = blanked[span.start..span.end].replace('!', " !").replace('%', " %");
         for word in spaced.split_whitespace() {
             if modifiers.accept(word).is_none() {
-                let message = format!("`{word}` is not understood after a target");
+                let message = format!("`{word}` is no modifier of a transition");
                 let hint =
                     "a target may be followed by `also`, `!priority`, `%weight`, `interrupts` and `internal`";
                 self.report(
@@ -123,7 +123,7 @@ impl Modifiers {
     }
 }
 
-/// Where the path of a target ends and its modifiers begin.
+/// The end of a target's path, where its modifiers start.
 pub(crate) fn modifiers_start(head: &str) -> usize {
     let sign = head.find(['!', '%']);
     let words = ["also", "interrupts", "internal"].into_iter().filter_map(|word| {
@@ -133,7 +133,7 @@ pub(crate) fn modifiers_start(head: &str) -> usize {
     sign.into_iter().chain(words).min().unwrap_or(head.len())
 }
 
-/// Whether blanks, or nothing, stand around a part of a text, and something in front of it.
+/// Whether a part of a text is a separate word that is not the first.
 fn is_word(text: &str, at: usize, length: usize) -> bool {
     let (before, after) = (&text[..at], &text[at + length..]);
     before.ends_with(char::is_whitespace)
@@ -141,7 +141,7 @@ fn is_word(text: &str, at: usize, length: usize) -> bool {
         && !after.starts_with(text::is_name_character)
 }
 
-/// The entries of a section: a line that `begins` one, and the lines up to the next.
+/// The entries of a section: each starts with a line that satisfies `begins`.
 pub(crate) fn entry_spans(blanked: &str, body: Span, begins: impl Fn(&str) -> bool) -> Vec<Span> {
     let mut spans: Vec<Span> = Vec::new();
     for line in text::lines_of(blanked, body) {
@@ -157,7 +157,7 @@ pub(crate) fn entry_spans(blanked: &str, body: Span, begins: impl Fn(&str) -> bo
     spans
 }
 
-/// An entry without line breaks and runs of blanks.
+/// An entry on one line, with single blanks.
 pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -9,7 +9,7 @@ use crate::layout::{self, AT, BENDS_KEY, FRAME_KEYS, SIZE, VIA};
 use crate::text;
 
 impl Reader {
-    /// Entries, each of which begins with the line that has its `->` or its `:`.
+    /// Parses entries, each of which starts with the line that has its `->` or `:`.
     pub(crate) fn layout(&mut self, blanked: &str, body: Span) {
         let begins = |line: &str| line.contains("->") || line.contains(':');
         for span in entry_spans(blanked, body, begins) {
@@ -66,8 +66,7 @@ impl Reader {
         })
     }
 
-    /// Nothing for the formulas' transition; `also`, `also 2` for the ones that were added beside
-    /// it.
+    /// Empty for the transition of the formulas; `also` or `also 2` for those added in parallel.
     fn beside(&mut self, blanked: &str, span: Span) -> Option<usize> {
         let place = text::trimmed(blanked, span);
         let words: Vec<&str> = blanked[span.start..span.end].split_whitespace().collect();
@@ -78,8 +77,9 @@ impl Reader {
             _ => None,
         };
         if number.is_none() {
-            let message = format!("`{}` is not understood after a target", &blanked[place.start..place.end]);
-            let hint = "in a layout a target may be followed by `also`, or `also 2` for the second one that was added";
+            let message = format!("`{}` is no modifier of a transition", &blanked[place.start..place.end]);
+            let hint =
+                "in a layout a target may be followed by `also`, or `also 2` for the second added transition";
             self.report(Diagnostic::error("E0242", place, message).with_hint(hint));
         }
         number

@@ -14,13 +14,13 @@ pub enum Section {
     Protocols,
     /// Its formulas.
     Liveness,
-    /// Values with names.
+    /// Named constants.
     Constants,
     /// Refinements of transitions.
     Transitions,
     /// Refinements of states.
     States,
-    /// Where states and transitions are drawn.
+    /// The layout of states and transitions.
     Layout,
 }
 
@@ -44,13 +44,13 @@ impl Section {
         Section::ALL.iter().find(|(word, _)| *word == name).map(|(_, section)| *section)
     }
 
-    /// Whether a line of it may begin with `word:` without being a header.
+    /// Whether its lines may start with `word:` without being a header.
     fn has_colons(self) -> bool {
         matches!(self, Section::Transitions | Section::States | Section::Layout)
     }
 }
 
-/// The sections in order with their bodies, or none if there is no header: then the text is bare
+/// The sections in order with their bodies; `None` without a header, since the text is then bare
 /// formulas.
 pub(crate) fn sections(blanked: &str, diagnostics: &mut Vec<Diagnostic>) -> Option<Vec<(Section, Span)>> {
     let mut sections: Vec<(Section, Span)> = Vec::new();
@@ -64,9 +64,8 @@ pub(crate) fn sections(blanked: &str, diagnostics: &mut Vec<Diagnostic>) -> Opti
             None => preamble.end = line.start,
         }
         if sections.iter().any(|(earlier, _)| *earlier == section) {
-            found.push(
-                Diagnostic::error("E0232", name, "this section is there already").with_hint("join the two"),
-            );
+            found
+                .push(Diagnostic::error("E0232", name, "this section is repeated").with_hint("join the two"));
         }
         sections.push((section, Span::new(name.end + 1, blanked.len())));
     }
@@ -75,14 +74,14 @@ pub(crate) fn sections(blanked: &str, diagnostics: &mut Vec<Diagnostic>) -> Opti
     }
     let before = text::trimmed(blanked, preamble);
     if before.start < before.end {
-        found.push(Diagnostic::error("E0236", before, "this stands before the first section"));
+        found.push(Diagnostic::error("E0236", before, "this precedes the first section"));
     }
     diagnostics.append(&mut found);
     Some(first_of_each(sections))
 }
 
-/// The header a line begins with: the section, and the place of its name. A misspelt one is
-/// reported and taken for what it should be.
+/// The header at the start of a line: the section and the span of its name. A misspelt header is
+/// reported and corrected.
 fn header(
     blanked: &str,
     line: Span,
@@ -107,7 +106,7 @@ fn header(
     Section::named(meant).map(|section| (section, name))
 }
 
-/// Of sections that stand twice the first; the others were reported.
+/// Removes repeated sections, which were reported.
 fn first_of_each(sections: Vec<(Section, Span)>) -> Vec<(Section, Span)> {
     let mut kept: Vec<(Section, Span)> = Vec::new();
     for (section, body) in sections {

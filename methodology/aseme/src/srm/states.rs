@@ -12,7 +12,7 @@ use crate::text;
 const KEYS: [&str; 7] = ["activity", "priority", "entry", "exit", "defer", "duration", "history"];
 
 impl Reader {
-    /// Entries, each of which begins with the line that has its `:`.
+    /// Parses entries, each of which starts with the line that has its `:`.
     pub(crate) fn states(&mut self, blanked: &str, body: Span) {
         let begins = |line: &str| line.split('"').next().is_some_and(|unquoted| unquoted.contains(':'));
         for span in entry_spans(blanked, body, begins) {
@@ -50,7 +50,7 @@ impl Reader {
         });
     }
 
-    /// The places of keys and values.
+    /// The spans of keys and values.
     pub(crate) fn settings(&mut self, blanked: &str, span: Span, keys: &[&str]) -> Vec<(Span, Span)> {
         let mut settings: Vec<(Span, Span)> = Vec::new();
         for piece in pieces(blanked, span) {
@@ -123,13 +123,13 @@ fn expected(key: &str) -> &'static str {
     match key {
         "activity" => "the name of an activity",
         "priority" => "a whole number; higher runs first",
-        "defer" => "names of events, with blanks between",
+        "defer" => "names of events, separated by blanks",
         "history" => "`shallow` or `deep`",
         _ => "a time such as `250ms` or `2s`",
     }
 }
 
-/// Names with blanks, commas or `|` between.
+/// Names separated by blanks, commas or `|`.
 pub fn events(text: &str) -> Option<Vec<String>> {
     let words = text.split([' ', '\t', '\n', ',', ';', '|']).filter(|word| !word.is_empty());
     let events: Vec<String> = words.map(String::from).collect();
@@ -137,7 +137,7 @@ pub fn events(text: &str) -> Option<Vec<String>> {
     (!events.is_empty() && events.iter().all(is_event)).then_some(events)
 }
 
-/// What remembers the state that was left: the one child, or all that was active inside.
+/// The kind of HISTORY: `shallow` or `deep`.
 fn history(text: &str) -> Option<NodeKind> {
     match text {
         "shallow" => Some(NodeKind::ShallowHistory),
@@ -154,7 +154,7 @@ pub fn duration(text: &str) -> Option<Duration> {
     Duration::try_from_secs_f64(seconds * unit).ok()
 }
 
-/// The parts between the commas and semicolons that stand in no bracket and no quotes.
+/// The parts between commas and semicolons outside brackets and quotes.
 fn pieces(blanked: &str, span: Span) -> Vec<Span> {
     let mut pieces = Vec::new();
     let (mut start, mut depth, mut quote) = (span.start, 0_usize, None);

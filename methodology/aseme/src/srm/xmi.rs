@@ -10,7 +10,7 @@ use super::Reader;
 use crate::xmi::{self, tag};
 
 impl Reader {
-    /// Reads the name and the formulas of the model's role.
+    /// Parses the name and the formulas of the model's role.
     pub(crate) fn xmi(&mut self, text: &str) {
         match xmi::parse(text) {
             Ok(document) => self.model(text, &document),
@@ -33,10 +33,9 @@ impl Reader {
                 .report(Diagnostic::error("E0247", tag(root), "the model has no role").with_hint(hint));
         };
         if let Some(second) = roles.next() {
-            let message = "the model has more than one role, of which the first is read";
+            let message = "the model has more than one role; the first is used";
             self.report(
-                Diagnostic::error("E0248", tag(second), message)
-                    .with_hint("keep each role in a file of its own"),
+                Diagnostic::error("E0248", tag(second), message).with_hint("put each role into its own file"),
             );
         }
         self.xmi_role(text, role);
@@ -58,7 +57,8 @@ impl Reader {
         self.entries.clear();
     }
 
-    /// A name that is neither a formula's nor one of the model's activities is probably misspelt.
+    /// Reports names that are neither formulas nor activities of the model; they are probably
+    /// misspelt.
     fn unknown_activities(&mut self, root: Node<'_, '_>) {
         let liveness = &self.srm.liveness;
         let activities: BTreeSet<&str> =

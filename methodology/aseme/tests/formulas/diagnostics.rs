@@ -1,4 +1,4 @@
-//! Every mistake has its code, its place and a hint.
+//! Every kind of error has a code, a position and a hint.
 
 use yase::{Diagnostic, Severity, Source};
 
@@ -7,8 +7,8 @@ fn findings(text: &str) -> Vec<Diagnostic> {
     aseme::statechart_of_role(&Source::new("role.srm", text)).1
 }
 
-/// The only finding has this code, stands at this part of the text, and this is part of its message
-/// or hint.
+/// Asserts that a text has one finding with this code, text at its span, and part of its message or
+/// hint.
 fn check(text: &str, code: &str, place: &str, says: &str) {
     let found = findings(text);
     let [finding] = found.as_slice() else { panic!("{text:?}: {found:?}") };
@@ -20,10 +20,10 @@ fn check(text: &str, code: &str, place: &str, says: &str) {
 
 #[test]
 fn lines_that_are_no_formula() {
-    check("a || b", "E0201", "a || b", "begins with `name =`");
+    check("a || b", "E0201", "a || b", "starts with `name =`");
     check("my role = a", "E0202", "my role", "is not a name");
     check(" = a", "E0202", "=", "is not a name");
-    check("r = a = b", "E0203", "= b", "line of its own");
+    check("r = a = b", "E0203", "= b", "its own line");
     check("", "E0216", "", "role = activity1");
     check("# nothing", "E0216", "# nothing", "no formula");
 }
@@ -41,17 +41,17 @@ fn operators_stand_between_terms() {
     check("r = a ||", "E0205", "||", "to the right of `||`");
     check("r = . a", "E0205", ".", "to the left");
     check("r = (a | ) . b", "E0205", "|", "to the right");
-    check("r = a b", "E0208", "b", "write `.` for one after the other");
+    check("r = a b", "E0208", "b", "write `.` for a sequence");
     check("r = a (b.c)", "E0208", "(", "no operator before");
-    check("r = *a", "E0209", "*", "nothing before `*`");
+    check("r = *a", "E0209", "*", "`*` has no operand");
 }
 
 #[test]
 fn brackets_are_balanced() {
     check("r = (a . b", "E0206", "(", "add the missing `)`");
-    check("r = a . b)", "E0206", ")", "take this away");
+    check("r = a . b)", "E0206", ")", "remove this");
     check("r = (a . [b)", "E0206", "[", "add the missing `]`");
-    check("r = a . ()", "E0207", "(", "nothing stands after `(`");
+    check("r = a . ()", "E0207", "(", "nothing follows `(`");
     check("r =", "E0207", "=", "name of an activity");
 }
 
@@ -68,7 +68,7 @@ fn copies_need_a_number_and_go_on_forever() {
 #[test]
 fn mixed_operators_are_a_warning() {
     let text = "r = a . b | c || d";
-    check(text, "E0210", "a . b | c || d", "parentheses make it plain");
+    check(text, "E0210", "a . b | c || d", "add parentheses");
     assert_eq!(findings(text)[0].severity, Severity::Warning);
     assert_eq!(findings("r = (a . b) | c"), []);
 }
@@ -119,11 +119,11 @@ fn charts_have_limits() {
 fn sections_are_known() {
     check("<SAGmodel/>", "E0230", "<SAGmodel", "an `SRM:SRMmodel`, or text");
     check("Role: r\nLivenes:\nr = a", "E0231", "Livenes", "did you mean `Liveness:`?");
-    check("Liveness:\nr = a\nLiveness:\nq = b", "E0232", "Liveness", "already");
+    check("Liveness:\nr = a\nLiveness:\nq = b", "E0232", "Liveness", "repeated");
     check("Role: r\nConstants:", "E0233", "Role: r", "add `Liveness:`");
     check("Role:\nLiveness:\nr = a", "E0234", ":", "no name");
     check("Protocols: Attack\nLiveness:\nr = a", "E0235", "Attack", "protocol: participant");
-    check("something\nLiveness:\nr = a", "E0236", "something", "before the first section");
+    check("something\nLiveness:\nr = a", "E0236", "something", "precedes the first section");
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn constants_are_values_with_names() {
         check(&format!("Liveness:\nr = a\nConstants:\n{line}\n"), code, place, says)
     };
     check("near", "E0237", "near", "name = value");
-    check("2near = 1", "E0237", "2near = 1", "begins with a letter");
+    check("2near = 1", "E0237", "2near = 1", "starts with a letter");
     check("a = 1\na = 2", "E0238", "a = 2", "already");
     check("a = one", "E0239", "a = one", "a number, which a unit may follow");
 }
@@ -144,7 +144,7 @@ fn transition_entries_are_well_formed() {
     };
     check("a b : [false]", "E0240", "a b : [false]", "source -> target");
     check("a/ -> b", "E0241", "a/", "missing in the path");
-    check("a -> b$", "E0241", "b$", "`$` has no place");
+    check("a -> b$", "E0241", "b$", "`$` cannot occur");
     check("a -> b !x", "E0242", "!x", "!priority");
     check("a -> b %-1", "E0242", "%-1", "%weight");
 }

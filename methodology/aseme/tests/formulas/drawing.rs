@@ -1,4 +1,4 @@
-//! Drawings can be read: nothing lies on a label, nothing leaves the page.
+//! Drawings are legible: nothing overlaps a label or leaves the page.
 
 use roxmltree::{Document, Node};
 use yase::Source;

@@ -1,4 +1,4 @@
-//! The thesis's Figures 5.2 to 5.4, letter by letter.
+//! The thesis's Figures 5.2 to 5.4, verbatim.
 
 use aseme::SrmFile;
 

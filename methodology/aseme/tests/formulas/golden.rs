@@ -1,5 +1,5 @@
-//! The thesis's two roles, transformed: as trees in `tests/golden`. With `MONAS_BLESS=1` the files
-//! are written anew.
+//! The charts of the thesis's two roles as trees in `tests/golden`. `MONAS_BLESS=1` rewrites the
+//! files.
 
 use std::path::{Path, PathBuf};
 
@@ -37,7 +37,7 @@ fn the_attacker_as_a_tree() {
 }
 
 #[test]
-fn every_choice_is_guarded_and_every_exit_of_what_goes_on_forever_is_closed() {
+fn every_choice_is_guarded_and_every_exit_of_an_endless_term_is_closed() {
     for name in ["goalie.srm", "attacker.srm"] {
         let chart = model(name);
         for (_, transition) in chart.transitions() {

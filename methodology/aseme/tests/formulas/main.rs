@@ -1,4 +1,4 @@
-//! Roles as formulas: read, refined, made into charts and drawn.
+//! Roles as formulas: parsed, refined, transformed and drawn.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "the functions around tests are tests too")]
 

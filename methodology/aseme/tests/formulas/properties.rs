@@ -1,4 +1,4 @@
-//! What holds forevery text and every formula.
+//! Properties of all texts and formulas.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use aseme::liveness::{self, Liveness, Term};
 use proptest::prelude::*;
 use yase::{Diagnostic, Source};
 
-/// Reads a text as a model and writes its chart in every form.
+/// Parses a text as a model and writes its chart in every form.
 fn exercise(text: String) -> Vec<Diagnostic> {
     let (chart, findings) = aseme::statechart_of_role(&Source::new("any", text));
     for finding in &findings {
@@ -30,7 +30,7 @@ fn terms(liveness: &Liveness) -> Vec<String> {
         .collect()
 }
 
-/// A formula's right-hand side, grown from names.
+/// The right-hand side of a formula over random names.
 fn expression() -> impl Strategy<Value = String> {
     "[a-f][a-z0-9_]{0,3}".prop_recursive(5, 60, 4, |inner| {
         let list = |separator: &'static str, inner| {

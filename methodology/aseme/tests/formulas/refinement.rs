@@ -1,4 +1,4 @@
-//! Refinements stay in force when formulas are edited, as far as they still fit.
+//! Refinements remain valid when formulas are edited, as far as they still match.
 
 use aseme::{SrmFile, srm::Section};
 use yase::{Diagnostic, Statechart};
@@ -61,7 +61,7 @@ fn an_edit_elsewhere_keeps_every_refinement() {
 }
 
 #[test]
-fn what_no_longer_fits_is_named_with_its_text_and_what_is_near() {
+fn unmatched_entries_are_reported_with_text_and_candidates() {
     let edited = ROLE.replace("act = Track . Kick", "act = Track . [Align] . Kick");
     let (chart, unmatched) = chart(&edited);
     let [finding] = unmatched.as_slice() else { panic!("{unmatched:?}") };
@@ -72,7 +72,7 @@ fn what_no_longer_fits_is_named_with_its_text_and_what_is_near() {
 }
 
 #[test]
-fn what_has_become_ambiguous_is_named_with_the_candidates() {
+fn ambiguous_entries_are_named_with_candidates() {
     let edited = ROLE.replace("( Search | act )   #", "( Search | act ) . Track . Kick  #");
     let (_, unmatched) = chart(&edited);
     let hints: Vec<&str> = unmatched.iter().filter_map(|finding| finding.hint.as_deref()).collect();
@@ -106,7 +106,7 @@ r/START -> a[1]
         !-1 : [first]
 ";
     let (chart, unmatched) = chart(text);
-    // `*` names states, END is none
+    // `*` matches states, and END is none
     assert_eq!(unmatched, []);
     assert_eq!(
         refined(&chart),

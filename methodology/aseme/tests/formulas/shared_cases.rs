@@ -1,4 +1,4 @@
-//! Formulas beside the charts they become, as other tools of the method make them.
+//! Formulas and their charts according to other tools of the method.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ fn cases() -> Option<PathBuf> {
     Some(shared.join("models/liveness")).filter(|folder| folder.is_dir())
 }
 
-/// The expected chart in the words of `to_json`.
+/// The expected chart in the format of `to_json`.
 fn expected(case: &Value) -> Value {
     let mut expected = case["expected"].clone();
     for transition in expected["transitions"].as_array_mut().expect("a list") {

@@ -31,7 +31,7 @@ fn findings_stand_where_the_attribute_has_them() {
 }
 
 #[test]
-fn what_is_no_role_is_refused() {
+fn an_invalid_role_is_rejected() {
     for (text, code) in [
         ("<statechart:Model xmlns:statechart='http://statechart/1.0'/>", "E0230"),
         ("<SRMmodel/>", "E0247"),

@@ -89,11 +89,10 @@ impl AgentReader<'_> {
             return None;
         }
         if own.of_activity(name).is_some() {
-            let message =
-                format!("of the activity `{name}` of the chart `{}` something is said already", chart.name);
+            let message = format!("the activity `{name}` of the chart `{}` is configured twice", chart.name);
             let diagnostic = element.error("E0311", element.text_span(), message);
             self.diagnostics.push(
-                diagnostic.with_hint("say it all in one `activity`: it holds for every state that has it"),
+                diagnostic.with_hint("use one `activity` element: it applies to every state that runs it"),
             );
             return None;
         }
@@ -141,7 +140,8 @@ impl AgentReader<'_> {
                 let published = topics.published_paths().iter();
                 let missing: Vec<&str> = published.copied().filter(|topic| !self.is_brought(topic)).collect();
                 for topic in missing {
-                    let message = format!("`{name}` runs elsewhere, and no link brings its `{topic}`");
+                    let message =
+                        format!("`{name}` runs in another process, but no link receives its `{topic}`");
                     let hint = format!("add to a `<link>`: `<receive topics=\"{topic}\" as=\"own\"/>`");
                     self.diagnostics.push(given.error("E0339", message).with_hint(hint));
                 }

@@ -10,7 +10,7 @@ use monas_core::monitors::ViolationResponse;
 impl Grammar {
     /// Agents, providers, links and modules, inside `<agents>` or not: the setup of one host.
     pub fn agents() -> Grammar {
-        let agents = ElementRule::new("agents", "what runs on a host")
+        let agents = ElementRule::new("agents", "the agents of a host")
             .group()
             .children("agent")
             .children("provider")
@@ -30,11 +30,8 @@ impl Grammar {
             .with(send())
             .with(receive())
             .with(budget())
-            .with(endpoint("connect", "an endpoint of another that this end connects to"))
-            .with(endpoint(
-                "listen",
-                "an endpoint of this end: `tcp/0.0.0.0:7447`, or a port of this computer",
-            ))
+            .with(endpoint("connect", "a remote endpoint to connect to"))
+            .with(endpoint("listen", "a local endpoint: `tcp/0.0.0.0:7447`, or a port of this computer"))
             .with(certificates())
     }
 }
@@ -55,29 +52,28 @@ fn settings() -> [AttributeRule; 8] {
         attribute(
             "thread_frequency",
             hertz,
-            "cycles a second, 0 for as many as there can be; needed by a list of activities",
+            "cycles per second, 0 for no limit; required for a list of activities",
         )
         .alias("frequency"),
-        attribute("priority", Kind::whole(), "how urgent it is, from 1 to 99 with real-time scheduling")
+        attribute("priority", Kind::whole(), "its priority, from 1 to 99 with real-time scheduling")
             .or("0"),
-        attribute("is_real_time", Kind::Flag, "whether real-time scheduling is wanted").or("0"),
+        attribute("is_real_time", Kind::Flag, "whether to use real-time scheduling").or("0"),
         attribute(
             "stats_cycle",
             Kind::whole_from(0),
-            "after how many cycles its times are written to the log; 0 for never",
+            "number of cycles between reports of its times in the log; 0 for none",
         )
         .or("0"),
         attribute(
             "workers",
             Kind::whole_from(1),
-            "how many threads the activities of its statecharts have in real time; as many as can be active at once, \
-             at most twelve, if it is not said",
+            "number of threads for the activities of its statecharts in real time; by default as many as can be active at once, at most twelve",
         )
         .alias("threads"),
         attribute(
             "cores",
             Kind::List,
-            "the numbers of the computer's cores that its threads may run on; any, if it is not said",
+            "the cores that its threads may run on, by number; by default all",
         ),
         enable(),
         attribute("on_failure", policies, "what happens when an activity fails").or("restart"),
@@ -92,49 +88,45 @@ fn chart_settings() -> [AttributeRule; 9] {
         attribute(
             "thread_frequency",
             hertz,
-            "how often a second it is stepped besides what wakes it; as its agent, if it is not said",
+            "steps per second in addition to its wake-ups; by default as its agent",
         )
         .alias("frequency"),
-        attribute(
-            "priority",
-            Kind::whole(),
-            "how urgent the thread is that steps it; as its agent, if it is not said",
-        ),
+        attribute("priority", Kind::whole(), "the priority of its thread; by default as its agent"),
         attribute(
             "is_real_time",
             Kind::Flag,
-            "whether real-time scheduling is wanted for the thread that steps it; as its agent, if it is not said",
+            "whether its thread uses real-time scheduling; by default as its agent",
         ),
         attribute(
             "stats_cycle",
             Kind::whole_from(0),
-            "after how many steps its times are written to the log; as its agent, if it is not said",
+            "number of steps between reports of its times in the log; by default as its agent",
         ),
         attribute(
             "workers",
             Kind::whole_from(1),
-            "how many threads of its own its activities have in real time; those of its agent, if it is not said",
+            "number of separate threads for its activities in real time; by default those of its agent",
         )
         .alias("threads"),
         attribute(
             "cores",
             Kind::List,
-            "the numbers of the computer's cores that the thread that steps it may run on; as its agent, if it is not said",
+            "the cores that its thread may run on, by number; by default as its agent",
         ),
         enable(),
         attribute(
             "on_failure",
             policies,
-            "what happens when one of its activities fails; as its agent says, if it is not said",
+            "what happens when one of its activities fails; by default as its agent",
         ),
-        attribute("elsewhere", Kind::List, "activities that another process runs"),
+        attribute("elsewhere", Kind::List, "activities that run in another process"),
     ]
 }
 
 fn agent() -> ElementRule {
     ElementRule::new(
         "agent",
-        "activities that run one after the other, statecharts that choose theirs, or both",
+        "a list of activities that run in order, statecharts that select activities, or both",
     )
     .attributes(settings())
     .required_child("name")
@@ -145,7 +137,7 @@ fn agent() -> ElementRule {
 }
 
 fn provider() -> ElementRule {
-    ElementRule::new("provider", "an agent with the one activity that it is named after")
+    ElementRule::new("provider", "an agent with one activity of the same name")
         .attributes(settings())
         .text("name", Kind::Text)
         .identified_by(Identity::Text)
@@ -154,13 +146,13 @@ fn provider() -> ElementRule {
 fn activity() -> ElementRule {
     ElementRule::new(
         "activity",
-        "an activity by its name; other attributes are its parameters; in a statechart that of every state that has it",
+        "an activity by name; other attributes are its parameters; in a statechart it applies to every state that runs it",
     )
         .attribute(enable())
         .attribute(attribute(
             "on_failure",
             Kind::Word(FailurePolicy::NAMES.map(|(name, _)| name).to_vec()),
-            "what happens when it fails; as its agent or statechart says, if it is not said",
+            "what happens when it fails; by default as its agent or statechart",
         ))
         .text("name", Kind::Text)
         .with_parameters()
@@ -177,14 +169,13 @@ fn statechart() -> ElementRule {
 }
 
 fn monitor() -> ElementRule {
-    ElementRule::new("monitor", "a file of properties that its statechart is to keep to, or the one of its agent")
+    ElementRule::new("monitor", "a file of properties to monitor in its statechart, or in the one of its agent")
         .attribute(enable())
         .attribute(
             attribute(
                 "on_violation",
                 Kind::Word(ViolationResponse::NAMES.map(|(name, _)| name).to_vec()),
-                "what happens when one is violated, beside that the log and the tape have it: nothing, or what `on_failure` of \
-                 the agent says",
+                "what happens at a violation, in addition to the log and the tape: nothing, or the agent's `on_failure`",
             )
             .or("log"),
         )
@@ -195,7 +186,7 @@ fn monitor() -> ElementRule {
 fn module() -> ElementRule {
     ElementRule::new(
         "module",
-        "the file of a module, which is loaded when the run begins: agents can have its activities",
+        "the file of a module that is loaded at the start of the run and provides activities",
     )
     .attribute(enable())
     .text("file", Kind::Text)
@@ -205,31 +196,25 @@ fn module() -> ElementRule {
 fn link() -> ElementRule {
     let beat = Kind::Duration { least: Duration::from_millis(1) };
     let ways = Kind::Word(vec!["local", "zenoh"]);
-    ElementRule::new("link", "which topics cross to other processes and hosts")
+    ElementRule::new("link", "a connection to other processes and hosts")
         .attributes([
-            attribute("name", Kind::Name, "the name of this end; that of the host if it is not said"),
-            attribute("transport", ways, "sockets of one computer, or zenoh in programs that have it")
-                .or("local"),
+            attribute("name", Kind::Name, "the name of this end; by default that of the host"),
+            attribute("transport", ways, "local sockets, or zenoh in programs built with it").or("local"),
             attribute(
                 "folder",
                 Kind::Text,
-                "of `local`: where the sockets are; $XDG_RUNTIME_DIR/monas if it is not said",
+                "of `local`: the folder of the sockets; by default $XDG_RUNTIME_DIR/monas",
             ),
-            attribute("beat", beat, "how often the link says how far it is").or("200ms"),
-            attribute(
-                "clock",
-                Kind::Name,
-                "the other end whose time the run takes for its own, in real time only",
-            ),
+            attribute("beat", beat, "interval of the link's reports").or("200ms"),
+            attribute("clock", Kind::Name, "the other end whose clock the run follows, in real time only"),
             attribute(
                 "access",
                 Kind::File,
-                "a file that says who may publish what; everybody if it is not said",
+                "an access list: who may publish which topics; by default no restriction",
             ),
-            attribute("guests", Kind::Flag, "`1` lets programs without a link of their own send").or("0"),
+            attribute("guests", Kind::Flag, "`1` accepts messages of programs without a link").or("0"),
             attribute("realm", Kind::Name, "of `zenoh`: the first segment of keys"),
-            attribute("scouting", Kind::Flag, "of `zenoh`: `1` looks for others without being told where")
-                .or("0"),
+            attribute("scouting", Kind::Flag, "of `zenoh`: `1` enables discovery of other hosts").or("0"),
             attribute(
                 "shared_memory",
                 Kind::Flag,
@@ -254,25 +239,33 @@ fn send() -> ElementRule {
     ElementRule::new("send", "topics that are sent")
         .attribute(attribute("topics", Kind::Text, TOPICS).required())
         .attribute(
-            attribute("reliability", reliabilities, "whether what gets lost is sent again").or("reliable"),
+            attribute("reliability", reliabilities, "whether lost messages are sent again").or("reliable"),
         )
-        .attribute(attribute("priority", Kind::whole_in(1, 7), "from 1, sent first, to 7, sent last").or("4"))
+        .attribute(attribute("priority", Kind::whole_in(1, 7), "from 1 (first) to 7 (last)").or("4"))
 }
 
 fn receive() -> ElementRule {
     let places = Kind::Word(vec!["other", "own"]);
     ElementRule::new("receive", "topics that are received")
         .attribute(attribute("topics", Kind::Text, TOPICS).required())
-        .attribute(attribute("as", places, "as the other host's, or as this host's own").or("other"))
+        .attribute(attribute("as", places, "as messages of the other host, or of this host").or("other"))
 }
 
 fn budget() -> ElementRule {
-    ElementRule::new("budget", "how much may be sent: a `profile`, or `packets`, `window` and `payload`")
+    ElementRule::new("budget", "a limit on sending: a `profile`, or `packets`, `window` and `payload`")
         .attribute(attribute("profile", Kind::Word(vec!["spl"]), "the rules of a league"))
-        .attribute(attribute("robots", Kind::whole_from(1), "how many robots share the budget of a profile"))
+        .attribute(attribute(
+            "robots",
+            Kind::whole_from(1),
+            "number of robots that share the budget of a profile",
+        ))
         .attribute(attribute("packets", Kind::whole_from(1), "how many packets"))
-        .attribute(attribute("window", Kind::Duration { least: Duration::ZERO }, "in how long a time"))
-        .attribute(attribute("payload", Kind::whole_from(1), "how many bytes a packet has"))
+        .attribute(attribute(
+            "window",
+            Kind::Duration { least: Duration::ZERO },
+            "the duration of the window",
+        ))
+        .attribute(attribute("payload", Kind::whole_from(1), "bytes per packet"))
 }
 
 fn endpoint(name: &'static str, doc: &'static str) -> ElementRule {
@@ -280,8 +273,8 @@ fn endpoint(name: &'static str, doc: &'static str) -> ElementRule {
 }
 
 fn certificates() -> ElementRule {
-    ElementRule::new("certificates", "who this end is, and whom it believes")
-        .attribute(attribute("authority", Kind::File, "the certificate of who signs").required())
+    ElementRule::new("certificates", "the certificates of this end and of its authority")
+        .attribute(attribute("authority", Kind::File, "the certificate of the authority").required())
         .attribute(attribute("certificate", Kind::File, "the certificate of this end").required())
         .attribute(attribute("key", Kind::File, "its key").required())
 }

@@ -38,8 +38,8 @@ fn check_attributes(element: &Element, rule: &ElementRule, diagnostics: &mut Vec
             Some(known) => {
                 check_value(given, known, diagnostics);
                 if element.attributes()[..index].iter().any(|earlier| known.is(&earlier.name)) {
-                    let message = format!("attribute `{}` is given twice", known.key);
-                    diagnostics.push(given.name_error("E0307", message).with_hint("leave one of them out"));
+                    let message = format!("attribute `{}` is repeated", known.key);
+                    diagnostics.push(given.name_error("E0307", message).with_hint("remove one of them"));
                 }
             }
             None if rule.takes_parameters => {}
@@ -106,7 +106,7 @@ fn check_text(element: &Element, rule: &ElementRule, diagnostics: &mut Vec<Diagn
             diagnostics.push(element.error("E0306", element.text_span(), message));
         }
         None if !element.text().is_empty() => {
-            let message = format!("`{}` holds a text, which has no meaning there", element.name());
+            let message = format!("`{}` contains text, which is not allowed there", element.name());
             let diagnostic = element.error("E0308", element.text_span(), message);
             let children: Vec<&str> = rule.children.iter().map(|child| child.name).collect();
             diagnostics.push(match children.is_empty() {
@@ -130,7 +130,7 @@ fn check_numbers(element: &Element, rule: &ElementRule, diagnostics: &mut Vec<Di
         for second in found.filter(|_| wanted.is_single) {
             let message = format!("`{}` has a second `{}`", element.name(), wanted.name);
             let diagnostic = second.error("E0307", second.name_span(), message);
-            diagnostics.push(diagnostic.with_hint("leave one of them out"));
+            diagnostics.push(diagnostic.with_hint("remove one of them"));
         }
     }
 }
@@ -142,7 +142,7 @@ fn unknown(element: &Element, names: &[&str]) -> Diagnostic {
     let diagnostic = diagnostic.with_nearest(element.name(), names.iter().copied());
     match (&diagnostic.hint, names.len()) {
         (Some(_), _) => diagnostic,
-        (None, 0) => diagnostic.with_hint("no element may stand here"),
+        (None, 0) => diagnostic.with_hint("no element is allowed here"),
         // A list of a hundred parameters does not help.
         (None, 1..=12) => diagnostic.with_hint(format!("expected {}", listed(names))),
         (None, _) => diagnostic.with_hint(format!("expected one such as {}", listed(&names[..6]))),

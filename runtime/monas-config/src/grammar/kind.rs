@@ -110,7 +110,7 @@ impl Kind {
             Kind::Word(words) => format!("one of {}", listed(words)),
             Kind::Name => "a name of letters, digits, `_` and `-`".into(),
             Kind::File => "the path of a file".into(),
-            Kind::List => "words with blanks between them".into(),
+            Kind::List => "words separated by blanks".into(),
             Kind::Text => "a text".into(),
         }
     }
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_expected_is_said() {
+    fn expectations_are_described() {
         assert_eq!(Kind::whole().expected(), "a whole number");
         assert_eq!(Kind::whole_from(1).expected(), "a whole number from 1");
         assert_eq!(Kind::whole_in(1, 7).expected(), "a whole number from 1 to 7");

@@ -82,7 +82,7 @@ fn attributes(out: &mut String, depth: usize, rule: &ElementRule) {
 /// of these".
 fn attribute(out: &mut String, depth: usize, name: &str, rule: &AttributeRule) {
     line(out, depth, &format!("<xs:attribute name=\"{name}\">"));
-    let default = rule.default.as_ref().map(|default| format!("; {default} if it is not said"));
+    let default = rule.default.as_ref().map(|default| format!("; default {default}"));
     documentation(out, depth + 1, &format!("{}{}", rule.doc, default.unwrap_or_default()));
     line(out, depth + 1, "<xs:simpleType>");
     line(out, depth + 2, &format!("<xs:restriction base=\"{}\">", base(&rule.kind)));

@@ -160,7 +160,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_chart_does_not_say_is_as_its_agent_says() {
+    fn agent_settings_are_the_defaults_of_a_chart() {
         let of_agent = Scheduling { priority: 5, real_time: true, cores: vec![0] };
         assert_eq!(ChartSettings::new().scheduling(&of_agent), of_agent);
         let own = ChartSettings::new().priority(7).cores([1, 2]);
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn of_an_activity_the_parameters_are_those_that_are_said() {
+    fn an_activity_has_only_the_given_parameters() {
         let said = Parameters::new().with("speed", "2");
         let mut own = ChartSettings::new().activity("Kick", said, None);
         assert_eq!(own.parameters("Kick").iter().collect::<Vec<_>>(), [("speed", "2")]);

@@ -204,7 +204,7 @@ impl Host for ChartHost {
         self.blackboards.delivery_log.publishing();
         let number = self.number;
         self.records.publish_with(|message| write_record(message, number, chart, record), self.now);
-        self.listeners.tell(&self.host, &self.agent, chart, record);
+        self.listeners.micro_step(&self.host, &self.agent, chart, record);
     }
 
     fn report(&mut self, chart: &CompiledChart, report: Notice<'_>) {

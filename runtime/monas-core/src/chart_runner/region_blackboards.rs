@@ -381,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn a_region_that_goes_on_without_its_blackboard_gets_another_and_the_old_one_is_dropped() {
+    fn a_region_whose_blackboard_is_lent_gets_another_one() {
         let (mut lending, activation, topic) = lending();
         let late = lending.lend_blackboard(activation, NOW).unwrap();
         publish(&lending, 3);
@@ -407,7 +407,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_has_the_blackboard_or_gets_it_next_is_asked_to_return() {
+    fn the_borrower_of_a_blackboard_is_cancelled() {
         let (mut lending, activation, _) = lending();
         lending.cancel(activation.region);
         let lent = lending.lend_blackboard(activation, NOW).unwrap();

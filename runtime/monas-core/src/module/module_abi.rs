@@ -75,7 +75,7 @@ impl ModuleActivity {
 fn markers() -> [(&'static str, TypeId); 8] {
     [
         ("narukom::Blackboard", TypeId::of::<narukom::Blackboard>()),
-        ("narukom::Moment", TypeId::of::<narukom::Timestamp>()),
+        ("narukom::Timestamp", TypeId::of::<narukom::Timestamp>()),
         ("narukom::Narukom", TypeId::of::<narukom::Hub>()),
         ("narukom::TopicDeclaration", TypeId::of::<TopicDeclaration>()),
         ("monas::Activity", TypeId::of::<dyn Activity>()),

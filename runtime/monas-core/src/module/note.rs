@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_put_into_a_section_is_read_from_it() {
+    fn inserted_entries_are_parsed_from_their_section() {
         let bytes = section();
         let note = BuildFingerprint::parse(text_in(&bytes, true).unwrap()).unwrap();
         assert_eq!((note.module(), note.field("package")), ("eyes", Some("example 0.1.0")));
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_off_or_lies_about_its_length_is_refused() {
+    fn truncated_packets_and_wrong_lengths_are_rejected() {
         let bytes = section();
         for length in 1..bytes.len() - 3 {
             assert!(text_in(&bytes[..length], true).is_err(), "{length}");

@@ -30,7 +30,7 @@ impl PanicBoundary {
 
 /// The text of a failure. The panic payload is dropped here too.
 fn panic_error(failure: CallFailure) -> String {
-    call::caught(move || failure.to_string()).unwrap_or_else(|_| "failed, and cannot say how".into())
+    call::caught(move || failure.to_string()).unwrap_or_else(|_| "failed without a description".into())
 }
 
 impl Activity for PanicBoundary {
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn panics_become_what_the_host_can_be_told() {
+    fn panics_become_errors_of_the_host() {
         let mut blackboard = Hub::with_linked_topics("local").unwrap().blackboard("test");
         let broken = |make| PanicBoundary::made(&declared(make)).unwrap();
         let part: fn(&'static str) -> String =

@@ -136,7 +136,7 @@ impl<'a> ScenarioRun<'a> {
     pub(crate) fn all(
         mut self,
         steps: &[ScenarioStep],
-        mut told: impl FnMut(StepResult<'_>),
+        mut observe: impl FnMut(StepResult<'_>),
     ) -> Result<Vec<ScenarioDifference>, Error> {
         let mut all = Vec::new();
         for step in steps {
@@ -147,7 +147,7 @@ impl<'a> ScenarioRun<'a> {
                 Err(difference) => vec![difference],
             };
             let records = std::mem::take(&mut *locked(&self.lines));
-            told(StepResult {
+            observe(StepResult {
                 step,
                 records: &records,
                 active: self.active_names(),
@@ -195,7 +195,7 @@ impl<'a> ScenarioRun<'a> {
         for (effect, passage) in data {
             self.draft(effect, &mut drafts).map_err(|reason| ScenarioDifference {
                 passage: passage.clone(),
-                expected: String::from("a message to come"),
+                expected: String::from("a message to arrive"),
                 seen: reason,
             })?;
         }
@@ -229,9 +229,10 @@ impl<'a> ScenarioRun<'a> {
         };
         let Some((field, value)) = change else { return Ok(()) };
         let newest = LatestMessages::of(&self.hub, value.reads(), self.functions);
-        let value = value.evaluate(&newest).map_err(|error| format!("the value has none: {error}"))?;
+        let value =
+            value.evaluate(&newest).map_err(|error| format!("the value cannot be computed: {error}"))?;
         if matches!(value, yase::Value::Missing) {
-            return Err(String::from("the value depends on a message that has not come"));
+            return Err(String::from("the value depends on a message that has not arrived"));
         }
         set_message_field(&mut *drafts[place].1, field, value).map_err(|error| error.to_string())
     }
@@ -255,13 +256,13 @@ impl<'a> ScenarioRun<'a> {
     fn returns(&mut self, node: NodeId, outcome: Outcome, step: &ScenarioStep) -> StepOutcome {
         let held = self.runner.take_held(|activation| activation.node == node);
         let Some(call) = held.or_else(|| self.runner.call_now(node, self.now)) else {
-            let seen = format!("it does not, and active are: {}", self.active());
+            let seen = format!("it does not; active are: {}", self.active());
             return Err(differs(step, String::from("the activity to run"), seen));
         };
         let result = match outcome {
             Outcome::Done => Ok(Progress::Done),
             Outcome::Ongoing => Ok(Progress::Ongoing(LATER)),
-            Outcome::Failed => Err(CallFailure::Error("the scenario says so".into())),
+            Outcome::Failed => Err(CallFailure::Error("as the scenario requires".into())),
         };
         // The scenario specifies this failure, and the chart has processed it.
         _ = self.runner.handle_return(call.returning(result), false, self.now);
@@ -298,7 +299,7 @@ impl<'a> ScenarioRun<'a> {
                 ChartError::Step { error, .. } => error.to_string(),
                 ChartError::Stop(reason) => reason,
             };
-            differs(step, String::from("the chart to come to rest"), seen)
+            differs(step, String::from("the chart to become stable"), seen)
         })
     }
 
@@ -322,7 +323,7 @@ impl<'a> ScenarioRun<'a> {
                 let newest = LatestMessages::of(&self.hub, guard.reads(), self.functions);
                 match guard.evaluate(&newest) {
                     Ok(true) => None,
-                    Ok(false) => Some(String::from("the newest messages do not say so")),
+                    Ok(false) => Some(String::from("it does not hold for the newest messages")),
                     Err(error) => Some(format!("that has no value: {error}")),
                 }
             }

@@ -63,7 +63,7 @@ timer again
 }
 
 #[test]
-fn what_differs_is_said_line_by_line() {
+fn differences_are_reported_line_by_line() {
     let scenario = "start
   starts Look
   in Near
@@ -79,30 +79,30 @@ return Look
             "3: expected `starts Look`, but started are: Look, Stand",
             "4: expected `in Near`, but active are: Look, Stand",
             "7: expected `publishes nothing`, but published are: monas/host",
-            "8: expected `[host.team == 9]`, but the newest messages do not say so",
+            "8: expected `[host.team == 9]`, but it does not hold for the newest messages",
             "9: expected `timer again: over`, but it is not set",
         ]
     );
 }
 
 #[test]
-fn what_cannot_be_ends_the_play() {
+fn an_impossible_step_ends_the_scenario() {
     let missing = differences("start\nreturn Near\n  in Far\nwait 1s\n  in Far\n");
     assert_eq!(missing.len(), 1, "{missing:?}");
     assert!(
-        missing[0].starts_with("3: expected the activity to run, but it does not, and active are: "),
+        missing[0].starts_with("3: expected the activity to run, but it does not; active are: "),
         "{missing:?}"
     );
     assert_eq!(differences("start\ntimer again\n"), ["3: expected the timer to run, but it is not set"]);
     let unknown = differences("start\n  host.team = host.number + 1\n");
     assert_eq!(
         unknown,
-        ["3: expected a message to come, but the value depends on a message that has not come"]
+        ["3: expected a message to arrive, but the value depends on a message that has not arrived"]
     );
 }
 
 #[test]
-fn an_activity_that_goes_on_is_called_again_and_one_that_fails_is_not_done() {
+fn an_ongoing_activity_is_called_again_and_a_failed_one_is_incomplete() {
     let scenario = "start
 ongoing Look
   in Look
@@ -125,7 +125,7 @@ return Stand
 }
 
 #[test]
-fn a_chart_that_never_rests_is_a_difference() {
+fn a_livelock_is_a_difference() {
     let player = ScenarioRunner::new(&Registry::linked()).unwrap();
     let (mut chart, _) = aseme_models::statechart_of(&Source::new("r.srm", "Liveness:\nr = A ~\n"));
     let state = chart.find("A").unwrap();
@@ -133,6 +133,6 @@ fn a_chart_that_never_rests_is_a_difference() {
     let chart = player.compile(&chart).unwrap();
     let (script, _) = ScenarioText::parse(&Source::new("a.scenario", "model r.srm\nstart\n"));
     let steps = script.bind(&chart, player.vocabulary()).unwrap();
-    let found = player.first_difference(&chart, &steps).unwrap().expect("it goes on and on");
-    assert_eq!(found.expected, "the chart to come to rest");
+    let found = player.first_difference(&chart, &steps).unwrap().expect("it is in a livelock");
+    assert_eq!(found.expected, "the chart to become stable");
 }

@@ -55,35 +55,35 @@ impl ChangePlan {
         staff: &dyn AgentControl,
         now: Timestamp,
     ) -> Result<ChangePlan, ChangeRefusal> {
-        let desk = PlanContext { change, host: roster, control: staff, now };
+        let context = PlanContext { change, host: roster, control: staff, now };
         match change.action() {
-            Action::NoAction => Err(refusal("E0350", "the change does not say what is to be done")),
-            Action::AddAgents => desk.add_agents(|_| true),
-            _ if desk.rejects_chart() => Err(refusal_with(
+            Action::NoAction => Err(refusal("E0350", "the change has no action")),
+            Action::AddAgents => context.add_agents(|_| true),
+            _ if context.rejects_chart() => Err(refusal_with(
                 "E0352",
-                "a statechart alone cannot be told that",
-                "one can be stopped, started, set and swapped; the rest is for its agent",
+                "this action is not available for a single statechart",
+                "a statechart can be stopped, started, set and exchanged; use the agent for other actions",
             )),
-            Action::RemoveAgent => desk.agent().map(|profile| PlanStep::Remove(profile.name).into()),
-            Action::StartAgent if !change.chart.is_empty() => desk.start_chart(),
-            Action::StartAgent => desk.start(),
-            Action::StopAgent if !change.chart.is_empty() => desk.stop_chart(),
+            Action::RemoveAgent => context.agent().map(|profile| PlanStep::Remove(profile.name).into()),
+            Action::StartAgent if !change.chart.is_empty() => context.start_chart(),
+            Action::StartAgent => context.start(),
+            Action::StopAgent if !change.chart.is_empty() => context.stop_chart(),
             Action::StopAgent => {
-                desk.command_plan(AgentCommand::Stop, &[AgentStatus::Running, AgentStatus::Paused])
+                context.command_plan(AgentCommand::Stop, &[AgentStatus::Running, AgentStatus::Paused])
             }
-            Action::PauseAgent => desk.command_plan(AgentCommand::Pause, &[AgentStatus::Running]),
-            Action::ResumeAgent => desk.command_plan(AgentCommand::Resume, &[AgentStatus::Paused]),
-            Action::StepAgent => desk.command_plan(AgentCommand::Step, &[AgentStatus::Paused]),
-            Action::AddActivity => desk.add_activity(),
-            Action::RemoveActivity => desk.remove_activity(),
-            Action::MoveActivity => desk.move_activity(),
-            Action::ReplaceActivity => desk.replace_activity(),
-            Action::Set => desk.set(),
-            Action::RaiseEvent => desk.raise(),
-            Action::SwapModel => desk.swap(),
-            Action::LoadModule => desk.load_module(),
-            Action::UnloadModule => desk.unload_module(),
-            Action::ReloadModule => desk.reload_module(),
+            Action::PauseAgent => context.command_plan(AgentCommand::Pause, &[AgentStatus::Running]),
+            Action::ResumeAgent => context.command_plan(AgentCommand::Resume, &[AgentStatus::Paused]),
+            Action::StepAgent => context.command_plan(AgentCommand::Step, &[AgentStatus::Paused]),
+            Action::AddActivity => context.add_activity(),
+            Action::RemoveActivity => context.remove_activity(),
+            Action::MoveActivity => context.move_activity(),
+            Action::ReplaceActivity => context.replace_activity(),
+            Action::Set => context.set(),
+            Action::RaiseEvent => context.raise(),
+            Action::SwapModel => context.swap(),
+            Action::LoadModule => context.load_module(),
+            Action::UnloadModule => context.unload_module(),
+            Action::ReloadModule => context.reload_module(),
         }
     }
 }
@@ -160,7 +160,7 @@ impl PlanContext<'_> {
                 refusal("E0352", format!("{message} already"))
             }
             (AgentCommand::Step, AgentStatus::Running) => {
-                refusal_with("E0352", message, "one that pauses can be stepped: pause it first")
+                refusal_with("E0352", message, "only a paused agent can be stepped: pause it first")
             }
             (_, AgentStatus::Stopped) => refusal_with("E0352", message, "start it first"),
             _ => refusal("E0352", message),
@@ -249,7 +249,7 @@ impl PlanContext<'_> {
         let place = settings::chart(&profile, &self.change.chart)?;
         if self.control.status(&profile.name) == AgentStatus::Stopped {
             let message = format!("`{}` has stopped", profile.name);
-            return Err(refusal_with("E0352", message, "start it first: all its charts begin anew then"));
+            return Err(refusal_with("E0352", message, "start it first, which restarts all its charts"));
         }
         let standing = self.control.chart_status(&profile.name, place);
         Ok((profile, place, standing))
@@ -273,7 +273,7 @@ impl PlanContext<'_> {
             return Err(diagnostics);
         }
         if !setup.links.is_empty() {
-            let message = "links are opened when a run begins, and cannot be added to it";
+            let message = "links are opened at the start of a run and cannot be added later";
             return Err(vec![Diagnostic::error("E0358", 0..0, message).in_source(&source)]);
         }
         if setup.modules.iter().any(|module| self.host.registry.module(module.name()).is_none()) {
@@ -287,7 +287,7 @@ impl PlanContext<'_> {
         let mut names = self.names();
         if let Some(agent) = setup.agents.iter().find(|agent| names.contains(&agent.name)) {
             let message = format!("another agent is named `{}`", agent.name);
-            return Err(refusal_with("E0311", message, "each agent of a host has a name of its own"));
+            return Err(refusal_with("E0311", message, "give each agent of a host a unique name"));
         }
         names.extend(setup.agents.iter().map(|agent| agent.name.clone()));
         let HostAdmin { factory: crew, context: ground, registry, .. } = self.host;
@@ -327,7 +327,7 @@ impl PlanContext<'_> {
             return Ok((profile, AgentUpdate { edits, ..AgentUpdate::default() }));
         }
         if profile.frequency.is_none() {
-            let message = format!("nothing says how often the list of `{}` is to run", profile.name);
+            let message = format!("the list of `{}` has no frequency", profile.name);
             return Err(refusal_with("E0305", message, "set its `frequency` first"));
         }
         let HostAdmin { factory: crew, context: ground, .. } = self.host;

@@ -90,12 +90,12 @@ impl HostAdmin {
         &mut self,
         staff: &mut dyn AgentControl,
         now: Timestamp,
-        told: &mut dyn FnMut(&Change, &Changed),
+        on_change: &mut dyn FnMut(&Change, &Changed),
     ) {
         while let Some(sample) = self.requests.next_sample() {
             let Some(change) = sample.downcast::<Change>() else { continue };
             let changed = self.apply_change(change.message, Some(&sample.header), staff, now);
-            told(change.message, &changed);
+            on_change(change.message, &changed);
             self.replies.publish(changed, now);
         }
     }
@@ -244,10 +244,10 @@ impl HostAdmin {
         asked: Option<&ChangeRef>,
         staff: &mut dyn AgentControl,
     ) -> Result<Vec<Finding>, ChangeRefusal> {
-        let ModuleUpdate { registry, updates: told } = equipment;
+        let ModuleUpdate { registry, updates } = equipment;
         let mut said = Vec::new();
         let mut is_begun = false;
-        for (profile, orders) in told {
+        for (profile, orders) in updates {
             let name = profile.name.clone();
             match staff.apply(&name, AgentUpdate { change: asked.cloned(), ..orders }) {
                 Ok(remarks) => {
@@ -257,7 +257,7 @@ impl HostAdmin {
                 }
                 Err(reasons) if !is_begun => return Err(refusal_from_reasons(reasons)),
                 Err(reasons) => {
-                    let reason = format!("`{name}` goes on as it was: {}", reasons.join("; "));
+                    let reason = format!("`{name}` is unchanged: {}", reasons.join("; "));
                     said.extend(refusal("E0356", reason).iter().map(finding));
                 }
             }
@@ -294,14 +294,14 @@ impl HostAdmin {
             reasons.collect::<Vec<_>>().join("; ")
         };
         let place = settings::chart(profile, chart).map_err(said)?;
-        let mut told = staff.inspect_chart(agent, place)?.into_iter();
+        let mut documents = staff.inspect_chart(agent, place)?.into_iter();
         Ok(ChartState {
             host: self.hub().host().into(),
             agent: agent.clone(),
             model: profile.charts[place].model.clone(),
             state: staff.chart_status(agent, place).word().into(),
-            snapshot: told.next().unwrap_or_default(),
-            drawing: told.next().unwrap_or_default(),
+            snapshot: documents.next().unwrap_or_default(),
+            drawing: documents.next().unwrap_or_default(),
         })
     }
 
@@ -320,8 +320,7 @@ fn refusal_from_reasons(reasons: Vec<String>) -> ChangeRefusal {
 /// The reply to a change that was lost: its topic has a bounded history, and others have published
 /// more.
 fn lost_change_reply(change: &Change) -> Changed {
-    let reason =
-        refusal_with("E0359", "so many changes were asked for at once that this one was lost", "ask again");
+    let reason = refusal_with("E0359", "too many simultaneous changes: this one was lost", "ask again");
     Changed {
         number: change.number,
         action: change.action,

@@ -27,13 +27,13 @@ impl PlanContext<'_> {
         let file = self.module_file(Path::new(&self.change.file))?;
         let name = file.note().module();
         if self.host.registry.module(name).is_some() {
-            let hint = format!("`monas module reload {name} FILE` puts another file in its place");
+            let hint = format!("replace it by `monas module reload {name} FILE`");
             return Err(refusal_with("E0365", format!("module `{name}` is loaded already"), hint));
         }
         let meant = if self.change.agent.is_empty() { None } else { Some(self.agent()?) };
         let module = file.load()?;
         let registry = self.with_module(&module)?;
-        let told = meant.map(|profile| {
+        let updates = meant.map(|profile| {
             let place = profile.activities.len();
             let listed = module.activity_names().map(|name| {
                 listed(
@@ -43,14 +43,14 @@ impl PlanContext<'_> {
             });
             self.with_new_activity(profile, place, listed.collect::<Result<_, _>>()?)
         });
-        let told = told.transpose()?.into_iter().collect();
-        Ok(PlanStep::UpdateModules(Box::new(ModuleUpdate { registry, updates: told })).into())
+        let updates = updates.transpose()?.into_iter().collect();
+        Ok(PlanStep::UpdateModules(Box::new(ModuleUpdate { registry, updates })).into())
     }
 
     /// Removes the activities of a module from the lists of all agents.
     pub(crate) fn unload_module(&self) -> Result<ChangePlan, ChangeRefusal> {
         let module = self.module()?;
-        let mut told = Vec::new();
+        let mut updates = Vec::new();
         for profile in &self.host.profiles {
             if let Some(chart) =
                 profile.charts.iter().find(|chart| !states(chart, profile, module).is_empty())
@@ -61,7 +61,7 @@ impl PlanContext<'_> {
                     profile.name,
                     module.name()
                 );
-                let hint = "have the agent take another model, or remove it, first";
+                let hint = "change the agent's model or remove it first";
                 return Err(refusal_with("E0365", message, hint));
             }
             let places = places(profile, module);
@@ -75,10 +75,10 @@ impl PlanContext<'_> {
                 ListEdit::Remove(place)
             });
             let edits = edits.collect();
-            told.push((without, AgentUpdate { edits, ..AgentUpdate::default() }));
+            updates.push((without, AgentUpdate { edits, ..AgentUpdate::default() }));
         }
         let registry = self.host.registry.without_module(module.name());
-        Ok(PlanStep::UpdateModules(Box::new(ModuleUpdate { registry, updates: told })).into())
+        Ok(PlanStep::UpdateModules(Box::new(ModuleUpdate { registry, updates })).into())
     }
 
     /// Replaces a module by one of the same name: all agents continue with new instances of its
@@ -90,18 +90,18 @@ impl PlanContext<'_> {
         if file.note().module() != old.name() {
             let message =
                 format!("{} holds module `{}`, not `{}`", path.display(), file.note().module(), old.name());
-            return Err(refusal_with("E0365", message, "a module that has another name is loaded beside it"));
+            return Err(refusal_with("E0365", message, "a module with another name is loaded separately"));
         }
         let new = file.load()?;
         let registry = self.with_module(&new)?;
-        let mut told = Vec::new();
+        let mut updates = Vec::new();
         for profile in &self.host.profiles {
             let orders = instance_update(profile, old, &registry)?;
             if !orders.edits.is_empty() || !orders.instances.is_empty() {
-                told.push((profile.clone(), orders));
+                updates.push((profile.clone(), orders));
             }
         }
-        Ok(PlanStep::UpdateModules(Box::new(ModuleUpdate { registry, updates: told })).into())
+        Ok(PlanStep::UpdateModules(Box::new(ModuleUpdate { registry, updates })).into())
     }
 
     /// The module that the change names.
@@ -122,12 +122,8 @@ impl PlanContext<'_> {
             return Ok(file);
         }
         let message =
-            format!("{} is another file than was meant: its hash is {found}, not {meant}", path.display());
-        Err(refusal_with(
-            "E0365",
-            message,
-            "put the file there that it was, or ask again for the one that is there",
-        ))
+            format!("{} is not the requested file: its hash is {found}, not {meant}", path.display());
+        Err(refusal_with("E0365", message, "restore the file, or repeat the request for the current one"))
     }
 
     fn with_module(&self, module: &Module) -> Result<Registry, ChangeRefusal> {

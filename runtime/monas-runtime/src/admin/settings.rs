@@ -26,7 +26,7 @@ pub(crate) fn set(
 ) -> Result<AgentUpdate, ChangeRefusal> {
     if settings.is_empty() {
         let hint = "name an attribute, or a parameter of an activity: `frequency=50`, `Vision.speed=0.5`";
-        return Err(refusal_with("E0353", "nothing is to be set", hint));
+        return Err(refusal_with("E0353", "no setting is given", hint));
     }
     if !chart_name.is_empty() {
         let place = chart(profile, chart_name)?;
@@ -84,7 +84,7 @@ fn given(element: &str, key: &str, value: &str) -> Result<SettingValue, ChangeRe
     let Some(rule) = rule.filter(|rule| is_known(rule.key())) else {
         let message = match rule {
             Some(rule) => {
-                format!("`{}` of an {element} is what it begins with, and cannot be set", rule.key())
+                format!("`{}` of an {element} applies only at its start and cannot be set", rule.key())
             }
             None => format!("an {element} has no attribute `{key}`"),
         };
@@ -204,9 +204,7 @@ fn charts_instance(
     let generated = registry.chart(&chart.model).and_then(Result::ok);
     match generated.and_then(|generated| generated.into_activity(name)) {
         Some(activity) => configured(activity, name, parameters),
-        None => {
-            Err(refusal("E0312", format!("the statechart `{}` brings no activity `{name}`", chart.model)))
-        }
+        None => Err(refusal("E0312", format!("the statechart `{}` has no activity `{name}`", chart.model))),
     }
 }
 

@@ -94,7 +94,7 @@ impl MomentComparison {
         hub: &Hub,
         time: Timestamp,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) {
         if self.recorded.is_empty() && self.produced.is_empty() {
             return;
@@ -105,11 +105,11 @@ impl MomentComparison {
         let recorded = std::mem::take(&mut self.recorded);
         let mut differences = 0;
         for then in &recorded {
-            differences += u64::from(!self.pair(then, time, ledger, told));
+            differences += u64::from(!self.pair(then, time, ledger, on_difference));
         }
-        differences += self.report_unrecorded(hub, time, ledger, told);
+        differences += self.report_unrecorded(hub, time, ledger, on_difference);
         if differences == 0 && !is_in_order {
-            self.report_order(&recorded, time, ledger, told);
+            self.report_order(&recorded, time, ledger, on_difference);
         }
         self.produced.clear();
     }
@@ -121,13 +121,13 @@ impl MomentComparison {
         then: &RecordedOutput,
         time: Timestamp,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> bool {
         let partner = self.produced.iter().position(|now| !now.is_paired && Some(now.topic) == then.topic);
         let tally = &mut ledger.lines[then.line];
         let Some(place) = partner else {
             tally.only_recorded += 1;
-            told(self.difference(&tally.topic, then.cycle, time, Some(&then.bytes), None));
+            on_difference(self.difference(&tally.topic, then.cycle, time, Some(&then.bytes), None));
             return false;
         };
         self.produced[place].is_paired = true;
@@ -136,7 +136,7 @@ impl MomentComparison {
         if !is_equal {
             tally.different += 1;
             let now = &self.produced[place].bytes;
-            told(self.difference(&tally.topic, then.cycle, time, Some(&then.bytes), Some(now)));
+            on_difference(self.difference(&tally.topic, then.cycle, time, Some(&then.bytes), Some(now)));
         }
         is_equal
     }
@@ -147,13 +147,19 @@ impl MomentComparison {
         recorded: &[RecordedOutput],
         time: Timestamp,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) {
         let pairs = recorded.iter().zip(&self.produced);
         if let Some((then, _)) = pairs.into_iter().find(|(then, now)| then.topic != Some(now.topic)) {
             let tally = &mut ledger.lines[then.line];
             tally.different += 1;
-            told(self.difference(&tally.topic, then.cycle, time, Some(&then.bytes), Some(&then.bytes)));
+            on_difference(self.difference(
+                &tally.topic,
+                then.cycle,
+                time,
+                Some(&then.bytes),
+                Some(&then.bytes),
+            ));
         }
     }
 
@@ -162,14 +168,14 @@ impl MomentComparison {
         hub: &Hub,
         time: Timestamp,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> u64 {
         let mut count = 0;
         for now in self.produced.iter().filter(|now| !now.is_paired) {
             let topic = hub.declaration(now.topic).map_or("", |topic| topic.path());
             let line = ledger.line(&self.host, &self.agent, topic);
             ledger.lines[line].only_replayed += 1;
-            told(self.difference(topic, self.cycles.max(1), time, None, Some(&now.bytes)));
+            on_difference(self.difference(topic, self.cycles.max(1), time, None, Some(&now.bytes)));
             count += 1;
         }
         count

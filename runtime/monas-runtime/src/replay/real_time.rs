@@ -87,7 +87,7 @@ struct ThreadReplay {
     /// The numbers of the steps recorded since the last turn.
     numbers: Vec<u64>,
     /// Whether the recording has records of the agent's turns.
-    is_told: bool,
+    has_turn_records: bool,
     has_diverged: bool,
     /// Whether the agent was removed.
     is_removed: bool,
@@ -186,11 +186,11 @@ impl RealTimeReplay {
         &mut self,
         input: usize,
         message: RecordedMessage<'_>,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
         let InputRoute { hub, change_role: about, .. } = self.inputs.get(input).ok_or_else(no_input)?;
         let (hub, about) = (*hub, *about);
-        self.handle_change_message(input, about, &message, told)?;
+        self.handle_change_message(input, about, &message, on_difference)?;
         let InputRoute { routes, .. } = &self.inputs[input];
         let count = &mut self.hubs[hub].1;
         *count += 1;
@@ -202,7 +202,7 @@ impl RealTimeReplay {
                 RealTimeRoute::Own { topic, line, is_cycle } => {
                     let bytes = message.bytes.to_vec();
                     let own = OwnMessage { position, topic, line, bytes };
-                    part.published(own, is_cycle, &mut self.report, told)?;
+                    part.published(own, is_cycle, &mut self.report, on_difference)?;
                 }
                 RealTimeRoute::Other(inlet) => {
                     let bytes = shared.get_or_insert_with(|| message.bytes.into()).clone();
@@ -227,7 +227,7 @@ impl RealTimeReplay {
         input: usize,
         about: ChangeRole,
         message: &RecordedMessage<'_>,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
         let InputRoute { hub, publisher, .. } = &self.inputs[input];
         let host = &self.hubs[*hub].0;
@@ -270,7 +270,7 @@ impl RealTimeReplay {
                 }
                 for part in parts.filter(|part| part.agent == changed.agent) {
                     if changed.done && changed.action() == Action::RemoveAgent {
-                        part.handle_removal(&mut self.report, told)?;
+                        part.handle_removal(&mut self.report, on_difference)?;
                     }
                     part.changes.answered(&changed, &mut part.thread_replay, message.received)?;
                 }
@@ -282,10 +282,10 @@ impl RealTimeReplay {
     pub(crate) fn finish(
         mut self,
         is_whole: bool,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<Vec<ComparisonCounts>, Error> {
         for part in &mut self.parts {
-            part.finish(is_whole, &mut self.report, told)?;
+            part.finish(is_whole, &mut self.report, on_difference)?;
         }
         Ok(self.report.tallies())
     }
@@ -338,7 +338,7 @@ impl ThreadReplay {
             own,
             pending_cycle: begun,
             numbers,
-            is_told: false,
+            has_turn_records: false,
             has_diverged: false,
             is_removed: false,
         })
@@ -381,7 +381,7 @@ impl ThreadReplay {
         own: OwnMessage,
         is_cycle: bool,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
         if !is_cycle {
             self.own.push(own);
@@ -393,17 +393,18 @@ impl ThreadReplay {
         })?;
         if record.seen.iter().any(|seen| *seen >= own.position) {
             let message = format!("the recording lacks messages of `{}`", self.host);
-            let hint =
-                "agents are given what they were given then: only a recording of all topics can be replayed";
+            let hint = "agents receive their recorded inputs: only a recording of all topics can be replayed";
             return Err(Error::new(ErrorKind::Invalid, message).with_hint(hint));
         }
         if !self.is_of_thread(&record) {
             return Err(self.missing_record_error());
         }
         match (&self.thread_replay, record.turn()) {
-            (_, Turn::Ordered) => self.follow(&record, ledger, told)?,
-            (_, Turn::None | Turn::Start) if self.is_removed => return Err(came_back_untold(&self.agent)),
-            (ReplayedThread::Chart(_), Turn::None) if self.is_told => {
+            (_, Turn::Ordered) => self.follow(&record, ledger, on_difference)?,
+            (_, Turn::None | Turn::Start) if self.is_removed => {
+                return Err(returned_without_a_record(&self.agent));
+            }
+            (ReplayedThread::Chart(_), Turn::None) if self.has_turn_records => {
                 self.numbers.push(record.number);
                 self.own.push(own);
             }
@@ -414,21 +415,21 @@ impl ThreadReplay {
                 return Err(self.missing_record_error());
             }
             (ReplayedThread::List(_), Turn::None) => {
-                self.run_begun(true, ledger, told)?;
+                self.run_begun(true, ledger, on_difference)?;
                 self.changes.begin_turn()?;
                 self.own.push(OwnMessage { bytes: plain(&record), ..own });
                 self.pending_cycle = Some(record);
             }
             (ReplayedThread::List(_), _) => {}
-            (ReplayedThread::Chart(chart), Turn::Start) if self.is_told && !chart.restarts() => {
+            (ReplayedThread::Chart(chart), Turn::Start) if self.has_turn_records && !chart.restarts() => {
                 return Err(self.missing_record_error());
             }
             (ReplayedThread::Chart(_), turn) => {
-                self.is_told |= turn == Turn::Start;
+                self.has_turn_records |= turn == Turn::Start;
                 if turn == Turn::Round {
                     self.changes.begin_turn()?;
                 }
-                self.run(turn, &record, true, ledger, told)?;
+                self.run(turn, &record, true, ledger, on_difference)?;
             }
         }
         Ok(())
@@ -449,10 +450,10 @@ impl ThreadReplay {
         &mut self,
         record: &Cycle,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
-        self.run_begun(true, ledger, told)?;
-        self.run_unrecorded(Timestamp::from_nanos(record.time), ledger, told)?;
+        self.run_begun(true, ledger, on_difference)?;
+        self.run_unrecorded(Timestamp::from_nanos(record.time), ledger, on_difference)?;
         self.recorded_inputs.begin(&record.seen, std::iter::empty());
         self.recorded_inputs.fetching();
         let (change, now) = (self.changes.recorded_change(record)?, Timestamp::from_nanos(record.time));
@@ -467,9 +468,9 @@ impl ThreadReplay {
     fn handle_removal(
         &mut self,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
-        self.run_begun(true, ledger, told)?;
+        self.run_begun(true, ledger, on_difference)?;
         self.is_removed = true;
         self.changes.discard_requests(&self.agent);
         Ok(())
@@ -482,7 +483,7 @@ impl ThreadReplay {
         self.restart(&change, now)?;
         match &self.thread_replay {
             ReplayedThread::Waiting(_) => Ok(()),
-            _ => Err(came_back_untold(&self.agent)),
+            _ => Err(returned_without_a_record(&self.agent)),
         }
     }
 
@@ -496,7 +497,7 @@ impl ThreadReplay {
         let member = self.changes.prepare_restart(change, &self.agent, &mut self.thread_replay, now)?;
         self.thread_replay =
             ReplayedThread::new(member, &self.recorded_inputs)?.ok_or_else(|| nothing_to_run(&self.agent))?;
-        (self.is_told, self.is_removed) = (false, false);
+        (self.has_turn_records, self.is_removed) = (false, false);
         Ok(())
     }
 
@@ -511,7 +512,7 @@ impl ThreadReplay {
 
     fn missing_record_error(&self) -> Error {
         let message = format!(
-            "the recording does not tell what each turn of `{}` was given: it was made by an earlier version",
+            "the recording lacks the inputs of the turns of `{}`: it was made by an earlier version",
             self.agent
         );
         Error::new(ErrorKind::Invalid, message)
@@ -522,10 +523,10 @@ impl ThreadReplay {
         &mut self,
         is_whole: bool,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
         match self.pending_cycle.take() {
-            Some(record) => self.run(Turn::None, &record, is_whole, ledger, told),
+            Some(record) => self.run(Turn::None, &record, is_whole, ledger, on_difference),
             None => Ok(()),
         }
     }
@@ -537,9 +538,9 @@ impl ThreadReplay {
         record: &Cycle,
         is_whole: bool,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
-        self.run_unrecorded(Timestamp::from_nanos(record.time), ledger, told)?;
+        self.run_unrecorded(Timestamp::from_nanos(record.time), ledger, on_difference)?;
         self.recorded_inputs.begin(&record.seen, self.own.iter().map(|own| own.position));
         let now = Timestamp::from_nanos(record.time);
         let numbers = std::mem::take(&mut self.numbers);
@@ -553,7 +554,7 @@ impl ThreadReplay {
             ReplayedThread::Chart(chart) => chart.turn(turn, record, self.has_diverged),
         }
         self.recorded_inputs.failure()?;
-        self.compare(now, is_whole, ledger, told);
+        self.compare(now, is_whole, ledger, on_difference);
         Ok(())
     }
 
@@ -562,7 +563,7 @@ impl ThreadReplay {
         &mut self,
         until: Timestamp,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
         let recorded = std::mem::take(&mut self.own);
         while let ReplayedThread::Chart(chart) = &mut self.thread_replay
@@ -571,7 +572,7 @@ impl ThreadReplay {
             self.recorded_inputs.begin_unrecorded(due);
             chart.run_unrecorded_turn(due);
             self.recorded_inputs.failure()?;
-            self.compare(due, true, ledger, told);
+            self.compare(due, true, ledger, on_difference);
         }
         self.own = recorded;
         Ok(())
@@ -582,7 +583,7 @@ impl ThreadReplay {
         now: Timestamp,
         is_whole: bool,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) {
         // Measurements are not repeated.
         let measured = self.hub.topic(STATISTICS.path());
@@ -601,7 +602,7 @@ impl ThreadReplay {
         let has_diverged = &mut self.has_diverged;
         self.comparison.compare(&self.hub, now, ledger, &mut |difference| {
             *has_diverged = true;
-            told(difference);
+            on_difference(difference);
         });
     }
 
@@ -610,21 +611,21 @@ impl ThreadReplay {
         &mut self,
         is_whole: bool,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
         let last = self.pending_cycle.as_ref().map(|record| Timestamp::from_nanos(record.time));
-        self.run_begun(is_whole, ledger, told)?;
+        self.run_begun(is_whole, ledger, on_difference)?;
         // The inputs of a turn whose record was cut off are unknown.
         if is_whole {
-            self.compare(last.unwrap_or_default(), is_whole, ledger, told);
+            self.compare(last.unwrap_or_default(), is_whole, ledger, on_difference);
         }
         Ok(())
     }
 }
 
-fn came_back_untold(agent: &str) -> Error {
+fn returned_without_a_record(agent: &str) -> Error {
     let message = format!(
-        "agent `{agent}` was removed and added anew: the recording, of an earlier version, does not tell by which change"
+        "agent `{agent}` was removed and added again: the recording, of an earlier version, lacks the change"
     );
     Error::new(ErrorKind::Invalid, message).with_hint("replay other agents, or the time before")
 }

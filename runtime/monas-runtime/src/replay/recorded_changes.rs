@@ -339,7 +339,7 @@ impl AgentControl for ChangeReplayer<'_> {
             Some(_) if self.is_unaffected => Err(vec!["the thread follows later".into()]),
             Some(share) => {
                 self.was_applied = true;
-                self.repeated.obey(share.update, self.now)
+                self.repeated.apply(share.update, self.now)
             }
             None => Ok(Vec::new()),
         }
@@ -361,15 +361,14 @@ impl AgentControl for ChangeReplayer<'_> {
 
 fn missing_request_error(asked: &Asked) -> Error {
     let Asked { publisher, sequence } = asked;
-    let message = format!("the recording lacks change {sequence} of `{publisher}`, which an agent followed");
-    let hint = "agents are changed as they were then: only a recording of all topics can be replayed";
+    let message = format!("the recording lacks change {sequence} of `{publisher}`, which an agent applied");
+    let hint = "agents repeat recorded changes: only a recording of all topics can be replayed";
     Error::new(ErrorKind::Invalid, message).with_hint(hint)
 }
 
 fn came_back_otherwise(agent: &str, at: Timestamp) -> Error {
     let message = format!(
-        "agent `{agent}` came back {:.3} s after the run began, with another number of charts: what a thread that begins then is given is \
-         not repeated",
+        "agent `{agent}` returned {:.3} s after the start of the run with another number of charts: the inputs of new threads are not replayed",
         at.as_secs_f64()
     );
     Error::new(ErrorKind::Invalid, message).with_hint("replay other agents, or the time before")
@@ -377,8 +376,7 @@ fn came_back_otherwise(agent: &str, at: Timestamp) -> Error {
 
 fn begun_late(agent: &str, at: Timestamp) -> Error {
     let message = format!(
-        "agent `{agent}` was given its first activity {:.3} s after the run began: the recording, of an earlier version, does not tell what \
-         the list began with",
+        "agent `{agent}` got its first activity {:.3} s after the start of the run: the recording, of an earlier version, lacks the start of the list",
         at.as_secs_f64()
     );
     Error::new(ErrorKind::Invalid, message).with_hint("replay other agents, or the time before")
@@ -386,9 +384,9 @@ fn begun_late(agent: &str, at: Timestamp) -> Error {
 
 fn refused_change_error(changed: &Changed, at: Timestamp) -> Error {
     let finding = changed.findings.first();
-    let reason = finding.map_or("it is none that an agent follows", |finding| finding.message.as_str());
+    let reason = finding.map_or("no agent can apply it", |finding| finding.message.as_str());
     let message = format!(
-        "what was asked of agent `{}` {:.3} s after the run began cannot be made again: {reason}",
+        "the change of agent `{}` {:.3} s after the start of the run cannot be repeated: {reason}",
         changed.agent,
         at.as_secs_f64()
     );

@@ -159,11 +159,11 @@ impl ReplayHost {
         moment: Timestamp,
         spy: &OutputCapture,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) {
         while self.now < moment {
             SimulatedTimeGuard::pass(self.now);
-            self.run_and_compare(spy, ledger, told);
+            self.run_and_compare(spy, ledger, on_difference);
             // Requests that exist only in the replay may give agents something to do at this time.
             self.apply_requests(spy);
             self.now = if self.has_ended { moment } else { self.due().clamp(self.now, moment) };
@@ -231,7 +231,7 @@ impl ReplayHost {
     pub(crate) fn answered(&mut self, changed: &Changed) {
         let is_it = changed.action() == Action::AddAgents && self.returned_by == Some(changed.number);
         if is_it && !changed.done {
-            let message = "agents that left were refused when somebody added them anew, because of others that are not replayed";
+            let message = "removed agents were rejected when they were added again, because of agents that are not replayed";
             let error = Error::new(ErrorKind::Invalid, message).with_hint("replay all agents of the host");
             self.refused.get_or_insert(error);
         }
@@ -255,7 +255,7 @@ impl ReplayHost {
         &mut self,
         spy: &OutputCapture,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) {
         if !self.has_ended {
             self.run_due(self.turn, None, spy);
@@ -264,7 +264,7 @@ impl ReplayHost {
             }
         }
         for actor in &mut self.agents {
-            actor.comparison.compare(&self.hub, self.now, ledger, told);
+            actor.comparison.compare(&self.hub, self.now, ledger, on_difference);
         }
     }
 
@@ -360,14 +360,14 @@ impl ReplayHost {
         is_whole: bool,
         spy: &OutputCapture,
         ledger: &mut ComparisonReport,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) {
         if is_whole {
-            return self.run_and_compare(spy, ledger, told);
+            return self.run_and_compare(spy, ledger, on_difference);
         }
         for actor in &mut self.agents {
             actor.comparison.discard_pending();
-            actor.comparison.compare(&self.hub, self.now, ledger, told);
+            actor.comparison.compare(&self.hub, self.now, ledger, on_difference);
         }
     }
 }

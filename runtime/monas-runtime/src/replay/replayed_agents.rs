@@ -51,8 +51,8 @@ impl AgentControl for ReplayedAgents<'_> {
     }
 
     fn inspect_chart(&self, agent: &str, place: usize) -> Result<Vec<String>, String> {
-        let told = self.instance(agent).and_then(|instance| instance.inspect_chart(place));
-        told.ok_or_else(|| format!("`{agent}` has no such statechart"))
+        let on_difference = self.instance(agent).and_then(|instance| instance.inspect_chart(place));
+        on_difference.ok_or_else(|| format!("`{agent}` has no such statechart"))
     }
 
     fn has_list(&self, agent: &str) -> bool {
@@ -146,17 +146,17 @@ pub(crate) fn refuse_in_real_time(changed: &Changed, is_list: bool, at: Timestam
         Action::StepAgent => "stepped",
         Action::StartAgent => "started again",
         Action::AddActivity => "given another activity",
-        Action::RemoveActivity => "deprived of an activity",
-        Action::MoveActivity => "given another order of its activities",
-        Action::ReplaceActivity => "given an activity in the place of another",
+        Action::RemoveActivity => "changed by the removal of an activity",
+        Action::MoveActivity => "changed by another order of activities",
+        Action::ReplaceActivity => "changed by the replacement of an activity",
         Action::Set => "set otherwise",
         Action::SwapModel => "given another model",
         Action::RaiseEvent => "given an event",
-        Action::LoadModule => "given activities of a module",
-        Action::UnloadModule | Action::ReloadModule => "given other activities of a module",
+        Action::LoadModule => "changed by activities of a module",
+        Action::UnloadModule | Action::ReloadModule => "changed by other activities of a module",
     };
     let message = format!(
-        "agent `{}` was {what} {:.3} s after the run began: the recording, of an earlier version, does not tell after which turn",
+        "agent `{}` was {what} {:.3} s after the start of the run: the recording, of an earlier version, lacks the turn",
         changed.agent,
         at.as_secs_f64()
     );

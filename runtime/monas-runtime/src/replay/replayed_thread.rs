@@ -28,21 +28,21 @@ pub(crate) enum ReplayedThread {
 impl ReplayedThread {
     /// The list or chart of the agent; `None` if it has neither.
     pub(crate) fn new(member: PreparedAgent, feed: &RecordedInputs) -> Result<Option<ReplayedThread>, Error> {
-        let PreparedAgent { policy, frequency, list, mut charts, recorder: teller, .. } = member;
+        let PreparedAgent { policy, frequency, list, mut charts, recorder, .. } = member;
         let defaults = AgentDefaults { frequency, policy, ..AgentDefaults::default() };
         Ok(match (list, charts.pop()) {
             (Some(list), None) => {
-                let teller = teller.of_part(list.blackboard().part())?;
-                let list = RepeatedList { list, teller, feed: feed.clone(), is_over: false };
+                let recorder = recorder.of_part(list.blackboard().part())?;
+                let list = RepeatedList { list, recorder, feed: feed.clone(), is_over: false };
                 Some(ReplayedThread::List(Box::new(list)))
             }
             (None, Some(runner)) if charts.is_empty() => {
-                let teller = teller.of_part(runner.part())?;
-                let chart = ReplayedChart::new(runner, defaults, teller, feed);
+                let recorder = recorder.of_part(runner.part())?;
+                let chart = ReplayedChart::new(runner, defaults, recorder, feed);
                 Some(ReplayedThread::Chart(Box::new(chart)))
             }
             (None, None) => {
-                Some(ReplayedThread::Waiting(Box::new(PendingListCycle { teller, feed: feed.clone() })))
+                Some(ReplayedThread::Waiting(Box::new(PendingListCycle { recorder, feed: feed.clone() })))
             }
             _ => None,
         })
@@ -54,9 +54,9 @@ impl ReplayedThread {
     /// The recorder of its cycles cannot be created.
     pub(crate) fn begin(&mut self, list: ActivityList) -> Result<(), Error> {
         if let ReplayedThread::Waiting(waiting) = self {
-            let PendingListCycle { teller, feed } = &**waiting;
-            let teller = teller.of_part(list.blackboard().part())?;
-            let list = RepeatedList { list, teller, feed: feed.clone(), is_over: false };
+            let PendingListCycle { recorder, feed } = &**waiting;
+            let recorder = recorder.of_part(list.blackboard().part())?;
+            let list = RepeatedList { list, recorder, feed: feed.clone(), is_over: false };
             *self = ReplayedThread::List(Box::new(list));
         }
         Ok(())
@@ -68,7 +68,7 @@ impl ReplayedThread {
     pub(crate) fn set_cycle_numbers(&mut self, given: impl Iterator<Item = u64>) {
         match self {
             ReplayedThread::Waiting(_) => {}
-            ReplayedThread::List(list) => list.teller.set_numbers(given),
+            ReplayedThread::List(list) => list.recorder.set_numbers(given),
             ReplayedThread::Chart(chart) => chart.driver.recorder.set_numbers(given),
         }
     }
@@ -77,28 +77,28 @@ impl ReplayedThread {
     ///
     /// # Errors
     /// The reasons against it: nothing has changed.
-    pub(crate) fn obey(&mut self, orders: AgentUpdate, now: Timestamp) -> Result<Vec<String>, Vec<String>> {
+    pub(crate) fn apply(&mut self, update: AgentUpdate, now: Timestamp) -> Result<Vec<String>, Vec<String>> {
         match self {
             ReplayedThread::Waiting(_) => Ok(Vec::new()),
             ReplayedThread::List(list) => {
-                list.obey(orders);
+                list.apply(update);
                 Ok(Vec::new())
             }
-            ReplayedThread::Chart(chart) => chart.apply(orders, now),
+            ReplayedThread::Chart(chart) => chart.apply(update, now),
         }
     }
 }
 
 /// The data for a list that has not begun.
 pub(crate) struct PendingListCycle {
-    teller: CycleRecorder,
+    recorder: CycleRecorder,
     feed: RecordedInputs,
 }
 
 /// A list that repeats its cycles.
 pub(crate) struct RepeatedList {
     list: ActivityList,
-    teller: CycleRecorder,
+    recorder: CycleRecorder,
     feed: RecordedInputs,
     is_over: bool,
 }
@@ -112,17 +112,17 @@ impl RepeatedList {
         self.feed.fetching();
         self.list.begin(now);
         self.feed.publishing();
-        self.teller.record(now, Delivery::all(self.list.blackboard(), 0));
+        self.recorder.record(now, Delivery::all(self.list.blackboard(), 0));
         self.feed.publishing();
         self.list.cycle(now, None);
         self.is_over = self.list.stopped().is_some();
     }
 
     /// The records of its cycles contain their times, and so its frequency and its pauses.
-    fn obey(&mut self, orders: AgentUpdate) {
-        orders.edits.into_iter().for_each(|edit| self.list.edit(edit));
-        for directive in orders.commands {
-            match directive {
+    fn apply(&mut self, update: AgentUpdate) {
+        update.edits.into_iter().for_each(|edit| self.list.edit(edit));
+        for command in update.commands {
+            match command {
                 AgentCommand::Start => self.list.restart(),
                 AgentCommand::Stop => self.list.stop(STOPPED_BY_REQUEST),
                 AgentCommand::Policy(policy) => self.list.set_policy(policy),

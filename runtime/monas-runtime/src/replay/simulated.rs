@@ -116,7 +116,7 @@ impl SimulatedReplay {
         &mut self,
         input: usize,
         message: RecordedMessage<'_>,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
         let SimulatedReplay { scenes, capture: spy, inputs, report: ledger } = self;
         let Some(route) = inputs.get_mut(input) else {
@@ -126,12 +126,12 @@ impl SimulatedReplay {
             SimulatedRoute::Ignored => {}
             SimulatedRoute::Compared { scene, actor, topic, path } => {
                 let scene = &mut scenes[*scene];
-                scene.advance_to(message.received, spy, ledger, told);
+                scene.advance_to(message.received, spy, ledger, on_difference);
                 scene.expect(*actor, *topic, *path, message.bytes, spy);
             }
             SimulatedRoute::Published { scene, publisher, place, sets_up, asks, answers } => {
                 let scene = &mut scenes[*scene];
-                scene.advance_to(message.received, spy, ledger, told);
+                scene.advance_to(message.received, spy, ledger, on_difference);
                 scene.turn_of_another(*place, *sets_up, spy);
                 if *answers {
                     scene.apply_requests(spy);
@@ -144,7 +144,7 @@ impl SimulatedReplay {
             }
             SimulatedRoute::Received { scene, receiver } => {
                 let scene = &mut scenes[*scene];
-                scene.advance_to(message.received, spy, ledger, told);
+                scene.advance_to(message.received, spy, ledger, on_difference);
                 let arrival = RemoteHeader {
                     sequence: message.sequence.into(),
                     published: message.published,
@@ -157,9 +157,9 @@ impl SimulatedReplay {
         self.scenes.iter_mut().try_for_each(ReplayHost::check)
     }
 
-    pub(crate) fn end(&mut self, moment: Timestamp, told: &mut dyn FnMut(ReplayDifference)) {
+    pub(crate) fn end(&mut self, moment: Timestamp, on_difference: &mut dyn FnMut(ReplayDifference)) {
         for scene in &mut self.scenes {
-            scene.advance_to(moment, &self.capture, &mut self.report, told);
+            scene.advance_to(moment, &self.capture, &mut self.report, on_difference);
             scene.stop(&self.capture);
         }
     }
@@ -167,10 +167,10 @@ impl SimulatedReplay {
     pub(crate) fn finish(
         mut self,
         is_whole: bool,
-        told: &mut dyn FnMut(ReplayDifference),
+        on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<Vec<ComparisonCounts>, Error> {
         for scene in &mut self.scenes {
-            scene.close(is_whole, &self.capture, &mut self.report, told);
+            scene.close(is_whole, &self.capture, &mut self.report, on_difference);
             scene.check()?;
         }
         Ok(self.report.tallies())

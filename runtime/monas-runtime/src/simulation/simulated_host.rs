@@ -227,8 +227,8 @@ impl AgentControl for SimulatedAgents<'_> {
     }
 
     fn inspect_chart(&self, agent: &str, place: usize) -> Result<Vec<String>, String> {
-        let told = self.team.instance(agent).and_then(|instance| instance.inspect_chart(place));
-        told.ok_or_else(|| format!("`{agent}` has no such statechart"))
+        let inspection = self.team.instance(agent).and_then(|instance| instance.inspect_chart(place));
+        inspection.ok_or_else(|| format!("`{agent}` has no such statechart"))
     }
 
     fn has_list(&self, agent: &str) -> bool {

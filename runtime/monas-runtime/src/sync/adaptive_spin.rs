@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn who_waits_briefly_looks_out_and_who_rests_sleeps() {
+    fn short_waits_spin_and_long_waits_sleep() {
         let habit = AdaptiveSpin::new();
         assert_eq!(looked_out(&habit, &[1_000, 1_000]), [BRIEFLY, WAKING]);
         let hour = 3_600_000_000_000;
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_looks_out_for_longer_than_there_is_time() {
+    fn spinning_is_bounded_by_the_deadline() {
         AdaptiveSpin::new().spin_then_park::<ByHand>(300, || false);
         assert_eq!(LOOKED_OUT.get(), 300);
     }

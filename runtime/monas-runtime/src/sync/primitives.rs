@@ -65,7 +65,7 @@ impl Primitives for Threads {
     type Monitor<T: Send + 'static> = ThreadMonitor<T>;
     type Flag = AtomicBool;
 
-    #[expect(clippy::disallowed_methods, reason = "how long threads sleep is the runtime's own affair")]
+    #[expect(clippy::disallowed_methods, reason = "sleep times are internal to the runtime")]
     fn nanos() -> u64 {
         static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
         BEGIN.elapsed().as_nanos() as u64

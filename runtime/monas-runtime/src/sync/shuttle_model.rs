@@ -111,7 +111,7 @@ struct ModelState<const WAKES: bool> {
 }
 
 impl ModelScenario {
-    /// Executes the model to its end, which a thread that waits in vain does not reach.
+    /// Executes the model to its end, which a thread that waits forever does not reach.
     fn play<const WAKES: bool>(self) {
         let stage = Arc::new(ModelState::<WAKES> {
             work: WorkQueue::new(self.workers),
@@ -185,7 +185,7 @@ impl<const WAKES: bool> ModelState<WAKES> {
 }
 
 #[test]
-fn every_activity_comes_back_and_every_message_wakes_in_ten_thousand_interleavings() {
+fn every_activity_returns_and_every_message_wakes_in_ten_thousand_interleavings() {
     let scene = ModelScenario { regions: 3, calls: 3, workers: 2, messages: 2 };
     shuttle::check_random(move || scene.play::<true>(), 6_000);
     shuttle::check_pct(move || scene.play::<true>(), 4_000, 3);

@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_most_urgent_comes_first_and_of_equals_the_one_that_came_first() {
+    fn the_most_urgent_is_first_and_equals_are_fifo() {
         let work: WorkQueue<&str> = WorkQueue::new(1);
         for (job, priority) in [("a", 0), ("b", 5), ("c", 0), ("d", -1), ("e", 5)] {
             work.submit(priority, job);

@@ -236,7 +236,7 @@ fn a_message_on_a_topic_it_has_not_read_leaves_it_alone() {
 }
 
 #[test]
-fn the_end_of_a_run_stops_what_goes_on() {
+fn the_end_of_a_run_stops_streams() {
     let (calls, note) = recorder();
     let registry = Registry::empty().with("A", move || Patient {
         calls: 0,
@@ -254,7 +254,7 @@ fn the_end_of_a_run_stops_what_goes_on() {
 }
 
 #[test]
-fn what_an_activity_publishes_itself_does_not_call_it_early() {
+fn an_activity_is_not_called_early_by_its_own_messages() {
     let (calls, note) = recorder();
     let echo = move || {
         let note = note.clone();
@@ -280,7 +280,7 @@ fn a_delay_of_nothing_lets_time_go_on() {
 }
 
 #[test]
-fn activities_that_wake_each_other_for_ever_at_one_moment_stop_their_agent() {
+fn activities_that_wake_each_other_endlessly_stop_their_agent() {
     let echo = || {
         |b: &mut Blackboard| -> Result<Progress, BoxError> {
             let x = b.read(BALL).map_or(0.0, |ball| ball.x);
@@ -292,7 +292,7 @@ fn activities_that_wake_each_other_for_ever_at_one_moment_stop_their_agent() {
     let mut simulation = simulate(registry, "m = A || B");
     simulation.run_until(at(10)).unwrap();
     let stopped = simulation.statistics().agents[0].stopped.clone().unwrap();
-    assert!(stopped.ends_with("is called at one moment after 10000 other calls"), "{stopped}");
+    assert!(stopped.ends_with("is called more than 10000 times at one time"), "{stopped}");
 }
 
 #[test]
@@ -334,7 +334,7 @@ fn each_state_has_an_instance_of_its_own() {
 }
 
 #[test]
-fn activities_raise_events_and_so_does_whoever_looks_on() {
+fn activities_and_tools_raise_events() {
     let (calls, noting) = noting();
     let registry = noting.with("Raise", || |b: &mut Blackboard| b.raise("go"));
     let text = "Liveness:\nm = (Raise . D) || (A . B . C)\nTransitions:\nA -> B : go\nB -> C : now";
@@ -348,7 +348,7 @@ fn activities_raise_events_and_so_does_whoever_looks_on() {
 }
 
 #[test]
-fn a_chart_that_never_rests_stops_with_the_cycle_named_and_others_go_on() {
+fn a_livelock_stops_its_chart_with_the_cycle_and_no_other() {
     let (calls, registry) = noting();
     let text = "m = B~";
     let talws = Talws::new().registry(registry).agent(Agent::statechart("m", chart(text)));
@@ -390,7 +390,7 @@ fn coverage_names_what_was_never_used() {
 }
 
 #[test]
-fn the_trace_of_a_chart_is_told_line_by_line() {
+fn the_trace_of_a_chart_is_printed_line_by_line() {
     let lines = Arc::new(Mutex::new(Vec::new()));
     let written = lines.clone();
     let (_, registry) = noting();
@@ -414,7 +414,7 @@ fn the_trace_of_a_chart_is_told_line_by_line() {
 }
 
 #[test]
-fn charts_are_bound_before_anything_starts_and_all_that_is_wrong_is_said() {
+fn charts_are_bound_before_the_start_and_all_errors_are_reported() {
     let (calls, registry) = noting();
     let wrong = |text: &str| Agent::statechart(text.split(' ').next().unwrap(), chart(text));
     let talws = Talws::new().registry(registry).agent(wrong("m = A . Bx")).agent(wrong("n = Ax . B"));
@@ -430,7 +430,7 @@ fn charts_are_bound_before_anything_starts_and_all_that_is_wrong_is_said() {
 }
 
 #[test]
-fn a_source_that_can_never_be_heard_is_said_before_anything_starts() {
+fn an_unreachable_source_is_reported_before_the_start() {
     let reads = |guard: &str| {
         let (_, registry) = noting();
         let text = format!("Liveness:\nm = A . B\nTransitions:\nA -> B : [{guard}]");
@@ -438,10 +438,10 @@ fn a_source_that_can_never_be_heard_is_said_before_anything_starts() {
         let started = talws.agent(balls(&[10])).simulate(1);
         started.err().map(|error| error.diagnostics().iter().map(ToString::to_string).collect::<Vec<_>>())
     };
-    let other_host = "error[E0320]: the chart `m` reads `test/ball` of the host `striker`, of which nothing arrives on \
-                      `local` (a link brings it: `<receive topics=\"test/ball\"/>`; without a host in front the chart's own is meant)";
+    let other_host = "error[E0320]: the chart `m` reads `test/ball` of the host `striker`, whose messages do not reach \
+                      `local` (add a link: `<receive topics=\"test/ball\"/>`, or remove the host to read the chart's own messages)";
     assert_eq!(reads("striker.ball.State.Ball.x > 0").unwrap(), [other_host]);
-    let nobody = "error[E0321]: the chart `m` reads `test/game` of `Vision`, but nobody publishes under that name on `local` \
+    let nobody = "error[E0321]: the chart `m` reads `test/game` of `Vision`, but `local` has no publisher of that name \
                   (agents publish under their own names: `m`, `z`)";
     assert_eq!(reads("Vision.Game.phase == PLAY").unwrap(), [nobody]);
     assert_eq!(reads("z.Game.phase == PLAY"), None);
@@ -464,7 +464,7 @@ fn a_changed_constant_in_a_guard_changes_the_hash() {
 }
 
 #[test]
-fn a_region_that_is_entered_takes_over_the_values_it_lies_in_and_then_has_its_own() {
+fn an_entered_region_copies_the_outer_values_once() {
     let (seen, note) = recorder();
     let reading = |name: &'static str| {
         let note = note.clone();

@@ -63,7 +63,7 @@ fn a_restarted_activity_starts_again_and_pauses_longer_each_time() {
 }
 
 #[test]
-fn after_a_success_pauses_begin_anew() {
+fn pauses_restart_after_a_success() {
     let (calls, _) = calls(&[1, 2, 4, 6], false, FailurePolicy::Restart, 7);
     assert_eq!(calls, ["call 1", "call 2", "call 4", "call 8"][..3].to_vec());
     let (calls, _) = self::calls(&[1, 3, 5], false, FailurePolicy::Restart, 6);
@@ -86,7 +86,7 @@ fn pauses_have_an_end() {
 }
 
 #[test]
-fn skipping_goes_on_as_if_nothing_had_happened() {
+fn a_skipped_failure_has_no_effect() {
     let (calls, statistics) = calls(&[2], true, FailurePolicy::Skip, 3);
     assert_eq!(calls, ["start 1", "call 1", "call 2", "call 3"]);
     assert_eq!(statistics.activities[0].failures, 1);
@@ -115,7 +115,7 @@ fn a_panic_harms_neither_the_next_activity_nor_another_agent() {
 }
 
 #[test]
-fn what_was_written_before_a_failure_is_published() {
+fn writes_before_a_failure_are_published() {
     let (seen, note) = recorder();
     let writes = |b: &mut Blackboard| -> Result<(), BoxError> {
         b.publish(BALL, Ball::default())?;

@@ -66,7 +66,7 @@ fn hash_of(agent: Agent) -> (String, u64) {
 }
 
 #[test]
-fn what_is_assigned_by_functions_is_published_as_what_is_interpreted() {
+fn native_and_interpreted_assignments_publish_equal_messages() {
     let chart = generated(walker());
     let interpreted = hash_of(Agent::statechart("a", chart.statechart().clone()));
     let typed = hash_of(Agent::idle("a".into()).generated(chart));

@@ -37,7 +37,7 @@ fn reporter() -> Agent {
 }
 
 /// Records of a chart's activities in the first 200 ms.
-fn told(agent: impl Fn(Agent) -> Agent, text: &str) -> Vec<String> {
+fn records(agent: impl Fn(Agent) -> Agent, text: &str) -> Vec<String> {
     let (words, note): (Recorder<String>, _) = recorder();
     let registry = ["A", "B", "C"].into_iter().fold(Registry::linked(), |registry, name| {
         let note = note.clone();
@@ -58,31 +58,30 @@ const SLOW: &str = "States:\nA : duration = 50ms";
 #[test]
 fn a_guard_does_not_see_what_the_running_activity_has_written() {
     // The ball that A writes is published when A returns at 50 ms. The news at 20 ms meet the ball
-    // that A has begun with.
+    // with which A started.
     let text =
         |ball: u8| format!("Liveness:\nm = A . B\nTransitions:\nA -> B : news [ball.x == {ball}]\n{SLOW}");
-    assert_eq!(told(same, &text(9)), ["A 0 ball 1"]);
-    assert_eq!(told(same, &text(2)), ["A 0 ball 1"]);
+    assert_eq!(records(same, &text(9)), ["A 0 ball 1"]);
+    assert_eq!(records(same, &text(2)), ["A 0 ball 1"]);
 }
 
 #[test]
 fn an_event_whose_guard_held_when_the_activity_began_is_held() {
     let text = format!("Liveness:\nm = A . B\nTransitions:\nA -> B : news [ball.found]\n{SLOW}");
-    assert_eq!(told(same, &text), ["A 0 ball 1", "B 50 ball 9"]);
+    assert_eq!(records(same, &text), ["A 0 ball 1", "B 50 ball 9"]);
 }
 
 #[test]
-fn an_activity_that_is_asked_to_return_takes_no_more_time() {
+fn a_cancelled_activity_takes_no_more_time() {
     let text = format!("Liveness:\nm = A . B\nTransitions:\nA -> B interrupts : news\n{SLOW}");
-    assert_eq!(told(same, &text), ["A 0 ball 1", "B 20 ball 9"]);
+    assert_eq!(records(same, &text), ["A 0 ball 1", "B 20 ball 9"]);
 }
 
 #[test]
-fn an_activity_that_is_to_be_left_before_it_begins_is_asked_from_the_start() {
-    // A -> B wants to leave A in the step that enters it; its activity is asked as soon as it has
-    // begun.
+fn an_activity_cancelled_before_its_start_sees_the_request_at_once() {
+    // A -> B exits A in the step that enters it; the activity is cancelled right after its start.
     let text = "Liveness:\nm = C . A . B\nTransitions:\nC -> A : news / raise(go)\nA -> B interrupts : go";
-    assert_eq!(told(same, text), ["C 0 ball 1", "A 20 ball 2 asked", "B 20 ball 9"]);
+    assert_eq!(records(same, text), ["C 0 ball 1", "A 20 ball 2 asked", "B 20 ball 9"]);
 }
 
 #[test]
@@ -95,7 +94,7 @@ fn a_message_that_arrives_during_a_call_begins_the_next_one_at_its_end() {
             Progress::after(Duration::from_millis(100))
         }
     });
-    // The ball of 20 ms arrives while the first call, of 50 ms, has begun with the one of 0 ms.
+    // The ball of 20 ms arrives during the first call, which started with the ball of 0 ms.
     let agent = Agent::statechart("m", chart(&format!("Liveness:\nm = A\n{SLOW}")));
     let talws = Talws::new().registry(registry).agent(agent).agent(reporter());
     talws.simulate(1).unwrap().run_until(at(240)).unwrap();
@@ -103,15 +102,14 @@ fn a_message_that_arrives_during_a_call_begins_the_next_one_at_its_end() {
 }
 
 #[test]
-fn where_leaving_a_state_interrupts_its_activity_the_chart_does_not_wait_and_a_late_return_is_of_no_interest()
-{
+fn an_interrupting_exit_does_not_wait_and_ignores_a_late_return() {
     // Entering the chart enters A, which locks the region before anything is delivered. It would
     // return at 50 ms. B, at 20 ms, sees the second ball on another blackboard, and never what A
     // has written.
     let text =
         format!("Liveness:\nm = A . B . C\nTransitions:\nA -> B : news\nB -> C : [ball.x == 9]\n{SLOW}");
     let text = format!("{text}\nB : duration = 100ms");
-    let under = |semantics: Semantics| told(|agent| agent.semantics(semantics), &text);
+    let under = |semantics: Semantics| records(|agent| agent.semantics(semantics), &text);
     assert_eq!(under(Semantics::uml()), ["A 0 ball 0", "B 20 ball 2", "C 120 ball 9"]);
     // Here a transition without a trigger does not wait for its state to be complete, so C is left
     // before its activity begins.
@@ -123,6 +121,6 @@ fn a_state_that_is_active_again_waits_for_the_late_return_of_its_activity() {
     // The news leave A and enter it again while its first call goes on. There is one instance, so
     // the second call follows the first.
     let text = format!("Liveness:\nm = A~\nTransitions:\nA -> A : news\n{SLOW}");
-    let words = told(|agent| agent.semantics(Semantics::uml()), &text);
+    let words = records(|agent| agent.semantics(Semantics::uml()), &text);
     assert_eq!(words, ["A 0 ball 0", "A 20 ball 2"]);
 }

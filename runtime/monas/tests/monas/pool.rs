@@ -169,9 +169,9 @@ fn an_interrupting_transition_asks_the_activity_to_return_and_fires_when_it_has(
     assert_eq!(scene.next(1), ["Watch begins"]);
     scene.report_news();
     // The activity may have heard before the chart's own thread has said so.
-    let mut told = scene.next(2);
-    told.sort_unstable();
-    assert_eq!(told, ["Watch ends", "test/news held"]);
+    let mut notes = scene.next(2);
+    notes.sort_unstable();
+    assert_eq!(notes, ["Watch ends", "test/news held"]);
     assert_eq!(scene.next(2), ["test/news", "B"]);
     running.stop();
 }
@@ -259,11 +259,11 @@ fn a_message_wakes_a_chart_in_which_everybody_waits() {
     scene.report_news();
     // A message that came while it was called wakes it once more, be it the one that it has already
     // seen.
-    let mut told = scene.next(1);
-    while told == ["ball 1"] {
-        told = scene.next(1);
+    let mut notes = scene.next(1);
+    while notes == ["ball 1"] {
+        notes = scene.next(1);
     }
-    assert_eq!(told, ["ball 2"]);
+    assert_eq!(notes, ["ball 2"]);
     assert_eq!(scene.next(1), ["A"]);
     running.stop();
 }
@@ -328,7 +328,7 @@ fn the_end_of_a_run_asks_running_activities_to_return() {
 }
 
 #[test]
-fn a_chart_tells_how_long_its_steps_and_the_calls_of_its_activities_take() {
+fn a_chart_reports_durations_of_steps_and_calls() {
     let scene = Scene::new();
     let running = scene.start(same, "m = A . B");
     assert_eq!(scene.next(2), ["A", "B"]);

@@ -96,12 +96,12 @@ fn waiting(property: &str, on_violation: ViolationResponse) -> (Talws, Receiver<
 }
 
 #[test]
-fn a_bound_of_a_property_is_over_when_the_clock_says_so_though_the_chart_does_nothing() {
+fn a_time_bound_expires_by_the_clock_without_steps() {
     let (talws, violated) = waiting("eventually entering END within 20 ms", ViolationResponse::Log);
     let running = talws.start().unwrap();
     assert_eq!(next(&violated, 1), ["p"]);
     let statistics = running.stop();
-    assert_eq!(statistics.agents[0].stopped, None, "it is only told");
+    assert_eq!(statistics.agents[0].stopped, None, "it is only reported");
     let (talws, violated) = waiting("eventually entering END within 1 ms", ViolationResponse::Policy);
     // the run is over when its only agent is
     let statistics = talws.start().unwrap().wait();

@@ -132,7 +132,7 @@ fn team(order: &[usize], seed: u64) -> (String, u64) {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_hash_in_whatever_order_hosts_and_agents_were_added() {
+fn the_hash_does_not_depend_on_the_order_of_hosts_and_agents() {
     let (hash, messages) = team(&[0, 1, 2], 7);
     assert_eq!(hash.len(), 64);
     // Per host: one introduction, and 2 agents x 20 cycles x (a ball and a record).
@@ -197,7 +197,7 @@ fn a_list_without_a_frequency_is_refused() {
     let chart = yase::Statechart::new("m");
     let error = Talws::new().agent(Agent::statechart("a", chart).activity(hello)).simulate(1).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::NoFrequency);
-    assert_eq!(error.to_string(), "agent `a` has activities, but nothing says how often they run");
+    assert_eq!(error.to_string(), "agent `a` has activities but no frequency");
 }
 
 /// A world that counts its steps, shared with the body in it.
@@ -277,7 +277,7 @@ fn at_one_moment_the_world_moves_bodies_sense_agents_run_and_bodies_act() {
 }
 
 #[test]
-fn in_the_safe_state_the_body_rests_whatever_is_published() {
+fn the_safe_state_unloads_the_body_and_ignores_commands() {
     let walks = |b: &mut Blackboard| b.publish(ACTUATORS, Actuators { walk_x: 0.3, ..Actuators::default() });
     let fails = |b: &mut Blackboard| if b.now() < at(20) { Ok(()) } else { Err("broken leg") };
     let (talws, log) = embodied(vec![

@@ -92,7 +92,7 @@ pub(crate) fn replay_simulated(talws: Talws, seed: u64, messages: &[Kept]) -> Re
 
 fn play(mut replay: Replay, messages: &[Kept]) -> Result<Outcome, Error> {
     let mut differences = Vec::new();
-    let mut told = |difference| differences.push(difference);
+    let mut on_difference = |difference| differences.push(difference);
     let mut inputs = std::collections::BTreeMap::new();
     for kept in messages {
         let Kept { host, publisher, part, topic, sequence, published, received, bytes } = kept;
@@ -107,8 +107,8 @@ fn play(mut replay: Replay, messages: &[Kept]) -> Result<Outcome, Error> {
             }
         };
         let (sequence, published, received) = (*sequence, *published, *received);
-        replay.feed(input, RecordedMessage { sequence, published, received, bytes }, &mut told)?;
+        replay.feed(input, RecordedMessage { sequence, published, received, bytes }, &mut on_difference)?;
     }
-    let tallies = replay.finish(true, &mut told)?;
+    let tallies = replay.finish(true, &mut on_difference)?;
     Ok(Outcome { tallies, differences })
 }

@@ -79,7 +79,7 @@ mod tests {
     use crate::Vector;
 
     #[test]
-    fn a_team_that_attacks_to_the_left_sees_the_field_turned() {
+    fn a_team_that_attacks_to_the_left_sees_the_field_rotated() {
         let pose = in_frame_of_team(Pose::new(1.0, 2.0, 0.5), GoalColour::Blue);
         assert!((pose.position - Vector::new(-1.0, -2.0)).norm() < 1e-12);
         assert!((pose.heading - (0.5 - std::f64::consts::PI)).abs() < 1e-12);

@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_that_rests_sits_relaxed_and_takes_no_commands() {
+    fn an_unloaded_body_sits_relaxed_and_ignores_commands() {
         let pitch = pitch();
         let mut body = pitch.body(0).unwrap();
         let mut percepts = Percepts::default();
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_is_heard_once_by_the_others_of_the_team() {
+    fn radio_messages_reach_each_teammate_once() {
         let pitch = SharedField::new(SimulatedWorld::new(Setup::three_against_three(7)).unwrap());
         let mut bodies: Vec<FieldBody> = (0..6).filter_map(|robot| pitch.body(robot)).collect();
         bodies[1].say(Timestamp::ZERO, b"mine").unwrap();
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn a_kick_ends_and_says_so() {
+    fn a_kick_ends_and_reports_it() {
         let pitch = pitch();
         let mut body = pitch.body(0).unwrap();
         let kick = Actuators { skill: Skill::KickLeft as i32, skill_number: 5, ..Actuators::default() };

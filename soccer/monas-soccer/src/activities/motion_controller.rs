@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn the_head_looks_where_it_is_wanted_and_the_lights_are_passed_on() {
+    fn gaze_and_light_requests_are_executed() {
         let (mut stage, mut activity) = (ActivityFixture::new(), MotionController::default());
         let look = HeadRequest { mode: HeadMode::Look.into(), yaw: 0.5, pitch: 0.1 };
         stage.publish(body::SENSORS, felt(BodyPosture::Standing, 0)).publish(topics::GAME_STATE, playing());

@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn it_says_what_the_referee_says_and_only_when_it_changes() {
+    fn it_publishes_the_referees_state_when_it_changes() {
         let (mut stage, mut activity) = (ActivityFixture::new(), RobotController::default());
         stage.run(&mut activity);
         assert_eq!(stage.latest(topics::GAME_STATE).unwrap().player_state(), PlayerState::Initial);

@@ -107,14 +107,14 @@ mod tests {
     }
 
     #[test]
-    fn the_head_looks_first_then_the_robot_turns_to_where_the_ball_went() {
+    fn the_head_scans_first_then_the_robot_turns_after_the_ball() {
         assert_eq!(run(lost(1.0, 0.4), field(), None).kind(), MotionKind::Stand);
         assert!(run(lost(4.0, 0.4), field(), None).wz > 0.0);
         assert!(run(lost(4.0, -0.4), field(), None).wz < 0.0);
     }
 
     #[test]
-    fn after_a_turn_in_vain_it_walks_to_the_centre() {
+    fn after_a_turn_without_a_ball_it_walks_to_the_centre() {
         let pose = Pose { x: -2.0, ..Pose::default() };
         let walk = run(lost(20.0, 0.4), field(), Some(pose));
         assert!(walk.vx > 0.2 && walk.wz.abs() < 1e-9, "{walk:?}");

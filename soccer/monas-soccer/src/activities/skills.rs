@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn it_lasts_until_its_own_motion_is_over_and_can_be_asked_for_again() {
+    fn it_lasts_until_its_motion_ends_and_can_be_requested_again() {
         let (mut stage, mut activity) = (ActivityFixture::new(), LeftKick::default());
         stage.publish(topics::MOTION_STATE, state(6));
         assert!(!stage.run(&mut activity));
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_stopped_begins_anew() {
+    fn a_stopped_agent_restarts() {
         let (mut stage, mut activity) = (ActivityFixture::new(), LeftKick::default());
         stage.run(&mut activity);
         activity.under_way = None;

@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn who_does_not_know_where_it_is_says_nothing() {
+    fn an_unlocalised_robot_sends_nothing() {
         let mut stage = ActivityFixture::new();
         stage.run(&mut TeamRadio::default());
         assert_eq!(stage.latest(body::SAID), None);
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_report_is_left_out_and_the_others_are_believed() {
+    fn invalid_reports_are_skipped() {
         let (mut stage, mut radio) = player();
         heard(&mut stage, 3, TeamReport { x: 1.0, ..TeamReport::default() });
         heard(&mut stage, 4, TeamReport { x: f64::NAN, ..TeamReport::default() });

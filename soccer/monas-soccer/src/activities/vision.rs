@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn the_robot_stands_where_it_was_put_and_where_posts_tell() {
+    fn the_robot_is_localised_by_placement_and_posts() {
         let mut eye = VisionFixture::new();
         eye.stage.publish(topics::GAME_STATE, VisionFixture::placed(1, -1.0, 0.5, 0.0));
         eye.show(0.0, &[]);
@@ -389,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_put_down_again_forgets_what_it_saw() {
+    fn a_replaced_robot_forgets_its_percepts() {
         let mut eye = VisionFixture::new();
         eye.stage.publish(topics::GAME_STATE, VisionFixture::placed(1, 0.0, 0.0, 0.0));
         eye.show(0.0, &[]);

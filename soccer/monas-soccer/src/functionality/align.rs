@@ -123,7 +123,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_ball_comes_to_a_foot_with_the_robot_facing_the_target(
+        fn the_ball_is_at_a_foot_with_the_robot_facing_the_target(
             x in 0.18..0.24f64, y in -0.06..0.06f64, start in -1.2..1.2f64
         ) {
             let start = pose(0.0, 0.0, start);

@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn both_agree_on_who_takes_which_part() {
+    fn both_agree_on_their_roles() {
         let (near, far) = (player(2, -1.0, 0.0), player(3, -1.0, 1.5));
         let one = evaluate(&scene(near, &[far], &[]));
         let other = evaluate(&scene(far, &[near], &[]));
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn of_three_the_one_in_between_has_no_part() {
+    fn the_middle_one_of_three_has_no_part() {
         let (near, far) = (player(3, -0.5, 0.0), player(4, -2.5, 0.0));
         assert_eq!(evaluate(&scene(player(2, -1.0, 0.0), &[near, far], &[])).part, None);
     }

@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn one_misfit_is_ignored_and_two_restart() {
+    fn one_outlier_is_ignored_and_two_restart() {
         let mut filter = BallFilter::new(BallModel::default());
         for _ in 0..10 {
             filter.correct(1.0, 0.0);

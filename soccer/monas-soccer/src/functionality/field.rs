@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn left_and_right_are_those_of_who_faces_the_goal() {
+    fn left_and_right_are_relative_to_facing_the_goal() {
         let field = FieldModel::LEAGUE_2010;
         assert_eq!(field.posts(Goal::Opponent), [Point2::new(3.0, 0.7), Point2::new(3.0, -0.7)]);
         assert_eq!(field.posts(Goal::Own), [Point2::new(-3.0, -0.7), Point2::new(-3.0, 0.7)]);

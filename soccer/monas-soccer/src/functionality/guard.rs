@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_ball_it_stands_before_the_middle_of_the_goal() {
+    fn without_a_ball_it_stands_at_the_centre_of_the_goal() {
         assert_eq!(GoalPositioning::default().place(&FIELD, None), pose(-2.65, 0.0, 0.0));
     }
 
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn it_comes_back_between_the_posts_and_then_stands() {
+    fn it_returns_between_the_posts_and_stands() {
         let gait = GaitLimits { forward: 0.25, backward: 0.12, sideways: 0.12, turn: 1.0 };
         let guard = GoalPositioning::default();
         let place = guard.place(&FIELD, None);

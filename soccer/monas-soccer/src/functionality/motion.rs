@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_skill_happens_once_and_is_done_when_the_body_stands_again() {
+    fn a_skill_happens_once_and_ends_when_the_body_stands() {
         let mut motion = MotionArbiter::new(GAIT);
         let kick = request(DesiredMotion::Skill(Skill::KickLeft), 1);
         let order = motion.step(at(0), UPRIGHT, kick, true);

@@ -111,13 +111,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_not_walked() {
+    fn nan_is_not_walked() {
         let limited = GAIT.limit(&Walk { ahead: f64::NAN, left: f64::INFINITY, turn: f64::NAN });
         assert_eq!(limited, Walk::STILL);
     }
 
     #[test]
-    fn a_place_behind_is_turned_to_before_it_is_walked_to() {
+    fn the_robot_turns_before_it_walks_to_a_position_behind_it() {
         let walk = stride_to(Point2::new(-2.0, 0.1), 2.0);
         assert_eq!(walk.velocity(), Vector2::zeros());
         assert!(walk.turn > 1.0);

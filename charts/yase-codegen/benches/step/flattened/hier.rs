@@ -1,52 +1,53 @@
-//! The statechart `hier`, flattened: generated, so that what is changed here is lost when that is done again.
+//! The statechart `hier`, flattened. Generated: changes here are lost.
 //!
-//! `State::start` begins, `State::handle` says what an event leads to. What it asks and does on the way are the methods of `World`.
-#![allow(dead_code, clippy::all)] // not every program asks for everything, and generated code has one style
+//! `State::start` returns the initial state, `State::handle` reacts to an event.
+//! Conditions and actions are methods of `World`.
+#![allow(dead_code, clippy::all)] // unused items are allowed, and generated code has one style
 
-/// What comes from outside.
+/// The external events.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Event {
     /// `toggle`
     Toggle,
 }
 
-/// What the chart asks, and what it has done.
+/// The conditions and actions of the chart.
 pub trait World {
-    /// Does this: `enter 0`
+    /// The action `enter 0`
     fn enter_0(&mut self);
-    /// Does this: `leave 0`
+    /// The action `leave 0`
     fn leave_0(&mut self);
-    /// Does this: `enter 1`
+    /// The action `enter 1`
     fn enter_1(&mut self);
-    /// Does this: `leave 1`
+    /// The action `leave 1`
     fn leave_1(&mut self);
-    /// Does this: `enter 2`
+    /// The action `enter 2`
     fn enter_2(&mut self);
-    /// Does this: `leave 2`
+    /// The action `leave 2`
     fn leave_2(&mut self);
-    /// Does this: `enter 3`
+    /// The action `enter 3`
     fn enter_3(&mut self);
-    /// Does this: `leave 3`
+    /// The action `leave 3`
     fn leave_3(&mut self);
-    /// Does this: `enter 4`
+    /// The action `enter 4`
     fn enter_4(&mut self);
-    /// Does this: `leave 4`
+    /// The action `leave 4`
     fn leave_4(&mut self);
-    /// Does this: `enter 5`
+    /// The action `enter 5`
     fn enter_5(&mut self);
-    /// Does this: `leave 5`
+    /// The action `leave 5`
     fn leave_5(&mut self);
-    /// Does this: `enter 6`
+    /// The action `enter 6`
     fn enter_6(&mut self);
-    /// Does this: `leave 6`
+    /// The action `leave 6`
     fn leave_6(&mut self);
-    /// Does this: `enter 7`
+    /// The action `enter 7`
     fn enter_7(&mut self);
-    /// Does this: `leave 7`
+    /// The action `leave 7`
     fn leave_7(&mut self);
 }
 
-/// What is active.
+/// The configurations.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum State {
     /// In `s0/s1/s2/s3`.
@@ -56,7 +57,7 @@ pub enum State {
 }
 
 impl State {
-    /// Begins.
+    /// The initial state.
     pub fn start(world: &mut impl World) -> State {
         world.enter_0();
         world.enter_1();
@@ -65,7 +66,7 @@ impl State {
         State::S3
     }
 
-    /// Does what an event leads to.
+    /// Reacts to an event.
     #[inline]
     pub fn handle(&mut self, event: Event, world: &mut impl World) {
         match (*self, event) {
@@ -94,7 +95,7 @@ impl State {
         }
     }
 
-    /// The innermost states that are active, by their paths; none when it is over.
+    /// The paths of the innermost active states; none after the end.
     pub const fn active(self) -> &'static [&'static str] {
         match self {
             State::S3 => &["s0/s1/s2/s3"],

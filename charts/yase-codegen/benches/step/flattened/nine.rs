@@ -1,48 +1,49 @@
-//! The statechart `guarded`, flattened: generated, so that what is changed here is lost when that is done again.
+//! The statechart `guarded`, flattened. Generated: changes here are lost.
 //!
-//! `State::start` begins, `State::handle` says what an event leads to. What it asks and does on the way are the methods of `World`.
-#![allow(dead_code, clippy::all)] // not every program asks for everything, and generated code has one style
+//! `State::start` returns the initial state, `State::handle` reacts to an event.
+//! Conditions and actions are methods of `World`.
+#![allow(dead_code, clippy::all)] // unused items are allowed, and generated code has one style
 
-/// What comes from outside.
+/// The external events.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Event {
     /// `toggle`
     Toggle,
 }
 
-/// What the chart asks, and what it has done.
+/// The conditions and actions of the chart.
 pub trait World {
-    /// Whether this holds: `M.n > 100`
+    /// The condition `M.n > 100`
     fn m_n_above_100(&self) -> bool;
-    /// Whether this holds: `M.n > 101`
+    /// The condition `M.n > 101`
     fn m_n_above_101(&self) -> bool;
-    /// Whether this holds: `M.n > 102`
+    /// The condition `M.n > 102`
     fn m_n_above_102(&self) -> bool;
-    /// Whether this holds: `M.n > 103`
+    /// The condition `M.n > 103`
     fn m_n_above_103(&self) -> bool;
-    /// Whether this holds: `M.n > 104`
+    /// The condition `M.n > 104`
     fn m_n_above_104(&self) -> bool;
-    /// Whether this holds: `M.n > 105`
+    /// The condition `M.n > 105`
     fn m_n_above_105(&self) -> bool;
-    /// Whether this holds: `M.n > 106`
+    /// The condition `M.n > 106`
     fn m_n_above_106(&self) -> bool;
-    /// Whether this holds: `M.n > 107`
+    /// The condition `M.n > 107`
     fn m_n_above_107(&self) -> bool;
-    /// Whether this holds: `M.n > 108`
+    /// The condition `M.n > 108`
     fn m_n_above_108(&self) -> bool;
-    /// Whether this holds: `M.n == 0`
+    /// The condition `M.n == 0`
     fn m_n_equals_0(&self) -> bool;
-    /// Does this: `enter 0`
+    /// The action `enter 0`
     fn enter_0(&mut self);
-    /// Does this: `leave 0`
+    /// The action `leave 0`
     fn leave_0(&mut self);
-    /// Does this: `enter 1`
+    /// The action `enter 1`
     fn enter_1(&mut self);
-    /// Does this: `leave 1`
+    /// The action `leave 1`
     fn leave_1(&mut self);
 }
 
-/// What is active.
+/// The configurations.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum State {
     /// In `s0`.
@@ -52,13 +53,13 @@ pub enum State {
 }
 
 impl State {
-    /// Begins.
+    /// The initial state.
     pub fn start(world: &mut impl World) -> State {
         world.enter_0();
         State::S0
     }
 
-    /// Does what an event leads to.
+    /// Reacts to an event.
     #[inline]
     pub fn handle(&mut self, event: Event, world: &mut impl World) {
         match (*self, event) {
@@ -187,7 +188,7 @@ impl State {
         }
     }
 
-    /// The innermost states that are active, by their paths; none when it is over.
+    /// The paths of the innermost active states; none after the end.
     pub const fn active(self) -> &'static [&'static str] {
         match self {
             State::S0 => &["s0"],

@@ -4,17 +4,17 @@ use super::Table;
 
 /// Against the type environment of the tests.
 pub(crate) const COMPILING: Table = &[
-    ("[limt > 1]", &["E0130 <limt>: there is nothing called `limt` here (did you mean `limit`?)"]),
+    ("[limt > 1]", &["E0130 <limt>: there is no `limt` here (did you mean `limit`?)"]),
     (
         "[nothing > 1]",
         &[
-            "E0130 <nothing>: there is nothing called `nothing` here (a bare name is a timer started on this blackboard, a constant or a function without arguments)",
+            "E0130 <nothing>: there is no `nothing` here (a bare name is a timer started on this blackboard, a constant or a function without arguments)",
         ],
     ),
     (
         "[PLAYING]",
         &[
-            "E0130 <PLAYING>: there is nothing called `PLAYING` here (`PLAYING` is a value of `PlayerState`: compare a field of that type with it)",
+            "E0130 <PLAYING>: there is no `PLAYING` here (`PLAYING` is a value of `PlayerState`: compare a field of that type with it)",
         ],
     ),
     (
@@ -23,11 +23,9 @@ pub(crate) const COMPILING: Table = &[
     ),
     (
         "[near]",
-        &[
-            "E0130 <near>: there is nothing called `near` here (`near` is a function: write its arguments in parentheses)",
-        ],
+        &["E0130 <near>: there is no `near` here (`near` is a function: write its arguments in parentheses)"],
     ),
-    ("[3m > 1]", &["E0130 <3m>: there is nothing called `3m` here (numbers carry no unit)"]),
+    ("[3m > 1]", &["E0130 <3m>: there is no `3m` here (numbers carry no unit)"]),
     (
         "[GameState.player_state == PLAYNG]",
         &["E0130 <PLAYNG>: the enumeration `PlayerState` has no value `PLAYNG` (did you mean `PLAYING`?)"],
@@ -38,14 +36,9 @@ pub(crate) const COMPILING: Table = &[
     ),
     (
         "[moton_timeout]",
-        &[
-            "E0130 <moton_timeout>: there is nothing called `moton_timeout` here (did you mean `motion_timeout`?)",
-        ],
+        &["E0130 <moton_timeout>: there is no `moton_timeout` here (did you mean `motion_timeout`?)"],
     ),
-    (
-        "[near(nothing, 1)]",
-        &["E0130 <nothing>: there is nothing called `nothing` here (a message `Ball` is expected)"],
-    ),
+    ("[near(nothing, 1)]", &["E0130 <nothing>: there is no `nothing` here (a message `Ball` is expected)"]),
     (
         "[both == 1]",
         &[
@@ -109,7 +102,7 @@ pub(crate) const COMPILING: Table = &[
         "[Ball.distnce > 1]",
         &["E0134 <distnce>: the message `Ball` has no field `distnce` (did you mean `distance`?)"],
     ),
-    ("[Ball.distance.x > 1]", &["E0134 <x>: `x` is asked of a number, which has no fields (leave `.x` out)"]),
+    ("[Ball.distance.x > 1]", &["E0134 <x>: a number has no field `x` (remove `.x`)"]),
     ("[Ball.position.z > 1]", &["E0134 <z>: the message `Point` has no field `z` (did you mean `x`?)"]),
     (
         "[ball.Signal.Ball.distance > 1]",
@@ -159,7 +152,7 @@ pub(crate) const COMPILING: Table = &[
     (
         "[Ball.distance == \"3\"]",
         &[
-            "E0137 <Ball.distance == \"3\">: `Ball.distance` is a number and `\"3\"` is a text: they cannot be compared (numbers stand without quotes, texts in quotes)",
+            "E0137 <Ball.distance == \"3\">: `Ball.distance` is a number and `\"3\"` is a text: they cannot be compared (write numbers without quotes, texts with quotes)",
         ],
     ),
     (
@@ -170,13 +163,11 @@ pub(crate) const COMPILING: Table = &[
     ),
     (
         "[Ball.colour < \"a\"]",
-        &["E0137 <Ball.colour < \"a\">: `<` needs numbers, but here stands a text (compare by `==` or `!=`)"],
+        &["E0137 <Ball.colour < \"a\">: `<` needs numbers, found a text (compare by `==` or `!=`)"],
     ),
     (
         "[Ball.found > true]",
-        &[
-            "E0137 <Ball.found > true>: `>` needs numbers, but here stands true or false (compare by `==` or `!=`)",
-        ],
+        &["E0137 <Ball.found > true>: `>` needs numbers, found true or false (compare by `==` or `!=`)"],
     ),
     (
         "[GameState.player_state == GameState.phase]",
@@ -205,7 +196,7 @@ pub(crate) const COMPILING: Table = &[
     (
         "[GameState.player_state < PLAYING]",
         &[
-            "E0137 <GameState.player_state < PLAYING>: `<` needs numbers, but here stands a `PlayerState` (compare by `==` or `!=`)",
+            "E0137 <GameState.player_state < PLAYING>: `<` needs numbers, found a `PlayerState` (compare by `==` or `!=`)",
         ],
     ),
     (
@@ -248,7 +239,7 @@ pub(crate) const COMPILING: Table = &[
     (
         "[Ball.distance == NULL]",
         &[
-            "E0138 <distance>: `distance` is a field; only whole messages can be absent (compare what stands before it with NULL)",
+            "E0138 <distance>: `distance` is a field; only whole messages can be absent (compare the message before it with NULL)",
         ],
     ),
     ("[Bal == NULL]", &["E0132 <Bal>: there is neither a message nor a topic `Bal` (did you mean `Ball`?)"]),
@@ -274,13 +265,13 @@ pub(crate) const COMPILING: Table = &[
     (
         "/ Vision.Ball.distance = 1",
         &[
-            "E0142 <Vision.Ball.distance>: `Vision.Ball.distance` is another's variable and cannot be assigned by a chart (a chart writes its own messages only: leave out what stands before the message)",
+            "E0142 <Vision.Ball.distance>: `Vision.Ball.distance` is a variable of another publisher and cannot be assigned by a chart (a chart writes only its own messages: remove the prefix of the message)",
         ],
     ),
     (
         "/ striker.ball.State.Ball.distance = 1",
         &[
-            "E0142 <striker.ball.State.Ball.distance>: `striker.ball.State.Ball.distance` is another's variable and cannot be assigned by a chart (a chart writes its own messages only: leave out what stands before the message)",
+            "E0142 <striker.ball.State.Ball.distance>: `striker.ball.State.Ball.distance` is a variable of another publisher and cannot be assigned by a chart (a chart writes only its own messages: remove the prefix of the message)",
         ],
     ),
     (
@@ -308,7 +299,7 @@ pub(crate) const COMPILING: Table = &[
     (
         "/ publish.Vision.Ball",
         &[
-            "E0142 <Vision.Ball>: `Vision.Ball` is another's variable and cannot be published by a chart (a chart writes its own messages only: leave out what stands before the message)",
+            "E0142 <Vision.Ball>: `Vision.Ball` is a variable of another publisher and cannot be published by a chart (a chart writes only its own messages: remove the prefix of the message)",
         ],
     ),
     (
@@ -333,7 +324,7 @@ pub(crate) const COMPILING: Table = &[
     (
         "[script(\"x\")]",
         &[
-            "E0147 <script(\"x\")>: what runs this chart has no scripts (write it as a condition or an action, or as a registered function)",
+            "E0147 <script(\"x\")>: the host of this chart has no scripts (write it as a condition or an action, or as a registered function)",
         ],
     ),
     (
@@ -357,7 +348,7 @@ pub(crate) const COMPILING: Table = &[
     (
         "whistle",
         &[
-            "E0133 <whistle>: several topics are called `whistle` (write `` `left.whistle`.Signal.Sound `` or `` `right.whistle`.Signal.Sound ``)",
+            "E0133 <whistle>: several topics have the name `whistle` (write `` `left.whistle`.Signal.Sound `` or `` `right.whistle`.Signal.Sound ``)",
         ],
     ),
     (
@@ -378,7 +369,7 @@ pub(crate) const COMPILING: Table = &[
             "E0132 <Nothing>: there is neither a message nor a topic `Nothing` (a variable is `Message.field` or `topic.Kind.Message.field`)",
             "E0139 <abz>: there is no function `abz` (did you mean `abs`?)",
             "E0137 <Ball.distance>: `Ball.distance` is a number, but true or false is needed here (compare it with something)",
-            "E0130 <zzz>: there is nothing called `zzz` here (a bare name is a timer started on this blackboard, a constant or a function without arguments)",
+            "E0130 <zzz>: there is no `zzz` here (a bare name is a timer started on this blackboard, a constant or a function without arguments)",
             "E0144 <Ball>: `Ball` is a message, and messages are not raised (give the event another name, or use `publish`)",
             "E0137 <1>: `1` is a number, but true or false is needed here (compare it with something)",
         ],
@@ -386,9 +377,9 @@ pub(crate) const COMPILING: Table = &[
     (
         "[abs(a) > zz + yy]",
         &[
-            "E0130 <a>: there is nothing called `a` here (a bare name is a timer started on this blackboard, a constant or a function without arguments)",
-            "E0130 <zz>: there is nothing called `zz` here (a bare name is a timer started on this blackboard, a constant or a function without arguments)",
-            "E0130 <yy>: there is nothing called `yy` here (a bare name is a timer started on this blackboard, a constant or a function without arguments)",
+            "E0130 <a>: there is no `a` here (a bare name is a timer started on this blackboard, a constant or a function without arguments)",
+            "E0130 <zz>: there is no `zz` here (a bare name is a timer started on this blackboard, a constant or a function without arguments)",
+            "E0130 <yy>: there is no `yy` here (a bare name is a timer started on this blackboard, a constant or a function without arguments)",
         ],
     ),
 ];

@@ -4,8 +4,8 @@ use super::Table;
 
 pub(crate) const PARSING: Table = &[
     ("[a # b]", &["E0101 <#>: `#` has no meaning here (names are letters, digits and `_`)"]),
-    ("[a == \"b]", &["E0102 <\">: what \" begins is not closed (close it with \")"]),
-    ("/ publish.`a", &["E0102 <`>: what ` begins is not closed (close it with `)"]),
+    ("[a == \"b]", &["E0102 <\">: \" is not closed (close it with \")"]),
+    ("/ publish.`a", &["E0102 <`>: ` is not closed (close it with `)"]),
     ("[a == \"\\q\"]", &["E0103 <\\q>: `\\q` is no escape (escapes are \\\" \\\\ \\n \\r \\t)"]),
     (
         "[`` == 1]",
@@ -52,7 +52,7 @@ pub(crate) const PARSING: Table = &[
     ("[f(a, b]", &["E0109 <(>: `(` is not closed (add `)`)"]),
     ("[(a", &["E0109 <(>: `(` is not closed (add `)`)"]),
     ("[a", &["E0110 <[>: `[` is not closed (add `]`)"]),
-    ("[a)]", &["E0109 <)>: `)` closes nothing (leave it out, or add `(`)"]),
+    ("[a)]", &["E0109 <)>: `)` closes nothing (remove it, or add `(`)"]),
     (
         "[1 < 2 < 3]",
         &["E0111 <<>: comparisons cannot be chained (write `a < b && b < c`, or use parentheses)"],
@@ -85,60 +85,57 @@ pub(crate) const PARSING: Table = &[
     (
         "[A.]",
         &[
-            "E0115 <]>: a name is expected, not `]` (a name is letters, digits and `_`; blanks stand around `lt`, `gt` and the like)",
+            "E0115 <]>: a name is expected, not `]` (a name is letters, digits and `_`; put blanks around `lt`, `gt` and the like)",
         ],
     ),
     (
         "[A.5 > 2]",
         &[
-            "E0115 <5>: a name is expected, not `5` (a name is letters, digits and `_`; blanks stand around `lt`, `gt` and the like)",
+            "E0115 <5>: a name is expected, not `5` (a name is letters, digits and `_`; put blanks around `lt`, `gt` and the like)",
         ],
     ),
     (
         "[In()]",
         &["E0115 <In()>: there is no state in the parentheses (write `In(state)` or `In(outer/inner)`)"],
     ),
-    ("a, b", &["E0116 <,>: `,` does not belong to a trigger (one of several events is written `a | b`)"]),
+    ("a, b", &["E0116 <,>: `,` does not belong to a trigger (alternative events are written `a | b`)"]),
     (
         "a.b()()",
         &[
-            "E0116 <(>: `(` does not belong to a trigger (an event is a name; conditions stand in brackets, actions after `/`)",
+            "E0116 <(>: `(` does not belong to a trigger (an event is a name; conditions are in brackets, actions after `/`)",
         ],
     ),
     (
         "f(x)",
         &[
-            "E0116 <(>: `(` does not belong to a trigger (an event is a name; conditions stand in brackets, actions after `/`)",
+            "E0116 <(>: `(` does not belong to a trigger (an event is a name; conditions are in brackets, actions after `/`)",
         ],
     ),
     (
         "StartTimeout(v, 100ms)",
         &[
-            "E0116 <(>: `(` does not belong to a trigger (an event is a name; conditions stand in brackets, actions after `/`)",
+            "E0116 <(>: `(` does not belong to a trigger (an event is a name; conditions are in brackets, actions after `/`)",
         ],
     ),
     (
         "e1 |",
         &[
-            "E0116 <>: an event is expected, not the end (an event is a name; conditions stand in brackets, actions after `/`)",
+            "E0116 <>: an event is expected, not the end (an event is a name; conditions are in brackets, actions after `/`)",
         ],
     ),
     (
         "(e)",
         &[
-            "E0116 <(>: `(` does not belong to a trigger (an event is a name; conditions stand in brackets, actions after `/`)",
+            "E0116 <(>: `(` does not belong to a trigger (an event is a name; conditions are in brackets, actions after `/`)",
         ],
     ),
     (
         "not",
         &[
-            "E0116 <>: an event is expected, not the end (an event is a name; conditions stand in brackets, actions after `/`)",
+            "E0116 <>: an event is expected, not the end (an event is a name; conditions are in brackets, actions after `/`)",
         ],
     ),
-    (
-        "[]",
-        &["E0117 <[]>: there is no condition in the brackets (leave the brackets out, or write `[true]`)"],
-    ),
+    ("[]", &["E0117 <[]>: the brackets are empty (remove the brackets, or write `[true]`)"]),
     (
         "[a]/",
         &[
@@ -183,13 +180,10 @@ pub(crate) const PARSING: Table = &[
     (
         "/TimeoutAction.100",
         &[
-            "E0115 <100>: a name is expected, not `100` (a name is letters, digits and `_`; blanks stand around `lt`, `gt` and the like)",
+            "E0115 <100>: a name is expected, not `100` (a name is letters, digits and `_`; put blanks around `lt`, `gt` and the like)",
         ],
     ),
-    (
-        "[a] b",
-        &["E0120 <b>: `b` follows the end of the expression (the form is `trigger [guard] / actions`)"],
-    ),
+    ("[a] b", &["E0120 <b>: unexpected `b` after the expression (the form is `trigger [guard] / actions`)"]),
     (
         "/a.b = 1 c.d = 2",
         &["E0120 <c>: `;` or the end is expected, not `c` (actions are separated by `;` or `,`)"],
@@ -224,13 +218,13 @@ pub(crate) const PARSING: Table = &[
     (
         "[TimeoutCheck(3)]",
         &[
-            "E0115 <3>: a name is expected, not `3` (a name is letters, digits and `_`; blanks stand around `lt`, `gt` and the like)",
+            "E0115 <3>: a name is expected, not `3` (a name is letters, digits and `_`; put blanks around `lt`, `gt` and the like)",
         ],
     ),
     (
         "/raise(3)",
         &[
-            "E0115 <3>: a name is expected, not `3` (a name is letters, digits and `_`; blanks stand around `lt`, `gt` and the like)",
+            "E0115 <3>: a name is expected, not `3` (a name is letters, digits and `_`; put blanks around `lt`, `gt` and the like)",
         ],
     ),
     (
@@ -239,7 +233,7 @@ pub(crate) const PARSING: Table = &[
             "E0107 <b>: an operator or `)` is expected, not `b` (names have no blanks, numbers no unit; operators are `&&`, `||`, `==`, `<` and the like)",
         ],
     ),
-    ("[a]]", &["E0120 <]>: `]` follows the end of the expression (the form is `trigger [guard] / actions`)"]),
+    ("[a]]", &["E0120 <]>: unexpected `]` after the expression (the form is `trigger [guard] / actions`)"]),
     (
         "/publish",
         &[

@@ -1,4 +1,4 @@
-//! What running activities, ancestors as targets, JOINs and timers mean for leaving.
+//! Effects of running activities, ancestors as targets, JOINs and timers on exits.
 
 use yase::{Semantics, TimerScope};
 
@@ -27,7 +27,7 @@ fn r09_running_activities_are_interrupted_and_their_return_ignored() {
 }
 
 #[test]
-fn r09_a_state_that_is_entered_again_runs_its_activity_anew() {
+fn r09_a_reentered_state_restarts_its_activity() {
     check_with(
         Semantics::scxml(),
         "

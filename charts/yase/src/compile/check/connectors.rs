@@ -122,7 +122,7 @@ impl ChartValidator<'_> {
     ) {
         self.about = Some(Element::Node(node));
         if outgoing.is_empty() && roles.of(node) != NodeRole::History {
-            let message = format!("no way leads on from `{}`", self.path(node));
+            let message = format!("no path continues from `{}`", self.path(node));
             self.error("M06", message);
         }
         let longest = outgoing.iter().map(|&id| match lengths[self.chart.transition(id).target.0 as usize] {

@@ -70,7 +70,7 @@ mod tests {
                          1: 0100007F:1D18 0100007F:1D17 01 00000000:00000000 00:00000000 00000000  1000\n";
 
     #[test]
-    fn only_who_listens_takes_a_port() {
+    fn only_listeners_occupy_a_port() {
         assert!(is_taken(7447, TABLE));
         assert!(!is_taken(7448, TABLE) && !is_taken(80, TABLE));
     }

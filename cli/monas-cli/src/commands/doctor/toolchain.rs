@@ -51,7 +51,7 @@ mod tests {
     use crate::commands::doctor::CheckStatus;
 
     #[test]
-    fn an_old_compiler_is_told_from_a_new_one() {
+    fn an_old_compiler_is_distinguished_from_a_new_one() {
         assert_eq!(compiler(Some("rustc 1.70.0 (90c541806 2023-05-31)")).state, CheckStatus::Error);
         assert_eq!(compiler(Some("rustc 1.100.0-nightly (x)")).state, CheckStatus::Ok);
         assert_eq!(compiler(None).state, CheckStatus::Warning);

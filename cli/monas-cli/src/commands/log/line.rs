@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_wrote_a_line_is_the_agent_or_the_agent_and_its_activity() {
+    fn the_author_of_a_line_is_the_agent_with_its_activity() {
         let log = |name: &str| Log { name: name.into(), level: Level::Warning.into(), ..Log::default() };
         for (name, agent, activity) in
             [("", "", ""), ("Goalie", "Goalie", ""), ("Goalie/Dive", "Goalie", "Dive")]

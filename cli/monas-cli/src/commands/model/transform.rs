@@ -206,7 +206,9 @@ impl Transformation<'_, '_> {
         let mut made = self.selected(made)?;
         let [Model::Chart(chart)] = made.as_mut_slice() else {
             let reason = if kind == Kind::Iac { "of one chart: select it with --name" } else { "of an IAC" };
-            return Err(CommandFailure::Usage(format!("--keep is for what an older model says {reason}")));
+            return Err(CommandFailure::Usage(format!(
+                "--keep takes refinements of an older model {reason}"
+            )));
         };
         let (source, older, ..) = valid_model(path, self.format, self.console)?;
         let Model::Chart(older) = older else { return Err(wrong_kind(path, &older, "IAC")) };

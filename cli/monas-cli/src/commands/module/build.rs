@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn cargo_is_asked_for_both_with_the_features_and_the_profile_of_the_program() {
+    fn cargo_builds_both_with_the_features_and_profile_of_the_program() {
         let words = |arguments: Vec<OsString>| -> Vec<String> {
             arguments.into_iter().map(|word| word.to_string_lossy().into_owned()).collect()
         };
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn of_what_cargo_says_the_files_of_modules_are_taken() {
+    fn the_files_of_modules_are_taken_from_cargos_output() {
         let said = |kind: &str| {
             let target = json!({"name": "eyes", "kind": [kind], "crate_types": ["cdylib"]});
             let files = ["/t/libeyes.rlib", "/t/libeyes.so", "/t/libeyes.dylib", "/t/eyes.dll"];

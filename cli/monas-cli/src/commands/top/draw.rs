@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn agents_are_shown_and_the_activities_of_the_one_that_is_looked_at() {
+    fn agents_are_listed_with_the_activities_of_the_selected_one() {
         let mut screen = Screen::new(figures(&["Vision", "Motion"]));
         let lines = shown(&screen);
         assert_eq!(lines[0], "match  12.0 s  2 agents  100.0 % of a core");

@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn what_burns_blocks_fails_or_is_stuck_is_named() {
+    fn busy_blocked_failing_and_stuck_agents_are_named() {
         let remark = |calls: u64, failures: u64, call_time: Option<Times>, state: &str| {
             let agent = |calls, failures| AgentEntry {
                 name: "a".into(),
@@ -357,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_whose_time_stands_has_no_rates() {
+    fn a_run_with_stopped_time_has_no_rates() {
         let agent = |cycles| AgentEntry { cycles, ..AgentEntry::default() };
         let figures = Metrics::between(&sample(3, vec![agent(5)], 1), &sample(3, vec![agent(6)], 2));
         assert_eq!((figures.agents[0].hz, figures.topics[0].hz), (0.0, 0.0));

@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_is_looked_for_and_nobody_may_come_unless_the_settings_say_so() {
+    fn discovery_and_listening_are_off_by_default() {
         let config = ZenohSettings::default().config(&AccessList::open()).unwrap();
         for (key, value) in [
             ("scouting/multicast/enabled", "false"),

@@ -17,16 +17,14 @@ pub(crate) fn check(subject: &CheckedModel) -> Vec<(TransitionId, Diagnostic)> {
     waiting
         .map(|id| {
             let source = subject.path(subject.transition(id).source);
-            let message =
-                format!("`{}` waits until `{source}` has completed, which it never can", subject.arrow(id));
-            let hint =
-                "write `[false]` if it is meant to go on forever, or a guard or an event on which it is left";
+            let message = format!("`{}` waits for `{source}`, which never completes", subject.arrow(id));
+            let hint = "write `[false]` if it is meant to run forever; otherwise add a guard or an event";
             (id, subject.warn_of("M15", id, message).with_hint(hint))
         })
         .collect()
 }
 
-/// Whether a transition leaves a composite that has completed, and no other.
+/// Whether a transition requires the completion of its source.
 pub(crate) fn waits(subject: &CheckedModel, id: TransitionId) -> bool {
     let transition = subject.transition(id);
     let expression = &transition.expression;
@@ -35,8 +33,8 @@ pub(crate) fn waits(subject: &CheckedModel, id: TransitionId) -> bool {
     is_composite && expression.trigger.is_none() && !expression.is_never() && for_completion
 }
 
-/// Whether a composite is what `x~` makes: it goes on forever, and its exit is only there since the
-/// rest of the formula has one.
+/// Whether a composite is the translation of `x~`. It repeats forever, and its exit exists only
+/// because the enclosing formula continues.
 pub(crate) fn is_forever(subject: &CheckedModel, node: NodeId) -> bool {
     let children = subject.chart.children(node);
     let has_end = children.iter().any(|&child| subject.kind(child) == NodeKind::End);
@@ -75,7 +73,7 @@ fn completes(subject: &CheckedModel) -> Vec<bool> {
     }
 }
 
-/// Whether a composite can complete, if so much else can.
+/// Whether a composite can complete, given the nodes known to complete.
 fn can_now(subject: &CheckedModel, completes: &[bool], node: NodeId) -> bool {
     let children = subject.chart.children(node);
     match subject.kind(node) {
@@ -101,10 +99,10 @@ fn reaches_end(subject: &CheckedModel, completes: &[bool], composite: NodeId) ->
         {
             return true;
         }
-        // whatever is active inside may leave too: its own transitions may lead anywhere
+        // states inside the target may leave it by their own transitions
         open.extend(subject.chart.children(node));
-        // and so may what lies around a node that a transition from outside leads to, such as a
-        // HISTORY
+        // if an external transition enters a node, such as a HISTORY, the nodes around it may be
+        // left too
         let around = subject.chart.node(node).parent.filter(|&parent| inside && parent != composite);
         open.extend(around);
         let ways = subject.outgoing(node).iter().filter(|&&id| can_leave(subject, completes, id));

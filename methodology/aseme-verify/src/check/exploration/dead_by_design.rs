@@ -6,11 +6,11 @@ use yase::{NodeId, NodeKind, TransitionId};
 use super::completion;
 use crate::checked_model::CheckedModel;
 
-/// What is meant never to happen.
+/// Nodes and transitions that are dead on purpose.
 pub(crate) struct DeadByDesign {
-    /// By node: it would only be reached, or only complete, through what never happens.
+    /// By node: it can only be reached, or complete, through transitions that are never taken.
     cut_off: Vec<bool>,
-    /// By transition.
+    /// By transition: it is never taken.
     never: Vec<bool>,
 }
 
@@ -41,8 +41,8 @@ impl DeadByDesign {
         intended
     }
 
-    /// What follows from a node not being reached: what it leads to, what is in it, and the end of
-    /// what it is in.
+    /// Propagates that a node is unreachable: to the targets of its transitions, its children and
+    /// the completion of its parent.
     fn follow(&mut self, subject: &CheckedModel, node: NodeId, open: &mut Vec<NodeId>) {
         for &id in subject.outgoing(node) {
             self.never[id.0 as usize] = true;
@@ -67,17 +67,17 @@ impl DeadByDesign {
         }
     }
 
-    /// Whether a node is meant not to be reached by one of the ways to it.
+    /// Whether a node is unreachable by design on at least one path.
     pub(crate) fn is_cut_off(&self, node: NodeId) -> bool {
         self.cut_off[node.0 as usize]
     }
 
-    /// Whether a transition is meant never to be taken, or follows from that.
+    /// Whether a transition is dead by design, directly or as a consequence.
     pub(crate) fn is_never(&self, id: TransitionId) -> bool {
         self.never[id.0 as usize]
     }
 
-    /// Whether some way out of a state, or of what is around it, is meant to be taken.
+    /// Whether some exit of a state, or of a state around it, is meant to be taken.
     pub(crate) fn must_be_exited(&self, subject: &CheckedModel, node: NodeId) -> bool {
         if !matches!(subject.kind(node), NodeKind::Basic | NodeKind::Start) {
             return false;

@@ -8,7 +8,7 @@ use yase::{Diagnostic, NodeId, NodeKind, TransitionId};
 use super::GuardCheck;
 use crate::logic::Claim;
 
-/// Of more ways than this out of one node, only neighbours are compared.
+/// Nodes with more outgoing transitions than this have only neighbouring ones compared.
 const MOST: usize = 64;
 
 /// So many conflicts of one transition with other regions are reported.
@@ -34,7 +34,7 @@ impl GuardCheck<'_> {
         found
     }
 
-    /// M07: whenever the later one could be taken, an earlier one is.
+    /// M07: a transition that is never taken, because earlier ones are enabled whenever it is.
     fn shadowed_transition(&self, earlier: &[TransitionId], later: TransitionId) -> Option<Diagnostic> {
         if self.subject.transition(later).weight.is_some() || self.is_dead(later) {
             return None;
@@ -50,13 +50,12 @@ impl GuardCheck<'_> {
             Some(first) => {
                 (format!("`{}`", self.subject.arrow(first)), "its guard holds whenever this one's does")
             }
-            None if before.len() > 1 && self.is_covered(&before, later) => (
-                String::from("one of the transitions before it"),
-                "their guards together hold whenever this one's does",
-            ),
+            None if before.len() > 1 && self.is_covered(&before, later) => {
+                (String::from("an earlier transition"), "their guards together hold whenever this one's does")
+            }
             None => return None,
         };
-        let message = format!("`{}` is never taken: {who} always wins", self.subject.arrow(later));
+        let message = format!("`{}` is never taken: {who} always precedes it", self.subject.arrow(later));
         Some(Diagnostic::warning("M07", self.subject.places.guard(later), message).with_hint(hint))
     }
 
@@ -64,8 +63,8 @@ impl GuardCheck<'_> {
         self.guard(id).is_some_and(|guard| self.logic.together(&[Claim::Holds(guard)]).is_no())
     }
 
-    /// Whether a transition is tried before another on every occasion on which that is, and goes on
-    /// to a state.
+    /// Whether a transition is tried before another whenever that one is enabled, and leads to a
+    /// state.
     fn comes_before(&self, first: TransitionId, later: TransitionId) -> bool {
         let (one, other) = (self.subject.transition(first), self.subject.transition(later));
         let interrupts = one.interrupts || !other.interrupts;
@@ -78,8 +77,8 @@ impl GuardCheck<'_> {
             && self.goes_on(one.target)
     }
 
-    /// What a transition without a trigger asks of its source: 0 nothing, 1 that nothing inside can
-    /// step, 2 that it has completed.
+    /// What a transition without a trigger requires of its source: 0 nothing, 1 that nothing inside
+    /// can step, 2 that it has completed.
     fn source_requirement(&self, id: TransitionId) -> u8 {
         let transition = self.subject.transition(id);
         match self.subject.kind(transition.source) {
@@ -95,18 +94,18 @@ impl GuardCheck<'_> {
     fn is_covered(&self, earlier: &[TransitionId], later: TransitionId) -> bool {
         let claims =
             earlier.iter().map(|&id| self.guard(id).map(Claim::DoesNotHold)).collect::<Option<Vec<_>>>();
-        // one without a guard is always open
+        // a transition without a guard is always enabled
         let Some(mut claims) = claims else { return true };
         claims.extend(self.guard(later).map(Claim::Holds));
         self.logic.together(&claims).is_no()
     }
 
-    /// M08: both can be enabled at once, and nothing says which is meant.
+    /// M08: both can be enabled at once, and neither has a declared priority.
     fn overlap(&self, first: TransitionId, later: TransitionId) -> Option<Diagnostic> {
         let (one, other) = (self.subject.transition(first), self.subject.transition(later));
         let is_decided = one.priority != other.priority || one.weight.is_some() || other.weight.is_some();
         let alike = self.source_requirement(first) == self.source_requirement(later);
-        // whichever is taken, it comes to the same
+        // both have the same effect
         let is_same = (one.target, one.interrupts, one.internal, &one.expression.actions)
             == (other.target, other.interrupts, other.internal, &other.expression.actions);
         if is_same
@@ -122,7 +121,7 @@ impl GuardCheck<'_> {
         };
         let (one, other) = (self.subject.arrow(first), self.subject.arrow(later));
         let message = format!("`{one}` and `{other}` may both be enabled: where {example}");
-        let hint = "the first is taken; give them priorities, or guards that exclude each other";
+        let hint = "the first is used; give them priorities, or guards that exclude each other";
         Some(Diagnostic::warning("M08", self.subject.places.guard(later), message).with_hint(hint))
     }
 
@@ -198,7 +197,7 @@ fn names(trigger: &Trigger) -> Option<BTreeSet<String>> {
     }
 }
 
-/// Whether a trigger matches every occasion that another does.
+/// Whether a trigger matches every event that another matches.
 fn subsumes(first: Option<&Trigger>, later: Option<&Trigger>) -> bool {
     match (first, later) {
         (None, None) | (Some(Trigger::Any), Some(_)) => true,
@@ -213,7 +212,7 @@ fn subsumes(first: Option<&Trigger>, later: Option<&Trigger>) -> bool {
     }
 }
 
-/// Whether there is an occasion that both match.
+/// Whether an event exists that both triggers match.
 fn triggers_overlap(one: Option<&Trigger>, other: Option<&Trigger>) -> bool {
     match (one, other) {
         (None, None) => true,

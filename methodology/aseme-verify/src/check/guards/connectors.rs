@@ -7,14 +7,14 @@ use yase::{Diagnostic, NodeId, NodeKind, Severity, TransitionId};
 use super::GuardCheck;
 use crate::logic::{Claim, Satisfiability};
 
-/// Ways through connectors are looked at up to this number of segments, and so many of them.
+/// Limits on the segments of a path through connectors, and on the number of paths.
 const LONGEST: usize = 16;
 const MOST: usize = 256;
 
 impl GuardCheck<'_> {
-    /// M05 of a branch, M01 of a START: the guards of the ways out leave cases open.
+    /// M05 for a branch, M01 for a START: no outgoing guard covers some cases.
     ///
-    /// A START with one way out and a guard on it waits there on purpose.
+    /// A START with one guarded exit waits there on purpose.
     pub(crate) fn cases_left_open(&self, node: NodeId) -> Option<Diagnostic> {
         let kind = self.subject.kind(node);
         let code = match kind {
@@ -27,15 +27,15 @@ impl GuardCheck<'_> {
             None => String::new(),
         };
         let name = self.subject.path(node);
-        let message = format!("the ways out of `{name}` leave cases open{example}");
+        let message = format!("the guards out of `{name}` leave cases uncovered{example}");
         let found = self.subject.warn(code, node, message);
         let severity = if kind == NodeKind::Choice { Severity::Error } else { found.severity };
         let found = Diagnostic { severity, ..found };
-        Some(found.with_hint("let one of them be without a guard: it is taken when no other is"))
+        Some(found.with_hint("remove the guard of one transition: it is then taken if no other is"))
     }
 
-    /// An example of what no way out of a node is for, if there is one: nothing in it if the ways
-    /// are closed whatever comes.
+    /// An example of a case that no exit of a node covers. The inner option is `None` if no exit
+    /// can be enabled at all.
     fn open_cases(&self, node: NodeId) -> Option<Option<String>> {
         let ways = self.subject.outgoing(node);
         let guards: Vec<&Expression> = ways.iter().filter_map(|&id| self.guard(id)).collect();
@@ -51,11 +51,11 @@ impl GuardCheck<'_> {
         }
     }
 
-    /// M06: a way through connectors whose guards contradict each other.
+    /// M06: a path through connectors whose guards contradict each other.
     pub(crate) fn dead_ways(&self, node: NodeId) -> Vec<Diagnostic> {
         let (mut found, mut looked) = (Vec::new(), 0);
         if self.is_static(node) {
-            // a way that goes on from here is looked at where it begins
+            // a path that continues from here is analysed from its beginning
             return found;
         }
         let mut open: Vec<Vec<TransitionId>> =
@@ -83,7 +83,7 @@ impl GuardCheck<'_> {
         )
     }
 
-    /// Whether the guards of several segments cannot hold together, though each of the parts can.
+    /// Whether the guards of several segments are contradictory although each guard is satisfiable.
     fn contradict(&self, way: &[TransitionId]) -> bool {
         let guards: Vec<&Expression> = way.iter().filter_map(|&id| self.guard(id)).collect();
         let alone = |guard: &&Expression| self.logic.together(&[Claim::Holds(guard)]).is_no();
@@ -97,12 +97,12 @@ impl GuardCheck<'_> {
         let last = way[way.len() - 1];
         let targets = way.iter().map(|&id| self.subject.path(self.subject.transition(id).target));
         let path = std::iter::once(first).chain(targets).collect::<Vec<_>>().join("` -> `");
-        let message = format!("the way `{path}` is never open: its guards contradict each other");
-        let hint = "all guards up to a CHOICE are read at once; make the connector a CHOICE if an action comes between";
+        let message = format!("the path `{path}` is never enabled: its guards contradict each other");
+        let hint = "all guards before a CHOICE are evaluated together; make the connector a CHOICE if an action precedes it";
         Diagnostic::error("M06", self.subject.places.guard(last), message).with_hint(hint)
     }
 
-    /// Whether a way that has come to a node surely goes on from it.
+    /// Whether a path that reaches a node always continues from it.
     pub(crate) fn goes_on(&self, node: NodeId) -> bool {
         let mut open = vec![node];
         let mut looked = 0;

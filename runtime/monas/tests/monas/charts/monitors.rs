@@ -31,11 +31,11 @@ struct Violations(Arc<Mutex<Vec<(Timestamp, u64, String)>>>);
 impl Observer for Violations {
     fn observe(&mut self, publication: Publication<'_>) {
         if let Some(cycle) = publication.sample.message.as_any().downcast_ref::<Cycle>() {
-            let told = cycle
+            let texts = cycle
                 .violations
                 .iter()
                 .map(|it| (Timestamp::from_nanos(cycle.time), cycle.number, it.property.clone()));
-            self.0.lock().unwrap().extend(told);
+            self.0.lock().unwrap().extend(texts);
         }
     }
 }
@@ -52,7 +52,7 @@ fn times(violations: &Violations) -> Vec<u64> {
 }
 
 #[test]
-fn what_is_missed_in_time_is_found_when_the_time_is_over_and_each_time_anew() {
+fn missed_deadlines_are_reported_each_time() {
     let agent = |bound: &str| {
         let text = format!("always eventually entering A within {bound}");
         Agent::statechart("m", chart(LOOP)).monitor(properties(&text), ViolationResponse::Log)
@@ -63,7 +63,7 @@ fn what_is_missed_in_time_is_found_when_the_time_is_over_and_each_time_anew() {
     let (mut simulation, violations) = simulated(agent("50 ms"), noting().1);
     simulation.run_until(at(290)).unwrap();
     assert_eq!(times(&violations), [50_000_001, 150_000_001, 250_000_001]);
-    assert_eq!(simulation.statistics().agents[0].stopped, None, "it is only told");
+    assert_eq!(simulation.statistics().agents[0].stopped, None, "it is only reported");
     let (_, number, name) = violations.0.lock().unwrap()[0].clone();
     assert_eq!((number > 1, name.as_str()), (true, "p"));
 }
@@ -102,12 +102,12 @@ fn a_violation_may_have_the_agent_do_what_it_does_when_an_activity_fails() {
     {
         let (count, reason) = stopped(policy, on_violation);
         assert_eq!(reason, None);
-        assert!(count > 1, "each violation is told");
+        assert!(count > 1, "each violation is reported");
     }
 }
 
 #[test]
-fn what_does_not_begin_with_always_is_decided_once() {
+fn properties_without_always_are_decided_once() {
     let agent = Agent::statechart("m", chart(LOOP))
         .monitor(properties("not leaving A until [ball.found]"), ViolationResponse::Log);
     let (mut simulation, violations) = simulated(agent, noting().1);
@@ -171,7 +171,7 @@ fn a_replay_finds_the_same_violations() {
 }
 
 #[test]
-fn of_several_charts_each_keeps_to_its_own_properties() {
+fn each_of_several_charts_has_its_own_properties() {
     let rules = |text| ChartSettings::new().monitor(properties(text), ViolationResponse::Policy);
     let of = |first, second| {
         let agent = Agent::statechart("m", chart(LOOP))
@@ -187,7 +187,7 @@ fn of_several_charts_each_keeps_to_its_own_properties() {
 }
 
 #[test]
-fn names_that_nobody_knows_are_refused_before_the_run() {
+fn unknown_names_are_rejected_before_the_run() {
     let refused = |text: &str| {
         let agent = Agent::statechart("m", chart(LOOP)).monitor(properties(text), ViolationResponse::Log);
         Talws::new().registry(noting().1).agent(agent).simulate(1).unwrap_err().diagnostics()[0].code

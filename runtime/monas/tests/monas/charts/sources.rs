@@ -9,7 +9,7 @@ use crate::charts::{balls, chart, noting, simulate};
 use crate::kit::{BALL, Ball, GAME, Game, Phase, at};
 
 #[test]
-fn a_guard_that_names_a_publisher_reads_its_newest_message_whoever_publishes_after_it() {
+fn a_guard_reads_the_newest_message_of_the_named_publisher() {
     // Each plays from a certain moment on. Of the three that publish in each moment, `z` is the
     // last.
     let plays = |name: &str, from: u64| {

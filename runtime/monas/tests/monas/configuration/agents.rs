@@ -126,7 +126,7 @@ fn statecharts_have_what_agents_have_as_they_or_the_thesis_write_it() {
 }
 
 #[test]
-fn what_is_said_of_a_statechart_is_checked() {
+fn statechart_settings_are_checked() {
     let chart = |attributes: &str, within: &str| {
         format!("<statechart {attributes}>models/walker.srm{within}</statechart>")
     };
@@ -149,13 +149,11 @@ fn what_is_said_of_a_statechart_is_checked() {
         ),
         (
             chart("", "<activity>Walk</activity><activity>Walk</activity>"),
-            "agents.xml:2:66: error[E0311]: of the activity `Walk` of the chart `walker` something is said already (say it all in one \
-             `activity`: it holds for every state that has it)",
+            "agents.xml:2:66: error[E0311]: the activity `Walk` of the chart `walker` is configured twice (use one `activity` element: it applies to every state that runs it)",
         ),
         (
             chart("", "") + &chart("", "") + "<monitor>models/p.properties</monitor>",
-            "agents.xml:2:96: error[E0324]: agent `a` has 2 statecharts: nobody knows whose properties these are (put the `monitor` into \
-             the `statechart` that is to keep to it)",
+            "agents.xml:2:96: error[E0324]: agent `a` has 2 statecharts: the properties are ambiguous (put the `monitor` into one `statechart`)",
         ),
     ] {
         check_charts(&elements, &[expected]);
@@ -200,7 +198,7 @@ fn names_that_are_not_known_come_with_the_nearest_that_is() {
 }
 
 #[test]
-fn values_that_cannot_be_meant_are_said() {
+fn implausible_values_are_reported() {
     check_agent(
         "priority='high'",
         "<activity>Vision</activity>",
@@ -233,7 +231,7 @@ fn values_that_cannot_be_meant_are_said() {
 }
 
 #[test]
-fn what_an_agent_lacks_is_said() {
+fn missing_parts_of_an_agent_are_reported() {
     check(
         "<agent thread_frequency='1'><activity>Vision</activity></agent>",
         &["agents.xml:1:2: error[E0305]: `agent` has no `name` (give it a `name`)"],
@@ -251,25 +249,25 @@ fn what_an_agent_lacks_is_said() {
     check(
         "<agent><name>a</name><activity>Vision</activity></agent>",
         &[
-            "agents.xml:1:2: error[E0305]: agent `a` has activities and no `thread_frequency` (say how many cycles a second it has: `thread_frequency=\"10\"`)",
+            "agents.xml:1:2: error[E0305]: agent `a` has activities and no `thread_frequency` (add its cycles per second: `thread_frequency=\"10\"`)",
         ],
     );
 }
 
 #[test]
-fn two_agents_of_one_name_are_said() {
+fn two_agents_of_one_name_are_reported() {
     let agent = "<agent thread_frequency='1'><name>a</name><activity>Vision</activity></agent>\n";
     check(
         &agent.repeat(2),
         &[
-            "agents.xml:2:35: error[E0311]: another agent is named `a` (each agent of a host has a name of its own)",
+            "agents.xml:2:35: error[E0311]: another agent is named `a` (give each agent of a host a unique name)",
         ],
     );
     let provider = "<provider thread_frequency='1'>Vision</provider>";
     check(
         &provider.repeat(2),
         &[
-            "agents.xml:1:80: error[E0311]: another agent is named `Vision` (each agent of a host has a name of its own)",
+            "agents.xml:1:80: error[E0311]: another agent is named `Vision` (give each agent of a host a unique name)",
         ],
     );
 }
@@ -298,7 +296,7 @@ fn parameters_are_checked_by_the_activity_that_has_them() {
 }
 
 #[test]
-fn ill_formed_xml_is_repaired_and_said() {
+fn ill_formed_xml_is_repaired_and_reported() {
     check_agent(
         "",
         "<activity>Vision",
@@ -317,12 +315,12 @@ fn ill_formed_xml_is_repaired_and_said() {
     check_agent(
         "priority='1' priority='2'",
         "<activity>Vision</activity>",
-        &["agents.xml:1:43: error[E0307]: attribute `priority` is given twice (leave one of them out)"],
+        &["agents.xml:1:43: error[E0307]: attribute `priority` is repeated (remove one of them)"],
     );
     check(
         "hello",
         &[
-            "agents.xml:1:1: error[E0301]: text outside of an element (a text stands between tags: `<name>text</name>`)",
+            "agents.xml:1:1: error[E0301]: text outside an element (text must be inside an element: `<name>text</name>`)",
         ],
     );
     check(
@@ -345,7 +343,7 @@ fn two_mistakes_are_two_diagnostics() {
 }
 
 #[test]
-fn files_that_are_not_there_are_said_with_the_nearest_that_is() {
+fn missing_files_are_reported_with_the_nearest_one() {
     let text = "<agent><name>a</name><statechart>models/golie.srm</statechart></agent>";
     let expected =
         "agents.xml:1:34: error[E0316]: no model file `models/golie.srm` (did you mean `models/goalie.srm`?)";
@@ -375,7 +373,7 @@ fn a_model_is_found_from_the_folders_above() {
 }
 
 #[test]
-fn mistakes_in_a_model_are_said_with_their_place_in_it() {
+fn errors_in_a_model_are_reported_with_positions_in_it() {
     check_model(
         "m = Vsion . Behavior",
         &[
@@ -385,19 +383,17 @@ fn mistakes_in_a_model_are_said_with_their_place_in_it() {
 }
 
 #[test]
-fn mistakes_in_formulas_and_expressions_are_said_with_their_place_in_the_model() {
+fn errors_in_formulas_and_expressions_have_positions_in_the_model() {
     check_model(
         "m = Vision . . Behavior",
         &[
-            "models/m.srm:1:14: error[E0205]: there is nothing to the left of `.` (an operator stands between two terms)",
+            "models/m.srm:1:14: error[E0205]: there is nothing to the left of `.` (an operator connects two terms)",
         ],
     );
     check_model(
         "m = a\na = b . Vision\nb = a",
-        &[
-            "models/m.srm:3:5: error[E0214]: `a` is part of what it consists of: a -> b -> a (repetition is written `x~`, \
-           `x*` or `x+`)",
-        ],
+        &["models/m.srm:3:5: error[E0214]: `a` refines itself: a -> b -> a (repetition is written `x~`, \
+           `x*` or `x+`)"],
     );
     check_model(
         &refined("Vision -> Behavior : [ball.x >]"),

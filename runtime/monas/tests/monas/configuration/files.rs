@@ -77,7 +77,7 @@ fn elements_are_found_and_added_within_the_one_root_of_well_formed_xml() {
 }
 
 #[test]
-fn only_the_value_changes_whatever_stands_around_it() {
+fn only_the_value_changes_in_any_context() {
     for (text, expected) in [
         ("<a x=1 y='2'/>", "<a x=\"5\" y='2'/>"),
         ("<a  x = '1'\n y=2 />", "<a  x = '5'\n y=2 />"),
@@ -106,7 +106,7 @@ fn only_the_value_changes_whatever_stands_around_it() {
 }
 
 #[test]
-fn what_cannot_be_read_or_written_is_said_with_its_place() {
+fn io_errors_are_reported_with_positions() {
     let config = XmlConfig::from_text("a.xml", "<a>quick</a>\n<b x=1 y=z/>");
     assert_eq!(
         config.element::<f64>("a").unwrap_err().to_string(),
@@ -136,7 +136,7 @@ fn a_file_that_could_not_be_read_is_left_alone() {
 }
 
 #[test]
-fn a_tree_is_asked_from_the_root_and_from_a_node() {
+fn a_tree_is_queried_from_the_root_and_from_a_node() {
     let text = "<agent Priority=1><name>A</name><activity>Vision</activity></agent>\n\
                 <agent Priority=2><name>B</name><activity>Behavior</activity><activity>Motion</activity></agent>";
     let tree = Xml::read(&Source::new("a.xml", text));

@@ -76,7 +76,7 @@ fn the_last_setting_of_a_value_holds() {
 }
 
 #[test]
-fn a_setting_of_what_is_not_there_is_said() {
+fn a_setting_of_a_missing_element_is_reported() {
     let said = |setting: &str| {
         let resolved = resolve(&set(Layers::new(), &[setting]));
         resolved.into_diagnostics().iter().map(ToString::to_string).collect::<Vec<_>>()
@@ -101,17 +101,17 @@ fn a_setting_of_what_is_not_there_is_said() {
 }
 
 #[test]
-fn a_setting_that_is_no_path_is_said() {
+fn a_setting_without_a_path_is_reported() {
     let said = |setting: &str| Layers::new().set(setting, &Grammar::agents()).unwrap_err().to_string();
     let how = "write `agent.NAME.priority=2`: a path, `=` and a value";
     for (setting, expected) in [
         ("agent.Motion.priority", format!("--set:1:1: error[E0340]: `agent.Motion.priority` is no path with a value ({how})")),
         ("", format!("--set:1:1: error[E0340]: `` is no path with a value ({how})")),
-        ("agnt.Motion.priority=2", "--set:1:1: error[E0340]: there is nothing called `agnt` to set (did you mean `agent`?)".into()),
-        ("agent=2", "--set:1:1: error[E0340]: the setting does not say which `agent` (write `agent.NAME.thread_frequency=VALUE`)".into()),
-        ("agent.Motion=2", "--set:1:1: error[E0340]: the setting does not say what of `agent` (write `agent.NAME.thread_frequency=VALUE`)".into()),
+        ("agnt.Motion.priority=2", "--set:1:1: error[E0340]: there is no setting `agnt` (did you mean `agent`?)".into()),
+        ("agent=2", "--set:1:1: error[E0340]: the setting does not name the `agent` (write `agent.NAME.thread_frequency=VALUE`)".into()),
+        ("agent.Motion=2", "--set:1:1: error[E0340]: the setting does not name an attribute of `agent` (write `agent.NAME.thread_frequency=VALUE`)".into()),
         ("agent.Motion.activty.Walk.gait=2", "--set:1:14: error[E0340]: `agent` holds no `activty` (did you mean `activity`?)".into()),
-        ("agent.Motion.name=Other", "--set:1:14: error[E0340]: the `name` of `agent` tells it from others and cannot be set (change it in the file)".into()),
+        ("agent.Motion.name=Other", "--set:1:14: error[E0340]: the `name` of `agent` identifies it and cannot be set (change it in the file)".into()),
     ] {
         assert_eq!(said(setting), expected);
     }

@@ -65,14 +65,13 @@ fn check_link(attributes: &str, elements: &str, expected: &[&str]) {
 }
 
 #[test]
-fn what_is_wrong_with_a_link_is_said_with_its_place_and_what_would_be_right() {
+fn link_errors_have_positions_and_hints() {
     let send = "<send topics='test/ball'/>";
     check_link(
         "",
         "",
         &[
-            "agents.xml:1:2: error[E0330]: the link neither sends nor receives anything (say what crosses it: \
-        `<send topics=\"soccer/*\"/>`, `<receive topics=\"soccer/ball\"/>`)",
+            "agents.xml:1:2: error[E0330]: the link neither sends nor receives anything (add topics: `<send topics=\"soccer/*\"/>`, `<receive topics=\"soccer/ball\"/>`)",
         ],
     );
     check_link(
@@ -125,22 +124,22 @@ fn what_is_wrong_with_a_link_is_said_with_its_place_and_what_would_be_right() {
         "scouting='1'",
         &format!("{send}<listen>7447</listen>"),
         &[
-            "agents.xml:1:7: error[E0335]: `scouting` means nothing where the transport is `local` \
-         (other computers are reached with `transport=\"zenoh\"`)",
-            "agents.xml:2:28: error[E0335]: `<listen>` means nothing where the transport is `local` \
-         (other computers are reached with `transport=\"zenoh\"`)",
+            "agents.xml:1:7: error[E0335]: `scouting` has no effect with the transport `local` \
+         (use `transport=\"zenoh\"` to reach other computers)",
+            "agents.xml:2:28: error[E0335]: `<listen>` has no effect with the transport `local` \
+         (use `transport=\"zenoh\"` to reach other computers)",
         ],
     );
 }
 
 #[cfg(not(feature = "zenoh"))]
 #[test]
-fn zenoh_in_a_program_without_it_is_said_beside_what_else_is_wrong() {
+fn zenoh_in_a_program_without_it_is_reported_with_other_errors() {
     check_link(
         "transport='zenoh'",
         "<send topics='test/ball'/><listen>7447</listen><connect>10.0.0.2</connect>",
         &[
-            "agents.xml:1:18: error[E0337]: the transport `zenoh` is not in this program (build it with `--features zenoh`; between processes of one computer there is `transport=\"local\"`)",
+            "agents.xml:1:18: error[E0337]: this program was built without the transport `zenoh` (build it with `--features zenoh`, or use `transport=\"local\"` on one computer)",
             "agents.xml:2:57: error[E0333]: `10.0.0.2` is no endpoint (`tcp/192.168.1.20:7447` or `tls/robot_2:7447`)",
         ],
     );
@@ -149,9 +148,9 @@ fn zenoh_in_a_program_without_it_is_said_beside_what_else_is_wrong() {
         "<send topics='test/ball'/><connect>tls/10.0.0.2:7447</connect>\n\
         <certificates authority='team.pem' certificate='team.pem' key='team.key'/>",
         &[
-            "agents.xml:1:2: error[E0333]: an endpoint begins with `tls/`, and the link has no certificates \
+            "agents.xml:1:2: error[E0333]: an endpoint starts with `tls/`, but the link has no certificates \
          (`<certificates authority=\"team.pem\" certificate=\"robot_1.pem\" key=\"robot_1.key\"/>`)",
-            "agents.xml:1:18: error[E0337]: the transport `zenoh` is not in this program (build it with `--features zenoh`; between processes of one computer there is `transport=\"local\"`)",
+            "agents.xml:1:18: error[E0337]: this program was built without the transport `zenoh` (build it with `--features zenoh`, or use `transport=\"local\"` on one computer)",
             "agents.xml:3:64: error[E0316]: no file `team.key` (did you mean `team.pem`?)",
         ],
     );
@@ -174,18 +173,16 @@ fn zenoh_in_a_program_with_it_is_checked_as_far_as_it_can_be_before_it_is_opened
     check_link(
         "transport='zenoh'",
         send,
-        &[
-            "agents.xml:1:2: error[E0333]: the link neither listens nor connects, and does not look for others \
-           (add `<listen>7447</listen>`, `<connect>tcp/192.168.1.20:7447</connect>` or `scouting=\"1\"`)",
-        ],
+        &["agents.xml:1:2: error[E0333]: the link neither listens nor connects, and discovery is off \
+           (add `<listen>7447</listen>`, `<connect>tcp/192.168.1.20:7447</connect>` or `scouting=\"1\"`)"],
     );
     check_link(
         "transport='zenoh'",
         &format!("{send}<listen>udp/0.0.0.0:7447</listen>"),
         &[
-            "agents.xml:1:2: error[E0333]: the link neither listens nor connects, and does not look for others \
+            "agents.xml:1:2: error[E0333]: the link neither listens nor connects, and discovery is off \
            (add `<listen>7447</listen>`, `<connect>tcp/192.168.1.20:7447</connect>` or `scouting=\"1\"`)",
-            "agents.xml:2:35: error[E0333]: `udp/0.0.0.0:7447` is no endpoint (`tcp/127.0.0.1:7447` or `tls/0.0.0.0:7447`; a port alone, such as `7447`, is for this computer only)",
+            "agents.xml:2:35: error[E0333]: `udp/0.0.0.0:7447` is no endpoint (`tcp/127.0.0.1:7447` or `tls/0.0.0.0:7447`; a port alone, such as `7447`, is local to this computer)",
         ],
     );
     let certificates = "<certificates authority='team.pem' certificate='team.pem' key='team.pem'/>";
@@ -193,8 +190,8 @@ fn zenoh_in_a_program_with_it_is_checked_as_far_as_it_can_be_before_it_is_opened
         "transport='zenoh'",
         &format!("{send}<listen>7447</listen>{certificates}"),
         &[
-            "agents.xml:1:2: error[E0333]: the link has certificates, and its endpoint `tcp/127.0.0.1:7447` does not ask for them \
-           (endpoints that ask for certificates begin with `tls/`)",
+            "agents.xml:1:2: error[E0333]: the link has certificates, but its endpoint `tcp/127.0.0.1:7447` does not use them \
+           (endpoints with certificates start with `tls/`)",
         ],
     );
     let (_, diagnostics) = links(
@@ -221,7 +218,7 @@ impl Activity for See {
 }
 
 #[test]
-fn what_runs_elsewhere_must_be_the_charts_and_come_over_a_link() {
+fn remote_activities_belong_to_a_chart_and_need_a_link() {
     let elsewhere = |names: &str, link: &str| {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("m.srm"), "m = See . Vision").unwrap();
@@ -234,9 +231,10 @@ fn what_runs_elsewhere_must_be_the_charts_and_come_over_a_link() {
         found.iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     assert_eq!(elsewhere("See", "<link><receive topics='test/*' as='own'/></link>"), [""; 0]);
-    let unbrought =
-        ["agents.xml:2:24: error[E0339]: `See` runs elsewhere, and no link brings its `test/ball` \
-                      (add to a `<link>`: `<receive topics=\"test/ball\" as=\"own\"/>`)"];
+    let unbrought = [
+        "agents.xml:2:24: error[E0339]: `See` runs in another process, but no link receives its `test/ball` \
+                      (add to a `<link>`: `<receive topics=\"test/ball\" as=\"own\"/>`)",
+    ];
     assert_eq!(elsewhere("See", ""), unbrought);
     assert_eq!(elsewhere("See", "<link><receive topics='test/ball'/></link>"), unbrought);
     assert_eq!(

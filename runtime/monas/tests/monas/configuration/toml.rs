@@ -75,7 +75,7 @@ fn values(name: &str, text: &str) -> Vec<(String, Option<String>)> {
 }
 
 #[test]
-fn it_comes_to_the_same_configuration() {
+fn it_reaches_the_same_configuration() {
     assert_eq!(values("a.toml", &toml()), values("a.xml", XML));
     let agents = |name: &str, text: &str| {
         let (setup, diagnostics) = config::read(&Source::new(name, text), Path::new(name), &registry());
@@ -108,7 +108,7 @@ fn said(name: &str, text: &str) -> Vec<(&'static str, String, String)> {
 }
 
 #[test]
-fn every_mistake_is_said_in_the_same_words_at_its_own_place() {
+fn every_error_has_the_same_text_at_its_own_position() {
     let xml = "<agent thread_frequency='fast' prority='1' on_failure='restrt'>\n<name>a</name>\n\
                <activity>Vsion</activity>\n<activity sped='1'>Walk</activity>\n<actvity>x</actvity></agent>\n<agnet/>\n\
                <provider thread_frequency='1'>Sensor</provider>";
@@ -137,7 +137,7 @@ fn line_and_column_are_those_of_the_file() {
 }
 
 #[test]
-fn what_is_no_toml_is_said_and_the_rest_is_read() {
+fn invalid_toml_is_reported_and_the_rest_is_read() {
     let (setup, diagnostics) = config::read(
         &Source::new(
             "a.toml",
@@ -153,7 +153,7 @@ fn what_is_no_toml_is_said_and_the_rest_is_read() {
     let (_, diagnostics) = config::read(&Source::new("a.toml", text), Path::new("a.toml"), &registry());
     assert_eq!(
         diagnostics[0].to_string(),
-        "a.toml:3:12: error[E0343]: `priority` is an array, expected one value (leave one of them and the brackets out)"
+        "a.toml:3:12: error[E0343]: `priority` is an array, expected one value (keep one of them, without brackets)"
     );
 }
 

@@ -86,7 +86,7 @@ fn typed_attributes_are_read_and_have_defaults() {
 }
 
 #[test]
-fn attributes_that_cannot_be_meant_are_said_and_count_as_not_given() {
+fn implausible_attributes_are_reported_and_ignored() {
     let (elements, said) = checked("<a n='2.5' i='x' word='lefd' colr='red' odd=1 I=3/>");
     let expected = [
         "a.xml:1:7: error[E0306]: `n` is `2.5`, expected a number from 0 to 2",
@@ -246,7 +246,7 @@ fn places_lie_in_the_text_even_where_it_is_cut_off() {
 }
 
 #[test]
-fn what_is_no_xml_is_told_without_a_place_in_the_repaired_text() {
+fn invalid_xml_is_reported_without_positions_in_the_repaired_text() {
     let source = Source::new("b.xml", "<agent>]]></agent>");
     let (_, diagnostics) = xml::parse(&source);
     assert!(diagnostics[0].message.starts_with("not XML: "), "{diagnostics:?}");

@@ -9,7 +9,7 @@ use crate::management::{change, made, settings};
 
 /// A chart whose activities record their calls: A is done at once, B continues every 100 ms.
 fn simulation(text: &str) -> (Simulation, Recorder<&'static str>) {
-    let (told, note) = recorder();
+    let (notes, note) = recorder();
     let (a, b) = (note.clone(), note);
     let registry = Registry::empty()
         .with("A", move || {
@@ -29,7 +29,7 @@ fn simulation(text: &str) -> (Simulation, Recorder<&'static str>) {
     let talws = Talws::new().registry(registry).agent(Agent::statechart("m", chart));
     let mut simulation = talws.simulate(1).unwrap();
     simulation.run_until(at(150)).unwrap();
-    (simulation, told)
+    (simulation, notes)
 }
 
 /// The first reason of a rejection.
@@ -43,24 +43,24 @@ fn swap(text: &str) -> Change {
 }
 
 #[test]
-fn a_model_is_swapped_and_what_is_active_goes_on() {
-    let (mut simulation, told) = simulation("m = A . B");
-    assert_eq!(told.taken(), ["A", "B first", "B again"]);
+fn active_states_survive_a_model_exchange() {
+    let (mut simulation, notes) = simulation("m = A . B");
+    assert_eq!(notes.taken(), ["A", "B first", "B again"]);
     // Another activity comes before, and one after; B is where it was, with what it remembers.
     let changed = simulation.change("local", swap("m = A . A . B . A")).unwrap();
     made(&changed);
     assert!(!changed.findings.is_empty(), "what became of what was active is said");
     simulation.run_until(at(250)).unwrap();
-    assert_eq!(told.taken(), ["B again"], "it is the same instance, at its own time");
+    assert_eq!(notes.taken(), ["B again"], "it is the same instance, at its own time");
     made(&simulation.change("local", swap("m = A . (B | A)")).unwrap());
     simulation.run_until(at(450)).unwrap();
-    assert_eq!(told.taken(), ["B again", "B again"]);
+    assert_eq!(notes.taken(), ["B again", "B again"]);
 }
 
 #[test]
-fn a_model_that_is_wrong_is_refused_with_its_places_and_the_chart_goes_on() {
-    let (mut simulation, told) = simulation("m = A . B");
-    told.taken();
+fn an_invalid_model_is_rejected_with_positions_and_the_chart_continues() {
+    let (mut simulation, notes) = simulation("m = A . B");
+    notes.taken();
     for (text, code) in [("m = A . . B", "E0"), ("m = A . C", "E0318"), ("m = A", "E0356")] {
         let changed = simulation.change("local", swap(text)).unwrap();
         assert!(
@@ -70,14 +70,14 @@ fn a_model_that_is_wrong_is_refused_with_its_places_and_the_chart_goes_on() {
         );
     }
     simulation.run_until(at(350)).unwrap();
-    assert_eq!(told.taken(), ["B again", "B again"]);
+    assert_eq!(notes.taken(), ["B again", "B again"]);
     assert_eq!(simulation.statistics().agents[0].stopped, None);
 }
 
 #[test]
-fn a_state_that_is_gone_goes_on_in_the_one_that_is_named() {
-    let (mut simulation, told) = simulation("m = A . B");
-    told.taken();
+fn a_removed_state_is_replaced_by_the_mapped_one() {
+    let (mut simulation, notes) = simulation("m = A . B");
+    notes.taken();
     let text = "Liveness:\nm = A . Late\nStates:\nLate : activity = B";
     let (code, reason) = refused_first(&simulation.change("local", swap(text)).unwrap());
     assert_eq!(
@@ -87,22 +87,22 @@ fn a_state_that_is_gone_goes_on_in_the_one_that_is_named() {
     let states = settings(&[("m/B", "m/Late")]);
     made(&simulation.change("local", Change { states, ..swap(text) }).unwrap());
     simulation.run_until(at(250)).unwrap();
-    assert_eq!(told.taken(), ["B again"], "its activity is the same");
+    assert_eq!(notes.taken(), ["B again"], "its activity is the same");
 }
 
 #[test]
-fn a_chart_pauses_steps_stops_and_starts_anew() {
-    let (mut simulation, told) = simulation("m = (A . B)~");
-    told.taken();
+fn a_chart_pauses_steps_stops_and_restarts() {
+    let (mut simulation, notes) = simulation("m = (A . B)~");
+    notes.taken();
     let mut ask = |action| made(&simulation.change("local", change(action, "m")).unwrap());
     ask(Action::PauseAgent);
     ask(Action::StopAgent);
     ask(Action::StartAgent);
     simulation.run_until(at(200)).unwrap();
-    assert_eq!(told.taken(), ["A", "B first"], "it begins at its START, with new activities");
+    assert_eq!(notes.taken(), ["A", "B first"], "it begins at its START, with new activities");
     simulation.change("local", change(Action::PauseAgent, "m")).unwrap();
     simulation.run_until(at(1000)).unwrap();
-    assert_eq!(told.taken(), [""; 0]);
+    assert_eq!(notes.taken(), [""; 0]);
     made(&simulation.change("local", change(Action::StepAgent, "m")).unwrap());
-    assert_eq!(told.taken(), ["B again"]);
+    assert_eq!(notes.taken(), ["B again"]);
 }

@@ -80,7 +80,7 @@ fn run(changes: u64) -> Seen {
 }
 
 #[test]
-fn a_thousand_changes_are_answered_and_nobody_else_notices() {
+fn a_thousand_changes_are_answered_without_effect_on_others() {
     let (changed, alone) = (run(CHANGES), run(0));
     let (changed, alone) = (changed.0.lock().unwrap(), alone.0.lock().unwrap());
     let mut numbers: Vec<u64> = changed.1.iter().map(|answer| answer.number).collect();

@@ -61,11 +61,11 @@ fn player(text: &str, note: impl Fn(String) + Clone + Send + Sync + 'static) -> 
 }
 
 fn simulated() -> (Simulation, Recorder<String>, TempDir) {
-    let (told, note) = recorder();
+    let (notes, note) = recorder();
     let note = std::sync::Mutex::new(note);
     let note = std::sync::Arc::new(note);
     let (talws, folder) = player(AGENT, move |word| note.lock().unwrap()(word));
-    (talws.simulate(1).unwrap(), told, folder)
+    (talws.simulate(1).unwrap(), notes, folder)
 }
 
 fn of_chart(action: Action, chart: &str) -> Change {
@@ -97,13 +97,13 @@ fn states(entry: &AgentEntry) -> Vec<&str> {
 }
 
 #[test]
-fn one_chart_is_idle_and_the_list_and_the_other_go_on() {
-    let (mut simulation, told, _folder) = simulated();
+fn an_idle_chart_does_not_stop_the_list_and_the_other() {
+    let (mut simulation, notes, _folder) = simulated();
     simulation.run_until(at(950)).unwrap();
-    assert_eq!(counted(&told.taken()), [("Head 1", 10), ("Legs 2", 10), ("List 1", 5)]);
+    assert_eq!(counted(&notes.taken()), [("Head 1", 10), ("Legs 2", 10), ("List 1", 5)]);
     made(&simulation.change("local", of_chart(Action::StopAgent, "head.srm")).unwrap());
     simulation.run_until(at(1950)).unwrap();
-    assert_eq!(counted(&told.taken()), [("Legs 2", 10), ("List 1", 5)]);
+    assert_eq!(counted(&notes.taken()), [("Legs 2", 10), ("List 1", 5)]);
     let shown = entry(&mut simulation);
     assert_eq!((shown.state.as_str(), states(&shown)), ("runs", vec!["runs", "stopped"]));
     let again = simulation.change("local", of_chart(Action::StopAgent, "2")).unwrap();
@@ -111,15 +111,19 @@ fn one_chart_is_idle_and_the_list_and_the_other_go_on() {
     assert_eq!(refused(&again), ("E0352".into(), already.into()));
     made(&simulation.change("local", of_chart(Action::StartAgent, "head.srm")).unwrap());
     simulation.run_until(at(2950)).unwrap();
-    assert_eq!(counted(&told.taken()), [("Head 1", 10), ("Legs 2", 10), ("List 1", 5)]);
+    assert_eq!(counted(&notes.taken()), [("Head 1", 10), ("Legs 2", 10), ("List 1", 5)]);
     assert_eq!(states(&entry(&mut simulation)), ["runs", "runs"]);
 }
 
 #[test]
-fn what_is_no_matter_of_one_chart_is_refused() {
+fn changes_beyond_one_chart_are_rejected() {
     let (mut simulation, _, _folder) = simulated();
     for (asked, code, says) in [
-        (of_chart(Action::PauseAgent, "head.srm"), "E0352", "a statechart alone cannot be told that"),
+        (
+            of_chart(Action::PauseAgent, "head.srm"),
+            "E0352",
+            "this action is not available for a single statechart",
+        ),
         (of_chart(Action::StartAgent, "head.srm"), "E0352", "`head.srm` of `player` has not stopped"),
         (
             of_chart(Action::StopAgent, "heat.srm"),
@@ -140,7 +144,7 @@ fn what_is_no_matter_of_one_chart_is_refused() {
         (
             Change { settings: settings(&[("workers", "3")]), ..of_chart(Action::Set, "2") },
             "E0304",
-            "`workers` of a statechart is what it begins with",
+            "`workers` of a statechart applies only at its start",
         ),
     ] {
         let changed = simulation.change("local", asked.clone()).unwrap();
@@ -153,8 +157,8 @@ fn what_is_no_matter_of_one_chart_is_refused() {
 }
 
 #[test]
-fn a_chart_is_set_and_saved_and_begins_anew_with_what_was_set() {
-    let (mut simulation, told, folder) = simulated();
+fn a_changed_chart_is_saved_and_restarts_with_its_settings() {
+    let (mut simulation, notes, folder) = simulated();
     simulation.run_until(at(50)).unwrap();
     let set = |chart: &str, given: &[(&str, &str)]| Change {
         settings: settings(given),
@@ -172,9 +176,9 @@ fn a_chart_is_set_and_saved_and_begins_anew_with_what_was_set() {
     made(&simulation.change("local", set("", &[("Legs.speed", "5")])).unwrap());
     // Changes of the agent apply to the chart without its own settings.
     made(&simulation.change("local", set("", &[("frequency", "10"), ("on_failure", "stop-agent")])).unwrap());
-    told.taken();
+    notes.taken();
     simulation.run_until(at(1050)).unwrap();
-    assert_eq!(counted(&told.taken()), [("Head 4", 10), ("Legs 5", 10), ("List 1", 10)]);
+    assert_eq!(counted(&notes.taken()), [("Head 4", 10), ("Legs 5", 10), ("List 1", 10)]);
     let expected = AGENT
         .replace("<agent ThreadFrequency=\"5\"", "<agent ThreadFrequency=\"10\" OnFailure=\"stop-agent\"")
         .replace("speed=\"2\"", "speed=\"5\"")
@@ -197,7 +201,7 @@ fn a_chart_is_set_and_saved_and_begins_anew_with_what_was_set() {
     made(&simulation.change("local", of_chart(Action::StopAgent, "2")).unwrap());
     made(&simulation.change("local", of_chart(Action::StartAgent, "2")).unwrap());
     simulation.run_until(at(1100)).unwrap();
-    assert!(told.taken().contains(&"Head 4".to_owned()), "it begins anew with what was set of it");
+    assert!(notes.taken().contains(&"Head 4".to_owned()), "it begins anew with what was set of it");
 }
 
 #[test]
@@ -225,13 +229,13 @@ fn a_run_with_an_idle_chart_is_replayed() {
     assert_ne!(again(&others).differences, []);
 }
 
-fn until(told: &Receiver<String>, word: &str) {
-    while told.recv_timeout(PATIENCE).unwrap() != word {}
+fn until(notes: &Receiver<String>, word: &str) {
+    while notes.recv_timeout(PATIENCE).unwrap() != word {}
 }
 
 #[test]
 fn in_real_time_one_chart_is_idle_and_the_list_and_the_other_go_on() {
-    let (sender, told) = channel();
+    let (sender, notes) = channel();
     let sender = std::sync::Arc::new(std::sync::Mutex::new(sender));
     let note = move |word: String| {
         let _ = sender.lock().unwrap().send(word);
@@ -241,11 +245,11 @@ fn in_real_time_one_chart_is_idle_and_the_list_and_the_other_go_on() {
     let run = running.run_handle();
     let ask = |asked: Change| made(&run.change("local", asked).unwrap());
     for word in ["Head 1", "Legs 2", "List 1"] {
-        until(&told, word);
+        until(&notes, word);
     }
     ask(of_chart(Action::StopAgent, "legs.srm"));
-    told.try_iter().for_each(drop);
-    let after: Vec<String> = (0..12).map(|_| told.recv_timeout(PATIENCE).unwrap()).collect();
+    notes.try_iter().for_each(drop);
+    let after: Vec<String> = (0..12).map(|_| notes.recv_timeout(PATIENCE).unwrap()).collect();
     assert!(!after.contains(&"Legs 2".to_owned()), "{after:?}");
     assert!(after.contains(&"Head 1".to_owned()) && after.contains(&"List 1".to_owned()), "{after:?}");
     let shown = run.agents(None).unwrap().remove(0);
@@ -253,18 +257,18 @@ fn in_real_time_one_chart_is_idle_and_the_list_and_the_other_go_on() {
     assert!(!running.has_ended());
     // Both are idle, and so is the agent's list alone what runs.
     ask(of_chart(Action::StopAgent, "2"));
-    told.try_iter().for_each(drop);
-    assert_eq!([0; 3].map(|_| told.recv_timeout(PATIENCE).unwrap()), ["List 1"; 3]);
+    notes.try_iter().for_each(drop);
+    assert_eq!([0; 3].map(|_| notes.recv_timeout(PATIENCE).unwrap()), ["List 1"; 3]);
     ask(Change { settings: settings(&[("Head.speed", "7")]), ..of_chart(Action::Set, "2") });
     ask(of_chart(Action::StartAgent, "2"));
-    until(&told, "Head 7");
+    until(&notes, "Head 7");
     ask(of_chart(Action::StartAgent, "legs.srm"));
-    until(&told, "Legs 2");
+    until(&notes, "Legs 2");
     running.stop();
 }
 
 #[test]
-fn an_activity_of_a_chart_fails_as_it_says_itself_or_as_its_chart_says() {
+fn an_activity_of_a_chart_has_its_own_policy_or_that_of_its_chart() {
     let failing = |chart: &str, of_agent: &str| {
         let registry = Registry::empty().with("Fails", || {
             |_: &mut monas::Blackboard| -> Result<Progress, monas::BoxError> { Err("no".into()) }

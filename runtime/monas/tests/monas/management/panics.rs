@@ -39,12 +39,12 @@ fn registry(note: impl FnMut(&'static str) + Clone + Send + Sync + 'static) -> R
 const AGENT: &str = "<agent frequency='10'><name>a</name><activity>Fragile</activity></agent>";
 
 fn simulation() -> (Simulation, Recorder<&'static str>) {
-    let (told, note) = recorder();
+    let (notes, note) = recorder();
     let note = std::sync::Arc::new(std::sync::Mutex::new(note));
     let registry = registry(move |word| note.lock().unwrap()(word));
     let (setup, wrong) = config::read(&Source::new("a.xml", AGENT), "a.xml".as_ref(), &registry);
     assert_eq!(wrong, []);
-    (Talws::new().registry(registry).setup(setup).simulate(1).unwrap(), told)
+    (Talws::new().registry(registry).setup(setup).simulate(1).unwrap(), notes)
 }
 
 #[test]
@@ -59,8 +59,8 @@ fn in_a_configuration_it_is_a_diagnostic() {
 }
 
 #[test]
-fn of_a_change_it_is_the_reason_why_not() {
-    let (mut simulation, told) = simulation();
+fn a_rejected_change_has_a_reason() {
+    let (mut simulation, notes) = simulation();
     let set = Change { settings: settings(&[("Fragile.speed", "3")]), ..change(Action::Set, "a") };
     let add = Change { activity: "Unmade".into(), ..change(Action::AddActivity, "a") };
     let mut why = |change| refused(&simulation.change("local", change).unwrap());
@@ -68,15 +68,15 @@ fn of_a_change_it_is_the_reason_why_not() {
     let (code, reason) = why(add);
     assert!(code == "E0364" && reason.ends_with("panicked: there is no camera"), "{code} {reason}");
     simulation.run_until(at(200)).unwrap();
-    assert_eq!(told.taken(), ["works", "works"]);
+    assert_eq!(notes.taken(), ["works", "works"]);
 }
 
 #[test]
-fn an_activity_that_panics_over_what_another_instance_took_goes_on() {
-    let (mut simulation, told) = simulation();
+fn an_activity_that_panics_on_a_taken_value_continues() {
+    let (mut simulation, notes) = simulation();
     simulation.run_until(at(100)).unwrap();
     let set = Change { settings: settings(&[("Fragile.speed", "1.5")]), ..change(Action::Set, "a") };
     made(&simulation.change("local", set).unwrap());
     simulation.run_until(at(200)).unwrap();
-    assert_eq!(told.taken(), ["works", "works"]);
+    assert_eq!(notes.taken(), ["works", "works"]);
 }

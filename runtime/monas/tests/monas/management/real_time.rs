@@ -21,28 +21,28 @@ fn ask(run: &RunHandle, change: Change) -> monas::records::Changed {
 }
 
 /// What comes next that is one of these words.
-fn until(told: &Receiver<String>, word: &str) {
-    while told.recv_timeout(PATIENCE).unwrap() != word {}
+fn until(notes: &Receiver<String>, word: &str) {
+    while notes.recv_timeout(PATIENCE).unwrap() != word {}
 }
 
 #[test]
 fn lists_are_changed_while_they_run() {
-    let (sender, told) = channel();
+    let (sender, notes) = channel();
     let registry = telling(&["A", "B"], move |word| _ = sender.send(word));
     let text = "<agent frequency='1000'><name>a</name><activity>A</activity></agent>";
     let (setup, _) = monas::config::read(&Source::new("a.xml", text), "a.xml".as_ref(), &registry);
     let running = Talws::new().registry(registry).setup(setup).start().unwrap();
     let run = running.run_handle();
-    until(&told, "A");
+    until(&notes, "A");
     made(&ask(&run, Change { activity: "B".into(), place: 1, ..change(Action::AddActivity, "a") }));
-    until(&told, "B");
+    until(&notes, "B");
     made(&ask(&run, Change { activity: "B".into(), ..change(Action::RemoveActivity, "a") }));
-    until(&told, "B stop");
+    until(&notes, "B stop");
     made(&ask(
         &run,
         Change { settings: settings(&[("frequency", "500"), ("A.speed", "2")]), ..change(Action::Set, "a") },
     ));
-    until(&told, "A 2");
+    until(&notes, "A 2");
     made(&ask(&run, change(Action::PauseAgent, "a")));
     let paused = run.agents(None).unwrap();
     assert_eq!((paused[0].state.as_str(), paused[0].frequency), ("pauses", 500.0));
@@ -50,24 +50,24 @@ fn lists_are_changed_while_they_run() {
     let stepped = ask(&run, change(Action::StepAgent, "a"));
     assert_eq!((stepped.done, stepped.cycle), (true, cycles + 1));
     made(&ask(&run, change(Action::ResumeAgent, "a")));
-    until(&told, "A");
+    until(&notes, "A");
     made(&ask(&run, change(Action::StopAgent, "a")));
-    until(&told, "A stop");
+    until(&notes, "A stop");
     made(&ask(&run, change(Action::StartAgent, "a")));
-    until(&told, "A start");
+    until(&notes, "A start");
     made(&ask(&run, Change { activity: "A".into(), ..change(Action::RemoveActivity, "a") }));
-    until(&told, "A stop");
+    until(&notes, "A stop");
     made(&ask(&run, Change { activity: "B".into(), ..change(Action::AddActivity, "a") }));
-    until(&told, "B");
+    until(&notes, "B");
     made(&ask(&run, Change { activity: "A".into(), ..change(Action::AddActivity, "a") }));
-    until(&told, "A");
+    until(&notes, "A");
     made(&ask(&run, Change { activity: "B".into(), ..change(Action::RemoveActivity, "a") }));
-    until(&told, "B stop");
+    until(&notes, "B stop");
     let text = "<agent frequency='1000'><name>b</name><activity>B</activity></agent>";
     made(&ask(&run, Change { text: text.into(), ..change(Action::AddAgents, "") }));
-    until(&told, "B");
+    until(&notes, "B");
     made(&ask(&run, change(Action::RemoveAgent, "b")));
-    until(&told, "B stop");
+    until(&notes, "B stop");
     assert_eq!(refused(&ask(&run, change(Action::StopAgent, "b"))).0, "E0351");
     assert_eq!(run.agents(None).unwrap().len(), 1);
     let statistics = running.stop();
@@ -77,7 +77,7 @@ fn lists_are_changed_while_they_run() {
 
 #[test]
 fn charts_stop_start_and_take_another_model_while_they_run() {
-    let (sender, told) = channel();
+    let (sender, notes) = channel();
     let note = move |word: String| _ = sender.send(word);
     let registry = telling(&["A"], note.clone()).with("B", move || {
         let note = note.clone();
@@ -89,24 +89,24 @@ fn charts_stop_start_and_take_another_model_while_they_run() {
     let chart = aseme_models::statechart_of(&Source::new("m.srm", "m = A . B")).0;
     let running = Talws::new().registry(registry).agent(Agent::statechart("m", chart)).start().unwrap();
     let run = running.run_handle();
-    until(&told, "B");
+    until(&notes, "B");
     let text = "m = A . (B | A)".to_owned();
     made(&ask(&run, Change { file: "new.srm".into(), text, ..change(Action::SwapModel, "m") }));
-    until(&told, "B");
+    until(&notes, "B");
     assert_eq!(run.agents(None).unwrap()[0].charts[0].model, "new.srm");
     made(&ask(&run, change(Action::StopAgent, "m")));
     made(&ask(&run, change(Action::StartAgent, "m")));
-    until(&told, "A start");
-    until(&told, "B");
+    until(&notes, "A start");
+    until(&notes, "B");
     let wrong = Change { file: "new.srm".into(), text: "m = A".into(), ..change(Action::SwapModel, "m") };
     let refusal = ask(&run, wrong);
     assert_eq!((refusal.done, refusal.findings[0].code.as_str()), (false, "E0356"));
-    until(&told, "B");
+    until(&notes, "B");
     assert_eq!(running.stop().agents[0].stopped, None);
 }
 
 #[test]
-fn an_agent_in_a_cycle_that_does_not_end_keeps_nobody_waiting_and_its_list_stays_as_it_is() {
+fn a_stuck_agent_blocks_no_other_and_keeps_its_list() {
     let (hangs, others) = (Arc::new(Barrier::new(2)), Arc::new(Barrier::new(2)));
     let (enter, leave) = (hangs.clone(), others.clone());
     let mut calls = 0;
@@ -123,7 +123,7 @@ fn an_agent_in_a_cycle_that_does_not_end_keeps_nobody_waiting_and_its_list_stays
     hangs.wait();
     let run = running.run_handle();
     let changed = ask(&run, Change { activity: "A".into(), ..change(Action::AddActivity, "a") });
-    let reason = "`a` is in the middle of a cycle that does not end".to_owned();
+    let reason = "`a` is in a cycle that does not end".to_owned();
     assert_eq!(refused(&changed), ("E0356".into(), reason));
     made(&ask(&run, change(Action::PauseAgent, "b")));
     others.wait();
@@ -148,7 +148,7 @@ fn a_run_ends_when_its_last_agent_has_stopped_by_itself() {
 }
 
 #[test]
-fn a_link_that_lets_strangers_change_agents_is_refused() {
+fn a_link_that_permits_changes_is_rejected() {
     let named = |name: &str, transport: LinkTransport, access: &str, topics: &str| {
         let access = if access.is_empty() { AccessList::open() } else { AccessList::parse(access).0 };
         let rule = ReceiveRule { topics: topics.into(), publish_as: PublishAs::Own };
@@ -161,10 +161,10 @@ fn a_link_that_lets_strangers_change_agents_is_refused() {
     };
     let over = |transport: LinkTransport, access: &str, topics: &str| named("", transport, access, topics);
     let said = |access: &str, topics: &str| over(LinkTransport::default(), access, topics);
-    assert_eq!(said("", "monas/*").unwrap(), "a link of `local` lets anybody change its agents");
+    assert_eq!(said("", "monas/*").unwrap(), "a link of `local` lets any peer change its agents");
     let stranger = said("laptop publish **", CHANGE.path()).unwrap();
     assert!(
-        stranger.contains("lets `laptop` publish changes of its agents, who may not manage them"),
+        stranger.contains("lets `laptop` publish changes of its agents without the right to manage them"),
         "{stranger}"
     );
     assert_eq!(said("laptop publish **\nlaptop manage", CHANGE.path()), None);
@@ -186,13 +186,13 @@ fn a_link_that_lets_strangers_change_agents_is_refused() {
     let zenoh =
         |certificates| LinkTransport::Zenoh(ZenohEndpoints { certificates, ..ZenohEndpoints::default() });
     let nameless = over(zenoh(None), manager, CHANGE.path()).unwrap();
-    assert!(nameless.contains("lets anybody change its agents who takes the name"), "{nameless}");
+    assert!(nameless.contains("lets any peer change its agents under the name"), "{nameless}");
     assert_eq!(over(zenoh(Some(shown)), manager, CHANGE.path()), None);
 }
 
 #[test]
-fn a_chart_takes_other_models_at_any_moment_of_a_call_and_goes_on_calling() {
-    let (sender, told) = channel();
+fn a_model_is_exchanged_at_any_time_of_a_call() {
+    let (sender, notes) = channel();
     let registry = Registry::empty().with("A", move || {
         let sender = sender.clone();
         move |_: &mut Blackboard| _ = sender.send("A".to_owned())
@@ -200,8 +200,8 @@ fn a_chart_takes_other_models_at_any_moment_of_a_call_and_goes_on_calling() {
     let chart = aseme_models::statechart_of(&Source::new("m.srm", "m = A . A~")).0;
     let running = Talws::new().registry(registry).agent(Agent::statechart("m", chart)).start().unwrap();
     let run = running.run_handle();
-    until(&told, "A");
-    until(&told, "A");
+    until(&notes, "A");
+    until(&notes, "A");
     for text in ["m = A . A . A~", "m = A . A~"].into_iter().cycle().take(200) {
         let swap = Change {
             file: "new.srm".into(),
@@ -210,8 +210,8 @@ fn a_chart_takes_other_models_at_any_moment_of_a_call_and_goes_on_calling() {
             ..change(Action::SwapModel, "m")
         };
         made(&ask(&run, swap));
-        while told.try_recv().is_ok() {}
-        until(&told, "A");
+        while notes.try_recv().is_ok() {}
+        until(&notes, "A");
     }
     assert_eq!(running.stop().agents[0].stopped, None);
 }

@@ -57,7 +57,7 @@ fn registry() -> Registry {
         })
 }
 
-/// Agents that are changed: two with lists, and one with a chart.
+/// Two agents with lists and one with a chart; all of them are changed.
 fn agents() -> Talws {
     let text = "<agent frequency='10'><name>thrower</name><activity>Throw</activity></agent>
         <agent frequency='20'><name>sayer</name><activity>Say</activity></agent>";
@@ -82,7 +82,7 @@ fn asking() -> Talws {
     agents().agent(Agent::new("asker", Hz(10)).activity(asks))
 }
 
-/// A run of two simulated seconds in which agents are changed in every way.
+/// A simulated run of two seconds with every kind of change.
 fn changed_run() -> Vec<Kept> {
     let tape = Tape::default();
     let mut talws = asking();
@@ -151,7 +151,7 @@ fn in_simulated_time_changes_are_made_again() {
         ("asker", "monas/change", 3),
     ];
     assert_compared(&messages, &outcome, &expected);
-    // Some of them alone, on the changes that the others asked for.
+    // Some agents alone, with the recorded change requests of the others.
     let some = agents();
     assert_eq!(replay_simulated(some, 7, &messages).unwrap().differences, []);
 }
@@ -213,12 +213,12 @@ fn without_the_changes_it_would_be_another_run() {
     }
 }
 
-/// Agents as a text of XML has them.
+/// The addition of agents given as XML.
 fn adding(text: &str) -> Change {
     Change { file: "more.xml".into(), text: text.into(), ..change(Action::AddAgents, "") }
 }
 
-/// A run in which agents are removed and added again with other contents.
+/// A run in which agents are removed and added again with other content.
 fn run_of_returns() -> Vec<Kept> {
     let tape = Tape::default();
     let mut talws = asking();
@@ -229,7 +229,7 @@ fn run_of_returns() -> Vec<Kept> {
     let guest = "<agent frequency='10'><name>guest</name><activity>Say</activity></agent>";
     let script = [
         (100, change(Action::RemoveAgent, "sayer")),
-        // Beside one that was never there before.
+        // With an agent that is new.
         (250, adding(&format!("{guest}{sayer}"))),
         (300, Change { activity: "Play".into(), ..change(Action::AddActivity, "sayer") }),
         (400, change(Action::RemoveAgent, "sayer")),
@@ -263,7 +263,7 @@ fn in_simulated_time_agents_that_left_come_back() {
 }
 
 #[test]
-fn one_that_comes_back_as_another_than_then_is_another_run() {
+fn a_different_restart_is_another_run() {
     let mut messages = run_of_returns();
     let is_last = |kept: &&mut Kept| kept.topic == CHANGE.path() && kept.publisher == "outside";
     let kept = messages.iter_mut().rfind(is_last).unwrap();
@@ -276,7 +276,7 @@ fn one_that_comes_back_as_another_than_then_is_another_run() {
 }
 
 #[test]
-fn who_was_refused_for_the_sake_of_one_that_is_not_replayed_is_not_brought_back() {
+fn a_change_rejected_because_of_an_unreplayed_agent_is_not_repeated() {
     let tape = Tape::default();
     let mut talws = agents();
     talws.observe(Box::new(tape.clone()));
@@ -288,16 +288,16 @@ fn who_was_refused_for_the_sake_of_one_that_is_not_replayed_is_not_brought_back(
     assert!(!simulation.change("local", adding(both)).unwrap().done);
     simulation.run_until(at(300)).unwrap();
     assert_eq!(replay_simulated(agents(), 7, &tape.kept()).unwrap().differences, []);
-    // Who does not know the thrower cannot know why.
+    // An agent without the thrower cannot know the reason.
     let text = "<agent frequency='20'><name>sayer</name><activity>Say</activity></agent>";
     let (setup, _) = monas::config::read(&Source::new("a.xml", text), "a.xml".as_ref(), &registry());
     let sayer = Talws::new().registry(registry()).setup(setup);
     let error = replay_simulated(sayer, 7, &tape.kept()).err().unwrap();
-    assert!(error.to_string().starts_with("agents that left were refused "), "{error}");
+    assert!(error.to_string().starts_with("removed agents were rejected "), "{error}");
     assert_eq!(error.hint(), Some("replay all agents of the host"));
 }
 
-/// A run in real time of a thrower, in which something is changed.
+/// A real-time run of a thrower with changes.
 fn live(asked: &[Change]) -> Vec<Kept> {
     let (sender, thrown) = channel();
     let tape = Tape::default();
@@ -309,7 +309,7 @@ fn live(asked: &[Change]) -> Vec<Kept> {
     for change in asked {
         let changed = running.run_handle().change("local", change.clone()).unwrap();
         made(&changed);
-        // Of those in the channel some are from before.
+        // Some messages in the channel are from before the change.
         if ![Action::PauseAgent, Action::StopAgent].contains(&change.action()) {
             thrown.try_iter().for_each(drop);
             more();
@@ -343,13 +343,13 @@ fn in_real_time_pauses_and_ends_are_those_of_the_recorded_turns() {
     assert!(recorded >= 10 && outcome.compared("thrower", "test/ball") == recorded as u64, "{recorded}");
 }
 
-/// A run in real time of agents whose activities tell of each call, in which something is changed.
-/// Between two changes activities of the agent that is changed are called, unless it rests.
+/// A real-time run with changes whose activities report each call. Between two changes, activities
+/// of the changed agent are called unless it is paused or stopped.
 fn live_run(talws: impl Fn(Sender<()>) -> Talws, asked: &[Change]) -> Vec<Kept> {
     live_run_until(talws, asked, &[])
 }
 
-/// The same, which goes on until so many messages of agents on topics have been recorded.
+/// The same run, until a number of messages of agents on topics has been recorded.
 fn live_run_until(
     talws: impl Fn(Sender<()>) -> Talws,
     asked: &[Change],
@@ -384,20 +384,20 @@ fn live_run_until(
     tape.kept()
 }
 
-/// How many messages of an agent on a topic are compared.
+/// The number of compared messages of an agent on a topic.
 fn recorded(messages: &[Kept], agent: &str, topic: &str) -> usize {
     let of_agent = messages.iter().filter(|kept| kept.publisher == agent && kept.topic == topic);
     of_agent.filter(|kept| is_compared(kept)).count()
 }
 
-/// What activities are made of that tell of each call.
+/// A registry of activities that report each call.
 fn telling(calls: Sender<()>) -> Registry {
-    let told = calls.clone();
+    let sender = calls.clone();
     let tell = move || {
-        let told = told.clone();
+        let sender = sender.clone();
         move |_: &mut Blackboard| {
             // No receiver exists in a replay.
-            let _ = told.send(());
+            let _ = sender.send(());
         }
     };
     let watch = move || {
@@ -418,7 +418,7 @@ fn chart(text: &str) -> Statechart {
     aseme_models::statechart_of(&Source::new("m.srm", text)).0
 }
 
-/// A list of an activity that throws balls, of which others may be made.
+/// A list with an activity that throws balls; others may be added.
 fn list(calls: Sender<()>) -> Talws {
     let registry = telling(calls);
     let text = "<agent frequency='1000'><name>thrower</name><activity>Throw</activity><activity>Tell</activity></agent>";
@@ -478,7 +478,7 @@ fn of_chart() -> Vec<Change> {
     ]
 }
 
-/// That so many messages at least were recorded of agents on topics, and that each of them was
+/// Asserts that at least these numbers of messages were recorded on topics, and that all were
 /// compared.
 fn assert_compared(messages: &[Kept], outcome: &Outcome, expected: &[(&str, &str, usize)]) {
     for (agent, topic, least) in expected {
@@ -510,7 +510,8 @@ fn of_player() -> Vec<Change> {
     ]
 }
 
-/// Without the turns that a chart's records tell of beside its cycles, and where it was changed.
+/// Whether a message is compared: not the records of a chart's turns beside its cycles, nor those
+/// of changes.
 fn is_compared(kept: &Kept) -> bool {
     kept.topic != CYCLE.path() || Cycle::decode(&kept.bytes[..]).unwrap().number > 0
 }
@@ -551,15 +552,15 @@ fn in_real_time_another_change_in_the_place_of_the_recorded_one_is_another_run()
     let kept = messages.iter_mut().find(|kept| kept.topic == CHANGE.path()).unwrap();
     kept.bytes = other.encode_to_vec();
     let error = replay(list(channel().0), &messages).err().unwrap().to_string();
-    assert!(error.starts_with("what was asked of agent `thrower` "), "{error}");
+    assert!(error.starts_with("the change of agent `thrower` "), "{error}");
     assert!(
-        error.ends_with("cannot be made again: the list of `thrower` has no activity `Nothing`"),
+        error.ends_with("cannot be repeated: the list of `thrower` has no activity `Nothing`"),
         "{error}"
     );
 }
 
 #[test]
-fn in_real_time_what_the_recording_does_not_tell_is_refused_with_the_reason() {
+fn in_real_time_missing_records_are_rejected_with_the_reason() {
     let is_ordered = |kept: &Kept| {
         kept.topic == CYCLE.path() && Cycle::decode(&kept.bytes[..]).unwrap().turn() == Turn::Ordered
     };
@@ -568,7 +569,7 @@ fn in_real_time_what_the_recording_does_not_tell_is_refused_with_the_reason() {
         (&of_chart()[4], mind, "agent `mind` was given another model "),
     ] {
         let messages = live_run(talws, std::slice::from_ref(asked));
-        // Under another publisher, which leaves the records of an earlier version.
+        // Under another publisher, so that only records of an earlier version remain.
         let by_another = |is_such: &dyn Fn(&Kept) -> bool| {
             let mut messages = messages.clone();
             let such: Vec<&mut Kept> = messages.iter_mut().filter(|kept| is_such(kept)).collect();
@@ -578,11 +579,11 @@ fn in_real_time_what_the_recording_does_not_tell_is_refused_with_the_reason() {
         };
         let error = by_another(&is_ordered);
         assert!(error.to_string().starts_with(was), "{error}");
-        let reason = "the recording, of an earlier version, does not tell after which turn";
+        let reason = "the recording, of an earlier version, lacks the turn";
         assert!(error.to_string().ends_with(reason), "{error}");
         assert_eq!(error.hint(), Some("replay other agents, or the time before"));
         let error = by_another(&|kept| kept.topic == CHANGE.path());
-        let reason = "the recording lacks change 1 of `outside`, which an agent followed";
+        let reason = "the recording lacks change 1 of `outside`, which an agent applied";
         assert_eq!(error.to_string(), reason);
     }
 }
@@ -607,19 +608,20 @@ fn in_real_time_agents_that_left_come_back() {
         ("thrower", "monas/cycle", 20),
     ];
     assert_compared(&messages, &outcome, &expected);
-    // A recording of an earlier version does not tell where the agent came back.
+    // A recording of an earlier version does not contain the restart of the agent.
     let is_ordered = |kept: &Kept| {
         kept.topic == CYCLE.path() && Cycle::decode(&kept.bytes[..]).unwrap().turn() == Turn::Ordered
     };
     let mut untold = messages.clone();
     untold.iter_mut().filter(|kept| is_ordered(kept)).for_each(|kept| kept.publisher = "somebody".into());
     let error = replay(list(channel().0), &untold).err().unwrap();
-    let reason = "agent `thrower` was removed and added anew: the recording, of an earlier version, does not tell by which change";
+    let reason =
+        "agent `thrower` was removed and added again: the recording, of an earlier version, lacks the change";
     assert_eq!(error.to_string(), reason);
 }
 
 #[test]
-fn in_real_time_a_chart_that_left_comes_back_from_its_beginning() {
+fn in_real_time_a_removed_chart_restarts_from_its_start() {
     let folder = tempfile::tempdir().unwrap();
     let model = folder.path().join("m.srm");
     std::fs::write(&model, "m = Play . Play . Watch").unwrap();
@@ -638,7 +640,7 @@ fn in_real_time_a_chart_that_left_comes_back_from_its_beginning() {
 }
 
 #[test]
-fn in_real_time_an_agent_comes_back_thread_by_thread_if_it_has_those_that_it_had() {
+fn in_real_time_an_agent_is_restored_thread_by_thread() {
     let folder = tempfile::tempdir().unwrap();
     for (file, model) in [("m.srm", "m = Play . Watch"), ("n.srm", "n = Watch")] {
         std::fs::write(folder.path().join(file), model).unwrap();
@@ -661,10 +663,10 @@ fn in_real_time_an_agent_comes_back_thread_by_thread_if_it_has_those_that_it_had
     assert_compared(&messages, &outcome, &expected);
     let messages = live_run(player, &of("<statechart>F/n.srm</statechart>"));
     let error = replay(player(channel().0), &messages).err().unwrap().to_string();
-    assert!(error.starts_with("agent `player` came back "), "{error}");
+    assert!(error.starts_with("agent `player` returned "), "{error}");
 }
 
-/// A chart that gets an activity beside it, and then more of them.
+/// A chart agent to which activities are added.
 fn with_a_list() -> [Change; 4] {
     let add = |activity: &str| Change { activity: activity.into(), ..change(Action::AddActivity, "mind") };
     [add("Say"), add("Play"), change(Action::PauseAgent, "mind"), change(Action::ResumeAgent, "mind")]
@@ -672,13 +674,13 @@ fn with_a_list() -> [Change; 4] {
 
 #[test]
 fn in_real_time_a_list_begins_again_where_it_began() {
-    // What plays is in the list alone.
+    // Only the list publishes balls.
     let expected = [("mind", "test/news", 20), ("mind", "test/game", 5), ("mind", "monas/cycle", 8)];
     let messages = live_run_until(mind, &with_a_list(), &expected);
     let outcome = replay(mind(channel().0), &messages).unwrap();
     assert_eq!(outcome.differences, []);
     assert_compared(&messages, &outcome, &expected);
-    // An agent that leaves and comes back without its list, gets one, and comes back with it.
+    // An agent that is removed, restored without its list, gets one, and is restored with it.
     let folder = tempfile::tempdir().unwrap();
     let model = folder.path().join("m.srm");
     std::fs::write(&model, "m = Play . Watch").unwrap();
@@ -698,7 +700,7 @@ fn in_real_time_a_list_begins_again_where_it_began() {
 }
 
 #[test]
-fn in_real_time_a_list_of_which_the_recording_does_not_tell_how_it_began_is_refused() {
+fn in_real_time_a_list_without_a_recorded_start_is_rejected() {
     let [first, ..] = with_a_list();
     let mut messages = live_run(mind, &[first]);
     let is_ordered = |kept: &Kept| {
@@ -706,10 +708,8 @@ fn in_real_time_a_list_of_which_the_recording_does_not_tell_how_it_began_is_refu
     };
     messages.iter_mut().filter(|kept| is_ordered(kept)).for_each(|kept| kept.publisher = "somebody".into());
     let error = replay(mind(channel().0), &messages).err().unwrap().to_string();
-    let reasons = [
-        "agent `mind` was given its first activity ",
-        "the recording does not tell what each turn of `mind` ",
-    ];
+    let reasons =
+        ["agent `mind` got its first activity ", "the recording lacks the inputs of the turns of `mind`"];
     assert!(reasons.iter().any(|reason| error.starts_with(reason)), "{error}");
 }
 

@@ -47,7 +47,7 @@ fn saved(simulation: &mut Simulation) -> String {
 }
 
 #[test]
-fn what_nobody_has_changed_is_saved_byte_by_byte() {
+fn unchanged_parts_are_saved_byte_by_byte() {
     assert_eq!(saved(&mut simulation(TEXT)), TEXT);
     let camel = "<agent IsRealTime=1 Priority=1 ThreadFrequency=10 StatsCycle=15>\n  <name>M</name>\n  <activity>A</activity>\n</agent>\n<agent frequency=1e1><name>N</name>\n</agent>";
     let camel = camel.replace("\n</agent>\n<agent frequency=1e1><name>N</name>\n</agent>", "\n</agent>");
@@ -55,7 +55,7 @@ fn what_nobody_has_changed_is_saved_byte_by_byte() {
 }
 
 #[test]
-fn what_was_changed_is_written_as_its_neighbours_are() {
+fn changes_are_written_in_the_style_of_their_neighbours() {
     let mut simulation = simulation(TEXT);
     let mut ask = |change: Change| made(&simulation.change("local", change).unwrap());
     let given =
@@ -108,7 +108,7 @@ fn a_provider_that_has_become_more_is_saved_as_an_agent() {
 }
 
 #[test]
-fn what_was_not_read_from_xml_is_written_anew() {
+fn values_not_read_from_xml_are_written_from_scratch() {
     let registry = registry();
     let text = "[[agent]]\nname = 'a<b'\nfrequency = 10\nactivity = [{ name = 'A', speed = 2 }]\n";
     let (setup, diagnostics) =

@@ -13,7 +13,7 @@ use crate::management::{change, made, refused, settings, telling};
 
 /// An agent `a` with the activities A and B at 10 Hz, and their records.
 fn simulation() -> (Simulation, Recorder<String>) {
-    let (told, note) = recorder();
+    let (notes, note) = recorder();
     let registry = telling(&["A", "B", "C"], note);
     let text = "<agent frequency='10'><name>a</name><activity>A</activity><activity>B</activity></agent>";
     let source = Source::new("agents.xml", text);
@@ -21,8 +21,8 @@ fn simulation() -> (Simulation, Recorder<String>) {
     assert_eq!(diagnostics, []);
     let mut simulation = Talws::new().registry(registry).setup(setup).simulate(7).unwrap();
     simulation.run_until(at(100)).unwrap();
-    assert_eq!(told.taken(), ["A start", "A", "B start", "B"]);
-    (simulation, told)
+    assert_eq!(notes.taken(), ["A start", "A", "B start", "B"]);
+    (simulation, notes)
 }
 
 fn ask(simulation: &mut Simulation, change: Change) -> Changed {
@@ -52,12 +52,12 @@ fn the_time_does_not_go_back_when_an_agent_resumes() {
 
 #[test]
 fn activities_come_go_and_change_places_between_two_cycles() {
-    let (mut simulation, told) = simulation();
+    let (mut simulation, notes) = simulation();
     let mut then = |change: Change, expected: &[&str]| {
         made(&ask(&mut simulation, change));
         let until = simulation.now() + Duration::from_millis(100);
         simulation.run_until(until).unwrap();
-        assert_eq!(told.taken(), expected);
+        assert_eq!(notes.taken(), expected);
     };
     let add = Change { activity: "C".into(), place: 1, ..change(Action::AddActivity, "a") };
     then(add, &["C start", "C", "A", "B"]);
@@ -76,40 +76,44 @@ fn activities_come_go_and_change_places_between_two_cycles() {
 }
 
 #[test]
-fn an_agent_pauses_steps_goes_on_stops_and_starts() {
-    let (mut simulation, told) = simulation();
+fn an_agent_pauses_steps_resumes_stops_and_starts() {
+    let (mut simulation, notes) = simulation();
     made(&ask(&mut simulation, change(Action::PauseAgent, "a")));
     simulation.run_until(at(1000)).unwrap();
-    assert_eq!(told.taken(), [""; 0]);
+    assert_eq!(notes.taken(), [""; 0]);
     let stepped = ask(&mut simulation, change(Action::StepAgent, "a"));
     assert_eq!((stepped.done, stepped.cycle), (true, 2));
-    assert_eq!(told.taken(), ["A", "B"]);
+    assert_eq!(notes.taken(), ["A", "B"]);
     made(&ask(&mut simulation, change(Action::ResumeAgent, "a")));
     simulation.run_until(at(1101)).unwrap();
     // It was stepped at 1000 ms, where its next cycle would have been; what it missed is not made
     // up for.
-    assert_eq!(told.taken(), ["A", "B"]);
+    assert_eq!(notes.taken(), ["A", "B"]);
     made(&ask(&mut simulation, change(Action::StopAgent, "a")));
-    assert_eq!(told.taken(), ["A stop", "B stop"]);
+    assert_eq!(notes.taken(), ["A stop", "B stop"]);
     simulation.run_until(at(2000)).unwrap();
-    assert_eq!(told.taken(), [""; 0]);
+    assert_eq!(notes.taken(), [""; 0]);
     made(&ask(&mut simulation, change(Action::StartAgent, "a")));
     simulation.run_until(at(2100)).unwrap();
-    assert_eq!(told.taken(), ["A start", "A", "B start", "B"]);
-    assert_eq!(simulation.statistics().agents[0].stopped, None, "it was told to, which is no failure");
+    assert_eq!(notes.taken(), ["A start", "A", "B start", "B"]);
+    assert_eq!(simulation.statistics().agents[0].stopped, None, "it was requested, which is no failure");
 }
 
 #[test]
-fn what_cannot_be_is_refused_with_a_reason_and_changes_nothing() {
-    let (mut simulation, told) = simulation();
+fn impossible_changes_are_rejected_with_a_reason() {
+    let (mut simulation, notes) = simulation();
     let of = |action, activity: &str| Change { activity: activity.into(), ..change(action, "a") };
     let set = |given: &[(&str, &str)]| Change { settings: settings(given), ..change(Action::Set, "a") };
     let cases = [
-        (Change::default(), "E0350", "the change does not say what is to be done"),
+        (Change::default(), "E0350", "the change has no action"),
         (change(Action::StopAgent, "b"), "E0351", "no agent of `local` is named `b`; did you mean `a`?"),
         (change(Action::StartAgent, "a"), "E0352", "`a` has not stopped"),
         (change(Action::ResumeAgent, "a"), "E0352", "`a` runs already"),
-        (change(Action::StepAgent, "a"), "E0352", "`a` runs; one that pauses can be stepped: pause it first"),
+        (
+            change(Action::StepAgent, "a"),
+            "E0352",
+            "`a` runs; only a paused agent can be stepped: pause it first",
+        ),
         (of(Action::AddActivity, "D"), "E0312", "unknown activity `D`; did you mean `A`?"),
         (of(Action::RemoveActivity, "C"), "E0353", "the list of `a` has no activity `C`; did you mean `A`?"),
         (
@@ -120,7 +124,7 @@ fn what_cannot_be_is_refused_with_a_reason_and_changes_nothing() {
         (
             set(&[]),
             "E0353",
-            "nothing is to be set; name an attribute, or a parameter of an activity: `frequency=50`, `Vision.speed=0.5`",
+            "no setting is given; name an attribute, or a parameter of an activity: `frequency=50`, `Vision.speed=0.5`",
         ),
         (
             set(&[("frequency", "0.5"), ("priority", "high")]),
@@ -144,14 +148,14 @@ fn what_cannot_be_is_refused_with_a_reason_and_changes_nothing() {
         let (said_code, said) = refused(&ask(&mut simulation, change.clone()));
         assert_eq!((said_code.as_str(), said.as_str()), (code, reason), "{change:?}");
     }
-    assert_eq!(told.taken(), [""; 0]);
+    assert_eq!(notes.taken(), [""; 0]);
     simulation.run_until(at(300)).unwrap();
-    assert_eq!(told.taken(), ["A", "B", "A", "B"]);
+    assert_eq!(notes.taken(), ["A", "B", "A", "B"]);
 }
 
 #[test]
 fn agents_are_added_from_xml_and_toml_and_removed() {
-    let (mut simulation, told) = simulation();
+    let (mut simulation, notes) = simulation();
     let add = |file: &str, text: &str| Change {
         file: file.into(),
         text: text.into(),
@@ -160,12 +164,12 @@ fn agents_are_added_from_xml_and_toml_and_removed() {
     let xml = "<agent frequency='10'>\n<name>b</name>\n<activity speed='2'>C</activity></agent>";
     made(&ask(&mut simulation, add("b.xml", xml)));
     made(&ask(&mut simulation, add("c.toml", "[[agent]]\nname = 'c'\nfrequency = 10\nactivity = ['C']")));
-    assert_eq!(told.taken(), ["C 2"]);
+    assert_eq!(notes.taken(), ["C 2"]);
     simulation.run_until(at(200)).unwrap();
-    assert_eq!(told.taken(), ["A", "B", "C start", "C", "C start", "C"]);
+    assert_eq!(notes.taken(), ["A", "B", "C start", "C", "C start", "C"]);
     made(&ask(&mut simulation, change(Action::RemoveAgent, "b")));
     simulation.run_until(at(300)).unwrap();
-    assert_eq!(told.taken(), ["C stop", "A", "B", "C"]);
+    assert_eq!(notes.taken(), ["C stop", "A", "B", "C"]);
 
     let changed = ask(
         &mut simulation,
@@ -235,5 +239,5 @@ fn an_activity_may_ask_for_a_change_too() {
     let talws = agents.into_iter().fold(Talws::new(), Talws::agent);
     let talws = talws.agent(Agent::new("b", monas::Hz(10)).activity(b));
     talws.simulate(1).unwrap().run_until(at(1000)).unwrap();
-    assert_eq!(told.taken(), [at(0), at(100), at(200)]);
+    assert_eq!(notes.taken(), [at(0), at(100), at(200)]);
 }

@@ -33,7 +33,7 @@ impl<F: Fn(f64) + Send> Robot for Body<F> {
 }
 
 #[test]
-fn a_stuck_cycle_is_named_cut_off_from_publishing_and_ends_the_run_with_a_body_at_rest() {
+fn a_stuck_cycle_is_reported_and_ends_the_run_with_the_body_unloaded() {
     let (enter, leave) = (Arc::new(Barrier::new(2)), Arc::new(Barrier::new(2)));
     let (here, there) = (enter.clone(), leave.clone());
     let mut calls = 0;
@@ -85,7 +85,7 @@ fn a_stuck_cycle_is_named_cut_off_from_publishing_and_ends_the_run_with_a_body_a
 }
 
 #[test]
-fn an_agent_that_comes_back_from_being_stuck_has_stopped_and_starts_again() {
+fn a_stuck_agent_that_returns_has_stopped_and_can_restart() {
     let (enter, leave) = (Arc::new(Barrier::new(2)), Arc::new(Barrier::new(2)));
     let (here, there) = (enter.clone(), leave.clone());
     let (sender, called) = channel();
@@ -121,7 +121,7 @@ fn an_agent_that_comes_back_from_being_stuck_has_stopped_and_starts_again() {
 }
 
 #[test]
-fn what_the_system_does_not_grant_is_said_and_the_agent_runs_on() {
+fn denied_scheduling_is_reported_and_the_agent_runs() {
     let (sender, called) = channel();
     let agent = Agent::new("a", Hz(1000)).activity(move |_: &mut Blackboard| _ = sender.send(()));
     let running = Talws::new().agent(agent.urgency(5, true).cores([0])).start().unwrap();
@@ -163,7 +163,7 @@ fn overruns_at_ten_kilohertz_cost_only_the_cycles_they_cover() {
 
 #[test]
 fn statistics_are_published_as_often_as_they_are_wanted() {
-    let (sender, told) = channel();
+    let (sender, notes) = channel();
     let mut talws = Talws::new();
     talws.observe(Box::new(move |publication: narukom::Publication<'_>| {
         if let Some(sample) = publication.sample.downcast::<monas::records::AgentEntry>() {
@@ -172,16 +172,16 @@ fn statistics_are_published_as_often_as_they_are_wanted() {
     }));
     let agent = Agent::new("a", Hz(1000)).activity(|_: &mut Blackboard| {}).statistics_every(5);
     let running = talws.agent(agent).start().unwrap();
-    let cycles: Vec<u64> = (0..3).map(|_| told.recv_timeout(PATIENCE).unwrap().cycles).collect();
+    let cycles: Vec<u64> = (0..3).map(|_| notes.recv_timeout(PATIENCE).unwrap().cycles).collect();
     assert_eq!(cycles, [5, 10, 15]);
-    let entry = told.recv_timeout(PATIENCE).unwrap();
+    let entry = notes.recv_timeout(PATIENCE).unwrap();
     assert_eq!((entry.name.as_str(), entry.activities.len()), ("a", 1));
     assert!(entry.cycle_time.unwrap().p99 > 0.0);
     running.stop();
 }
 
 #[test]
-fn a_chart_that_ends_ends_the_run_and_its_failure_is_told() {
+fn a_chart_that_ends_ends_the_run_and_its_failure_is_reported() {
     let chart = aseme_models::statechart_of(&yase::Source::new("m.srm", "m = A")).0;
     let fails = || |_: &mut Blackboard| -> Result<(), std::fmt::Error> { Err(std::fmt::Error) };
     let agent = Agent::statechart("m", chart).on_failure(FailurePolicy::StopAgent);

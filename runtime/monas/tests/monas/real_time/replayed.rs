@@ -93,7 +93,7 @@ fn again(near: f64) -> Talws {
 }
 
 #[test]
-fn what_was_recorded_in_real_time_happens_again() {
+fn recorded_real_time_runs_are_repeated() {
     let messages = recorded();
     let outcome = replay(again(-3.0), &messages).unwrap();
     assert_eq!(outcome.differences, []);
@@ -124,7 +124,7 @@ fn one_agent_is_replayed_without_the_other() {
 }
 
 #[test]
-fn what_a_link_brings_under_the_agents_own_name_is_not_the_agents() {
+fn linked_messages_under_the_agents_name_are_not_its_own() {
     let mut messages = recorded();
     for kept in messages.iter_mut().filter(|kept| kept.topic == "test/ball") {
         kept.publisher = "keeper".into();
@@ -165,7 +165,7 @@ fn a_recording_without_turns_is_refused() {
         kept.bytes = records::Cycle { number, time, delivered, ..records::Cycle::default() }.encode_to_vec();
     }
     let error = replay(again(-3.0), &messages).err().unwrap();
-    assert!(error.to_string().contains("does not tell what each turn of `"), "{error}");
+    assert!(error.to_string().contains("lacks the inputs of the turns of `"), "{error}");
 }
 
 /// One agent with the list and with two charts: the keeper's, and one that counts what that one
@@ -227,11 +227,11 @@ fn a_changed_threshold_shows_at_the_thread_that_has_it_alone() {
 }
 
 #[test]
-fn a_recording_that_does_not_tell_threads_of_one_name_apart_is_refused() {
+fn a_recording_with_ambiguous_threads_is_rejected() {
     let mut messages = recorded_player();
     messages.iter_mut().for_each(|kept| kept.part = 0);
     let error = replay(player(-3.0, &channel().0), &messages).err().unwrap();
-    assert!(error.to_string().contains("does not tell what each turn of `player`"), "{error}");
+    assert!(error.to_string().contains("lacks the inputs of the turns of `player`"), "{error}");
 }
 
 #[test]
@@ -248,7 +248,7 @@ fn an_agent_that_begins_with_nothing_is_refused() {
 }
 
 #[test]
-fn an_activity_that_waits_to_be_asked_to_return_returns_in_a_replay() {
+fn an_activity_that_waits_for_cancellation_returns_in_a_replay() {
     let talws = |started: Sender<()>| {
         let registry = Registry::linked().with("Wait", move || {
             let started = started.clone();

@@ -40,7 +40,7 @@ pub(crate) fn checked(
         }
     }
     if !has_unread {
-        report.what = Some("its properties were looked at".to_owned());
+        report.what = Some("its properties were checked".to_owned());
     }
     report
 }

@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_of_another_chart_is_told() {
+    fn a_step_of_another_chart_is_reported() {
         let mut known = Vec::new();
         let place = ChartCounts::place_of(&chart(), &mut known);
         assert!(!known[place].count(&records::Chart { entries: vec![99], ..records::Chart::default() }));

@@ -8,7 +8,7 @@ use super::transitions::transitions;
 /// The chart, with a function for each of its guards and values.
 ///
 /// # Errors
-/// Only if it was changed by hand and no longer fits together.
+/// Only if it was edited and is inconsistent.
 pub fn chart() -> Result<TypedChart, Vec<Diagnostic>> {
     let mut chart = TypedChartBuilder::new("player");
     states(&mut chart);

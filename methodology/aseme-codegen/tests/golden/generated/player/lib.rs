@@ -1,9 +1,9 @@
 //! The statechart `player`.
 //!
-//! Generated from `models/patrol.srm`: what is changed here is lost when that is done again.
+//! Generated from `models/patrol.srm`: changes here are lost when it is generated again.
 //!
-//! [`State`] lists its states; the modules `chart` and `transitions` say how they hang together, `guards` what the guards ask and
-//! what is assigned, `words` what these speak of.
+//! [`State`] lists its states; the modules `chart` and `transitions` define its structure,
+//! `guards` its guards and assigned values, `words` the names that they use.
 
 pub mod activities;
 mod chart;

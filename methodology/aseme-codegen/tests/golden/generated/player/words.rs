@@ -1,1 +1,1 @@
-//! What guards and actions speak of: each a constant with the model's own name.
+//! The names that guards and actions use: each a constant named as in the model.

@@ -1,6 +1,6 @@
 //! The activity `passBall`.
 //!
-//! What it is about, by the model:
+//! Its variables in the model:
 //!
 //! - `mate`: `team.State.Mate`
 //! - `ball`: `ball.State.Ball`
@@ -9,7 +9,7 @@
 use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 use soccer::topics::{BALL, GAME_STATE};
 
-/// Has nothing to do so far.
+/// To be implemented.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PassBall;
 
