@@ -12,7 +12,7 @@
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use yase_reference::parallel::{self, ComparisonResults};
+use yase_reference::parallel::{self, Found};
 
 /// The number of charts played between checks for a difference found by another thread.
 const BATCH: u64 = 1000;
@@ -31,12 +31,12 @@ fn main() -> ExitCode {
 }
 
 /// Plays all charts with these numbers on all processors.
-fn run(first: u64, end: u64) -> ComparisonResults {
+fn run(first: u64, end: u64) -> Found {
     let next = AtomicU64::new(first);
     let workers = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|threads| {
         let handles: Vec<_> = (0..workers).map(|_| threads.spawn(|| work(&next, end))).collect();
-        let mut all = ComparisonResults::default();
+        let mut all = Found::default();
         for handle in handles {
             all.join(handle.join().expect("it does not panic"));
         }
@@ -44,8 +44,8 @@ fn run(first: u64, end: u64) -> ComparisonResults {
     })
 }
 
-fn work(next: &AtomicU64, end: u64) -> ComparisonResults {
-    let mut all = ComparisonResults::default();
+fn work(next: &AtomicU64, end: u64) -> Found {
+    let mut all = Found::default();
     loop {
         let from = next.fetch_add(BATCH, Ordering::Relaxed);
         if from >= end {
@@ -61,7 +61,7 @@ fn work(next: &AtomicU64, end: u64) -> ComparisonResults {
     }
 }
 
-fn report(found: &ComparisonResults, charts: u64) -> ExitCode {
+fn report(found: &Found, charts: u64) -> ExitCode {
     println!("{}", found.histogram.text());
     for why in found.refused.iter().take(5) {
         println!("refused: {why}");

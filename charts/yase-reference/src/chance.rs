@@ -1,11 +1,11 @@
-//! Choices that the model leaves open: R22.
+//! Choices that the rules leave open: R22.
 
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
 /// How choices are resolved.
 #[derive(Clone, Debug, PartialEq)]
-pub enum ChoicePolicy {
+pub enum Freedom {
     /// Always the first option.
     Declared,
     /// A generator with that seed.
@@ -16,17 +16,17 @@ pub enum ChoicePolicy {
 
 /// Resolves choices and records them.
 #[derive(Clone, Debug)]
-pub(crate) struct ChoiceSource {
-    freedom: ChoicePolicy,
+pub(crate) struct Chance {
+    freedom: Freedom,
     generator: Pcg64,
     /// The chosen options and the numbers of options.
     pub log: Vec<(u32, u32)>,
 }
 
-impl ChoiceSource {
-    pub(crate) fn new(freedom: ChoicePolicy) -> ChoiceSource {
-        let seed = if let ChoicePolicy::Seeded(seed) = freedom { seed } else { 0 };
-        ChoiceSource { freedom, generator: Pcg64::seed_from_u64(seed), log: vec![] }
+impl Chance {
+    pub(crate) fn new(freedom: Freedom) -> Chance {
+        let seed = if let Freedom::Seeded(seed) = freedom { seed } else { 0 };
+        Chance { freedom, generator: Pcg64::seed_from_u64(seed), log: vec![] }
     }
 
     /// Chooses one of the options; a single option is not recorded.
@@ -36,7 +36,7 @@ impl ChoiceSource {
 
     /// Whether weights matter.
     pub(crate) fn draws(&self) -> bool {
-        !matches!(self.freedom, ChoicePolicy::Declared)
+        !matches!(self.freedom, Freedom::Declared)
     }
 
     /// Chooses one of several options, in proportion to their weights.
@@ -45,9 +45,9 @@ impl ChoiceSource {
             return 0;
         }
         let chosen = match &self.freedom {
-            ChoicePolicy::Declared => 0,
-            ChoicePolicy::Seeded(_) => self.generated(weights),
-            ChoicePolicy::Scripted(choices) => {
+            Freedom::Declared => 0,
+            Freedom::Seeded(_) => self.generated(weights),
+            Freedom::Scripted(choices) => {
                 let next = choices.get(self.log.len()).copied().unwrap_or(0) as usize;
                 next.min(weights.len() - 1)
             }
@@ -56,7 +56,8 @@ impl ChoiceSource {
         chosen
     }
 
-    /// Equal weights divide the generator's range evenly, other weights in proportion, in order.
+    /// Equal options share the generator's numbers evenly; others in proportion to their weights,
+    /// in order.
     fn generated(&mut self, weights: &[f64]) -> usize {
         let draw = self.generator.next_u64();
         if weights.iter().all(|weight| *weight == 1.0) {
@@ -70,10 +71,10 @@ impl ChoiceSource {
         reached.unwrap_or(weights.len() - 1)
     }
 
-    /// The recorded choices of a script; they equal those recorded by the machine's chooser.
-    pub(crate) fn scripted_log(&self) -> &[(u32, u32)] {
+    /// The choices made by a script, which are all that the machine's chooser records.
+    pub(crate) fn told(&self) -> &[(u32, u32)] {
         match self.freedom {
-            ChoicePolicy::Scripted(_) => &self.log,
+            Freedom::Scripted(_) => &self.log,
             _ => &[],
         }
     }

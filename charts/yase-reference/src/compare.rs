@@ -1,4 +1,4 @@
-//! Both interpreters execute one case, and their logs are compared.
+//! Both interpreters play one case, and their logs are compared.
 //!
 //! All contents of trace records are compared, and so are all calls of the host, the reports, the
 //! configuration after each step and the error that ends a chart. Two things are not compared,
@@ -9,16 +9,16 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use yase::statechart::{NodeId, Statechart};
-use yase::{Activation, Chooser, Machine, Outcome, ScopeId, Timestamp, TopicId};
+use yase::{Activation, Chooser, Machine, Timestamp, Outcome, ScopeId, TopicId};
 
-use crate::chance::{ChoicePolicy, ChoiceSource};
+use crate::chance::{Chance, Freedom};
 use crate::random::Case;
 use crate::script::{self, ByMicroSteps, Interpreter};
 use crate::stepper::Stepper;
 use crate::world::{World, vocabulary};
 
 /// Result of a case.
-pub(crate) enum CaseResult {
+pub(crate) enum Verdict {
     /// Both logs are equal.
     Same(Vec<String>),
     Different(Difference),
@@ -31,11 +31,11 @@ pub(crate) struct Difference {
     pub found: Vec<String>,
 }
 
-pub(crate) fn judge(case: &Case) -> CaseResult {
+pub(crate) fn judge(case: &Case) -> Verdict {
     let chart = match case.chart.compile_with(&vocabulary(), case.semantics) {
         Ok(chart) => Arc::new(chart),
         Err(found) => {
-            return CaseResult::Refused(found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"));
+            return Verdict::Refused(found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"));
         }
     };
     let timers = chart.timers().map(|(region, name)| (region, name.to_owned())).collect();
@@ -46,16 +46,16 @@ pub(crate) fn judge(case: &Case) -> CaseResult {
         [by_machine(case, machine.clone(), false), by_machine(case, ByMicroSteps(machine.clone()), false)]
     {
         if expected != found {
-            return CaseResult::Different(Difference { expected, found });
+            return Verdict::Different(Difference { expected, found });
         }
     }
-    // A machine without an observer logs no micro-steps; everything else must be equal.
+    // A machine without an observer records no micro-steps: everything else must be equal.
     let is_micro_step = |line: &String| line.starts_with(|first: char| first.is_ascii_digit());
-    let without_steps: Vec<String> = expected.iter().filter(|line| !is_micro_step(line)).cloned().collect();
+    let told: Vec<String> = expected.iter().filter(|line| !is_micro_step(line)).cloned().collect();
     let found = by_machine(case, machine, true);
-    match without_steps == found {
-        true => CaseResult::Same(expected),
-        false => CaseResult::Different(Difference { expected: without_steps, found }),
+    match told == found {
+        true => Verdict::Same(expected),
+        false => Verdict::Different(Difference { expected: told, found }),
     }
 }
 
@@ -65,34 +65,32 @@ fn world(case: &Case) -> World {
 
 fn by_reference(case: &Case, timers: Vec<(ScopeId, String)>) -> Vec<String> {
     let mut world = world(case);
-    let chance = ChoiceSource::new(case.freedom.clone());
-    let mut watched = ConfigurationLogger {
-        inner: Stepper::new(&case.chart, case.semantics, chance, timers),
-        chart: &case.chart,
-    };
+    let chance = Chance::new(case.freedom.clone());
+    let mut watched =
+        Watched { inner: Stepper::new(&case.chart, case.semantics, chance, timers), chart: &case.chart };
     script::run(&mut watched, &case.script, &mut world);
-    world.say(format!("asked {:?}", watched.inner.chance.scripted_log()));
+    world.say(format!("asked {:?}", watched.inner.chance.told()));
     normal(world.log)
 }
 
-fn by_machine<M: MachineAccess>(case: &Case, machine: M, silent: bool) -> Vec<String> {
+fn by_machine<M: Asked>(case: &Case, machine: M, silent: bool) -> Vec<String> {
     let mut world = World { silent, ..world(case) };
-    let mut watched = ConfigurationLogger { inner: machine, chart: &case.chart };
+    let mut watched = Watched { inner: machine, chart: &case.chart };
     script::run(&mut watched, &case.script, &mut world);
     world.say(format!("asked {:?}", watched.inner.machine().chooser().choices()));
     normal(world.log)
 }
 
-fn chooser(freedom: &ChoicePolicy) -> Chooser {
+fn chooser(freedom: &Freedom) -> Chooser {
     match freedom {
-        ChoicePolicy::Declared => Chooser::declared(),
-        ChoicePolicy::Seeded(seed) => Chooser::seeded(*seed),
-        ChoicePolicy::Scripted(choices) => Chooser::scripted(choices.clone()),
+        Freedom::Declared => Chooser::declared(),
+        Freedom::Seeded(seed) => Chooser::seeded(*seed),
+        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
     }
 }
 
 /// An interpreter that also logs its configuration after each step.
-struct ConfigurationLogger<'c, I> {
+struct Watched<'c, I> {
     inner: I,
     chart: &'c Statechart,
 }
@@ -107,30 +105,30 @@ impl Configured for Stepper<'_> {
     }
 }
 
-impl<M: MachineAccess> Configured for M {
+impl<M: Asked> Configured for M {
     fn has(&self, node: NodeId) -> bool {
         self.machine().is_active(node)
     }
 }
 
-/// Access to the machine of an interpreter, however it steps it.
-trait MachineAccess: Interpreter {
+/// A machine, however it is stepped.
+trait Asked: Interpreter {
     fn machine(&self) -> &Machine;
 }
 
-impl MachineAccess for Machine {
+impl Asked for Machine {
     fn machine(&self) -> &Machine {
         self
     }
 }
 
-impl MachineAccess for ByMicroSteps {
+impl Asked for ByMicroSteps {
     fn machine(&self) -> &Machine {
         &self.0
     }
 }
 
-impl<I: Configured> ConfigurationLogger<'_, I> {
+impl<I: Configured> Watched<'_, I> {
     fn show(&self, world: &mut World) {
         let active = self.chart.nodes().filter(|(id, _)| self.inner.has(*id));
         let numbers: Vec<String> = active.map(|(id, _)| id.0.to_string()).collect();
@@ -138,7 +136,7 @@ impl<I: Configured> ConfigurationLogger<'_, I> {
     }
 }
 
-impl<I: Configured> Interpreter for ConfigurationLogger<'_, I> {
+impl<I: Configured> Interpreter for Watched<'_, I> {
     fn start(&mut self, now: Timestamp, world: &mut World) {
         self.inner.start(now, world);
         self.show(world);

@@ -48,15 +48,15 @@ impl Histogram {
 
     pub(crate) fn count(&mut self, case: &Case, log: &[String]) {
         let nodes = case.chart.nodes().map(|(id, _)| (short_path(&case.chart, id), id)).collect();
-        let seen = PlayedCase { case, chart: &case.chart, log, lines: lines(log), nodes };
+        let seen = Seen { case, chart: &case.chart, log, lines: lines(log), nodes };
         self.count_chart(&seen);
         self.count_reading(case);
-        for (row, occurred) in OBSERVED {
+        for (row, occurred) in SEEN {
             self.add(row, occurred(&seen));
         }
     }
 
-    fn count_chart(&mut self, seen: &PlayedCase<'_>) {
+    fn count_chart(&mut self, seen: &Seen<'_>) {
         let chart = seen.chart;
         for kind in KINDS {
             let nodes = chart.nodes().skip(1).any(|(_, node)| node.kind == kind);
@@ -97,12 +97,12 @@ impl Histogram {
             self.add(format!("point {name}"), alone);
         }
         self.add("points mixed", case.variant == Variant::Mixed);
-        self.add("chooser declared", matches!(case.freedom, crate::chance::ChoicePolicy::Declared));
-        self.add("chooser seeded", matches!(case.freedom, crate::chance::ChoicePolicy::Seeded(_)));
-        self.add("chooser scripted", matches!(case.freedom, crate::chance::ChoicePolicy::Scripted(_)));
+        self.add("chooser declared", matches!(case.freedom, crate::chance::Freedom::Declared));
+        self.add("chooser seeded", matches!(case.freedom, crate::chance::Freedom::Seeded(_)));
+        self.add("chooser scripted", matches!(case.freedom, crate::chance::Freedom::Scripted(_)));
     }
 
-    /// The counts, one row per line.
+    /// The counts, a row a line.
     pub fn text(&self) -> String {
         let lines: Vec<String> = self.rows.iter().map(|(row, count)| format!("{count:8} {row}")).collect();
         lines.join("\n")
@@ -130,7 +130,7 @@ fn depth(chart: &Statechart, node: NodeId, kind: NodeKind) -> usize {
 }
 
 /// A played case and its log.
-struct PlayedCase<'a> {
+struct Seen<'a> {
     case: &'a Case,
     chart: &'a Statechart,
     log: &'a [String],
@@ -143,8 +143,8 @@ fn short_path(chart: &Statechart, node: NodeId) -> String {
     path.split_once('/').map_or(path.clone(), |(_, rest)| rest.to_owned())
 }
 
-impl PlayedCase<'_> {
-    fn mentions(&self, part: &str) -> bool {
+impl Seen<'_> {
+    fn says(&self, part: &str) -> bool {
         self.log.iter().any(|line| line.contains(part))
     }
 
@@ -202,7 +202,7 @@ impl PlayedCase<'_> {
     }
 }
 
-type Row = (&'static str, fn(&PlayedCase<'_>) -> bool);
+type Row = (&'static str, fn(&Seen<'_>) -> bool);
 
 /// Rows derived from lines, or from chart and lines together.
 const SEEN: [Row; 88] = [
@@ -240,8 +240,8 @@ const SEEN: [Row; 88] = [
         it.lines.iter().any(|line| line.event.starts_with("e.") && !line.selected.is_empty())
     }),
     ("R4 an event of no known name", |it| it.lines.iter().any(|line| line.event == "?")),
-    ("R5 a guard is false", |it| it.mentions(" = false")),
-    ("R5 a guard errs", |it| it.mentions("  guard failed")),
+    ("R5 a guard is false", |it| it.says(" = false")),
+    ("R5 a guard errs", |it| it.says("  guard failed")),
     ("R5 an error event is taken", |it| {
         it.lines.iter().any(|line| line.event.starts_with("error") && !line.selected.is_empty())
     }),
@@ -261,12 +261,12 @@ const SEEN: [Row; 88] = [
         it.lines.iter().any(|line| !line.event.is_empty() && line.event != "-" && !line.held.is_empty())
     }),
     ("R9 interrupts", |it| it.any_fired(|it, _| it.interrupts)),
-    ("R9 cancelled", |it| it.mentions("  cancel ")),
+    ("R9 cancelled", |it| it.says("  cancel ")),
     ("R10 exits, effects and entries", |it| {
         it.lines.iter().any(|line| !line.exits.is_empty() && line.effects && !line.entries.is_empty())
     }),
-    ("R10 an exit action", |it| it.mentions("(exit ")),
-    ("R10 an entry action", |it| it.mentions("(entry ")),
+    ("R10 an exit action", |it| it.says("(exit ")),
+    ("R10 an entry action", |it| it.says("(entry ")),
     ("R10 shallow history", |it| it.any_selected_through(&[NodeKind::ShallowHistory])),
     ("R10 deep history", |it| it.any_selected_through(&[NodeKind::DeepHistory])),
     ("R10 history by default", |it| it.any_taken_from(&[NodeKind::ShallowHistory, NodeKind::DeepHistory])),
@@ -275,7 +275,7 @@ const SEEN: [Row; 88] = [
         it.lines.iter().any(|line| line.reads.iter().any(|read| read.contains("START -> ")))
     }),
     ("R12 CHOICE", |it| it.any_taken_from(&[NodeKind::Choice])),
-    ("R12 no branch", |it| it.mentions("error: ") && !it.mentions("error: endless")),
+    ("R12 no branch", |it| it.says("error: ") && !it.says("error: endless")),
     ("R12 FORK", |it| it.any_selected_through(&[NodeKind::Fork])),
     ("R12 JOIN together", |it| {
         it.case.semantics.join == yase::JoinMode::Together && it.any_selected_through(&[NodeKind::Join])
@@ -325,12 +325,12 @@ const SEEN: [Row; 88] = [
                 && it.chart.node(transition.source).kind != NodeKind::Start
         })
     }),
-    ("R16 raised", |it| it.mentions("raise(")),
-    ("R16 dropped", |it| it.mentions(": dropped")),
-    ("R16 deferred", |it| it.mentions("; defer in")),
+    ("R16 raised", |it| it.says("raise(")),
+    ("R16 dropped", |it| it.says(": dropped")),
+    ("R16 deferred", |it| it.says("; defer in")),
     ("R16 done.state", |it| it.lines.iter().any(|line| line.event.starts_with("done.state"))),
-    ("R17 endless", |it| it.mentions("error: endless")),
-    ("R17 comes to rest", |it| !it.mentions("error: ")),
+    ("R17 endless", |it| it.says("error: endless")),
+    ("R17 comes to rest", |it| !it.says("error: ")),
     ("R18 a message wakes a guard", |it| {
         it.case.script.inputs.iter().any(|(time, input)| {
             let now = yase::Timestamp::from_millis(*time).to_string();
@@ -338,19 +338,19 @@ const SEEN: [Row; 88] = [
                 && it.lines.iter().any(|line| line.event == "-" && now.strip_suffix(" s") == Some(line.time))
         })
     }),
-    ("R19 a region inherits", |it| it.mentions("  inherit ")),
-    ("R19 delivered to a region", |it| it.mentions("  deliver 1")),
-    ("R19 published", |it| it.mentions("  publish ")),
-    ("R19 an assignment fails", |it| it.mentions("  action failed")),
-    ("R19 process_messages", |it| it.mentions("process_messages")),
-    ("R20 an activity starts", |it| it.mentions("  start ")),
+    ("R19 a region inherits", |it| it.says("  inherit ")),
+    ("R19 delivered to a region", |it| it.says("  deliver 1")),
+    ("R19 published", |it| it.says("  publish ")),
+    ("R19 an assignment fails", |it| it.says("  action failed")),
+    ("R19 process_messages", |it| it.says("process_messages")),
+    ("R20 an activity starts", |it| it.says("  start ")),
     ("R20 takes its time", |it| {
         it.chart.nodes().any(|(_, node)| node.duration.is_some_and(|time| !time.is_zero()))
     }),
-    ("R20 done", |it| it.mentions("returns Done")),
-    ("R20 ongoing", |it| it.mentions("returns Ongoing")),
-    ("R20 failed", |it| it.mentions("returns Failed")),
-    ("R20 stopped", |it| it.mentions("  stop ")),
+    ("R20 done", |it| it.says("returns Done")),
+    ("R20 ongoing", |it| it.says("returns Ongoing")),
+    ("R20 failed", |it| it.says("returns Failed")),
+    ("R20 stopped", |it| it.says("  stop ")),
     ("R21 an expiry is taken", |it| {
         it.lines.iter().any(|line| line.event.starts_with('v') && !line.selected.is_empty())
     }),
@@ -447,13 +447,13 @@ fn names(transition: &Transition, event: &str) -> bool {
     }
 }
 
-fn triggered(seen: &PlayedCase<'_>, wanted: impl Fn(&Trigger) -> bool) -> bool {
+fn triggered(seen: &Seen<'_>, wanted: impl Fn(&Trigger) -> bool) -> bool {
     seen.any_fired(|transition, line| {
         line.event != "-" && transition.expression.trigger.as_ref().is_some_and(&wanted)
     })
 }
 
-fn completed(seen: &PlayedCase<'_>, kind: NodeKind) -> bool {
+fn completed(seen: &Seen<'_>, kind: NodeKind) -> bool {
     seen.any_fired(|transition, line| {
         let expression = &transition.expression;
         line.event == "-"

@@ -2,9 +2,9 @@
 //! `yase`.
 //!
 //! The interpreter ([`parallel::compare`] runs it) is slow and simple: it interprets the statechart
-//! without compilation and shares no code with the machine. A [case](random::Case) consists of a
-//! chart, its inputs and its semantics, all derived from its number. [`parallel::compare`] executes
-//! cases on both interpreters, counts what occurred in them, and shrinks the first difference.
+//! without compilation and shares no code with the machine. A [case](random::Case) is a chart, its
+//! inputs and its semantics, all derived from its number. [`parallel::compare`] plays cases on both
+//! interpreters, counts what occurred in them, and shrinks the first difference.
 //!
 //! The tests of the machine's rules, snapshots and migrations are in this crate, since they share
 //! its test environment: [charts as text](chart()), a [`World`] with blackboards and activities,

@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use crate::compare::{CaseResult, describe, judge};
+use crate::compare::{Verdict, describe, judge};
 use crate::histogram::Histogram;
 use crate::random::Case;
 use crate::shrink::shrink;
 
 /// The results.
 #[derive(Default)]
-pub struct ComparisonResults {
+pub struct Found {
     /// The histogram of the charts.
     pub histogram: Histogram,
     /// The first difference, shrunk.
@@ -18,9 +18,9 @@ pub struct ComparisonResults {
     pub refused: Vec<String>,
 }
 
-impl ComparisonResults {
+impl Found {
     /// Adds the results of other charts.
-    pub fn join(&mut self, other: ComparisonResults) {
+    pub fn join(&mut self, other: Found) {
         self.histogram.join(&other.histogram);
         self.refused.extend(other.refused);
         self.difference = self.difference.take().or(other.difference);
@@ -28,14 +28,14 @@ impl ComparisonResults {
 }
 
 /// Plays the cases with these numbers, up to the first difference.
-pub fn compare(numbers: Range<u64>) -> ComparisonResults {
-    let mut found = ComparisonResults::default();
+pub fn compare(numbers: Range<u64>) -> Found {
+    let mut found = Found::default();
     for number in numbers {
         let case = Case::numbered(number);
         match judge(&case) {
-            CaseResult::Same(lines) => found.histogram.count(&case, &lines),
-            CaseResult::Refused(why) => found.refused.push(format!("case {number}: {why}")),
-            CaseResult::Different(_) => {
+            Verdict::Same(lines) => found.histogram.count(&case, &lines),
+            Verdict::Refused(why) => found.refused.push(format!("case {number}: {why}")),
+            Verdict::Different(_) => {
                 found.difference = Some(format!("case {number}\n{}", smallest(&case)));
                 return found;
             }
@@ -47,7 +47,7 @@ pub fn compare(numbers: Range<u64>) -> ComparisonResults {
 fn smallest(case: &Case) -> String {
     let small = shrink(case);
     match judge(&small) {
-        CaseResult::Different(difference) => describe(&small, &difference),
+        Verdict::Different(difference) => describe(&small, &difference),
         _ => "it differs no more".to_owned(),
     }
 }

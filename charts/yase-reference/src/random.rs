@@ -9,7 +9,7 @@ mod words;
 use yase::statechart::{NodeId, Statechart};
 use yase::{CompletionTrigger, EventMatching, Firing, Semantics, StructureRules, TopicId};
 
-use crate::chance::ChoicePolicy;
+use crate::chance::Freedom;
 use crate::script::{Input, Script};
 
 pub(crate) use points::{POINTS, Variant, differs_somewhere, has};
@@ -50,7 +50,7 @@ pub struct Case {
     /// How the semantics was derived.
     pub(crate) variant: Variant,
     /// How open choices are resolved.
-    pub freedom: ChoicePolicy,
+    pub freedom: Freedom,
 }
 
 impl Case {
@@ -66,14 +66,8 @@ impl Case {
         let (semantics, variant) = points::semantics(choices);
         let freedom = freedom(choices);
         let script = script(choices, &semantics);
-        let mut maker = ChartGenerator {
-            chart: Statechart::new("c"),
-            choices,
-            semantics,
-            names: 0,
-            timers: 0,
-            short: vec![],
-        };
+        let mut maker =
+            Maker { chart: Statechart::new("c"), choices, semantics, names: 0, timers: 0, short: vec![] };
         maker.composite(Statechart::ROOT, 0);
         maker.transitions();
         maker.weights();
@@ -89,11 +83,11 @@ fn next(state: &mut u64) -> u64 {
     z ^ (z >> 31)
 }
 
-fn freedom(choices: &mut Choices<'_>) -> ChoicePolicy {
+fn freedom(choices: &mut Choices<'_>) -> Freedom {
     match choices.below(4) {
-        0 => ChoicePolicy::Declared,
-        1 => ChoicePolicy::Seeded(choices.below(256) as u64),
-        _ => ChoicePolicy::Scripted((0..12).map(|_| choices.below(3) as u32).collect()),
+        0 => Freedom::Declared,
+        1 => Freedom::Seeded(choices.below(256) as u64),
+        _ => Freedom::Scripted((0..12).map(|_| choices.below(3) as u32).collect()),
     }
 }
 
@@ -117,7 +111,7 @@ fn script(choices: &mut Choices<'_>, semantics: &Semantics) -> Script {
 }
 
 /// A chart under construction.
-struct ChartGenerator<'a, 'b> {
+struct Maker<'a, 'b> {
     chart: Statechart,
     choices: &'a mut Choices<'b>,
     semantics: Semantics,
@@ -127,7 +121,7 @@ struct ChartGenerator<'a, 'b> {
     short: Vec<NodeId>,
 }
 
-impl ChartGenerator<'_, '_> {
+impl Maker<'_, '_> {
     fn name(&mut self, prefix: &str) -> String {
         self.names += 1;
         format!("{prefix}{}", self.names)

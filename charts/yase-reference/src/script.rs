@@ -4,8 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use yase::{
-    Activation, CompiledChart, Machine, MicroStep, Outcome, ScopeId, Semantics, Statechart, Timestamp,
-    TopicId,
+    Activation, CompiledChart, Machine, MicroStep, Timestamp, Outcome, ScopeId, Semantics, Statechart, TopicId,
 };
 
 use super::world::{TOPICS, World, vocabulary};
@@ -14,7 +13,7 @@ use super::world::{TOPICS, World, vocabulary};
 pub trait Interpreter {
     /// Starts the chart.
     fn start(&mut self, now: Timestamp, world: &mut World);
-    /// An event occurs.
+    /// An event comes.
     fn event(&mut self, name: &str);
     /// A message has arrived on a topic.
     fn message(&mut self, topic: TopicId);
@@ -120,7 +119,7 @@ impl Interpreter for ByMicroSteps {
 /// An input.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input {
-    /// An event occurs.
+    /// An event comes.
     Event(String),
     /// A message with a number arrives on a topic.
     Message(TopicId, i64),
@@ -198,10 +197,10 @@ pub fn assert_silent_alike(
     chart: Arc<CompiledChart>,
     script: &Script,
 ) {
-    let expected: Vec<&String> =
+    let told: Vec<&String> =
         seen.log.iter().filter(|line| line.starts_with("  ") || line.starts_with("error")).collect();
     let alike = |machine: &Machine, log: &[String]| {
-        assert_eq!(expected, log.iter().collect::<Vec<_>>());
+        assert_eq!(told, log.iter().collect::<Vec<_>>());
         assert_eq!(traced.configuration(), machine.configuration());
         assert_eq!((traced.status(), traced.next_deadline()), (machine.status(), machine.next_deadline()));
     };
@@ -221,12 +220,12 @@ pub fn run(interpreter: &mut impl Interpreter, script: &Script, world: &mut Worl
         while let Some((_, input)) = inputs.next_if(|(time, _)| Timestamp::from_millis(*time) <= now) {
             apply(interpreter, world, input);
         }
-        if !run_until_idle(interpreter, now, world) {
+        if !settle(interpreter, now, world) {
             return;
         }
         let next = [
             inputs.peek().map(|(time, _)| Timestamp::from_millis(*time)),
-            world.running.iter().map(|job| job.due).min(),
+            world.jobs.iter().map(|job| job.due).min(),
             interpreter.next_deadline(),
         ];
         let Some(next) = next.into_iter().flatten().min() else { return };
@@ -242,21 +241,21 @@ fn apply(interpreter: &mut impl Interpreter, world: &mut World, input: &Input) {
         Input::Event(name) => interpreter.event(name),
         Input::Message(topic, value) => {
             world.send(*topic, *value, (0..interpreter.regions() as u32).map(ScopeId));
-            report_arrivals(interpreter, world);
+            tell_arrivals(interpreter, world);
         }
     }
 }
 
-fn report_arrivals(interpreter: &mut impl Interpreter, world: &mut World) {
+fn tell_arrivals(interpreter: &mut impl Interpreter, world: &mut World) {
     for topic in std::mem::take(&mut world.arrivals) {
         interpreter.message(topic);
     }
 }
 
-/// Processes activities and steps until nothing is due. Returns false if the interpreter failed.
-fn run_until_idle(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World) -> bool {
+/// Processes activities and steps until nothing is due; false if the interpreter failed.
+fn settle(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World) -> bool {
     loop {
-        while let Some(index) = (0..world.running.len()).find(|&index| world.running[index].due <= now) {
+        while let Some(index) = (0..world.jobs.len()).find(|&index| world.jobs[index].due <= now) {
             advance(interpreter, now, world, index);
         }
         if !interpreter.needs_step(now) {
@@ -266,18 +265,18 @@ fn run_until_idle(interpreter: &mut impl Interpreter, now: Timestamp, world: &mu
             world.say(format!("error: {error}"));
             return false;
         }
-        report_arrivals(interpreter, world);
+        tell_arrivals(interpreter, world);
     }
 }
 
 /// An activity returns or, if it waits, is called again.
 fn advance(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World, index: usize) {
-    let job = &mut world.running[index];
+    let job = &mut world.jobs[index];
     let activation = job.activation;
     if job.waits {
         match interpreter.resumed(activation) {
             true => (job.waits, job.due, job.calls) = (false, now + job.duration, job.calls + 1),
-            false => job.due = Timestamp::from_nanos(u64::MAX), // its state will be exited
+            false => job.due = Timestamp::from_nanos(u64::MAX), // its state is about to be left
         }
         return;
     }
@@ -286,6 +285,6 @@ fn advance(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World
     (job.waits, job.due) = (true, now + Duration::from_millis(10));
     world.say(text);
     if !interpreter.returned(activation, outcome) || outcome != Outcome::Ongoing {
-        world.running.remove(index);
+        world.jobs.remove(index);
     }
 }

@@ -16,20 +16,20 @@ mod walk;
 use std::collections::{BTreeMap, BTreeSet};
 
 use yase::statechart::{NodeId, Statechart, TransitionId};
-use yase::{Activation, Outcome, ScopeId, Semantics, Timestamp, TopicId};
+use yase::{Activation, Timestamp, Outcome, ScopeId, Semantics, TopicId};
 
-use crate::chance::ChoiceSource;
+use crate::chance::Chance;
 use crate::script::Interpreter;
 use crate::world::{TOPICS, World};
-use transitions::StaticPath;
+use transitions::Way;
 use tree::Tree;
 
 /// A failure that stops the chart.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Failure {
-    /// No branch of a CHOICE is enabled.
+    /// No branch of that CHOICE is open.
     NoBranch(NodeId),
-    /// Too many micro-steps, or steps at one time.
+    /// Too many micro-steps, or steps at one moment.
     Endless,
 }
 
@@ -44,9 +44,9 @@ pub(crate) struct Occurrence {
 /// An event held for running activities: the transitions it would take, and whether it is offered
 /// again.
 #[derive(Clone, Debug)]
-struct HeldEvent {
+struct Held {
     occurrence: Occurrence,
-    ways: Vec<StaticPath>,
+    ways: Vec<Way>,
     offer: bool,
 }
 
@@ -60,7 +60,7 @@ enum Phase {
 }
 
 #[derive(Clone, Debug)]
-struct RunningActivity {
+struct Job {
     phase: Phase,
     number: u64,
     cancelled: bool,
@@ -74,7 +74,7 @@ struct Deadline {
     bound: Option<NodeId>,
 }
 
-/// The content of a micro-step's line.
+/// What happens in a micro-step, for its line.
 #[derive(Clone, Debug, Default)]
 struct Line {
     exits: Vec<NodeId>,
@@ -88,12 +88,12 @@ pub(crate) struct Stepper<'c> {
     chart: &'c Statechart,
     tree: Tree,
     semantics: Semantics,
-    pub(crate) chance: ChoiceSource,
+    pub(crate) chance: Chance,
     running_chart: bool,
     now: Timestamp,
     due: bool,
     active: BTreeSet<NodeId>,
-    running: BTreeMap<NodeId, RunningActivity>,
+    jobs: BTreeMap<NodeId, Job>,
     job_count: u64,
     timers: BTreeMap<(ScopeId, String), Deadline>,
     timer_numbers: Vec<(ScopeId, String)>,
@@ -113,20 +113,20 @@ pub(crate) struct Stepper<'c> {
     raised: Vec<Occurrence>,
     arrived: Vec<Occurrence>,
     deferred: Vec<Occurrence>,
-    held: Vec<HeldEvent>,
-    pending: Vec<(StaticPath, Option<String>)>,
+    held: Vec<Held>,
+    pending: Vec<(Way, Option<String>)>,
     erred: BTreeSet<(TransitionId, ScopeId)>,
     stale: BTreeSet<(TransitionId, ScopeId)>,
     written: BTreeSet<ScopeId>,
     waiting: BTreeSet<NodeId>,
     /// Candidates of this micro-step: transitions, and the state at which each was found.
-    found: Vec<(NodeId, StaticPath)>,
+    found: Vec<(NodeId, Way)>,
     /// The active leaves from which a candidate was found, outward.
     closed: BTreeSet<NodeId>,
-    /// The active leaves at the start of the micro-step.
+    /// The active leaves at its beginning.
     leaves: Vec<NodeId>,
     /// The segments whose guards have failed in this micro-step, each reported once.
-    reported: BTreeSet<TransitionId>,
+    told: BTreeSet<TransitionId>,
     /// The segments with weights that were drawn in this micro-step.
     drawn: Vec<TransitionId>,
     line: Line,
@@ -148,7 +148,7 @@ impl<'c> Stepper<'c> {
     pub(crate) fn new(
         chart: &'c Statechart,
         semantics: Semantics,
-        chance: ChoiceSource,
+        chance: Chance,
         timer_numbers: Vec<(ScopeId, String)>,
     ) -> Stepper<'c> {
         Stepper {
@@ -160,7 +160,7 @@ impl<'c> Stepper<'c> {
             now: Timestamp::ZERO,
             due: false,
             active: BTreeSet::new(),
-            running: BTreeMap::new(),
+            jobs: BTreeMap::new(),
             job_count: 0,
             timers: BTreeMap::new(),
             timer_numbers,
@@ -184,7 +184,7 @@ impl<'c> Stepper<'c> {
             found: vec![],
             closed: BTreeSet::new(),
             leaves: vec![],
-            reported: BTreeSet::new(),
+            told: BTreeSet::new(),
             drawn: vec![],
             line: Line::default(),
             micro_steps: 0,
@@ -241,7 +241,7 @@ impl Interpreter for Stepper<'_> {
     }
 
     fn returned(&mut self, activation: Activation, outcome: Outcome) -> bool {
-        let Some(job) = self.running.get_mut(&activation.node) else { return false };
+        let Some(job) = self.jobs.get_mut(&activation.node) else { return false };
         if !self.running_chart || job.number != activation.number {
             return false;
         }
@@ -252,8 +252,8 @@ impl Interpreter for Stepper<'_> {
             Outcome::Failed => Phase::Failed,
         };
         let mut held = std::mem::take(&mut self.held);
-        for HeldEvent { ways, offer, .. } in &mut held {
-            let in_the_way = |way: &StaticPath| {
+        for Held { ways, offer, .. } in &mut held {
+            let in_the_way = |way: &Way| {
                 self.exit_set(way).contains(&activation.node)
                     || way.sources.iter().any(|&source| self.region(source) == activation.region)
             };
@@ -271,7 +271,7 @@ impl Interpreter for Stepper<'_> {
 
     fn resumed(&mut self, activation: Activation) -> bool {
         let about_to_be_left = self.pending.iter().any(|(way, _)| self.would_leave(way, activation.node));
-        let Some(job) = self.running.get_mut(&activation.node) else { return false };
+        let Some(job) = self.jobs.get_mut(&activation.node) else { return false };
         assert_eq!((job.number, job.phase), (activation.number, Phase::Ongoing));
         if about_to_be_left {
             return false;

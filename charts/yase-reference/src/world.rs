@@ -8,7 +8,7 @@ use yase::expression::set;
 use yase::expression::{CallError, MessageSource};
 use yase::vocabulary::{FieldEntry, FunctionEntry, MessageEntry, TopicEntry, TopicKind, ValueType};
 use yase::{
-    Activation, CompiledChart, FieldId, FunctionId, Host, Notice, Outcome, ScopeId, Timestamp, TopicId,
+    Activation, CompiledChart, FieldId, FunctionId, Host, Timestamp, Notice, Outcome, ScopeId, TopicId,
     TraceRecord, TypeEnvironment, Value,
 };
 
@@ -66,7 +66,7 @@ pub struct Board {
 
 /// An activity that runs or waits to be called again.
 #[derive(Clone, Debug)]
-pub struct RunningActivity {
+pub struct Job {
     /// Its activation.
     pub activation: Activation,
     /// The activity.
@@ -89,7 +89,7 @@ pub struct World {
     /// The blackboard of each scope.
     pub boards: BTreeMap<ScopeId, Board>,
     /// The activities that run or wait.
-    pub running: Vec<RunningActivity>,
+    pub jobs: Vec<Job>,
     /// Published topics whose arrival has not been reported.
     pub arrivals: Vec<TopicId>,
     /// The log, one line per entry.
@@ -105,7 +105,7 @@ pub struct World {
 }
 
 impl World {
-    /// The world of a chart before its start.
+    /// The world of a chart, before anything has happened.
     pub fn new(chart: &yase::Statechart) -> World {
         let activities = chart
             .nodes()
@@ -119,18 +119,18 @@ impl World {
         self.log.push(text.into());
     }
 
-    fn log_verbose(&mut self, text: String) {
+    fn whisper(&mut self, text: String) {
         if self.verbose {
             self.log.push(text);
         }
     }
 
-    /// The blackboard of a scope, created if it is missing.
+    /// A blackboard, made if it is not there.
     pub fn board(&mut self, region: ScopeId) -> &mut Board {
         self.boards.entry(region).or_default()
     }
 
-    /// Sends a message to every blackboard, where it waits for delivery.
+    /// A message reaches every blackboard, to be delivered there.
     pub fn send(&mut self, topic: TopicId, value: i64, regions: impl Iterator<Item = ScopeId>) {
         for region in regions {
             self.board(region).inbox.insert(topic, Number { n: value });
@@ -148,7 +148,7 @@ impl World {
     }
 
     /// The outcome of an activity: `ongoing…` ends after its third call, `failing…` always fails.
-    pub fn outcome(job: &RunningActivity) -> Outcome {
+    pub fn outcome(job: &Job) -> Outcome {
         match job.name.as_str() {
             name if name.starts_with("ongoing") && job.calls < 3 => Outcome::Ongoing,
             name if name.starts_with("failing") => Outcome::Failed,
@@ -179,13 +179,13 @@ impl Host for World {
         let board = self.board(region);
         let inbox = std::mem::take(&mut board.inbox);
         board.shown.extend(inbox);
-        self.log_verbose(format!("  deliver {}", region.0));
+        self.whisper(format!("  deliver {}", region.0));
     }
 
     fn inherit(&mut self, region: ScopeId, from: ScopeId) {
         let around = self.board(from).clone();
         *self.board(region) = Board { outbox: BTreeSet::new(), ..around };
-        self.log_verbose(format!("  inherit {} from {}", region.0, from.0));
+        self.whisper(format!("  inherit {} from {}", region.0, from.0));
     }
 
     fn assign(
@@ -216,7 +216,7 @@ impl Host for World {
         let board = self.board(region);
         board.shown.insert(topic, number);
         board.outbox.insert(topic);
-        self.log_verbose(format!("  {} on {} = {}", TOPICS[topic.0 as usize], region.0, number.n));
+        self.whisper(format!("  {} on {} = {}", TOPICS[topic.0 as usize], region.0, number.n));
         Ok(())
     }
 
@@ -237,19 +237,19 @@ impl Host for World {
             }
             self.arrivals.push(topic);
         }
-        self.log_verbose(format!("  publish {}", region.0));
+        self.whisper(format!("  publish {}", region.0));
     }
 
     fn start(&mut self, activation: Activation) {
         let (name, duration) = self.activities[&activation.node].clone();
         self.say(format!("  start {name}"));
         let due = self.now + duration;
-        self.running.push(RunningActivity { activation, name, duration, due, waits: false, calls: 1 });
+        self.jobs.push(Job { activation, name, duration, due, waits: false, calls: 1 });
     }
 
     fn cancel(&mut self, activation: Activation) {
         let soon = self.now + Duration::from_millis(1);
-        let job = self.running.iter_mut().find(|job| job.activation == activation).expect("it runs");
+        let job = self.jobs.iter_mut().find(|job| job.activation == activation).expect("it runs");
         assert!(!job.waits);
         job.due = job.due.min(soon);
         let text = format!("  cancel {}", job.name);
@@ -257,8 +257,8 @@ impl Host for World {
     }
 
     fn stop(&mut self, activation: Activation) {
-        let index = self.running.iter().position(|job| job.activation == activation).expect("it waits");
-        let job = self.running.remove(index);
+        let index = self.jobs.iter().position(|job| job.activation == activation).expect("it waits");
+        let job = self.jobs.remove(index);
         assert!(job.waits);
         self.say(format!("  stop {}", job.name));
     }

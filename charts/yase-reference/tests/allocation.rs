@@ -10,7 +10,7 @@ use std::sync::Arc;
 use yase::expression::{CallError, MessageSource};
 use yase::vocabulary::{FieldEntry, FunctionEntry, MessageEntry, TopicEntry, TopicKind, ValueType};
 use yase::{
-    Activation, CompiledChart, FieldId, FunctionId, Host, Machine, Outcome, ScopeId, Timestamp, TopicId,
+    Activation, CompiledChart, FieldId, FunctionId, Host, Machine, Timestamp, Outcome, ScopeId, TopicId,
     TraceRecord, TypeEnvironment, Value,
 };
 
@@ -41,12 +41,12 @@ static ALLOCATOR: Counting = Counting;
 
 const A: TopicId = TopicId(0);
 
-/// One number and one activity per blackboard, and no growing data.
+/// For each blackboard one number and one activity, and nothing that grows.
 #[derive(Default)]
 struct World {
     traces: bool,
     boards: [i64; 8],
-    running: [Option<Activation>; 3],
+    jobs: [Option<Activation>; 3],
     /// Accumulates data of trace records, so that they are read.
     seen: usize,
     published: u64,
@@ -85,13 +85,13 @@ impl Host for World {
     }
 
     fn start(&mut self, activation: Activation) {
-        assert!(self.running[activation.region.0 as usize].replace(activation).is_none());
+        assert!(self.jobs[activation.region.0 as usize].replace(activation).is_none());
     }
 
     fn cancel(&mut self, _: Activation) {}
 
     fn stop(&mut self, activation: Activation) {
-        assert_eq!(self.running[activation.region.0 as usize].take(), Some(activation));
+        assert_eq!(self.jobs[activation.region.0 as usize].take(), Some(activation));
     }
 
     fn wants_trace(&self) -> bool {
@@ -121,7 +121,7 @@ fn vocabulary() -> TypeEnvironment {
     }
 }
 
-/// A machine and its host.
+/// A machine in its world.
 struct Run {
     machine: Machine,
     world: World,
@@ -130,7 +130,7 @@ struct Run {
 }
 
 impl Run {
-    /// Starts a machine of a chart and runs it until it is stable.
+    /// A machine of a chart, at rest for the first time.
     fn new(text: &str, traces: bool) -> Run {
         let chart =
             yase_reference::chart(text).compile(&vocabulary()).unwrap_or_else(|found| panic!("{found:?}"));
@@ -142,38 +142,37 @@ impl Run {
         run
     }
 
-    /// Executes a step after some milliseconds.
+    /// A step so many milliseconds later.
     fn step(&mut self, millis: u64) {
         self.now += millis;
-        let summary =
-            self.machine.run_to_completion(Timestamp::from_millis(self.now), &mut self.world).unwrap();
+        let summary = self.machine.run_to_completion(Timestamp::from_millis(self.now), &mut self.world).unwrap();
         self.transitions += summary.transitions;
     }
 
-    /// Raises an event and executes the step a millisecond later.
+    /// An event, and the step that it leads to, a millisecond later.
     fn event(&mut self, name: &str) {
         self.machine.dispatch_name(name);
         self.step(1);
     }
 
-    /// The activity of a region returns and has finished.
+    /// The activity of a region returns for good.
     fn returns(&mut self, region: usize) {
-        let activation = self.world.running[region].take().unwrap();
+        let activation = self.world.jobs[region].take().unwrap();
         assert!(self.machine.activity_returned(activation, Outcome::Done));
         self.step(1);
     }
 
     /// The activity of a region returns, and is called again.
     fn is_called_again(&mut self, region: usize) {
-        let activation = self.world.running[region].unwrap();
+        let activation = self.world.jobs[region].unwrap();
         assert!(self.machine.activity_returned(activation, Outcome::Ongoing));
         self.step(1);
         assert!(self.machine.activity_resumed(activation));
     }
 }
 
-/// Repeats a cycle of a running chart, with and without a trace. Asserts that it takes a number of
-/// transitions each time and does not allocate after the first few times.
+/// Repeats something in a running chart, with and without a trace, and asserts that it takes so
+/// many transitions each time and, after the first few times, no memory.
 fn assert_allocates_nothing(text: &str, transitions: u32, mut cycle: impl FnMut(&mut Run)) {
     for traces in [false, true] {
         let mut run = Run::new(text, traces);
@@ -341,7 +340,7 @@ fn activities() {
     assert_allocates_nothing(text, 3, |run| {
         run.is_called_again(1);
         run.returns(1);
-        run.event("e"); // u is asked to return and exited afterwards
+        run.event("e"); // u is asked to return, and left when it has
         run.returns(2);
         run.returns(1);
     });
@@ -392,7 +391,7 @@ fn history() {
         out -> shallow : children
         out -> deep : all
     ";
-    // `b` restarts twice, with a step out of its START
+    // `b` begins anew twice, with a step out of its START
     assert_allocates_nothing(text, 7 + 2, |run| {
         for event in ["next", "leave", "all", "leave", "children", "over", "over"] {
             run.event(event);

@@ -122,10 +122,10 @@ pub use semantics::{
     ExitOrder, ExitPointArrival, FailureEvents, Firing, InitialState, JoinMode, RootCompletion, SegmentOrder,
     Semantics, StructureRules, TerminateExit, TimerScope, TransitionToAncestor, WriteVisibility,
 };
-
 pub use statechart::{
     Element, Node, NodeId, NodeKind, StateNames, Statechart, Transition, TransitionId, UnknownState,
 };
+pub use timestamp::Timestamp;
 pub use trace::{MicroStepCause, TraceRecord};
 pub use vocabulary::{FieldId, FunctionId, TopicId, TypeEnvironment, Value};
 /// Transition expressions: the crate `yase-expression`.

@@ -105,7 +105,7 @@ fn ball_and_commands_pass_and_a_killed_process_reconnects(ways: [&str; 2], place
 #[test]
 fn over_local_sockets_a_killed_process_comes_back() {
     let folder = tempfile::tempdir().unwrap();
-    ball_and_commands_pass_and_a_killed_process_comes_back(["local", "local"], folder.path().join("links"));
+    ball_and_commands_pass_and_a_killed_process_reconnects(["local", "local"], folder.path().join("links"));
 }
 
 #[cfg(feature = "zenoh")]

@@ -25,4 +25,4 @@
 
 mod tape_metadata;
 
-pub use tape_metadata::{END, FOLDER, RUN, SETTINGS, ended, label_real_time, simulated};
+pub use tape_metadata::{END, FOLDER, RUN, SETTINGS, ended, label_real_time, label_simulated};

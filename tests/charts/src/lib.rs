@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 use yase::{Chooser, CompiledChart, Machine};
 
-use yase_reference::chance::ChoicePolicy;
+use yase_reference::chance::Freedom;
 use yase_reference::random::Case;
 use yase_reference::script;
 use yase_reference::world::{World, vocabulary};
@@ -32,9 +32,9 @@ fn played(case: &Case, chart: CompiledChart) -> Vec<String> {
     let mut world = World { verbose: true, reads: true, ..World::new(&case.chart) };
     let mut machine = Machine::new(Arc::new(chart));
     machine.set_chooser(match &case.freedom {
-        ChoicePolicy::Declared => Chooser::declared(),
-        ChoicePolicy::Seeded(seed) => Chooser::seeded(*seed),
-        ChoicePolicy::Scripted(choices) => Chooser::scripted(choices.clone()),
+        Freedom::Declared => Chooser::declared(),
+        Freedom::Seeded(seed) => Chooser::seeded(*seed),
+        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
     });
     script::run(&mut machine, &case.script, &mut world);
     world.say(format!("at the end {:?} {:?}", machine.status(), machine.configuration()));

@@ -5,12 +5,12 @@ use std::time::Duration;
 use yase::expression::parse_actions;
 use yase::statechart::{Node, NodeId, NodeKind};
 
-use super::ChartGenerator;
+use super::Maker;
 
 /// Charts with this many nodes get no more composites.
 const MANY: usize = 28;
 
-impl ChartGenerator<'_, '_> {
+impl Maker<'_, '_> {
     /// The children of an OR.
     pub(crate) fn composite(&mut self, composite: NodeId, depth: usize) {
         let without = depth > 0 && self.makes_uml() && self.choices.percent(12);
@@ -62,7 +62,7 @@ impl ChartGenerator<'_, '_> {
         }
     }
 
-    /// Adds entry and exit points and a history to a composite.
+    /// Entry and exit points and history of a composite.
     fn borders(&mut self, composite: NodeId) {
         for (kind, prefix, percent) in [
             (NodeKind::ShallowHistory, "h", 15),

@@ -2,7 +2,7 @@
 
 use yase::statechart::{NodeId, NodeKind, Statechart, Transition};
 
-use super::ChartGenerator;
+use super::Maker;
 use super::words::parse;
 
 fn is_state(kind: NodeKind) -> bool {
@@ -13,7 +13,7 @@ fn is_history(kind: NodeKind) -> bool {
     matches!(kind, NodeKind::ShallowHistory | NodeKind::DeepHistory)
 }
 
-/// Whether a node is an entry or exit point or a history of a composite.
+/// What leads into a composite without being a state.
 fn is_border(kind: NodeKind) -> bool {
     is_history(kind) || kind == NodeKind::EntryPoint
 }
@@ -22,7 +22,7 @@ fn is_branch(kind: NodeKind) -> bool {
     matches!(kind, NodeKind::Condition | NodeKind::Junction | NodeKind::Choice)
 }
 
-impl ChartGenerator<'_, '_> {
+impl Maker<'_, '_> {
     pub(crate) fn transitions(&mut self) {
         let nodes: Vec<NodeId> = self.chart.nodes().map(|(id, _)| id).collect();
         for &node in nodes.iter().skip(1) {
@@ -93,8 +93,7 @@ impl ChartGenerator<'_, '_> {
         self.choices.pick(near)
     }
 
-    /// Adds two transitions to siblings, not to preceding connectors, so that connectors form no
-    /// cycle.
+    /// Two transitions to siblings, not to preceding connectors, so that connectors form no cycle.
     fn out_of_branch(&mut self, connector: NodeId) {
         let all = self.children(self.parent(connector), |kind| {
             is_state(kind)
@@ -110,14 +109,14 @@ impl ChartGenerator<'_, '_> {
         let second = self.choices.pick(&all);
         let percent = if self.kind(connector) == NodeKind::Choice { 3 } else { 10 };
         let guard = match self.choices.percent(percent) {
-            true => self.guard(), // a branch may have no enabled transition
+            true => self.guard(), // no way need be open
             false => String::new(),
         };
         let text = format!("{guard} {}", self.slash_actions(20));
         self.connect(connector, second, &text);
     }
 
-    /// Adds transitions to at least two regions of an AND in the same composite.
+    /// To two regions or more of an AND in the same composite.
     fn out_of_fork(&mut self, fork: NodeId) {
         let ands = self.inside(self.parent(fork), |kind| kind == NodeKind::And);
         let and = self.choices.pick(&ands);
@@ -141,8 +140,7 @@ impl ChartGenerator<'_, '_> {
         }
     }
 
-    /// Adds transitions from at least two regions of an AND in the same composite, and one to a
-    /// sibling.
+    /// From two regions or more of an AND in the same composite, and on to a sibling.
     fn around_join(&mut self, join: NodeId) {
         let ands = self.inside(self.parent(join), |kind| kind == NodeKind::And);
         let and = self.choices.pick(&ands);
@@ -273,7 +271,7 @@ impl ChartGenerator<'_, '_> {
         target > source && !self.is_inside(target, source) && !region && !border
     }
 
-    /// Sometimes adds a transition to END for a BASIC state, and one for a completed composite.
+    /// Sometimes a transition to END for a BASIC state, and one for a completed composite.
     fn towards_ends(&mut self, node: NodeId) {
         let composite = self.kind(node) != NodeKind::Basic;
         let wanted = if composite { is_state } else { |kind: NodeKind| kind == NodeKind::End };
@@ -287,7 +285,7 @@ impl ChartGenerator<'_, '_> {
         }
     }
 
-    /// The node itself, or a descendant.
+    /// Itself, or something inside.
     fn local_target(&mut self, node: NodeId) -> NodeId {
         let inside = self.inside(node, is_state);
         match inside.is_empty() || self.choices.percent(40) {
@@ -302,8 +300,7 @@ impl ChartGenerator<'_, '_> {
         self.chart.connect(transition);
     }
 
-    /// Whether a transition is allowed: connectors stay in their composite, border points on their
-    /// side.
+    /// Connectors from their own composite only, borders from their side.
     fn is_legal(&self, source: NodeId, target: NodeId) -> bool {
         let same = self.parent(source) == self.parent(target);
         let owner = self.parent(target);
@@ -317,15 +314,15 @@ impl ChartGenerator<'_, '_> {
         }
     }
 
-    /// Assigns weights to transitions whose sources are connectors of their own composite or border
-    /// points on their side.
+    /// Sources of connectors only in their own composite, of border points only on their side.
     pub(crate) fn weights(&mut self) {
         let nodes: Vec<NodeId> = self.chart.nodes().map(|(id, _)| id).collect();
         for node in nodes {
             let transitions = self.chart.transitions();
             let mut out: Vec<_> = transitions.filter(|(_, it)| it.source == node).map(|(id, _)| id).collect();
             out.retain(|&id| self.kind(self.chart.transition(id).target) != NodeKind::Join);
-            // all transitions out of a FORK, or out of a forking border point of an AND, are taken
+            // all transitions out of a FORK are taken, and so are those of border points of ANDs
+            // that fork
             let forks = self.kind(node) == NodeKind::Fork
                 || self.kind(node) == NodeKind::EntryPoint && self.kind(self.parent(node)) == NodeKind::And;
             let percent = if is_state(self.kind(node)) { 10 } else { 20 };

@@ -4,9 +4,9 @@ use yase::EventMatching;
 use yase::expression::{TransitionExpression, parse_transition};
 use yase::statechart::{NodeId, NodeKind};
 
-use super::ChartGenerator;
+use super::Maker;
 
-impl ChartGenerator<'_, '_> {
+impl Maker<'_, '_> {
     pub(crate) fn trigger(&mut self) -> String {
         let prefixed = self.semantics.matching == EventMatching::TokenPrefix;
         let none = if self.is_hasty() { 2 } else { 5 };
@@ -103,7 +103,7 @@ impl ChartGenerator<'_, '_> {
     }
 }
 
-/// Parses an expression that may contain actions in both parts.
+/// Both parts may contain actions.
 pub(crate) fn parse(text: &str) -> TransitionExpression {
     let mut parts = text.split(" / ");
     let head = parts.next().unwrap_or_default();

@@ -46,7 +46,7 @@ impl Stepper<'_> {
                 world
                     .assign(region, topic(name).unwrap(), &[FieldId(0)], Value::Int(value))
                     .map_err(|error| format!("the value cannot be assigned: {error}"))?;
-                self.clear_guard_failures(name, region);
+                self.forgive(name, region);
                 self.wrote(region, world);
             }
             other => panic!("the generator makes no {other:?}"),
@@ -55,12 +55,12 @@ impl Stepper<'_> {
     }
 
     /// Clears failures of guards that read changed data.
-    fn clear_guard_failures(&mut self, name: &str, region: ScopeId) {
+    fn forgive(&mut self, name: &str, region: ScopeId) {
         let reads = self.guards_that_read(name);
         self.erred.retain(|(id, other)| *other != region || !reads.contains(id));
     }
 
-    /// Publishes written data with the step, or makes it visible to all blackboards at once.
+    /// Written data is published with the step, or visible to all others at once.
     fn wrote(&mut self, region: ScopeId, world: &mut World) {
         self.written.insert(region);
         if self.semantics.sharing == WriteVisibility::NextStep {
@@ -87,7 +87,7 @@ impl Stepper<'_> {
         let key = (region, name.to_owned());
         self.withdraw(&key);
         self.timers.insert(key.clone(), Deadline { moment: self.now + delay, announced: false, bound: None });
-        self.clear_guard_failures(name, region);
+        self.forgive(name, region);
         self.unbound.retain(|other| *other != key);
         self.unbound.push(key);
     }
@@ -122,7 +122,7 @@ impl Stepper<'_> {
         for key in bound.map(|(key, _)| key.clone()).collect::<Vec<_>>() {
             self.withdraw(&key);
             self.timers.remove(&key);
-            self.clear_guard_failures(&key.1, key.0);
+            self.forgive(&key.1, key.0);
         }
     }
 

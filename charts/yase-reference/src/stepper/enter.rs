@@ -3,7 +3,7 @@
 use yase::statechart::{NodeId, NodeKind};
 use yase::{CompletionTrigger, Host, InitialState, RootCompletion, Statechart};
 
-use super::{Failure, Phase, RunningActivity, StaticPath, Stepper};
+use super::{Failure, Job, Phase, Stepper, Way};
 use crate::world::World;
 
 impl Stepper<'_> {
@@ -62,7 +62,7 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    /// Enters START; continues at once if its transition is enabled.
+    /// Entering stops at START, or goes on at once.
     fn enter_start(&mut self, composite: NodeId, world: &mut World) -> Result<(), Failure> {
         let mut children = self.chart.children(composite).iter().copied();
         let Some(start) = children.find(|&child| self.kind(child) == NodeKind::Start) else {
@@ -79,10 +79,11 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    /// The enabled transition out of START or HISTORY.
-    fn open_way(&mut self, connector: NodeId, world: &mut World) -> Option<StaticPath> {
+    /// The way out of START or HISTORY that is open now.
+    fn open_way(&mut self, connector: NodeId, world: &mut World) -> Option<Way> {
         let out = self.outgoing(connector);
-        // the scope of the composite, even if the path leads from an AND's HISTORY into a region
+        // the blackboard of the composite, also where its way leads from an AND's HISTORY into a
+        // region
         let region = self.region(self.parent(connector));
         self.first_way(connector, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, world))
     }
@@ -91,7 +92,7 @@ impl Stepper<'_> {
     /// where entering ends.
     fn go_on(
         &mut self,
-        way: &StaticPath,
+        way: &Way,
         composite: NodeId,
         start: Option<NodeId>,
         world: &mut World,
@@ -145,7 +146,7 @@ impl Stepper<'_> {
             (NodeKind::DeepHistory, _) => self.enter_below(owner, &record, world),
             (_, NodeKind::And) => self.enter_regions(owner, &[], world),
             _ => match record[..] {
-                [child] => self.enter_whole(child, &[], world), // including START, to stay there
+                [child] => self.enter_whole(child, &[], world), // START too, to rest there
                 _ => Ok(()),
             },
         }
@@ -181,7 +182,7 @@ impl Stepper<'_> {
         }
     }
 
-    /// Marks a vacated region as active: its arrival at a JOIN has to be repeated.
+    /// A region that was vacated is active again: an arrival at a JOIN from it has to be repeated.
     fn occupy(&mut self, node: NodeId) {
         let Some(around) = self.chart.node(node).parent else { return };
         if self.vacated.remove(&around) && self.is_region(around) {
@@ -225,7 +226,7 @@ impl Stepper<'_> {
         self.raise(&format!("done.state.{}", self.chart.node(node).name));
     }
 
-    /// Marks a state as completed, and the ANDs around it that complete with it.
+    /// A state has completed, and the ANDs around it that complete with it.
     pub(crate) fn completed(&mut self, node: NodeId) {
         if self.semantics.eventless != CompletionTrigger::Once || node == Statechart::ROOT {
             return;

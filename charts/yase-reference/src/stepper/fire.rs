@@ -10,13 +10,9 @@ use super::{Failure, Phase, Stepper, Way};
 use crate::world::World;
 
 impl Stepper<'_> {
-    /// Fires transitions in order, without those whose source an earlier one has exited, even if it
-    /// is active again.
-    pub(crate) fn fire_each(
-        &mut self,
-        ways: Vec<StaticPath>,
-        world: &mut World,
-    ) -> Result<Vec<StaticPath>, Failure> {
+    /// Fires one transition after the other, without those whose source an earlier one has exited,
+    /// even if it is active again.
+    pub(crate) fn fire_each(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
         let mut fired = vec![];
         let exits: Vec<BTreeSet<NodeId>> = ways.iter().map(|way| self.exit_set(way)).collect();
         let mut left = BTreeSet::new();
@@ -36,7 +32,7 @@ impl Stepper<'_> {
     }
 
     /// Whether all sources are still active.
-    pub(crate) fn may_fire(&self, way: &StaticPath) -> bool {
+    pub(crate) fn may_fire(&self, way: &Way) -> bool {
         way.sources.iter().all(|source| self.active.contains(source))
     }
 
@@ -66,17 +62,13 @@ impl Stepper<'_> {
         }
     }
 
-    /// Whether no further state is entered.
+    /// Nothing is entered any more.
     pub(crate) fn is_ended(&self) -> bool {
         self.terminates || !self.running_chart
     }
 
     /// All exits, then all effects, then all entries.
-    pub(crate) fn fire_phases(
-        &mut self,
-        ways: Vec<StaticPath>,
-        world: &mut World,
-    ) -> Result<Vec<StaticPath>, Failure> {
+    pub(crate) fn fire_phases(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
         let ways = self.with_their_sources(ways);
         self.taken = ways.clone();
         let early: Vec<Option<Arrival>> = ways.iter().map(|way| self.ends_early(way)).collect();
@@ -103,9 +95,9 @@ impl Stepper<'_> {
         Ok(ways)
     }
 
-    /// Removes transitions with a target whose source another one exits: they were selected only
-    /// because nothing is active in that source.
-    fn with_their_sources(&self, mut ways: Vec<StaticPath>) -> Vec<StaticPath> {
+    /// Removes transitions with a target whose source another one exits: they are only selected
+    /// because nothing is active in it.
+    fn with_their_sources(&self, mut ways: Vec<Way>) -> Vec<Way> {
         let mut index = 0;
         while index < ways.len() {
             let way = &ways[index];
@@ -164,7 +156,7 @@ impl Stepper<'_> {
     }
 
     pub(crate) fn leave(&mut self, node: NodeId, world: &mut World) {
-        if let Some(job) = self.running.remove(&node) {
+        if let Some(job) = self.jobs.remove(&node) {
             match job.phase {
                 Phase::Ongoing => world.stop(self.activation(node, job.number)),
                 Phase::Running if self.semantics.on_exit == ActivityOnExit::Interrupted => {
@@ -225,7 +217,7 @@ impl Stepper<'_> {
         let mut targets = vec![];
         for &end in ends {
             if self.terminates {
-                break; // nothing follows TERMINATE
+                break; // nothing happens behind TERMINATE
             }
             if self.kind(end) != NodeKind::Choice {
                 self.terminates = self.kind(end) == NodeKind::Terminate;
@@ -307,7 +299,7 @@ impl Stepper<'_> {
                 _ => {}
             }
         }
-        self.running.clear();
+        self.jobs.clear();
         self.raised.clear();
         self.arrived.clear();
         self.deferred.clear();

@@ -2,16 +2,16 @@
 
 use yase::statechart::{NodeId, StateNames, TransitionId};
 
-use super::{Failure, Line, StaticPath, Stepper, topic};
+use super::{Failure, Line, Stepper, Way, topic};
 use crate::world::World;
 
 /// The static content of a line.
 #[derive(Default)]
 pub(crate) struct Heading<'a> {
     pub event: Option<&'a str>,
-    pub fired: &'a [StaticPath],
-    pub losers: &'a [StaticPath],
-    pub held: &'a [StaticPath],
+    pub fired: &'a [Way],
+    pub losers: &'a [Way],
+    pub held: &'a [Way],
     pub deferring: Option<NodeId>,
 }
 
@@ -20,11 +20,11 @@ impl Stepper<'_> {
         nodes.iter().map(|&node| self.name(node)).collect::<Vec<_>>().join(", ")
     }
 
-    fn way_names(&self, ways: &[StaticPath]) -> String {
+    fn way_names(&self, ways: &[Way]) -> String {
         ways.iter().map(|way| self.chain(&way.segments)).collect::<Vec<_>>().join(", ")
     }
 
-    /// `a -> CONDITION -> b`, with ` + ` before a segment that does not continue the previous one.
+    /// `a -> CONDITION -> b`, and ` + ` where a segment does not go on from the one before.
     fn chain(&self, segments: &[TransitionId]) -> String {
         let mut text = String::new();
         let mut at = None;
@@ -42,7 +42,7 @@ impl Stepper<'_> {
 
     fn event_name(&self, event: &str) -> String {
         match topic(event) {
-            Some(_) => event.to_lowercase(), // messages are identified by their topic
+            Some(_) => event.to_lowercase(), // messages are known by their topic
             None => self.known_name(event).unwrap_or_else(|| "?".to_owned()),
         }
     }

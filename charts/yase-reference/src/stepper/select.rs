@@ -5,14 +5,14 @@ use std::collections::BTreeSet;
 use yase::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 use yase::{ActivityOnExit, CompletionTrigger, ConflictResolution, Firing, JoinMode, ScopeId};
 
-use super::{HeldEvent, Occurrence, Phase, StaticPath, Stepper};
+use super::{Held, Occurrence, Phase, Stepper, Way};
 use crate::world::World;
 
-/// The occurrence offered to transitions in a micro-step.
+/// What a micro-step offers to transitions.
 #[derive(Clone, Copy)]
 pub(crate) enum Offer<'a> {
     Nothing,
-    /// The completion of a state, offered once.
+    /// The state has completed, which is offered once.
     Completion,
     Event(&'a Occurrence),
 }
@@ -31,8 +31,8 @@ impl<'a> Offer<'a> {
 struct Search {
     visited: BTreeSet<NodeId>,
     /// Candidates, and the first leaf that each was found for.
-    found: Vec<(NodeId, StaticPath)>,
-    waiting: Vec<StaticPath>,
+    found: Vec<(NodeId, Way)>,
+    waiting: Vec<Way>,
     /// The leaves with a transition that waits.
     noted: BTreeSet<NodeId>,
 }
@@ -40,14 +40,14 @@ struct Search {
 /// The best enabled path out of a state; with an event also the first that running activities
 /// block.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct PathEvaluation {
-    pub found: Option<StaticPath>,
-    pub blocked: Option<StaticPath>,
+pub(crate) struct Judgement {
+    pub found: Option<Way>,
+    pub blocked: Option<Way>,
 }
 
 impl<'c> Stepper<'c> {
     pub(crate) fn runs(&self, node: NodeId) -> bool {
-        self.running.get(&node).is_some_and(|job| matches!(job.phase, Phase::Queued | Phase::Running))
+        self.jobs.get(&node).is_some_and(|job| matches!(job.phase, Phase::Queued | Phase::Running))
     }
 
     pub(crate) fn region_runs(&self, region: ScopeId) -> bool {
@@ -55,12 +55,12 @@ impl<'c> Stepper<'c> {
     }
 
     /// Whether running activities block a path.
-    pub(crate) fn leaves_running(&self, way: &StaticPath) -> bool {
+    pub(crate) fn leaves_running(&self, way: &Way) -> bool {
         self.semantics.on_exit == ActivityOnExit::Blocks
             && self.exit_set(way).into_iter().any(|node| self.runs(node))
     }
 
-    fn is_locked(&self, way: &StaticPath) -> bool {
+    fn is_locked(&self, way: &Way) -> bool {
         self.semantics.on_exit == ActivityOnExit::Blocks
             && way.sources.iter().any(|&source| self.region_runs(self.region(source)))
     }
@@ -86,7 +86,7 @@ impl<'c> Stepper<'c> {
     }
 
     /// R15
-    fn is_ready(&self, way: &StaticPath, offer: Offer<'_>) -> bool {
+    fn is_ready(&self, way: &Way, offer: Offer<'_>) -> bool {
         let source = way.sources[0];
         if let Some(arrival) = way.arrival {
             let due = offer.event().is_some() || self.is_complete(source);
@@ -101,7 +101,7 @@ impl<'c> Stepper<'c> {
             return way.sources.iter().all(|&source| self.is_complete(source) && open(source));
         }
         if matches!(offer, Offer::Completion) {
-            return self.is_complete(source); // it may no longer be complete
+            return self.is_complete(source); // it may be complete no more
         }
         let leaf = !matches!(self.kind(source), NodeKind::Or | NodeKind::And);
         let guarded = self.expression(way.segments[0]).guard.is_some();
@@ -116,13 +116,13 @@ impl<'c> Stepper<'c> {
 
     /// Whether nothing inside can step or runs, except what the guarded exit of a composite may
     /// interrupt.
-    fn is_quiet(&self, way: &StaticPath, source: NodeId) -> bool {
+    fn is_quiet(&self, way: &Way, source: NodeId) -> bool {
         let inside = self.active_inside(source);
         let exit = self.expression(way.segments[0]).guard.is_some() && way.ends != way.sources;
         let composite = matches!(self.kind(source), NodeKind::Or | NodeKind::And);
         let may_run = exit && composite && self.interrupts(way);
         let runs = self.runs(source) || inside.iter().any(|&node| self.runs(node));
-        let steps = |way: &StaticPath| way.sources.iter().any(|&other| self.is_inside(other, source));
+        let steps = |way: &Way| way.sources.iter().any(|&other| self.is_inside(other, source));
         (may_run || !runs) && !self.found.iter().any(|(_, way)| steps(way))
     }
 
@@ -130,14 +130,14 @@ impl<'c> Stepper<'c> {
     pub(crate) fn is_frozen(&self, node: NodeId, with_event: bool) -> bool {
         let pending = self.pending.iter().any(|(way, _)| self.would_leave(way, node));
         let held =
-            self.held.iter().any(|HeldEvent { ways, .. }| ways.iter().any(|way| self.would_leave(way, node)));
+            self.held.iter().any(|Held { ways, .. }| ways.iter().any(|way| self.would_leave(way, node)));
         pending || !with_event && held
     }
 
     pub(crate) fn judge_ways(&mut self, node: NodeId, offer: Offer<'_>, world: &mut World) -> Judgement {
         let event = offer.event();
         if event.is_none() && self.is_frozen(node, false) {
-            return PathEvaluation::default();
+            return Judgement::default();
         }
         let mut judgement = Judgement::default();
         self.judge_list(node, self.outgoing(node), offer, &mut judgement, world);
@@ -149,7 +149,7 @@ impl<'c> Stepper<'c> {
         node: NodeId,
         list: Vec<TransitionId>,
         offer: Offer<'_>,
-        judgement: &mut PathEvaluation,
+        judgement: &mut Judgement,
         world: &mut World,
     ) {
         let event = offer.event();
@@ -175,9 +175,9 @@ impl<'c> Stepper<'c> {
         });
     }
 
-    /// Whether a draw may include a transition: R15 must allow one of its paths.
+    /// Those with a weight are drawn among if R15 allows one of their ways.
     fn may_be_drawn(&mut self, node: NodeId, id: TransitionId, offer: Offer<'_>) -> bool {
-        let start = StaticPath { sources: vec![node], ..StaticPath::default() };
+        let start = Way { sources: vec![node], ..Way::default() };
         self.transition(id).weight.is_none()
             || self.any_way(&start, &[id], &mut |me, way, _| me.is_ready(way, offer))
     }
@@ -189,7 +189,7 @@ impl<'c> Stepper<'c> {
         self.visit(Statechart::ROOT, offer, &mut search, world);
         let mut found = search.found;
         if self.semantics.firing == Firing::Phases {
-            found.sort_by_key(|(leaf, _)| self.position(*leaf)); // the order of atomic states in SCXML
+            found.sort_by_key(|(leaf, _)| self.position(*leaf)); // as SCXML goes through atomic states
         }
         (found.into_iter().map(|(_, way)| way).collect(), search.waiting)
     }
@@ -221,7 +221,7 @@ impl<'c> Stepper<'c> {
         lists.flatten().copied().filter(|&source| source != node).collect()
     }
 
-    /// Adds the candidates of a state unless every active leaf inside already has one.
+    /// A state contributes if from some active leaf outward nothing has been found yet.
     fn consider(&mut self, node: NodeId, offer: Offer<'_>, search: &mut Search, world: &mut World) {
         let leaves = self.leaves_in(node);
         let Some(&open) = leaves.difference(&self.closed).min_by_key(|&&leaf| self.position(leaf)) else {
@@ -232,7 +232,7 @@ impl<'c> Stepper<'c> {
         {
             return;
         }
-        let PathEvaluation { found, blocked } = self.judge_ways(node, offer, world);
+        let Judgement { found, blocked } = self.judge_ways(node, offer, world);
         if let Some(way) = blocked.filter(|_| offer.event().is_some())
             && !leaves.is_subset(&search.noted)
         {
@@ -255,20 +255,20 @@ impl<'c> Stepper<'c> {
         self.leaves.iter().copied().filter(inside).collect()
     }
 
-    fn is_nested(&self, inner: &StaticPath, outer: &StaticPath) -> bool {
+    fn is_nested(&self, inner: &Way, outer: &Way) -> bool {
         inner.sources.iter().any(|&a| outer.sources.iter().any(|&b| self.is_inside(a, b)))
     }
 
-    pub(crate) fn key(&self, way: &StaticPath) -> usize {
+    pub(crate) fn key(&self, way: &Way) -> usize {
         way.sources.iter().map(|&source| self.position(source)).min().unwrap()
     }
 
-    /// Sorts inner before outer sources, otherwise in document order.
-    pub(crate) fn sort_inner_first(&self, ways: &mut Vec<StaticPath>) {
+    /// What is nested before what is around it, else in the order of the document.
+    pub(crate) fn sort_inner_first(&self, ways: &mut Vec<Way>) {
         ways.sort_by_key(|way| self.key(way));
-        let mut sorted: Vec<StaticPath> = vec![];
+        let mut sorted: Vec<Way> = vec![];
         while !ways.is_empty() {
-            let free = |way: &StaticPath| !ways.iter().any(|other| self.is_nested(other, way));
+            let free = |way: &Way| !ways.iter().any(|other| self.is_nested(other, way));
             let index = ways.iter().position(free).unwrap_or(0);
             sorted.push(ways.remove(index));
         }
@@ -276,14 +276,14 @@ impl<'c> Stepper<'c> {
     }
 
     /// Winners, in the order they fire, and losers of conflicts.
-    pub(crate) fn resolve(&mut self, candidates: Vec<StaticPath>) -> (Vec<StaticPath>, Vec<StaticPath>) {
+    pub(crate) fn resolve(&mut self, candidates: Vec<Way>) -> (Vec<Way>, Vec<Way>) {
         match self.semantics.firing {
             Firing::Phases => self.remove_conflicting(candidates),
             _ => self.strongest(candidates),
         }
     }
 
-    fn strongest(&mut self, mut candidates: Vec<StaticPath>) -> (Vec<StaticPath>, Vec<StaticPath>) {
+    fn strongest(&mut self, mut candidates: Vec<Way>) -> (Vec<Way>, Vec<Way>) {
         self.sort_inner_first(&mut candidates);
         let (mut winners, losers) = self.remove_conflicting(candidates);
         winners.sort_by_key(|way| (!self.stays_inside(way), self.key(way)));
@@ -309,8 +309,8 @@ impl<'c> Stepper<'c> {
     }
 
     /// SCXML's `removeConflictingTransitions`.
-    fn remove_conflicting(&mut self, candidates: Vec<StaticPath>) -> (Vec<StaticPath>, Vec<StaticPath>) {
-        let (mut winners, mut losers): (Vec<StaticPath>, Vec<StaticPath>) = (vec![], vec![]);
+    fn remove_conflicting(&mut self, candidates: Vec<Way>) -> (Vec<Way>, Vec<Way>) {
+        let (mut winners, mut losers): (Vec<Way>, Vec<Way>) = (vec![], vec![]);
         for way in candidates {
             let against: Vec<usize> =
                 (0..winners.len()).filter(|&index| self.conflict(&winners[index], &way)).collect();

@@ -2,11 +2,11 @@
 
 use yase::expression::{Action, ActionKind, Trigger};
 use yase::statechart::{NodeId, NodeKind, Statechart};
-use yase::{Deferral, Delivery, EventMatching, EventPool, FailureEvents, Firing, Host, ScopeId, Timestamp};
+use yase::{Deferral, Delivery, EventMatching, EventPool, FailureEvents, Firing, Host, Timestamp, ScopeId};
 
 use super::lines::Heading;
 use super::select::Offer;
-use super::{Failure, HeldEvent, Line, Occurrence, Phase, StaticPath, Stepper};
+use super::{Failure, Held, Line, Occurrence, Phase, Stepper, Way};
 use crate::world::World;
 
 impl Stepper<'_> {
@@ -119,8 +119,8 @@ impl Stepper<'_> {
         triggered || defers || anywhere && raises
     }
 
-    /// The name under which the chart knows an event: its own, or its longest token prefix in the
-    /// chart.
+    /// The name an event is known by: its own, or the longest of its token prefixes that the chart
+    /// names.
     pub(crate) fn known_name(&self, event: &str) -> Option<String> {
         let mut name = event;
         loop {
@@ -166,11 +166,11 @@ impl Stepper<'_> {
         self.offer(next, world)
     }
 
-    /// R15, `once`: completions precede new events; one without an enabled transition is consumed.
+    /// R15, `once`: completions before what is new; one that finds nothing open is consumed.
     fn complete_something(&mut self, world: &mut World) -> Result<bool, Failure> {
         while !self.completions.is_empty() {
             let node = self.completions.remove(0);
-            self.begin_micro_step(); // reads of a consumed completion are not reported
+            self.begin_micro_step(); // what one that is consumed has read is not told
             if let Some(way) = self.judge_ways(node, Offer::Completion, world).found {
                 self.admit()?;
                 self.take(vec![way], None, world)?;
@@ -180,17 +180,17 @@ impl Stepper<'_> {
         Ok(false)
     }
 
-    /// Resets the record of the micro-step before a selection.
+    /// Resets the record of the micro-step; each selection begins one.
     pub(crate) fn begin_micro_step(&mut self) {
         self.line = Line::default();
         self.leaves = self.active_leaves();
         self.found.clear();
         self.closed.clear();
-        self.reported.clear();
+        self.told.clear();
         self.drawn.clear();
     }
 
-    /// Completes an interruption whose activities have returned.
+    /// An interruption whose activities have returned.
     fn interrupt_something(&mut self, world: &mut World) -> Result<bool, Failure> {
         let Some(index) = self.pending.iter().position(|(way, _)| !self.leaves_running(way)) else {
             return Ok(false);
@@ -210,7 +210,7 @@ impl Stepper<'_> {
         Ok(true)
     }
 
-    /// Puts deferred events before newer ones.
+    /// Deferred events come back before newer ones.
     fn recall(&mut self) {
         let (kept, recalled): (Vec<Occurrence>, Vec<Occurrence>) = std::mem::take(&mut self.deferred)
             .into_iter()
@@ -254,7 +254,7 @@ impl Stepper<'_> {
         if !candidates.is_empty() {
             self.take(candidates, Some(&event), world)?;
         } else if !waiting.is_empty() {
-            self.held.push(HeldEvent { occurrence, ways: waiting.clone(), offer: false });
+            self.held.push(Held { occurrence, ways: waiting.clone(), offer: false });
             self.held.sort_by_key(|held| held.occurrence.number);
             self.print(&Heading { held: &waiting, ..heading }, world);
         } else {
@@ -310,12 +310,7 @@ impl Stepper<'_> {
         all.find(|&node| self.semantics.deferral != Deferral::Off && self.defers(node, event))
     }
 
-    fn take(
-        &mut self,
-        candidates: Vec<StaticPath>,
-        event: Option<&str>,
-        world: &mut World,
-    ) -> Result<(), Failure> {
+    fn take(&mut self, candidates: Vec<Way>, event: Option<&str>, world: &mut World) -> Result<(), Failure> {
         let (winners, losers) = self.resolve(candidates);
         let (mut now, mut later) = (vec![], vec![]);
         for way in winners {
@@ -343,7 +338,7 @@ impl Stepper<'_> {
         if !self.runs(node) {
             return;
         }
-        let job = self.running.get_mut(&node).unwrap();
+        let job = self.jobs.get_mut(&node).unwrap();
         let (is_new, phase, number) = (!job.cancelled, job.phase, job.number);
         job.cancelled = true;
         if is_new && phase == Phase::Running {

@@ -1,4 +1,4 @@
-//! Compound transitions: R2, R6, and their exit sets.
+//! Compound transitions: R2, R6, and what a compound would leave.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ use super::arrive::Arrival;
 /// The static part of a compound transition: everything up to the first CHOICE, HISTORY or state on
 /// each of its paths.
 #[derive(Clone, PartialEq, Debug, Default)]
-pub(crate) struct StaticPath {
+pub(crate) struct Way {
     pub sources: Vec<NodeId>,
     /// In the order of their effects.
     pub segments: Vec<TransitionId>,
@@ -35,7 +35,7 @@ enum Role {
 }
 
 /// Accepts a complete path or, given a number of segments, an incomplete one.
-pub(crate) type Accept<'a, 'c> = &'a mut dyn FnMut(&mut Stepper<'c>, &StaticPath, Option<usize>) -> bool;
+pub(crate) type Accept<'a, 'c> = &'a mut dyn FnMut(&mut Stepper<'c>, &Way, Option<usize>) -> bool;
 
 impl<'c> Stepper<'c> {
     pub(crate) fn transition(&self, id: TransitionId) -> &'c Transition {
@@ -67,7 +67,8 @@ impl<'c> Stepper<'c> {
         self.kind(around) == NodeKind::And && out.len() > 1 && plain && regions.len() == out.len()
     }
 
-    /// Tries segments in order. Weighted ones are drawn at the position of the first of them.
+    /// Tries segments in their order. Those with weights are drawn, at the place of the first of
+    /// them, if there is a draw.
     pub(crate) fn try_each(
         &mut self,
         list: &[TransitionId],
@@ -120,7 +121,7 @@ impl<'c> Stepper<'c> {
 
     /// Follows segments depth-first to the first complete path that is accepted; `open` are those
     /// still to be followed.
-    pub(crate) fn follow(&mut self, way: &StaticPath, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+    pub(crate) fn follow(&mut self, way: &Way, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
         let Some((&segment, rest)) = open.split_first() else { return accept(self, way, None) };
         let mut way = way.clone();
         way.segments.push(segment);
@@ -152,30 +153,19 @@ impl<'c> Stepper<'c> {
     }
 
     /// Whether any complete path is accepted, regardless of choices.
-    pub(crate) fn any_way(
-        &mut self,
-        way: &StaticPath,
-        open: &[TransitionId],
-        accept: Accept<'_, 'c>,
-    ) -> bool {
+    pub(crate) fn any_way(&mut self, way: &Way, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
         self.without_chance(|me| me.follow(way, open, accept))
     }
 
     fn without_chance(&mut self, look: impl FnOnce(&mut Stepper<'c>) -> bool) -> bool {
-        let (chance, declared) = (self.chance.clone(), crate::chance::ChoicePolicy::Declared);
-        self.chance = crate::chance::ChoiceSource::new(declared);
+        let (chance, declared) = (self.chance.clone(), crate::chance::Freedom::Declared);
+        self.chance = crate::chance::Chance::new(declared);
         let found = look(self);
         self.chance = chance;
         found
     }
 
-    fn branch(
-        &mut self,
-        way: &StaticPath,
-        node: NodeId,
-        rest: &[TransitionId],
-        accept: Accept<'_, 'c>,
-    ) -> bool {
+    fn branch(&mut self, way: &Way, node: NodeId, rest: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
         let out = self.outgoing(node);
         let drawn = self.chance.draws() && out.iter().any(|&id| self.transition(id).weight.is_some());
         if drawn && !self.is_come_by(way, node, rest, accept) {
@@ -187,29 +177,23 @@ impl<'c> Stepper<'c> {
         })
     }
 
-    /// Whether some path through a connector, in its scope, is reached by the remaining segments;
-    /// otherwise nothing is drawn there.
-    fn is_come_by(
-        &mut self,
-        way: &StaticPath,
-        node: NodeId,
-        rest: &[TransitionId],
-        accept: Accept<'_, 'c>,
-    ) -> bool {
+    /// Nothing is drawn at a connector that no open segments reach, on the blackboard of any path
+    /// through it.
+    fn is_come_by(&mut self, way: &Way, node: NodeId, rest: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
         let so_far = way.segments.len();
         self.without_chance(|me| {
             me.branch(way, node, rest, &mut |me, whole, _| accept(me, whole, Some(so_far)))
         })
     }
 
-    /// The first accepted path out of a node.
+    /// The first way out of a node that is accepted.
     pub(crate) fn first_way(
         &mut self,
         node: NodeId,
         list: &[TransitionId],
         accept: Accept<'_, 'c>,
-    ) -> Option<StaticPath> {
-        let start = StaticPath { sources: vec![node], ..StaticPath::default() };
+    ) -> Option<Way> {
+        let start = Way { sources: vec![node], ..Way::default() };
         let mut found = None;
         self.try_each(list, &mut |me, id| {
             me.follow(&start, &[id], &mut |me, way, so_far| {
@@ -223,8 +207,8 @@ impl<'c> Stepper<'c> {
         found
     }
 
-    /// Whether a JOIN is offered at a source. Its path belongs to the first source and is evaluated
-    /// once, at the source that completes.
+    /// The path through a JOIN belongs to its first source; evaluated once, to the source that
+    /// completes.
     fn is_offered(&self, join: NodeId, source: NodeId) -> bool {
         let sources = self.incoming(join).into_iter().map(|id| self.transition(id).source);
         self.semantics.eventless == CompletionTrigger::Once
@@ -268,11 +252,11 @@ impl<'c> Stepper<'c> {
         self.semantics.firing == Firing::EachSegment
     }
 
-    pub(crate) fn interrupts(&self, way: &StaticPath) -> bool {
+    pub(crate) fn interrupts(&self, way: &Way) -> bool {
         way.segments.iter().any(|&id| self.transition(id).interrupts)
     }
 
-    /// The possible final targets of a path, for all outcomes of its CHOICEs.
+    /// Where a path may lead to in the end, whatever its CHOICEs say.
     fn final_targets(&self, node: NodeId) -> Vec<NodeId> {
         match self.kind(node) {
             NodeKind::Choice
@@ -294,7 +278,7 @@ impl<'c> Stepper<'c> {
     }
 
     /// R2
-    pub(crate) fn scope(&self, way: &StaticPath) -> NodeId {
+    pub(crate) fn scope(&self, way: &Way) -> NodeId {
         if self.is_internal(way) {
             return way.sources[0];
         }
@@ -359,9 +343,9 @@ impl<'c> Stepper<'c> {
         self.chart.ancestors(nodes[0]).find(|outer| wanted(self.kind(*outer)) && around(outer)).unwrap()
     }
 
-    /// The composites that stay active but lose their active children: in `uml`, on arrival at a
-    /// JOIN and on a transition to an active ancestor.
-    pub(crate) fn vacates(&self, way: &StaticPath) -> Vec<NodeId> {
+    /// The composites that stay but lose what is active in them: `uml`'s arrival at a JOIN, and its
+    /// way to an active ancestor.
+    pub(crate) fn vacates(&self, way: &Way) -> Vec<NodeId> {
         let [end] = way.ends[..] else { return vec![] };
         if let Some(arrival) = way.arrives() {
             return vec![arrival.region];
@@ -376,7 +360,7 @@ impl<'c> Stepper<'c> {
         }
     }
 
-    fn completes_ancestor(&self, way: &StaticPath, end: NodeId) -> bool {
+    fn completes_ancestor(&self, way: &Way, end: NodeId) -> bool {
         self.semantics.ancestor == TransitionToAncestor::Completed
             && !self.is_internal(way)
             && matches!(self.kind(end), NodeKind::Or | NodeKind::And)
@@ -399,8 +383,8 @@ impl<'c> Stepper<'c> {
         self.outward(inner).into_iter().find(|&node| self.chart.node(node).parent == Some(outer)).unwrap()
     }
 
-    /// The active states that a path would exit.
-    pub(crate) fn exit_set(&self, way: &StaticPath) -> BTreeSet<NodeId> {
+    /// The active states a way would leave.
+    pub(crate) fn exit_set(&self, way: &Way) -> BTreeSet<NodeId> {
         if self.is_targetless(way) || self.only_terminates(way) {
             return BTreeSet::new();
         }
@@ -411,7 +395,7 @@ impl<'c> Stepper<'c> {
         vacated.into_iter().flat_map(|outer| self.active_inside(outer)).collect()
     }
 
-    /// States in the order of their exits.
+    /// States in the order they are left.
     pub(crate) fn in_order_of_exit(&self, set: &BTreeSet<NodeId>) -> Vec<NodeId> {
         fn visit(stepper: &Stepper<'_>, node: NodeId, set: &BTreeSet<NodeId>, out: &mut Vec<NodeId>) {
             for &child in stepper.chart.children(node) {
@@ -431,7 +415,7 @@ impl<'c> Stepper<'c> {
         }
     }
 
-    pub(crate) fn would_leave(&self, way: &StaticPath, node: NodeId) -> bool {
+    pub(crate) fn would_leave(&self, way: &Way, node: NodeId) -> bool {
         self.exit_set(way).contains(&node)
     }
 }

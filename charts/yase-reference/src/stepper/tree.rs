@@ -5,12 +5,12 @@ use yase::{ScopeId, SegmentOrder};
 
 use super::Stepper;
 
-/// Data derived once from the chart.
+/// What does not change, looked up once.
 pub(crate) struct Tree {
-    /// The nodes in document order.
+    /// Immutable data, computed once.
     pub document: Vec<NodeId>,
     pub position: Vec<usize>,
-    /// Whether a node lies inside another: indexed by the outer, then the inner one.
+    /// Whether a node lies inside another: by the outer one, then the inner one.
     pub inside: Vec<Vec<bool>>,
     /// The root and every region of an AND, in document order.
     pub regions: Vec<NodeId>,
@@ -70,14 +70,14 @@ fn owns_blackboard(chart: &Statechart, node: NodeId) -> bool {
     node == Statechart::ROOT || is_region(chart, node) || runs
 }
 
-/// Whether a node is a child of an AND and a state.
+/// A child of an AND that is a state.
 fn is_region(chart: &Statechart, node: NodeId) -> bool {
     let states = [NodeKind::Or, NodeKind::And, NodeKind::Basic];
     let it = chart.node(node);
     it.parent.is_some_and(|parent| chart.node(parent).kind == NodeKind::And) && states.contains(&it.kind)
 }
 
-/// R3: sorted by priority, then guarded before unguarded, then document order.
+/// R3: priority, then guarded ones, then the order of the model.
 fn outgoing(chart: &Statechart, node: NodeId, order: SegmentOrder) -> Vec<TransitionId> {
     let leaving = chart.transitions().filter(|(_, transition)| transition.source == node);
     let mut out: Vec<TransitionId> = leaving.map(|(id, _)| id).collect();
@@ -142,14 +142,13 @@ impl Stepper<'_> {
         self.tree.document.iter().copied().filter(inside).collect()
     }
 
-    /// Whether a node is active without an active child: a state without children, START, END, or a
-    /// vacated region.
+    /// Active without an active child: a state without children, START, END, or a vacated region.
     pub(crate) fn active_leaves(&self) -> Vec<NodeId> {
         let leaf = |node: &NodeId| self.active_children(*node).is_empty();
         self.active_in_document_order().into_iter().filter(leaf).collect()
     }
 
-    /// The nodes from a node to the root.
+    /// From a node to the root.
     pub(crate) fn outward(&self, node: NodeId) -> Vec<NodeId> {
         std::iter::once(node).chain(self.chart.ancestors(node)).collect()
     }

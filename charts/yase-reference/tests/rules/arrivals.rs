@@ -1,4 +1,4 @@
-//! R12: JOINs at which each region arrives separately.
+//! R12: JOINs at which each region arrives by itself.
 
 use yase::{Chooser, CompletionTrigger, Firing, JoinMode, Machine, TransitionToAncestor};
 
@@ -6,7 +6,7 @@ use crate::{check_with, with};
 use yase_reference::world::World;
 use yase_reference::{chart, script};
 
-/// `one` is complete without an active child, and can arrive when the AND is exited and entered
+/// `one` is complete without an active child, and can arrive when the AND is left and entered
 /// again.
 const TWICE: &str = "
     START
@@ -52,7 +52,7 @@ fn r12_a_region_that_is_entered_again_while_it_arrives_keeps_what_is_in_it() {
     );
 }
 
-/// The draws in order: the number of options of each.
+/// What is drawn, in order: of how many.
 fn draws(join: JoinMode) -> Vec<u32> {
     let chart = chart(
         "
@@ -93,7 +93,7 @@ fn draws(join: JoinMode) -> Vec<u32> {
 }
 
 #[test]
-fn r12_the_content_of_other_sources_is_visited_first_only_for_a_common_join() {
+fn r12_what_lies_in_other_sources_is_looked_at_first_only_if_all_are_joined_together() {
     assert_eq!(draws(JoinMode::Each), [2, 3]);
     assert_eq!(draws(JoinMode::Together), [3, 2]);
 }

@@ -1,4 +1,4 @@
-//! R1, R2, R10: border points, regions of every kind, and transitions between them.
+//! R1, R2, R10: points on borders, regions of every kind, and leaving one for another.
 
 use yase::Semantics;
 

@@ -1,4 +1,4 @@
-//! R22: choices that the model leaves open.
+//! R22: what the model leaves open.
 
 use yase::{Chooser, ConflictResolution, Machine, Semantics};
 
@@ -22,7 +22,7 @@ const WEIGHTS: &str = "
     c -> C : [A.n > 9]
 ";
 
-/// The reached states for each list of choices, and the record of the chooser.
+/// The states that are reached, one run for each list of choices, and what the chooser has noted.
 fn reached(
     text: &str,
     script_text: &str,
@@ -47,7 +47,7 @@ fn r22_weighted_segments_are_drawn_and_drawn_again_until_one_is_open() {
     let expected = [
         ("D", vec![(1, 3)]),
         ("E", vec![(2, 3)]),
-        // no path through the CONDITION is enabled: the draw covers the rest
+        // the way through the CONDITION is closed: the rest is drawn
         ("D", vec![(0, 3), (0, 2)]),
         ("E", vec![(0, 3), (1, 2)]),
         ("D", vec![(0, 3), (0, 2)]),
@@ -108,7 +108,7 @@ fn r22_declared_takes_weighted_segments_in_their_order_and_seeds_draw_in_proport
 }
 
 #[test]
-fn r08_the_chooser_resolves_conflicts_if_configured() {
+fn r08_of_transitions_in_conflict_the_chooser_says_which_wins_if_that_is_meant() {
     let text = "
         START
         & both
@@ -150,8 +150,8 @@ fn r22_weights_that_are_no_shares_are_refused() {
 }
 
 #[test]
-fn r22_a_draw_at_a_node_is_kept_for_the_micro_step() {
-    // both regions pass the same CONDITION in one micro-step, and one of them loses the conflict
+fn r22_what_is_drawn_at_a_node_stays_drawn_for_the_micro_step() {
+    // both regions come by the same CONDITION in one micro-step, which one of them then loses
     let text = "
         START
         & both
@@ -177,8 +177,8 @@ fn r22_a_draw_at_a_node_is_kept_for_the_micro_step() {
 }
 
 #[test]
-fn r22_a_draw_at_a_connector_covers_several_scopes() {
-    // one path after the CONDITION stays in the region, the other exits the AND
+fn r22_what_leaves_a_connector_is_drawn_among_though_it_lies_on_several_blackboards() {
+    // one way behind the CONDITION stays in the region, the other leaves the AND
     let text = "
         START
         & both
@@ -199,13 +199,13 @@ fn r22_a_draw_at_a_connector_covers_several_scopes() {
         one/c -> D {w0.5} : [A.n == 1]
     ";
     let found = reached(text, "1 e; 2 A=1; 3", Semantics::yase(), &[&[0], &[1]]);
-    // the guarded one is tried first but disabled
+    // the one with a guard, which is tried first, is closed
     assert_eq!(found, [("both/two/C".to_owned(), vec![(0, 2)]), ("both/two/C".to_owned(), vec![(1, 2)])]);
     let open = reached(text, "1 A=1; 2 e; 3", Semantics::yase(), &[&[0], &[1]]);
     assert_eq!(open, [("D".to_owned(), vec![(0, 2)]), ("both/two/C".to_owned(), vec![(1, 2)])]);
 }
 
-/// Weights at a state and after a connector.
+/// With weights at a state and behind a connector.
 const DEEP: &str = "
     START
     A
@@ -223,13 +223,13 @@ const DEEP: &str = "
 ";
 
 #[test]
-fn r22_a_draw_at_a_state_precedes_draws_after_it() {
+fn r22_what_is_drawn_at_a_state_and_behind_it_is_drawn_in_this_order() {
     let choices: [&[u32]; 4] = [&[0, 0], &[0, 1], &[1], &[2]];
     let found = reached(DEEP, "1 A=10; 2 e; 3", Semantics::yase(), &choices);
     let expected =
         [("B", vec![(0, 3), (0, 2)]), ("C", vec![(0, 3), (1, 2)]), ("D", vec![(1, 3)]), ("E", vec![(2, 3)])];
     assert_eq!(found, expected.map(|(name, log)| (name.to_owned(), log)));
-    // nothing after the connector is enabled: `D` and `E` remain
+    // nothing behind the connector is open: `D` and `E` are left
     let found = reached(DEEP, "1 A=3; 2 e; 3", Semantics::yase(), &[&[0, 1, 1]]);
     assert_eq!(found, [("E".to_owned(), vec![(0, 3), (1, 2), (1, 2)])]);
     let found = reached(DEEP, "1 f; 2", Semantics::yase(), &[&[7]]);
@@ -258,7 +258,7 @@ fn r22_behind_a_connector_that_is_not_come_by_nothing_is_drawn() {
 }
 
 #[test]
-fn r22_weights_are_drawn_at_the_first_match() {
+fn r22_weights_are_drawn_where_the_first_that_matches_stands() {
     let behind = "A -> k {w0.5} : e\nk -> D {w0.5}\nk -> E {w0.5}";
     for (node, weighted, last) in [("", "A -> D {w0.5} : e", "D"), ("? k", behind, "E")] {
         let text = format!(
@@ -295,7 +295,7 @@ fn r22_a_drawn_way_is_open_only_if_all_behind_it_is() {
 }
 
 #[test]
-fn r22_draws_at_connectors_are_independent() {
+fn r22_what_is_drawn_at_one_connector_says_nothing_of_another() {
     let text = "
         START
         & both
@@ -344,7 +344,7 @@ fn r22_if_nothing_drawn_is_open_nothing_happens() {
 }
 
 #[test]
-fn r22_a_rejected_draw_is_not_repeated_for_the_next_weight() {
+fn r22_what_was_drawn_in_vain_is_not_drawn_for_the_next_with_a_weight() {
     let text = "
         START
         A

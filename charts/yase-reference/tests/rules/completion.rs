@@ -1,9 +1,9 @@
-//! R14 to R17: completion, completion transitions, queues, livelocks.
+//! R14 to R17: completion, transitions without an event, queues, charts that never rest.
 
 use std::num::NonZeroU32;
 use std::time::Duration;
 
-use yase::{CompletionTrigger, Deferral, Machine, MachineErrorKind, Semantics, Status, Timestamp};
+use yase::{CompletionTrigger, Deferral, Machine, MachineErrorKind, Timestamp, Semantics, Status};
 
 use crate::{check, check_with, compare};
 use yase_reference::world::World;
@@ -82,7 +82,7 @@ fn r14_an_or_completes_at_end_and_an_and_when_all_its_regions_have() {
     );
 }
 
-/// A composite that is exited without an event.
+/// A composite that is left without an event, in one way or another.
 fn composite(exit: &str) -> String {
     format!(
         "
@@ -145,7 +145,7 @@ fn r15_a_guarded_exit_of_a_composite_waits_until_nothing_inside_can_step() {
         "1 A=1; 2",
         &format!("{INSIDE}0.001 s -: P -> X; exit P/A, P; enter X"),
     );
-    // if both guards hold, the inner step comes first
+    // with both guards open the inner step comes first
     check(
         &composite("P -> X : [B.n > 0]"),
         "1 B=1; 2",
@@ -222,7 +222,7 @@ fn r15_under_quiescent_completion_does_not_matter() {
 }
 
 #[test]
-fn r15_the_guard_of_a_completed_state_is_evaluated_again() {
+fn r15_the_guard_of_a_completed_state_is_looked_at_again() {
     check(
         "
         START
@@ -307,7 +307,7 @@ const DEFERRING: &str = "
 ";
 
 #[test]
-fn r16_a_deferred_event_waits_until_no_active_state_defers_it_and_precedes_newer_ones() {
+fn r16_a_deferred_event_waits_until_no_active_state_defers_it_and_comes_before_newer_ones() {
     check(
         DEFERRING,
         "1 e; 2 g; 2 h; 3",
@@ -325,7 +325,7 @@ fn r16_a_deferred_event_waits_until_no_active_state_defers_it_and_precedes_newer
 }
 
 #[test]
-fn r16_consumed_events_are_not_deferred_and_deferral_can_be_off() {
+fn r16_what_is_taken_is_not_deferred_and_deferral_can_be_off() {
     let log = script::play(&chart(DEFERRING), "1 f; 2 e; 3");
     assert_eq!(log.last().unwrap(), "0.002 s e: P/B -> P/B");
     let mut semantics = Semantics::yase();
@@ -341,7 +341,7 @@ fn limited(limit: u32) -> Semantics {
 }
 
 #[test]
-fn r17_a_livelock_stops_the_chart_and_names_the_cycle() {
+fn r17_a_chart_that_never_rests_stops_with_an_error_that_names_the_cycle() {
     let chart = chart("START\nS\nA\nB\nc/START -> S\nS -> A : e\nA -> B\nB -> A : [true]\n");
     let mut machine = Machine::new(script::compile_with(&chart, limited(10)));
     let mut world = World::new(&chart);
@@ -355,7 +355,7 @@ fn r17_a_livelock_stops_the_chart_and_names_the_cycle() {
     assert!(text.contains("`A` -> `B`") && text.contains("`B` -> `A`"), "{text}");
     assert_eq!(machine.status(), Status::Stopped);
     assert_eq!(world.log.iter().filter(|line| line.contains("exit")).count(), 11, "START and ten more");
-    // the configuration before the micro-step that exceeded the limit
+    // the configuration before the micro-step that would have been one too many
     assert!(machine.is_active(chart::find(&chart, "B")), "{:?}", machine.configuration());
     assert_eq!(machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap().micro_steps, 0);
 }
@@ -389,20 +389,20 @@ fn r17_a_chart_that_answers_each_message_with_two_is_stopped_before_they_fill_th
 }
 
 #[test]
-fn r17_endless_steps_at_one_time_stop_the_chart() {
+fn r17_a_chart_that_steps_for_ever_at_one_moment_is_stopped() {
     let log = script::play_with(&chart("START\nA | run\nc/START -> A\nA -> A\n"), "1", limited(10));
     assert_eq!(
         log.last().unwrap(),
         "error: the chart makes more than 10 steps at one moment: it repeats `A` -> `A`"
     );
-    // if time advances, it is an ordinary loop
+    // time that passes makes it a loop like any other
     let log =
         script::play_with(&chart("START\nA | run | for=1ms\nc/START -> A\nA -> A\n"), "50", limited(10));
     assert!(!log.iter().any(|line| line.starts_with("error")));
 }
 
 #[test]
-fn r17_the_step_count_resets_when_time_advances_or_the_chart_restarts() {
+fn r17_steps_at_one_moment_are_counted_whoever_looks_on_and_anew_when_time_passes_or_the_chart_starts() {
     let chart = chart("START\nA\nB\nc/START -> A\nA -> B : e\nB -> A : e\n");
     for silent in [false, true] {
         let mut world = World { silent, ..World::new(&chart) };

@@ -1,4 +1,4 @@
-//! R9, R12, R13: forks, joins and dynamic branches.
+//! R9, R12, R13: connectors that split, join and decide late.
 
 use yase::Semantics;
 

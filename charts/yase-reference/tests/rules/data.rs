@@ -1,4 +1,4 @@
-//! R19 and R20: blackboards and activities.
+//! R19 and R20: blackboards, and the activities that work on them.
 
 use yase::{Delivery, Semantics};
 
@@ -6,8 +6,8 @@ use crate::{check, check_with, compare};
 use yase_reference::world::World;
 use yase_reference::{chart, script};
 
-/// Executes a script and returns every line, including those of blackboards, for an unindented
-/// chart.
+/// Plays a script and gives every line, with those of the blackboards, of a chart whose text begins
+/// at margin zero.
 pub(crate) fn verbose(text: &str, script: &str, semantics: Semantics) -> Vec<String> {
     let chart = chart(text);
     let mut machine = yase::Machine::new(script::compile_with(&chart, semantics));
@@ -71,7 +71,7 @@ fn r19_messages_are_delivered_at_the_beginning_of_a_step_where_no_activity_runs(
 }
 
 #[test]
-fn r19_an_entered_region_inherits_the_outer_blackboard() {
+fn r19_a_region_that_is_entered_takes_over_the_values_of_the_blackboard_it_lies_in() {
     let text = "
         START
         S
@@ -108,7 +108,7 @@ fn r19_an_entered_region_inherits_the_outer_blackboard() {
 }
 
 #[test]
-fn r19_a_write_is_visible_at_once_in_its_scope_and_elsewhere_in_the_next_step() {
+fn r19_what_an_action_writes_is_seen_there_at_once_and_by_others_in_the_next_step() {
     check(
         "
         START
@@ -142,7 +142,7 @@ fn r19_a_write_is_visible_at_once_in_its_scope_and_elsewhere_in_the_next_step() 
 }
 
 #[test]
-fn r19_writes_are_published_once_at_the_end_of_the_step_or_by_publish_all() {
+fn r19_what_was_written_is_published_once_at_the_end_of_the_step_or_where_publish_all_stands() {
     let text = "
         START
         S
@@ -176,7 +176,7 @@ const REQUEST: &str = "
 ";
 
 #[test]
-fn r19_process_messages_delivers_in_place_and_explicit_delivery_only_there() {
+fn r19_process_messages_delivers_where_it_stands_and_explicit_delivery_only_there() {
     let mut semantics = Semantics::yase();
     semantics.delivery = Delivery::Explicit;
     let log = verbose(REQUEST, "1 A=7; 2 e; 3", semantics);
@@ -198,7 +198,7 @@ fn r19_process_messages_delivers_in_place_and_explicit_delivery_only_there() {
 }
 
 #[test]
-fn r19_a_failing_action_is_reported_and_the_others_continue() {
+fn r19_an_action_that_cannot_be_done_says_so_and_the_others_go_on() {
     check(
         "
         START
@@ -311,13 +311,13 @@ fn r20_stop_is_called_when_the_state_of_an_ongoing_activity_is_left() {
 
 #[test]
 fn r20_a_failing_activity_releases_the_lock_and_can_run_again() {
-    use yase::{Machine, Outcome, Timestamp};
+    use yase::{Machine, Timestamp, Outcome};
     let chart = chart("START\nS | run\nT\nc/START -> S\nS -> T\nS -> S {internal} : error.activity\n");
     let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);
     machine.start(Timestamp::ZERO, &mut world);
     machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    let activation = world.running[0].activation;
+    let activation = world.jobs[0].activation;
     assert!(machine.is_running(activation.region));
     assert!(machine.activity_returned(activation, Outcome::Failed));
     assert!(!machine.is_running(activation.region));

@@ -1,6 +1,6 @@
-//! R10 to R13: exits, effects, entries and the end.
+//! R10 to R13: leaving, acting, entering, and the end.
 
-use yase::{Activation, Host, Machine, Status, Timestamp};
+use yase::{Activation, Host, Machine, Timestamp, Status};
 
 use crate::{check, compare};
 use yase_reference::world::World;
@@ -124,7 +124,8 @@ fn r10_no_state_exits_or_enters_twice_in_a_transition_across_levels() {
 
 #[test]
 fn r10_a_region_that_another_transition_has_left_does_not_fire() {
-    // one region exits the AND; the other reacts to the same event, is preempted and does nothing
+    // the AND is left by one region; the other, which takes the event too, is preempted and does
+    // nothing
     let log = script::play(
         &chart(
             "
@@ -284,14 +285,14 @@ fn r13_stop_cancels_and_what_returns_later_is_not_for_the_next_run() {
     let mut world = World { activities: World::new(&chart).activities, ..World::default() };
     machine.start(Timestamp::ZERO, &mut world);
     machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    let first: Activation = world.running[0].activation;
+    let first: Activation = world.jobs[0].activation;
     machine.stop(&mut world);
     assert_eq!(machine.status(), Status::Stopped);
     assert!(!machine.is_running(first.region));
     machine.start(Timestamp::ZERO, &mut world);
     machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
     assert!(!machine.activity_returned(first, yase::Outcome::Done));
-    let second = world.running[1].activation;
+    let second = world.jobs[1].activation;
     assert!(machine.activity_returned(second, yase::Outcome::Done));
     assert!(!machine.activity_returned(second, yase::Outcome::Done));
     machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
@@ -300,7 +301,7 @@ fn r13_stop_cancels_and_what_returns_later_is_not_for_the_next_run() {
 }
 
 #[test]
-fn r13_a_cancelled_activity_is_not_cancelled_again() {
+fn r13_what_has_been_asked_to_return_is_not_asked_again() {
     let chart = chart("START\nA | run | for=50ms\nX\nc/START -> A\nA -> X {interrupts} : e\n");
     let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);

@@ -1,12 +1,12 @@
-//! R10: the content of HISTORYs and their targets.
+//! R10: what HISTORYs remember, and where they lead.
 
-use yase::{Machine, Semantics, Timestamp, TransitionToAncestor};
+use yase::{Machine, Timestamp, Semantics, TransitionToAncestor};
 
 use crate::{check, check_with, with};
 use yase_reference::{World, chart, script};
 
 #[test]
-fn r10_a_shallow_history_leads_to_the_child_which_restarts() {
+fn r10_a_shallow_history_leads_to_the_child_which_begins_anew() {
     check_with(
         Semantics::yase(),
         "
@@ -168,7 +168,7 @@ fn r10_a_history_of_an_and_left_by_one_of_its_regions_remembers_the_others() {
 }
 
 #[test]
-fn r10_without_a_record_a_history_leads_to_its_default_or_start() {
+fn r10_without_a_record_a_history_leads_where_it_says_or_to_start() {
     check_with(
         Semantics::yase(),
         "
@@ -306,10 +306,10 @@ fn r21_a_timer_that_a_transition_to_a_history_starts_belongs_to_its_composite_an
         let log = script::play_with(&chart(text), script, with(|it| it.timers = yase::TimerScope::State));
         log.last().unwrap().trim().to_owned()
     };
-    // kept while `P` is active
+    // not unset while `P` is active
     assert_eq!(taken("1 out; 2 back; 3 swap; 30"), "0.012 s v: P/B -> P/B");
     assert!(taken("1 out; 2 back; 3 out; 30").starts_with("0.003 s out: P -> Q"));
-    // kept only while `A` is active
+    // only while `A` is
     assert_eq!(taken("1 out; 2 a; 30"), "0.012 s v: P/A -> P/A");
     assert!(taken("1 out; 2 a; 3 swap; 30").starts_with("0.003 s swap: P/A -> P/B"));
 }

@@ -1,10 +1,11 @@
-//! R12: the last configuration of a composite.
+//! R12: what a composite remembers.
 
 use crate::compare;
 
 #[test]
 fn r12_a_history_remembers_the_last_exit_of_its_composite() {
-    // the first exit is from A, the second from B: each return leads to the state exited last
+    // the first exit is from A, the second from B: each return is to where the composite was left
+    // last
     let chart = yase_reference::chart(
         "
         START

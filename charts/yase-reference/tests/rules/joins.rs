@@ -1,11 +1,11 @@
-//! R7, R12, R15: JOINs of composites, and the remaining steps of their sources.
+//! R7, R12, R15: JOINs that take composites, and what their sources may still do.
 
 use yase::{CompletionTrigger, Firing, JoinMode, Semantics, TransitionToAncestor};
 
 use crate::{check_with, with};
 
-/// A JOIN of a BASIC state and an AND. A transition out of one of its regions is considered when
-/// that region has completed.
+/// A JOIN of a BASIC state and an AND, out of one of whose regions a way leads that is looked at
+/// when that region has completed.
 const INNER: &str = "
     START
     & both
@@ -36,7 +36,7 @@ const INNER: &str = "
 
 #[test]
 fn r07_a_join_waits_while_something_inside_any_of_its_sources_can_step() {
-    // without that event the JOIN is taken
+    // without that, the JOIN is taken
     check_with(
         Semantics::yase(),
         INNER,
@@ -64,7 +64,7 @@ fn r07_a_join_waits_while_something_inside_any_of_its_sources_can_step() {
 }
 
 #[test]
-fn r07_of_two_mutually_nested_joins_the_first_visited_is_taken() {
+fn r07_of_two_joins_that_each_hold_a_source_of_the_other_the_inner_that_is_looked_at_first_is_taken() {
     // `j` takes the composite around a source of `k`, and `k` the composite around a source of `j`
     check_with(
         Semantics::yase(),
@@ -145,8 +145,8 @@ fn r15_eventless_once_offers_a_join_together_when_the_last_of_its_sources_comple
 }
 
 #[test]
-fn r15_eventless_once_offers_a_repeated_completion_once() {
-    // `two` reaches an END, and then another, before the AND's completion is processed
+fn r15_eventless_once_offers_a_completion_once_though_it_comes_about_twice() {
+    // `two` reaches an END, and then another, before the AND's completion is looked at
     check_with(
         with(|it| it.eventless = CompletionTrigger::Once),
         "
@@ -178,7 +178,7 @@ fn r15_eventless_once_offers_a_repeated_completion_once() {
 }
 
 #[test]
-fn r08_a_transition_from_a_vacated_region_has_no_conflict() {
+fn r08_what_leaves_nothing_since_its_region_was_vacated_is_in_conflict_with_nothing() {
     check_with(
         with(|it| it.ancestor = TransitionToAncestor::Completed),
         "
@@ -211,7 +211,7 @@ fn r08_a_transition_from_a_vacated_region_has_no_conflict() {
 
 #[test]
 fn r10_in_phases_what_begins_at_a_vacated_region_that_another_leaves_does_not_fire() {
-    // otherwise `one` would get two children; a transition without a target fires anyway
+    // or `one` would get two children; what leads nowhere fires all the same
     check_with(
         with(|it| {
             it.ancestor = TransitionToAncestor::Completed;
@@ -250,8 +250,8 @@ fn r10_in_phases_what_begins_at_a_vacated_region_that_another_leaves_does_not_fi
 }
 
 #[test]
-fn r10_a_transition_does_not_fire_after_its_source_was_exited_and_reentered() {
-    // `r` is a separate region: stopping the chart exits nothing in it
+fn r10_what_begins_at_a_state_that_another_has_left_does_not_fire_though_it_was_entered_again() {
+    // `r` is a region of its own: to stop the chart it leaves nothing
     check_with(
         Semantics::yase(),
         "
@@ -279,9 +279,9 @@ fn r10_a_transition_does_not_fire_after_its_source_was_exited_and_reentered() {
 }
 
 #[test]
-fn r12_an_arrival_is_repeated_after_an_exit() {
-    // `two` has arrived and is vacated; `both -> D` exits and enters it with its children, but not
-    // `both`
+fn r12_what_has_arrived_at_a_join_and_is_then_left_arrives_again() {
+    // `two` has arrived and is vacated; `both -> D` leaves and enters it with all that is in it,
+    // but not `both`
     check_with(
         with(|it| it.join = JoinMode::Each),
         "
@@ -396,7 +396,7 @@ fn r12_a_region_without_states_that_is_left_has_to_arrive_again() {
 }
 
 #[test]
-fn r12_a_join_of_some_regions_is_evaluated_at_its_last_arrival() {
+fn r12_a_join_of_some_regions_is_looked_at_when_the_last_of_them_arrives() {
     for eventless in [
         CompletionTrigger::Once,
         CompletionTrigger::Quiescent,

@@ -1,5 +1,5 @@
-//! At least one test per rule of the machine, named after it: a chart, its inputs, and every line
-//! of its trace.
+//! At least one test for each rule of the machine, named after it: a chart, its inputs, and every
+//! line of its trace.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // the functions around the tests are tests too
 
@@ -35,7 +35,7 @@ fn with(change: impl FnOnce(&mut Semantics)) -> Semantics {
     semantics
 }
 
-/// Executes a script on a chart and compares every line of the log.
+/// Plays a script on a chart and compares every line of the log.
 #[track_caller]
 fn check(chart: &str, script: &str, expected: &str) {
     check_with(Semantics::yase(), chart, script, expected);
@@ -54,7 +54,7 @@ fn compare(found: &[String], expected: &str) {
     assert!(found == expected, "found\n{}\n\nexpected\n{}\n", found.join("\n"), expected.join("\n"));
 }
 
-/// The diagnostics for a chart, one per line.
+/// The diagnostics that a chart gets, one a line.
 fn refusal(chart: &str) -> String {
     match yase_reference::chart(chart).compile(&yase_reference::world::vocabulary()) {
         Ok(_) => "none".to_owned(),

@@ -1,4 +1,4 @@
-//! R24: the machine's information about activities for their executor.
+//! R24: information of the machine about its activities for their executor.
 
 use std::time::Duration;
 

@@ -1,5 +1,5 @@
-//! Variation points of dialects: at least one test per value. Those of choosers, names and failures
-//! are in [`choosers`](crate::choosers) and [`scripts`](crate::scripts).
+//! Variation points of dialects: at least one test for each value. Those of choosers, names and
+//! failures are in [`choosers`](crate::choosers) and [`scripts`](crate::scripts).
 
 mod entering;
 mod events;

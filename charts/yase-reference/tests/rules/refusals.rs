@@ -1,6 +1,6 @@
-//! R1, R6, R12: invalid connectors are rejected with their names.
+//! R1, R6, R12: connectors that cannot be followed are refused, each by name.
 
-use yase::{Machine, MachineErrorKind, Status, Timestamp};
+use yase::{Machine, MachineErrorKind, Timestamp, Status};
 
 use crate::refusal;
 use yase_reference::{World, chart, script};
@@ -22,7 +22,7 @@ const BOTH: &str = "
 ";
 
 fn with(lines: &str) -> String {
-    // nodes precede transitions only for readability
+    // nodes stand before transitions only for those who read it
     refusal(&format!("{BOTH}{lines}"))
 }
 
@@ -85,7 +85,7 @@ fn r06_connectors_of_every_kind_that_lead_in_a_circle_or_nowhere_are_refused() {
         with("    ! p\n    ! q\n    A -> p : e\n    p -> q\n    q -> p"),
         "error[M06]: connectors lead in a circle: `c/p` -> `c/q` -> `c/p`"
     );
-    assert_eq!(with("    i in\n    A -> in : e"), "error[M06]: no path continues from `c/in`");
+    assert_eq!(with("    i in\n    A -> in : e"), "error[M06]: no way leads on from `c/in`");
     assert_eq!(with("    h h\n    both -> h : e"), "none", "a HISTORY may lead to START");
 }
 
@@ -109,7 +109,7 @@ fn r12_a_choice_without_an_else_is_warned_of_and_stops_with_its_name() {
     let mut world = World::new(&chart);
     machine.start(Timestamp::ZERO, &mut world);
     machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    let job = world.running.remove(0);
+    let job = world.jobs.remove(0);
     machine.activity_returned(job.activation, yase::Outcome::Done);
     machine.dispatch_name("e");
     let before = machine.configuration();
@@ -121,7 +121,7 @@ fn r12_a_choice_without_an_else_is_warned_of_and_stops_with_its_name() {
 }
 
 #[test]
-fn r12_a_choice_that_fails_during_the_start_is_reported_by_the_first_step() {
+fn r12_a_choice_that_fails_while_the_chart_starts_is_told_by_the_first_step() {
     let chart = chart("START\nA\n! ch\nc/START -> ch\nch -> A : [A.n > 1]");
     let mut machine = Machine::new(script::compile_with(&chart, yase::Semantics::uml()));
     let mut world = World::new(&chart);

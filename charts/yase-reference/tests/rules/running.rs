@@ -1,4 +1,4 @@
-//! R9: running activities block transitions, hold events and are interrupted.
+//! R9: running activities lock, hold and are interrupted.
 
 use yase::CompletionTrigger;
 
@@ -114,7 +114,7 @@ fn r09_without_an_event_too() {
 
 #[test]
 fn r09_running_lasts_from_the_enqueueing_of_the_activity() {
-    // the second event arrives in the step that entered A, before its activity was started
+    // the second event comes in the step that entered A: its activity has not been started yet
     check(
         "
         START
@@ -139,7 +139,7 @@ fn r09_running_lasts_from_the_enqueueing_of_the_activity() {
 }
 
 #[test]
-fn r09_a_held_event_precedes_newer_events_and_completion_transitions_of_its_exit_set() {
+fn r09_a_held_event_comes_before_newer_ones_and_before_the_eventless_transitions_of_what_it_leaves() {
     check(
         "
         START
@@ -168,9 +168,9 @@ fn r09_a_held_event_precedes_newer_events_and_completion_transitions_of_its_exit
 }
 
 #[test]
-fn r09_the_exit_set_of_a_held_event_waits_in_all_regions() {
-    // C's completion transition would start the next activity forever, and the AND could never be
-    // exited
+fn r09_what_a_held_event_would_leave_waits_for_it_in_all_regions() {
+    // C's way on needs no event; it would start the next activity for ever, and the AND could never
+    // be left
     check(
         "
         START
@@ -260,7 +260,7 @@ fn r09_a_held_event_that_fits_no_longer_is_dropped() {
 
 #[test]
 fn r09_an_interrupting_transition_asks_activities_to_return_and_fires_when_they_have() {
-    // B's activity ends meanwhile; B's completion transition does not come first
+    // B's activity ends by itself in the meantime: the way on from B does not come first
     check(
         "
         START
@@ -298,7 +298,7 @@ fn r09_an_interrupting_transition_asks_activities_to_return_and_fires_when_they_
 
 #[test]
 fn r09_an_interrupting_transition_needs_no_event() {
-    // A's self-transition would start its activity forever; without the mark no activity inside may
+    // A's way back to itself would start its activity for ever; without the mark nothing inside may
     // run
     let chart = |mark: &str| {
         format!(
@@ -349,7 +349,7 @@ fn r09_an_interrupting_transition_needs_no_event() {
 }
 
 #[test]
-fn r09_an_activity_interrupted_before_its_start_is_cancelled_after_it() {
+fn r09_an_activity_that_is_interrupted_before_it_starts_is_asked_to_return_when_it_has() {
     check(
         "
         START
@@ -375,7 +375,7 @@ fn r09_an_activity_interrupted_before_its_start_is_cancelled_after_it() {
 }
 
 #[test]
-fn r09_events_for_an_interrupted_state_are_held() {
+fn r09_what_happens_to_an_interrupted_state_meanwhile_is_held() {
     check(
         "
         START
@@ -438,7 +438,7 @@ fn r09_an_ongoing_activity_is_not_called_again_when_its_state_is_about_to_be_lef
 }
 
 #[test]
-fn r15_an_unguarded_interrupt_waits_under_quiescent() {
+fn r15_what_interrupts_but_asks_nothing_waits_under_quiescent() {
     let text = "
         START
         P

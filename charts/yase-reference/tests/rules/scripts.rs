@@ -4,15 +4,15 @@ use std::sync::Arc;
 
 use yase::expression::{CallError, EventId, ScriptId, parse_actions, parse_transition};
 use yase::{
-    ActionLocation, Activation, ActiveStates, CompiledChart, Host, Machine, MicroStep, NodeId, ScopeId,
-    ScriptContext, ScriptLocation, Semantics, Statechart, Timestamp, TransitionId, TypeEnvironment,
+    ActionLocation, Activation, ActiveStates, CompiledChart, Host, Machine, MicroStep, Timestamp, NodeId,
+    ScopeId, ScriptContext, ScriptLocation, Semantics, Statechart, TransitionId, TypeEnvironment,
 };
 
 use yase_reference::chart;
 use yase_reference::chart::find;
 
-/// A host language with the condition `in PATH`, the actions `raise NAME TOKEN`, `look PATH` and
-/// `see:LABEL`, and `fail` as both.
+/// Understands `in PATH` as a condition, `fail` as both, and `raise NAME TOKEN`, `look PATH` and
+/// `see:LABEL` as actions.
 struct Reader {
     chart: Arc<CompiledChart>,
     lines: Vec<String>,
@@ -149,7 +149,7 @@ fn scripts_know_where_they_stand_and_what_is_active() {
 }
 
 #[test]
-fn names_match_by_tokens_if_configured() {
+fn names_match_by_tokens_where_that_is_meant_and_tokens_come_along() {
     let text = "
         START
         A
@@ -188,7 +188,7 @@ fn names_match_by_tokens_if_configured() {
 }
 
 #[test]
-fn events_are_deferred_by_tokens_if_configured() {
+fn events_are_deferred_by_tokens_where_that_is_meant() {
     let text = "
         START
         A | defer=w
@@ -239,8 +239,8 @@ fn failures_are_events_by_their_cause_or_every_time() {
     assert_eq!(offered(every), ["?", "error.execution", "error.execution"], "until the limit");
 }
 
-/// Parallel and nested composites whose actions record the active states: one action, several, and
-/// none.
+/// Composites, side by side and nested, whose actions write down what is active: one action,
+/// several, and none.
 const SEEING: &str = "
     START
     P | entry=script(\"see:+P\") | exit=script(\"see:-P\"),script(\"see:-P2\")

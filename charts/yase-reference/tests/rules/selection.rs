@@ -1,4 +1,4 @@
-//! R4 to R8: events, guards, paths, and conflicts.
+//! R4 to R8: events, guards, paths, and who wins.
 
 use yase::{FailureEvents, Semantics};
 
@@ -90,7 +90,7 @@ fn r04_each_arrival_of_a_message_is_one_occurrence() {
 
 #[test]
 fn r05_guards_see_the_beginning_of_the_micro_step() {
-    // the second segment's guard is evaluated before the first one's action, and the right region
+    // the second segment's guard is read before the first one's action; the region on the right
     // before the left one acts
     check(
         "
@@ -125,7 +125,7 @@ fn r05_guards_see_the_beginning_of_the_micro_step() {
 }
 
 #[test]
-fn r05_a_failing_guard_is_false_and_reported_once_until_its_input_changes() {
+fn r05_a_guard_that_errs_is_false_and_says_so_once_until_its_input_changes() {
     check(
         "
         START
@@ -155,7 +155,7 @@ fn r05_a_failing_guard_is_false_and_reported_once_until_its_input_changes() {
 }
 
 #[test]
-fn r05_a_guard_that_succeeded_meanwhile_is_reported_again() {
+fn r05_a_guard_that_has_succeeded_since_says_again_that_it_errs() {
     check(
         "
         START
@@ -195,8 +195,8 @@ fn r05_a_guard_that_succeeded_meanwhile_is_reported_again() {
 
 #[test]
 fn r05_a_timer_that_a_failing_guard_reads_makes_it_say_so_again() {
-    // the left guard reads a timer of its own blackboard; the right one has a timer with the same
-    // index on another
+    // the guard on the left reads a timer of its own blackboard; that on the right has the same
+    // number on another
     check(
         "
         START
@@ -255,7 +255,7 @@ fn r05_a_message_that_has_not_arrived_is_unknown_and_does_not_fire() {
 }
 
 #[test]
-fn r06_a_compound_transition_is_atomic() {
+fn r06_all_of_a_compound_transition_happens_or_none() {
     check(
         "
         START
@@ -287,7 +287,7 @@ fn r06_connectors_in_a_circle_or_without_a_way_on_are_refused() {
     assert_eq!(
         refusal("START\n? a\n? b\n? d\nc/START -> a\na -> b\nb -> a\na -> d"),
         "error[M06]: connectors lead in a circle: `c/a` -> `c/b` -> `c/a`\n\
-         error[M06]: no path continues from `c/d`"
+         error[M06]: no way leads on from `c/d`"
     );
 }
 
@@ -372,9 +372,9 @@ fn last(chart: &str) -> String {
 }
 
 #[test]
-fn r08_nested_transitions_win_and_losers_are_preempted() {
-    // from the leaf in `two` outward only the AND's transition is found; it would exit the source
-    // in `one`
+fn r08_what_is_nested_wins_and_losers_are_preempted() {
+    // from the leaf in `two` outward only the AND's transition is found; it would exit what `one`
+    // takes
     compare(
         &[last(&format!("{CONFLICT}    A -> B : e\n    both -> X : e"))],
         "0.001 s e: both/one/A -> both/one/B; preempt both -> X; exit both/one/A; enter both/one/B",
@@ -395,7 +395,7 @@ fn r08_else_the_smaller_key_wins() {
 }
 
 #[test]
-fn r08_internal_transitions_have_no_conflict_and_fire_first() {
+fn r08_what_stays_inside_conflicts_with_nothing_and_fires_first() {
     let chart =
         format!("{CONFLICT}    A -> X : e / publish_all\n    C -> C {{internal}} : e / process_messages");
     compare(
@@ -407,7 +407,7 @@ fn r08_internal_transitions_have_no_conflict_and_fire_first() {
 }
 
 #[test]
-fn r05_a_failing_guard_is_reported_once_per_micro_step() {
+fn r05_a_guard_that_errs_is_told_once_in_a_micro_step_however_often_it_is_read() {
     let text = "
         START
         & both
@@ -426,7 +426,7 @@ fn r05_a_failing_guard_is_reported_once_per_micro_step() {
         B -> p : e
         p -> D : [A.n < fail()]
         ";
-    let expected = |event: &str| {
+    let told = |event: &str| {
         format!(
             "
             0.000 s start; enter c, START
@@ -439,13 +439,13 @@ fn r05_a_failing_guard_is_reported_once_per_micro_step() {
         )
     };
     let again = "guard failed: the function failed: it always fails\n0.002 s e: dropped\n0.002 s error.execution: dropped";
-    check(text, "1 e; 2 e; 3", &format!("{}0.002 s e: dropped", expected("error.guard")));
+    check(text, "1 e; 2 e; 3", &format!("{}0.002 s e: dropped", told("error.guard")));
     let every_time = with(|it| it.failures = FailureEvents::EveryTime);
-    check_with(every_time, text, "1 e; 2 e; 3", &format!("{}{again}", expected("error.execution")));
+    check_with(every_time, text, "1 e; 2 e; 3", &format!("{}{again}", told("error.execution")));
 }
 
 #[test]
-fn r15_steps_of_another_region_do_not_delay_an_exit() {
+fn r15_what_can_step_in_another_region_keeps_no_composite_from_being_left() {
     let one = "
           one
             START

@@ -1,7 +1,7 @@
 //! R1 to R3: nodes, scopes, order.
 
 use yase::statechart::{Node, NodeKind, Statechart, Transition};
-use yase::{Machine, NodeId, Timestamp};
+use yase::{Machine, Timestamp, NodeId};
 
 use crate::{check, refusal};
 use yase_reference::world::{World, vocabulary};
@@ -48,7 +48,7 @@ fn r01_a_configuration_is_closed_and_has_one_child_for_each_or_and_all_for_each_
 }
 
 #[test]
-fn r01_a_blocked_start_is_stable_and_reported_once() {
+fn r01_a_start_without_an_open_way_is_a_resting_place_and_told_once() {
     check(
         "
         START
@@ -87,7 +87,7 @@ fn r01_composites_without_exactly_one_start_are_refused() {
 }
 
 #[test]
-fn r01_misplaced_nodes_are_rejected() {
+fn r01_what_stands_where_it_cannot_is_refused() {
     assert_eq!(
         refusal("START\nEND\nA\nc/START -> A\nc/END -> A\nA -> c/START\nc/START -> A : e"),
         "error[M02]: no transition can leave `c/END`\n\
@@ -243,7 +243,7 @@ fn r02_a_local_transition_uses_its_source() {
 }
 
 #[test]
-fn r02_internal_transitions_stay_inside() {
+fn r02_what_is_internal_stays_inside() {
     assert_eq!(
         refusal("START\nA\nB\nc/START -> A\nA -> B {internal}"),
         "error[M03]: `c/B` does not lie in `c/A` (an internal transition stays inside its source)"
@@ -256,7 +256,7 @@ fn r02_internal_transitions_stay_inside() {
 }
 
 #[test]
-fn r03_order_by_priority_then_guard_then_model() {
+fn r03_priority_comes_first_then_a_guard_then_the_order_in_the_model() {
     let order = |ways: &str| {
         let chart = chart(&format!("START\nA\nB\nC\nD\nc/START -> A\n{ways}"));
         let log = script::play(&chart, "1 A=1; 2 e; 3");

@@ -6,7 +6,7 @@ use crate::data::verbose;
 use crate::{check_with, refusal, with};
 
 #[test]
-fn r13_a_transition_that_can_only_terminate_exits_nothing() {
+fn r13_what_can_only_stop_the_chart_leaves_nothing() {
     check_with(
         Semantics::yase(),
         "
@@ -167,7 +167,7 @@ fn r13_a_fork_that_leads_to_terminate_is_refused() {
 }
 
 #[test]
-fn r13_in_phases_a_terminating_start_prevents_later_entries() {
+fn r13_in_phases_a_start_that_stops_the_chart_keeps_what_comes_after_from_being_entered() {
     check_with(
         with(|it| {
             it.start = InitialState::SameStep;

@@ -4,7 +4,7 @@ use crate::{check, refusal};
 
 #[test]
 fn r21_a_timer_is_over_from_its_deadline_until_it_is_set_again() {
-    // a loop as in the thesis: the bare name is true before the timer is started
+    // a loop as in the thesis: the bare name is true while the timer was never set
     check(
         "
         START
@@ -144,7 +144,7 @@ fn r21_expiry_raises_an_event_that_matches_only_triggers_that_name_it() {
 
 #[test]
 fn r21_setting_a_timer_again_withdraws_its_queued_expiry() {
-    // the expiry is held while S runs; the first return restarts the timer
+    // the expiry is held while S runs; what returns first sets the timer again
     let chart = |action: &str| {
         format!(
             "
@@ -262,7 +262,7 @@ fn r21_the_clock_never_runs_backwards() {
 }
 
 #[test]
-fn r22_the_chooser_orders_timers_that_expire_together() {
+fn r22_of_timers_that_expire_at_one_moment_the_chooser_says_which_is_first() {
     use yase::{Chooser, Machine};
     use yase_reference::{World, script};
     let chart = yase_reference::chart(

@@ -1,8 +1,8 @@
-//! R23: one record per micro-step.
+//! R23: a record for every micro-step.
 
 use yase::statechart::TransitionId;
 use yase::{
-    ActionLocation, Activation, CompiledChart, Host, Machine, MicroStepCause, NodeId, Timestamp, TraceRecord,
+    ActionLocation, Activation, CompiledChart, Host, Machine, MicroStepCause, Timestamp, NodeId, TraceRecord,
 };
 
 use crate::compare;
@@ -20,7 +20,7 @@ const CHART: &str = "
     c1 -> A
 ";
 
-/// Stores the content of records.
+/// Keeps what records hold.
 #[derive(Default)]
 struct Listener {
     occasions: Vec<MicroStepCause>,
@@ -111,9 +111,9 @@ fn r23_a_record_shows_the_guards_that_were_read() {
 }
 
 #[test]
-fn r23_no_record_is_made_for_a_host_without_traces() {
-    struct MutedHost;
-    impl Host for MutedHost {
+fn r23_nothing_is_written_down_for_a_host_that_does_not_want_it() {
+    struct Deaf;
+    impl Host for Deaf {
         fn start(&mut self, _: Activation) {}
         fn cancel(&mut self, _: Activation) {}
         fn stop(&mut self, _: Activation) {}
@@ -123,7 +123,7 @@ fn r23_no_record_is_made_for_a_host_without_traces() {
     }
     let chart = chart(&CHART.replace("on the way", "through"));
     let mut machine = Machine::new(script::compile(&chart));
-    machine.start(Timestamp::ZERO, &mut MutedHost);
+    machine.start(Timestamp::ZERO, &mut Deaf);
     machine.dispatch_name("e");
-    assert_eq!(machine.run_to_completion(Timestamp::ZERO, &mut MutedHost).unwrap().micro_steps, 2);
+    assert_eq!(machine.run_to_completion(Timestamp::ZERO, &mut Deaf).unwrap().micro_steps, 2);
 }

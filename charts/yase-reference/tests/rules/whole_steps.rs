@@ -1,4 +1,4 @@
-//! A run-to-completion step in one call equals its micro-steps, with and without a trace.
+//! A run-to-completion step in one call does what it does one micro-step at a time, traced or not.
 
 use std::time::Duration;
 
@@ -9,8 +9,7 @@ use yase_reference::chart;
 use yase_reference::script::{self, ByMicroSteps, Interpreter, Script};
 use yase_reference::world::World;
 
-/// Executes a script in complete steps and in micro-steps, and returns the log with the reads of
-/// guards.
+/// Plays a script in whole steps and in micro-steps, and returns the log, guards included.
 fn with_reads(text: &str, script: &str) -> Vec<String> {
     let (chart, script) = (chart(text), Script::parse(script));
     let played = |machine: &mut dyn Play| {
@@ -47,9 +46,9 @@ fn r23_guards_that_are_read_stand_in_the_record() {
         B -> A : e
     ";
     let log = with_reads(text, "1 A=0; 2 e; 3 A=1; 4 e; 5 e; 6");
-    let lines: Vec<&str> = log[2..].iter().map(|line| line.trim()).collect();
+    let told: Vec<&str> = log[2..].iter().map(|line| line.trim()).collect();
     assert_eq!(
-        lines,
+        told,
         [
             "0.002 s e: dropped; read A -> B = false, A -> A = false",
             "0.004 s e: A -> B; exit A; enter B; read A -> B = true",
@@ -59,7 +58,7 @@ fn r23_guards_that_are_read_stand_in_the_record() {
 }
 
 #[test]
-fn r03_a_failed_guard_is_evaluated_and_reported_again_after_its_input_changed() {
+fn r03_a_guard_that_failed_is_read_again_and_told_again_when_what_it_reads_has_changed() {
     check(
         "
         START
@@ -155,8 +154,8 @@ fn r13_beside_others_nothing_fires_after_the_end_of_the_chart() {
 }
 
 #[test]
-fn r10_an_internal_transition_does_not_fire_after_its_source_was_exited() {
-    // the transition of `P` is first in document order
+fn r10_what_leaves_nothing_does_not_fire_when_another_has_left_its_source_before() {
+    // the transition of `P` comes first, in the order of the document
     check(
         "
         START
@@ -189,7 +188,7 @@ fn r10_an_internal_transition_does_not_fire_after_its_source_was_exited() {
 }
 
 #[test]
-fn r14_completion_transitions_follow_an_event() {
+fn r14_what_an_event_led_to_goes_on_without_an_event() {
     let text = "
         START
         A
@@ -237,7 +236,7 @@ fn r14_completion_transitions_follow_an_event() {
 }
 
 #[test]
-fn r10_the_reaction_of_one_state_is_independent_of_others() {
+fn r10_what_one_state_does_at_an_event_says_nothing_of_others() {
     let text = "
         A
         START
@@ -272,7 +271,8 @@ fn r10_the_reaction_of_one_state_is_independent_of_others() {
 }
 
 #[test]
-fn r03_a_failed_guard_is_reported_again_only_after_a_write_to_its_topics() {
+fn r03_a_guard_that_failed_is_told_again_when_its_own_blackboard_was_written_and_not_when_another_topic_was()
+{
     check(
         "
         START
@@ -300,7 +300,7 @@ fn r03_a_failed_guard_is_reported_again_only_after_a_write_to_its_topics() {
     );
 }
 
-/// The micro-steps of one call, and the reached configuration.
+/// What one call takes: how many micro-steps, and where it leads.
 fn handled(prepare: impl Fn(&mut Machine), at: u64) -> (u32, String) {
     let text = "
         START

@@ -1,7 +1,7 @@
-//! R18: the causes of a step.
+//! R18: what wakes a chart.
 
 use yase::expression::EventId;
-use yase::{Host, Machine, Outcome, ScopeId, Timestamp, TopicId};
+use yase::{Host, Machine, Timestamp, Outcome, ScopeId, TopicId};
 
 use crate::check;
 use yase_reference::world::World;
@@ -35,7 +35,7 @@ const WAITING: &str = "
 #[test]
 fn r18_the_machine_sleeps_until_something_happens() {
     let (mut machine, mut world) = machine(WAITING);
-    let activation = world.running[0].activation;
+    let activation = world.jobs[0].activation;
     assert!(!machine.needs_step(Timestamp::from_millis(1)), "an activity runs");
 
     machine.activity_returned(activation, Outcome::Done);
@@ -91,12 +91,12 @@ fn r18_a_message_that_arrives_while_its_region_is_locked_is_not_lost() {
 }
 
 #[test]
-fn r18_an_arrival_during_a_step_makes_another_step_due() {
+fn r18_what_arrives_during_a_step_makes_another_one_due() {
     let (mut machine, mut world) = machine(WAITING);
-    let activation = world.running[0].activation;
+    let activation = world.jobs[0].activation;
     machine.activity_returned(activation, Outcome::Done);
     machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    // nothing is due, but the message arrives before the caller sleeps
+    // nothing to do: but before the caller falls asleep the message comes
     machine.message_arrived(A, 1);
     world.send(A, 1, [ScopeId::ROOT].into_iter());
     assert!(machine.needs_step(Timestamp::ZERO));
@@ -119,7 +119,7 @@ fn r18_events_by_number_or_by_name_are_the_same() {
 }
 
 #[test]
-fn r14_activities_before_a_restart_are_discarded() {
+fn r14_what_ran_before_a_start_is_forgotten() {
     let chart = chart(
         "
         START
@@ -134,7 +134,7 @@ fn r14_activities_before_a_restart_are_discarded() {
     let mut machine = Machine::new(script::compile(&chart));
     machine.start(Timestamp::ZERO, &mut world);
     machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    let first = world.running[0].activation;
+    let first = world.jobs[0].activation;
     machine.activity_returned(first, Outcome::Done);
     machine.dispatch_name("e");
     machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
@@ -143,8 +143,8 @@ fn r14_activities_before_a_restart_are_discarded() {
     machine.start(Timestamp::from_millis(1), &mut world);
     machine.run_to_completion(Timestamp::from_millis(1), &mut world).unwrap();
     assert_eq!(machine.next_deadline(), None);
-    assert_eq!(world.running.len(), 2, "the activity is started again");
+    assert_eq!(world.jobs.len(), 2, "the activity is started again");
     machine.start(Timestamp::from_millis(2), &mut world);
     machine.run_to_completion(Timestamp::from_millis(2), &mut world).unwrap();
-    assert_eq!(world.running.len(), 3, "also if it has not returned");
+    assert_eq!(world.jobs.len(), 3, "also if it has not returned");
 }

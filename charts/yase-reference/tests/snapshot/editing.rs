@@ -1,9 +1,9 @@
-//! Snapshots are inspected, edited and restored.
+//! Snapshots are inspected, changed and restored.
 
 use yase::snapshot::{ActivityPhase, EventName, Snapshot};
 use yase::{Chooser, Timestamp};
 
-use crate::fixture::MachineFixture;
+use crate::fixture::Stage;
 
 const LAMP: &str = "
     START
@@ -20,7 +20,7 @@ const LAMP: &str = "
 
 #[test]
 fn a_snapshot_is_text_that_a_person_can_read() {
-    let mut stage = MachineFixture::new(LAMP, &["e", "g"]);
+    let mut stage = Stage::new(LAMP, &["e", "g"]);
     stage.machine.dispatch_name("x");
     let found = serde_json::to_value(stage.machine.snapshot()).unwrap();
     let occurrence = |name: &str, number: u64| {
@@ -79,8 +79,8 @@ fn a_snapshot_is_text_that_a_person_can_read() {
 }
 
 #[test]
-fn contents_can_be_queried() {
-    let mut stage = MachineFixture::new(LAMP, &["e"]);
+fn what_is_in_it_can_be_asked_for() {
+    let mut stage = Stage::new(LAMP, &["e"]);
     let snapshot = stage.machine.snapshot();
     assert!(snapshot.is_active("c/on") && !snapshot.is_active("c/off"));
     let timer = snapshot.timer("c", "v").unwrap();
@@ -94,7 +94,7 @@ fn contents_can_be_queried() {
 
 #[test]
 fn a_timer_is_set_to_another_time() {
-    let mut stage = MachineFixture::new(LAMP, &["e"]);
+    let mut stage = Stage::new(LAMP, &["e"]);
     stage.edit(|snapshot| assert!(snapshot.set_timer("c", "v", Timestamp::from_millis(70))));
     assert_eq!(stage.machine.next_deadline(), Some(Timestamp::from_millis(70)));
     stage.step(69);
@@ -105,7 +105,7 @@ fn a_timer_is_set_to_another_time() {
 
 #[test]
 fn a_timer_that_is_set_again_or_unset_forgets_its_expiry() {
-    // `held` prevents the expiry from being processed
+    // `held` keeps the expiry from being taken
     let chart = "
         START
         a | run=work | for=90ms
@@ -113,11 +113,11 @@ fn a_timer_that_is_set_again_or_unset_forgets_its_expiry() {
         START -> a : / StartTimeout(v, 50ms)
         a -> b : v
     ";
-    let held = |stage: &mut MachineFixture| {
+    let held = |stage: &mut Stage| {
         stage.step(50);
         assert_eq!(stage.machine.snapshot().held.len(), 1);
     };
-    let mut stage = MachineFixture::new(chart, &[]);
+    let mut stage = Stage::new(chart, &[]);
     held(&mut stage);
     stage.edit(|snapshot| assert!(snapshot.set_timer("c", "v", Timestamp::from_millis(80))));
     stage.returns();
@@ -125,7 +125,7 @@ fn a_timer_that_is_set_again_or_unset_forgets_its_expiry() {
     stage.step(80);
     assert_eq!(stage.active(), "b");
 
-    let mut stage = MachineFixture::new(chart, &[]);
+    let mut stage = Stage::new(chart, &[]);
     held(&mut stage);
     stage.edit(|snapshot| assert!(snapshot.unset_timer("c", "v") && !snapshot.unset_timer("c", "v")));
     stage.returns();
@@ -135,12 +135,12 @@ fn a_timer_that_is_set_again_or_unset_forgets_its_expiry() {
 
 #[test]
 fn a_deferred_event_is_dropped_or_put_in() {
-    let mut stage = MachineFixture::new(LAMP, &["e", "g"]);
+    let mut stage = Stage::new(LAMP, &["e", "g"]);
     stage.edit(|snapshot| snapshot.deferred.clear());
     stage.step(50);
     assert_eq!(stage.active(), "off");
 
-    let mut stage = MachineFixture::new(LAMP, &["e"]);
+    let mut stage = Stage::new(LAMP, &["e"]);
     stage.edit(|snapshot| {
         snapshot.occurrences += 1;
         let text = serde_json::json!(
@@ -156,7 +156,7 @@ fn a_deferred_event_is_dropped_or_put_in() {
 
 #[test]
 fn another_state_is_made_active() {
-    let mut stage = MachineFixture::new(LAMP, &[]);
+    let mut stage = Stage::new(LAMP, &[]);
     stage.edit(|snapshot| snapshot.configuration[1] = "c/on".into());
     stage.event("f");
     assert_eq!(stage.active(), "dim");
@@ -164,9 +164,9 @@ fn another_state_is_made_active() {
 
 #[test]
 fn an_activity_is_given_up_and_queued_again() {
-    let mut stage = MachineFixture::new(LAMP, &["g"]);
-    assert_eq!(stage.world.running.len(), 1);
-    stage.world.running.clear();
+    let mut stage = Stage::new(LAMP, &["g"]);
+    assert_eq!(stage.world.jobs.len(), 1);
+    stage.world.jobs.clear();
     stage.edit(|snapshot| {
         let activity = &mut snapshot.activities[0];
         assert_eq!(activity.phase, ActivityPhase::Running);
@@ -175,12 +175,12 @@ fn an_activity_is_given_up_and_queued_again() {
     });
     assert!(stage.machine.needs_step(Timestamp::ZERO));
     stage.step(0);
-    let [job] = &stage.world.running[..] else { panic!("it was started once more") };
+    let [job] = &stage.world.jobs[..] else { panic!("it was started once more") };
     assert_eq!((job.name.as_str(), job.activation.number), ("fade", 1));
 }
 
 #[test]
-fn siblings_of_one_name_are_distinguished() {
+fn siblings_of_one_name_are_told_apart() {
     let chart = "
         START
         a
@@ -207,7 +207,7 @@ fn siblings_of_one_name_are_distinguished() {
     assert!(restored.is_active(twins[1]));
 }
 
-/// Two timers that expire at the same time; the chooser decides which is first.
+/// Two timers that expire at one moment: the chooser says which is first.
 const RACE: &str = "
     START
     a
@@ -220,11 +220,11 @@ const RACE: &str = "
 ";
 
 #[test]
-fn a_restored_chooser_continues_its_sequence() {
+fn a_chooser_goes_on_choosing_where_it_was() {
     for chooser in [Chooser::seeded(7), Chooser::scripted(vec![1, 0, 1, 1, 0, 0, 1, 0]), Chooser::declared()]
     {
         let play = |cut: bool| {
-            let mut stage = MachineFixture::new(RACE, &[]);
+            let mut stage = Stage::new(RACE, &[]);
             stage.machine.set_chooser(chooser.clone());
             for time in 1..=30 {
                 stage.step(10 * time);
@@ -241,7 +241,7 @@ fn a_restored_chooser_continues_its_sequence() {
 
 #[test]
 fn tokens_and_unknown_names_are_kept() {
-    let mut stage = MachineFixture::new(LAMP, &[]);
+    let mut stage = Stage::new(LAMP, &[]);
     stage.machine.dispatch_with("x", 7);
     stage.machine.dispatch_with("e", 8);
     let kept: Vec<_> =

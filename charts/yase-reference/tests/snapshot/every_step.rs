@@ -1,26 +1,26 @@
-//! Random runs under all semantics, interrupted at every micro-step: captured as text and continued
-//! by a machine restored from it.
+//! Random runs, under all semantics, that are interrupted at every micro-step: captured as text,
+//! and continued by a machine restored from the text.
 
 use std::sync::Arc;
 
 use yase::snapshot::Snapshot;
-use yase::{Activation, Chooser, CompiledChart, Machine, MicroStep, Outcome, Timestamp, TopicId};
+use yase::{Activation, Chooser, CompiledChart, Machine, MicroStep, Timestamp, Outcome, TopicId};
 
-use yase_reference::chance::ChoicePolicy;
+use yase_reference::chance::Freedom;
 use yase_reference::random::Case;
 use yase_reference::script::{self, Interpreter};
 use yase_reference::world::{World, vocabulary};
 
 const RUNS: u64 = 1000;
 
-/// The number of runs in which each interruption is also continued without further ones.
+/// In this many runs each interruption is also continued without further ones.
 const WHOLE_RUNS: u64 = 10;
 
 #[test]
 fn a_machine_that_is_restored_at_every_micro_step_writes_the_same_lines() {
     let counts = std::thread::scope(|threads| {
-        let second = threads.spawn(|| interrupt_everywhere(RUNS / 2..RUNS));
-        let first = interrupt_everywhere(0..RUNS / 2);
+        let second = threads.spawn(|| cut_everywhere(RUNS / 2..RUNS));
+        let first = cut_everywhere(0..RUNS / 2);
         let second = second.join().expect("it does not panic");
         [first.0 + second.0, first.1 + second.1]
     });
@@ -30,13 +30,13 @@ fn a_machine_that_is_restored_at_every_micro_step_writes_the_same_lines() {
 }
 
 /// How many snapshots were taken, and how many of them in the middle of a step.
-fn interrupt_everywhere(numbers: std::ops::Range<u64>) -> (u64, u64) {
+fn cut_everywhere(numbers: std::ops::Range<u64>) -> (u64, u64) {
     let (mut all, mut mid_step) = (0, 0);
     for number in numbers {
         let case = Case::numbered(number);
         let chart = compile(&case);
         let expected = run(&mut machine(&chart, &case), &case);
-        let mut cut = RestoredMachine::new(machine(&chart, &case), None);
+        let mut cut = Cut::new(machine(&chart, &case), None);
         let found = run(&mut cut, &case);
         assert!(expected == found, "case {number}: {}", difference(&expected, &found));
         all += cut.snapshots;
@@ -46,15 +46,15 @@ fn interrupt_everywhere(numbers: std::ops::Range<u64>) -> (u64, u64) {
 }
 
 #[test]
-fn a_machine_restored_once_runs_to_the_end() {
+fn a_machine_that_is_restored_once_goes_on_to_the_end() {
     let mut restored = 0;
     for number in RUNS..RUNS + WHOLE_RUNS {
         let case = Case::numbered(number);
         let chart = compile(&case);
-        let mut whole = RestoredMachine::new(machine(&chart, &case), Some(u64::MAX));
+        let mut whole = Cut::new(machine(&chart, &case), Some(u64::MAX));
         let expected = run(&mut whole, &case);
         for at in 0..whole.calls {
-            let mut cut = RestoredMachine::new(machine(&chart, &case), Some(at));
+            let mut cut = Cut::new(machine(&chart, &case), Some(at));
             let found = run(&mut cut, &case);
             assert!(expected == found, "case {number} at {at}: {}", difference(&expected, &found));
             restored += cut.snapshots;
@@ -74,9 +74,9 @@ fn compile(case: &Case) -> Arc<CompiledChart> {
 fn machine(chart: &Arc<CompiledChart>, case: &Case) -> Machine {
     let mut machine = Machine::new(chart.clone());
     machine.set_chooser(match &case.freedom {
-        ChoicePolicy::Declared => Chooser::declared(),
-        ChoicePolicy::Seeded(seed) => Chooser::seeded(*seed),
-        ChoicePolicy::Scripted(choices) => Chooser::scripted(choices.clone()),
+        Freedom::Declared => Chooser::declared(),
+        Freedom::Seeded(seed) => Chooser::seeded(*seed),
+        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
     });
     machine
 }
@@ -94,8 +94,8 @@ fn difference(expected: &[String], found: &[String]) -> String {
     format!("\n{before}\nexpected {}\nfound    {}", one(expected), one(found))
 }
 
-/// A machine that is replaced by its restored copy before all or selected calls.
-struct RestoredMachine {
+/// A machine that is replaced by its restored copy before every call, or before one of these calls.
+struct Cut {
     machine: Machine,
     only: Option<u64>,
     calls: u64,
@@ -103,9 +103,9 @@ struct RestoredMachine {
     mid_step: u64,
 }
 
-impl RestoredMachine {
-    fn new(machine: Machine, only: Option<u64>) -> RestoredMachine {
-        RestoredMachine { machine, only, calls: 0, snapshots: 0, mid_step: 0 }
+impl Cut {
+    fn new(machine: Machine, only: Option<u64>) -> Cut {
+        Cut { machine, only, calls: 0, snapshots: 0, mid_step: 0 }
     }
 
     fn cut(&mut self) -> &mut Machine {
@@ -131,7 +131,7 @@ impl RestoredMachine {
     }
 }
 
-impl Interpreter for RestoredMachine {
+impl Interpreter for Cut {
     fn start(&mut self, now: Timestamp, world: &mut World) {
         self.cut().start(now, world);
     }

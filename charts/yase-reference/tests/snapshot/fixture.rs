@@ -1,27 +1,27 @@
-//! A machine with the host of the reference tests.
+//! A machine in the reference's world.
 
 use yase::snapshot::{RestoreError, Snapshot};
-use yase::{Machine, Outcome, Semantics, Timestamp};
+use yase::{Machine, Timestamp, Outcome, Semantics};
 
 use yase_reference::world::World;
 
-pub(crate) struct MachineFixture {
+pub(crate) struct Stage {
     pub(crate) machine: Machine,
     pub(crate) world: World,
 }
 
-impl MachineFixture {
-    /// Starts a chart and raises events at time 0.
-    pub(crate) fn new(chart: &str, events: &[&str]) -> MachineFixture {
-        MachineFixture::with(Semantics::yase(), chart, events)
+impl Stage {
+    /// Starts a chart and lets events happen to it at time 0.
+    pub(crate) fn new(chart: &str, events: &[&str]) -> Stage {
+        Stage::with(Semantics::yase(), chart, events)
     }
 
-    pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> MachineFixture {
+    pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> Stage {
         let chart = yase_reference::chart(chart);
         let mut world = World::new(&chart);
         let mut machine = Machine::new(yase_reference::script::compile_with(&chart, semantics));
         machine.start(Timestamp::ZERO, &mut world);
-        let mut stage = MachineFixture { machine, world };
+        let mut stage = Stage { machine, world };
         stage.step(0);
         for event in events {
             stage.event(event);
@@ -39,9 +39,9 @@ impl MachineFixture {
         self.step(0);
     }
 
-    /// The only running activity returns.
+    /// The only activity that runs returns.
     pub(crate) fn returns(&mut self) {
-        let job = self.world.running.remove(0);
+        let job = self.world.jobs.remove(0);
         assert!(self.machine.activity_returned(job.activation, Outcome::Done));
         self.step(0);
     }
@@ -50,7 +50,7 @@ impl MachineFixture {
         Machine::restore(self.machine.chart().clone(), snapshot)
     }
 
-    /// Continues with an edited snapshot.
+    /// Goes on with a snapshot of it that was changed.
     pub(crate) fn edit(&mut self, change: impl FnOnce(&mut Snapshot)) {
         let mut snapshot = self.machine.snapshot();
         change(&mut snapshot);

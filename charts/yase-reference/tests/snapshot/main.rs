@@ -1,4 +1,4 @@
-//! Machines are inspected, captured and restored, by micro-step and by name.
+//! Machines are inspected, captured and restored: by micro-step, by name, and as text.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // the functions around the tests are tests too
 

@@ -1,8 +1,8 @@
-//! A run-to-completion step executed as micro-steps.
+//! A run-to-completion step, taken one micro-step at a time.
 
 use std::num::NonZeroU32;
 
-use yase::{Machine, MachineErrorKind, MicroStep, Semantics, Status, StepSummary, Timestamp};
+use yase::{Machine, MachineErrorKind, MicroStep, Timestamp, Semantics, Status, StepSummary};
 
 use yase_reference::world::World;
 
@@ -34,7 +34,7 @@ fn micro_steps_one_by_one_are_the_step() {
     machine.dispatch_name("e");
     let mut made = 0;
     let found = loop {
-        // later calls of the same step use the time of the first
+        // the time stands still from the first one on
         match machine.micro_step(Timestamp::from_millis(5 + made), &mut world).unwrap() {
             MicroStep::Progressed => made += 1,
             MicroStep::Stable(summary) => break summary,

@@ -1,9 +1,9 @@
-//! Inconsistent snapshots are rejected with all their issues.
+//! Snapshots that do not fit are refused, with everything that is wrong with them.
 
 use yase::snapshot::{EventName, RestoreIssueKind, Snapshot, TimerName};
-use yase::{Status, Timestamp};
+use yase::{Timestamp, Status};
 
-use crate::fixture::MachineFixture;
+use crate::fixture::Stage;
 
 const CHART: &str = "
     START
@@ -27,10 +27,10 @@ const CHART: &str = "
     off -> both : g
 ";
 
-/// The issues of the running chart's snapshot after an edit, one per line.
+/// What is wrong with the snapshot of the running chart once it was changed, one a line.
 #[track_caller]
 fn found(change: impl FnOnce(&mut Snapshot)) -> String {
-    let stage = MachineFixture::new(CHART, &["f", "g"]);
+    let stage = Stage::new(CHART, &["f", "g"]);
     let mut snapshot = stage.machine.snapshot();
     assert!(stage.restore(&snapshot).is_ok());
     change(&mut snapshot);
@@ -53,7 +53,7 @@ fn another_semantics_but_for_the_bound() {
     let other = yase::TimerScope::State;
     let wrong = found(|snapshot| snapshot.semantics.timers = other);
     assert_eq!(wrong, "semantics: the chart is read in another way");
-    let stage = MachineFixture::new(CHART, &[]);
+    let stage = Stage::new(CHART, &[]);
     let mut snapshot = stage.machine.snapshot();
     snapshot.semantics.limit = std::num::NonZeroU32::MIN;
     assert_eq!(stage.restore(&snapshot).unwrap().semantics(), stage.machine.semantics());
@@ -257,7 +257,7 @@ fn regions_to_be_entered_that_are_none_or_active() {
 
 #[test]
 fn kinds_and_fields_say_what_is_wrong() {
-    let stage = MachineFixture::new(CHART, &[]);
+    let stage = Stage::new(CHART, &[]);
     let mut snapshot = stage.machine.snapshot();
     snapshot.version = 2;
     snapshot.now = Timestamp::from_millis(5);
@@ -273,7 +273,7 @@ fn kinds_and_fields_say_what_is_wrong() {
 
 #[test]
 fn text_with_a_field_that_is_not_known_or_without_one_is_no_snapshot() {
-    let text = serde_json::to_string(&MachineFixture::new(CHART, &[]).machine.snapshot()).unwrap();
+    let text = serde_json::to_string(&Stage::new(CHART, &[]).machine.snapshot()).unwrap();
     assert!(serde_json::from_str::<Snapshot>(&text).is_ok());
     let more = text.replacen('{', "{\"more\":1,", 1);
     assert!(

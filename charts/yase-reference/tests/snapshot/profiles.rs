@@ -1,9 +1,9 @@
-//! Features of certain charts and semantics: HISTORY, timers of states, composites without an
-//! active child, waiting JOINs.
+//! What only some charts and some semantics have: HISTORY, timers of states, composites without an
+//! active child, JOINs that wait.
 
-use yase::{MicroStep, Semantics, TimerScope, Timestamp};
+use yase::{MicroStep, Timestamp, Semantics, TimerScope};
 
-use crate::fixture::MachineFixture;
+use crate::fixture::Stage;
 
 const PAST: &str = "
     START
@@ -28,8 +28,8 @@ const PAST: &str = "
 ";
 
 #[test]
-fn histories_can_be_inspected_and_set() {
-    let mut stage = MachineFixture::new(PAST, &["e", "n"]);
+fn what_histories_remember_is_told_and_can_be_set() {
+    let mut stage = Stage::new(PAST, &["e", "n"]);
     assert_eq!(stage.machine.snapshot().history("c/w/past"), None);
     stage.event("f");
     let snapshot = stage.machine.snapshot();
@@ -51,7 +51,7 @@ fn histories_can_be_inspected_and_set() {
 
 #[test]
 fn a_history_is_set_before_there_is_one_or_forgotten() {
-    let mut stage = MachineFixture::new(PAST, &["f"]);
+    let mut stage = Stage::new(PAST, &["f"]);
     stage.edit(|snapshot| {
         snapshot.history.clear();
         snapshot.set_history("c/w/past", &["c/w/b"]);
@@ -63,7 +63,7 @@ fn a_history_is_set_before_there_is_one_or_forgotten() {
 
 #[test]
 fn a_history_remembers_what_was_active_together_inside_its_composite() {
-    let stage = MachineFixture::new(PAST, &["f"]);
+    let stage = Stage::new(PAST, &["f"]);
     let wrong = |history: &str, nodes: &[&str]| {
         let mut snapshot = stage.machine.snapshot();
         snapshot.set_history(history, nodes);
@@ -99,7 +99,7 @@ fn timers_of_states_keep_their_state() {
         a -> b : e
         b -> d : v
     ";
-    let mut stage = MachineFixture::with(semantics, chart, &[]);
+    let mut stage = Stage::with(semantics, chart, &[]);
     assert_eq!(stage.machine.snapshot().timers[0].owner.as_deref(), Some("c/a"));
     stage.edit(|_| {});
     let kept = stage.machine.clone();
@@ -136,8 +136,8 @@ const JOINED: &str = "
 ";
 
 #[test]
-fn an_arrival_at_a_join_is_kept() {
-    let mut stage = MachineFixture::with(Semantics::uml(), JOINED, &["e"]);
+fn what_has_arrived_at_a_join_is_kept() {
+    let mut stage = Stage::with(Semantics::uml(), JOINED, &["e"]);
     let snapshot = stage.machine.snapshot();
     assert_eq!(snapshot.vacated, ["c/both/one"]);
     assert_eq!(snapshot.joined, [["c/both/one/B -> c/j"]]);
@@ -149,8 +149,8 @@ fn an_arrival_at_a_join_is_kept() {
 }
 
 #[test]
-fn a_source_that_has_not_arrived_has_an_active_child() {
-    let stage = MachineFixture::with(Semantics::uml(), JOINED, &["e"]);
+fn what_has_not_arrived_has_a_child() {
+    let stage = Stage::with(Semantics::uml(), JOINED, &["e"]);
     let wrong = |change: &dyn Fn(&mut yase::snapshot::Snapshot)| {
         let mut snapshot = stage.machine.snapshot();
         change(&mut snapshot);
@@ -178,7 +178,7 @@ fn a_source_that_has_not_arrived_has_an_active_child() {
 }
 
 #[test]
-fn a_step_that_ends_the_root_exits_all_states() {
+fn a_step_in_which_the_root_has_ended_goes_on_to_leave_everything() {
     let chart = "
         START
         a | exit=raise(bye)
@@ -186,8 +186,8 @@ fn a_step_that_ends_the_root_exits_all_states() {
         START -> a
         a -> END : e
     ";
-    let mut whole = MachineFixture::with(Semantics::scxml(), chart, &["e"]);
-    let mut stage = MachineFixture::with(Semantics::scxml(), chart, &[]);
+    let mut whole = Stage::with(Semantics::scxml(), chart, &["e"]);
+    let mut stage = Stage::with(Semantics::scxml(), chart, &[]);
     stage.machine.dispatch_name("e");
     while stage.machine.micro_step(Timestamp::ZERO, &mut stage.world) == Ok(MicroStep::Progressed) {
         stage.edit(|_| {});
@@ -199,7 +199,7 @@ fn a_step_that_ends_the_root_exits_all_states() {
 }
 
 #[test]
-fn a_failed_start_is_reported_after_a_restore() {
+fn a_machine_that_could_not_be_started_says_so_after_all() {
     let chart = "
         START
         ! c

@@ -3,7 +3,7 @@
 
 use yase::{Semantics, TimerScope};
 
-use crate::world::{MachineFixture, findings};
+use crate::world::{Stage, findings};
 
 const PAST: &str = "
     START
@@ -23,8 +23,8 @@ const PAST: &str = "
 ";
 
 #[test]
-fn histories_are_kept() {
-    let mut stage = MachineFixture::new(PAST, &["e", "f"]);
+fn what_is_remembered_is_kept() {
+    let mut stage = Stage::new(PAST, &["e", "f"]);
     let plan = stage.plan(&PAST.replace(": f", ": x"));
     let report = stage.swap(&plan).unwrap();
     assert!(findings(&report).ends_with("history `c/w/past`: kept\nhistory `c/w/depth`: kept"));
@@ -51,7 +51,7 @@ fn a_composite_that_was_put_around_is_remembered_with_what_is_in_it_if_that_is_d
         off -> w/past : g
         off -> w/depth : d
     ";
-    let mut stage = MachineFixture::new(PAST, &["e", "f"]);
+    let mut stage = Stage::new(PAST, &["e", "f"]);
     let plan = stage.plan(new);
     assert_eq!(
         stage.refusal(&plan),
@@ -67,9 +67,9 @@ fn a_composite_that_was_put_around_is_remembered_with_what_is_in_it_if_that_is_d
 }
 
 #[test]
-fn removed_states_are_not_in_histories() {
+fn what_is_no_more_is_not_remembered() {
     let new = PAST.replace("      b\n", "").replace("      w/a -> w/b : e\n", "");
-    let mut stage = MachineFixture::new(PAST, &["e", "f"]);
+    let mut stage = Stage::new(PAST, &["e", "f"]);
     let plan = stage.plan(&new);
     assert_eq!(stage.refusal(&plan).lines().count(), 2);
     stage.swap(&plan.accepting_losses()).unwrap();
@@ -84,14 +84,14 @@ fn a_timer_is_lost_with_the_state_that_it_belongs_to() {
     semantics.timers = TimerScope::State;
     let old = "START\na | entry=StartTimeout(v, 50ms)\nb\nSTART -> a\na -> b : v";
     let new = "START\nb | entry=StartTimeout(v, 50ms)\nd\nSTART -> b\nb -> d : v";
-    let mut stage = MachineFixture::with(semantics, old, &[]);
+    let mut stage = Stage::with(semantics, old, &[]);
     let plan = stage.plan(new);
     assert!(
         stage
             .refusal(&plan)
             .contains("the timer `c: v` would be lost: the state that it belongs to is no more")
     );
-    let mut stage = MachineFixture::with(semantics, old, &[]);
+    let mut stage = Stage::with(semantics, old, &[]);
     let plan = stage.plan(new).with_replacement("a", "b").unwrap();
     stage.swap(&plan).unwrap();
     stage.step(50);
@@ -99,7 +99,7 @@ fn a_timer_is_lost_with_the_state_that_it_belongs_to() {
 }
 
 #[test]
-fn an_arrival_at_a_join_continues_to_wait() {
+fn what_has_arrived_at_a_join_goes_on_waiting() {
     let old = "
         START
         & both
@@ -120,7 +120,7 @@ fn an_arrival_at_a_join_continues_to_wait() {
         both/two/D -> j
         j -> off
     ";
-    let mut stage = MachineFixture::with(Semantics::uml(), old, &[]);
+    let mut stage = Stage::with(Semantics::uml(), old, &[]);
     assert_eq!(stage.active(), "both both/one both/two both/two/C");
     let plan = stage.plan(&old.replace("        off\n", "        z\n        off\n"));
     let report = stage.swap(&plan).unwrap();
@@ -130,7 +130,7 @@ fn an_arrival_at_a_join_continues_to_wait() {
 }
 
 #[test]
-fn a_new_region_leaves_its_start_in_the_same_step_if_configured() {
+fn a_new_region_goes_on_from_its_start_at_once_where_that_is_meant() {
     let old = "
         START
         & both
@@ -153,7 +153,7 @@ fn a_new_region_leaves_its_start_in_the_same_step_if_configured() {
             both/two/START -> both/two/B
         START -> both
     ";
-    let mut stage = MachineFixture::with(Semantics::uml(), old, &[]);
+    let mut stage = Stage::with(Semantics::uml(), old, &[]);
     let plan = stage.plan(new);
     stage.swap(&plan).unwrap();
     stage.lines();

@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use yase::{MicroStep, Semantics, TimerScope};
 
-use crate::world::MachineFixture;
+use crate::world::Stage;
 use yase_reference::script::compile_with;
 
 const TWO: &str = "
@@ -17,7 +17,7 @@ const TWO: &str = "
 
 #[test]
 fn an_active_state_that_is_gone() {
-    let mut stage = MachineFixture::new(TWO, &["e"]);
+    let mut stage = Stage::new(TWO, &["e"]);
     let plan = stage.plan("START\na\nSTART -> a");
     assert_eq!(stage.refusal(&plan), "`c/b` is active, and there is nothing like it: say what replaces it");
     stage.swap(&plan.with_replacement("b", "a").unwrap()).unwrap();
@@ -26,7 +26,7 @@ fn an_active_state_that_is_gone() {
 
 #[test]
 fn an_active_state_that_could_be_several() {
-    let mut stage = MachineFixture::new(TWO, &["e"]);
+    let mut stage = Stage::new(TWO, &["e"]);
     let new = "START\na\nx\n  START\n  b\n  x/START -> x/b\ny\n  START\n  b\n  y/START -> y/b\nSTART -> a";
     let plan = stage.plan(new);
     assert_eq!(stage.refusal(&plan), "`c/b` is active, and several nodes could be it: say what replaces it");
@@ -36,14 +36,14 @@ fn an_active_state_that_could_be_several() {
 
 #[test]
 fn an_active_state_that_is_no_state_any_more() {
-    let mut stage = MachineFixture::new(TWO, &["e"]);
+    let mut stage = Stage::new(TWO, &["e"]);
     let plan = stage.plan("START\na\n? b\nSTART -> a\na -> b\nb -> a");
     assert_eq!(stage.refusal(&plan), "`c/b` is active, and it is of another kind now: say what replaces it");
 }
 
 #[test]
 fn a_state_that_has_become_a_composite() {
-    let mut stage = MachineFixture::new(TWO, &["e"]);
+    let mut stage = Stage::new(TWO, &["e"]);
     let new = "START\na\nb\n  START\n  x\n  b/START -> b/x\nSTART -> a";
     let plan = stage.plan(new);
     assert_eq!(stage.refusal(&plan), "configuration: `c/b` is active, but nothing in it");
@@ -81,7 +81,7 @@ fn states_that_are_not_active_together_any_more() {
             both/two/START -> both/two/C
         START -> both
     ";
-    let mut stage = MachineFixture::new(old, &[]);
+    let mut stage = Stage::new(old, &[]);
     let plan = stage.plan(new);
     assert_eq!(
         stage.refusal(&plan),
@@ -94,14 +94,14 @@ const WORK: &str = "START\na | run=work | for=20ms\nb\nSTART -> a\na -> b : e";
 
 #[test]
 fn an_activity_that_runs_and_has_no_state() {
-    let mut stage = MachineFixture::new(WORK, &[]);
+    let mut stage = Stage::new(WORK, &[]);
     let plan = stage.plan("START\nz\nb\nSTART -> z").with_replacement("a", "b").unwrap();
     assert_eq!(stage.refusal(&plan), "`work` runs in `c/a`, which has no such activity now");
 }
 
 #[test]
 fn an_activity_that_runs_and_has_changed() {
-    let mut stage = MachineFixture::new(WORK, &[]);
+    let mut stage = Stage::new(WORK, &[]);
     let plan = stage.plan(&WORK.replace("work", "rest"));
     assert_eq!(stage.refusal(&plan), "`work` runs in `c/a`, which has no such activity now");
 }
@@ -111,7 +111,7 @@ fn a_state_with_an_activity_that_has_not_run() {
     let reason = "the activity of `c/a` is `rest` now, which has not run: have the state replaced by one that leads to it";
     let without = WORK.replace(" | run=work | for=20ms", "");
     for (old, returns) in [(WORK, true), (without.as_str(), false)] {
-        let mut stage = MachineFixture::new(old, &[]);
+        let mut stage = Stage::new(old, &[]);
         if returns {
             stage.returns();
         }
@@ -126,7 +126,7 @@ fn a_state_with_an_activity_that_has_not_run() {
 #[test]
 fn a_transition_that_waits_for_activities_and_is_no_more() {
     let old = "START\na | run=work | for=20ms\nb\nSTART -> a\na -> b {interrupts} : e";
-    let mut stage = MachineFixture::new(old, &["e"]);
+    let mut stage = Stage::new(old, &["e"]);
     let plan = stage.plan(&old.replace(" : e", " : f"));
     assert_eq!(
         stage.refusal(&plan),
@@ -136,7 +136,7 @@ fn a_transition_that_waits_for_activities_and_is_no_more() {
 
 #[test]
 fn a_step_that_is_under_way() {
-    let mut stage = MachineFixture::new(TWO, &[]);
+    let mut stage = Stage::new(TWO, &[]);
     stage.machine.dispatch_name("e");
     let made = stage.machine.micro_step(stage.world.now, &mut stage.world);
     assert_eq!(made, Ok(MicroStep::Progressed));
@@ -146,14 +146,14 @@ fn a_step_that_is_under_way() {
 
 #[test]
 fn a_plan_for_another_chart() {
-    let mut stage = MachineFixture::new(TWO, &[]);
-    let plan = MachineFixture::new(TWO, &[]).plan(TWO);
+    let mut stage = Stage::new(TWO, &[]);
+    let plan = Stage::new(TWO, &[]).plan(TWO);
     assert_eq!(stage.refusal(&plan), "the plan is not for the chart that runs");
 }
 
 #[test]
 fn a_chart_that_is_read_in_another_way() {
-    let mut stage = MachineFixture::new(TWO, &[]);
+    let mut stage = Stage::new(TWO, &[]);
     let mut semantics = Semantics::yase();
     semantics.timers = TimerScope::State;
     let other = compile_with(&yase_reference::chart(TWO), semantics);
@@ -167,9 +167,9 @@ fn a_chart_that_is_read_in_another_way() {
 }
 
 #[test]
-fn all_issues_are_reported_together() {
+fn everything_is_told_at_once() {
     let old = "START\na | run=work | for=20ms | defer=e\nb\nSTART -> a : / StartTimeout(v, 1s)\nb -> a : e";
-    let mut stage = MachineFixture::new(old, &["e"]);
+    let mut stage = Stage::new(old, &["e"]);
     let plan = stage.plan("START\nb\nSTART -> b");
     assert_eq!(
         stage.refusal(&plan),
@@ -182,7 +182,7 @@ fn all_issues_are_reported_together() {
 
 #[test]
 fn a_replacement_with_a_path_of_no_node() {
-    let stage = MachineFixture::new(TWO, &[]);
+    let stage = Stage::new(TWO, &[]);
     let error = stage.plan(TWO).with_replacement("a", "nowhere").unwrap_err();
     assert_eq!(error.to_string(), "in the new chart: there is no state `nowhere`");
     let error = stage.plan(TWO).with_replacement("x", "b").unwrap_err();

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use yase::migrate::plan;
 use yase::statechart::{NodeId, Statechart, Transition};
-use yase::{Activation, Chooser, CompiledChart, Machine, Outcome, Semantics, Timestamp, TopicId};
+use yase::{Activation, Chooser, CompiledChart, Machine, Timestamp, Outcome, Semantics, TopicId};
 
 use crate::world::rekey;
-use yase_reference::chance::ChoicePolicy;
+use yase_reference::chance::Freedom;
 use yase_reference::random::Case;
 use yase_reference::script::{self, Interpreter};
 use yase_reference::world::World;
@@ -22,7 +22,7 @@ fn swapping_a_chart_for_itself_or_a_renumbered_copy_at_every_stable_point_change
     assert!(swaps > 20 * RUNS, "the runs are too short");
 }
 
-/// Executes a case without and with migrations, and returns their number.
+/// Plays a case without and with swaps, and says how many there were.
 fn swapped(number: u64) -> u64 {
     let case = Case::numbered(number);
     let compiled = compile(&case.chart, case.semantics);
@@ -30,7 +30,7 @@ fn swapped(number: u64) -> u64 {
     let mut swaps = 0;
     for other in [case.chart.clone(), renumbered(&case.chart)] {
         let charts = [compiled.clone(), compile(&other, case.semantics)];
-        let mut swapping = MigratingMachine { machine: machine(compiled.clone(), &case), charts, swaps: 0 };
+        let mut swapping = Swapping { machine: machine(compiled.clone(), &case), charts, swaps: 0 };
         let found = run(&mut swapping, &case);
         swaps += swapping.swaps;
         let same = expected.iter().zip(&found).take_while(|(a, b)| a == b).count();
@@ -58,9 +58,9 @@ fn compile(chart: &Statechart, semantics: Semantics) -> Arc<CompiledChart> {
 fn machine(chart: Arc<CompiledChart>, case: &Case) -> Machine {
     let mut machine = Machine::new(chart);
     machine.set_chooser(match &case.freedom {
-        ChoicePolicy::Declared => Chooser::declared(),
-        ChoicePolicy::Seeded(seed) => Chooser::seeded(*seed),
-        ChoicePolicy::Scripted(choices) => Chooser::scripted(choices.clone()),
+        Freedom::Declared => Chooser::declared(),
+        Freedom::Seeded(seed) => Chooser::seeded(*seed),
+        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
     });
     machine
 }
@@ -91,14 +91,14 @@ fn renumbered(chart: &Statechart) -> Statechart {
     copy
 }
 
-/// A machine that is migrated to and fro before and after each step.
-struct MigratingMachine {
+/// A machine whose chart is swapped before and after each step, to and fro.
+struct Swapping {
     machine: Machine,
     charts: [Arc<CompiledChart>; 2],
     swaps: u64,
 }
 
-impl MigratingMachine {
+impl Swapping {
     fn swap(&mut self, world: &mut World) {
         let [one, other] = &self.charts;
         let plan = plan(one, other);
@@ -110,7 +110,7 @@ impl MigratingMachine {
     }
 }
 
-impl Interpreter for MigratingMachine {
+impl Interpreter for Swapping {
     fn start(&mut self, now: Timestamp, world: &mut World) {
         self.machine.start(now, world);
     }

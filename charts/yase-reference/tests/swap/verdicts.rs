@@ -2,7 +2,7 @@
 
 use yase::migrate::{Disposition, MigratedItem};
 
-use crate::world::{MachineFixture, findings};
+use crate::world::{Stage, findings};
 
 const TWO: &str = "
     START
@@ -13,8 +13,8 @@ const TWO: &str = "
 ";
 
 #[test]
-fn active_states_stay_active_without_entries_and_exits() {
-    let mut stage = MachineFixture::new(TWO, &["e"]);
+fn what_is_active_stays_active_without_entries_and_exits() {
+    let mut stage = Stage::new(TWO, &["e"]);
     stage.lines();
     let new = "
         START
@@ -36,7 +36,7 @@ fn active_states_stay_active_without_entries_and_exits() {
 
 #[test]
 fn the_name_of_the_root_does_not_matter() {
-    let mut stage = MachineFixture::new(TWO, &[]);
+    let mut stage = Stage::new(TWO, &[]);
     let mut new = yase_reference::chart(TWO);
     new.name = "other".into();
     new.node_mut(yase::Statechart::ROOT).name = "other".into();
@@ -48,7 +48,7 @@ fn the_name_of_the_root_does_not_matter() {
 
 #[test]
 fn a_state_around_which_a_composite_was_put_has_moved() {
-    let mut stage = MachineFixture::new(TWO, &["e"]);
+    let mut stage = Stage::new(TWO, &["e"]);
     let new = "
         START
         a
@@ -71,7 +71,7 @@ fn a_state_around_which_a_composite_was_put_has_moved() {
 }
 
 #[test]
-fn a_composite_may_be_removed_with_a_replacement() {
+fn a_composite_may_be_taken_away_if_it_is_said_what_is_in_its_place() {
     let old = "
         START
         outer
@@ -85,7 +85,7 @@ fn a_composite_may_be_removed_with_a_replacement() {
         b
         START -> b
     ";
-    let mut stage = MachineFixture::new(old, &[]);
+    let mut stage = Stage::new(old, &[]);
     let plan = stage.plan(new);
     assert_eq!(
         stage.refusal(&plan),
@@ -108,7 +108,7 @@ fn a_replacement_takes_what_is_inside_along() {
         START -> head
     ";
     let new = &old.replace("head", "kopf");
-    let mut stage = MachineFixture::new(old, &[]);
+    let mut stage = Stage::new(old, &[]);
     let plan = stage.plan(new).with_replacement("head", "kopf").unwrap();
     let report = stage.swap(&plan).unwrap();
     assert_eq!(
@@ -146,13 +146,13 @@ const THREE: &str = "
 
 #[test]
 fn a_new_region_of_an_active_and_is_entered_by_its_start_in_the_next_step() {
-    let mut stage = MachineFixture::new(BOTH, &[]);
+    let mut stage = Stage::new(BOTH, &[]);
     stage.world.verbose = true;
     let plan = stage.plan(THREE);
     let report = stage.swap(&plan).unwrap();
     assert_eq!(report.to_enter, ["c/both/more"]);
     assert_eq!(stage.active(), "both both/one both/one/A", "not before the next step");
-    // what the snapshot keeps in between is not lost
+    // what is kept of it in between is not lost
     let kept = stage.machine.snapshot();
     assert_eq!(kept.to_enter, ["c/both/more"]);
     let chart = stage.machine.chart().clone();
@@ -172,7 +172,7 @@ fn a_new_region_of_an_active_and_is_entered_by_its_start_in_the_next_step() {
 
 #[test]
 fn a_new_region_can_be_taken_away_again_before_it_was_entered() {
-    let mut stage = MachineFixture::new(BOTH, &[]);
+    let mut stage = Stage::new(BOTH, &[]);
     let there = stage.plan(THREE);
     stage.swap(&there).unwrap();
     let back = stage.plan(BOTH);
@@ -183,7 +183,7 @@ fn a_new_region_can_be_taken_away_again_before_it_was_entered() {
 
 #[test]
 fn there_and_back_again_is_as_before() {
-    let mut stage = MachineFixture::new(TWO, &["e"]);
+    let mut stage = Stage::new(TWO, &["e"]);
     let before = stage.machine.snapshot();
     let there =
         stage.plan("START\nouter\n  START\n  b\n  outer/START -> outer/b\nSTART -> outer\nb -> outer : g");
@@ -192,13 +192,13 @@ fn there_and_back_again_is_as_before() {
     stage.swap(&back).unwrap();
     stage.step(0);
     let mut after = stage.machine.snapshot();
-    after.bound = before.bound.clone(); // an additional step without effect was executed
+    after.bound = before.bound.clone(); // there was one more step, in which nothing was done
     assert_eq!(after, before);
 }
 
 #[test]
 fn an_and_put_around_has_its_other_regions_entered_and_its_blackboards_filled() {
-    let mut stage = MachineFixture::new(TWO, &["e"]);
+    let mut stage = Stage::new(TWO, &["e"]);
     stage.world.verbose = true;
     let new = "
         START
@@ -236,8 +236,8 @@ const WORK: &str = "
 ";
 
 #[test]
-fn a_running_activity_continues_under_its_new_activation() {
-    let mut stage = MachineFixture::new(WORK, &[]);
+fn an_activity_that_runs_goes_on_under_its_new_number() {
+    let mut stage = Stage::new(WORK, &[]);
     let new = "
         START
         z
@@ -265,7 +265,7 @@ fn a_running_activity_continues_under_its_new_activation() {
 #[test]
 fn a_state_that_is_done_may_lose_its_activity() {
     let old = "START\na | run=work\nb\nSTART -> a\na -> b : e";
-    let mut stage = MachineFixture::new(old, &[]);
+    let mut stage = Stage::new(old, &[]);
     stage.returns();
     let plan = stage.plan("START\na\nb\nSTART -> a\na -> b : e");
     assert!(findings(&stage.swap(&plan).unwrap()).contains("activity `c/a: work`: kept"));
@@ -284,7 +284,7 @@ const TIMED: &str = "
 
 #[test]
 fn timers_are_kept_by_region_and_name_and_lost_with_consent() {
-    let mut stage = MachineFixture::new(TIMED, &[]);
+    let mut stage = Stage::new(TIMED, &[]);
     let plan = stage.plan("START\na\nb\nSTART -> a : / StartTimeout(v, 1s)\na -> b : v");
     assert_eq!(stage.refusal(&plan), "the timer `c: w` would be lost: no action starts such a timer there");
     let report = stage.swap(&plan.accepting_losses()).unwrap();
@@ -297,7 +297,7 @@ fn timers_are_kept_by_region_and_name_and_lost_with_consent() {
 #[test]
 fn events_are_kept_by_name() {
     let old = "START\na\nb\nSTART -> a\na -> b : e\na -> b : f";
-    let mut stage = MachineFixture::new(old, &[]);
+    let mut stage = Stage::new(old, &[]);
     stage.machine.dispatch_name("e");
     stage.machine.dispatch_name("f");
     let plan = stage.plan("START\na\nb\nSTART -> a\na -> b : f");
@@ -311,7 +311,7 @@ fn events_are_kept_by_name() {
 
 #[test]
 fn an_event_that_only_any_trigger_takes_now_has_lost_its_name() {
-    let mut stage = MachineFixture::new(TWO, &[]);
+    let mut stage = Stage::new(TWO, &[]);
     stage.machine.dispatch_name("e");
     let plan = stage.plan("START\na\nb\nSTART -> a\na -> b : *");
     assert!(findings(&stage.swap(&plan).unwrap()).ends_with("event `e`: moved to `?`"));
@@ -322,7 +322,7 @@ fn an_event_that_only_any_trigger_takes_now_has_lost_its_name() {
 #[test]
 fn deferred_events_are_kept_by_name() {
     let old = "START\na | defer=e,f\nb\nSTART -> a\na -> b : g\nb -> a : e\nb -> a : f";
-    let mut stage = MachineFixture::new(old, &["e", "f"]);
+    let mut stage = Stage::new(old, &["e", "f"]);
     let plan = stage.plan("START\na | defer=f\nb\nSTART -> a\na -> b : g\nb -> a : f");
     assert_eq!(stage.refusal(&plan), "the deferred event `e` would be lost: nothing waits for it");
     let report = stage.swap(&plan.accepting_losses()).unwrap();
@@ -334,7 +334,7 @@ fn deferred_events_are_kept_by_name() {
 #[test]
 fn held_events_are_offered_again() {
     let old = "START\na | run=work | for=20ms\nb\nd\nSTART -> a\na -> b : e";
-    let mut stage = MachineFixture::new(old, &["e"]);
+    let mut stage = Stage::new(old, &["e"]);
     let plan = stage.plan("START\na | run=work | for=20ms\nb\nd\nSTART -> a\na -> d : e");
     let report = stage.swap(&plan).unwrap();
     assert!(findings(&report).ends_with("held event `e`: kept"));
@@ -346,9 +346,9 @@ fn held_events_are_offered_again() {
 }
 
 #[test]
-fn a_transition_continues_to_wait_for_activities() {
+fn a_transition_that_waits_for_activities_goes_on_waiting() {
     let old = "START\na | run=work | for=20ms\nb\nSTART -> a\na -> b {interrupts} : e";
-    let mut stage = MachineFixture::new(old, &["e"]);
+    let mut stage = Stage::new(old, &["e"]);
     let new = "START\nz\na | run=work | for=20ms\nb\nSTART -> a\na -> b {interrupts} : e\na -> z : f";
     let plan = stage.plan(new);
     let report = stage.swap(&plan).unwrap();
@@ -358,15 +358,15 @@ fn a_transition_continues_to_wait_for_activities() {
 }
 
 #[test]
-fn a_plan_covers_every_node() {
-    let stage = MachineFixture::new(TWO, &[]);
+fn a_plan_tells_of_every_node() {
+    let stage = Stage::new(TWO, &[]);
     let plan = stage.plan("START\na\nouter\n  START\n  d\n  outer/START -> outer/d\nSTART -> a");
     let verdicts: Vec<String> = plan.nodes().map(|(path, verdict)| format!("{path} {verdict}")).collect();
     assert_eq!(verdicts, ["c kept", "c/START kept", "c/a kept", "c/b there is nothing like it"]);
 }
 
 #[test]
-fn a_name_is_resolved_in_the_nearest_enclosing_composite() {
+fn a_name_is_looked_for_inside_the_nearest_composite_around_it() {
     let old = "
         START
         head
@@ -394,7 +394,7 @@ fn a_name_is_resolved_in_the_nearest_enclosing_composite() {
           body/START -> body/scan
         START -> head
     ";
-    let mut stage = MachineFixture::new(old, &[]);
+    let mut stage = Stage::new(old, &[]);
     let plan = stage.plan(new);
     let report = stage.swap(&plan).unwrap();
     let moved =

@@ -1,32 +1,32 @@
-//! A running machine with the host of the reference tests, and the duties of a host in a migration.
+//! A machine in the reference's world, and the work of a host when the chart is migrated.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use yase::migrate::{MigrationError, MigrationReport, NodeMapping, plan};
-use yase::{CompiledChart, Machine, Outcome, Semantics, Timestamp};
+use yase::{CompiledChart, Machine, Timestamp, Outcome, Semantics};
 
 use yase_reference::script;
 use yase_reference::world::World;
 
-/// A running machine with its host.
-pub(crate) struct MachineFixture {
+/// A machine that runs, in its world.
+pub(crate) struct Stage {
     pub(crate) machine: Machine,
     pub(crate) world: World,
 }
 
-impl MachineFixture {
-    /// Starts a chart and raises events at time 0.
-    pub(crate) fn new(chart: &str, events: &[&str]) -> MachineFixture {
-        MachineFixture::with(Semantics::yase(), chart, events)
+impl Stage {
+    /// Starts a chart and lets events happen to it at time 0.
+    pub(crate) fn new(chart: &str, events: &[&str]) -> Stage {
+        Stage::with(Semantics::yase(), chart, events)
     }
 
-    pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> MachineFixture {
+    pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> Stage {
         let chart = yase_reference::chart(chart);
         let mut world = World::new(&chart);
         let mut machine = Machine::new(script::compile_with(&chart, semantics));
         machine.start(Timestamp::ZERO, &mut world);
-        let mut stage = MachineFixture { machine, world };
+        let mut stage = Stage { machine, world };
         stage.step(0);
         for event in events {
             stage.event(event);
@@ -44,9 +44,9 @@ impl MachineFixture {
         self.step(0);
     }
 
-    /// The only running activity returns.
+    /// The only activity that runs returns.
     pub(crate) fn returns(&mut self) {
-        let job = self.world.running.remove(0);
+        let job = self.world.jobs.remove(0);
         assert!(self.machine.activity_returned(job.activation, Outcome::Done), "it is still known");
         self.step(0);
     }
@@ -87,10 +87,10 @@ impl MachineFixture {
     }
 }
 
-/// Gives activities and blackboards their new indices.
+/// The work of a host: activities and blackboards get new indices.
 pub(crate) fn rekey(world: &mut World, chart: &Arc<CompiledChart>, report: &MigrationReport) {
     let activations: BTreeMap<_, _> = report.activations.iter().copied().collect();
-    for job in &mut world.running {
+    for job in &mut world.jobs {
         if let Some(&activation) = activations.get(&job.activation) {
             job.activation = activation;
         }
@@ -101,7 +101,7 @@ pub(crate) fn rekey(world: &mut World, chart: &Arc<CompiledChart>, report: &Migr
     world.activities = World::new(chart.statechart()).activities;
 }
 
-/// The findings of a report, one per line.
+/// The findings of a report, one a line.
 pub(crate) fn findings(report: &MigrationReport) -> String {
     report.findings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }

@@ -37,8 +37,8 @@ pub(crate) fn deadlocks(product: &GlobalProduct<'_>) -> Vec<Deadlock> {
         let stuck_in = |state: usize| (0..waits.len()).filter(|&it| is_stuck(it, state)).collect::<Vec<_>>();
         let worst = worst_from(state, &next, &|state| stuck_in(state).len());
         let stuck = stuck_in(worst);
-        stuck.iter().for_each(|&number| told[number] = true);
-        (0..waits.len()).filter(|&it| is_stuck(it, state)).for_each(|number| told[number] = true);
+        stuck.iter().for_each(|&number| reported[number] = true);
+        (0..waits.len()).filter(|&it| is_stuck(it, state)).for_each(|number| reported[number] = true);
         let also = (0..product.states.len())
             .filter(|&it| it != worst && stuck.iter().all(|&number| is_stuck(number, it)));
         let states = std::iter::once(worst).chain(also.take(OTHERS)).collect();

@@ -1,11 +1,11 @@
-//! Order of transitions, firing, initial states of composites, and completion of the root.
+//! How transitions are ordered and fire, where composites begin, and how the root ends.
 
 use yase::{ExitOrder, InitialState, Semantics};
 
 use crate::check_with;
 
 #[test]
-fn r10_start_same_step_passes_enabled_starts_and_stays_in_a_blocked_one() {
+fn r10_start_same_step_goes_on_through_starts_and_rests_where_none_is_open() {
     let mut semantics = Semantics::yase();
     semantics.start = InitialState::SameStep;
     check_with(

@@ -1,4 +1,4 @@
-//! Order of events, validity of completions, and visibility of writes.
+//! Which events come when, when completion counts, and who sees what is written.
 
 use yase::{CompletionTrigger, Semantics};
 
@@ -27,7 +27,7 @@ fn r16_pool_one_puts_raised_events_behind_arrived_ones() {
 }
 
 #[test]
-fn r15_eventless_once_evaluates_a_completion_once() {
+fn r15_eventless_once_looks_at_a_completion_once() {
     check_with(
         Semantics::uml(),
         "
@@ -113,7 +113,7 @@ fn r15_eventless_always_does_not_wait_for_activities() {
 }
 
 #[test]
-fn r19_writes_are_visible_at_once_in_other_regions() {
+fn r19_what_is_written_is_seen_at_once_by_other_regions() {
     check_with(
         Semantics::scxml(),
         "
@@ -143,7 +143,7 @@ fn r19_writes_are_visible_at_once_in_other_regions() {
 }
 
 #[test]
-fn r19_writes_are_visible_in_other_regions_in_the_next_step() {
+fn r19_what_is_written_is_seen_by_other_regions_in_the_next_step() {
     check_with(
         Semantics::yase(),
         "

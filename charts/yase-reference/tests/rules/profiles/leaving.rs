@@ -1,4 +1,4 @@
-//! Effects of running activities, ancestors as targets, JOINs and timers on exits.
+//! What running activities, ancestors as targets, JOINs and timers mean for leaving.
 
 use yase::{Semantics, TimerScope};
 
@@ -27,7 +27,7 @@ fn r09_running_activities_are_interrupted_and_their_return_ignored() {
 }
 
 #[test]
-fn r09_a_reentered_state_restarts_its_activity() {
+fn r09_a_state_that_is_entered_again_runs_its_activity_anew() {
     check_with(
         Semantics::scxml(),
         "

@@ -48,7 +48,7 @@ fn lines(state: &ChartState, snapshot: &Snapshot) -> Vec<String> {
     let ChartState { host, agent, model, state, .. } = state;
     let remembered = snapshot.history.iter().flat_map(|one| one.nodes.iter().chain([&one.history]));
     let names = StateNames::from_some(snapshot.configuration.iter().chain(remembered).map(String::as_str));
-    let seconds = |moment: yase::Moment| moment.as_nanos() as f64 / 1e9;
+    let seconds = |time: yase::Timestamp| time.as_nanos() as f64 / 1e9;
     let now = seconds(snapshot.now);
     let mut lines =
         vec![format!("{} ({model}) of {agent} on {host}: {state}, last step at {now:.3} s", snapshot.chart)];

@@ -98,7 +98,7 @@ pub(crate) fn execute(
             writeln!(console.out, "{:#}", sarif::document(findings))?;
         }
     }
-    Ok(if interrupt.is_requested() { Exit::Interrupted } else { verdict(&reports) })
+    Ok(interrupt.exit().unwrap_or_else(|| verdict(&reports)))
 }
 
 /// An unreadable model outweighs one with errors.

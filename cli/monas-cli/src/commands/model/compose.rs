@@ -71,10 +71,10 @@ pub(crate) fn execute(
         Format::Text => text(&found, console)?,
         Format::Json => objects(&found, console)?,
     }
-    Ok(match conforms && !found.has_errors() {
-        _ if interrupt.is_requested() => Exit::Interrupted,
-        true => Exit::Success,
-        false => Exit::Diverged,
+    Ok(match interrupt.exit() {
+        Some(exit) => exit,
+        None if conforms && !found.has_errors() => Exit::Success,
+        None => Exit::Diverged,
     })
 }
 

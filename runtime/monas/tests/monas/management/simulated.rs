@@ -233,7 +233,7 @@ fn an_activity_may_ask_for_a_change_too() {
             blackboard.publish(CHANGE, change(Action::StopAgent, "b")).unwrap();
         }
     };
-    let (told, note) = recorder();
+    let (notes, note) = recorder();
     let b = move |blackboard: &mut Blackboard| note(blackboard.now());
     let agents = [("a", 10.0)].map(|(name, hertz)| Agent::new(name, monas::Hz(hertz)).activity(asks));
     let talws = agents.into_iter().fold(Talws::new(), Talws::agent);
