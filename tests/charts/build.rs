@@ -35,8 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         if case.semantics.structure == StructureRules::Uml {
             continue; // generated crates run with the structure rules of `yase`
         }
-        let files = generate(&case.chart, &words)
-            .map_err(|found| format!("chart {number}: {}", found[0]))?;
+        let files = generate(&case.chart, &words).map_err(|found| format!("chart {number}: {}", found[0]))?;
         for (path, text) in &files {
             let path = folder.join(format!("chart_{number}")).join(path);
             fs::create_dir_all(path.parent().ok_or("it has one")?)?;

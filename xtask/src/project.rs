@@ -197,10 +197,7 @@ fn expressions(team: &Path, cargo: &dyn Fn(&Path, &[&str]) -> Command) -> Result
         return Err("two roles have a skeleton of one activity".into());
     }
     done(&mut cargo(team, &["build", "--offline", "--workspace"]))?;
-    done(&mut cargo(
-        team,
-        &["run", "--offline", "--quiet", "--", "model", "check", "roles/usher.srm"],
-    ))?;
+    done(&mut cargo(team, &["run", "--offline", "--quiet", "--", "model", "check", "roles/usher.srm"]))?;
     Ok(())
 }
 

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use yase::statechart::{NodeId, Statechart};
-use yase::{Activation, Chooser, Machine, Timestamp, Outcome, ScopeId, TopicId};
+use yase::{Activation, Chooser, Machine, Outcome, ScopeId, Timestamp, TopicId};
 
 use crate::chance::{Chance, Freedom};
 use crate::random::Case;

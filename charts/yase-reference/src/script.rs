@@ -4,7 +4,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use yase::{
-    Activation, CompiledChart, Machine, MicroStep, Timestamp, Outcome, ScopeId, Semantics, Statechart, TopicId,
+    Activation, CompiledChart, Machine, MicroStep, Outcome, ScopeId, Semantics, Statechart, Timestamp,
+    TopicId,
 };
 
 use super::world::{TOPICS, World, vocabulary};

@@ -16,7 +16,7 @@ mod walk;
 use std::collections::{BTreeMap, BTreeSet};
 
 use yase::statechart::{NodeId, Statechart, TransitionId};
-use yase::{Activation, Timestamp, Outcome, ScopeId, Semantics, TopicId};
+use yase::{Activation, Outcome, ScopeId, Semantics, Timestamp, TopicId};
 
 use crate::chance::Chance;
 use crate::script::Interpreter;

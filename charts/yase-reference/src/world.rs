@@ -8,7 +8,7 @@ use yase::expression::set;
 use yase::expression::{CallError, MessageSource};
 use yase::vocabulary::{FieldEntry, FunctionEntry, MessageEntry, TopicEntry, TopicKind, ValueType};
 use yase::{
-    Activation, CompiledChart, FieldId, FunctionId, Host, Timestamp, Notice, Outcome, ScopeId, TopicId,
+    Activation, CompiledChart, FieldId, FunctionId, Host, Notice, Outcome, ScopeId, Timestamp, TopicId,
     TraceRecord, TypeEnvironment, Value,
 };
 

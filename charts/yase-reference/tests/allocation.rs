@@ -10,7 +10,7 @@ use std::sync::Arc;
 use yase::expression::{CallError, MessageSource};
 use yase::vocabulary::{FieldEntry, FunctionEntry, MessageEntry, TopicEntry, TopicKind, ValueType};
 use yase::{
-    Activation, CompiledChart, FieldId, FunctionId, Host, Machine, Timestamp, Outcome, ScopeId, TopicId,
+    Activation, CompiledChart, FieldId, FunctionId, Host, Machine, Outcome, ScopeId, Timestamp, TopicId,
     TraceRecord, TypeEnvironment, Value,
 };
 
@@ -145,7 +145,8 @@ impl Run {
     /// A step so many milliseconds later.
     fn step(&mut self, millis: u64) {
         self.now += millis;
-        let summary = self.machine.run_to_completion(Timestamp::from_millis(self.now), &mut self.world).unwrap();
+        let summary =
+            self.machine.run_to_completion(Timestamp::from_millis(self.now), &mut self.world).unwrap();
         self.transitions += summary.transitions;
     }
 

@@ -2,7 +2,7 @@
 
 use yase::expression::{Action, ActionKind, Trigger};
 use yase::statechart::{NodeId, NodeKind, Statechart};
-use yase::{Deferral, Delivery, EventMatching, EventPool, FailureEvents, Firing, Host, Timestamp, ScopeId};
+use yase::{Deferral, Delivery, EventMatching, EventPool, FailureEvents, Firing, Host, ScopeId, Timestamp};
 
 use super::lines::Heading;
 use super::select::Offer;

@@ -3,7 +3,7 @@
 use std::num::NonZeroU32;
 use std::time::Duration;
 
-use yase::{CompletionTrigger, Deferral, Machine, MachineErrorKind, Timestamp, Semantics, Status};
+use yase::{CompletionTrigger, Deferral, Machine, MachineErrorKind, Semantics, Status, Timestamp};
 
 use crate::{check, check_with, compare};
 use yase_reference::world::World;

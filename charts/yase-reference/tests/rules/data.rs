@@ -311,7 +311,7 @@ fn r20_stop_is_called_when_the_state_of_an_ongoing_activity_is_left() {
 
 #[test]
 fn r20_a_failing_activity_releases_the_lock_and_can_run_again() {
-    use yase::{Machine, Timestamp, Outcome};
+    use yase::{Machine, Outcome, Timestamp};
     let chart = chart("START\nS | run\nT\nc/START -> S\nS -> T\nS -> S {internal} : error.activity\n");
     let mut machine = Machine::new(script::compile(&chart));
     let mut world = World::new(&chart);

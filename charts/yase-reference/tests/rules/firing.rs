@@ -1,6 +1,6 @@
 //! R10 to R13: leaving, acting, entering, and the end.
 
-use yase::{Activation, Host, Machine, Timestamp, Status};
+use yase::{Activation, Host, Machine, Status, Timestamp};
 
 use crate::{check, compare};
 use yase_reference::world::World;

@@ -1,6 +1,6 @@
 //! R10: what HISTORYs remember, and where they lead.
 
-use yase::{Machine, Timestamp, Semantics, TransitionToAncestor};
+use yase::{Machine, Semantics, Timestamp, TransitionToAncestor};
 
 use crate::{check, check_with, with};
 use yase_reference::{World, chart, script};

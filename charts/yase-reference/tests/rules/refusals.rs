@@ -1,6 +1,6 @@
 //! R1, R6, R12: connectors that cannot be followed are refused, each by name.
 
-use yase::{Machine, MachineErrorKind, Timestamp, Status};
+use yase::{Machine, MachineErrorKind, Status, Timestamp};
 
 use crate::refusal;
 use yase_reference::{World, chart, script};

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use yase::expression::{CallError, EventId, ScriptId, parse_actions, parse_transition};
 use yase::{
-    ActionLocation, Activation, ActiveStates, CompiledChart, Host, Machine, MicroStep, Timestamp, NodeId,
-    ScopeId, ScriptContext, ScriptLocation, Semantics, Statechart, TransitionId, TypeEnvironment,
+    ActionLocation, Activation, ActiveStates, CompiledChart, Host, Machine, MicroStep, NodeId, ScopeId,
+    ScriptContext, ScriptLocation, Semantics, Statechart, Timestamp, TransitionId, TypeEnvironment,
 };
 
 use yase_reference::chart;

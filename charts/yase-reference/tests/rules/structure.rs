@@ -1,7 +1,7 @@
 //! R1 to R3: nodes, scopes, order.
 
 use yase::statechart::{Node, NodeKind, Statechart, Transition};
-use yase::{Machine, Timestamp, NodeId};
+use yase::{Machine, NodeId, Timestamp};
 
 use crate::{check, refusal};
 use yase_reference::world::{World, vocabulary};

@@ -2,7 +2,7 @@
 
 use yase::statechart::TransitionId;
 use yase::{
-    ActionLocation, Activation, CompiledChart, Host, Machine, MicroStepCause, Timestamp, NodeId, TraceRecord,
+    ActionLocation, Activation, CompiledChart, Host, Machine, MicroStepCause, NodeId, Timestamp, TraceRecord,
 };
 
 use crate::compare;

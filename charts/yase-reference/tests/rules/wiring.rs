@@ -1,7 +1,7 @@
 //! R18: what wakes a chart.
 
 use yase::expression::EventId;
-use yase::{Host, Machine, Timestamp, Outcome, ScopeId, TopicId};
+use yase::{Host, Machine, Outcome, ScopeId, Timestamp, TopicId};
 
 use crate::check;
 use yase_reference::world::World;

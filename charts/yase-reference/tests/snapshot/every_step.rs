@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use yase::snapshot::Snapshot;
-use yase::{Activation, Chooser, CompiledChart, Machine, MicroStep, Timestamp, Outcome, TopicId};
+use yase::{Activation, Chooser, CompiledChart, Machine, MicroStep, Outcome, Timestamp, TopicId};
 
 use yase_reference::chance::Freedom;
 use yase_reference::random::Case;

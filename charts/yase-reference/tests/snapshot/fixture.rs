@@ -1,7 +1,7 @@
 //! A machine in the reference's world.
 
 use yase::snapshot::{RestoreError, Snapshot};
-use yase::{Machine, Timestamp, Outcome, Semantics};
+use yase::{Machine, Outcome, Semantics, Timestamp};
 
 use yase_reference::world::World;
 

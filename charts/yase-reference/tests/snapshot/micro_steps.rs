@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU32;
 
-use yase::{Machine, MachineErrorKind, MicroStep, Timestamp, Semantics, Status, StepSummary};
+use yase::{Machine, MachineErrorKind, MicroStep, Semantics, Status, StepSummary, Timestamp};
 
 use yase_reference::world::World;
 

@@ -1,7 +1,7 @@
 //! Snapshots that do not fit are refused, with everything that is wrong with them.
 
 use yase::snapshot::{EventName, RestoreIssueKind, Snapshot, TimerName};
-use yase::{Timestamp, Status};
+use yase::{Status, Timestamp};
 
 use crate::fixture::Stage;
 

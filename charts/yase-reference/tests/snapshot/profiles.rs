@@ -1,7 +1,7 @@
 //! What only some charts and some semantics have: HISTORY, timers of states, composites without an
 //! active child, JOINs that wait.
 
-use yase::{MicroStep, Timestamp, Semantics, TimerScope};
+use yase::{MicroStep, Semantics, TimerScope, Timestamp};
 
 use crate::fixture::Stage;
 

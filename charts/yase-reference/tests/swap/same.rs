@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use yase::migrate::plan;
 use yase::statechart::{NodeId, Statechart, Transition};
-use yase::{Activation, Chooser, CompiledChart, Machine, Timestamp, Outcome, Semantics, TopicId};
+use yase::{Activation, Chooser, CompiledChart, Machine, Outcome, Semantics, Timestamp, TopicId};
 
 use crate::world::rekey;
 use yase_reference::chance::Freedom;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use yase::migrate::{MigrationError, MigrationReport, NodeMapping, plan};
-use yase::{CompiledChart, Machine, Timestamp, Outcome, Semantics};
+use yase::{CompiledChart, Machine, Outcome, Semantics, Timestamp};
 
 use yase_reference::script;
 use yase_reference::world::World;

@@ -49,7 +49,8 @@ pub(crate) fn execute(
     drop((control, alarm));
     let Statistics { agents, links } = running.stop();
     if let Some(tape) = &tape {
-        monas_recording::ended(tape, overview.now()).map_err(|error| CommandFailure::failed(format, error))?;
+        monas_recording::ended(tape, overview.now())
+            .map_err(|error| CommandFailure::failed(format, error))?;
     }
     write(console.out, format, &agents)?;
     match format {
