@@ -68,7 +68,7 @@ impl Logger {
     /// of the settings, or one with a number in its name if that exists.
     ///
     /// # Errors
-    /// The file cannot be created, the system cannot create a thread, or the log has begun before.
+    /// The file cannot be created, the system cannot create a thread, or the log was started already.
     pub fn begin(&self, settings: LogSettings) -> io::Result<Option<PathBuf>> {
         self.begin_with(settings, ExistingFile::Keep, |lines| {
             // A failure to write to the console cannot be reported.
@@ -87,7 +87,7 @@ impl Logger {
         existing: ExistingFile,
         console: impl Fn(&[u8]) + Send + Sync + 'static,
     ) -> io::Result<Option<PathBuf>> {
-        let again = || io::Error::new(io::ErrorKind::AlreadyExists, "the log has begun before");
+        let again = || io::Error::new(io::ErrorKind::AlreadyExists, "the log was started already");
         if self.shared.begun.get().is_some() {
             return Err(again());
         }

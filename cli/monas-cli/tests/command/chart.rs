@@ -40,7 +40,7 @@ fn a_chart_is_inspected_and_a_raised_event_is_recorded() {
     );
     let answer = chart(&["raise", "Light", "button"]);
     assert_eq!((answer.code, answer.out.as_str()), (Some(0), "`button` is raised in `Light`\n"));
-    let on = is_on("/MotionController: MotionController").expect("it is lit");
+    let on = is_on("MotionController: MotionController").expect("it is lit");
     assert!(on.starts_with("lamp (lamp.srm) of Light on local: runs, last step at "), "{on}");
     assert!(on.contains("  timer enough of "), "{on}");
     let drawing = path("light.svg");

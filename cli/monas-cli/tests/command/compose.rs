@@ -57,7 +57,7 @@ fn deadlocking_robots_are_reported() {
         short.code == Some(5) && short.err.contains("E0933") && !short.out.contains("waits"),
         "{short:?}"
     );
-    assert!(short.out.ends_with("{\"states\":8,\"finished\":false}\n"), "{short:?}");
+    assert!(short.out.ends_with("{\"states\":8,\"finished\":false,\"one_process\":false}\n"), "{short:?}");
     let twice = monas(&["model", "compose", &passer, &passer]);
     assert!(twice.code == Some(2) && twice.err.contains("two robots are named `passer`"), "{twice:?}");
 }

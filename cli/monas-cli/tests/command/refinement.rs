@@ -87,7 +87,7 @@ fn a_layout_is_drawn_converted_and_survives_an_edit() {
     let old = folder.path().join("chart.stct").display().to_string();
     let refused = monas(&["model", "convert", &chart, &old]);
     assert_eq!(refused.code, Some(1));
-    assert!(refused.err.contains("where `Track` is drawn, `size = 200 50`"), "{}", refused.err);
+    assert!(refused.err.contains("the layout of `Track`, `size = 200 50`"), "{}", refused.err);
 
     let edited = file(folder.path(), "role.srm", &text.replace("Track . Kick", "Follow . Kick"));
     let answer = monas(&["model", "regenerate", &edited, "-o", &edited]);

@@ -198,5 +198,5 @@ fn a_run_with_modules_is_replayed() {
     fs::copy(&sharp, &eyes).expect("the folder takes files");
     let other = ask(folder.path(), &["tape", "replay", &tape]);
     assert_ne!(other.code, Some(0), "{}", other.out);
-    assert!(other.err.contains("is another file than was meant"), "{}{}", other.out, other.err);
+    assert!(other.err.contains("is not the requested file"), "{}{}", other.out, other.err);
 }

@@ -50,7 +50,7 @@ pub(crate) fn in_whole(
     let name = &player.nodes[place].name;
     let extent = ExplorationExtent::of_labelled(&explored);
     let states = extent.states;
-    found.explored.push((format!("{name} in all that {} does", player.name), extent));
+    found.explored.push((format!("{name} within {}", player.name), extent));
     let message = match first_beyond(&explored, language, all) {
         TraceInclusion::Nothing if explored.is_finished() => return,
         TraceInclusion::Nothing | TraceInclusion::TooMuch => {

@@ -80,5 +80,6 @@ fn play(
             clock.wait_until(running.now(), interrupt);
         }
     }
+    alarm.check(running.simulation().now());
     Ok(running)
 }

@@ -46,6 +46,7 @@ pub(crate) fn execute(
         alarm.check(overview.now());
         interrupt.is_requested() || running.has_ended()
     });
+    alarm.check(overview.now());
     drop((control, alarm));
     let Statistics { agents, links } = running.stop();
     if let Some(tape) = &tape {

@@ -306,9 +306,11 @@ mod tests {
         // In simulated time the time of the run stands still meanwhile.
         let (before, same) = (sample(1, vec![agent(2.0, 7.0, 5)], 0), sample(1, vec![agent(4.0, 8.9, 5)], 0));
         let figures = Metrics::between(&before, &same);
-        assert_eq!(figures.agents[0].load, Some(0.95));
+        let is_busy = |load: Option<f64>| load.is_some_and(|load| (load - 0.95).abs() < 1e-9);
+        assert!(is_busy(figures.agents[0].load), "{:?}", figures.agents[0].load);
         let [spins, other] = figures.agents[0].activities.as_slice() else { panic!("two activities") };
-        assert_eq!((spins.load, spins.remark), (Some(0.95), Some(ActivityRemark::Stuck)));
+        assert!(is_busy(spins.load), "{:?}", spins.load);
+        assert_eq!(spins.remark, Some(ActivityRemark::Stuck));
         assert_eq!(other.load, None);
         let another = sample(1, vec![agent(4.0, 8.9, 6)], 0);
         assert_eq!(Metrics::between(&before, &another).agents[0].load, None, "it is another call");

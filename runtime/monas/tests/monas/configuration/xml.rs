@@ -94,7 +94,7 @@ fn implausible_attributes_are_reported_and_ignored() {
         "a.xml:1:24: error[E0306]: `word` is `lefd`, expected one of `left` or `right` (did you mean `left`?)",
         "a.xml:1:30: error[E0304]: unknown attribute `colr` of `a` (did you mean `color`?)",
         "a.xml:1:41: error[E0304]: unknown attribute `odd` of `a` (expected `n`, `i`, `yes`, `no`, `half`, `word` or `color`)",
-        "a.xml:1:47: error[E0307]: attribute `i` is given twice (leave one of them out)",
+        "a.xml:1:47: error[E0307]: attribute `i` is repeated (remove one of them)",
         "a.xml:1:2: error[E0305]: `a` lacks the attribute `color` (is `colr` meant to be `color`?)",
     ];
     assert_eq!(said, expected);
