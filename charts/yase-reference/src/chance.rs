@@ -72,7 +72,7 @@ impl Chance {
     }
 
     /// The choices made by a script, which are all that the machine's chooser records.
-    pub(crate) fn told(&self) -> &[(u32, u32)] {
+    pub(crate) fn reported(&self) -> &[(u32, u32)] {
         match self.freedom {
             Freedom::Scripted(_) => &self.log,
             _ => &[],

@@ -51,11 +51,11 @@ pub(crate) fn judge(case: &Case) -> Verdict {
     }
     // A machine without an observer records no micro-steps: everything else must be equal.
     let is_micro_step = |line: &String| line.starts_with(|first: char| first.is_ascii_digit());
-    let told: Vec<String> = expected.iter().filter(|line| !is_micro_step(line)).cloned().collect();
+    let reported: Vec<String> = expected.iter().filter(|line| !is_micro_step(line)).cloned().collect();
     let found = by_machine(case, machine, true);
-    match told == found {
+    match reported == found {
         true => Verdict::Same(expected),
-        false => Verdict::Different(Difference { expected: told, found }),
+        false => Verdict::Different(Difference { expected: reported, found }),
     }
 }
 
@@ -69,7 +69,7 @@ fn by_reference(case: &Case, timers: Vec<(ScopeId, String)>) -> Vec<String> {
     let mut watched =
         Watched { inner: Stepper::new(&case.chart, case.semantics, chance, timers), chart: &case.chart };
     script::run(&mut watched, &case.script, &mut world);
-    world.say(format!("asked {:?}", watched.inner.chance.told()));
+    world.say(format!("asked {:?}", watched.inner.chance.reported()));
     normal(world.log)
 }
 

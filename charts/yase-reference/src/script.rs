@@ -198,10 +198,10 @@ pub fn assert_silent_alike(
     chart: Arc<CompiledChart>,
     script: &Script,
 ) {
-    let told: Vec<&String> =
+    let reported: Vec<&String> =
         seen.log.iter().filter(|line| line.starts_with("  ") || line.starts_with("error")).collect();
     let alike = |machine: &Machine, log: &[String]| {
-        assert_eq!(told, log.iter().collect::<Vec<_>>());
+        assert_eq!(reported, log.iter().collect::<Vec<_>>());
         assert_eq!(traced.configuration(), machine.configuration());
         assert_eq!((traced.status(), traced.next_deadline()), (machine.status(), machine.next_deadline()));
     };
@@ -242,12 +242,12 @@ fn apply(interpreter: &mut impl Interpreter, world: &mut World, input: &Input) {
         Input::Event(name) => interpreter.event(name),
         Input::Message(topic, value) => {
             world.send(*topic, *value, (0..interpreter.regions() as u32).map(ScopeId));
-            tell_arrivals(interpreter, world);
+            report_arrivals(interpreter, world);
         }
     }
 }
 
-fn tell_arrivals(interpreter: &mut impl Interpreter, world: &mut World) {
+fn report_arrivals(interpreter: &mut impl Interpreter, world: &mut World) {
     for topic in std::mem::take(&mut world.arrivals) {
         interpreter.message(topic);
     }
@@ -266,7 +266,7 @@ fn settle(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World)
             world.say(format!("error: {error}"));
             return false;
         }
-        tell_arrivals(interpreter, world);
+        report_arrivals(interpreter, world);
     }
 }
 

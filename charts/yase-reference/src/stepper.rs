@@ -126,7 +126,7 @@ pub(crate) struct Stepper<'c> {
     /// The active leaves at its beginning.
     leaves: Vec<NodeId>,
     /// The segments whose guards have failed in this micro-step, each reported once.
-    told: BTreeSet<TransitionId>,
+    reported: BTreeSet<TransitionId>,
     /// The segments with weights that were drawn in this micro-step.
     drawn: Vec<TransitionId>,
     line: Line,
@@ -184,7 +184,7 @@ impl<'c> Stepper<'c> {
             found: vec![],
             closed: BTreeSet::new(),
             leaves: vec![],
-            told: BTreeSet::new(),
+            reported: BTreeSet::new(),
             drawn: vec![],
             line: Line::default(),
             micro_steps: 0,

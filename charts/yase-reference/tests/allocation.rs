@@ -392,7 +392,7 @@ fn history() {
         out -> shallow : children
         out -> deep : all
     ";
-    // `b` begins anew twice, with a step out of its START
+    // `b` restarts twice, with a step out of its START
     assert_allocates_nothing(text, 7 + 2, |run| {
         for event in ["next", "leave", "all", "leave", "children", "over", "over"] {
             run.event(event);

@@ -23,7 +23,8 @@
 //! ```
 //!
 //! - **Transitions**:
-//!   `[scope:] source -> target [also] [!priority] [%weight] [interrupts] [internal] [: expression]`.
+//!   `[scope:] source -> target [also] [!priority] [%weight] [interrupts] [internal]
+//!   [: expression]`.
 //!   Paths are described in [`path`](crate::path); `scope: a -> b` is short for
 //!   `scope/a -> scope/b`. A line without `->` continues the entry above it. `also` adds a
 //!   transition parallel to the one referred to, such as an exit that the formulas do not have.

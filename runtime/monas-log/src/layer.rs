@@ -68,7 +68,8 @@ impl Logger {
     /// of the settings, or one with a number in its name if that exists.
     ///
     /// # Errors
-    /// The file cannot be created, the system cannot create a thread, or the log was started already.
+    /// The file cannot be created, the system cannot create a thread, or the log was started
+    /// already.
     pub fn begin(&self, settings: LogSettings) -> io::Result<Option<PathBuf>> {
         self.begin_with(settings, ExistingFile::Keep, |lines| {
             // A failure to write to the console cannot be reported.

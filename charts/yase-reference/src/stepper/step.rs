@@ -170,7 +170,7 @@ impl Stepper<'_> {
     fn complete_something(&mut self, world: &mut World) -> Result<bool, Failure> {
         while !self.completions.is_empty() {
             let node = self.completions.remove(0);
-            self.begin_micro_step(); // what one that is consumed has read is not told
+            self.begin_micro_step(); // what one that is consumed has read is not reported
             if let Some(way) = self.judge_ways(node, Offer::Completion, world).found {
                 self.admit()?;
                 self.take(vec![way], None, world)?;
@@ -186,7 +186,7 @@ impl Stepper<'_> {
         self.leaves = self.active_leaves();
         self.found.clear();
         self.closed.clear();
-        self.told.clear();
+        self.reported.clear();
         self.drawn.clear();
     }
 

@@ -66,7 +66,7 @@ impl Stepper<'_> {
                 if is_new {
                     self.stale.remove(&(id, region));
                 }
-                if (is_new || self.raises_every_error()) && self.told.insert(id) {
+                if (is_new || self.raises_every_error()) && self.reported.insert(id) {
                     self.raise(self.error_event("error.guard"));
                     world.say(format!("  guard failed: {error}"));
                 }

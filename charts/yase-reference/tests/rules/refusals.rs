@@ -121,7 +121,7 @@ fn r12_a_choice_without_an_else_is_warned_of_and_stops_with_its_name() {
 }
 
 #[test]
-fn r12_a_choice_that_fails_while_the_chart_starts_is_told_by_the_first_step() {
+fn r12_a_choice_that_fails_while_the_chart_starts_is_reported_by_the_first_step() {
     let chart = chart("START\nA\n! ch\nc/START -> ch\nch -> A : [A.n > 1]");
     let mut machine = Machine::new(script::compile_with(&chart, yase::Semantics::uml()));
     let mut world = World::new(&chart);

@@ -407,7 +407,7 @@ fn r08_what_stays_inside_conflicts_with_nothing_and_fires_first() {
 }
 
 #[test]
-fn r05_a_guard_that_errs_is_told_once_in_a_micro_step_however_often_it_is_read() {
+fn r05_a_guard_that_errs_is_reported_once_in_a_micro_step_however_often_it_is_read() {
     let text = "
         START
         & both
@@ -426,7 +426,7 @@ fn r05_a_guard_that_errs_is_told_once_in_a_micro_step_however_often_it_is_read()
         B -> p : e
         p -> D : [A.n < fail()]
         ";
-    let told = |event: &str| {
+    let reported = |event: &str| {
         format!(
             "
             0.000 s start; enter c, START
@@ -439,9 +439,9 @@ fn r05_a_guard_that_errs_is_told_once_in_a_micro_step_however_often_it_is_read()
         )
     };
     let again = "guard failed: the function failed: it always fails\n0.002 s e: dropped\n0.002 s error.execution: dropped";
-    check(text, "1 e; 2 e; 3", &format!("{}0.002 s e: dropped", told("error.guard")));
+    check(text, "1 e; 2 e; 3", &format!("{}0.002 s e: dropped", reported("error.guard")));
     let every_time = with(|it| it.failures = FailureEvents::EveryTime);
-    check_with(every_time, text, "1 e; 2 e; 3", &format!("{}{again}", told("error.execution")));
+    check_with(every_time, text, "1 e; 2 e; 3", &format!("{}{again}", reported("error.execution")));
 }
 
 #[test]

@@ -48,7 +48,7 @@ fn r01_a_configuration_is_closed_and_has_one_child_for_each_or_and_all_for_each_
 }
 
 #[test]
-fn r01_a_start_without_an_open_way_is_a_resting_place_and_told_once() {
+fn r01_a_start_without_an_open_way_is_a_resting_place_and_reported_once() {
     check(
         "
         START

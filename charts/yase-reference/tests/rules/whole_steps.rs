@@ -46,9 +46,9 @@ fn r23_guards_that_are_read_stand_in_the_record() {
         B -> A : e
     ";
     let log = with_reads(text, "1 A=0; 2 e; 3 A=1; 4 e; 5 e; 6");
-    let told: Vec<&str> = log[2..].iter().map(|line| line.trim()).collect();
+    let reported: Vec<&str> = log[2..].iter().map(|line| line.trim()).collect();
     assert_eq!(
-        told,
+        reported,
         [
             "0.002 s e: dropped; read A -> B = false, A -> A = false",
             "0.004 s e: A -> B; exit A; enter B; read A -> B = true",
@@ -58,7 +58,7 @@ fn r23_guards_that_are_read_stand_in_the_record() {
 }
 
 #[test]
-fn r03_a_guard_that_failed_is_read_again_and_told_again_when_what_it_reads_has_changed() {
+fn r03_a_guard_that_failed_is_read_again_and_reported_again_when_what_it_reads_has_changed() {
     check(
         "
         START
@@ -271,8 +271,8 @@ fn r10_what_one_state_does_at_an_event_says_nothing_of_others() {
 }
 
 #[test]
-fn r03_a_guard_that_failed_is_told_again_when_its_own_blackboard_was_written_and_not_when_another_topic_was()
-{
+fn r03_a_guard_that_failed_is_reported_again_when_its_own_blackboard_was_written_and_not_when_another_topic_was()
+ {
     check(
         "
         START

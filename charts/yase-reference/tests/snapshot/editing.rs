@@ -180,7 +180,7 @@ fn an_activity_is_given_up_and_queued_again() {
 }
 
 #[test]
-fn siblings_of_one_name_are_told_apart() {
+fn siblings_of_one_name_are_distinguished() {
     let chart = "
         START
         a

@@ -28,7 +28,7 @@ const PAST: &str = "
 ";
 
 #[test]
-fn what_histories_remember_is_told_and_can_be_set() {
+fn what_histories_remember_is_reported_and_can_be_set() {
     let mut stage = Stage::new(PAST, &["e", "n"]);
     assert_eq!(stage.machine.snapshot().history("c/w/past"), None);
     stage.event("f");

@@ -167,7 +167,7 @@ fn a_chart_that_is_read_in_another_way() {
 }
 
 #[test]
-fn everything_is_told_at_once() {
+fn everything_is_reported_at_once() {
     let old = "START\na | run=work | for=20ms | defer=e\nb\nSTART -> a : / StartTimeout(v, 1s)\nb -> a : e";
     let mut stage = Stage::new(old, &["e"]);
     let plan = stage.plan("START\nb\nSTART -> b");

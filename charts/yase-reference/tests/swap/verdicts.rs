@@ -358,7 +358,7 @@ fn a_transition_that_waits_for_activities_goes_on_waiting() {
 }
 
 #[test]
-fn a_plan_tells_of_every_node() {
+fn a_plan_lists_every_node() {
     let stage = Stage::new(TWO, &[]);
     let plan = stage.plan("START\na\nouter\n  START\n  d\n  outer/START -> outer/d\nSTART -> a");
     let verdicts: Vec<String> = plan.nodes().map(|(path, verdict)| format!("{path} {verdict}")).collect();

@@ -164,7 +164,7 @@ impl<'a> SnapshotTranslator<'a> {
         if new.status != crate::Status::Running {
             return;
         }
-        let told: BTreeSet<&str> = new.activities.iter().map(|record| record.state.as_str()).collect();
+        let reported: BTreeSet<&str> = new.activities.iter().map(|record| record.state.as_str()).collect();
         let objected: BTreeSet<String> = old
             .activities
             .iter()
@@ -173,7 +173,7 @@ impl<'a> SnapshotTranslator<'a> {
             .collect();
         for entry in self.chart.activities() {
             let path = self.plan.new_paths.node(entry.node);
-            if new.is_active(path) && !told.contains(path) && !objected.contains(path) {
+            if new.is_active(path) && !reported.contains(path) && !objected.contains(path) {
                 let (state, new) = (path.to_owned(), entry.name.to_owned());
                 self.conflicts.push(Conflict::ActivityChanged { state, new });
             }

@@ -181,7 +181,7 @@ topic                 by                mean cycle
 soccer/attack_status  MotionController          12
 ball                  Vision               1.25 ms";
         assert_eq!(topics().text(usize::MAX), expected);
-        assert!(of_numbers(["a"], 0, [[String::new(); 1]; 0]).to_string().ends_with('─'));
+        assert!(of_numbers(["a"], 0, Vec::<Vec<String>>::new()).to_string().ends_with('─'));
     }
 
     #[test]

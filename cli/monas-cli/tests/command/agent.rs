@@ -64,7 +64,7 @@ fn a_session_with_a_run_in_real_time() {
 }
 
 #[test]
-fn a_swap_that_is_refused_says_how_states_are_mapped_and_a_signal_is_told_in_the_exit_code() {
+fn a_swap_that_is_refused_says_how_states_are_mapped_and_a_signal_is_reported_in_the_exit_code() {
     let folder = folder();
     let run = start(folder.path());
     let other = folder.path().join("other.srm").display().to_string();

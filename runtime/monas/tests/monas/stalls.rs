@@ -67,16 +67,16 @@ impl Activity for Stopping {
 fn a_run_in_real_time_ends_though_an_activity_does_not_stop() {
     for is_chart in [false, true] {
         let (talws, calls, release) = clinging(is_chart);
-        let (sender, told) = channel();
+        let (sender, reported) = channel();
         let running = talws.agent(Agent::new("b", Hz(100)).activity(Stopping(sender))).start().unwrap();
         calls.recv_timeout(PATIENCE).unwrap();
-        assert_eq!(told.recv_timeout(PATIENCE).unwrap(), "execute");
+        assert_eq!(reported.recv_timeout(PATIENCE).unwrap(), "execute");
         let statistics = running.stop();
         let reason = statistics.agents[0].stopped.clone().unwrap();
         let expected = "abandoned at the end of the run: activity `Clinging` of agent `a` on `local` has not \
                         returned from `stop` for ";
         assert!(reason.starts_with(expected), "{reason}");
-        while told.recv_timeout(PATIENCE).unwrap() != "stop" {}
+        while reported.recv_timeout(PATIENCE).unwrap() != "stop" {}
         release.send(()).unwrap();
     }
 }

@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_cannot_be_written_is_told() {
+    fn a_folder_that_cannot_be_written_is_reported() {
         assert_eq!(sockets(Err("none".into())).state, CheckStatus::Warning);
         assert_eq!(sockets(Ok(PathBuf::from("/nowhere"))).state, CheckStatus::Warning);
         let folder = tempfile::tempdir().unwrap();

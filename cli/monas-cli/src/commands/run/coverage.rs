@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn programs_are_told_what_was_missed() {
+    fn programs_are_reported_what_was_missed() {
         let expected = json!({"kind": "coverage", "model": "goalie", "states": 2, "states_missed": ["state 1"],
             "transitions": 2, "transitions_missed": ["a -> 1"]});
         assert_eq!(object(&chart("goalie", [1, 0], [5, 0, 0])), expected);
