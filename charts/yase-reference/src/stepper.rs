@@ -21,7 +21,7 @@ use yase::{Activation, Outcome, ScopeId, Semantics, Timestamp, TopicId};
 use crate::chance::Chance;
 use crate::script::Interpreter;
 use crate::world::{TOPICS, World};
-use transitions::Way;
+use transitions::StaticPath;
 use tree::Tree;
 
 /// A failure that stops the chart.
@@ -46,7 +46,7 @@ pub(crate) struct Occurrence {
 #[derive(Clone, Debug)]
 struct Held {
     occurrence: Occurrence,
-    ways: Vec<Way>,
+    ways: Vec<StaticPath>,
     offer: bool,
 }
 
@@ -103,7 +103,7 @@ pub(crate) struct Stepper<'c> {
     /// The regions that have arrived, each at a JOIN or an exit point.
     arrivals: BTreeSet<(NodeId, NodeId)>,
     /// The transitions of this micro-step.
-    taken: Vec<Way>,
+    taken: Vec<StaticPath>,
     /// ANDs entered on the way to a target, whose other regions are entered last.
     late: Vec<NodeId>,
     /// Composites whose active children were exited, which count as complete.
@@ -114,13 +114,13 @@ pub(crate) struct Stepper<'c> {
     arrived: Vec<Occurrence>,
     deferred: Vec<Occurrence>,
     held: Vec<Held>,
-    pending: Vec<(Way, Option<String>)>,
+    pending: Vec<(StaticPath, Option<String>)>,
     erred: BTreeSet<(TransitionId, ScopeId)>,
     stale: BTreeSet<(TransitionId, ScopeId)>,
     written: BTreeSet<ScopeId>,
     waiting: BTreeSet<NodeId>,
     /// Candidates of this micro-step: transitions, and the state at which each was found.
-    found: Vec<(NodeId, Way)>,
+    found: Vec<(NodeId, StaticPath)>,
     /// The active leaves from which a candidate was found, outward.
     closed: BTreeSet<NodeId>,
     /// The active leaves at its beginning.
@@ -253,7 +253,7 @@ impl Interpreter for Stepper<'_> {
         };
         let mut held = std::mem::take(&mut self.held);
         for Held { ways, offer, .. } in &mut held {
-            let in_the_way = |way: &Way| {
+            let in_the_way = |way: &StaticPath| {
                 self.exit_set(way).contains(&activation.node)
                     || way.sources.iter().any(|&source| self.region(source) == activation.region)
             };

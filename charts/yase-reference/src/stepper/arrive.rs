@@ -3,7 +3,7 @@
 use yase::statechart::{NodeId, NodeKind, TransitionId};
 use yase::{ExitPointArrival, JoinMode};
 
-use super::{Stepper, Way};
+use super::{StaticPath, Stepper};
 
 /// The arrival of a region.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -16,7 +16,7 @@ pub(crate) struct Arrival {
     pub passes: bool,
 }
 
-impl Way {
+impl StaticPath {
     /// The arrival that a way ends with.
     pub(crate) fn arrives(&self) -> Option<Arrival> {
         self.arrival.filter(|arrival| !arrival.passes)
@@ -25,7 +25,7 @@ impl Way {
 
 impl Stepper<'_> {
     /// The arrival of a path that has reached a node: of a state, and only its first.
-    pub(crate) fn arrival(&self, way: &Way, target: NodeId, rest: &[TransitionId]) -> Option<Arrival> {
+    pub(crate) fn arrival(&self, way: &StaticPath, target: NodeId, rest: &[TransitionId]) -> Option<Arrival> {
         let [source] = way.sources[..] else { return None };
         let state = matches!(self.kind(source), NodeKind::Basic | NodeKind::Or | NodeKind::And);
         if !state || !rest.is_empty() || !way.ends.is_empty() || way.arrival.is_some() {
@@ -54,7 +54,7 @@ impl Stepper<'_> {
     /// Whether all other regions have arrived, or do so in this micro-step.
     pub(crate) fn others_arrive(&self, arrival: Arrival) -> bool {
         let (join, chosen) = (arrival.join, !self.taken.is_empty());
-        let here = |way: &Way, region: NodeId| {
+        let here = |way: &StaticPath, region: NodeId| {
             way.arrives().is_some_and(|it| (it.join, it.region) == (join, region))
         };
         let arrives = |region: NodeId| match chosen {
@@ -66,7 +66,7 @@ impl Stepper<'_> {
     }
 
     /// The arrival with which a way ends though it was to pass: another one did not happen.
-    pub(crate) fn ends_early(&self, way: &Way) -> Option<Arrival> {
+    pub(crate) fn ends_early(&self, way: &StaticPath) -> Option<Arrival> {
         way.arrival.filter(|arrival| arrival.passes && !self.others_arrive(*arrival))
     }
 

@@ -3,7 +3,7 @@
 use yase::statechart::{NodeId, NodeKind};
 use yase::{CompletionTrigger, Host, InitialState, RootCompletion, Statechart};
 
-use super::{Failure, Job, Phase, Stepper, Way};
+use super::{Failure, Job, Phase, StaticPath, Stepper};
 use crate::world::World;
 
 impl Stepper<'_> {
@@ -80,7 +80,7 @@ impl Stepper<'_> {
     }
 
     /// The way out of START or HISTORY that is open now.
-    fn open_way(&mut self, connector: NodeId, world: &mut World) -> Option<Way> {
+    fn open_way(&mut self, connector: NodeId, world: &mut World) -> Option<StaticPath> {
         let out = self.outgoing(connector);
         // the blackboard of the composite, also where its way leads from an AND's HISTORY into a
         // region
@@ -92,7 +92,7 @@ impl Stepper<'_> {
     /// where entering ends.
     fn go_on(
         &mut self,
-        way: &Way,
+        way: &StaticPath,
         composite: NodeId,
         start: Option<NodeId>,
         world: &mut World,

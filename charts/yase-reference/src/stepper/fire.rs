@@ -6,13 +6,17 @@ use yase::statechart::{NodeId, NodeKind, TransitionId};
 use yase::{ActivityOnExit, Host, RootCompletion, ScopeId, Statechart};
 
 use super::arrive::Arrival;
-use super::{Failure, Phase, Stepper, Way};
+use super::{Failure, Phase, StaticPath, Stepper};
 use crate::world::World;
 
 impl Stepper<'_> {
     /// Fires one transition after the other, without those whose source an earlier one has exited,
     /// even if it is active again.
-    pub(crate) fn fire_each(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
+    pub(crate) fn fire_each(
+        &mut self,
+        ways: Vec<StaticPath>,
+        world: &mut World,
+    ) -> Result<Vec<StaticPath>, Failure> {
         let mut fired = vec![];
         let exits: Vec<BTreeSet<NodeId>> = ways.iter().map(|way| self.exit_set(way)).collect();
         let mut left = BTreeSet::new();
@@ -32,11 +36,11 @@ impl Stepper<'_> {
     }
 
     /// Whether all sources are still active.
-    pub(crate) fn may_fire(&self, way: &Way) -> bool {
+    pub(crate) fn may_fire(&self, way: &StaticPath) -> bool {
         way.sources.iter().all(|source| self.active.contains(source))
     }
 
-    pub(crate) fn fire(&mut self, way: &Way, world: &mut World) -> Result<(), Failure> {
+    pub(crate) fn fire(&mut self, way: &StaticPath, world: &mut World) -> Result<(), Failure> {
         let early = self.ends_early(way);
         if self.walks_segments() {
             self.walk_whole(way, early, world)?;
@@ -68,7 +72,11 @@ impl Stepper<'_> {
     }
 
     /// All exits, then all effects, then all entries.
-    pub(crate) fn fire_phases(&mut self, ways: Vec<Way>, world: &mut World) -> Result<Vec<Way>, Failure> {
+    pub(crate) fn fire_phases(
+        &mut self,
+        ways: Vec<StaticPath>,
+        world: &mut World,
+    ) -> Result<Vec<StaticPath>, Failure> {
         let ways = self.with_their_sources(ways);
         self.taken = ways.clone();
         let early: Vec<Option<Arrival>> = ways.iter().map(|way| self.ends_early(way)).collect();
@@ -97,7 +105,7 @@ impl Stepper<'_> {
 
     /// Removes transitions with a target whose source another one exits: they are only selected
     /// because nothing is active in it.
-    fn with_their_sources(&self, mut ways: Vec<Way>) -> Vec<Way> {
+    fn with_their_sources(&self, mut ways: Vec<StaticPath>) -> Vec<StaticPath> {
         let mut index = 0;
         while index < ways.len() {
             let way = &ways[index];
@@ -120,7 +128,7 @@ impl Stepper<'_> {
     }
 
     /// What a way leaves.
-    fn exits_of(&self, way: &Way, early: Option<Arrival>) -> BTreeSet<NodeId> {
+    fn exits_of(&self, way: &StaticPath, early: Option<Arrival>) -> BTreeSet<NodeId> {
         match early {
             Some(arrival) => self.active_inside(arrival.region).into_iter().collect(),
             None => self.exit_set(way),
@@ -183,7 +191,7 @@ impl Stepper<'_> {
     /// way; returns its targets.
     fn effects_and_targets(
         &mut self,
-        way: &Way,
+        way: &StaticPath,
         early: Option<Arrival>,
         world: &mut World,
     ) -> Result<Vec<NodeId>, Failure> {
@@ -237,7 +245,7 @@ impl Stepper<'_> {
 
     fn enter_targets(
         &mut self,
-        way: &Way,
+        way: &StaticPath,
         early: Option<Arrival>,
         targets: &[NodeId],
         world: &mut World,
@@ -250,7 +258,7 @@ impl Stepper<'_> {
     }
 
     /// What a way leaves without an active child, and its arrival.
-    fn settle(&mut self, way: &Way, early: Option<Arrival>) {
+    fn settle(&mut self, way: &StaticPath, early: Option<Arrival>) {
         let arrival = early.or(way.arrives());
         let vacated = match early {
             Some(arrival) => vec![arrival.region],

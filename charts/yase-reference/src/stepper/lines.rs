@@ -2,16 +2,16 @@
 
 use yase::statechart::{NodeId, StateNames, TransitionId};
 
-use super::{Failure, Line, Stepper, Way, topic};
+use super::{Failure, Line, StaticPath, Stepper, topic};
 use crate::world::World;
 
 /// The static content of a line.
 #[derive(Default)]
 pub(crate) struct Heading<'a> {
     pub event: Option<&'a str>,
-    pub fired: &'a [Way],
-    pub losers: &'a [Way],
-    pub held: &'a [Way],
+    pub fired: &'a [StaticPath],
+    pub losers: &'a [StaticPath],
+    pub held: &'a [StaticPath],
     pub deferring: Option<NodeId>,
 }
 
@@ -20,7 +20,7 @@ impl Stepper<'_> {
         nodes.iter().map(|&node| self.name(node)).collect::<Vec<_>>().join(", ")
     }
 
-    fn way_names(&self, ways: &[Way]) -> String {
+    fn way_names(&self, ways: &[StaticPath]) -> String {
         ways.iter().map(|way| self.chain(&way.segments)).collect::<Vec<_>>().join(", ")
     }
 

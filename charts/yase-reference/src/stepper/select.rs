@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use yase::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 use yase::{ActivityOnExit, CompletionTrigger, ConflictResolution, Firing, JoinMode, ScopeId};
 
-use super::{Held, Occurrence, Phase, Stepper, Way};
+use super::{Held, Occurrence, Phase, StaticPath, Stepper};
 use crate::world::World;
 
 /// What a micro-step offers to transitions.
@@ -31,8 +31,8 @@ impl<'a> Offer<'a> {
 struct Search {
     visited: BTreeSet<NodeId>,
     /// Candidates, and the first leaf that each was found for.
-    found: Vec<(NodeId, Way)>,
-    waiting: Vec<Way>,
+    found: Vec<(NodeId, StaticPath)>,
+    waiting: Vec<StaticPath>,
     /// The leaves with a transition that waits.
     noted: BTreeSet<NodeId>,
 }
@@ -41,8 +41,8 @@ struct Search {
 /// block.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Judgement {
-    pub found: Option<Way>,
-    pub blocked: Option<Way>,
+    pub found: Option<StaticPath>,
+    pub blocked: Option<StaticPath>,
 }
 
 impl<'c> Stepper<'c> {
@@ -55,12 +55,12 @@ impl<'c> Stepper<'c> {
     }
 
     /// Whether running activities block a path.
-    pub(crate) fn leaves_running(&self, way: &Way) -> bool {
+    pub(crate) fn leaves_running(&self, way: &StaticPath) -> bool {
         self.semantics.on_exit == ActivityOnExit::Blocks
             && self.exit_set(way).into_iter().any(|node| self.runs(node))
     }
 
-    fn is_locked(&self, way: &Way) -> bool {
+    fn is_locked(&self, way: &StaticPath) -> bool {
         self.semantics.on_exit == ActivityOnExit::Blocks
             && way.sources.iter().any(|&source| self.region_runs(self.region(source)))
     }
@@ -86,7 +86,7 @@ impl<'c> Stepper<'c> {
     }
 
     /// R15
-    fn is_ready(&self, way: &Way, offer: Offer<'_>) -> bool {
+    fn is_ready(&self, way: &StaticPath, offer: Offer<'_>) -> bool {
         let source = way.sources[0];
         if let Some(arrival) = way.arrival {
             let due = offer.event().is_some() || self.is_complete(source);
@@ -116,13 +116,13 @@ impl<'c> Stepper<'c> {
 
     /// Whether nothing inside can step or runs, except what the guarded exit of a composite may
     /// interrupt.
-    fn is_quiet(&self, way: &Way, source: NodeId) -> bool {
+    fn is_quiet(&self, way: &StaticPath, source: NodeId) -> bool {
         let inside = self.active_inside(source);
         let exit = self.expression(way.segments[0]).guard.is_some() && way.ends != way.sources;
         let composite = matches!(self.kind(source), NodeKind::Or | NodeKind::And);
         let may_run = exit && composite && self.interrupts(way);
         let runs = self.runs(source) || inside.iter().any(|&node| self.runs(node));
-        let steps = |way: &Way| way.sources.iter().any(|&other| self.is_inside(other, source));
+        let steps = |way: &StaticPath| way.sources.iter().any(|&other| self.is_inside(other, source));
         (may_run || !runs) && !self.found.iter().any(|(_, way)| steps(way))
     }
 
@@ -177,13 +177,17 @@ impl<'c> Stepper<'c> {
 
     /// Those with a weight are drawn among if R15 allows one of their ways.
     fn may_be_drawn(&mut self, node: NodeId, id: TransitionId, offer: Offer<'_>) -> bool {
-        let start = Way { sources: vec![node], ..Way::default() };
+        let start = StaticPath { sources: vec![node], ..StaticPath::default() };
         self.transition(id).weight.is_none()
             || self.any_way(&start, &[id], &mut |me, way, _| me.is_ready(way, offer))
     }
 
     /// The candidates, and the ways that wait for running activities.
-    pub(crate) fn candidates(&mut self, offer: Offer<'_>, world: &mut World) -> (Vec<Way>, Vec<Way>) {
+    pub(crate) fn candidates(
+        &mut self,
+        offer: Offer<'_>,
+        world: &mut World,
+    ) -> (Vec<StaticPath>, Vec<StaticPath>) {
         self.begin_micro_step();
         let mut search = Search::default();
         self.visit(Statechart::ROOT, offer, &mut search, world);
@@ -255,20 +259,20 @@ impl<'c> Stepper<'c> {
         self.leaves.iter().copied().filter(inside).collect()
     }
 
-    fn is_nested(&self, inner: &Way, outer: &Way) -> bool {
+    fn is_nested(&self, inner: &StaticPath, outer: &StaticPath) -> bool {
         inner.sources.iter().any(|&a| outer.sources.iter().any(|&b| self.is_inside(a, b)))
     }
 
-    pub(crate) fn key(&self, way: &Way) -> usize {
+    pub(crate) fn key(&self, way: &StaticPath) -> usize {
         way.sources.iter().map(|&source| self.position(source)).min().unwrap()
     }
 
     /// What is nested before what is around it, else in the order of the document.
-    pub(crate) fn sort_inner_first(&self, ways: &mut Vec<Way>) {
+    pub(crate) fn sort_inner_first(&self, ways: &mut Vec<StaticPath>) {
         ways.sort_by_key(|way| self.key(way));
-        let mut sorted: Vec<Way> = vec![];
+        let mut sorted: Vec<StaticPath> = vec![];
         while !ways.is_empty() {
-            let free = |way: &Way| !ways.iter().any(|other| self.is_nested(other, way));
+            let free = |way: &StaticPath| !ways.iter().any(|other| self.is_nested(other, way));
             let index = ways.iter().position(free).unwrap_or(0);
             sorted.push(ways.remove(index));
         }
@@ -276,41 +280,41 @@ impl<'c> Stepper<'c> {
     }
 
     /// Winners, in the order they fire, and losers of conflicts.
-    pub(crate) fn resolve(&mut self, candidates: Vec<Way>) -> (Vec<Way>, Vec<Way>) {
+    pub(crate) fn resolve(&mut self, candidates: Vec<StaticPath>) -> (Vec<StaticPath>, Vec<StaticPath>) {
         match self.semantics.firing {
             Firing::Phases => self.remove_conflicting(candidates),
             _ => self.strongest(candidates),
         }
     }
 
-    fn strongest(&mut self, mut candidates: Vec<Way>) -> (Vec<Way>, Vec<Way>) {
+    fn strongest(&mut self, mut candidates: Vec<StaticPath>) -> (Vec<StaticPath>, Vec<StaticPath>) {
         self.sort_inner_first(&mut candidates);
         let (mut winners, losers) = self.remove_conflicting(candidates);
         winners.sort_by_key(|way| (!self.stays_inside(way), self.key(way)));
         (winners, losers)
     }
 
-    fn stays_inside(&self, way: &Way) -> bool {
+    fn stays_inside(&self, way: &StaticPath) -> bool {
         self.is_internal(way) && self.scope(way) == way.sources[0]
     }
 
     /// Whether a later candidate wins against an earlier one: it is nested in it, or chosen.
-    fn upsets(&mut self, way: &Way, winner: &Way) -> bool {
+    fn upsets(&mut self, way: &StaticPath, winner: &StaticPath) -> bool {
         self.is_nested(way, winner)
             || !self.is_nested(winner, way)
                 && self.semantics.conflict == ConflictResolution::Random
                 && self.chance.pick(2) == 1
     }
 
-    fn conflict(&self, a: &Way, b: &Way) -> bool {
+    fn conflict(&self, a: &StaticPath, b: &StaticPath) -> bool {
         // regions that arrive in one place do so together
         let together = a.arrival.zip(b.arrival).is_some_and(|(a, b)| a.join == b.join);
         !together && !self.exit_set(a).is_disjoint(&self.exit_set(b))
     }
 
     /// SCXML's `removeConflictingTransitions`.
-    fn remove_conflicting(&mut self, candidates: Vec<Way>) -> (Vec<Way>, Vec<Way>) {
-        let (mut winners, mut losers): (Vec<Way>, Vec<Way>) = (vec![], vec![]);
+    fn remove_conflicting(&mut self, candidates: Vec<StaticPath>) -> (Vec<StaticPath>, Vec<StaticPath>) {
+        let (mut winners, mut losers): (Vec<StaticPath>, Vec<StaticPath>) = (vec![], vec![]);
         for way in candidates {
             let against: Vec<usize> =
                 (0..winners.len()).filter(|&index| self.conflict(&winners[index], &way)).collect();

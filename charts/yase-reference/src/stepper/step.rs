@@ -6,7 +6,7 @@ use yase::{Deferral, Delivery, EventMatching, EventPool, FailureEvents, Firing, 
 
 use super::lines::Heading;
 use super::select::Offer;
-use super::{Failure, Held, Line, Occurrence, Phase, Stepper, Way};
+use super::{Failure, Held, Line, Occurrence, Phase, StaticPath, Stepper};
 use crate::world::World;
 
 impl Stepper<'_> {
@@ -274,11 +274,11 @@ impl Stepper<'_> {
 
     /// R26: the first state that defers an event though transitions were found for it, none of them
     /// from inside that state or from itself.
-    fn claimant(&self, event: &str, found: &[Way]) -> Option<NodeId> {
+    fn claimant(&self, event: &str, found: &[StaticPath]) -> Option<NodeId> {
         if self.semantics.deferral != Deferral::Innermost {
             return None;
         }
-        let own = |node: NodeId, way: &Way| {
+        let own = |node: NodeId, way: &StaticPath| {
             way.sources.iter().any(|&source| source == node || self.is_inside(source, node))
         };
         let all = self.in_order_from_within();
@@ -310,7 +310,12 @@ impl Stepper<'_> {
         all.find(|&node| self.semantics.deferral != Deferral::Off && self.defers(node, event))
     }
 
-    fn take(&mut self, candidates: Vec<Way>, event: Option<&str>, world: &mut World) -> Result<(), Failure> {
+    fn take(
+        &mut self,
+        candidates: Vec<StaticPath>,
+        event: Option<&str>,
+        world: &mut World,
+    ) -> Result<(), Failure> {
         let (winners, losers) = self.resolve(candidates);
         let (mut now, mut later) = (vec![], vec![]);
         for way in winners {

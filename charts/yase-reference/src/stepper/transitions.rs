@@ -13,7 +13,7 @@ use super::arrive::Arrival;
 /// The static part of a compound transition: everything up to the first CHOICE, HISTORY or state on
 /// each of its paths.
 #[derive(Clone, PartialEq, Debug, Default)]
-pub(crate) struct Way {
+pub(crate) struct StaticPath {
     pub sources: Vec<NodeId>,
     /// In the order of their effects.
     pub segments: Vec<TransitionId>,
@@ -35,7 +35,7 @@ enum Role {
 }
 
 /// Accepts a complete path or, given a number of segments, an incomplete one.
-pub(crate) type Accept<'a, 'c> = &'a mut dyn FnMut(&mut Stepper<'c>, &Way, Option<usize>) -> bool;
+pub(crate) type Accept<'a, 'c> = &'a mut dyn FnMut(&mut Stepper<'c>, &StaticPath, Option<usize>) -> bool;
 
 impl<'c> Stepper<'c> {
     pub(crate) fn transition(&self, id: TransitionId) -> &'c Transition {
@@ -121,13 +121,13 @@ impl<'c> Stepper<'c> {
 
     /// Follows segments depth-first to the first complete path that is accepted; `open` are those
     /// still to be followed.
-    pub(crate) fn follow(&mut self, way: &Way, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+    pub(crate) fn follow(&mut self, way: &StaticPath, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
         let Some((&segment, rest)) = open.split_first() else { return accept(self, way, None) };
         let mut way = way.clone();
         way.segments.push(segment);
         let target = self.transition(segment).target;
         if let Some(arrival) = self.arrival(&way, target, rest) {
-            let stopping = Way { ends: vec![target], arrival: Some(arrival), ..way.clone() };
+            let stopping = StaticPath { ends: vec![target], arrival: Some(arrival), ..way.clone() };
             way.arrival = Some(Arrival { passes: true, ..arrival });
             return accept(self, &stopping, None) || self.branch(&way, target, rest, accept);
         }
@@ -153,7 +153,12 @@ impl<'c> Stepper<'c> {
     }
 
     /// Whether any complete path is accepted, regardless of choices.
-    pub(crate) fn any_way(&mut self, way: &Way, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+    pub(crate) fn any_way(
+        &mut self,
+        way: &StaticPath,
+        open: &[TransitionId],
+        accept: Accept<'_, 'c>,
+    ) -> bool {
         self.without_chance(|me| me.follow(way, open, accept))
     }
 
@@ -165,7 +170,13 @@ impl<'c> Stepper<'c> {
         found
     }
 
-    fn branch(&mut self, way: &Way, node: NodeId, rest: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+    fn branch(
+        &mut self,
+        way: &StaticPath,
+        node: NodeId,
+        rest: &[TransitionId],
+        accept: Accept<'_, 'c>,
+    ) -> bool {
         let out = self.outgoing(node);
         let drawn = self.chance.draws() && out.iter().any(|&id| self.transition(id).weight.is_some());
         if drawn && !self.is_come_by(way, node, rest, accept) {
@@ -179,7 +190,13 @@ impl<'c> Stepper<'c> {
 
     /// Nothing is drawn at a connector that no open segments reach, on the blackboard of any path
     /// through it.
-    fn is_come_by(&mut self, way: &Way, node: NodeId, rest: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
+    fn is_come_by(
+        &mut self,
+        way: &StaticPath,
+        node: NodeId,
+        rest: &[TransitionId],
+        accept: Accept<'_, 'c>,
+    ) -> bool {
         let so_far = way.segments.len();
         self.without_chance(|me| {
             me.branch(way, node, rest, &mut |me, whole, _| accept(me, whole, Some(so_far)))
@@ -192,8 +209,8 @@ impl<'c> Stepper<'c> {
         node: NodeId,
         list: &[TransitionId],
         accept: Accept<'_, 'c>,
-    ) -> Option<Way> {
-        let start = Way { sources: vec![node], ..Way::default() };
+    ) -> Option<StaticPath> {
+        let start = StaticPath { sources: vec![node], ..StaticPath::default() };
         let mut found = None;
         self.try_each(list, &mut |me, id| {
             me.follow(&start, &[id], &mut |me, way, so_far| {
@@ -228,7 +245,7 @@ impl<'c> Stepper<'c> {
 
     /// In UML only the segment out of a state can be internal, and a path that leads out through an
     /// exit point is not.
-    pub(crate) fn is_internal(&self, way: &Way) -> bool {
+    pub(crate) fn is_internal(&self, way: &StaticPath) -> bool {
         let internal = |id: &TransitionId| self.transition(*id).internal;
         if self.semantics.structure == StructureRules::Strict {
             return way.segments.iter().any(internal);
@@ -243,7 +260,7 @@ impl<'c> Stepper<'c> {
             && self.possible_targets(way).into_iter().chain(passed).all(inside)
     }
 
-    pub(crate) fn is_targetless(&self, way: &Way) -> bool {
+    pub(crate) fn is_targetless(&self, way: &StaticPath) -> bool {
         let direct = !self.walks_segments() || way.segments.len() == 1;
         self.is_internal(way) && way.ends == way.sources && direct
     }
@@ -252,7 +269,7 @@ impl<'c> Stepper<'c> {
         self.semantics.firing == Firing::EachSegment
     }
 
-    pub(crate) fn interrupts(&self, way: &Way) -> bool {
+    pub(crate) fn interrupts(&self, way: &StaticPath) -> bool {
         way.segments.iter().any(|&id| self.transition(id).interrupts)
     }
 
@@ -278,7 +295,7 @@ impl<'c> Stepper<'c> {
     }
 
     /// R2
-    pub(crate) fn scope(&self, way: &Way) -> NodeId {
+    pub(crate) fn scope(&self, way: &StaticPath) -> NodeId {
         if self.is_internal(way) {
             return way.sources[0];
         }
@@ -311,7 +328,7 @@ impl<'c> Stepper<'c> {
 
     /// Where a path may lead, with the connectors on its ways. A TERMINATE at which nothing is
     /// exited counts only if there is nothing else.
-    fn possible_targets(&self, way: &Way) -> Vec<NodeId> {
+    fn possible_targets(&self, way: &StaticPath) -> Vec<NodeId> {
         let counts = |target: &NodeId| {
             self.semantics.terminate == TerminateExit::Source || self.kind(*target) != NodeKind::Terminate
         };
@@ -330,7 +347,7 @@ impl<'c> Stepper<'c> {
 
     /// R13: a way all of whose possible ends are TERMINATE leaves and enters nothing, unless its
     /// source is exited; where it may also lead elsewhere, its scope is that of the other ends.
-    pub(crate) fn only_terminates(&self, way: &Way) -> bool {
+    pub(crate) fn only_terminates(&self, way: &StaticPath) -> bool {
         let targets = way.ends.iter().flat_map(|&end| self.final_targets(end));
         let mut ends = targets.filter(|&node| !self.is_passed(node) || self.is_history(node));
         self.semantics.terminate == TerminateExit::Nothing
@@ -345,7 +362,7 @@ impl<'c> Stepper<'c> {
 
     /// The composites that stay but lose what is active in them: `uml`'s arrival at a JOIN, and its
     /// way to an active ancestor.
-    pub(crate) fn vacates(&self, way: &Way) -> Vec<NodeId> {
+    pub(crate) fn vacates(&self, way: &StaticPath) -> Vec<NodeId> {
         let [end] = way.ends[..] else { return vec![] };
         if let Some(arrival) = way.arrives() {
             return vec![arrival.region];
@@ -360,7 +377,7 @@ impl<'c> Stepper<'c> {
         }
     }
 
-    fn completes_ancestor(&self, way: &Way, end: NodeId) -> bool {
+    fn completes_ancestor(&self, way: &StaticPath, end: NodeId) -> bool {
         self.semantics.ancestor == TransitionToAncestor::Completed
             && !self.is_internal(way)
             && matches!(self.kind(end), NodeKind::Or | NodeKind::And)
@@ -370,7 +387,7 @@ impl<'c> Stepper<'c> {
     }
 
     /// Whether the connectors of a path lie in the composite that it completes.
-    fn stays_beside(&self, way: &Way, end: NodeId) -> bool {
+    fn stays_beside(&self, way: &StaticPath, end: NodeId) -> bool {
         let vacated = match self.kind(end) {
             NodeKind::And => self.child_towards(end, way.sources[0]),
             _ => end,
@@ -384,7 +401,7 @@ impl<'c> Stepper<'c> {
     }
 
     /// The active states a way would leave.
-    pub(crate) fn exit_set(&self, way: &Way) -> BTreeSet<NodeId> {
+    pub(crate) fn exit_set(&self, way: &StaticPath) -> BTreeSet<NodeId> {
         if self.is_targetless(way) || self.only_terminates(way) {
             return BTreeSet::new();
         }
@@ -415,7 +432,7 @@ impl<'c> Stepper<'c> {
         }
     }
 
-    pub(crate) fn would_leave(&self, way: &Way, node: NodeId) -> bool {
+    pub(crate) fn would_leave(&self, way: &StaticPath, node: NodeId) -> bool {
         self.exit_set(way).contains(&node)
     }
 }

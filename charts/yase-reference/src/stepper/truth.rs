@@ -4,7 +4,7 @@ use yase::expression::{Comparison, Expression, ExpressionKind, TransitionExpress
 use yase::statechart::TransitionId;
 use yase::{EventMatching, ScopeId};
 
-use super::{Occurrence, Stepper, Way, topic};
+use super::{Occurrence, StaticPath, Stepper, topic};
 use crate::world::World;
 
 impl Stepper<'_> {
@@ -33,14 +33,14 @@ impl Stepper<'_> {
     }
 
     /// R5: on the blackboard of the scope.
-    pub(crate) fn guards_hold(&mut self, way: &Way, so_far: Option<usize>, world: &mut World) -> bool {
+    pub(crate) fn guards_hold(&mut self, way: &StaticPath, so_far: Option<usize>, world: &mut World) -> bool {
         let region = self.region(self.scope(way));
         self.all_hold(way, so_far, region, world)
     }
 
     pub(crate) fn all_hold(
         &mut self,
-        way: &Way,
+        way: &StaticPath,
         so_far: Option<usize>,
         region: ScopeId,
         world: &mut World,

@@ -6,14 +6,14 @@ use yase::statechart::{NodeId, NodeKind};
 use yase::{ScopeId, TerminateExit};
 
 use super::arrive::Arrival;
-use super::{Failure, Stepper, Way};
+use super::{Failure, StaticPath, Stepper};
 use crate::world::World;
 
 impl Stepper<'_> {
     /// Takes a way from a state, and then enters the regions to which nothing has led.
     pub(crate) fn walk_whole(
         &mut self,
-        way: &Way,
+        way: &StaticPath,
         early: Option<Arrival>,
         world: &mut World,
     ) -> Result<(), Failure> {
@@ -25,7 +25,7 @@ impl Stepper<'_> {
     }
 
     /// Timers that were started after the last target was entered belong to the first one.
-    pub(crate) fn bind_rest(&mut self, way: &Way, early: Option<Arrival>) {
+    pub(crate) fn bind_rest(&mut self, way: &StaticPath, early: Option<Arrival>) {
         let first =
             way.ends.first().copied().filter(|&end| early.is_none() && self.kind(end) != NodeKind::Choice);
         self.bind_timers(first);
@@ -49,7 +49,7 @@ impl Stepper<'_> {
     /// Takes the segments of a way; `start` is the START of the current path.
     pub(crate) fn walk(
         &mut self,
-        way: &Way,
+        way: &StaticPath,
         early: Option<Arrival>,
         region: ScopeId,
         start: Option<NodeId>,
@@ -70,7 +70,7 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    fn ends_of(&self, way: &Way, index: usize) -> (NodeId, NodeId) {
+    fn ends_of(&self, way: &StaticPath, index: usize) -> (NodeId, NodeId) {
         let transition = self.transition(way.segments[index]);
         (transition.source, transition.target)
     }
@@ -89,14 +89,14 @@ impl Stepper<'_> {
     }
 
     /// The AND whose regions come together on a way.
-    fn joined_on(&self, way: &Way) -> Option<NodeId> {
+    fn joined_on(&self, way: &StaticPath) -> Option<NodeId> {
         let together = || self.lowest_around(&way.sources, |kind| kind == NodeKind::And);
         let arrival = way.arrival.map(|arrival| self.parent(arrival.region));
         arrival.or_else(|| (way.sources.len() > 1).then(together))
     }
 
     /// The composite inside which a segment leaves and enters.
-    fn border(&self, way: &Way, index: usize) -> NodeId {
+    fn border(&self, way: &StaticPath, index: usize) -> NodeId {
         let (source, target) = self.ends_of(way, index);
         let local = self.transition(way.segments[index]).internal;
         if index == 0 && local && self.is_state(source) && self.is_inside(target, source) {
@@ -120,7 +120,7 @@ impl Stepper<'_> {
     }
 
     /// The targets of the segments that a path takes out of one node.
-    fn beside(&self, way: &Way, source: NodeId, target: NodeId) -> Vec<NodeId> {
+    fn beside(&self, way: &StaticPath, source: NodeId, target: NodeId) -> Vec<NodeId> {
         let all = way.segments.iter().map(|&id| self.transition(id));
         let forks = [NodeKind::Fork, NodeKind::EntryPoint].contains(&self.kind(source));
         match forks {
@@ -129,7 +129,13 @@ impl Stepper<'_> {
         }
     }
 
-    fn leave_by_segment(&mut self, way: &Way, index: usize, early: Option<Arrival>, world: &mut World) {
+    fn leave_by_segment(
+        &mut self,
+        way: &StaticPath,
+        index: usize,
+        early: Option<Arrival>,
+        world: &mut World,
+    ) {
         let exits = self.exits_by_segment(way, index, early);
         let (_, target) = self.ends_of(way, index);
         let arrival = early.or(way.arrives()).filter(|arrival| arrival.segment == index);
@@ -139,7 +145,7 @@ impl Stepper<'_> {
         self.leave_all(&exits, world);
     }
 
-    fn exits_by_segment(&self, way: &Way, index: usize, early: Option<Arrival>) -> BTreeSet<NodeId> {
+    fn exits_by_segment(&self, way: &StaticPath, index: usize, early: Option<Arrival>) -> BTreeSet<NodeId> {
         let (source, target) = self.ends_of(way, index);
         let inside = |node: NodeId| self.active_inside(node).into_iter().collect::<BTreeSet<_>>();
         if let Some(arrival) = early.or(way.arrives()).filter(|arrival| arrival.segment == index) {
@@ -190,7 +196,7 @@ impl Stepper<'_> {
     /// Enters what is around the target of a segment, and the target if the path ends there.
     fn enter_by_segment(
         &mut self,
-        way: &Way,
+        way: &StaticPath,
         index: usize,
         region: ScopeId,
         start: Option<NodeId>,
@@ -252,7 +258,7 @@ impl Stepper<'_> {
         }
     }
 
-    fn leads_inside(&self, way: &Way, index: usize) -> bool {
+    fn leads_inside(&self, way: &StaticPath, index: usize) -> bool {
         let point = self.ends_of(way, index).1;
         let Some(&next) = way.segments.get(index + 1) else { return true };
         let (source, target) = (self.transition(next).source, self.transition(next).target);
