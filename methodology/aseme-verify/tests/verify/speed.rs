@@ -21,15 +21,12 @@ fn a_large_role_is_checked() {
 }
 
 /// Asserts that all states are explored and all traces compared, so that nothing is undecided.
-fn is_explored_to_the_end(name: &str, configurations: usize) {
+fn is_explored_to_the_end(name: &str, configurations: usize, expected: &[&str]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name);
     let source = Source::new(name, std::fs::read_to_string(path).unwrap());
     let report = check(&source, &CheckSettings::default());
-    // Without the program it is unknown that `passBall` is an activity.
-    let findings = report.findings.iter().filter(|it| {
-        it.diagnostic.severity > Severity::Information && !it.diagnostic.message.starts_with("`passBall`")
-    });
-    assert_eq!(findings.map(ToString::to_string).collect::<Vec<_>>(), [""; 0]);
+    let findings = report.findings.iter().filter(|it| it.diagnostic.severity > Severity::Information);
+    assert_eq!(findings.map(ToString::to_string).collect::<Vec<_>>(), expected);
     let explored = report.explored.unwrap();
     assert!(explored.is_finished, "{explored:?}");
     assert_eq!(explored.configurations, configurations, "{explored:?}");
@@ -37,17 +34,20 @@ fn is_explored_to_the_end(name: &str, configurations: usize) {
 
 #[test]
 fn the_goalie_is_explored_to_the_end() {
-    is_explored_to_the_end("goalie.srm", 12);
+    is_explored_to_the_end("goalie.srm", 12, &[]);
 }
 
 #[test]
 fn the_attacker_is_explored_to_the_end() {
-    is_explored_to_the_end("attacker.srm", 14);
+    is_explored_to_the_end("attacker.srm", 14, &[]);
 }
 
 #[test]
 fn the_extended_attacker_is_explored_to_the_end() {
-    is_explored_to_the_end("extended_attacker.srm", 21);
+    // Without the program it is unknown that `passBall` is an activity.
+    let pass = "extended_attacker.srm:17:29: warning[M21]: `passBall` has no formula and is taken for an activity \
+                (write its formula, or check the role with the program that has the activity)";
+    is_explored_to_the_end("extended_attacker.srm", 21, &[pass]);
 }
 
 /// A long sequence is compared with its formula activity by activity, not each with all.
@@ -56,10 +56,7 @@ fn a_long_sequence_is_checked_to_the_end() {
     let names: Vec<String> = (0..3_000).map(|number| format!("a{number}")).collect();
     let role = format!("Role: r\nLiveness:\nr = {}\n", names.join(" . "));
     let report = check(&Source::new("long.srm", role), &CheckSettings::default());
-    // Without the program it is unknown that `passBall` is an activity.
-    let findings = report.findings.iter().filter(|it| {
-        it.diagnostic.severity > Severity::Information && !it.diagnostic.message.starts_with("`passBall`")
-    });
+    let findings = report.findings.iter().filter(|it| it.diagnostic.severity > Severity::Information);
     assert_eq!(findings.map(ToString::to_string).collect::<Vec<_>>(), [""; 0]);
     let explored = report.explored.unwrap();
     assert!(explored.is_finished && explored.states == 3_001, "{explored:?}");
