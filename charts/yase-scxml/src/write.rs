@@ -191,6 +191,10 @@ impl<'a> DocumentWriter<'a> {
             kind => {
                 let path = self.chart.path(id);
                 self.refuse(format!("`{path}` is a {kind:?}, which SCXML cannot represent"));
+                // What its transitions lose is listed too; the document is refused already.
+                for transition in self.out_of(id) {
+                    self.transition(transition);
+                }
             }
         }
     }

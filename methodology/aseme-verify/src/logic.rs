@@ -17,14 +17,15 @@
 //! use yase::expression::parse_condition;
 //!
 //! let condition = |text| parse_condition(text).0.expect("a condition");
-//! let (near, far) = (condition("Ball.distance < 1 && Ball.found"), condition("Ball.distance > 2 ||
-//! !Ball.found")); let logic = GuardSolver::default();
+//! let near = condition("Ball.distance < 1 && Ball.found");
+//! let far = condition("Ball.distance > 2 || !Ball.found");
+//! let logic = GuardSolver::default();
 //! assert_eq!(logic.together(&[Claim::Holds(&near), Claim::Holds(&far)]), Satisfiability::No);
-//! let Satisfiability::Yes(example) = logic.together(&[Claim::IsFalse(&near),
-//! Claim::IsFalse(&far)]) else { panic!() }; assert_eq!(example.to_string(), "`Ball.distance` is 1
-//! and `Ball.found` is true");
-//! assert_eq!(logic.together(&[Claim::Holds(&condition("seen(Ball.x)"))]),
-//! Satisfiability::Unknown);
+//! let neither = logic.together(&[Claim::IsFalse(&near), Claim::IsFalse(&far)]);
+//! let Satisfiability::Yes(example) = neither else { panic!() };
+//! assert_eq!(example.to_string(), "`Ball.distance` is 1 and `Ball.found` is true");
+//! let opaque = condition("seen(Ball.x)");
+//! assert_eq!(logic.together(&[Claim::Holds(&opaque)]), Satisfiability::Unknown);
 //! ```
 
 mod bounds;

@@ -85,7 +85,7 @@ fn r06_connectors_of_every_kind_that_lead_in_a_circle_or_nowhere_are_refused() {
         with("    ! p\n    ! q\n    A -> p : e\n    p -> q\n    q -> p"),
         "error[M06]: connectors lead in a circle: `c/p` -> `c/q` -> `c/p`"
     );
-    assert_eq!(with("    i in\n    A -> in : e"), "error[M06]: no way leads on from `c/in`");
+    assert_eq!(with("    i in\n    A -> in : e"), "error[M06]: no path continues from `c/in`");
     assert_eq!(with("    h h\n    both -> h : e"), "none", "a HISTORY may lead to START");
 }
 

@@ -287,7 +287,7 @@ fn r06_connectors_in_a_circle_or_without_a_way_on_are_refused() {
     assert_eq!(
         refusal("START\n? a\n? b\n? d\nc/START -> a\na -> b\nb -> a\na -> d"),
         "error[M06]: connectors lead in a circle: `c/a` -> `c/b` -> `c/a`\n\
-         error[M06]: no way leads on from `c/d`"
+         error[M06]: no path continues from `c/d`"
     );
 }
 
