@@ -1,17 +1,23 @@
 //! What each thread calls at present, readable by other threads: for watchdogs.
 
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::activity_context::ActivityContext;
 
 /// The activity that one thread calls. The thread writes it; others only read.
 #[derive(Default)]
 pub struct CallSlot {
-    /// Counts beginnings and ends of calls, so that readers detect progress without the lock.
-    changes: AtomicU64,
     function: AtomicU32,
-    called: Mutex<Option<Arc<ActivityContext>>>,
+    called: Mutex<SlotContent>,
+}
+
+#[derive(Default)]
+struct SlotContent {
+    context: Option<Arc<ActivityContext>>,
+    /// Counts beginnings and ends of calls. It changes with the context, under one lock: otherwise
+    /// a reader could see one call with two numbers.
+    changes: u64,
 }
 
 /// A call that a thread has begun and not ended.
@@ -59,8 +65,10 @@ impl CallSlot {
 
     /// The call in progress, if any.
     pub fn open_call(&self) -> Option<OpenCall> {
-        let number = self.changes.load(Ordering::Acquire);
-        let context = self.called.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
+        let (context, number) = {
+            let content = self.content();
+            (content.context.clone()?, content.changes)
+        };
         let function = match self.function.load(Ordering::Relaxed) {
             0 => ActivityFunction::Start,
             1 => ActivityFunction::Execute,
@@ -72,10 +80,13 @@ impl CallSlot {
 
     /// Replaces the activity that is called. Returns the one before.
     fn replace(&self, called: Option<Arc<ActivityContext>>) -> Option<Arc<ActivityContext>> {
-        let before =
-            std::mem::replace(&mut *self.called.lock().unwrap_or_else(PoisonError::into_inner), called);
-        self.changes.fetch_add(1, Ordering::Release);
-        before
+        let mut content = self.content();
+        content.changes += 1;
+        std::mem::replace(&mut content.context, called)
+    }
+
+    fn content(&self) -> MutexGuard<'_, SlotContent> {
+        self.called.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
