@@ -19,7 +19,7 @@ const FULL: f64 = 0.95;
 const LATER: Progress = Progress::after(Duration::from_millis(200));
 
 fn vehicle(board: &Blackboard) -> Vehicle {
-    board.read(VEHICLE).cloned().unwrap_or_default()
+    board.read(VEHICLE).copied().unwrap_or_default()
 }
 
 /// Commands the vehicle and reports whether the work is done; a vehicle that is done stands.

@@ -55,7 +55,7 @@ impl Activity for SimulatedWarehouse {
         let now = board.now();
         let seconds = self.last.map_or(0.0, |last| now.as_secs_f64() - last.as_secs_f64());
         self.last = Some(now);
-        let drive = board.read(DRIVE).cloned().unwrap_or_default();
+        let drive = board.read(DRIVE).copied().unwrap_or_default();
         self.step(&drive, seconds);
         self.next_order -= seconds;
         if self.next_order <= 0.0 {
@@ -63,8 +63,8 @@ impl Activity for SimulatedWarehouse {
             self.orders.waiting += 1;
             self.orders.shelf = SHELVES.0 + (SHELVES.1 - SHELVES.0) * board.random().uniform();
         }
-        board.publish(ORDERS, self.orders.clone())?;
-        board.publish(VEHICLE, self.vehicle.clone())?;
+        board.publish(ORDERS, self.orders)?;
+        board.publish(VEHICLE, self.vehicle)?;
         Ok(Progress::Done)
     }
 
