@@ -12,6 +12,8 @@
 //! ```
 
 pub mod dice;
+#[cfg(doctest)]
+mod readmes;
 mod row;
 mod season;
 

@@ -16,9 +16,12 @@ use yase::{Diagnostic, Statechart};
 use crate::project::Project;
 
 /// The differences between this program and the project of a configuration; none outside of
-/// projects.
+/// projects, and in packages of a project other than the team's, which have their own programs.
 pub fn differences(config: &Path) -> Vec<Diagnostic> {
     let Ok(project) = Project::around(config) else { return Vec::new() };
+    if !project.contains(config) {
+        return Vec::new();
+    }
     let Ok(there) = project.generated() else { return Vec::new() };
     let registry = Registry::linked();
     let linked: BTreeSet<String> =
@@ -84,6 +87,26 @@ mod tests {
         assert_eq!(first_difference(&plain, &plain), None);
         let difference = first_difference(&plain, &chart("r = a . c . b")).expect("they differ");
         assert!(difference.starts_with("+ state `c`") && difference.ends_with(" more"), "{difference}");
+    }
+
+    #[test]
+    fn only_the_program_of_the_team_must_contain_the_statecharts() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let write = |file: &str, text: &str| {
+            let path = folder.path().join(file);
+            std::fs::create_dir_all(path.parent().expect("it has a folder")).expect("folders");
+            std::fs::write(path, text).expect("the folder takes files");
+        };
+        write("Cargo.toml", "[workspace]\n[workspace.metadata.monas]\nteam = \"team\"\n");
+        write("team/Cargo.toml", "[package]\n");
+        write("vehicle/Cargo.toml", "[package]\n");
+        write(
+            "statecharts/goalie/Cargo.toml",
+            "[package]\n[package.metadata.monas]\nmodel = \"goalie.srm\"\n",
+        );
+        let found = |config: &str| differences(&folder.path().join(config)).len();
+        assert_eq!([found("config/match.xml"), found("team/agents.xml")], [1, 1]);
+        assert_eq!(found("vehicle/config/agents.xml"), 0);
     }
 
     #[test]

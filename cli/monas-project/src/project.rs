@@ -66,6 +66,18 @@ impl Project {
         &self.team
     }
 
+    /// Whether a file is in no other package of the workspace than the team's. Files of another
+    /// package belong to the program of that package.
+    pub(crate) fn contains(&self, file: &Path) -> bool {
+        let file = std::path::absolute(file).unwrap_or_else(|_| file.to_path_buf());
+        let is_package = |folder: &&Path| {
+            let manifest = fs::read_to_string(folder.join("Cargo.toml"));
+            manifest.is_ok_and(|manifest| table(&manifest, "[package]").is_some())
+        };
+        let mut folders = file.ancestors().skip(1).take_while(|folder| *folder != self.root);
+        folders.find(is_package).is_none_or(|folder| folder == self.team)
+    }
+
     /// The folder of the workspace.
     pub(crate) fn root(&self) -> &Path {
         &self.root

@@ -92,6 +92,8 @@ pub use monas_core::linked;
 /// The Rust examples of the chapters in `docs`, tested with the documentation.
 #[cfg(doctest)]
 mod chapters {
+    #[doc = include_str!("../../../docs/cookbook.md")]
+    mod cookbook {}
     #[doc = include_str!("../../../docs/first-agent.md")]
     mod first_agent {}
     #[doc = include_str!("../../../docs/first-chart.md")]

@@ -62,6 +62,16 @@ fn what_a_role_does() {
 }
 
 #[test]
+fn recipes() {
+    read("cookbook.md", 20);
+}
+
+#[test]
+fn symptoms_and_remedies() {
+    read("troubleshooting.md", 20);
+}
+
+#[test]
 fn from_goals_to_robots_that_act_together() {
     let Reading { folder, .. } = read("goals.md", 14);
     let drawn = fs::read(folder.path().join("protocol.svg")).expect("it is drawn");

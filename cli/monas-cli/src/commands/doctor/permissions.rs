@@ -6,13 +6,21 @@ use super::CheckResult;
 
 const AREA: &str = "permissions";
 
+/// The bit of CAP_SYS_NICE, the capability that the limit of priorities does not concern.
+const SYS_NICE: u32 = 23;
+
 pub(crate) fn findings() -> Vec<CheckResult> {
     vec![real_time(), sockets(folder())]
 }
 
 /// Whether threads may use real-time scheduling.
 fn real_time() -> CheckResult {
-    match std::fs::read_to_string("/proc/self/limits").ok().as_deref().and_then(priority) {
+    let read = |file| std::fs::read_to_string(file).unwrap_or_default();
+    let most = match is_privileged(&read("/proc/self/status")) {
+        true => Some(99),
+        false => priority(&read("/proc/self/limits")),
+    };
+    match most {
         Some(0) => CheckResult::warning(
             AREA,
             "real-time scheduling is not permitted: agents with is_real_time run as ordinary threads",
@@ -34,6 +42,13 @@ fn priority(limits: &str) -> Option<u64> {
         "unlimited" => Some(99),
         number => number.parse().ok(),
     }
+}
+
+/// Whether a process, by its status, has CAP_SYS_NICE, as root usually has.
+fn is_privileged(status: &str) -> bool {
+    let capabilities = status.lines().find_map(|line| line.strip_prefix("CapEff:"));
+    let capabilities = capabilities.and_then(|digits| u64::from_str_radix(digits.trim(), 16).ok());
+    capabilities.is_some_and(|bits| bits >> SYS_NICE & 1 == 1)
 }
 
 /// The folder of control sockets.
@@ -76,6 +91,15 @@ mod tests {
         assert_eq!(priority(limits), Some(95));
         assert_eq!(priority(&limits.replace("95", "unlimited")), Some(99));
         assert_eq!(priority(""), None);
+    }
+
+    #[test]
+    fn root_needs_no_limit() {
+        assert!(is_privileged("Name:\tmonas\nCapEff:\t000001ffffffffff\n"));
+        assert!(
+            !is_privileged("CapEff:\t0000000000000000\n") && !is_privileged("CapEff:\t000001ffff7fffff\n")
+        );
+        assert!(!is_privileged(""));
     }
 
     #[test]

@@ -6,7 +6,9 @@ use monas_tape::Tape;
 use super::RunArguments;
 use crate::terminal::{CommandFailure, CommandOutput};
 
-pub(crate) use socket::{ControlSocket, bind, serve};
+#[cfg(feature = "soccer")] // only matches name the type
+pub(crate) use socket::ControlSocket;
+pub(crate) use socket::{bind, serve};
 
 /// The largest number in names of sockets of one configuration.
 #[cfg(unix)]

@@ -1,0 +1,32 @@
+//! The examples in the READMEs of crates, tested with the documentation of this crate.
+
+#[doc = include_str!("../../charts/yase-codegen/README.md")]
+mod yase_codegen {}
+#[doc = include_str!("../../charts/yase-explore/README.md")]
+mod yase_explore {}
+#[doc = include_str!("../../charts/yase-export/README.md")]
+mod yase_export {}
+#[doc = include_str!("../../charts/yase-expression/README.md")]
+mod yase_expression {}
+#[doc = include_str!("../../charts/yase-scxml/README.md")]
+mod yase_scxml {}
+#[doc = include_str!("../../messages/monas-tape/README.md")]
+mod monas_tape {}
+#[doc = include_str!("../../messages/narukom/README.md")]
+mod narukom {}
+#[doc = include_str!("../../messages/narukom-build/README.md")]
+mod narukom_build {}
+#[doc = include_str!("../../methodology/aseme/README.md")]
+mod aseme {}
+#[doc = include_str!("../../methodology/aseme-codegen/README.md")]
+mod aseme_codegen {}
+#[doc = include_str!("../../methodology/aseme-models/README.md")]
+mod aseme_models {}
+#[doc = include_str!("../../methodology/aseme-verify/README.md")]
+mod aseme_verify {}
+#[doc = include_str!("../../robots/monas-robot/README.md")]
+mod monas_robot {}
+#[doc = include_str!("../../runtime/monas/README.md")]
+mod monas {}
+#[doc = include_str!("../../runtime/monas-config/README.md")]
+mod monas_config {}
