@@ -78,7 +78,7 @@ impl ActivityCall {
 
     /// The name of the activity.
     pub fn name(&self) -> &str {
-        self.context.name()
+        &self.context.name.activity
     }
 
     /// Calls the activity on this thread.

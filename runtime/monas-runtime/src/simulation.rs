@@ -206,12 +206,12 @@ impl Simulation {
             let call = slot.try_recv().ok().and_then(|mut thread| thread.observe(Timestamp::ZERO));
             let message = match (error, call) {
                 (RecvTimeoutError::Timeout, Some(call)) => {
-                    let (context, function) = (call.call.context, call.call.function.name());
+                    let (name, function) = (call.call.name, call.call.function.name());
                     format!(
                         "activity `{}` of agent `{}` on `{}` has not returned from `{function}` within {:.1} s",
-                        context.activity,
-                        context.agent,
-                        context.robot,
+                        name.activity,
+                        name.agent,
+                        name.robot,
                         limit.as_secs_f64()
                     )
                 }
