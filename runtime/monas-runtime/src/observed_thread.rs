@@ -59,6 +59,11 @@ impl ObservedThread {
         self.calls.is_current()
     }
 
+    /// The call in progress at present.
+    pub(crate) fn open_call(&self) -> Option<OpenCall> {
+        self.calls.open_call()
+    }
+
     /// The call in progress, with its duration.
     pub(crate) fn observe(&mut self, now: Timestamp) -> Option<LastingCall> {
         let call = self.calls.open_call();

@@ -8,6 +8,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use monas_core::activity_name::ActivityName;
+use monas_core::call_slot::OpenCall;
 use monas_core::records::AgentEntry;
 use narukom::Timestamp;
 
@@ -110,6 +111,11 @@ impl WatchedRun {
         let name = call.call.name;
         let key = (name.robot.clone(), name.agent.clone());
         self.limits.get(&key).copied().unwrap_or(STALL)
+    }
+
+    /// The call in progress.
+    pub(crate) fn open_call(&self) -> Option<OpenCall> {
+        locked(&self.thread).as_ref().and_then(ObservedThread::open_call)
     }
 
     /// The call because of which the run stands still, if any.
