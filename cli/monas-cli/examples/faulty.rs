@@ -1,5 +1,5 @@
 //! A program whose activity ends the process in its tenth call, by `FAULT=abort`, `exit`, `segv` or
-//! `overflow`. Tests look at what is reported and recorded.
+//! `overflow`, or does not return, by `FAULT=hang`. Tests look at what is reported and recorded.
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -17,6 +17,7 @@ fn faulty(_: &mut Blackboard) {
         Ok("exit") => std::process::exit(7),
         Ok("segv") => segv(),
         Ok("overflow") => drop(black_box(overflow(1))),
+        Ok("hang") => hang(),
         _ => {}
     }
 }
@@ -30,6 +31,13 @@ fn segv() {
     let nowhere = black_box(std::ptr::without_provenance::<u32>(8));
     // SAFETY: there is no memory at this address: the process ends here.
     black_box(unsafe { nowhere.read_volatile() });
+}
+
+fn hang() {
+    eprintln!("the activity hangs");
+    loop {
+        std::thread::park();
+    }
 }
 
 #[allow(unconditional_recursion, reason = "the fault is the purpose")]

@@ -1,10 +1,10 @@
 //! The control socket, through which tools on the same computer inspect a run and publish in it.
 //!
 //! A run serves a socket ([`ControlServer`]) that tools connect to ([`ControlClient`]). Its path is
-//! `$XDG_RUNTIME_DIR/monas/NAME.sock`; it is accessible to its owner only (mode 0600, in a folder
-//! that is the owner's alone), and on Linux the peer's credentials are checked as well. The
-//! protocol is protobuf, `proto/control.proto`; messages of topics are transferred in their own
-//! encoding, and decoded by the tool with the schema from the run.
+//! `NAME.sock` in the [default folder](crate::default_folder); it is accessible to its owner only
+//! (mode 0600, in a folder that is the owner's alone), and on Linux the peer's credentials are
+//! checked as well. The protocol is protobuf, `proto/control.proto`; messages of topics are
+//! transferred in their own encoding, and decoded by the tool with the schema from the run.
 //!
 //! A tool can neither block a run nor exhaust its memory: hubs are polled as by any other reader,
 //! so a tool that is too slow loses messages, which are counted, and one that does not read its

@@ -267,7 +267,7 @@ mod tests {
         ),
         ("config/field.xml", "<field/>"),
         ("config/roles/goalie.xml", "<agent><name>G</name><statechart>models/g.srm</statechart></agent>"),
-        ("config/secret.pem", "nobody is to see this"),
+        ("config/secret.pem", "a secret"),
         ("models/g.srm", "Liveness:\ng = A"),
     ];
 

@@ -79,7 +79,7 @@
 //! |---|---|
 //! | `name` | the name of this end; by default that of the host |
 //! | `transport` | `local`, sockets of one computer; or `zenoh`, in programs that have it |
-//! | `folder` | of `local`: the folder of the sockets; by default `$XDG_RUNTIME_DIR/monas` |
+//! | `folder` | of `local`: the folder of the sockets; by default `$XDG_RUNTIME_DIR/monas`, or without that variable `monas-UID` in the folder for temporary files, for its user only |
 //! | `beat` | interval of the link's progress reports; default 200 ms |
 //! | `clock` | the name of the other end whose time the run takes for its own, for processes of one robot; in real time only |
 //! | `access` | a file that lists who may publish what, see [`AccessList`](monas_link::AccessList); default everyone |

@@ -33,6 +33,8 @@ pub struct ActivityCall {
     pub priority: i32,
     /// How long the call takes in simulated time.
     pub duration: Duration,
+    /// How often the activity has been called in this state, with this call.
+    pub number: u64,
     /// Whether the activation was called before and returned `Ongoing`.
     pub(crate) is_resumed: bool,
     /// Index of its slot, as in the statistics of the chart.
@@ -78,7 +80,7 @@ impl ActivityCall {
 
     /// The name of the activity.
     pub fn name(&self) -> &str {
-        self.context.name()
+        &self.context.name.activity
     }
 
     /// Calls the activity on this thread.

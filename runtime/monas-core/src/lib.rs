@@ -36,6 +36,7 @@
 
 pub mod activity;
 pub mod activity_context;
+pub mod activity_name;
 pub mod agent;
 pub mod binder;
 pub mod call;
@@ -61,7 +62,6 @@ pub mod scheduling;
 pub mod seeds;
 pub mod statistics;
 pub mod stopwatch;
-pub mod thread_activities;
 pub mod unreachable_sources;
 pub mod vocabulary;
 

@@ -31,7 +31,7 @@ pub struct AgentStatistics {
     pub micro_steps: u64,
     /// Each of its activities.
     pub activities: Vec<ActivityStatistics>,
-    /// Duration of a cycle; measured in real time only.
+    /// Duration of a cycle; in simulated time measured on request only.
     pub cycle_time: Option<MovingAverage>,
     /// CPU time of a cycle, measured for one cycle in 64 and for the cycle after each overrun.
     pub cycle_cpu: Option<MovingAverage>,
@@ -53,17 +53,19 @@ pub struct ActivityStatistics {
     pub calls: u64,
     /// How often it failed or panicked.
     pub failures: u64,
-    /// Duration of a call; measured in real time only.
+    /// Duration of a call; measured as that of a cycle.
     pub call_time: Option<MovingAverage>,
     /// CPU time of a call, measured as often as for cycles.
     pub call_cpu: Option<MovingAverage>,
     /// Percentiles of call durations.
     pub call_percentiles: Option<Percentiles>,
-    /// Bytes allocated by it and not yet freed; in real time, in programs that
+    /// Bytes allocated by it and not yet freed; where calls are measured, in programs that
     /// [count](crate::memory).
     pub held: Option<u64>,
     /// Whether this number grows from call to call.
     pub grows: bool,
+    /// Whether it is part of a loop of its chart in which nothing waits; in real time.
+    pub loops: bool,
 }
 
 /// Percentiles of durations, to within 1/16.

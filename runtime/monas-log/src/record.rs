@@ -9,6 +9,7 @@ use tracing::{Event, Level};
 
 use monas_config::Severity;
 use monas_core::activity_context as context;
+use monas_core::call_slot;
 
 /// Maximum length of a message, in bytes.
 const WORDS: usize = 1024;
@@ -61,7 +62,7 @@ impl Record {
     }
 
     /// Fills it with a message of the logger itself.
-    #[expect(clippy::disallowed_methods, reason = "nobody else has a time for it")]
+    #[expect(clippy::disallowed_methods, reason = "a message of the logger itself has no other time")]
     pub(crate) fn of_logger(words: fmt::Arguments<'_>) -> Record {
         let mut record = Record::new();
         record.severity = Severity::Warning;
@@ -79,7 +80,7 @@ impl Record {
             context::simulated().map_or_else(|| RecordTime::Wall(SystemTime::now()), RecordTime::Simulated);
         *cycle = None;
         [&mut *robot, agent, activity, words].into_iter().for_each(BoundedText::clear);
-        context::called(|caller, number| {
+        call_slot::called(|caller, number| {
             *cycle = Some(number);
             robot.set(&caller.robot);
             agent.set(&caller.agent);

@@ -72,6 +72,7 @@ fn called(activity: &ActivityStatistics, parameters: Option<&Parameters>) -> Act
         failures: activity.failures,
         held: activity.held,
         grows: activity.grows,
+        loops: activity.loops,
         call_time: times(activity.call_time, activity.call_cpu, activity.call_percentiles),
     }
 }

@@ -9,21 +9,19 @@ use narukom::{HostId, Timestamp, TopicSlot};
 use super::ENDED;
 use super::agent_factory::PreparedAgent;
 use super::agent_update::{AgentCommand, AgentStatus, AgentUpdate, ChartStatus, STOPPED_BY_REQUEST};
+use super::clock::{CPU_EVERY, RunClock, cpu_time};
 use super::cycle_recorder::CycleRecorder;
+use super::simulated_chart::SimulatedChart;
 use crate::list::ActivityList;
 use crate::list::CycleOutcome;
+use crate::list::CycleTimer;
 use monas_core::agent::FailurePolicy;
-use monas_core::chart_runner::{ActivityCall, AgentDefaults, ChartDriver, ChartRunner, Dispatch};
+use monas_core::chart_runner::{AgentDefaults, ChartRunner};
 use monas_core::coverage::ChartCoverage;
 use monas_core::frequency::Frequency;
-use monas_core::monitors::PropertyViolation;
 use monas_core::publishing_activity::{self, PublishingActivity};
 use monas_core::records::Delivery;
-use monas_core::statistics::AgentStatistics;
-
-/// A larger number of calls at one time is considered a livelock of activities that wake each
-/// other.
-const MAX_CALLS: u32 = 10_000;
+use monas_core::statistics::{AgentStatistics, Timing};
 
 /// An agent on its host.
 pub(crate) struct AgentInstance {
@@ -33,6 +31,8 @@ pub(crate) struct AgentInstance {
     list: Option<ScheduledList>,
     charts: Vec<SimulatedChart>,
     recorder: CycleRecorder,
+    /// The clock that measures its cycles and calls, if they are measured.
+    clock: Option<RunClock>,
     pauses: bool,
     stopped: Option<String>,
 }
@@ -42,6 +42,8 @@ struct ScheduledList {
     list: ActivityList,
     frequency: Frequency,
     next: u64,
+    clock: Option<RunClock>,
+    timing: Timing,
 }
 
 impl AgentInstance {
@@ -52,7 +54,15 @@ impl AgentInstance {
         let defaults = AgentDefaults { frequency, policy, ..AgentDefaults::default() };
         let start = |runner| SimulatedChart::new(runner, defaults.clone(), now);
         let charts = charts.into_iter().map(start).collect();
-        AgentInstance { name, policy, frequency, list, charts, recorder, pauses: false, stopped: None }
+        let (clock, pauses, stopped) = (None, false, None);
+        AgentInstance { name, policy, frequency, list, charts, recorder, clock, pauses, stopped }
+    }
+
+    /// From now on measures cycles and calls by a clock.
+    pub(crate) fn measure(&mut self, clock: RunClock) {
+        self.clock = Some(clock);
+        self.list.iter_mut().for_each(|scheduled| scheduled.clock = Some(clock));
+        self.charts.iter_mut().for_each(|chart| chart.measure(clock));
     }
 
     pub(crate) fn has_list(&self) -> bool {
@@ -94,7 +104,7 @@ impl AgentInstance {
         let outcome = scheduled.cycle(now, &mut self.recorder);
         if outcome != CycleOutcome::Running {
             let reason = scheduled.list.stopped().unwrap_or_default().to_owned();
-            self.stop(&reason, now);
+            self.fail(&reason, now);
         }
         outcome
     }
@@ -107,9 +117,9 @@ impl AgentInstance {
         for index in 0..self.charts.len() {
             let chart = &mut self.charts[index];
             if let Err(reason) = act(chart, now, &mut self.recorder) {
-                let rests_body = chart.runner.requires_safe_state();
-                self.stop(&reason, now);
-                return if rests_body { CycleOutcome::SafeState } else { CycleOutcome::Stopped };
+                let enters_safe_state = chart.runner.requires_safe_state();
+                self.fail(&reason, now);
+                return if enters_safe_state { CycleOutcome::SafeState } else { CycleOutcome::Stopped };
             }
         }
         CycleOutcome::Running
@@ -121,16 +131,30 @@ impl AgentInstance {
         self.charts.iter_mut().filter_map(|chart| chart.runner.raise(event).then_some(())).count() > 0
     }
 
-    /// Stops the list and all charts.
-    pub(crate) fn stop(&mut self, reason: &str, now: Timestamp) {
-        if self.stopped.is_some() {
-            return;
+    /// Stops because of a failure.
+    fn fail(&mut self, reason: &str, now: Timestamp) {
+        if self.stopped.is_none() {
+            tracing::error!(robot = %self.host(), agent = %self.name, "stopped: {reason}");
+            self.end(reason, now);
         }
-        self.stopped = Some(reason.into());
+    }
+
+    /// Stops because this is intended.
+    pub(crate) fn stop(&mut self, reason: &str, now: Timestamp) {
+        if self.stopped.is_none() {
+            tracing::info!(robot = %self.host(), agent = %self.name, "stopped: {reason}");
+            self.end(reason, now);
+        }
+    }
+
+    fn host(&self) -> &str {
         let listed = self.list.iter().map(|scheduled| scheduled.list.blackboard().hub().host());
-        let robot =
-            listed.chain(self.charts.iter().map(|chart| chart.runner.host())).next().unwrap_or_default();
-        tracing::info!(%robot, agent = %self.name, "stopped: {reason}");
+        listed.chain(self.charts.iter().map(|chart| chart.runner.host())).next().unwrap_or_default()
+    }
+
+    /// Stops the list and all charts.
+    fn end(&mut self, reason: &str, now: Timestamp) {
+        self.stopped = Some(reason.into());
         if let Some(scheduled) = &mut self.list {
             scheduled.list.stop(reason);
         }
@@ -158,7 +182,8 @@ impl AgentInstance {
             }
         }
         if let Some((list, frequency)) = orders.list.zip(self.frequency) {
-            self.list = Some(ScheduledList::new(*list, frequency, now));
+            self.list =
+                Some(ScheduledList { clock: self.clock, ..ScheduledList::new(*list, frequency, now) });
         }
         if let Some(scheduled) = &mut self.list {
             orders.edits.into_iter().for_each(|edit| scheduled.list.edit(edit));
@@ -179,7 +204,8 @@ impl AgentInstance {
         }
         if !orders.charts.is_empty() {
             let defaults = self.defaults();
-            let start = |runner| SimulatedChart::new(runner, defaults.clone(), now);
+            let clock = self.clock;
+            let start = |runner| SimulatedChart::new(runner, defaults.clone(), now).measured(clock);
             self.charts = orders.charts.into_iter().map(start).collect();
         }
         let mut outcome = CycleOutcome::Running;
@@ -203,7 +229,7 @@ impl AgentInstance {
             chart.runner.stop(now);
         }
         if let Some(runner) = anew {
-            *chart = SimulatedChart::new(runner, defaults, now);
+            *chart = SimulatedChart::new(runner, defaults, now).measured(self.clock);
         }
     }
 
@@ -299,7 +325,7 @@ impl AgentInstance {
     pub(crate) fn statistics(&self, host: &str) -> AgentStatistics {
         let listed = self.list.iter().flat_map(|scheduled| scheduled.list.activity_statistics());
         let charted = self.charts.iter().flat_map(|chart| chart.runner.activity_statistics());
-        AgentStatistics {
+        let mut statistics = AgentStatistics {
             host: host.into(),
             agent: self.name.clone(),
             cycles: self.recorder.number(),
@@ -307,7 +333,17 @@ impl AgentInstance {
             activities: listed.chain(charted).collect(),
             stopped: self.stopped.clone().filter(|reason| reason != ENDED && reason != STOPPED_BY_REQUEST),
             ..AgentStatistics::default()
-        }
+        };
+        let listed = self.list.iter().map(|scheduled| &scheduled.timing);
+        listed.chain(self.charts.iter().map(SimulatedChart::timing)).for_each(|timing| {
+            statistics.add(AgentStatistics {
+                cycle_time: timing.wall(),
+                cycle_cpu: timing.cpu(),
+                cycle_percentiles: timing.percentiles(),
+                ..AgentStatistics::default()
+            });
+        });
+        statistics
     }
 
     pub(crate) fn coverage(&self) -> impl Iterator<Item = ChartCoverage> {
@@ -317,7 +353,8 @@ impl AgentInstance {
 
 impl ScheduledList {
     fn new(list: ActivityList, frequency: Frequency, now: Timestamp) -> ScheduledList {
-        ScheduledList { list, frequency, next: frequency.first_due(now) }
+        let (clock, timing) = (None, Timing::default());
+        ScheduledList { list, frequency, next: frequency.first_due(now), clock, timing }
     }
 
     fn due(&self) -> Timestamp {
@@ -334,94 +371,13 @@ impl ScheduledList {
 
     fn cycle(&mut self, now: Timestamp, recorder: &mut CycleRecorder) -> CycleOutcome {
         self.next += 1;
+        let since = self.clock.map(|clock| clock.now());
         self.list.begin(now);
         recorder.record(now, Delivery::all(self.list.blackboard(), 0));
-        self.list.cycle(now, None)
-    }
-}
-
-/// A chart of an agent in simulated time.
-struct SimulatedChart {
-    runner: ChartRunner,
-    calls: CallCount,
-}
-
-/// The number of calls at one time.
-#[derive(Default)]
-struct CallCount {
-    at: Timestamp,
-    count: u32,
-}
-
-struct SimulatedDriver<'a> {
-    recorder: &'a mut CycleRecorder,
-    calls: &'a mut CallCount,
-}
-
-impl ChartDriver for SimulatedDriver<'_> {
-    fn call(&mut self, call: ActivityCall, now: Timestamp) -> Dispatch {
-        if self.calls.at != now {
-            *self.calls = CallCount { at: now, count: 0 };
-        }
-        self.calls.count += 1;
-        if self.calls.count > MAX_CALLS {
-            let activity = call.name();
-            let reason = format!("activity `{activity}` is called more than {MAX_CALLS} times at one time");
-            return Dispatch::Refused(Some(call), reason);
-        }
-        let until = now + call.duration;
-        Dispatch::Finished(call.run(), until)
-    }
-
-    fn record_step(&mut self, now: Timestamp, delivered: &[Delivery], violations: &[PropertyViolation]) {
-        self.recorder.record_step(now, delivered.iter().cloned(), violations);
-    }
-
-    fn cycle(&self) -> u64 {
-        self.recorder.number()
-    }
-}
-
-impl SimulatedChart {
-    /// Starts a chart.
-    fn new(mut runner: ChartRunner, defaults: AgentDefaults, now: Timestamp) -> SimulatedChart {
-        runner.set_defaults(defaults);
-        runner.start(now);
-        runner.skip_ticks(now);
-        SimulatedChart { runner, calls: CallCount::default() }
-    }
-
-    /// Sets the frequency of the agent.
-    fn set_frequency(&mut self, frequency: Frequency, now: Timestamp) {
-        self.runner.update_defaults(|defaults| defaults.frequency = Some(frequency), now);
-        self.runner.skip_ticks(now);
-    }
-
-    fn status(&self) -> ChartStatus {
-        let status = if self.runner.is_over() { AgentStatus::Stopped } else { AgentStatus::Running };
-        ChartStatus { active: self.runner.active_states(), status }
-    }
-
-    fn due(&self, now: Timestamp) -> Timestamp {
-        if self.runner.is_over() { Timestamp::MAX } else { self.runner.due(now) }
-    }
-
-    /// Executes everything that is due at this time.
-    ///
-    /// # Errors
-    /// Why the agent must stop.
-    fn run(&mut self, now: Timestamp, recorder: &mut CycleRecorder) -> Result<(), String> {
-        let mut driver = SimulatedDriver { recorder, calls: &mut self.calls };
-        self.runner.run_until_stable(&mut driver, now).map_err(|error| error.to_string())
-    }
-
-    /// Makes one step if one is due.
-    ///
-    /// # Errors
-    /// Why the agent must stop.
-    fn step_once(&mut self, now: Timestamp, recorder: &mut CycleRecorder) -> Result<(), String> {
-        let mut driver = SimulatedDriver { recorder, calls: &mut self.calls };
-        self.runner.step_once(&mut driver, now).map_err(|error| error.to_string())
+        let Some((clock, since)) = self.clock.as_ref().zip(since) else { return self.list.cycle(now, None) };
+        let cpu = if self.list.number() % CPU_EVERY == 1 { cpu_time() } else { None };
+        let timer = CycleTimer { clock, since, cpu, watchdog: None };
+        self.list.timed_cycle(now, timer, &mut self.timing).0
     }
 }
 

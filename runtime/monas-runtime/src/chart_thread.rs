@@ -10,7 +10,7 @@ use super::agent_shared::{AgentShared, PendingCommands, ThreadShared};
 use super::agent_update::{AgentCommand, AgentStatus, AgentUpdate, ChartStatus, STOPPED_BY_REQUEST};
 use super::clock::RunClock;
 use super::cycle_recorder::{self, CycleRecorder};
-use super::free_loop::{FreeLoop, LoopReport};
+use super::free_loop::{FreeLoop, LOOP_REMEDY, LoopReport};
 use super::pool::ActivityPool;
 use super::sync::Wakeups;
 use super::turn_record::{TurnRecord, TurnRecorder};
@@ -20,6 +20,7 @@ use monas_core::monitors::PropertyViolation;
 use monas_core::records::{Delivery, Turn};
 use monas_core::scheduling::Scheduling;
 use monas_core::statistics::{AgentStatistics, Timing};
+use yase::NodeId;
 
 /// The data owned by the thread of a chart.
 pub(crate) struct ChartThread {
@@ -278,20 +279,25 @@ impl ChartThread {
         }
         self.driver.update_watchdog(&self.runner);
         self.record_turn(turn, now);
-        if let Some(report) = self.driver.free_loop.end_turn(now) {
-            self.warn_of_loop(&report);
+        match self.driver.free_loop.end_turn(now) {
+            Some(LoopReport::Begun { states, rate, is_first }) => {
+                self.runner.set_loop(&states);
+                if is_first {
+                    self.warn_of_loop(&states, rate);
+                }
+            }
+            Some(LoopReport::Ended) => self.runner.set_loop(&[]),
+            None => {}
         }
         result.map_err(|error| error.to_string())
     }
 
-    fn warn_of_loop(&self, report: &LoopReport) {
-        let states: Vec<String> = report.states.iter().map(|node| self.runner.state_name(*node)).collect();
+    fn warn_of_loop(&self, states: &[NodeId], rate: f64) {
         let (robot, agent) = (self.runner.host(), &self.driver.agent.name);
-        let (chart, states, rate) = (self.runner.name(), states.join(" -> "), report.rate);
+        let (chart, states) = (self.runner.name(), self.runner.state_names(states));
         tracing::warn!(
             %robot, %agent,
-            "`{chart}` loops without a wait: {states}, {rate:.0} calls a second; let an activity return `Ongoing`, or \
-             wait in a transition for a message, an event or a timer"
+            "`{chart}` loops without a wait: {states}, {rate:.0} calls a second; {LOOP_REMEDY}"
         );
     }
 
@@ -324,12 +330,14 @@ impl ChartThread {
         self.driver.recorder.record_update(now, &update, self.runner.place());
         if let Some((_, swap)) = update.swap {
             notes = self.runner.swap(*swap, now)?;
+            self.driver.free_loop = FreeLoop::default();
             self.follow_guards();
         }
         update.instances.into_iter().for_each(|(_, instances)| self.runner.replace_instances(instances, now));
         for runner in update.charts {
             self.end();
             self.runner.replace(runner);
+            self.driver.free_loop = FreeLoop::default();
             self.runner.skip_ticks(now);
             self.begin();
         }

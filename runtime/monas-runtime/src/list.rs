@@ -43,7 +43,8 @@ pub(crate) struct CycleTimer<'a> {
     pub(crate) since: Timestamp,
     /// CPU time at that point, if it is measured.
     pub(crate) cpu: Option<Duration>,
-    pub(crate) watchdog: &'a Watchdog,
+    /// Is informed of each call, in real time.
+    pub(crate) watchdog: Option<&'a Watchdog>,
 }
 
 struct ListEntry {
@@ -116,13 +117,13 @@ impl ActivityList {
     /// measures each call.
     pub(crate) fn cycle(&mut self, now: Timestamp, mut watch: Option<CycleTimer<'_>>) -> CycleOutcome {
         for index in 0..self.entries.len() {
-            if let Some(watch) = &watch {
-                watch.watchdog.set_activity(index);
+            if let Some(watchdog) = watch.as_ref().and_then(|watch| watch.watchdog) {
+                watchdog.set_activity(index);
             }
             let result = self.entries[index].run(self.cycles, &mut self.blackboard, watch.is_some());
             if let Some(watch) = &mut watch {
                 self.entries[index].measure(watch);
-                if watch.watchdog.is_abandoned() {
+                if watch.watchdog.is_some_and(Watchdog::is_abandoned) {
                     return self.was_stuck(index);
                 }
             }
@@ -135,6 +136,22 @@ impl ActivityList {
         self.publish(CycleOutcome::Running, self.entries.len().saturating_sub(1), now, watch)
     }
 
+    /// As [`cycle`](Self::cycle), and adds the duration of the cycle to a statistic. Returns its
+    /// end.
+    pub(crate) fn timed_cycle(
+        &mut self,
+        now: Timestamp,
+        timer: CycleTimer<'_>,
+        timing: &mut Timing,
+    ) -> (CycleOutcome, Timestamp) {
+        let CycleTimer { clock, since, cpu, .. } = timer;
+        let outcome = self.cycle(now, Some(timer));
+        let ended = clock.now();
+        let cpu = cpu.and_then(|before| Some(cpu_time()?.saturating_sub(before)));
+        timing.add(ended.since(since), cpu);
+        (outcome, ended)
+    }
+
     /// Ends the cycle with the activity at that index: publishes the outputs, unless the watchdog
     /// has given the cycle up.
     fn publish(
@@ -144,7 +161,8 @@ impl ActivityList {
         now: Timestamp,
         watch: Option<CycleTimer<'_>>,
     ) -> CycleOutcome {
-        if !self.entries.is_empty() && watch.is_some_and(|watch| !watch.watchdog.end_cycle()) {
+        let watchdog = watch.and_then(|watch| watch.watchdog);
+        if !self.entries.is_empty() && watchdog.is_some_and(|watchdog| !watchdog.end_cycle()) {
             return self.was_stuck(index);
         }
         self.blackboard.publish_all(now);
@@ -220,6 +238,7 @@ impl ActivityList {
             call_percentiles: entry.timing.percentiles(),
             held: entry.growth.held(),
             grows: entry.growth.grows(),
+            loops: false,
             state: None,
         })
     }

@@ -160,12 +160,10 @@ impl ListThread {
         self.recorder.record_with_fetches(began, Delivery::all(blackboard, 0), &[blackboard.position()]);
         let cpu = if self.was_late || self.cycles.is_multiple_of(CPU_EVERY) { cpu_time() } else { None };
         self.thread.watchdog.start_cycle(began, self.list.number());
-        let watch = CycleTimer { clock: &self.clock, since: began, cpu, watchdog: &self.thread.watchdog };
-        let outcome = self.list.cycle(began, Some(watch));
+        let watchdog = Some(&self.thread.watchdog);
+        let timer = CycleTimer { clock: &self.clock, since: began, cpu, watchdog };
+        let (outcome, ended) = self.list.timed_cycle(began, timer, &mut self.timing);
         self.thread.watchdog.end_cycle();
-        let ended = self.clock.now();
-        let cpu = cpu.and_then(|before| Some(cpu_time()?.saturating_sub(before)));
-        self.timing.add(ended.since(began), cpu);
         self.record_cycle(ended);
         if outcome != CycleOutcome::Running {
             self.has_ended = true;

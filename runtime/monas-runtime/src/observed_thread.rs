@@ -1,15 +1,15 @@
 //! Observation of the calls that a thread has in progress, by another thread at intervals.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use monas_core::call_slot::{CallSlot, OpenCall};
+use monas_core::call_slot::{CallingThread, OpenCall};
 use monas_core::records::OpenCallEntry;
 use narukom::Timestamp;
 
 /// A thread that calls activities.
 pub(crate) struct ObservedThread {
-    slot: Arc<CallSlot>,
+    calls: CallingThread,
     /// Its number in the system, if it has one.
     id: Option<i32>,
     /// The call in progress at the last observation, and the time of the first that saw it.
@@ -24,7 +24,7 @@ impl ObservedThreads {
     /// Observes the calls of the calling thread from now on.
     pub(crate) fn add_this_thread(&self) {
         let mut threads = self.threads();
-        threads.retain(|thread| !thread.has_ended());
+        threads.retain(|thread| !thread.calls.has_ended());
         threads.push(ObservedThread::of_this_thread());
     }
 
@@ -51,22 +51,22 @@ pub(crate) struct LastingCall {
 impl ObservedThread {
     /// The calling thread.
     pub(crate) fn of_this_thread() -> ObservedThread {
-        ObservedThread { slot: CallSlot::of_this_thread(), id: system::own_id(), last: None }
+        ObservedThread { calls: CallingThread::current(), id: system::own_id(), last: None }
     }
 
     /// Whether it is the calling thread.
     pub(crate) fn is_this_thread(&self) -> bool {
-        Arc::ptr_eq(&self.slot, &CallSlot::of_this_thread())
+        self.calls.is_current()
     }
 
-    /// Whether the thread has ended, so that only this refers to its slot.
-    fn has_ended(&self) -> bool {
-        Arc::strong_count(&self.slot) == 1
+    /// The call in progress at present.
+    pub(crate) fn open_call(&self) -> Option<OpenCall> {
+        self.calls.open_call()
     }
 
-    /// The call in progress.
+    /// The call in progress, with its duration.
     pub(crate) fn observe(&mut self, now: Timestamp) -> Option<LastingCall> {
-        let call = self.slot.open_call();
+        let call = self.calls.open_call();
         let is_same = |call: &OpenCall, (last, _): &(OpenCall, Timestamp)| last.number == call.number;
         self.last = match (call, self.last.take()) {
             (Some(call), Some(last)) if is_same(&call, &last) => Some(last),
@@ -82,7 +82,7 @@ impl LastingCall {
     /// The entry for tools.
     pub(crate) fn entry(&self) -> OpenCallEntry {
         OpenCallEntry {
-            activity: self.call.context.activity.clone(),
+            activity: self.call.name.activity.clone(),
             function: self.call.function.name().into(),
             number: self.call.number,
             seconds: self.lasts.as_secs_f64(),
@@ -93,13 +93,13 @@ impl LastingCall {
 
 impl std::fmt::Display for LastingCall {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (context, function) = (&self.call.context, self.call.function.name());
+        let (name, function) = (self.call.name, self.call.function.name());
         write!(
             f,
             "activity `{}` of agent `{}` on `{}` has not returned from `{function}` for {:.1} s",
-            context.activity,
-            context.agent,
-            context.robot,
+            name.activity,
+            name.agent,
+            name.robot,
             self.lasts.as_secs_f64()
         )
     }

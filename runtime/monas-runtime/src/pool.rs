@@ -10,10 +10,11 @@ use std::thread::{self, JoinHandle};
 
 use narukom::Hub;
 
-use super::clock::{CPU_EVERY, RunClock, cpu_time};
+use super::call_meter::CallMeter;
+use super::clock::RunClock;
 use super::observed_thread::ObservedThreads;
 use super::sync::{Mailbox, WorkQueue};
-use monas_core::chart_runner::{ActivityCall, CallTiming, FinishedCall};
+use monas_core::chart_runner::{ActivityCall, FinishedCall};
 use monas_core::error::{Error, ErrorKind};
 use monas_log::LogHosts;
 
@@ -96,17 +97,10 @@ impl ActivityPool {
 /// The loop of a worker: calls one activity after the other. Panics of activities are caught before
 /// they reach it.
 fn run(work: &WorkQueue<CallJob>, clock: RunClock) {
-    let mut calls = 0_u64;
+    let mut meter = CallMeter::new(Some(clock));
     while let Some(CallJob { call, mailbox }) = work.next() {
-        calls += 1;
-        let cpu = if calls % CPU_EVERY == 1 { cpu_time() } else { None };
-        let began = clock.now();
-        let finished = call.run_with_memory_account();
-        let wall = clock.now().since(began);
-        let cpu = cpu
-            .and_then(|before| Some((before, cpu_time()?)))
-            .map(|(before, after)| after.saturating_sub(before));
-        mailbox.returned(FinishedCall { timing: Some(CallTiming { wall, cpu }), ..finished });
+        meter.begin();
+        mailbox.returned(meter.call(call));
     }
 }
 

@@ -4,7 +4,6 @@ mod simulated_host;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use narukom::{Hub, Timestamp};
@@ -12,12 +11,11 @@ use narukom::{Hub, Timestamp};
 use super::agent_instance::AgentInstance;
 use super::clock::{RunClock, SimulatedClock};
 use super::links::RunningLink;
-use super::observed_thread::ObservedThread;
-use super::real_time_host::spawn;
 use super::run_config::RunConfig;
 use super::run_handle::{self, ExternalRequest, RequestQueue, RunHandle};
 use super::setup::{PreparedHost, PreparedRun, WorldDriver};
-use super::stall_watchdog::StallWatchdog;
+use super::simulation_thread::SimulationThread;
+use super::stall_watchdog::{StallWatchdog, WatchedRun};
 use super::stop_handle::StopHandle;
 use monas_core::activity_context::SimulatedTimeGuard;
 use monas_core::coverage::ChartCoverage;
@@ -47,6 +45,7 @@ pub struct Simulation {
     /// Scripted changes of agents, by time and the order in which they were added.
     script: BTreeMap<(Timestamp, usize), (usize, Change)>,
     watchdog: StallWatchdog,
+    thread: Option<SimulationThread>,
 }
 
 impl Simulation {
@@ -61,8 +60,8 @@ impl Simulation {
         let hubs = world.iter().map(WorldDriver::hub).chain(hosts.iter().map(SimulatedHost::hub));
         let hosting = LogHosts::simulated(hubs);
         let (inlet, script) = (RequestQueue::new(), BTreeMap::new());
-        let now = Timestamp::ZERO;
-        Ok(Simulation { now, shown, world, hosts, links, requests: inlet, hosting, script, watchdog })
+        let (now, thread) = (Timestamp::ZERO, None);
+        Ok(Simulation { now, shown, world, hosts, links, requests: inlet, hosting, script, watchdog, thread })
     }
 
     /// Sets the simulated time and log hosts of this thread until the guards are dropped.
@@ -155,6 +154,15 @@ impl Simulation {
         }
     }
 
+    /// From now on measures cycles and calls of activities in real time, and the memory that
+    /// activities hold, as in a run in real time. The measurements are part of the
+    /// [statistics](Self::statistics) and of the entries of a [`RunHandle`]. They reach no topic
+    /// and no agent: the run stays the same.
+    pub fn measure(&mut self) {
+        let clock = RunClock::start();
+        self.hosts.iter_mut().for_each(|host| host.measure(clock));
+    }
+
     /// The statistics of the agents so far.
     pub fn statistics(&self) -> Statistics {
         let agents = self.hosts.iter().flat_map(SimulatedHost::statistics);
@@ -167,7 +175,7 @@ impl Simulation {
     pub fn run_handle(&self) -> RunHandle {
         let world = self.world.iter().map(WorldDriver::hub);
         let hubs = self.hosts.iter().map(SimulatedHost::hub).chain(world).cloned();
-        let watched = self.watchdog.watched().clone();
+        let watched = self.watched().clone();
         RunHandle::simulated(hubs.collect(), self.shown.clone(), &self.requests, watched)
     }
 
@@ -189,39 +197,41 @@ impl Simulation {
     /// As [`stop`](Simulation::stop), for at most this real time.
     ///
     /// # Errors
-    /// [`ErrorKind::Stuck`]: an activity, which the error names, has not returned by then. It keeps
-    /// its thread and the simulation until the process ends.
+    /// [`ErrorKind::Stuck`](monas_core::ErrorKind::Stuck): an activity, which the error names, has
+    /// not returned by then. It keeps its thread and the simulation until the process ends.
     pub fn stop_within(self, limit: Duration) -> Result<Simulation, Error> {
-        let (sender, stopped) = channel();
-        let (slots, slot) = channel();
-        let mut simulation = self;
-        let stop = move || {
-            let _ = slots.send(ObservedThread::of_this_thread());
+        let stop = |simulation: &mut Simulation| {
             simulation.stop();
-            // Without a receiver the limit has passed.
-            let _ = sender.send(simulation);
+            Ok(())
         };
-        spawn("stop", stop)?;
-        stopped.recv_timeout(limit).map_err(|error| {
-            let call = slot.try_recv().ok().and_then(|mut thread| thread.observe(Timestamp::ZERO));
-            let message = match (error, call) {
-                (RecvTimeoutError::Timeout, Some(call)) => {
-                    let (context, function) = (call.call.context, call.call.function.name());
-                    format!(
-                        "activity `{}` of agent `{}` on `{}` has not returned from `{function}` within {:.1} s",
-                        context.activity,
-                        context.agent,
-                        context.robot,
-                        limit.as_secs_f64()
-                    )
-                }
-                (RecvTimeoutError::Timeout, None) => {
-                    format!("the agents have not stopped within {:.1} s", limit.as_secs_f64())
-                }
-                (RecvTimeoutError::Disconnected, _) => "a panic ended the stop of the agents".to_owned(),
-            };
-            Error::new(ErrorKind::Stuck, message)
-        })
+        SimulationThread::work(self, stop)?.wait(|| true, limit)
+    }
+
+    /// As [`run_until`](Simulation::run_until), but given up if it has not returned within `limit`,
+    /// in real time, after `is_cancelled`.
+    ///
+    /// # Errors
+    /// As in [`run_until`](Simulation::run_until) and [`stop_within`](Simulation::stop_within).
+    pub fn run_until_cancelled(
+        self,
+        end: Timestamp,
+        is_cancelled: impl Fn() -> bool,
+        limit: Duration,
+    ) -> Result<Simulation, Error> {
+        SimulationThread::work(self, move |simulation| simulation.run_until(end))?.wait(is_cancelled, limit)
+    }
+
+    /// The thread for work that may be given up.
+    pub(crate) fn thread(&mut self) -> Result<&SimulationThread, Error> {
+        match &mut self.thread {
+            Some(thread) => Ok(thread),
+            none => Ok(none.insert(SimulationThread::start()?)),
+        }
+    }
+
+    /// What the watchdog knows.
+    pub(crate) fn watched(&self) -> &Arc<WatchedRun> {
+        self.watchdog.watched()
     }
 
     /// The coverage of the states and transitions of each chart.

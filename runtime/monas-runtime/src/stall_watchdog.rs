@@ -7,6 +7,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use monas_core::activity_name::ActivityName;
+use monas_core::call_slot::OpenCall;
 use monas_core::records::AgentEntry;
 use narukom::Timestamp;
 
@@ -92,15 +94,13 @@ impl WatchedRun {
         match call.filter(|call| call.lasts >= self.limit(call)) {
             Some(call) if was_reported(&call) => *stalled = Some(call),
             Some(call) => {
-                let (context, time) = (&call.call.context, time.get());
-                let (robot, agent, activity) = (&context.robot, &context.agent, &context.activity);
+                let (ActivityName { robot, agent, activity }, time) = (call.call.name, time.get());
                 tracing::error!(%robot, %agent, %activity, "stuck: {call}; the whole run stands still at {time}");
                 *stalled = Some(call);
             }
             None => {
                 if let Some(call) = stalled.take() {
-                    let context = &call.call.context;
-                    let (robot, agent, activity) = (&context.robot, &context.agent, &context.activity);
+                    let ActivityName { robot, agent, activity } = call.call.name;
                     tracing::warn!(%robot, %agent, %activity, "is stuck no more: the run goes on");
                 }
             }
@@ -108,9 +108,14 @@ impl WatchedRun {
     }
 
     fn limit(&self, call: &LastingCall) -> Duration {
-        let context = &call.call.context;
-        let key = (context.robot.clone(), context.agent.clone());
+        let name = call.call.name;
+        let key = (name.robot.clone(), name.agent.clone());
         self.limits.get(&key).copied().unwrap_or(STALL)
+    }
+
+    /// The call in progress.
+    pub(crate) fn open_call(&self) -> Option<OpenCall> {
+        locked(&self.thread).as_ref().and_then(ObservedThread::open_call)
     }
 
     /// The call because of which the run stands still, if any.
@@ -121,14 +126,14 @@ impl WatchedRun {
     /// The entry of the agent because of which the run stands still.
     pub(crate) fn stuck_agent(&self) -> Option<AgentEntry> {
         let stalled = self.stalled()?;
-        let context = &stalled.call.context;
+        let name = stalled.call.name;
         Some(AgentEntry {
-            host: context.robot.clone(),
-            name: context.agent.clone(),
+            host: name.robot.clone(),
+            name: name.agent.clone(),
             state: AgentStatus::Stuck.word().into(),
             reason: stalled.to_string(),
             activities: vec![monas_core::records::ActivityEntry {
-                name: context.activity.clone(),
+                name: name.activity.clone(),
                 ..monas_core::records::ActivityEntry::default()
             }],
             open_calls: vec![stalled.entry()],

@@ -81,7 +81,7 @@ fn an_activity_that_leaks_is_named_in_a_list_and_in_a_chart_and_others_are_not()
         if is_named("Leaks") && is_named("Keeps") && all {
             break agents;
         }
-        assert!(begun.elapsed() < Duration::from_secs(60), "nobody is named: {agents:?}");
+        assert!(begun.elapsed() < Duration::from_secs(60), "none is named: {agents:?}");
         std::thread::yield_now();
     };
     for name in ["Swells", "Publishes", "Reads"] {
@@ -91,4 +91,14 @@ fn an_activity_that_leaks_is_named_in_a_list_and_in_a_chart_and_others_are_not()
     assert!(leaks.held.unwrap() >= 64 * leaks.calls.saturating_sub(10), "{leaks:?}");
     assert!(activity(&agents, "Publishes").held.unwrap() < 20_000, "{agents:?}");
     running.stop();
+}
+
+#[test]
+fn a_measured_simulation_accounts_memory() {
+    let agent = Agent::new("list", Hz(1000)).named_activity("Leaks", Box::new(leaking()));
+    let mut simulation = Talws::new().agent(agent).simulate(1).unwrap();
+    simulation.measure();
+    simulation.run_until(kit::at(1000)).unwrap();
+    let leaks = &simulation.statistics().agents[0].activities[0];
+    assert!(leaks.grows && leaks.held.unwrap() >= 64 * 900, "{leaks:?}");
 }

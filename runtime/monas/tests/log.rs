@@ -23,24 +23,24 @@ thread_local! {
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
-struct Counting;
+struct AllocationCounter;
 
 // SAFETY: the call is passed to the system allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
+unsafe impl GlobalAlloc for AllocationCounter {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
         // SAFETY: the call is passed to the system allocator unchanged.
         unsafe { System.alloc(layout) }
     }
 
-    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
         // SAFETY: the call is passed to the system allocator unchanged.
-        unsafe { System.dealloc(place, layout) }
+        unsafe { System.dealloc(block, layout) }
     }
 }
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: AllocationCounter = AllocationCounter;
 
 /// An open log, for tests that write through the dispatch.
 fn begun(settings: LogSettings) -> (Dispatch, Logger) {
@@ -244,7 +244,7 @@ fn lines_are_messages_of_the_host_they_are_about_and_the_hash_of_the_run_does_no
     assert_eq!(words, expected);
     let (_, first) = &lines[0];
     assert!(first.file.ends_with("log.rs") && first.line > 0, "{first:?}");
-    assert_eq!(lines.len(), 7, "what is said outside of the run is no host's: {lines:?}");
+    assert_eq!(lines.len(), 7, "what is written outside of the run is no host's: {lines:?}");
 }
 
 #[test]
@@ -298,15 +298,15 @@ fn a_violated_property_is_an_error_with_its_name_the_cycle_and_the_time() {
         },
     );
     let line = log.lines().find(|line| line.contains("ERROR")).unwrap().trim_start();
-    let said = "property violated at 0.020000000 s property=it sleeps";
-    assert_eq!(line, format!("0.020000 s ERROR [local m #3] {said}"));
+    let text = "property violated at 0.020000000 s property=it sleeps";
+    assert_eq!(line, format!("0.020000 s ERROR [local m #3] {text}"));
 }
 
 #[test]
 fn json_has_an_object_a_line() {
     let run = || {
         team().simulate(1).unwrap().run_until(Timestamp::from_nanos(30_000_000)).unwrap();
-        tracing::info!("of \"nobody\"\n\u{1b}[31m");
+        tracing::info!("without an \"agent\"\n\u{1b}[31m");
     };
     let log = written(|settings| LogSettings { format: LogFormat::Json, ..settings }, run);
     let objects: Vec<serde_json::Value> =
@@ -317,11 +317,9 @@ fn json_has_an_object_a_line() {
         "message": "activity failed: no ball"
     });
     assert_eq!(*failed, expected);
-    let nobody = objects.last().unwrap();
-    assert_eq!(nobody["message"], "of \"nobody\"\n\u{1b}[31m");
-    assert!(
-        nobody["time"].is_string() && nobody.get("agent").is_none() && nobody.get("simulated_time").is_none()
-    );
+    let last = objects.last().unwrap();
+    assert_eq!(last["message"], "without an \"agent\"\n\u{1b}[31m");
+    assert!(last["time"].is_string() && last.get("agent").is_none() && last.get("simulated_time").is_none());
 }
 
 #[test]
@@ -417,7 +415,7 @@ fn errors_are_on_the_disk_when_a_process_is_killed() {
 /// A file that blocks until it is read: the logger's thread waits, writers do not.
 #[test]
 #[cfg(unix)]
-#[expect(clippy::disallowed_methods, reason = "somebody has to read what others write")]
+#[expect(clippy::disallowed_methods, reason = "the test reads what the threads write")]
 fn lines_beyond_the_write_rate_are_dropped_and_reported() {
     let folder = tempfile::tempdir().unwrap();
     let pipe = folder.path().join("log.txt");
@@ -440,8 +438,8 @@ fn lines_beyond_the_write_rate_are_dropped_and_reported() {
     drop((dispatch, logger));
     let lines = reading.join().unwrap();
     let dropped = lines.iter().filter_map(|line| {
-        let said = line.strip_suffix(" messages were dropped here: the rate was too high")?;
-        said.rsplit(' ').next()?.parse::<usize>().ok()
+        let text = line.strip_suffix(" messages were dropped here: the rate was too high")?;
+        text.rsplit(' ').next()?.parse::<usize>().ok()
     });
     let dropped: Vec<usize> = dropped.collect();
     let sum: usize = dropped.iter().sum();

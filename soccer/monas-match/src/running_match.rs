@@ -40,14 +40,38 @@ impl RunningMatch {
     /// # Errors
     /// The field or a body failed. Failures of activities are handled by the policy of their agent.
     pub fn advance(&mut self, to: Duration) -> Result<(), Error> {
-        let end = Timestamp::from_nanos(u64::try_from(to.as_nanos()).unwrap_or(u64::MAX));
-        self.simulation.run_until(end).map_err(Error::agents)?;
+        self.simulation.run_until(timestamp(to)).map_err(Error::agents)?;
+        self.collect_events();
+        Ok(())
+    }
+
+    /// As [`advance`](Self::advance), but given up if it has not returned within three seconds of
+    /// real time after `is_cancelled`.
+    ///
+    /// # Errors
+    /// As in [`advance`](Self::advance); or an activity, which the error names, has not returned.
+    pub fn advance_until_cancelled(
+        self,
+        to: Duration,
+        is_cancelled: impl Fn() -> bool,
+    ) -> Result<RunningMatch, Error> {
+        let advanced = self.simulation.run_until_cancelled(timestamp(to), is_cancelled, STOP_LIMIT);
+        let mut running = RunningMatch { simulation: advanced.map_err(Error::agents)?, ..self };
+        running.collect_events();
+        Ok(running)
+    }
+
+    fn collect_events(&mut self) {
         let RunningMatch { pitch, events, seen_events, .. } = self;
         pitch.with_world(|world| {
             events.extend(match_events::since(world, *seen_events));
             *seen_events = world.events().len();
         });
-        Ok(())
+    }
+
+    /// From now on measures the agents, see [`Simulation::measure`].
+    pub fn measure(&mut self) {
+        self.simulation.measure();
     }
 
     /// The simulated time since the start.
@@ -131,6 +155,10 @@ impl RunningMatch {
     }
 }
 
+fn timestamp(time: Duration) -> Timestamp {
+    Timestamp::from_nanos(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX))
+}
+
 fn agents(statistics: &Statistics) -> Vec<AgentSummary> {
     let summary = |agent: &monas::AgentStatistics| AgentSummary {
         host: agent.host.clone(),
@@ -139,6 +167,7 @@ fn agents(statistics: &Statistics) -> Vec<AgentSummary> {
         overruns: agent.overruns,
         micro_steps: agent.micro_steps,
         activity_calls: agent.activities.iter().map(|activity| activity.calls).sum(),
+        stopped: agent.stopped.clone(),
     };
     statistics.agents.iter().map(summary).collect()
 }

@@ -107,4 +107,6 @@ pub struct AgentSummary {
     pub micro_steps: u64,
     /// Calls of its activities.
     pub activity_calls: u64,
+    /// Why it has stopped before the end, if it has.
+    pub stopped: Option<String>,
 }

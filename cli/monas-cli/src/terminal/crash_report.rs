@@ -34,7 +34,8 @@ mod linux {
     use std::time::Duration;
 
     use crash_handler::{CrashContext, CrashEventResult, CrashHandler, write_stderr};
-    use monas::thread_activities::{self, ThreadActivity};
+    use monas::activity_name::ActivityName;
+    use monas::call_slot::{self, LastCall};
 
     use super::{IS_ENDING, RECORDING};
 
@@ -94,7 +95,7 @@ mod linux {
         write_stderr(cause);
         write_stderr("\n");
         let mut is_known = false;
-        thread_activities::each(|one| {
+        call_slot::each(|one| {
             is_known |= one.is_current;
             if one.is_current {
                 write_thread(one, "here: ");
@@ -103,7 +104,7 @@ mod linux {
         if !is_known {
             write_stderr("  here: a thread that has called no activity\n");
         }
-        thread_activities::each(|one| {
+        call_slot::each(|one| {
             if !one.is_current {
                 write_thread(one, "another thread: ");
             }
@@ -111,9 +112,10 @@ mod linux {
         flush_recording();
     }
 
-    fn write_thread(one: ThreadActivity, begin: &'static str) {
+    fn write_thread(one: LastCall, begin: &'static str) {
         let call = if one.is_running { "in activity " } else { "after activity " };
-        for part in ["  ", begin, call, one.activity, "\n"] {
+        let ActivityName { robot, agent, activity } = one.name;
+        for part in ["  ", begin, call, robot, "/", agent, "/", activity, "\n"] {
             write_stderr(part);
         }
     }

@@ -155,6 +155,39 @@ fn a_match_in_simulated_time_is_changed_by_host_and_looking_on_changes_nothing()
 }
 
 #[test]
+fn pause_step_and_resume_in_a_match_are_replayed() {
+    for mode in [&["--realtime"][..], &[]] {
+        let folder = folder();
+        let tape = folder.path().join("live.mcap").display().to_string();
+        let arguments = ["run", "config/match.xml", "--record", &tape, "--control", "game"];
+        let run = Running::start(folder.path(), &[&arguments[..], mode].concat(), "control socket: ");
+        let ask = |command: &str, more: &[&str]| {
+            let agent = ["agent", command, "Attacker", "--host", "blue-2"];
+            let answer = ask(folder.path(), &[&agent[..], more].concat());
+            assert_eq!(answer.code, Some(0), "{mode:?}: {answer:?}");
+            answer.out
+        };
+        let cycles = || objects(&ask("list", &["--format", "json"]))[0]["cycles"].as_u64().expect("a number");
+        let await_progress = || {
+            let before = cycles();
+            assert!((0..100).any(|_| cycles() > before), "{mode:?}: it makes no progress");
+        };
+        await_progress();
+        ask("pause", &[]);
+        let paused = cycles();
+        assert_eq!(cycles(), paused, "{mode:?}");
+        (0..3).for_each(|_| _ = ask("step", &[]));
+        assert!(cycles() > paused, "{mode:?}: no step was made");
+        ask("resume", &[]);
+        await_progress();
+        assert_eq!(run.interrupt().code, Some(130), "{mode:?}");
+        let verified = monas(&["tape", "verify", &tape]);
+        assert_eq!(verified.code, Some(0), "{mode:?}: {verified:?}");
+        assert!(verified.out.contains(" 0 differences"), "{mode:?}: {verified:?}");
+    }
+}
+
+#[test]
 fn each_command_shows_an_example() {
     for command in [
         "list",

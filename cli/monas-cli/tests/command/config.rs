@@ -36,7 +36,7 @@ fn at(folder: &Path, name: &str) -> String {
     folder.join(name).display().to_string()
 }
 
-const AGENTS: &str = "<agent thread_frequency=10 priority=1>\n  <name>Motion</name>\n  <activity gait=quick>NobodyKnowsIt</activity>\n</agent>\n";
+const AGENTS: &str = "<agent thread_frequency=10 priority=1>\n  <name>Motion</name>\n  <activity gait=quick>Unregistered</activity>\n</agent>\n";
 
 #[test]
 fn every_value_is_shown_with_its_origin() {
@@ -51,13 +51,13 @@ fn every_value_is_shown_with_its_origin() {
         "agent.Motion.thread_frequency = 50 --set agent.Motion.frequency=50".to_owned(),
         format!("agent.Motion.priority = 4 {}:3:12 (robot)", at(folder.path(), "config/robots/one.toml")),
         "agent.Motion.enable = 1 default".to_owned(),
-        format!("agent.Motion.activity.NobodyKnowsIt.gait = quick {file}:3:18"),
+        format!("agent.Motion.activity.Unregistered.gait = quick {file}:3:18"),
     ] {
         assert!(lines.contains(&expected), "{expected} is not in\n{}", answer.out);
     }
     let check = monas(&["config", "check", &file]);
     assert_eq!(check.code, Some(3));
-    assert!(check.err.contains("unknown activity `NobodyKnowsIt`"), "{}", check.err);
+    assert!(check.err.contains("unknown activity `Unregistered`"), "{}", check.err);
 }
 
 #[test]
@@ -113,7 +113,7 @@ fn mistakes_end_with_3_and_say_what_would_be_right() {
         ),
         (&["config/match.xml", "--set", "match.haf=3s"], "did you mean `half`?"),
         (&["config/match.xml", "--set", "agent"], "a path, `=` and a value"),
-        (&["config/roles/goalie.xml", "--robot", "nobody"], "robots/nobody.toml"),
+        (&["config/roles/goalie.xml", "--robot", "unknown"], "robots/unknown.toml"),
         (&["config/mach.xml"], "did you mean `config/match.xml`?"),
     ] {
         for command in ["show", "check"] {

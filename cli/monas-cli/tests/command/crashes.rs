@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::kit::{Answer, monas};
 
 /// The example `faulty`, in the folder next to this test.
-fn faulty() -> PathBuf {
+pub(crate) fn faulty() -> PathBuf {
     let test = std::env::current_exe().expect("a test");
     test.parent().and_then(|folder| folder.parent()).expect("two folders").join("examples/faulty")
 }

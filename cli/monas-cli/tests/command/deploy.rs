@@ -303,7 +303,7 @@ fn corrupt_files_are_rejected_and_unreachable_robots_are_reported() {
     let back = site.deploy(&["--rollback"]);
     assert!(back.err.contains("no release before the current one"), "{}", back.err);
 
-    let unreachable = script(&site.at("nobody"), "echo 'no route to host' >&2; exit 255");
+    let unreachable = script(&site.at("unknown"), "echo 'no route to host' >&2; exit 255");
     site.describe("config/roles/goalie.xml", &unreachable, "script");
     let answer = site.deploy(&["--list"]);
     assert_eq!(answer.code, Some(4), "{answer:?}");

@@ -56,12 +56,13 @@ fn properties_of_generated_charts_are_followed_in_a_match_as_those_of_interprete
         assert!(monitored.contains("stop-agent") && monitored != text, "{monitored}");
         fs::write(&path, monitored).expect("the folder takes files");
     }
-    let hash = |game: &str, property: &str| {
+    let hash = |game: &str, property: &str, code: i32| {
         let text = format!("property \"p\": {property}\n");
         fs::write(folder.path().join("models/strict.properties"), text).expect("the folder takes files");
         let game = folder.path().join("config").join(game).display().to_string();
         let answer = monas(&["run", &game, "--seed", "7", "--for", "40s"]);
-        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        assert_eq!(answer.code, Some(code), "{}", answer.err);
+        assert_eq!(answer.out.contains("Goalie on blue-1 has stopped: "), code == 1, "{}", answer.out);
         answer
             .out
             .lines()
@@ -70,9 +71,9 @@ fn properties_of_generated_charts_are_followed_in_a_match_as_those_of_interprete
             .expect("there is a hash")
     };
     let (strict, mild) = ("always not entering TrackBall", "always not (in TrackBall and in SearchBall)");
-    let violated = hash("match_attack.xml", strict);
-    assert_eq!(hash("match_generated.xml", strict), violated);
-    assert_ne!(hash("match_generated.xml", mild), violated, "the goalie stops when it tracks the ball");
+    let violated = hash("match_attack.xml", strict, 1);
+    assert_eq!(hash("match_generated.xml", strict, 1), violated);
+    assert_ne!(hash("match_generated.xml", mild, 0), violated, "the goalie stops when it tracks the ball");
 }
 
 #[test]

@@ -18,6 +18,8 @@ mod deploy;
 mod doctor;
 #[cfg(unix)]
 mod elsewhere;
+#[cfg(target_os = "linux")]
+mod endless;
 mod generate;
 mod hints;
 mod kit;

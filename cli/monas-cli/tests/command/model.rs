@@ -187,7 +187,7 @@ fn a_way_to_a_finding_is_written_and_played() {
     assert_eq!((played.code, played.err.as_str()), (Some(0), ""));
     assert!(played.out.contains("kick: look -> walk"), "{}", played.out);
     assert!(played.out.ends_with("  active: r, walk\n"), "{}", played.out);
-    let wrong = file(folder.path(), "wrong.trace", "start\nreturn nobody\n");
+    let wrong = file(folder.path(), "wrong.trace", "start\nreturn unknown\n");
     let refused = monas(&["model", "run", &model, &wrong]);
     assert_eq!(refused.code, Some(3));
     assert!(refused.err.contains("wrong.trace:2:1"), "{}", refused.err);

@@ -52,6 +52,14 @@ impl Running {
         self.wait()
     }
 
+    /// Interrupts the run again and again until it ends.
+    pub(crate) fn interrupt_until_the_end(mut self) -> Answer {
+        while self.child.try_wait().expect("it is a child").is_none() {
+            signal("-INT", self.child.id());
+        }
+        self.wait()
+    }
+
     /// Asks the run to end, as a service manager does.
     pub(crate) fn terminate(mut self) -> Answer {
         signal("-TERM", self.child.id());

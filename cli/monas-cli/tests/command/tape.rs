@@ -55,7 +55,7 @@ fn a_tape_is_verified_as_a_whole_and_its_log_is_read() {
     let few = lines(&["--robot", "blue-1", "--agent", "Goalie", "--count", "1"]);
     assert_eq!(few.len(), 1);
     assert_eq!((&few[0]["robot"], &few[0]["agent"]), (&"blue-1".into(), &"Goalie".into()));
-    assert_eq!(lines(&["--robot", "nobody"]).len(), 0);
+    assert_eq!(lines(&["--robot", "unknown"]).len(), 0);
     assert!(lines(&["--level", "warning"]).len() < all.len());
     let text = done(&["log", &tape(), "--robot", "blue-1", "--count", "1"]).out;
     assert!(text.contains(" s ") && text.contains(" blue-1 Goalie"), "{text}");

@@ -32,3 +32,36 @@ fn top_reports_agents_and_their_rates() {
     assert_eq!(ask(folder.path(), &["top", "--run", "other"]).code, Some(4));
     assert_eq!(run.interrupt().code, Some(130));
 }
+
+#[test]
+fn a_match_in_real_time_is_measured_and_stays_the_same_match() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let game = ["run", "config/match.xml", "--realtime", "--control", "game"];
+    let run = Running::start(folder.path(), &game, "control socket: ");
+    let look = |more: &[&str]| {
+        let top = ["top", "--every", "300ms", "--host", "blue-2"];
+        let answer = ask(folder.path(), &[&top[..], more].concat());
+        assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+        answer.out
+    };
+    let attacker = || {
+        let shown = objects(&look(&["--format", "json"]));
+        shown.into_iter().find(|object| object["agent"] == "Attacker").expect("the agent")
+    };
+    let is_busy = |agent: &Value| agent["core"].as_f64().is_some_and(|core| core > 0.0);
+    let attacker = (0..50).map(|_| attacker()).find(is_busy).expect("it is measured");
+    let activities = attacker["activities"].as_array().expect("a list");
+    let is_measured = |one: &&Value| one["core"].is_number() && one["held_bytes"].is_number();
+    assert!(activities.iter().any(|one| is_measured(&one)), "{attacker}");
+    let text = look(&[]);
+    let row = text.lines().find(|line| line.starts_with("blue-2") && line.contains("Attacker"));
+    let row = row.unwrap_or_else(|| panic!("{text}"));
+    assert!(row.contains(" %") && row.matches(" ms").count() == 2, "{text}");
+    assert_eq!(run.interrupt().code, Some(130));
+
+    let hash = |mode: &[&str]| {
+        let answer = ask(folder.path(), &[&["run", "config/match.xml", "--for", "500ms"], mode].concat());
+        answer.out.lines().find(|line| line.starts_with("hash: ")).expect("a hash").to_owned()
+    };
+    assert_eq!(hash(&["--realtime"]), hash(&[]));
+}

@@ -74,7 +74,7 @@ fn each_exit_code_means_one_thing() {
         (&["model", "ontology", "nowhere.srm"], 3),
         (&["model", "ontology", "models/goalie.srm", "--package", "1"], 2),
         #[cfg(unix)]
-        (&["topic", "list", "--run", "nobody-runs-this"], 4),
+        (&["topic", "list", "--run", "unknown-run"], 4),
     ] {
         let answer = command(arguments).env("XDG_RUNTIME_DIR", folder.path()).output().expect("it starts");
         assert_eq!(

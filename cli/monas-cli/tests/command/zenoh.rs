@@ -228,7 +228,7 @@ fn agents_are_changed_over_zenoh_only_with_access_and_certificate() {
         assert!((0..400).any(|_| holds()), "{what} never came about");
     };
     await_that("that all who may listen do", &|| {
-        publish("manager", 1, "PAUSE_AGENT", "Nobody");
+        publish("manager", 1, "PAUSE_AGENT", "Unknown");
         ["manager", "laptop", "liar"].iter().all(|run| has_heard(run))
     });
     for (run, _) in &others {

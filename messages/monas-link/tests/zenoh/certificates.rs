@@ -47,7 +47,7 @@ fn peers_with_expired_certificates_are_rejected() {
 
 #[test]
 fn peers_without_certificates_are_rejected() {
-    only_the_team_is_heard("nobody", |connecting| {
+    only_the_team_is_heard("unknown", |connecting| {
         let mut config = connecting;
         config.connect[0] = config.connect[0].replace("tls/", "tcp/");
         config

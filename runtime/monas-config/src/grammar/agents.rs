@@ -203,7 +203,8 @@ fn link() -> ElementRule {
             attribute(
                 "folder",
                 Kind::Text,
-                "of `local`: the folder of the sockets; by default $XDG_RUNTIME_DIR/monas",
+                "of `local`: the folder of the sockets; by default $XDG_RUNTIME_DIR/monas, or without that variable \
+                 monas-UID in the folder for temporary files, for its user only",
             ),
             attribute("beat", beat, "interval of the link's reports").or("200ms"),
             attribute("clock", Kind::Name, "the other end whose clock the run follows, in real time only"),

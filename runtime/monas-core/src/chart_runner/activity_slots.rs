@@ -74,6 +74,8 @@ struct ActivitySlot {
     calls: u64,
     timing: Timing,
     leak_detector: LeakDetector,
+    /// Whether it is part of a loop without a wait.
+    loops: bool,
     failures: u64,
     failures_in_a_row: u32,
 }
@@ -137,6 +139,7 @@ impl ActivitySlots {
                 calls: 0,
                 timing: Timing::default(),
                 leak_detector: LeakDetector::default(),
+                loops: false,
                 failures: 0,
                 failures_in_a_row: 0,
             }
@@ -277,6 +280,7 @@ impl ActivitySlots {
             activation,
             priority: slot.priority(),
             duration: slot.duration,
+            number: slot.calls,
             is_resumed,
             slot: index,
             activity,
@@ -553,6 +557,11 @@ impl ActivitySlots {
         self.slot(activation).map_or("", |slot| &slot.name)
     }
 
+    /// Marks the slots of these states, and no others, as parts of a loop without a wait.
+    pub(crate) fn set_loop(&mut self, nodes: &[NodeId]) {
+        self.slots.iter_mut().for_each(|slot| slot.loops = nodes.contains(&slot.node));
+    }
+
     /// The statistics of the activities of the chart, in document order.
     pub(crate) fn statistics<'a>(
         &'a self,
@@ -568,6 +577,7 @@ impl ActivitySlots {
             call_percentiles: slot.timing.percentiles(),
             held: slot.leak_detector.held(),
             grows: slot.leak_detector.grows(),
+            loops: slot.loops,
         })
     }
 }

@@ -78,6 +78,17 @@ impl ChartRunner {
         self.machine.chart().short_path(node)
     }
 
+    /// The names of states in sequence.
+    pub fn state_names(&self, nodes: &[NodeId]) -> String {
+        let names: Vec<String> = nodes.iter().map(|node| self.state_name(*node)).collect();
+        names.join(" -> ")
+    }
+
+    /// Marks the states of a loop without a wait, and no others, in the statistics.
+    pub fn set_loop(&mut self, nodes: &[NodeId]) {
+        self.host.slots.set_loop(nodes);
+    }
+
     /// The topics whose messages wake the chart.
     pub fn topics_of_guards(&self) -> Vec<TopicSlot> {
         self.machine.chart().reads().iter().map(|topic| TopicSlot::new(topic.0)).collect()

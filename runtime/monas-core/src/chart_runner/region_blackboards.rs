@@ -386,7 +386,7 @@ mod tests {
         let late = lending.lend_blackboard(activation, NOW).unwrap();
         publish(&lending, 3);
         assert!(lending.reclaim_mut(activation.region, NOW).is_some());
-        assert!(late.is_cancelled(), "whoever has the old one may as well return");
+        assert!(late.is_cancelled(), "the holder of the old one may return");
         assert_eq!(team(lending.newest(activation.region, topic)), Some(3), "what was published is known");
         let next = Activation { number: 2, ..activation };
         let lent = lending.lend_blackboard(next, NOW).unwrap();

@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn only_activities_of_the_named_crates_are_handed_over() {
-        assert!(contents(&["nobody"]).activities.is_empty());
+        assert!(contents(&["unknown"]).activities.is_empty());
         let own = contents(&["monas_core"]);
         assert!(own.activities.iter().any(|activity| activity.name == "RegistryTestStand"));
         assert!(own.topics.iter().any(|topic| topic.path() == "monas/change"));

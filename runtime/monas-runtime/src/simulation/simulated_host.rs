@@ -12,7 +12,7 @@ use crate::agent_factory::{AgentFactory, PreparedAgent};
 use crate::agent_instance::{AgentInstance, PublishedTopics};
 use crate::agent_update::{AgentStatus, AgentUpdate, ChangeRef};
 use crate::body::BodyBridge;
-use crate::clock::SimulatedClock;
+use crate::clock::{RunClock, SimulatedClock};
 use crate::host_status::HostStatus;
 use crate::links::RunningLink;
 use crate::list::CycleOutcome;
@@ -36,6 +36,8 @@ struct BodyAndAgents {
     host: String,
     body: Option<(BodyBridge, u64)>,
     instances: Vec<AgentInstance>,
+    /// Measures the agents, if they are measured.
+    clock: Option<RunClock>,
     /// The statistics of removed agents.
     removed: Vec<AgentStatistics>,
 }
@@ -85,6 +87,7 @@ impl SimulatedHost {
             host: hub.host().into(),
             body: body.map(|body| (body, 0)),
             instances,
+            clock: None,
             removed: Vec::new(),
         };
         Ok(SimulatedHost { moved, has_requests: asked, admin: roster, team })
@@ -92,6 +95,12 @@ impl SimulatedHost {
 
     pub(crate) fn name(&self) -> &str {
         &self.team.host
+    }
+
+    /// From now on measures the agents.
+    pub(crate) fn measure(&mut self, clock: RunClock) {
+        self.team.clock = Some(clock);
+        self.team.instances.iter_mut().for_each(|instance| instance.measure(clock));
     }
 
     pub(crate) fn hub(&self) -> &Hub {
@@ -249,7 +258,8 @@ impl AgentControl for SimulatedAgents<'_> {
     }
 
     fn launch(&mut self, member: PreparedAgent, _: Option<&ChangeRef>) -> Result<(), String> {
-        let instance = AgentInstance::new(member, self.now);
+        let mut instance = AgentInstance::new(member, self.now);
+        self.team.clock.into_iter().for_each(|clock| instance.measure(clock));
         let place = self.team.instances.partition_point(|known| known.name() < instance.name());
         self.team.instances.insert(place, instance);
         Ok(())

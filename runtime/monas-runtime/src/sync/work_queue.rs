@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn workers_are_hired_while_jobs_wait_and_there_may_be_more() {
         let work: WorkQueue<u32> = WorkQueue::new(2);
-        assert!(work.submit(0, 1), "nobody is there");
+        assert!(work.submit(0, 1), "there is no worker");
         assert!(work.submit(0, 2), "the first has something to do");
         assert!(!work.submit(0, 3), "there may be two");
         assert!(work.release_worker(), "one is left");

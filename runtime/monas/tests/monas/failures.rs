@@ -5,13 +5,13 @@ use crate::kit::{BALL, Ball, at, recorder};
 use monas::{Activity, Agent, AgentStatistics, Blackboard, BoxError, FailurePolicy, Hz, Progress, Talws};
 
 /// Fails in these cycles of its agent, and records its calls.
-struct Fails<N> {
+struct FailingActivity<N> {
     at: &'static [u64],
     starts: bool,
     note: N,
 }
 
-impl<N: Fn(String) + Send> Fails<N> {
+impl<N: Fn(String) + Send> FailingActivity<N> {
     fn fail(&self, blackboard: &Blackboard, what: &str) -> Result<(), BoxError> {
         let cycle = blackboard.now().as_nanos() / 1_000_000 + 1;
         (self.note)(format!("{what} {cycle}"));
@@ -19,7 +19,7 @@ impl<N: Fn(String) + Send> Fails<N> {
     }
 }
 
-impl<N: Fn(String) + Send> Activity for Fails<N> {
+impl<N: Fn(String) + Send> Activity for FailingActivity<N> {
     fn start(&mut self, blackboard: &mut Blackboard) -> Result<(), BoxError> {
         if self.starts { self.fail(blackboard, "start") } else { Ok(()) }
     }
@@ -40,7 +40,7 @@ fn calls(
     cycles: u64,
 ) -> (Vec<String>, AgentStatistics) {
     let (calls, note) = recorder();
-    let fails = Fails { at: at_cycles, starts, note };
+    let fails = FailingActivity { at: at_cycles, starts, note };
     let agent = Agent::new("a", Hz(1000)).activity(fails).on_failure(policy);
     let mut simulation = Talws::new().agent(agent).simulate(1).unwrap();
     simulation.run_until(at(cycles)).unwrap();
@@ -96,7 +96,7 @@ fn a_skipped_failure_has_no_effect() {
 fn stopping_the_agent_stops_its_activities() {
     let (calls, statistics) = calls(&[2], false, FailurePolicy::StopAgent, 5);
     assert_eq!(calls, ["call 1", "call 2", "stop"]);
-    assert_eq!(statistics.stopped.as_deref(), Some("activity `Fails` failed in cycle 2: broken"));
+    assert_eq!(statistics.stopped.as_deref(), Some("activity `FailingActivity` failed in cycle 2: broken"));
     assert_eq!(statistics.cycles, 2);
 }
 

@@ -9,6 +9,7 @@ mod generated;
 mod kit;
 mod locks;
 mod management;
+mod measured;
 mod panics;
 mod pool;
 mod real_time;

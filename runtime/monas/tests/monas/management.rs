@@ -38,12 +38,12 @@ fn refused(changed: &Changed) -> (String, String) {
 
 /// An activity that records its calls: `A` for a call, `A start`, `A stop`, `A 0.5` for its
 /// parameter.
-struct Telling<N> {
+struct ReportingActivity<N> {
     name: &'static str,
     note: N,
 }
 
-impl<N: Fn(String) + Send> Activity for Telling<N> {
+impl<N: Fn(String) + Send> Activity for ReportingActivity<N> {
     fn configure(&mut self, parameters: &Parameters) {
         if let Some(speed) = parameters.number("speed") {
             (self.note)(format!("{} {speed}", self.name));
@@ -66,9 +66,9 @@ impl<N: Fn(String) + Send> Activity for Telling<N> {
 }
 
 /// Activities that record their calls.
-fn telling(names: &[&'static str], note: impl Fn(String) + Clone + Send + Sync + 'static) -> Registry {
+fn reporting(names: &[&'static str], note: impl Fn(String) + Clone + Send + Sync + 'static) -> Registry {
     names.iter().copied().fold(Registry::empty(), |registry, name| {
         let note = note.clone();
-        registry.with(name, move || Telling { name, note: note.clone() })
+        registry.with(name, move || ReportingActivity { name, note: note.clone() })
     })
 }

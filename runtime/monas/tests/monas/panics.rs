@@ -20,15 +20,15 @@ const PARTS: [&str; 8] = ["name", "topics", "start", "execute", "stop", "drop", 
 
 /// Panics in one part.
 #[derive(Clone, Copy)]
-struct Spoiled(&'static str);
+struct FaultyActivity(&'static str);
 
-impl Spoiled {
+impl FaultyActivity {
     fn reach(self, part: &str) {
         assert!(self.0 != part, "{part} is spoiled");
     }
 }
 
-impl Activity for Spoiled {
+impl Activity for FaultyActivity {
     fn configure(&mut self, _: &Parameters) {}
     fn start(&mut self, _: &mut Blackboard) -> Result<(), BoxError> {
         self.reach("start");
@@ -38,7 +38,7 @@ impl Activity for Spoiled {
         self.reach("execute");
         blackboard.publish(BALL, Ball::default())?;
         match self.0 {
-            "display" | "end of an error" => Err(SpoiledError(*self).into()),
+            "display" | "end of an error" => Err(FaultyError(*self).into()),
             _ => Ok(Progress::ongoing()),
         }
     }
@@ -47,7 +47,7 @@ impl Activity for Spoiled {
     }
     fn name(&self) -> &str {
         self.reach("name");
-        "Spoiled"
+        "FaultyActivity"
     }
     fn topics(&self) -> Topics {
         self.reach("topics");
@@ -55,10 +55,10 @@ impl Activity for Spoiled {
     }
 }
 
-/// `Spoiled` is copied, its owner is not.
-struct Owner(Spoiled);
+/// `FaultyActivity` is copied, `DroppedActivity` is not.
+struct DroppedActivity(FaultyActivity);
 
-impl Activity for Owner {
+impl Activity for DroppedActivity {
     fn start(&mut self, blackboard: &mut Blackboard) -> Result<(), BoxError> {
         self.0.start(blackboard)
     }
@@ -76,30 +76,30 @@ impl Activity for Owner {
     }
 }
 
-impl Drop for Owner {
+impl Drop for DroppedActivity {
     fn drop(&mut self) {
         self.0.reach("drop");
     }
 }
 
-struct SpoiledError(Spoiled);
+struct FaultyError(FaultyActivity);
 
-impl std::fmt::Display for SpoiledError {
+impl std::fmt::Display for FaultyError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.0.reach("display");
         f.write_str("it failed")
     }
 }
 
-impl std::fmt::Debug for SpoiledError {
+impl std::fmt::Debug for FaultyError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         std::fmt::Display::fmt(self, f)
     }
 }
 
-impl std::error::Error for SpoiledError {}
+impl std::error::Error for FaultyError {}
 
-impl Drop for SpoiledError {
+impl Drop for FaultyError {
     fn drop(&mut self) {
         self.0.reach("end of an error");
     }
@@ -119,7 +119,7 @@ fn beside(agent: Agent, registry: Registry) -> (Talws, Recorder<()>) {
 #[test]
 fn of_an_activity_of_a_list_harm_no_other_agent() {
     for part in PARTS {
-        let agent = Agent::new("a", Hz(10)).activity(Owner(Spoiled(part)));
+        let agent = Agent::new("a", Hz(10)).activity(DroppedActivity(FaultyActivity(part)));
         let (talws, calls) = beside(agent, Registry::linked());
         let mut simulation = talws.simulate(1).unwrap();
         simulation.run_until(at(200)).unwrap();
@@ -136,7 +136,7 @@ fn of_an_activity_of_a_list_harm_no_other_agent() {
 #[test]
 fn of_an_activity_of_a_chart_harm_no_other_agent() {
     for part in PARTS.into_iter().filter(|part| *part != "name") {
-        let registry = Registry::linked().with("A", move || Owner(Spoiled(part)));
+        let registry = Registry::linked().with("A", move || DroppedActivity(FaultyActivity(part)));
         let agent = Agent::statechart("a", chart("m = A . A"));
         let (talws, calls) = beside(agent, registry);
         let mut simulation = talws.simulate(1).unwrap();
@@ -149,7 +149,7 @@ fn of_an_activity_of_a_chart_harm_no_other_agent() {
 
 #[test]
 fn of_a_name_are_the_reason_why_an_activity_cannot_be_made() {
-    let registry = Registry::linked().with("A", || Owner(Spoiled("name")));
+    let registry = Registry::linked().with("A", || DroppedActivity(FaultyActivity("name")));
     let error = registry.activity("A").err().unwrap().to_string();
     assert!(error.ends_with("panicked: name is spoiled"), "{error}");
 }
@@ -186,7 +186,7 @@ fn of_a_description_stop_an_agent_in_real_time_which_starts_again() {
             let sender = sender.clone();
             move |_: &mut Blackboard| -> Result<(), BoxError> {
                 let _ = sender.send("called");
-                Err(SpoiledError(Spoiled("display")).into())
+                Err(FaultyError(FaultyActivity("display")).into())
             }
         });
         let agent = match is_chart {
@@ -221,9 +221,9 @@ fn restart_twice(run: &monas::RunHandle, started: &Receiver<&'static str>) {
 }
 
 /// Panics at each ball.
-struct SpoiledObserver(Sender<&'static str>);
+struct FaultyObserver(Sender<&'static str>);
 
-impl Observer for SpoiledObserver {
+impl Observer for FaultyObserver {
     fn observe(&mut self, publication: Publication<'_>) {
         if publication.topic.path() == BALL.path() {
             let _ = self.0.send("called");
@@ -242,7 +242,7 @@ fn of_an_observer_stop_the_agent_that_publishes_which_starts_again() {
             false => Agent::new("a", Hz(1000)).named_activity("A", registry.activity("A").unwrap()),
         };
         let (mut talws, _calls) = beside(agent, registry);
-        talws.observe(Box::new(SpoiledObserver(sender)));
+        talws.observe(Box::new(FaultyObserver(sender)));
         let running = talws.start().unwrap();
         restart_twice(&running.run_handle(), &started);
         let reason = running.stop().agents[0].stopped.clone().unwrap();
@@ -252,10 +252,11 @@ fn of_an_observer_stop_the_agent_that_publishes_which_starts_again() {
 
 #[test]
 fn of_a_change_are_no_end_of_a_run() {
-    let (talws, calls) = beside(Agent::new("a", Hz(10)).activity(Owner(Spoiled("drop"))), Registry::linked());
+    let (talws, calls) =
+        beside(Agent::new("a", Hz(10)).activity(DroppedActivity(FaultyActivity("drop"))), Registry::linked());
     let mut simulation = talws.simulate(1).unwrap();
     simulation.run_until(at(100)).unwrap();
-    let remove = Change { activity: "Spoiled".into(), ..change(Action::RemoveActivity, "a") };
+    let remove = Change { activity: "FaultyActivity".into(), ..change(Action::RemoveActivity, "a") };
     made(&simulation.change("local", remove).unwrap());
     simulation.run_until(at(200)).unwrap();
     assert_eq!(calls.taken().len(), 2);

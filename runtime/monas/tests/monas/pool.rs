@@ -23,10 +23,10 @@ fn chart(text: &str) -> Statechart {
 
 /// A chart whose events are recorded as words, with activities that wait at gates and messages sent
 /// by the test.
-struct Scene {
+struct PoolScene {
     registry: Registry,
     words: Receiver<String>,
-    tell: Sender<String>,
+    report: Sender<String>,
     /// Opens the gate.
     open: Sender<()>,
     gate: Arc<Mutex<Receiver<()>>>,
@@ -34,20 +34,21 @@ struct Scene {
     news: Arc<AtomicBool>,
 }
 
-impl Scene {
+impl PoolScene {
     /// `A` to `D` record their calls; `Work` records its start, waits at the gate, and
     /// records its end.
-    fn new() -> Scene {
-        let (tell, words) = channel();
+    fn new() -> PoolScene {
+        let (report, words) = channel();
         let (open, gate) = channel();
         let gate = Arc::new(Mutex::new(gate));
-        let scene = Scene { registry: Registry::linked(), words, tell, open, gate, news: Arc::default() };
-        let scene = ["A", "B", "C", "D"].into_iter().fold(scene, Scene::with_speaker);
-        let (tell, gate) = (scene.tell.clone(), scene.gate.clone());
+        let scene =
+            PoolScene { registry: Registry::linked(), words, report, open, gate, news: Arc::default() };
+        let scene = ["A", "B", "C", "D"].into_iter().fold(scene, PoolScene::with_speaker);
+        let (report, gate) = (scene.report.clone(), scene.gate.clone());
         scene.with("Work", move |_| {
-            tell.send("Work begins".into())?;
+            report.send("Work begins".into())?;
             gate.lock().unwrap().recv_timeout(PATIENCE)?;
-            tell.send("Work ends".into())?;
+            report.send("Work ends".into())?;
             Ok(Progress::Done)
         })
     }
@@ -56,15 +57,15 @@ impl Scene {
         mut self,
         name: &str,
         call: impl Fn(&mut Blackboard) -> Result<Progress, BoxError> + Clone + Send + Sync + 'static,
-    ) -> Scene {
+    ) -> PoolScene {
         self.registry = self.registry.with(name, move || call.clone());
         self
     }
 
-    fn with_speaker(self, name: &'static str) -> Scene {
-        let tell = self.tell.clone();
+    fn with_speaker(self, name: &'static str) -> PoolScene {
+        let report = self.report.clone();
         self.with(name, move |_| {
-            tell.send(name.into())?;
+            report.send(name.into())?;
             Ok(Progress::Done)
         })
     }
@@ -73,12 +74,12 @@ impl Scene {
     /// ball on request.
     fn start(&self, agent: impl Fn(Agent) -> Agent, text: &str) -> RealTimeRun {
         let news = self.news.clone();
-        let mut said = 0;
+        let mut published = 0;
         let reporter = move |b: &mut Blackboard| -> Result<(), BoxError> {
-            if said == 0 || said == 1 && news.load(Ordering::SeqCst) {
-                said += 1;
-                b.publish(BALL, Ball { found: true, x: f64::from(said), ..Ball::default() })?;
-                if said == 2 {
+            if published == 0 || published == 1 && news.load(Ordering::SeqCst) {
+                published += 1;
+                b.publish(BALL, Ball { found: true, x: f64::from(published), ..Ball::default() })?;
+                if published == 2 {
                     b.publish(NEWS, Ball::default())?;
                 }
             }
@@ -86,11 +87,11 @@ impl Scene {
         };
         let agent = agent(Agent::statechart("m", chart(text)));
         let mut talws = Talws::new().registry(self.registry.clone()).agent(agent);
-        let tell = self.tell.clone();
+        let report = self.report.clone();
         talws.listen(Box::new(move |step: MicroStep<'_>| {
             if let MicroStepCause::Event(event) = step.record.occasion {
                 let (name, held) = (step.chart.events().name(event), !step.record.held.is_empty());
-                let _ = tell.send(format!("{name}{}", if held { " held" } else { "" }));
+                let _ = report.send(format!("{name}{}", if held { " held" } else { "" }));
             }
         }));
         talws.agent(Agent::new("z", Hz(1000)).activity(reporter)).start().unwrap()
@@ -155,20 +156,20 @@ fn activities_of_three_regions_run_at_the_same_time_and_never_two_of_one() {
 
 #[test]
 fn an_interrupting_transition_asks_the_activity_to_return_and_fires_when_it_has() {
-    let scene = Scene::new();
-    let tell = scene.tell.clone();
+    let scene = PoolScene::new();
+    let report = scene.report.clone();
     let scene = scene.with("Watch", move |b| {
-        tell.send("Watch begins".into())?;
+        report.send("Watch begins".into())?;
         while !b.is_cancelled() {
             std::thread::yield_now();
         }
-        tell.send("Watch ends".into())?;
+        report.send("Watch ends".into())?;
         Ok(Progress::Done)
     });
     let running = scene.start(same, "Liveness:\nm = Watch . B\nTransitions:\nWatch -> B interrupts : news");
     assert_eq!(scene.next(1), ["Watch begins"]);
     scene.report_news();
-    // The activity may have heard before the chart's own thread has said so.
+    // The activity may have received it before the thread of the chart has reported it.
     let mut notes = scene.next(2);
     notes.sort_unstable();
     assert_eq!(notes, ["Watch ends", "test/news held"]);
@@ -178,7 +179,7 @@ fn an_interrupting_transition_asks_the_activity_to_return_and_fires_when_it_has(
 
 #[test]
 fn an_event_is_held_until_the_activity_of_the_state_it_leaves_has_returned() {
-    let scene = Scene::new();
+    let scene = PoolScene::new();
     let running = scene.start(same, "Liveness:\nm = Work . B\nTransitions:\nWork -> B : news");
     assert_eq!(scene.next(1), ["Work begins"]);
     scene.report_news();
@@ -190,7 +191,7 @@ fn an_event_is_held_until_the_activity_of_the_state_it_leaves_has_returned() {
 
 #[test]
 fn a_guard_sees_what_the_blackboard_showed_when_the_running_activity_began() {
-    let scene = Scene::new();
+    let scene = PoolScene::new();
     // While `Work` runs, its blackboard shows the first ball; the second has arrived with the news,
     // but is not delivered to it.
     let text =
@@ -208,7 +209,7 @@ fn a_guard_sees_what_the_blackboard_showed_when_the_running_activity_began() {
 
 #[test]
 fn a_composite_is_not_left_while_an_activity_of_a_nested_and_runs() {
-    let scene = Scene::new();
+    let scene = PoolScene::new();
     let text = "Liveness:\nm = in . D\nin = A || deep\ndeep = B . pair\npair = C || Work\n\
                 Transitions:\nin -> D : news";
     let running = scene.start(same, text);
@@ -224,20 +225,20 @@ fn a_composite_is_not_left_while_an_activity_of_a_nested_and_runs() {
 
 #[test]
 fn two_states_with_one_activity_have_an_instance_and_a_running_flag_each() {
-    let scene = Scene::new();
-    let (tell, gate) = (scene.tell.clone(), scene.gate.clone());
+    let scene = PoolScene::new();
+    let (report, gate) = (scene.report.clone(), scene.gate.clone());
     let made = Arc::new(AtomicU64::new(0));
     let registry = scene.registry.clone().with("Same", move || {
-        let (tell, gate) = (tell.clone(), gate.clone());
+        let (report, gate) = (report.clone(), gate.clone());
         let number = made.fetch_add(1, Ordering::SeqCst);
         move |_: &mut Blackboard| -> Result<(), BoxError> {
             if number == 1 {
                 gate.lock().unwrap().recv_timeout(PATIENCE)?;
             }
-            Ok(tell.send(format!("Same {number}"))?)
+            Ok(report.send(format!("Same {number}"))?)
         }
     });
-    let scene = Scene { registry, ..scene };
+    let scene = PoolScene { registry, ..scene };
     let running = scene.start(same, "m = (Same . A) || (Same . B)");
     assert_eq!(scene.next(2), ["Same 0", "A"], "the other still runs");
     scene.open_the_gate();
@@ -247,11 +248,11 @@ fn two_states_with_one_activity_have_an_instance_and_a_running_flag_each() {
 
 #[test]
 fn a_message_wakes_a_chart_in_which_everybody_waits() {
-    let scene = Scene::new();
-    let tell = scene.tell.clone();
+    let scene = PoolScene::new();
+    let report = scene.report.clone();
     let scene = scene.with("Wait", move |b| {
         let ball = b.read(BALL).map_or(0.0, |ball| ball.x);
-        tell.send(format!("ball {ball}"))?;
+        report.send(format!("ball {ball}"))?;
         Ok(if ball < 2.0 { Progress::after(Duration::from_secs(3600)) } else { Progress::Done })
     });
     let running = scene.start(same, "m = Wait . A");
@@ -270,7 +271,7 @@ fn a_message_wakes_a_chart_in_which_everybody_waits() {
 
 #[test]
 fn the_most_urgent_activity_goes_first_by_its_state_or_by_the_transition_into_it() {
-    let scene = Scene::new();
+    let scene = PoolScene::new();
     let text = "Liveness:\nm = Work || A || B || C\nTransitions:\nSTART -> B !5\nA -> END : news [false]\n\
                 States:\nWork : priority = 100\nC : priority = 9";
     let one = NonZeroUsize::MIN;
@@ -295,7 +296,7 @@ impl Drop for Bomb {
 
 #[test]
 fn an_activity_that_panics_on_the_pool_frees_its_region_and_is_an_event() {
-    let scene = Scene::new();
+    let scene = PoolScene::new();
     let scene = scene.with("Fail", |_| std::panic::panic_any(Bomb));
     let running = scene.start(
         |agent| agent.on_failure(FailurePolicy::Skip),
@@ -313,10 +314,10 @@ fn an_activity_that_panics_on_the_pool_frees_its_region_and_is_an_event() {
 
 #[test]
 fn the_end_of_a_run_asks_running_activities_to_return() {
-    let scene = Scene::new();
-    let tell = scene.tell.clone();
+    let scene = PoolScene::new();
+    let report = scene.report.clone();
     let scene = scene.with("Watch", move |b| {
-        tell.send("Watch begins".into())?;
+        report.send("Watch begins".into())?;
         while !b.is_cancelled() {
             std::thread::yield_now();
         }
@@ -329,7 +330,7 @@ fn the_end_of_a_run_asks_running_activities_to_return() {
 
 #[test]
 fn a_chart_reports_durations_of_steps_and_calls() {
-    let scene = Scene::new();
+    let scene = PoolScene::new();
     let running = scene.start(same, "m = A . B");
     assert_eq!(scene.next(2), ["A", "B"]);
     let statistics = running.stop();

@@ -70,9 +70,9 @@ fn a_stopper_ends_a_run_from_another_thread() {
 }
 
 /// Sends the violations in records of cycles.
-struct Violated(Sender<String>);
+struct ViolationObserver(Sender<String>);
 
-impl Observer for Violated {
+impl Observer for ViolationObserver {
     fn observe(&mut self, publication: Publication<'_>) {
         let cycle = publication.sample.message.as_any().downcast_ref::<Cycle>();
         for violation in cycle.into_iter().flat_map(|cycle| &cycle.violations) {
@@ -91,7 +91,7 @@ fn waiting(property: &str, on_violation: ViolationResponse) -> (Talws, Receiver<
     let text = "Liveness:\nm = A . A\nTransitions:\nA -> A : [ball.found]";
     let agent = Agent::statechart("m", chart(text)).on_failure(FailurePolicy::StopAgent);
     let mut talws = Talws::new().registry(registry).agent(agent.monitor(properties, on_violation));
-    talws.observe(Box::new(Violated(sender)));
+    talws.observe(Box::new(ViolationObserver(sender)));
     (talws, violated)
 }
 
@@ -218,9 +218,9 @@ impl Robot for Body {
 }
 
 /// A world that only reports its steps.
-struct Quiet(Sender<Timestamp>);
+struct IdleWorld(Sender<Timestamp>);
 
-impl World for Quiet {
+impl World for IdleWorld {
     fn period(&self) -> Duration {
         Duration::from_millis(1)
     }
@@ -242,7 +242,7 @@ fn a_body_senses_and_acts_and_the_world_moves_on() {
         )?)
     };
     let mut talws = Talws::new();
-    talws.world(Box::new(Quiet(moves)));
+    talws.world(Box::new(IdleWorld(moves)));
     let body = Body(acts, Anatomy::new("test", Duration::from_millis(1)));
     let agents = vec![Agent::new("walker", Hz(1000)).activity(walks)];
     talws.host(HostConfig {

@@ -201,9 +201,9 @@ fn a_list_without_a_frequency_is_refused() {
 }
 
 /// A world that counts its steps, shared with the body in it.
-struct Counting(Arc<Mutex<Vec<String>>>);
+struct CountingWorld(Arc<Mutex<Vec<String>>>);
 
-impl World for Counting {
+impl World for CountingWorld {
     fn period(&self) -> Duration {
         Duration::from_millis(20)
     }
@@ -256,7 +256,7 @@ fn at_one_moment_the_world_moves_bodies_sense_agents_run_and_bodies_act() {
         b.publish(ACTUATORS, Actuators { walk_x: measured as f64 / 1e9, ..Actuators::default() })
     };
     let (mut talws, log) = embodied(vec![Agent::new("walker", Hz(50)).activity(walks)]);
-    talws.world(Box::new(Counting(log.clone())));
+    talws.world(Box::new(CountingWorld(log.clone())));
     let mut simulation = talws.simulate(1).unwrap();
     simulation.run_until(at(41)).unwrap();
     let happened = log.lock().unwrap().clone();

@@ -19,12 +19,12 @@ const PATIENCE: Duration = Duration::from_secs(20);
 const LIMIT: Duration = Duration::from_millis(50);
 
 /// Does not return from `stop` until its receiver has something.
-struct Clinging {
+struct ClingingActivity {
     called: Sender<()>,
     released: Arc<Mutex<Receiver<()>>>,
 }
 
-impl Activity for Clinging {
+impl Activity for ClingingActivity {
     fn execute(&mut self, _: &mut Blackboard) -> Result<Progress, BoxError> {
         let _ = self.called.send(());
         Ok(Progress::after(PATIENCE))
@@ -40,19 +40,19 @@ impl Activity for Clinging {
 fn clinging(is_chart: bool) -> (Talws, Receiver<()>, Sender<()>) {
     let ((called, calls), (release, released)) = (channel(), channel());
     let released = Arc::new(Mutex::new(released));
-    let make = move || Clinging { called: called.clone(), released: released.clone() };
+    let make = move || ClingingActivity { called: called.clone(), released: released.clone() };
     let agent = match is_chart {
         true => Agent::statechart("a", aseme_models::statechart_of(&Source::new("m.srm", "m = Clinging")).0),
-        false => Agent::new("a", Hz(100)).activity(make()),
+        false => Agent::new("a", Hz(100)).named_activity("Clinging", Box::new(make())),
     };
     let registry = Registry::empty().with("Clinging", make);
     (Talws::new().registry(registry).agent(agent.stuck_after(LIMIT)), calls, release)
 }
 
 /// Sends its calls.
-struct Stopping(Sender<&'static str>);
+struct StopReporter(Sender<&'static str>);
 
-impl Activity for Stopping {
+impl Activity for StopReporter {
     fn execute(&mut self, _: &mut Blackboard) -> Result<Progress, BoxError> {
         let _ = self.0.send("execute");
         Ok(Progress::Done)
@@ -68,7 +68,7 @@ fn a_run_in_real_time_ends_though_an_activity_does_not_stop() {
     for is_chart in [false, true] {
         let (talws, calls, release) = clinging(is_chart);
         let (sender, reported) = channel();
-        let running = talws.agent(Agent::new("b", Hz(100)).activity(Stopping(sender))).start().unwrap();
+        let running = talws.agent(Agent::new("b", Hz(100)).activity(StopReporter(sender))).start().unwrap();
         calls.recv_timeout(PATIENCE).unwrap();
         assert_eq!(reported.recv_timeout(PATIENCE).unwrap(), "execute");
         let statistics = running.stop();

@@ -131,7 +131,8 @@ fn object(agent: &AgentEntry) -> Value {
             let parameters: serde_json::Map<String, Value> =
                 activity.parameters.iter().map(|one| (one.key.clone(), one.value.clone().into())).collect();
             json!({"name": activity.name, "state": activity.state, "parameters": parameters, "calls": activity.calls,
-                "failures": activity.failures, "held_bytes": activity.held, "grows": activity.grows, "call_time": times(activity.call_time.as_ref())})
+                "failures": activity.failures, "held_bytes": activity.held, "grows": activity.grows, "loops": activity.loops,
+                "call_time": times(activity.call_time.as_ref())})
         })
         .collect();
     let charts: Vec<Value> =

@@ -66,7 +66,7 @@ fn folder() -> Result<PathBuf, String> {
 
 /// Whether a run can create a control socket.
 fn sockets(folder: Result<PathBuf, String>) -> CheckResult {
-    let hint = "set XDG_RUNTIME_DIR to a private folder; without it `monas topic` finds no run";
+    let hint = "set XDG_RUNTIME_DIR to a private folder of this user, where `monas topic` finds runs";
     let folder = match folder {
         Ok(folder) => folder,
         Err(reason) => return CheckResult::warning(AREA, format!("no control sockets: {reason}"), hint),

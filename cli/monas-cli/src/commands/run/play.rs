@@ -37,15 +37,24 @@ pub(crate) fn execute(
     let socket = control::bind(arguments, console)?;
     let tape = outputs::open(arguments, Tape::to_file, console)?;
     let clock = WallClock::start();
-    let running = play(plan, arguments, socket, tape.clone(), &interrupt, clock, console)?;
+    let running = play(plan, arguments, socket, tape.clone(), &interrupt, clock, console);
     let wall = clock.elapsed();
+    let running = running.or_else(|failure| {
+        // A thread that does not return keeps the match, and with it the tape.
+        outputs::finish(tape.clone(), format)?;
+        Err(failure)
+    })?;
     let results = running.finish().map_err(|error| CommandFailure::failed(format, error))?;
     summary::write(console.out, format, &results, wall)?;
     outputs::finish(tape, format)?;
     if let Some(unstopped) = results.unstopped {
         return Err(CommandFailure::failed(format, unstopped));
     }
-    Ok(interrupt.exit().unwrap_or(Exit::Success))
+    Ok(match interrupt.exit() {
+        Some(exit) => exit,
+        None if results.agents.iter().any(|agent| agent.stopped.is_some()) => Exit::Failure,
+        None => Exit::Success,
+    })
 }
 
 /// Plays until the match is over, the requested time has passed, or an interrupt.
@@ -69,11 +78,15 @@ fn play(
     let handle = running.simulation().run_handle();
     let _control = control::serve(socket, handle.clone(), tape.clone(), arguments)?;
     let mut alarm = RecordingAlarm::new(tape, handle);
+    if arguments.realtime {
+        running.measure();
+    }
     let look = if arguments.realtime { PACED_LOOK } else { LOOK };
     let mut scoreboard = scoreboard::for_console(console, length);
     scoreboard.show(&running)?;
     while running.now() < length && !running.is_over() && !interrupt.is_requested() {
-        running.advance((running.now() + look).min(length)).map_err(failed)?;
+        let next = (running.now() + look).min(length);
+        running = running.advance_until_cancelled(next, || interrupt.is_requested()).map_err(failed)?;
         alarm.check(running.simulation().now());
         scoreboard.show(&running)?;
         if arguments.realtime {

@@ -26,6 +26,11 @@ pub(crate) fn write(
 fn write_text(out: &mut dyn Write, summary: &MatchSummary, wall: Duration) -> io::Result<()> {
     writeln!(out, "{}\n", teams(&summary.teams))?;
     writeln!(out, "{}\n", agents(&summary.agents))?;
+    for AgentSummary { host, agent, stopped, .. } in &summary.agents {
+        if let Some(reason) = stopped {
+            writeln!(out, "{agent} on {host} has stopped: {reason}\n")?;
+        }
+    }
     links::write(out, &summary.links)?;
     coverage::by_role(&summary.coverage).iter().try_for_each(|role| coverage::write(out, role))?;
     if let Some(time) = summary.time_to_first_touch {
@@ -132,7 +137,8 @@ fn team_object(team: &TeamSummary) -> Value {
 
 fn agent_object(agent: &AgentSummary) -> Value {
     json!({"kind": "agent", "host": agent.host, "agent": agent.agent, "cycles": agent.cycles,
-        "overruns": agent.overruns, "micro_steps": agent.micro_steps, "activity_calls": agent.activity_calls})
+        "overruns": agent.overruns, "micro_steps": agent.micro_steps, "activity_calls": agent.activity_calls,
+        "stopped": agent.stopped})
 }
 
 /// Simulated seconds per wall-clock second; the wall time is at least 1 ns.

@@ -167,7 +167,9 @@ fn style_of(agent: &AgentFigures) -> Style {
 fn style_of_activity(activity: &ActivityFigures) -> Style {
     match activity.remark {
         Some(ActivityRemark::Stuck | ActivityRemark::Fails) => WRONG,
-        Some(ActivityRemark::Burns | ActivityRemark::Blocks | ActivityRemark::Leaks) => WORTH_A_LOOK,
+        Some(
+            ActivityRemark::Burns | ActivityRemark::Blocks | ActivityRemark::Leaks | ActivityRemark::Loops,
+        ) => WORTH_A_LOOK,
         None => Style::new(),
     }
 }

@@ -63,6 +63,8 @@ pub(crate) enum ActivityRemark {
     Fails,
     /// Holds more and more memory.
     Leaks,
+    /// Is part of a loop of its chart in which nothing waits.
+    Loops,
 }
 
 impl ActivityRemark {
@@ -73,6 +75,7 @@ impl ActivityRemark {
             ActivityRemark::Stuck => "stuck",
             ActivityRemark::Fails => "fails",
             ActivityRemark::Leaks => "leaks",
+            ActivityRemark::Loops => "loops",
         }
     }
 }
@@ -164,6 +167,7 @@ fn activity(entry: &ActivityEntry, hz: f64, failures: u64, stuck: &str) -> Activ
         _ if stuck.contains(&format!("`{}`", entry.name)) => Some(ActivityRemark::Stuck),
         _ if failures > 0 => Some(ActivityRemark::Fails),
         _ if entry.grows => Some(ActivityRemark::Leaks),
+        _ if entry.loops => Some(ActivityRemark::Loops),
         (Some(load), _) if load >= BURNS => Some(ActivityRemark::Burns),
         (Some(load), Some(called)) if called >= LONG && load < IDLE * called => Some(ActivityRemark::Blocks),
         _ => None,
@@ -317,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_list_whose_processor_time_nobody_reads_the_load_is_not_known() {
+    fn the_load_of_a_list_without_a_measured_processor_time_is_not_known() {
         let agent = |state: &str| AgentEntry {
             cycle_time: times(0.004, 0.0),
             activities: vec![activity("A", state, 1, 0, None)],
@@ -351,9 +355,14 @@ mod tests {
         assert_eq!(remark(90, 0, times(0.01, 0.005), "runs"), None);
         assert_eq!(remark(40, 0, times(0.01, 0.001), "runs"), None);
         assert_eq!(remark(10, 1, times(0.01, 0.001), "runs"), Some(ActivityRemark::Fails));
-        let grows =
-            |grows| super::activity(&ActivityEntry { grows, ..ActivityEntry::default() }, 1.0, 0, "").remark;
-        assert_eq!((grows(true), grows(false)), (Some(ActivityRemark::Leaks), None));
+        let marked = |grows, loops| {
+            let times = times(0.001, 0.001);
+            let entry = ActivityEntry { grows, loops, call_time: times, ..ActivityEntry::default() };
+            super::activity(&entry, 900.0, 0, "").remark
+        };
+        assert_eq!(marked(true, false), Some(ActivityRemark::Leaks));
+        assert_eq!(marked(false, true), Some(ActivityRemark::Loops), "that is why it burns a core");
+        assert_eq!(marked(false, false), Some(ActivityRemark::Burns));
         assert_eq!(remark(0, 0, None, "stuck"), Some(ActivityRemark::Stuck));
         assert_eq!(remark(0, 0, None, "runs"), None);
     }

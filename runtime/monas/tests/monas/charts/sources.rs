@@ -92,7 +92,7 @@ fn a_guard_reads_what_a_link_brings_from_another_host() {
     };
     let records = records.lock().unwrap();
     for (record, read) in records.iter().zip([of("test/ball", 10, ""), of("test/game", 30, "Vision")]) {
-        assert!(record.contains(&read), "{record} tells nothing of {read}");
+        assert!(record.contains(&read), "{record} contains nothing of {read}");
     }
     assert_eq!(records.len(), 2, "the referee's game is nothing that a guard reads: {records:?}");
 }

@@ -103,8 +103,8 @@ fn canonical_names_and_the_thesis_s_mean_the_same() {
 fn check_charts(elements: &str, expected: &[&str]) {
     let files =
         [("walker.srm", "walker = Vision . Walk"), ("p.properties", "property \"p\": always not in Walk")];
-    let (_, said) = read(&format!("<agent><name>a</name>\n{elements}\n</agent>"), &files);
-    assert_eq!(said, expected);
+    let (_, findings) = read(&format!("<agent><name>a</name>\n{elements}\n</agent>"), &files);
+    assert_eq!(findings, expected);
 }
 
 #[test]
@@ -121,8 +121,8 @@ fn statecharts_have_what_agents_have_as_they_or_the_thesis_write_it() {
     fs::create_dir_all(folder.path().join("models")).unwrap();
     fs::write(folder.path().join("models/walker.srm"), "walker = Vision . Walk").unwrap();
     let path = folder.path().join("agents.toml");
-    let (_, said) = config::read(&Source::new("agents.toml", toml), &path, &registry());
-    assert!(said.is_empty(), "{said:?}");
+    let (_, findings) = config::read(&Source::new("agents.toml", toml), &path, &registry());
+    assert!(findings.is_empty(), "{findings:?}");
 }
 
 #[test]
@@ -352,8 +352,8 @@ fn missing_files_are_reported_with_the_nearest_one() {
     fs::write(folder.path().join("agents.xml"), "").unwrap();
     let (setup, diagnostics) = config::load(folder.path().join("agent.xml"), &registry());
     assert!(setup.agents.is_empty() && setup.links.is_empty());
-    let said = diagnostics[0].to_string().replace(&format!("{}/", folder.path().display()), "");
-    assert_eq!(said, "agent.xml:1:1: error[E0316]: no file `agent.xml` (did you mean `agents.xml`?)");
+    let findings = diagnostics[0].to_string().replace(&format!("{}/", folder.path().display()), "");
+    assert_eq!(findings, "agent.xml:1:1: error[E0316]: no file `agent.xml` (did you mean `agents.xml`?)");
 }
 
 /// Diagnostics of a model named by an agent.
@@ -445,25 +445,28 @@ fn properties_are_held_against_the_chart_before_the_run() {
             "good.properties",
             "property \"p\": always (entering Walk implies eventually leaving Walk within 2 s)",
         ),
-        ("bad.properties", "property \"p\":\n always not in Walc\nproperty \"q\": always not [Nobody.knows]"),
+        (
+            "bad.properties",
+            "property \"p\":\n always not in Walc\nproperty \"q\": always not [Unknown.field]",
+        ),
     ];
-    let (agents, said) =
+    let (agents, findings) =
         read(&agent("<monitor on_violation='policy'>models/good.properties</monitor>"), &files);
-    assert_eq!((agents.len(), said.len()), (1, 0), "{said:?}");
-    let (_, said) = read(&agent("<monitor>models/bad.properties</monitor>"), &files);
-    assert_eq!(said.len(), 2, "{said:?}");
+    assert_eq!((agents.len(), findings.len()), (1, 0), "{findings:?}");
+    let (_, findings) = read(&agent("<monitor>models/bad.properties</monitor>"), &files);
+    assert_eq!(findings.len(), 2, "{findings:?}");
     assert!(
-        said.iter().any(|it| it.ends_with(
+        findings.iter().any(|it| it.ends_with(
             "bad.properties:2:16: error[E0845]: the chart `walker` has no state `Walc` (did you mean `Walk`?)"
         )),
-        "{said:?}"
+        "{findings:?}"
     );
-    assert!(said.iter().any(|it| it.contains("E0132")), "{said:?}");
-    let (_, said) = read(&agent("<monitor>models/god.properties</monitor>"), &files);
-    assert!(said[0].ends_with(
+    assert!(findings.iter().any(|it| it.contains("E0132")), "{findings:?}");
+    let (_, findings) = read(&agent("<monitor>models/god.properties</monitor>"), &files);
+    assert!(findings[0].ends_with(
         "error[E0316]: no file of properties `models/god.properties` (did you mean `models/good.properties`?)"
-    ), "{said:?}");
+    ), "{findings:?}");
     let list = "<agent thread_frequency='1'><name>a</name><activity>Vision</activity><monitor>models/good.properties</monitor></agent>";
-    let (_, said) = read(list, &files);
-    assert!(said[0].contains("error[E0324]: agent `a` has 0 statecharts"), "{said:?}");
+    let (_, findings) = read(list, &files);
+    assert!(findings[0].contains("error[E0324]: agent `a` has 0 statecharts"), "{findings:?}");
 }

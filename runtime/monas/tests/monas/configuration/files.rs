@@ -112,8 +112,8 @@ fn io_errors_are_reported_with_positions() {
         config.element::<f64>("a").unwrap_err().to_string(),
         "a.xml:1:4: error[E0306]: `<a>` is `quick`, which is no f64"
     );
-    let said = config.attributes::<f64>("b").unwrap_err().to_string();
-    assert_eq!(said, "a.xml:2:10: error[E0306]: `y` is `z`, which is no f64");
+    let findings = config.attributes::<f64>("b").unwrap_err().to_string();
+    assert_eq!(findings, "a.xml:2:10: error[E0306]: `y` is `z`, which is no f64");
     let mut broken = XmlConfig::from_text("a.xml", "<a>1");
     assert!(!broken.is_loaded());
     assert_eq!(broken.set_element("a", 2, false).unwrap_err().diagnostic().code, "E0301");

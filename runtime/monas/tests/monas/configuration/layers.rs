@@ -77,32 +77,32 @@ fn the_last_setting_of_a_value_holds() {
 
 #[test]
 fn a_setting_of_a_missing_element_is_reported() {
-    let said = |setting: &str| {
+    let findings = |setting: &str| {
         let resolved = resolve(&set(Layers::new(), &[setting]));
         resolved.into_diagnostics().iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     assert_eq!(
-        said("agent.Moton.priority=2"),
+        findings("agent.Moton.priority=2"),
         ["--set:1:7: error[E0341]: there is no `agent` `Moton` (did you mean `Motion`?)"]
     );
     assert_eq!(
-        said("agent.Motion.activity.Wlk.gait=x"),
+        findings("agent.Motion.activity.Wlk.gait=x"),
         ["--set:1:23: error[E0341]: there is no `activity` `Wlk` (did you mean `Walk`?)"]
     );
     assert_eq!(
-        said("link.blue.beat=1s"),
+        findings("link.blue.beat=1s"),
         ["--set:1:6: error[E0341]: there is no `link` `blue` (there is no `link` at all)"]
     );
-    assert_eq!(said("agent.Motion.prio=2").len(), 1);
+    assert_eq!(findings("agent.Motion.prio=2").len(), 1);
     assert_eq!(
-        said("agent.Motion.priority=high"),
+        findings("agent.Motion.priority=high"),
         ["--set:1:23: error[E0306]: `priority` is `high`, expected a whole number"]
     );
 }
 
 #[test]
 fn a_setting_without_a_path_is_reported() {
-    let said = |setting: &str| Layers::new().set(setting, &Grammar::agents()).unwrap_err().to_string();
+    let findings = |setting: &str| Layers::new().set(setting, &Grammar::agents()).unwrap_err().to_string();
     let how = "write `agent.NAME.priority=2`: a path, `=` and a value";
     for (setting, expected) in [
         ("agent.Motion.priority", format!("--set:1:1: error[E0340]: `agent.Motion.priority` is no path with a value ({how})")),
@@ -113,7 +113,7 @@ fn a_setting_without_a_path_is_reported() {
         ("agent.Motion.activty.Walk.gait=2", "--set:1:14: error[E0340]: `agent` holds no `activty` (did you mean `activity`?)".into()),
         ("agent.Motion.name=Other", "--set:1:14: error[E0340]: the `name` of `agent` identifies it and cannot be set (change it in the file)".into()),
     ] {
-        assert_eq!(said(setting), expected);
+        assert_eq!(findings(setting), expected);
     }
 }
 

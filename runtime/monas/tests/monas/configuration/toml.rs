@@ -101,7 +101,7 @@ fn it_reaches_the_same_configuration() {
 }
 
 /// Code, message and line of each diagnostic.
-fn said(name: &str, text: &str) -> Vec<(&'static str, String, String)> {
+fn findings(name: &str, text: &str) -> Vec<(&'static str, String, String)> {
     let (_, diagnostics) = config::read(&Source::new(name, text), Path::new(name), &registry());
     let marked = |found: &Diagnostic| text[found.span.start..found.span.end].to_owned();
     diagnostics.iter().map(|found| (found.code, found.message.clone(), marked(found))).collect()
@@ -115,7 +115,7 @@ fn every_error_has_the_same_text_at_its_own_position() {
     let toml = "[[agent]]\nthread_frequency = \"fast\"\nprority = 1\non_failure = \"restrt\"\nname = \"a\"\n\
                 activity = [\"Vsion\", { name = \"Walk\", sped = 1 }]\nactvity = { name = \"x\" }\n[agnet]\n\
                 [[provider]]\nname = \"Sensor\"\nthread_frequency = 1\n";
-    let (xml, toml) = (said("a.xml", xml), said("a.toml", toml));
+    let (xml, toml) = (findings("a.xml", xml), findings("a.toml", toml));
     assert_eq!(xml.len(), 8, "{xml:#?}");
     let mut sorted = [xml, toml];
     sorted.iter_mut().for_each(|list| list.sort());
@@ -132,8 +132,8 @@ fn line_and_column_are_those_of_the_file() {
         Path::new("a.toml"),
         &registry(),
     );
-    let said: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
-    assert_eq!(said, ["a.toml:3:13: error[E0306]: `priority` is `high`, expected a whole number"]);
+    let findings: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
+    assert_eq!(findings, ["a.toml:3:13: error[E0306]: `priority` is `high`, expected a whole number"]);
 }
 
 #[test]

@@ -74,8 +74,8 @@ fn checked(text: &str) -> (Vec<Element>, Vec<String>) {
 #[test]
 fn typed_attributes_are_read_and_have_defaults() {
     let text = "<a n='1.5' I='-3' yes='1' half=' 300s ' word='left' color='red'/>";
-    let (elements, said) = checked(text);
-    assert_eq!(said, [""; 0]);
+    let (elements, findings) = checked(text);
+    assert_eq!(findings, [""; 0]);
     let grammar = grammar();
     let values = Values::of(&elements[0], &grammar);
     assert_eq!((values.number("n"), values.number::<i8>("i")), (Some(1.5), Some(-3)));
@@ -87,7 +87,7 @@ fn typed_attributes_are_read_and_have_defaults() {
 
 #[test]
 fn implausible_attributes_are_reported_and_ignored() {
-    let (elements, said) = checked("<a n='2.5' i='x' word='lefd' colr='red' odd=1 I=3/>");
+    let (elements, findings) = checked("<a n='2.5' i='x' word='lefd' colr='red' odd=1 I=3/>");
     let expected = [
         "a.xml:1:7: error[E0306]: `n` is `2.5`, expected a number from 0 to 2",
         "a.xml:1:15: error[E0306]: `i` is `x`, expected a whole number",
@@ -97,7 +97,7 @@ fn implausible_attributes_are_reported_and_ignored() {
         "a.xml:1:47: error[E0307]: attribute `i` is repeated (remove one of them)",
         "a.xml:1:2: error[E0305]: `a` lacks the attribute `color` (is `colr` meant to be `color`?)",
     ];
-    assert_eq!(said, expected);
+    assert_eq!(findings, expected);
     let grammar = grammar();
     let values = Values::of(&elements[0], &grammar);
     assert_eq!((values.number::<f64>("n"), values.number("i")), (None, Some(7)));

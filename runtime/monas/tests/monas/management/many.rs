@@ -18,11 +18,11 @@ const MILLIS: u64 = 20_000;
 /// By publisher: how many messages there were, and a hash of all of them with their moments. And
 /// all answers.
 #[derive(Clone, Default)]
-struct Seen(Arc<Mutex<(Publishers, Vec<Changed>)>>);
+struct SeenChanges(Arc<Mutex<(Publishers, Vec<Changed>)>>);
 
 type Publishers = BTreeMap<String, (u64, blake3::Hasher)>;
 
-impl Observer for Seen {
+impl Observer for SeenChanges {
     fn observe(&mut self, publication: Publication<'_>) {
         let mut seen = self.0.lock().unwrap();
         if publication.topic.path() == CHANGED.path() {
@@ -41,7 +41,7 @@ fn chart(text: &str) -> Statechart {
 }
 
 /// Two agents that are not changed, and some that are.
-fn simulation(seen: &Seen) -> Simulation {
+fn simulation(seen: &SeenChanges) -> Simulation {
     let works = |blackboard: &mut Blackboard| {
         let x = blackboard.random().uniform();
         blackboard.publish(BALL, Ball { x, ..Ball::default() })
@@ -64,8 +64,8 @@ fn simulation(seen: &Seen) -> Simulation {
 }
 
 /// Observations of a run with a number of changes.
-fn run(changes: u64) -> Seen {
-    let seen = Seen::default();
+fn run(changes: u64) -> SeenChanges {
+    let seen = SeenChanges::default();
     let mut simulation = simulation(&seen);
     let mut random = Random::from_seed([3; 32]);
     for number in 1..=changes {
@@ -101,7 +101,7 @@ fn a_thousand_changes_are_answered_without_effect_on_others() {
 
 #[test]
 fn the_same_thousand_changes_give_the_same_bytes() {
-    let hashes = |seen: &Seen| -> Vec<_> {
+    let hashes = |seen: &SeenChanges| -> Vec<_> {
         let seen = seen.0.lock().unwrap();
         seen.0.iter().map(|(name, (count, hasher))| (name.clone(), *count, hasher.finalize())).collect()
     };

@@ -23,19 +23,19 @@ const AGENT: &str = r#"<agent ThreadFrequency="5">
 "#;
 
 /// Records its name and speed at each call.
-struct Works<N> {
+struct WorkingActivity<N> {
     word: &'static str,
     speed: f64,
     note: N,
 }
 
-impl<N: Fn(String) + Send> monas::Activity for Works<N> {
+impl<N: Fn(String) + Send> monas::Activity for WorkingActivity<N> {
     fn configure(&mut self, parameters: &monas::Parameters) {
         self.speed = parameters.number("speed").unwrap_or(1.0);
     }
 
     fn execute(&mut self, _: &mut monas::Blackboard) -> Result<Progress, monas::BoxError> {
-        let Works { word, speed, note } = self;
+        let WorkingActivity { word, speed, note } = self;
         note(format!("{word} {speed}"));
         Ok(Progress::after(Duration::from_millis(100)))
     }
@@ -44,7 +44,7 @@ impl<N: Fn(String) + Send> monas::Activity for Works<N> {
 fn registry(note: impl Fn(String) + Clone + Send + Sync + 'static) -> Registry {
     ["List", "Legs", "Head"].into_iter().fold(Registry::empty(), |registry, word| {
         let note = note.clone();
-        registry.with(word, move || Works { word, speed: 1.0, note: note.clone() })
+        registry.with(word, move || WorkingActivity { word, speed: 1.0, note: note.clone() })
     })
 }
 
@@ -77,11 +77,11 @@ fn counted(words: &[String]) -> Vec<(&str, usize)> {
     let mut known: Vec<&str> = words.iter().map(String::as_str).collect();
     known.sort_unstable();
     known.dedup();
-    known.iter().map(|word| (*word, words.iter().filter(|said| said == word).count())).collect()
+    known.iter().map(|word| (*word, words.iter().filter(|name| name == word).count())).collect()
 }
 
 /// The entry of the agent. The simulation must advance for the reply to arrive.
-#[expect(clippy::disallowed_methods, reason = "whoever asks is not who lets the run go on")]
+#[expect(clippy::disallowed_methods, reason = "the request comes from another thread than the run")]
 fn entry(simulation: &mut Simulation) -> AgentEntry {
     let overview = simulation.run_handle();
     let asking = std::thread::spawn(move || overview.agents(None).unwrap().remove(0));
@@ -185,7 +185,7 @@ fn a_changed_chart_is_saved_and_restarts_with_its_settings() {
         .replace("ThreadFrequency=\"20\"", "ThreadFrequency=\"50\"")
         .replace("head.srm<", "head.srm\n    <activity speed=\"4\" on_failure=\"restart\">Head</activity><");
     let overview = simulation.run_handle();
-    #[expect(clippy::disallowed_methods, reason = "whoever asks is not who lets the run go on")]
+    #[expect(clippy::disallowed_methods, reason = "the request comes from another thread than the run")]
     let asking = std::thread::spawn(move || overview.configuration("local").unwrap().text);
     while !asking.is_finished() {
         simulation.run_until(simulation.now()).unwrap();

@@ -11,12 +11,12 @@ use crate::kit::{Recorder, at, recorder};
 use crate::management::{change, made, refused, settings};
 
 /// Panics at some speeds, and at any speed once it has started.
-struct Fragile<N> {
+struct FragileActivity<N> {
     note: N,
     has_begun: Cell<bool>,
 }
 
-impl<N: FnMut(&'static str) + Send> Activity for Fragile<N> {
+impl<N: FnMut(&'static str) + Send> Activity for FragileActivity<N> {
     fn configure(&mut self, parameters: &Parameters) {
         let speed = parameters.number("speed").unwrap_or(1.0);
         assert!(speed < 2.0, "it is too fast");
@@ -32,7 +32,7 @@ impl<N: FnMut(&'static str) + Send> Activity for Fragile<N> {
 
 fn registry(note: impl FnMut(&'static str) + Clone + Send + Sync + 'static) -> Registry {
     Registry::empty()
-        .with("Fragile", move || Fragile { note: note.clone(), has_begun: Cell::new(false) })
+        .with("Fragile", move || FragileActivity { note: note.clone(), has_begun: Cell::new(false) })
         .with("Unmade", || -> fn(&mut Blackboard) { panic!("there is no camera") })
 }
 

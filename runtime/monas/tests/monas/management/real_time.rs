@@ -12,7 +12,7 @@ use monas::{
 use monas_link::{AccessList, LinkSettings, PublishAs, ReceiveRule};
 use yase::Source;
 
-use crate::management::{change, made, refused, settings, telling};
+use crate::management::{change, made, refused, reporting, settings};
 
 const PATIENCE: Duration = Duration::from_secs(20);
 
@@ -28,7 +28,7 @@ fn until(notes: &Receiver<String>, word: &str) {
 #[test]
 fn lists_are_changed_while_they_run() {
     let (sender, notes) = channel();
-    let registry = telling(&["A", "B"], move |word| _ = sender.send(word));
+    let registry = reporting(&["A", "B"], move |word| _ = sender.send(word));
     let text = "<agent frequency='1000'><name>a</name><activity>A</activity></agent>";
     let (setup, _) = monas::config::read(&Source::new("a.xml", text), "a.xml".as_ref(), &registry);
     let running = Talws::new().registry(registry).setup(setup).start().unwrap();
@@ -79,7 +79,7 @@ fn lists_are_changed_while_they_run() {
 fn charts_stop_start_and_take_another_model_while_they_run() {
     let (sender, notes) = channel();
     let note = move |word: String| _ = sender.send(word);
-    let registry = telling(&["A"], note.clone()).with("B", move || {
+    let registry = reporting(&["A"], note.clone()).with("B", move || {
         let note = note.clone();
         move |_: &mut Blackboard| {
             note("B".into());
@@ -160,25 +160,25 @@ fn a_link_that_permits_changes_is_rejected() {
         talws.check().first().map(|one| one.message.clone())
     };
     let over = |transport: LinkTransport, access: &str, topics: &str| named("", transport, access, topics);
-    let said = |access: &str, topics: &str| over(LinkTransport::default(), access, topics);
-    assert_eq!(said("", "monas/*").unwrap(), "a link of `local` lets any peer change its agents");
-    let stranger = said("laptop publish **", CHANGE.path()).unwrap();
+    let warning = |access: &str, topics: &str| over(LinkTransport::default(), access, topics);
+    assert_eq!(warning("", "monas/*").unwrap(), "a link of `local` lets any peer change its agents");
+    let unnamed_host = warning("laptop publish **", CHANGE.path()).unwrap();
     assert!(
-        stranger.contains("lets `laptop` publish changes of its agents without the right to manage them"),
-        "{stranger}"
+        unnamed_host.contains("lets `laptop` publish changes of its agents without the right to manage them"),
+        "{unnamed_host}"
     );
-    assert_eq!(said("laptop publish **\nlaptop manage", CHANGE.path()), None);
-    assert_eq!(said("", "test/ball"), None);
+    assert_eq!(warning("laptop publish **\nlaptop manage", CHANGE.path()), None);
+    assert_eq!(warning("", "test/ball"), None);
     // The entry of the host itself admits no peer: the host accepts nothing under its own name.
-    assert_eq!(said("local publish **\nlaptop publish **\nlaptop manage", CHANGE.path()), None);
-    let other = said("local publish **\nlaptop publish **", CHANGE.path()).unwrap();
+    assert_eq!(warning("local publish **\nlaptop publish **\nlaptop manage", CHANGE.path()), None);
+    let other = warning("local publish **\nlaptop publish **", CHANGE.path()).unwrap();
     assert!(other.contains("lets `laptop` publish changes"), "{other}");
-    let everybody = said("local publish **\n* publish monas/*", CHANGE.path()).unwrap();
-    assert!(everybody.contains("lets `*` publish changes"), "{everybody}");
+    let all_hosts = warning("local publish **\n* publish monas/*", CHANGE.path()).unwrap();
+    assert!(all_hosts.contains("lets `*` publish changes"), "{all_hosts}");
     // A link with another name than its host takes what comes under the host's.
     let vision =
         named("vision", LinkTransport::default(), "local publish **\nvision publish **", CHANGE.path());
-    assert!(vision.is_some_and(|said| said.contains("lets `local` publish changes")));
+    assert!(vision.is_some_and(|warning| warning.contains("lets `local` publish changes")));
     // Over a network any peer may use a name that is not authenticated by a certificate.
     let manager = "laptop publish **\nlaptop manage";
     let file = || "a.pem".into();

@@ -391,9 +391,9 @@ fn recorded(messages: &[Kept], agent: &str, topic: &str) -> usize {
 }
 
 /// A registry of activities that report each call.
-fn telling(calls: Sender<()>) -> Registry {
+fn reporting(calls: Sender<()>) -> Registry {
     let sender = calls.clone();
-    let tell = move || {
+    let report = move || {
         let sender = sender.clone();
         move |_: &mut Blackboard| {
             // No receiver exists in a replay.
@@ -411,7 +411,7 @@ fn telling(calls: Sender<()>) -> Registry {
             Ok(Progress::after(Duration::from_millis(1)))
         }
     };
-    registry().with("Tell", tell).with("Watch", watch)
+    registry().with("Report", report).with("Watch", watch)
 }
 
 fn chart(text: &str) -> Statechart {
@@ -420,8 +420,8 @@ fn chart(text: &str) -> Statechart {
 
 /// A list with an activity that throws balls; others may be added.
 fn list(calls: Sender<()>) -> Talws {
-    let registry = telling(calls);
-    let text = "<agent frequency='1000'><name>thrower</name><activity>Throw</activity><activity>Tell</activity></agent>";
+    let registry = reporting(calls);
+    let text = "<agent frequency='1000'><name>thrower</name><activity>Throw</activity><activity>Report</activity></agent>";
     let (setup, diagnostics) = monas::config::read(&Source::new("a.xml", text), "a.xml".as_ref(), &registry);
     assert_eq!(diagnostics, []);
     Talws::new().registry(registry).setup(setup)
@@ -430,14 +430,14 @@ fn list(calls: Sender<()>) -> Talws {
 /// A chart with an activity that is called repeatedly.
 fn mind(calls: Sender<()>) -> Talws {
     let agent = Agent::statechart("mind", chart("m = Play . Watch")).every(Hz(200));
-    Talws::new().registry(telling(calls)).agent(agent)
+    Talws::new().registry(reporting(calls)).agent(agent)
 }
 
 /// A list and two charts, whose activities publish on the same topics.
 fn player(calls: Sender<()>) -> Talws {
     let agent = Agent::new("player", Hz(500)).named_activity("Throw", Box::new(Throw::default()));
     let agent = agent.chart(chart("m = Play . Watch")).chart(chart("n = Watch"));
-    Talws::new().registry(telling(calls)).agent(agent)
+    Talws::new().registry(reporting(calls)).agent(agent)
 }
 
 fn of_list() -> Vec<Change> {
@@ -574,7 +574,7 @@ fn in_real_time_missing_records_are_rejected_with_the_reason() {
             let mut messages = messages.clone();
             let such: Vec<&mut Kept> = messages.iter_mut().filter(|kept| is_such(kept)).collect();
             assert_eq!(such.len(), 1);
-            such.into_iter().for_each(|kept| kept.publisher = "somebody".into());
+            such.into_iter().for_each(|kept| kept.publisher = "another".into());
             replay(talws(channel().0), &messages).err().unwrap()
         };
         let error = by_another(&is_ordered);
@@ -590,7 +590,7 @@ fn in_real_time_missing_records_are_rejected_with_the_reason() {
 
 #[test]
 fn in_real_time_agents_that_left_come_back() {
-    let thrower = "<agent frequency='500'><name>thrower</name><activity>Tell</activity><activity>Throw</activity><activity>Say</activity></agent>";
+    let thrower = "<agent frequency='500'><name>thrower</name><activity>Report</activity><activity>Throw</activity><activity>Say</activity></agent>";
     let asked = [
         change(Action::RemoveAgent, "thrower"),
         adding(thrower),
@@ -612,9 +612,9 @@ fn in_real_time_agents_that_left_come_back() {
     let is_ordered = |kept: &Kept| {
         kept.topic == CYCLE.path() && Cycle::decode(&kept.bytes[..]).unwrap().turn() == Turn::Ordered
     };
-    let mut untold = messages.clone();
-    untold.iter_mut().filter(|kept| is_ordered(kept)).for_each(|kept| kept.publisher = "somebody".into());
-    let error = replay(list(channel().0), &untold).err().unwrap();
+    let mut others = messages.clone();
+    others.iter_mut().filter(|kept| is_ordered(kept)).for_each(|kept| kept.publisher = "another".into());
+    let error = replay(list(channel().0), &others).err().unwrap();
     let reason =
         "agent `thrower` was removed and added again: the recording, of an earlier version, lacks the change";
     assert_eq!(error.to_string(), reason);
@@ -706,7 +706,7 @@ fn in_real_time_a_list_without_a_recorded_start_is_rejected() {
     let is_ordered = |kept: &Kept| {
         kept.topic == CYCLE.path() && Cycle::decode(&kept.bytes[..]).unwrap().turn() == Turn::Ordered
     };
-    messages.iter_mut().filter(|kept| is_ordered(kept)).for_each(|kept| kept.publisher = "somebody".into());
+    messages.iter_mut().filter(|kept| is_ordered(kept)).for_each(|kept| kept.publisher = "another".into());
     let error = replay(mind(channel().0), &messages).err().unwrap().to_string();
     let reasons =
         ["agent `mind` got its first activity ", "the recording lacks the inputs of the turns of `mind`"];

@@ -5,10 +5,10 @@ use monas::{Registry, Simulation, Talws};
 use yase::Source;
 
 use crate::kit::{at, recorder};
-use crate::management::{change, made, settings, telling};
+use crate::management::{change, made, reporting, settings};
 
 fn registry() -> Registry {
-    telling(&["A", "B", "C", "P"], recorder().1)
+    reporting(&["A", "B", "C", "P"], recorder().1)
 }
 
 const TEXT: &str = r#"<?xml version="1.0" ?>
@@ -35,7 +35,7 @@ fn simulation(text: &str) -> Simulation {
 }
 
 /// The saved configuration. The simulation must advance for the reply to arrive.
-#[expect(clippy::disallowed_methods, reason = "whoever asks is not who lets the run go on")]
+#[expect(clippy::disallowed_methods, reason = "the request comes from another thread than the run")]
 fn saved(simulation: &mut Simulation) -> String {
     let overview = simulation.run_handle();
     let asking = std::thread::spawn(move || overview.configuration("local").unwrap().text);

@@ -4,17 +4,17 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use monas::records::{Action, CHANGE, CHANGED, Change, Changed};
-use monas::{Agent, Blackboard, Progress, Registry, RunHash, Simulation, Talws};
+use monas::{Agent, Blackboard, Hz, Progress, Registry, RunHash, Simulation, Talws};
 use narukom::{Observer, Publication};
 use yase::Source;
 
-use crate::kit::{Recorder, at, recorder};
-use crate::management::{change, made, refused, settings, telling};
+use crate::kit::{BALL, Ball, NEWS, Recorder, at, recorder};
+use crate::management::{change, made, refused, reporting, settings};
 
 /// An agent `a` with the activities A and B at 10 Hz, and their records.
 fn simulation() -> (Simulation, Recorder<String>) {
     let (notes, note) = recorder();
-    let registry = telling(&["A", "B", "C"], note);
+    let registry = reporting(&["A", "B", "C"], note);
     let text = "<agent frequency='10'><name>a</name><activity>A</activity><activity>B</activity></agent>";
     let source = Source::new("agents.xml", text);
     let (setup, diagnostics) = monas::config::read(&source, "agents.xml".as_ref(), &registry);
@@ -145,8 +145,8 @@ fn impossible_changes_are_rejected_with_a_reason() {
         (change(Action::SwapModel, "a"), "E0355", "`a` has no statechart"),
     ];
     for (change, code, reason) in cases {
-        let (said_code, said) = refused(&ask(&mut simulation, change.clone()));
-        assert_eq!((said_code.as_str(), said.as_str()), (code, reason), "{change:?}");
+        let (found_code, found) = refused(&ask(&mut simulation, change.clone()));
+        assert_eq!((found_code.as_str(), found.as_str()), (code, reason), "{change:?}");
     }
     assert_eq!(notes.taken(), [""; 0]);
     simulation.run_until(at(300)).unwrap();
@@ -184,11 +184,42 @@ fn agents_are_added_from_xml_and_toml_and_removed() {
     );
 }
 
+#[test]
+fn an_agent_that_is_added_has_missed_the_signals_before_and_none_after() {
+    let (notes, note) = recorder();
+    let registry = Registry::empty().with("Note", move || {
+        let note = note.clone();
+        move |b: &mut Blackboard| {
+            let state = b.read(BALL).map(|ball| ball.x);
+            note((state, b.signals(NEWS).map(|news| news.x).collect::<Vec<f64>>()));
+        }
+    });
+    let other = Agent::new("other", Hz(1)).activity(|_: &mut Blackboard| {});
+    let mut simulation = Talws::new().registry(registry).agent(other).simulate(1).unwrap();
+    let hub = simulation.hub("local").unwrap().clone();
+    let (mut balls, mut news) =
+        (hub.publisher(BALL, "outside").unwrap(), hub.publisher(NEWS, "outside").unwrap());
+    let mut publish = |x: f64, millis| {
+        balls.publish(Ball { x, ..Ball::default() }, at(millis));
+        news.publish(Ball { x, ..Ball::default() }, at(millis));
+    };
+    publish(1.0, 0);
+    simulation.run_until(at(25)).unwrap();
+    publish(2.0, 25);
+    let text = "<agent frequency='10'><name>late</name><activity>Note</activity></agent>".into();
+    made(&ask(&mut simulation, Change { text, ..change(Action::AddAgents, "") }));
+    publish(3.0, 25);
+    simulation.run_until(at(150)).unwrap();
+    publish(4.0, 150);
+    simulation.run_until(at(201)).unwrap();
+    assert_eq!(notes.taken(), [(Some(3.0), vec![3.0]), (Some(4.0), vec![4.0])]);
+}
+
 /// The changes and answers that are published.
 #[derive(Clone, Default)]
-struct Published(Arc<Mutex<Vec<String>>>);
+struct PublicationLog(Arc<Mutex<Vec<String>>>);
 
-impl Observer for Published {
+impl Observer for PublicationLog {
     fn observe(&mut self, publication: Publication<'_>) {
         if [CHANGE.path(), CHANGED.path()].contains(&publication.topic.path()) {
             self.0.lock().unwrap().push(format!("{} {}", publication.publisher, publication.topic.path()));
@@ -199,10 +230,10 @@ impl Observer for Published {
 /// The hash of a run with the same changes at the same times, or with none.
 fn hash_of(with_changes: bool) -> (String, Vec<String>) {
     let (_, note) = recorder();
-    let registry = telling(&["A", "B"], note);
+    let registry = reporting(&["A", "B"], note);
     let text = "<agent frequency='10'><name>a</name><activity>A</activity></agent>";
     let (setup, _) = monas::config::read(&Source::new("a.xml", text), "a.xml".as_ref(), &registry);
-    let (hash, published) = (RunHash::new(), Published::default());
+    let (hash, published) = (RunHash::new(), PublicationLog::default());
     let mut talws = Talws::new().registry(registry).setup(setup);
     talws.observe(Box::new(hash.clone())).observe(Box::new(published.clone()));
     let mut simulation = talws.simulate(7).unwrap();
@@ -210,7 +241,7 @@ fn hash_of(with_changes: bool) -> (String, Vec<String>) {
         let add = Change { number: 1, activity: "B".into(), ..change(Action::AddActivity, "a") };
         simulation.change_at(at(250), "local", add).unwrap();
         simulation.change_at(at(700), "local", change(Action::StopAgent, "a")).unwrap();
-        simulation.change_at(at(300), "local", change(Action::StopAgent, "nobody")).unwrap();
+        simulation.change_at(at(300), "local", change(Action::StopAgent, "unknown")).unwrap();
         assert!(simulation.change_at(at(1), "elsewhere", Change::default()).is_err());
     }
     simulation.run_until(at(1000)).unwrap();
@@ -235,9 +266,9 @@ fn an_activity_may_ask_for_a_change_too() {
     };
     let (notes, note) = recorder();
     let b = move |blackboard: &mut Blackboard| note(blackboard.now());
-    let agents = [("a", 10.0)].map(|(name, hertz)| Agent::new(name, monas::Hz(hertz)).activity(asks));
+    let agents = [("a", 10.0)].map(|(name, hertz)| Agent::new(name, Hz(hertz)).activity(asks));
     let talws = agents.into_iter().fold(Talws::new(), Talws::agent);
-    let talws = talws.agent(Agent::new("b", monas::Hz(10)).activity(b));
+    let talws = talws.agent(Agent::new("b", Hz(10)).activity(b));
     talws.simulate(1).unwrap().run_until(at(1000)).unwrap();
     assert_eq!(notes.taken(), [at(0), at(100), at(200)]);
 }
