@@ -18,7 +18,9 @@ mod deploy;
 mod doctor;
 #[cfg(unix)]
 mod elsewhere;
+mod explain;
 mod generate;
+mod globals;
 mod hints;
 mod kit;
 mod linked_topics;

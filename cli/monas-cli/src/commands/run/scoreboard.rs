@@ -20,14 +20,15 @@ pub(crate) fn for_console<'c>(
     length: Duration,
 ) -> Box<dyn Scoreboard + 'c> {
     match &console.bars {
+        _ if console.quiet => Box::new(Lines { out: Box::new(io::sink()), events: 0, minutes: None }),
         Some(bars) => Box::new(Bar::new(bars, length, console.colour_err)),
-        None => Box::new(Lines { out: &mut *console.err, events: 0, minutes: None }),
+        None => Box::new(Lines { out: Box::new(&mut *console.err), events: 0, minutes: None }),
     }
 }
 
 /// One line for each notable event and for each minute.
 struct Lines<'a> {
-    out: &'a mut dyn Write,
+    out: Box<dyn Write + 'a>,
     /// How many events have been written.
     events: usize,
     /// The last minute whose score has been written.
