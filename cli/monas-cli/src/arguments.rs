@@ -98,7 +98,7 @@ pub(crate) enum Command {
     /// out of files and consoles.
     #[command(after_help = "Example: monas log --robot blue-2 --agent Attacker --level warning")]
     Log(LogArguments),
-    /// Inspect, recover, cut, merge, export and replay recordings.
+    /// Inspect, recover, cut, merge, draw, export and replay recordings.
     #[command(subcommand)]
     Tape(TapeCommand),
     /// Create a project, or an activity in one.

@@ -70,7 +70,7 @@ fn play(
     let _control = control::serve(socket, handle.clone(), tape.clone(), arguments)?;
     let mut alarm = RecordingAlarm::new(tape, handle);
     let look = if arguments.realtime { PACED_LOOK } else { LOOK };
-    let mut scoreboard = scoreboard::for_console(console, length);
+    let mut scoreboard = scoreboard::for_console(console, length, arguments.field);
     scoreboard.show(&running)?;
     while running.now() < length && !running.is_over() && !interrupt.is_requested() {
         running.advance((running.now() + look).min(length)).map_err(failed)?;
