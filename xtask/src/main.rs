@@ -6,7 +6,6 @@
 //!   detect each.
 //! - `project` creates a project with `monas new`, builds, tests and runs it, and extends it.
 //! - `season` plays a season and writes its golden table; with `--check` it compares.
-//! - `picture` draws the match that README.md shows.
 
 mod faults;
 mod project;
@@ -24,8 +23,7 @@ cargo xtask NAME
   faults             inject classic faults into a copy and check that the tests detect each
   project            create a project with `monas new`, build, test, run and extend it
   season             play a season and write its golden table (tests/golden)
-  season --check     play a season and compare it with its golden table
-  picture            draw docs/match.svg";
+  season --check     play a season and compare it with its golden table";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -37,7 +35,6 @@ fn main() -> ExitCode {
         ["project"] => project::run(&root()),
         ["season"] => season::season(&root(), &[]),
         ["season", "--check"] => season::season(&root(), &["--check"]),
-        ["picture"] => season::season(&root(), &["picture", "docs/match.svg"]),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

@@ -10,6 +10,7 @@ use crate::commands::chart::ChartCommand;
 use crate::commands::config::ConfigCommand;
 use crate::commands::deploy::DeployArguments;
 use crate::commands::doctor::DoctorArguments;
+use crate::commands::explain::ExplainArguments;
 use crate::commands::generate::GenerateArguments;
 use crate::commands::log::LogArguments;
 use crate::commands::model::ModelCommand;
@@ -22,16 +23,21 @@ use crate::commands::tape::TapeCommand;
 use crate::commands::top::TopArguments;
 #[cfg(unix)]
 use crate::commands::topic::TopicArguments;
+use crate::terminal::GlobalArguments;
 
 /// From a formula to a running robot team.
 #[derive(Parser, Debug)]
 #[command(name = "monas", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub(crate) struct Arguments {
+    #[command(flatten)]
+    pub(crate) globals: GlobalArguments,
     #[command(subcommand)]
     pub(crate) command: Command,
 }
 
 const EXIT_CODES: &str = "\
+A configuration, model, scenario or file of properties named `-` is read from standard input.
+
 Exit codes:
   0    done
   1    ran and failed
@@ -92,7 +98,7 @@ pub(crate) enum Command {
     /// out of files and consoles.
     #[command(after_help = "Example: monas log --robot blue-2 --agent Attacker --level warning")]
     Log(LogArguments),
-    /// Inspect, recover, cut, merge, export and replay recordings.
+    /// Inspect, recover, cut, merge, draw, export and replay recordings.
     #[command(subcommand)]
     Tape(TapeCommand),
     /// Create a project, or an activity in one.
@@ -112,6 +118,16 @@ pub(crate) enum Command {
     /// Check toolchain, permissions, clock, ports and configuration, and suggest repairs.
     #[command(after_help = "Example: monas doctor config/agents.xml")]
     Doctor(DoctorArguments),
+    /// Explain the code of a diagnostic: what it means, an example, and the remedy.
+    #[command(after_help = "Example: monas explain E0205")]
+    Explain(ExplainArguments),
+    /// Write the manual pages of all commands into a folder.
+    #[command(after_help = "Example: monas man ~/.local/share/man/man1")]
+    Man {
+        /// The folder; it is created if it is not there.
+        #[arg(value_hint = clap::ValueHint::DirPath)]
+        folder: std::path::PathBuf,
+    },
     /// Print a completion script for a shell.
     #[command(after_help = "Example: source <(monas completions bash)")]
     Completions {

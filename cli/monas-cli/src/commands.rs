@@ -7,6 +7,7 @@ pub(crate) mod chart;
 pub(crate) mod config;
 pub(crate) mod deploy;
 pub(crate) mod doctor;
+pub(crate) mod explain;
 pub(crate) mod generate;
 pub(crate) mod log;
 pub(crate) mod model;

@@ -9,12 +9,12 @@ use std::process::Command;
 use monas_project::project_program;
 
 /// Commands that need no activities and are executed directly.
-const OWN: [&str; 7] = ["new", "completions", "help", "--help", "-h", "--version", "-V"];
+const OWN: [&str; 9] = ["new", "completions", "explain", "man", "help", "--help", "-h", "--version", "-V"];
 
 /// The command to run instead of this one, if the folder is in a project and this is not the
 /// project's program.
 fn project_command(arguments: &[OsString], here: &Path, program: &Path) -> Option<Command> {
-    let first = arguments.first()?.to_string_lossy().into_owned();
+    let first = command_word(arguments)?;
     if OWN.contains(&first.as_str()) {
         return None;
     }
@@ -26,6 +26,21 @@ fn project_command(arguments: &[OsString], here: &Path, program: &Path) -> Optio
     command.args(["run", "--quiet", "--package", &own, "--manifest-path"]).arg(project.join("Cargo.toml"));
     command.arg("--").args(arguments);
     Some(command)
+}
+
+/// The first argument that is none of the global options in front of the command.
+fn command_word(arguments: &[OsString]) -> Option<String> {
+    let mut words = arguments.iter().map(|word| word.to_string_lossy().into_owned());
+    while let Some(word) = words.next() {
+        match word.as_str() {
+            "--color" => _ = words.next(),
+            "--quiet" | "--verbose" => {}
+            short if short.strip_prefix('-').is_some_and(|it| it.chars().all(|c| "qv".contains(c))) => {}
+            other if other.starts_with("--color=") => {}
+            _ => return Some(word),
+        }
+    }
+    None
 }
 
 /// Runs the project's own program with the arguments of this process. Returns if there is none.
@@ -83,6 +98,8 @@ mod tests {
             "it is the project's"
         );
         assert!(project_command(&["new".into(), "activity".into()], &below, monas).is_none());
+        let quiet = ["-q", "--color", "never", "new", "activity"].map(OsString::from);
+        assert!(project_command(&quiet, &below, monas).is_none(), "options in front of the command");
         assert!(project_command(&[], &below, monas).is_none());
     }
 }

@@ -1,21 +1,29 @@
 //! Maps arguments to a command, and the command's result to an exit status.
 
 use std::ffi::OsString;
-use std::io;
+use std::path::Path;
+use std::{fs, io};
 
 use clap::{CommandFactory, Parser};
 use clap_complete::env::Shells;
 
 use crate::arguments::{Arguments, Command};
 use crate::commands;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, UnreadOutput};
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, UnreadOutput, wanted_colours};
 
 /// Parses the arguments, of which the first is the program's name, and executes the command.
 pub(crate) fn dispatch<Argument: Into<OsString> + Clone>(
     arguments: impl IntoIterator<Item = Argument>,
     console: &mut CommandOutput<'_>,
 ) -> Exit {
-    let done = match Arguments::try_parse_from(arguments) {
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let words: Vec<String> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    console.paint(wanted_colours(&words));
+    let parsed = Arguments::try_parse_from(arguments);
+    if let Ok(arguments) = &parsed {
+        arguments.globals.apply(console);
+    }
+    let done = match parsed {
         Ok(arguments) if arguments.command.is_stream() => execute(arguments.command, console),
         Ok(arguments) => {
             // What the command finds decides its exit code, also if its results are not read.
@@ -25,13 +33,17 @@ pub(crate) fn dispatch<Argument: Into<OsString> + Clone>(
                 err: &mut *console.err,
                 bars: console.bars.clone(),
                 log: console.log.clone(),
+                codes: console.codes.clone(),
                 ..*console
             };
             execute(arguments.command, &mut rest)
         }
         Err(error) => answer(&error, console).map_err(CommandFailure::from),
     };
-    done.unwrap_or_else(|failure| failure.report(console))
+    let exit = done.unwrap_or_else(|failure| failure.report(console));
+    // If standard error cannot be written, only the exit code remains.
+    let _ = console.name_explanations();
+    exit
 }
 
 fn execute(command: Command, console: &mut CommandOutput<'_>) -> Result<Exit, CommandFailure> {
@@ -55,6 +67,8 @@ fn execute(command: Command, console: &mut CommandOutput<'_>) -> Result<Exit, Co
         Command::New(arguments) => commands::new::execute(&arguments, console),
         Command::Deploy(arguments) => commands::deploy::execute(&arguments, console),
         Command::Doctor(arguments) => commands::doctor::execute(&arguments, console),
+        Command::Explain(arguments) => commands::explain::execute(&arguments, console),
+        Command::Man { folder } => manual_pages(&folder),
         Command::Completions { shell } => completions(shell, console).map_err(CommandFailure::from),
     }
 }
@@ -86,4 +100,13 @@ fn completions(shell: clap_complete::Shell, console: &mut CommandOutput<'_>) -> 
     }
     console.out.write_all(&script)?;
     Ok(Exit::Success)
+}
+
+/// One page per command, as `monas-model-check.1`.
+fn manual_pages(folder: &Path) -> Result<Exit, CommandFailure> {
+    let written =
+        fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(Arguments::command(), folder));
+    written
+        .map(|()| Exit::Success)
+        .map_err(|error| CommandFailure::Failed(Format::Text, format!("{}: {error}", folder.display())))
 }

@@ -35,6 +35,8 @@ pub(crate) fn main() -> Exit {
         bars: reads_bars.then_some(bars),
         catches_signals: true,
         log: log.clone(),
+        quiet: false,
+        codes: reads_bars.then(Default::default),
         out: &mut out,
         err: &mut err,
     };

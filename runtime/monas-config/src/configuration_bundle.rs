@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use yase::{Source, Span};
 
+use crate::paths::is_standard_input;
 use crate::{Element, Grammar};
 
 /// Name endings and media types of the configurations and models included in a bundle. Other files,
@@ -38,8 +39,17 @@ impl ConfigurationBundle {
     /// configuration reports them.
     pub fn of(path: impl AsRef<Path>) -> ConfigurationBundle {
         let path = path.as_ref();
-        let root = normal(&std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
+        let absolute = |path: &Path| normal(&std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
         let mut found = BTreeMap::new();
+        let root = match crate::read_file(path) {
+            Ok(input) if is_standard_input(path) => {
+                let name = if crate::is_toml_text(&input) { "stdin.toml" } else { "stdin.xml" };
+                let root = absolute(Path::new(name));
+                add(&root, &input, &mut found);
+                root
+            }
+            _ => absolute(path),
+        };
         collect(&root, &mut found);
         let folder = common_folder(found.keys().chain([&root]));
         let name = |path: &Path| slashes(path.strip_prefix(&folder).unwrap_or(path));
@@ -199,7 +209,13 @@ fn collect(path: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
     if media_type(path).is_none() || found.contains_key(path) {
         return;
     }
-    let Ok(source) = crate::read_file(path) else { return };
+    if let Ok(source) = crate::read_file(path) {
+        add(path, &source, found);
+    }
+}
+
+/// Adds the text of a file and the files it names.
+fn add(path: &Path, source: &Source, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
     let content = source.text.clone().into_bytes();
     let (_, named) = named_in(path, &content);
     found.insert(path.to_owned(), content);

@@ -22,7 +22,6 @@ mod agents;
 mod check;
 mod kind;
 
-use std::path::Path;
 use std::sync::Arc;
 
 use yase::{Diagnostic, Source};
@@ -134,7 +133,7 @@ impl Grammar {
 
     /// As [`read`](Grammar::read), without checking the grammar.
     pub fn parse(&self, source: &Arc<Source>) -> (Vec<Element>, Vec<Diagnostic>) {
-        match Path::new(&source.name).extension().is_some_and(|extension| extension == "toml") {
+        match crate::is_toml_text(source) {
             true => toml::parse(source, self),
             false => xml::parse(source),
         }

@@ -144,6 +144,14 @@ pub fn is_toml(name: &str) -> bool {
     std::path::Path::new(name).extension().is_some_and(|ending| ending == "toml")
 }
 
+/// Whether a text is TOML: by the name of its file; standard input, if it does not begin as XML.
+pub(crate) fn is_toml_text(source: &yase::Source) -> bool {
+    match source.name == paths::STANDARD_INPUT {
+        true => !source.text.trim_start().starts_with('<'),
+        false => is_toml(&source.name),
+    }
+}
+
 /// Parses a duration: a number and `ns`, `us`, `ms`, `s` or `min`.
 pub fn duration(text: &str) -> Option<std::time::Duration> {
     monas_core::parameters::duration(text)

@@ -1,9 +1,9 @@
 //! Files named by a file.
 
 use std::fs;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use yase::diagnostic::nearest;
 use yase::{Diagnostic, Source};
@@ -14,24 +14,36 @@ const LARGEST: u64 = 64 << 20;
 /// The environment variable with the size of the largest file that is read, in MiB.
 const LIMIT: &str = "MONAS_DOCUMENT_LIMIT";
 
-/// The text of a file.
+/// The name of standard input in diagnostics.
+pub(crate) const STANDARD_INPUT: &str = "<stdin>";
+
+/// Whether a path means standard input.
+pub(crate) fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// The text of a file; that of standard input for the path `-`, which is read once.
 ///
 /// # Errors
 /// A diagnostic that names the file. Files of more than 64 MiB, or what the environment variable
 /// `MONAS_DOCUMENT_LIMIT` says in MiB, are refused (E0317).
 pub fn read(path: &Path) -> Result<Arc<Source>, Box<Diagnostic>> {
     let set = std::env::var(LIMIT).ok().and_then(|text| text.parse().ok());
-    read_up_to(path, set.map_or(LARGEST, |mebibytes: u64| mebibytes.saturating_mul(1 << 20)))
+    let largest = set.map_or(LARGEST, |mebibytes: u64| mebibytes.saturating_mul(1 << 20));
+    // A process has one standard input, and reads a configuration more than once.
+    static TEXT: OnceLock<Result<Arc<Source>, Box<Diagnostic>>> = OnceLock::new();
+    match is_standard_input(path) {
+        true => TEXT.get_or_init(|| read_up_to(path, largest)).clone(),
+        false => read_up_to(path, largest),
+    }
 }
 
 fn read_up_to(path: &Path, largest: u64) -> Result<Arc<Source>, Box<Diagnostic>> {
-    let name = path.display().to_string();
-    let bytes = || -> std::io::Result<Vec<u8>> {
-        let mut bytes = Vec::new();
-        fs::File::open(path)?.take(largest.saturating_add(1)).read_to_end(&mut bytes)?;
-        Ok(bytes)
+    let (name, content) = match is_standard_input(path) {
+        true => (STANDARD_INPUT.to_owned(), bytes_of(io::stdin(), largest)),
+        false => (path.display().to_string(), fs::File::open(path).and_then(|file| bytes_of(file, largest))),
     };
-    match bytes() {
+    match content {
         Ok(bytes) if bytes.len() as u64 > largest => {
             let message = format!("`{name}` has more than {} MiB", largest >> 20);
             let hint = format!("set the environment variable {LIMIT} to a larger number of MiB");
@@ -44,7 +56,7 @@ fn read_up_to(path: &Path, largest: u64) -> Result<Arc<Source>, Box<Diagnostic>>
                 Err(unreadable("E0317", &name, format!("`{name}` is not UTF-8 text at byte {at}")))
             }
         },
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let diagnostic = unreadable("E0316", &name, format!("no file `{name}`"));
             Err(match neighbour(path) {
                 Some(found) => Box::new(diagnostic.with_hint(format!("did you mean `{}`?", found.display()))),
@@ -63,6 +75,13 @@ fn read_up_to(path: &Path, largest: u64) -> Result<Arc<Source>, Box<Diagnostic>>
         }
         Err(error) => Err(unreadable("E0317", &name, format!("`{name}` cannot be read: {error}"))),
     }
+}
+
+/// The content, up to one byte more than is allowed.
+fn bytes_of(from: impl Read, largest: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    from.take(largest.saturating_add(1)).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 fn unreadable(code: &'static str, name: &str, message: String) -> Box<Diagnostic> {

@@ -1,6 +1,6 @@
-//! Errors of starting and running a loaded match.
+//! Errors of starting and running a loaded match, and of drawing a recorded one.
 
-/// An error that prevents a match from starting or continuing.
+/// An error that prevents a match from starting or continuing, or a picture of a recorded one.
 #[derive(Debug, thiserror::Error)]
 #[error("{message}")]
 pub struct Error {
@@ -18,8 +18,10 @@ pub enum ErrorKind {
     Field,
     /// The agents cannot be built or run.
     Agents,
-    /// The recording cannot be written.
+    /// The recording cannot be written or read.
     Recording,
+    /// A recording does not show what is to be drawn.
+    Picture,
 }
 
 impl Error {
@@ -36,6 +38,14 @@ impl Error {
     pub(crate) fn recording(error: monas_tape::Error) -> Error {
         let message = format!("cannot record: {error}");
         Error { kind: ErrorKind::Recording, message, source: Some(error.into()) }
+    }
+
+    pub(crate) fn unreadable(error: monas_tape::Error) -> Error {
+        Error { kind: ErrorKind::Recording, message: error.to_string(), source: Some(error.into()) }
+    }
+
+    pub(crate) fn picture(message: String) -> Error {
+        Error { kind: ErrorKind::Picture, message, source: None }
     }
 
     /// The diagnostics, if the cause is a file or setting of the user.

@@ -31,6 +31,7 @@ mod match_events;
 mod match_world;
 mod parameters;
 mod plan;
+mod recorded_field;
 mod running_match;
 mod settings;
 mod summary;
@@ -39,6 +40,7 @@ pub use error::{Error, ErrorKind};
 pub use grammar::of_matches as grammar;
 pub use parameters::simulator_file;
 pub use plan::{MatchOptions, MatchPlan, MatchSource};
+pub use recorded_field::RecordedField;
 pub use running_match::RunningMatch;
 pub use summary::{AgentSummary, MatchEvent, MatchSummary, Scoreboard, TeamScore, TeamSummary};
 

@@ -112,6 +112,11 @@ impl RunningMatch {
         self.pitch.with_world(monas_sim::render_svg)
     }
 
+    /// The current state of the field as lines of text, with SGR sequences if it is coloured.
+    pub fn text(&self, columns: usize, rows: usize, is_coloured: bool) -> Vec<String> {
+        self.pitch.with_world(|world| monas_sim::render_text(world, columns, rows, is_coloured))
+    }
+
     /// The field, for exercises and evaluation.
     pub fn pitch(&self) -> &SharedField {
         &self.pitch

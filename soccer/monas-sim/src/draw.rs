@@ -30,19 +30,32 @@ pub fn render_svg(world: &SimulatedWorld) -> String {
     picture.text
 }
 
-struct SvgDrawing {
-    text: String,
+/// The field as SVG: what does not move.
+pub(crate) struct SvgDrawing {
+    pub(crate) text: String,
     /// Half the size of the carpet, m.
     far: Vector,
 }
 
 impl SvgDrawing {
-    fn new(field: &FieldGeometry) -> Self {
+    pub(crate) fn new(field: &FieldGeometry) -> Self {
         let far = Vector::new(field.half_length() + field.border, field.half_width() + field.border);
         Self { text: String::with_capacity(16 * 1024), far }
     }
 
     fn draw(&mut self, world: &SimulatedWorld) -> fmt::Result {
+        let width = self.begin(world.field())?;
+        let colours = world.referee().colours();
+        for robot in world.robots() {
+            self.robot(world, robot, shirt(colours[robot.team]))?;
+        }
+        self.ball(world)?;
+        self.scoreboard(world, width)?;
+        self.end()
+    }
+
+    /// Draws carpet, lines and goals. Returns the width of the picture.
+    pub(crate) fn begin(&mut self, field: &FieldGeometry) -> Result<f64, fmt::Error> {
         let size = self.far * (2.0 * SCALE);
         let height = size.y + BOARD;
         let width = size.x;
@@ -51,21 +64,30 @@ impl SvgDrawing {
             r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0} {height:.0}" width="{width:.0}" height="{height:.0}" font-family="Helvetica, Arial, sans-serif">"#
         )?;
         self.carpet(size)?;
-        self.lines(world.field())?;
+        self.lines(field)?;
         for side in [FieldSide::Left, FieldSide::Right] {
-            self.goal(world.field(), side)?;
+            self.goal(field, side)?;
         }
-        let colours = world.referee().colours();
-        for robot in world.robots() {
-            self.robot(world, robot, shirt(colours[robot.team]))?;
-        }
-        self.ball(world)?;
-        self.scoreboard(world, size.x)?;
+        Ok(width)
+    }
+
+    pub(crate) fn end(&mut self) -> fmt::Result {
         writeln!(self.text, "</svg>")
     }
 
+    /// Draws the length of a metre below the field.
+    pub(crate) fn scale(&mut self, field: &FieldGeometry) -> fmt::Result {
+        let (x, y) = self.place(Vector::new(-field.half_length(), -field.half_width() - field.border * 0.6));
+        writeln!(
+            self.text,
+            r##"<path d="M{x:.0} {y:.0}m0 -5v10m0 -5h{SCALE}m0 -5v10" stroke="#f4f7f5" stroke-width="2" fill="none"/>"##
+        )?;
+        let (x, y) = (x + SCALE + 8.0, y + 4.0);
+        writeln!(self.text, r##"<text x="{x:.0}" y="{y:.0}" font-size="13" fill="#f4f7f5">1 m</text>"##)
+    }
+
     /// Converts a point of the field to picture coordinates.
-    fn place(&self, point: Vector) -> (f64, f64) {
+    pub(crate) fn place(&self, point: Vector) -> (f64, f64) {
         ((point.x + self.far.x) * SCALE, (self.far.y - point.y) * SCALE + BOARD)
     }
 
@@ -278,7 +300,7 @@ impl SvgDrawing {
     }
 }
 
-fn shirt(colour: TeamColour) -> &'static str {
+pub(crate) fn shirt(colour: TeamColour) -> &'static str {
     match colour {
         TeamColour::Blue => "#1f4fb5",
         TeamColour::Red => "#c22f3d",
@@ -296,7 +318,7 @@ fn state_word(state: GameState) -> &'static str {
 }
 
 /// Escapes text for XML; characters that XML does not allow are left out.
-fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars().filter(|character| !character.is_control()) {
         match character {

@@ -13,8 +13,8 @@
 //!   [`RobotSetup`] are the line-up.
 //! - [`Referee`] keeps states, clock, score and penalties; it sends an [`Announcement`] to each
 //!   robot.
-//! - [`SimulationEvent`]s report what happened, [`Statistics`] counts it, and [`render_svg`] draws
-//!   the current state.
+//! - [`SimulationEvent`]s report what happened, [`Statistics`] counts it, [`render_svg`] and
+//!   [`render_text`] show the current state, and [`animate_svg`] draws recorded states.
 //! - [`SharedField`] provides a world's robots to agents as [`monas_robot::Robot`]s, and
 //!   [`messages`] are the ground truth that the field publishes.
 //!
@@ -87,6 +87,8 @@ mod draw;
 mod embodied;
 mod error;
 mod event;
+mod field_animation;
+mod field_text;
 mod fouls;
 mod gait;
 mod geometry;
@@ -115,6 +117,8 @@ pub use draw::render_svg;
 pub use embodied::{FieldBody, SharedField};
 pub use error::{Error, ErrorKind};
 pub use event::{EventKind, SimulationEvent};
+pub use field_animation::{FieldMoment, PicturedRobot, animate_svg};
+pub use field_text::render_text;
 pub use fouls::Offence;
 pub use geometry::FieldGeometry;
 pub use lineup::check as check_lineup;

@@ -1,22 +1,19 @@
 //! Plays a season and writes or checks its golden table: see `cargo xtask season`.
 //!
-//! `season row VARIANT SEED SECONDS` plays one match and prints its row; `season picture FILE`
-//! draws a scene of a match.
+//! `season row VARIANT SEED SECONDS` plays one match and prints its row.
 
 use std::process::ExitCode;
 use std::time::Duration;
 
-use monas_match::{MatchOptions, MatchSource};
-use monas_tests::{MATCH, MatchRow, VARIANTS, play, root, season, short_rows};
+use monas_tests::{MatchRow, VARIANTS, play, root, season, short_rows};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         [] => write(),
         ["--check"] => check(),
-        ["picture", file] => picture(file),
         ["row", variant, seed, seconds] => row(variant, seed, seconds),
-        _ => Err("usage: season [--check | row VARIANT SEED SECONDS | picture FILE]".into()),
+        _ => Err("usage: season [--check | row VARIANT SEED SECONDS]".into()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -34,27 +31,6 @@ fn row(variant: &str, seed: &str, seconds: &str) -> Result<(), String> {
     let seconds = seconds.parse().map_err(|_| format!("`{seconds}` is no number of seconds"))?;
     println!("{}\n{}", MatchRow::HEADER, play(variant, seed, Duration::from_secs(seconds))?);
     Ok(())
-}
-
-/// A match with a goal in the first half, in which teams have not changed colours.
-const PICTURE_SEED: u64 = 3;
-
-/// Draws the match of the quick start two seconds before its first goal.
-fn picture(file: &str) -> Result<(), String> {
-    let start = || {
-        let plan = MatchSource::load(root().join(MATCH.file), &monas::Registry::linked())
-            .map_err(|found| found[0].to_string())?;
-        plan.start(MatchOptions { seed: PICTURE_SEED, record: None }).map_err(|error| error.to_string())
-    };
-    let mut running = start()?;
-    let second = Duration::from_secs(1);
-    while running.score().teams.iter().all(|team| team.goals == 0) && !running.is_over() {
-        running.advance(running.now() + second).map_err(|error| error.to_string())?;
-    }
-    let moment = running.now().saturating_sub(2 * second);
-    let mut again = start()?;
-    again.advance(moment).map_err(|error| error.to_string())?;
-    std::fs::write(root().join(file), again.picture()).map_err(|error| error.to_string())
 }
 
 fn played() -> Result<String, String> {

@@ -6,7 +6,8 @@ use super::TidyFinding;
 use super::workspace::{Crate, Dependency, Workspace};
 
 /// Every crate of the product and its layer.
-const LAYERS: [(&str, u8); 31] = [
+const LAYERS: [(&str, u8); 32] = [
+    ("monas-diagnostics", 0),
     ("monas-files", 0),
     ("narukom", 0),
     ("narukom-build", 0),

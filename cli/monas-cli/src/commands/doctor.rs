@@ -6,7 +6,7 @@ mod permissions;
 mod ports;
 mod toolchain;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueHint};
 use monas::config::Layers;
@@ -24,6 +24,13 @@ pub(crate) struct DoctorArguments {
     pub(crate) config: PathBuf,
     #[command(flatten)]
     pub(crate) format: FormatArgument,
+}
+
+impl DoctorArguments {
+    /// Whether there is a configuration: a file, or standard input.
+    fn has_configuration(&self) -> bool {
+        self.config == Path::new("-") || self.config.exists()
+    }
 }
 
 /// The result of a check, best first.
@@ -101,7 +108,7 @@ const CONFIGURATION: &str = "configuration";
 fn configuration(arguments: &DoctorArguments) -> (CheckResult, Vec<Diagnostic>) {
     let path = &arguments.config;
     let name = path.display();
-    if !path.exists() {
+    if !arguments.has_configuration() {
         let hint = "give one: `monas doctor FILE`, or create a project: `monas new my-team`";
         return (CheckResult::warning(CONFIGURATION, format!("there is no {name}"), hint), Vec::new());
     }

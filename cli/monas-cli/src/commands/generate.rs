@@ -33,7 +33,7 @@ pub(crate) fn execute(
     let project = Project::around(model).map_err(project_failure(format))?;
     let made = generate_crate(model, &chart, to.as_deref(), &project).map_err(project_failure(format))?;
     if !made.is_formatted {
-        writeln!(console.err, "rustfmt is not installed: the sources are not formatted")?;
+        writeln!(console.remarks(), "rustfmt is not installed: the sources are not formatted")?;
     }
     for path in &made.changed {
         let path = project.relative(path);

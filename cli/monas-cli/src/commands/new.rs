@@ -57,7 +57,7 @@ fn project(
     let files = create_project(folder, arguments.monas.as_deref()).map_err(project_failure(format))?;
     write_paths(&files, Path::new(""), format, console)?;
     if format == Format::Text {
-        writeln!(console.err, "next: cd {} && cargo test", folder.display())?;
+        writeln!(console.remarks(), "next: cd {} && cargo test", folder.display())?;
     }
     Ok(Exit::Success)
 }
@@ -72,7 +72,7 @@ fn activity(
     let NewActivity { files, name } = create_activity(name, &here).map_err(project_failure(format))?;
     write_paths(&files, &here, format, console)?;
     if format == Format::Text {
-        writeln!(console.err, "configurations and models refer to it as `{name}`")?;
+        writeln!(console.remarks(), "configurations and models refer to it as `{name}`")?;
     }
     Ok(Exit::Success)
 }
@@ -88,7 +88,7 @@ fn module(
     write_paths(&files, &here, format, console)?;
     if format == Format::Text {
         writeln!(
-            console.err,
+            console.remarks(),
             "next: `monas module build {package}`, then `monas module load` with the printed file"
         )?;
     }

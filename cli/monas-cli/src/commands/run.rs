@@ -3,6 +3,8 @@
 mod control;
 #[cfg(feature = "soccer")]
 mod coverage;
+#[cfg(feature = "soccer")]
+mod field_view;
 mod links;
 mod outputs;
 #[cfg(feature = "soccer")]
@@ -58,6 +60,11 @@ pub(crate) struct RunArguments {
     /// time.
     #[arg(long)]
     pub(crate) realtime: bool,
+    /// Show the field of a match from above, as text: redrawn in place on a terminal, one picture a
+    /// second elsewhere. With --realtime as fast as in reality.
+    #[cfg(feature = "soccer")]
+    #[arg(long)]
+    pub(crate) field: bool,
     /// The name of the control socket, by which `monas topic` finds the run; that of the
     /// configuration if not given.
     #[arg(long, value_name = "NAME")]

@@ -1,6 +1,8 @@
-//! `monas tape`: inspects, recovers, cuts, merges, exports and replays recordings.
+//! `monas tape`: inspects, recovers, cuts, merges, draws, exports and replays recordings.
 
 mod arguments;
+#[cfg(feature = "soccer")]
+mod draw;
 mod edit;
 mod export;
 mod info;
@@ -20,6 +22,8 @@ pub(crate) fn execute(
     match command {
         TapeCommand::Info { file, format } => info::execute(file, format.value, console),
         TapeCommand::Export(arguments) => export::execute(arguments, console),
+        #[cfg(feature = "soccer")]
+        TapeCommand::Draw(arguments) => draw::execute(arguments, console),
         TapeCommand::Recover { file, output, format } => {
             edit::recover(file, output.as_deref(), format.value, console)
         }

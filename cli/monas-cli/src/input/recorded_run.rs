@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::Path;
+#[cfg(feature = "soccer")]
+use std::path::PathBuf;
 
 use monas::replay::{RecordedPublisher, Replay};
 use monas::{Agent, ConfigurationBundle, HostConfig, Registry, Talws};
@@ -40,14 +42,7 @@ pub(crate) fn run_of(overview: &TapeOverview) -> Result<RecordedRun, String> {
     if let Some(damage) = overview.damages.first() {
         return Err(format!("{damage}; `monas tape recover` keeps what can be read"));
     }
-    let facts = overview.facts.iter().find(|facts| facts.name == monas_recording::RUN);
-    let facts =
-        &facts.ok_or("the tape does not describe its run: it was not recorded by `monas run`")?.entries;
-    let fact = |key: &str| facts.get(key).cloned().ok_or(format!("the tape lacks the {key} of its run"));
-    let time = match fact("time")?.as_str() {
-        "simulated" => TimeMode::Simulated { seed: seed(&fact("seed")?)? },
-        _ => TimeMode::Real,
-    };
+    let run = description(overview)?;
     if let Some(of) = overview.facts.iter().find(|facts| facts.name == CONTINUATION) {
         let of = of.entries.get("of").map_or("another tape", String::as_str);
         return Err(format!("the tape continues {of}, which could not be written: its beginning is missing"));
@@ -62,6 +57,19 @@ pub(crate) fn run_of(overview: &TapeOverview) -> Result<RecordedRun, String> {
             "the tape starts after its run: the first message on `{topic}` is number {number}"
         ));
     }
+    Ok(run)
+}
+
+/// What a tape says about its run.
+fn description(overview: &TapeOverview) -> Result<RecordedRun, String> {
+    let facts = overview.facts.iter().find(|facts| facts.name == monas_recording::RUN);
+    let facts =
+        &facts.ok_or("the tape does not describe its run: it was not recorded by `monas run`")?.entries;
+    let fact = |key: &str| facts.get(key).cloned().ok_or(format!("the tape lacks the {key} of its run"));
+    let time = match fact("time")?.as_str() {
+        "simulated" => TimeMode::Simulated { seed: seed(&fact("seed")?)? },
+        _ => TimeMode::Real,
+    };
     let settings = facts.get(monas_recording::SETTINGS).cloned().unwrap_or_default();
     let folder = facts.get(monas_recording::FOLDER).cloned();
     Ok(RecordedRun {
@@ -71,6 +79,21 @@ pub(crate) fn run_of(overview: &TapeOverview) -> Result<RecordedRun, String> {
         folder,
         time,
     })
+}
+
+/// Writes the recorded configuration of any tape into a folder, also of one that cannot be
+/// replayed. Returns its path and the settings of the command line.
+#[cfg(feature = "soccer")]
+pub(crate) fn recorded_configuration(
+    recording: &Recording,
+    folder: &Path,
+    format: Format,
+) -> Result<(PathBuf, Vec<String>), CommandFailure> {
+    let overview = recording.overview().map_err(failed(format))?;
+    let run = description(&overview).map_err(|message| CommandFailure::Failed(format, message))?;
+    let files = files(recording, &run).map_err(failed(format))?;
+    let path = files.unpack(folder).map_err(failed(format))?;
+    Ok((path, run.settings.lines().map(str::to_owned).collect()))
 }
 
 /// A topic with a publisher that had published before the tape began, and the sequence number of

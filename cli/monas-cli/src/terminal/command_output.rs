@@ -1,7 +1,11 @@
 //! The streams of a command.
 
-use std::io::Write;
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::io::{self, Write};
+use std::rc::Rc;
 
+use clap::ColorChoice;
 use indicatif::MultiProgress;
 
 use super::ProcessLog;
@@ -22,6 +26,10 @@ pub(crate) struct CommandOutput<'a> {
     pub(crate) catches_signals: bool,
     /// The log of this process, if the command owns it.
     pub(crate) log: Option<ProcessLog>,
+    /// Whether only results and errors are printed.
+    pub(crate) quiet: bool,
+    /// The codes of the printed diagnostics, if standard error is a terminal.
+    pub(crate) codes: Option<Rc<RefCell<BTreeSet<&'static str>>>>,
 }
 
 impl<'a> CommandOutput<'a> {
@@ -35,6 +43,38 @@ impl<'a> CommandOutput<'a> {
             bars: None,
             catches_signals: false,
             log: None,
+            quiet: false,
+            codes: None,
+        }
+    }
+
+    /// Standard error, for what is neither a result nor a diagnostic; nothing with `--quiet`.
+    pub(crate) fn remarks(&mut self) -> Box<dyn Write + '_> {
+        match self.quiet {
+            true => Box::new(io::sink()),
+            false => Box::new(&mut *self.err),
+        }
+    }
+
+    /// Uses colours or not; `Auto` keeps what was found out about the streams.
+    pub(crate) fn paint(&mut self, colours: ColorChoice) {
+        if colours != ColorChoice::Auto {
+            (self.colour_out, self.colour_err) =
+                (colours == ColorChoice::Always, colours == ColorChoice::Always);
+        }
+    }
+
+    /// Names the command that explains the codes of the printed diagnostics.
+    pub(crate) fn name_explanations(&mut self) -> io::Result<()> {
+        let codes: Vec<&str> = self.codes.iter().flat_map(|codes| codes.take()).collect();
+        match codes.as_slice() {
+            [] => Ok(()),
+            [code] => writeln!(self.remarks(), "`monas explain {code}` says more about this diagnostic"),
+            [first, ..] => writeln!(
+                self.remarks(),
+                "`monas explain CODE` says more about {}; for example `monas explain {first}`",
+                codes.join(", ")
+            ),
         }
     }
 }

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use indicatif::MultiProgress;
 use monas::logger::{self, LogSettings, Logger, Severity};
 use monas_tape::ExistingFile;
+use tracing_subscriber::filter::LevelFilter;
 use tracing_subscriber::prelude::*;
 use tracing_subscriber::{EnvFilter, Registry, reload};
 
@@ -19,12 +20,16 @@ pub(crate) struct ProcessLog {
     logger: Logger,
     usual: reload::Handle<EnvFilter, Registry>,
     bars: MultiProgress,
+    /// Whether MONAS_LOG or an option chose what is logged on standard error.
+    is_chosen: bool,
 }
 
 impl ProcessLog {
     /// Starts the log on standard error, above progress bars.
     pub(crate) fn begin(bars: &MultiProgress) -> Option<ProcessLog> {
-        let asked = std::env::var("MONAS_LOG").unwrap_or_else(|_| USUAL.into());
+        let asked = std::env::var("MONAS_LOG");
+        let is_chosen = asked.is_ok();
+        let asked = asked.unwrap_or_else(|_| USUAL.into());
         let (filter, mistake) = match EnvFilter::try_new(asked) {
             Ok(filter) => (filter, None),
             Err(mistake) => (EnvFilter::new("warn"), Some(mistake)),
@@ -41,7 +46,15 @@ impl ProcessLog {
         if let Some(mistake) = mistake {
             tracing::warn!("MONAS_LOG is invalid, warnings and errors are logged: {mistake}");
         }
-        is_ours.then(|| ProcessLog { logger, usual, bars: bars.clone() })
+        is_ours.then(|| ProcessLog { logger, usual, bars: bars.clone(), is_chosen })
+    }
+
+    /// Logs lines of this level and graver ones on standard error, unless MONAS_LOG is set.
+    pub(crate) fn limit(&mut self, level: LevelFilter) {
+        if !std::mem::replace(&mut self.is_chosen, true) {
+            // This fails only after the log has ended.
+            let _ = self.usual.reload(EnvFilter::new(format!("{level},zenoh=error")));
+        }
     }
 
     /// Flushes and ends the log.
@@ -54,7 +67,8 @@ impl ProcessLog {
         self.logger.publish(least_grave);
     }
 
-    /// Starts the configured log. It replaces the lines on standard error unless MONAS_LOG is set.
+    /// Starts the configured log. It replaces the lines on standard error unless MONAS_LOG or an
+    /// option chose them.
     /// Returns the path of its file, which differs from the configured one if that exists.
     pub(crate) fn write(&self, settings: LogSettings, existing: ExistingFile) -> io::Result<Option<PathBuf>> {
         let bars = self.bars.clone();
@@ -62,7 +76,7 @@ impl ProcessLog {
             // If standard error is closed there is nowhere to report that.
             let _ = ProgressAwareStderr(bars.clone()).write_all(lines);
         })?;
-        if std::env::var_os("MONAS_LOG").is_none() {
+        if !self.is_chosen {
             // This fails only after the log has ended.
             let _ = self.usual.reload(EnvFilter::new("off"));
         }

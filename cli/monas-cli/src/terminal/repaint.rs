@@ -21,6 +21,16 @@ impl Repaint {
         Repaint { columns: is_terminal.then(table::columns).flatten(), rows: 0 }
     }
 
+    /// On the terminal of the command's progress.
+    pub(crate) fn of_progress(console: &CommandOutput<'_>) -> Repaint {
+        Repaint { columns: console.bars.as_ref().and_then(|_| table::columns()), rows: 0 }
+    }
+
+    /// Whether lines replace those shown before.
+    pub(crate) const fn replaces(&self) -> bool {
+        self.columns.is_some()
+    }
+
     /// Shows these lines.
     pub(crate) fn show(&mut self, lines: &[String], out: &mut dyn Write) -> io::Result<()> {
         if self.rows > 0 {
@@ -29,10 +39,17 @@ impl Repaint {
         }
         lines.iter().try_for_each(|line| writeln!(out, "{line}"))?;
         let rows =
-            |columns: usize| lines.iter().map(|line| line.width().div_ceil(columns.max(1)).max(1)).sum();
+            |columns: usize| lines.iter().map(|line| width(line).div_ceil(columns.max(1)).max(1)).sum();
         self.rows = self.columns.map_or(0, rows);
         Ok(())
     }
+}
+
+/// The columns of a line, without sequences that choose a colour.
+fn width(line: &str) -> usize {
+    let mut parts = line.split("\x1b[");
+    let first = parts.next().map_or(0, UnicodeWidthStr::width);
+    first + parts.map(|part| part.split_once('m').map_or(0, |(_, text)| text.width())).sum::<usize>()
 }
 
 #[cfg(test)]

@@ -24,14 +24,19 @@ pub(crate) fn write(
     format: Format,
     diagnostics: &[Diagnostic],
 ) -> io::Result<()> {
-    for diagnostic in diagnostics {
+    let is_shown = |diagnostic: &&Diagnostic| diagnostic.is_error() || !console.quiet;
+    let diagnostics: Vec<&Diagnostic> = diagnostics.iter().filter(is_shown).collect();
+    for diagnostic in &diagnostics {
         match format {
             Format::Text => writeln!(console.err, "{}\n", drawn(diagnostic, console.colour_err))?,
             Format::Json => writeln!(console.err, "{}", object(diagnostic))?,
         }
     }
     if format == Format::Text && diagnostics.len() > 1 {
-        writeln!(console.err, "{}", count(diagnostics))?;
+        writeln!(console.err, "{}", count(&diagnostics))?;
+    }
+    if let Some(codes) = console.codes.as_ref().filter(|_| format == Format::Text) {
+        codes.borrow_mut().extend(diagnostics.iter().map(|diagnostic| diagnostic.code));
     }
     Ok(())
 }
@@ -39,13 +44,15 @@ pub(crate) fn write(
 /// Writes a remark about what the command does, on standard error.
 pub(crate) fn note(console: &mut CommandOutput<'_>, format: Format, message: &str) -> io::Result<()> {
     match format {
-        Format::Text => writeln!(console.err, "note: {message}"),
-        Format::Json => writeln!(console.err, "{}", json!({"severity": "information", "message": message})),
+        Format::Text => writeln!(console.remarks(), "note: {message}"),
+        Format::Json => {
+            writeln!(console.remarks(), "{}", json!({"severity": "information", "message": message}))
+        }
     }
 }
 
 /// `2 errors, 1 warning`
-fn count(diagnostics: &[Diagnostic]) -> String {
+fn count(diagnostics: &[&Diagnostic]) -> String {
     let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();
     let others = diagnostics.len() - errors;
     let plural = |count: usize, word: &str| match count {
@@ -281,7 +288,7 @@ error[E0201]: `Serch` is unknown
     #[test]
     fn several_are_counted() {
         let warning = Diagnostic::warning("E0202", Span::default(), "unused");
-        assert_eq!(count(&[finding(), warning.clone()]), "1 error, 1 warning");
-        assert_eq!(count(&[warning.clone(), warning]), "2 warnings");
+        assert_eq!(count(&[&finding(), &warning]), "1 error, 1 warning");
+        assert_eq!(count(&[&warning, &warning]), "2 warnings");
     }
 }

@@ -31,7 +31,7 @@ fn the_first_chart() {
 
 #[test]
 fn how_time_works() {
-    let Reading { hashes, .. } = read("time.md", 4);
+    let Reading { hashes, .. } = read("time.md", 6);
     assert_eq!(hashes.len(), 3);
     assert!(hashes.iter().all(|hash| *hash == hashes[0]), "one seed, one run: {hashes:?}");
 }

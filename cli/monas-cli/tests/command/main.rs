@@ -20,7 +20,9 @@ mod doctor;
 mod elsewhere;
 #[cfg(target_os = "linux")]
 mod endless;
+mod explain;
 mod generate;
+mod globals;
 mod hints;
 mod kit;
 mod linked_topics;

@@ -26,7 +26,18 @@ fn add_command(words: &[&str], page: &mut String) {
         .filter_map(|line| line.split_whitespace().next().map(str::to_owned))
         .filter(|word| word != "help")
         .collect();
-    let shown: Vec<&str> = help.trim_end().lines().map(str::trim_end).collect();
+    // The options of all commands are shown once.
+    let (before, globals) = help.split_once("Global options:\n").unwrap_or((help.as_str(), ""));
+    let after = globals.lines().skip_while(|line| line.is_empty() || line.starts_with(' '));
+    let all = if words.is_empty() {
+        help.lines().collect()
+    } else {
+        before.lines().chain(after).collect::<Vec<_>>()
+    };
+    let mut shown: Vec<&str> = all.into_iter().map(str::trim_end).collect();
+    while shown.last().is_some_and(|line| line.is_empty()) {
+        shown.pop();
+    }
     let shown = shown.join("\n");
     let name = [&["monas"], words].concat().join(" ");
     let _ = write!(page, "\n{name}\n{}\n\n{shown}\n\n", "=".repeat(name.len()));
@@ -41,6 +52,11 @@ fn the_page_of_commands_is_up_to_date() {
     add_command(&[], &mut page);
     assert!(page.contains("\nmonas run\n") && page.contains("\nmonas agent swap\n"), "{page}");
     is_up_to_date("commands.txt", page.trim_end());
+}
+
+#[test]
+fn the_page_of_diagnostics_is_up_to_date() {
+    is_up_to_date("diagnostics.md", monas_diagnostics::page().trim_end());
 }
 
 /// The kind of a value, in a few words.

@@ -214,3 +214,16 @@ fn real_time_holds_a_match_back() {
     assert_eq!(run["simulated_seconds"], 0.3);
     assert!(run["wall_seconds"].as_f64().is_some_and(|wall| wall >= 0.3), "{run}");
 }
+
+#[test]
+#[cfg(feature = "soccer")]
+fn the_field_is_shown_as_text_that_fits_a_small_terminal() {
+    let run = ["run", "config/match.xml", "--seed", "7", "--for", "3s", "--no-control"];
+    let (shown, usual) = (monas(&[&run[..], &["--field"]].concat()), monas(&run));
+    assert_eq!(hash_of(&shown.out), hash_of(&usual.out), "looking changes nothing");
+    let lines: Vec<&str> = shown.err.lines().collect();
+    assert_eq!(lines.len(), 4 * 23, "a picture a second: {}", shown.err);
+    assert!(lines.iter().all(|line| line.chars().count() <= 80), "{}", shown.err);
+    assert!(lines[23].starts_with("  0:01  Blue 0 : 0 Red"), "{}", lines[23]);
+    assert_eq!(shown.err.matches("b1→").count(), 4, "{}", shown.err);
+}

@@ -357,3 +357,50 @@ fn files_that_are_no_tape_are_named() {
         assert!(answer.err.contains("nowhere.mcap"), "{verb}: {}", answer.err);
     }
 }
+
+#[test]
+#[cfg(feature = "soccer")]
+fn the_field_of_a_match_is_drawn_at_a_time_and_as_an_animation() {
+    let (folder, path) = fresh("field.svg");
+    let still = done(&["tape", "draw", &tape(), "--at", "14s", "-o", &text(&path)]);
+    assert_eq!((still.out.as_str(), still.err.as_str()), ("", ""));
+    let still = fs::read_to_string(&path).expect("it is written");
+    assert!(still.starts_with("<svg") && still.contains("14 s · half 1, playing"), "{still}");
+    assert!(still.contains(">Blue</text>") && still.contains(">Red</text>") && still.contains("0 : 0"));
+    assert_eq!(still.matches("font-size=\"13\" font-weight=\"700\"").count(), 6, "each robot has its number");
+    assert!(still.contains("stroke=\"#a9c8ff\" opacity=\"0.6\""), "a robot sees the ball: {still}");
+    assert!(!still.contains("<animate"));
+    let moving = done(&["tape", "draw", &tape(), "--from", "10s", "--to", "20s"]).out;
+    assert!(moving.contains("<animateTransform") && moving.contains("dur=\"10s\""), "{moving}");
+    assert!(moving.len() < 300_000, "{}", moving.len());
+    let part = text(&folder.path().join("part.mcap"));
+    done(&["tape", "cut", &tape(), "--from", "10s", "--to", "20s", "-o", &part]);
+    let of_part = done(&["tape", "draw", &part, "--at", "14s"]).out;
+    assert_eq!(of_part.matches("<circle r=\"5\"").count(), 1, "a part of a tape is drawn, too");
+}
+
+#[test]
+#[cfg(feature = "soccer")]
+fn what_cannot_be_drawn_is_said() {
+    let said = |arguments: &[&str]| {
+        let answer = monas(&[&["tape", "draw"], arguments].concat());
+        (answer.code, answer.err)
+    };
+    let (code, err) = said(&[&tape(), "--at", "500s"]);
+    let expected = "error: 500 s is outside of the tape, which shows the field from 0 s to 24.9 s\n";
+    assert_eq!((code, err.as_str()), (Some(1), expected));
+    assert_eq!(said(&[&tape(), "--from", "5s", "--to", "5s"]).0, Some(2));
+    assert_eq!(said(&[&tape(), "--from", "5s", "--to", "9s", "--every", "1ns"]).0, Some(2));
+    assert_eq!(said(&[&tape()]).0, Some(2), "no time is given");
+    let (folder, path) = fresh("agents.mcap");
+    let agents = folder.path().join("agents.xml");
+    let agent = "<agent thread_frequency=\"10\"><name>A</name><activity>Stand</activity></agent>";
+    fs::write(&agents, agent).expect("the folder takes files");
+    done(&["run", &text(&agents), "--for", "100ms", "--record", &text(&path), "--no-control"]);
+    let (code, err) = said(&[&text(&path), "--at", "0s"]);
+    assert!(code == Some(1) && err.contains("recording of agents without a match"), "{err}");
+    let only = text(&folder.path().join("only.mcap"));
+    done(&["tape", "cut", &tape(), "--topic", "soccer/ball", "-o", &only]);
+    let (code, err) = said(&[&only, "--at", "1s"]);
+    assert!(code == Some(1) && err.contains("there is no message on `sim/truth`"), "{err}");
+}

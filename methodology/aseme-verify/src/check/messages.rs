@@ -22,9 +22,9 @@ use crate::program_symbols::ProgramSymbols;
 pub(crate) fn names(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagnostic> {
     let mut found = activities(subject, world);
     if let Err(wrong) = subject.chart.compile_with(&world.vocabulary, subject.semantics) {
-        found.extend(
-            wrong.into_iter().filter(Diagnostic::is_error).map(|diagnostic| unknown(subject, diagnostic)),
-        );
+        // Structural faults do not depend on the program: other checks report them.
+        let is_about_names = |it: &Diagnostic| it.is_error() && it.code.starts_with("E01");
+        found.extend(wrong.into_iter().filter(is_about_names).map(|diagnostic| unknown(subject, diagnostic)));
     }
     found
 }

@@ -105,7 +105,8 @@ fn text_of(file: &Path, run: &RunSelector) -> Result<(String, String), CommandFa
         false => fs::read_to_string(file),
     };
     let failed = |error| CommandFailure::failed(run.format.value, format!("{}: {error}", file.display()));
-    Ok((read.map_err(failed)?, file.display().to_string()))
+    let name = if file == Path::new("-") { "<stdin>".into() } else { file.display().to_string() };
+    Ok((read.map_err(failed)?, name))
 }
 
 fn sentence(changed: &Changed, chart: &str) -> String {

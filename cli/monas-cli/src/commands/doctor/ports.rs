@@ -10,7 +10,7 @@ use crate::input::grammar;
 const AREA: &str = "ports";
 
 pub(crate) fn findings(arguments: &DoctorArguments) -> Vec<CheckResult> {
-    if !arguments.config.exists() {
+    if !arguments.has_configuration() {
         return Vec::new();
     }
     let resolved = config::resolve(&arguments.config, &grammar(), &Layers::new());

@@ -46,7 +46,11 @@ impl ExplorationArguments {
             Interrupt::for_console(console).map_err(|error| CommandFailure::failed(Format::Text, error))?;
         (settings.states, settings.bytes) = (self.states, self.memory.saturating_mul(1 << 20));
         let display = ProgressDisplay {
-            bar: console.bars.as_ref().map(|bars| bars.add(ProgressBar::new_spinner())),
+            bar: console
+                .bars
+                .as_ref()
+                .filter(|_| !console.quiet)
+                .map(|bars| bars.add(ProgressBar::new_spinner())),
             next: Mutex::new(QUIET),
         };
         let (clock, limit) = (WallClock::start(), Duration::from_secs(self.seconds));

@@ -10,7 +10,7 @@ use crate::terminal::{CommandFailure, CommandOutput, Format, report};
 
 /// Prints the trace to a finding, if there is one.
 pub(crate) fn way_there(finding: &Finding, console: &mut CommandOutput<'_>) -> Result<(), CommandFailure> {
-    if let Some(trace) = &finding.trace {
+    if let Some(trace) = finding.trace.as_ref().filter(|_| finding.diagnostic.is_error() || !console.quiet) {
         writeln!(console.err, "  trace:\n{}", indented(trace))?;
     }
     Ok(())

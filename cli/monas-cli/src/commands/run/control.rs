@@ -22,6 +22,7 @@ pub(crate) fn name_of(arguments: &RunArguments) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || c == '_' || c == '-' { c } else { '_' };
     match name.is_empty() {
         true => "run".into(),
+        false if name == "-" => "stdin".into(),
         false => name.chars().map(plain).collect(),
     }
 }
@@ -90,7 +91,7 @@ mod socket {
             (Some(name), Ok(folder)) => {
                 let socket = ControlSocket::bind(&folder, name);
                 let socket = socket.map_err(|error| CommandFailure::failed(format, error))?;
-                writeln!(console.err, "control socket: {}", socket.path().display())?;
+                writeln!(console.remarks(), "control socket: {}", socket.path().display())?;
                 Ok(Some(socket))
             }
             (Some(_), Err(error)) => Err(CommandFailure::failed(format, error)),
@@ -100,7 +101,7 @@ mod socket {
                 let is_said = std::env::var_os("XDG_RUNTIME_DIR").is_none_or(|folder| folder.is_empty());
                 if let Some(socket) = socket.as_ref().filter(|_| is_said && format == Format::Text) {
                     writeln!(
-                        console.err,
+                        console.remarks(),
                         "control socket: {} (XDG_RUNTIME_DIR is not set)",
                         socket.path().display()
                     )?;

@@ -82,7 +82,7 @@ fn play(
         running.measure();
     }
     let look = if arguments.realtime { PACED_LOOK } else { LOOK };
-    let mut scoreboard = scoreboard::for_console(console, length);
+    let mut scoreboard = scoreboard::for_console(console, length, arguments.field);
     scoreboard.show(&running)?;
     while running.now() < length && !running.is_over() && !interrupt.is_requested() {
         let next = (running.now() + look).min(length);

@@ -40,7 +40,7 @@ pub(crate) fn execute(
     let overview = running.run_handle();
     let control = control::serve(socket, overview.clone(), tape.clone(), arguments)?;
     let mut alarm = RecordingAlarm::new(tape.clone(), overview.clone());
-    writeln!(console.err, "running, Ctrl-C stops")?;
+    writeln!(console.remarks(), "running, Ctrl-C stops")?;
     let length = arguments.length.unwrap_or(Duration::MAX);
     WallClock::start().wait_until_or(length, || {
         alarm.check(overview.now());

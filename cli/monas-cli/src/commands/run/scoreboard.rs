@@ -6,6 +6,7 @@ use std::time::Duration;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use monas_match::{MatchEvent, RunningMatch};
 
+use super::field_view::FieldView;
 use crate::terminal::CommandOutput;
 
 /// Shows the progress of a match.
@@ -14,20 +15,25 @@ pub(crate) trait Scoreboard {
     fn show(&mut self, running: &RunningMatch) -> io::Result<()>;
 }
 
-/// The scoreboard for a terminal, or for a file.
+/// The scoreboard for a terminal, or for a file; the field, if it is asked for.
 pub(crate) fn for_console<'c>(
     console: &'c mut CommandOutput<'_>,
     length: Duration,
+    is_field_shown: bool,
 ) -> Box<dyn Scoreboard + 'c> {
+    if is_field_shown {
+        return Box::new(FieldView::new(console));
+    }
     match &console.bars {
+        _ if console.quiet => Box::new(Lines { out: Box::new(io::sink()), events: 0, minutes: None }),
         Some(bars) => Box::new(Bar::new(bars, length, console.colour_err)),
-        None => Box::new(Lines { out: &mut *console.err, events: 0, minutes: None }),
+        None => Box::new(Lines { out: Box::new(&mut *console.err), events: 0, minutes: None }),
     }
 }
 
 /// One line for each notable event and for each minute.
 struct Lines<'a> {
-    out: &'a mut dyn Write,
+    out: Box<dyn Write + 'a>,
     /// How many events have been written.
     events: usize,
     /// The last minute whose score has been written.
@@ -88,12 +94,12 @@ impl Drop for Bar {
     }
 }
 
-fn event_line(event: &MatchEvent) -> String {
+pub(crate) fn event_line(event: &MatchEvent) -> String {
     format!("{}  {}", clock(event.time), event.text)
 }
 
 /// `Blue 2 : 1 Red, second half, 4:12 left, PLAYING`
-fn score_line(score: &monas_match::Scoreboard) -> String {
+pub(crate) fn score_line(score: &monas_match::Scoreboard) -> String {
     let [left, right] = &score.teams;
     let half = if score.half == 1 { "first half" } else { "second half" };
     let left_over = clock(Duration::from_secs(score.seconds_left.into()));
@@ -102,7 +108,7 @@ fn score_line(score: &monas_match::Scoreboard) -> String {
 }
 
 /// Minutes and seconds, at least six characters wide.
-fn clock(time: Duration) -> String {
+pub(crate) fn clock(time: Duration) -> String {
     let seconds = time.as_secs();
     format!("{:>3}:{:02}", seconds / 60, seconds % 60)
 }

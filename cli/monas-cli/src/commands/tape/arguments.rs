@@ -23,6 +23,12 @@ pub(crate) enum TapeCommand {
         after_help = "Example: monas tape export match.mcap --topic soccer/ball --format csv -o ball.csv"
     )]
     Export(ExportArguments),
+    /// Draw the field of a recorded match from above, as SVG: at one time, or as an animation.
+    ///
+    /// Circles in the colour of a team show where its robots believe the ball to be.
+    #[cfg(feature = "soccer")]
+    #[command(after_help = "Example: monas tape draw match.mcap --at 98s -o field.svg")]
+    Draw(super::draw::DrawArguments),
     /// Recover a truncated or damaged tape: writes all readable messages to a valid tape.
     #[command(after_help = "Example: monas tape recover match.mcap -o mended.mcap")]
     Recover {
