@@ -17,6 +17,8 @@ use crate::commands::model::ModelCommand;
 use crate::commands::module::ModuleCommand;
 use crate::commands::new::NewArguments;
 use crate::commands::run::RunArguments;
+#[cfg(unix)]
+use crate::commands::studio::StudioArguments;
 use crate::commands::tape::TapeCommand;
 #[cfg(unix)]
 use crate::commands::top::TopArguments;
@@ -86,6 +88,14 @@ pub(crate) enum Command {
     #[cfg(unix)]
     #[command(after_help = "Example: monas top --host blue-2")]
     Top(TopArguments),
+    /// View a run in the browser: charts, agents, topics, log, and the field from above.
+    ///
+    /// Serves a page on this computer, which needs no other program and no network, and prints its
+    /// address. The page only looks: it does not change the run, which is neither blocked nor
+    /// waits. `monas run --studio` does the same from within a run.
+    #[cfg(unix)]
+    #[command(after_help = "Example: monas studio --run match")]
+    Studio(StudioArguments),
     /// Follow the log of a run, or read it from a tape.
     ///
     /// The lines are the messages on `monas/log` of each robot, whatever the logger's settings keep
