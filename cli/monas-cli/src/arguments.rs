@@ -88,13 +88,14 @@ pub(crate) enum Command {
     #[cfg(unix)]
     #[command(after_help = "Example: monas top --host blue-2")]
     Top(TopArguments),
-    /// View a run in the browser: charts, agents, topics, log, and the field from above.
+    /// View a run or a tape in the browser: charts, agents, topics, log, and the field.
     ///
     /// Serves a page on this computer, which needs no other program and no network, and prints its
     /// address. The page only looks: it does not change the run, which is neither blocked nor
-    /// waits. `monas run --studio` does the same from within a run.
+    /// waits. `monas run --studio` does the same from within a run. A tape is played, and opened at any
+    /// moment.
     #[cfg(unix)]
-    #[command(after_help = "Example: monas studio --run match")]
+    #[command(after_help = "Example: monas studio match.mcap")]
     Studio(StudioArguments),
     /// Follow the log of a run, or read it from a tape.
     ///

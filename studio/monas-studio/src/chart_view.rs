@@ -1,6 +1,7 @@
 //! A statechart as viewers see it: its shapes, its active states, its latest steps.
 
 use std::collections::{BTreeSet, VecDeque};
+use std::sync::Arc;
 
 use monas::records::{self, ChartState};
 use serde_json::{Value, json};
@@ -30,8 +31,8 @@ pub(crate) struct ChartView {
     pub(crate) model: String,
     /// `runs`, `pauses` or `stopped`.
     pub(crate) state: String,
-    /// The shapes; null until they are known.
-    picture: Value,
+    /// The shapes; null until they are known. Shared by the moments of a tape.
+    picture: Arc<Value>,
     /// Counts changes of the shapes.
     drawing: u64,
     /// Whether the active states and shapes are out of date.
@@ -63,8 +64,8 @@ impl ChartView {
         let active = picture.as_object_mut().and_then(|picture| picture.remove("active"));
         let active = active.iter().filter_map(Value::as_array).flatten();
         let active = active.filter_map(|node| node.as_u64()?.try_into().ok()).collect();
-        if self.picture != picture {
-            self.picture = picture;
+        if *self.picture != picture {
+            self.picture = Arc::new(picture);
             self.drawing += 1;
         }
         self.is_stale = false;

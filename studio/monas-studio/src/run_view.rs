@@ -46,6 +46,8 @@ pub(crate) enum Link {
     Live,
     /// It has ended or cannot be reached: the reason.
     Lost(String),
+    /// A recording.
+    Tape,
 }
 
 /// The state of a run.
@@ -146,11 +148,22 @@ impl RunView {
         self.charts.entry(key).or_default().load(state);
     }
 
+    /// Takes the shapes of a chart.
+    pub(crate) fn show_chart(&mut self, key: ChartKey, model: &str, picture: &str) {
+        let view = self.charts.entry(key).or_default();
+        model.clone_into(&mut view.model);
+        view.show(picture);
+    }
+
+    /// Takes tables as JSON.
+    pub(crate) fn set_table_objects(&mut self, agents: Value, topics: Value) {
+        (self.agents, self.topics) = (agents, topics);
+        self.table_revision += 1;
+    }
+
     /// Takes the agents, and the topics as JSON.
     pub(crate) fn set_tables(&mut self, agents: &[AgentEntry], topics: Value) {
-        self.agents = agents.iter().map(agent_object).collect();
-        self.topics = topics;
-        self.table_revision += 1;
+        self.set_table_objects(agents.iter().map(agent_object).collect(), topics);
     }
 
     /// Everything that a viewer has not seen; `None` if there is nothing.
@@ -169,6 +182,7 @@ impl RunView {
                 Link::Connecting => ("connecting", ""),
                 Link::Live => ("live", ""),
                 Link::Lost(reason) => ("lost", reason.as_str()),
+                Link::Tape => ("tape", ""),
             };
             frame["run"] = json!({"epoch": self.epoch, "link": link, "reason": reason, "name": self.name,
                 "process": self.process, "simulated": self.is_simulated, "hosts": self.hosts,

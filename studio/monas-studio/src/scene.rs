@@ -12,6 +12,17 @@ pub trait Scene: Send + Sync {
     /// The topics that it reads, on all hosts.
     fn topics(&self) -> &[&'static str];
 
+    /// The topics with events that are marked on the timeline of a tape.
+    fn event_topics(&self) -> &[&'static str] {
+        &[]
+    }
+
+    /// The text of an event, if a message on such a topic is one.
+    fn event(&self, topic: &str, message: &Value) -> Option<String> {
+        let _ = (topic, message);
+        None
+    }
+
     /// Draws the present messages.
     fn draw(&self, messages: &SceneMessages<'_>) -> ScenePicture;
 }

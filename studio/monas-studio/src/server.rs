@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
+use monas_tape::Recording;
 use tungstenite::handshake::derive_accept_key;
 
 use crate::access::AccessPolicy;
@@ -19,6 +20,7 @@ use crate::live_run::LiveRun;
 use crate::pace::Pace;
 use crate::scene::Scene;
 use crate::source::Source;
+use crate::tape_run::{TapeChart, TapeRun};
 use crate::viewer;
 
 /// The port that is tried first, and how many after it.
@@ -91,6 +93,20 @@ impl Studio {
     pub fn of_run(socket: &Path, settings: StudioSettings) -> Result<Studio, Error> {
         let StudioSettings { listen, scene, pace } = settings;
         Studio::serve(listen, Box::new(LiveRun::new(socket, scene, pace)?))
+    }
+
+    /// Serves a tape under a name.
+    ///
+    /// # Errors
+    /// The tape cannot be read, or the address is not available.
+    pub fn of_tape(
+        name: &str,
+        recording: Recording,
+        charts: &[TapeChart],
+        settings: StudioSettings,
+    ) -> Result<Studio, Error> {
+        let StudioSettings { listen, scene, .. } = settings;
+        Studio::serve(listen, Box::new(TapeRun::new(name, recording, charts, scene)?))
     }
 
     pub(crate) fn serve(listen: Option<ListenAddress>, source: Box<dyn Source>) -> Result<Studio, Error> {

@@ -15,6 +15,8 @@ pub(crate) enum ViewerRequest {
     Pace(f64),
     /// Another moment of a tape, in seconds.
     Seek(f64),
+    /// The next step of a chart on a tape, or the one before.
+    Step { key: String, is_back: bool },
 }
 
 impl ViewerRequest {
@@ -29,6 +31,7 @@ impl ViewerRequest {
             // JSON has no infinity
             "pace" if value["factor"].is_null() => Some(ViewerRequest::Pace(f64::INFINITY)),
             "pace" => Some(ViewerRequest::Pace(value["factor"].as_f64().filter(|factor| *factor >= 0.0)?)),
+            "step" => Some(ViewerRequest::Step { key: word("key")?, is_back: value["back"].as_bool()? }),
             "seek" => Some(ViewerRequest::Seek(value["seconds"].as_f64().filter(|time| *time >= 0.0)?)),
             _ => None,
         }

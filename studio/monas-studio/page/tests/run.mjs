@@ -1,7 +1,10 @@
 // The studio in headless Chromium on real runs: `MONAS=path/to/monas npm test`. Screenshots are
 // written to tests/screenshots.
 import assert from 'node:assert/strict';
-import { mkdirSync } from 'node:fs';
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { launch, start, useBuiltPage } from './browser.mjs';
 
@@ -196,6 +199,81 @@ async function beside(browser) {
   await studio.stop();
 }
 
+/** A tape: everything on the page follows the moment on the timeline. */
+async function tape(browser) {
+  const folder = mkdtempSync(join(tmpdir(), 'monas-tape-'));
+  const file = join(folder, 'match.mcap');
+  execFileSync(PROGRAM, ['run', MATCH, '--seed', '1', '--for', '60s', '--no-control', '--record', file], { stdio: 'ignore' });
+  const studio = start(PROGRAM, ['studio', file]);
+  const { page, faults } = await open(browser, await studio.url);
+  await until(page, 'six charts', () => document.querySelectorAll('.robots li').length === 6);
+  await page.locator('.play', { hasText: 'Hold' }).click();
+  await until(page, 'the tape is held', () => document.querySelector('.play')?.textContent === 'Play');
+  const time = async () => seconds(await textOf(page, '.time'));
+  const seek = async (to) => {
+    await page.getByLabel('Moment').fill(String(to));
+    await until(page, `moment ${to}`, (to) => {
+      const [minutes, rest] = (document.querySelector('.time')?.textContent ?? '').split(':').map(Number);
+      return Math.abs(minutes * 60 + rest - to) < 0.06;
+    }, to);
+  };
+  const place = () => page.locator('.body').evaluateAll((all) => all.map((one) => one.outerHTML.match(/translate\([^)]*\)/)?.[0]).join());
+  const decided = () => textOf(page, '.why');
+  const log = async () => {
+    await page.keyboard.press('4');
+    const lines = await page.locator('.line').allInnerTexts();
+    await page.keyboard.press('1');
+    return lines;
+  };
+  // the same moment is the same, from whichever side it is reached
+  await seek(30);
+  await until(page, 'robots', () => document.querySelectorAll('.body').length === 6);
+  await until(page, 'a decision', () => /because/.test(document.querySelector('.why')?.textContent ?? ''));
+  await page.locator('h2').first().click();
+  const [first, why, lines] = [await place(), await decided(), await log()];
+  await seek(50);
+  await until(page, 'robots elsewhere', (first) => {
+    const all = [...document.querySelectorAll('.body')];
+    return all.map((one) => one.outerHTML.match(/translate\([^)]*\)/)?.[0]).join() !== first;
+  }, first);
+  await seek(30);
+  await until(page, 'robots where they were', (first) => {
+    const all = [...document.querySelectorAll('.body')];
+    return all.map((one) => one.outerHTML.match(/translate\([^)]*\)/)?.[0]).join() === first;
+  }, first);
+  await page.locator('h2').first().click();
+  assert.equal((await decided()).split(',')[0].split(' for ')[0], why.split(',')[0].split(' for ')[0]);
+  assert.deepEqual(await log(), lines);
+  // steps of the chosen chart, on and back
+  const active = () => page.locator('.chart .node.active').evaluateAll((all) => all.map((one) => one.dataset.state).join());
+  await page.keyboard.press('.');
+  await page.waitForTimeout(300);
+  const [atStep, stepTime] = [await active(), await time()];
+  await page.keyboard.press('.');
+  await page.keyboard.press(',');
+  await page.waitForTimeout(300);
+  assert.equal(await active(), atStep);
+  assert.equal(await time(), stepTime);
+  // events
+  await seek(1);
+  const events = await page.locator('.marks button').count();
+  assert.ok(events > 0, 'the timeline has events');
+  await page.getByRole('button', { name: 'event ›' }).click();
+  await until(page, 'the kick-off', () => /kick-off/.test(document.querySelector('.latest')?.textContent ?? ''));
+  assert.equal(await time(), 6);
+  // playing
+  await page.getByLabel('Speed').selectOption('16');
+  await page.locator('.play').click();
+  await until(page, 'the tape is played to its end', () => document.querySelector('.play')?.textContent === 'Play' && document.querySelector('.time')?.textContent?.startsWith('1:00'));
+  await seek(22.5);
+  await page.locator('.robots button', { hasText: 'blue-2' }).click();
+  await page.waitForTimeout(300);
+  await shot(page, 'tape');
+  assert.deepEqual(faults, []);
+  await page.close();
+  await studio.stop();
+}
+
 mkdirSync(SCREENSHOTS, { recursive: true });
 const browser = await launch();
 const run = start(PROGRAM, ['run', MATCH, '--studio', '--seed', '1', '--for', '600s']);
@@ -219,6 +297,7 @@ try {
   }
   await page.close();
   await check('a studio beside runs follows them', () => beside(browser));
+  await check('a tape is played, searched and stepped', () => tape(browser));
 } finally {
   await browser.close();
   await run.stop();

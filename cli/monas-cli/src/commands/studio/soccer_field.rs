@@ -10,6 +10,7 @@ use serde_json::Value;
 
 const TRUTH: &str = "sim/truth";
 const SCORE: &str = "sim/score";
+const INCIDENT: &str = "sim/incident";
 const HOST: &str = "monas/host";
 const GAME_STATE: &str = "soccer/game_state";
 const POSE: &str = "soccer/pose";
@@ -28,6 +29,14 @@ pub(super) struct SoccerField;
 impl Scene for SoccerField {
     fn topics(&self) -> &[&'static str] {
         &[TRUTH, SCORE, HOST, GAME_STATE, POSE, BALL]
+    }
+
+    fn event_topics(&self) -> &[&'static str] {
+        &[INCIDENT]
+    }
+
+    fn event(&self, _: &str, message: &Value) -> Option<String> {
+        message["text"].as_str().map(str::to_owned)
     }
 
     fn draw(&self, messages: &SceneMessages<'_>) -> ScenePicture {

@@ -12,6 +12,7 @@ import type {
   Sample,
   SceneNews,
   ServerMessage,
+  TapeFacts,
   TopicRow,
 } from './protocol';
 
@@ -65,6 +66,7 @@ export class StudioClient {
   sample = $state.raw<Sample | null>(null);
   /** The speed of simulated time, null if it is unlimited; undefined if it is not set here. */
   pace = $state.raw<number | null | undefined>(undefined);
+  tape = $state.raw<TapeFacts | null>(null);
 
   #socket: WebSocket | null = null;
   #retry = FIRST_RETRY;
@@ -114,6 +116,14 @@ export class StudioClient {
     this.#send({ type: 'pace', factor: Number.isFinite(factor) ? factor : null });
   }
 
+  seek(seconds: number): void {
+    this.#send({ type: 'seek', seconds });
+  }
+
+  step(key: string, back: boolean): void {
+    this.#send({ type: 'step', key, back });
+  }
+
   #send(message: object): void {
     if (this.#socket?.readyState === WebSocket.OPEN) {
       this.#socket.send(JSON.stringify(message));
@@ -161,6 +171,12 @@ export class StudioClient {
       this.run = frame.run;
     }
     this.now = frame.now;
+    if (frame.elsewhere) {
+      this.#goElsewhere();
+    }
+    if (frame.tape) {
+      this.tape = frame.tape;
+    }
     if (frame.alarms) {
       this.alarms = frame.alarms;
     }
@@ -188,6 +204,18 @@ export class StudioClient {
     }
   }
 
+  /** Forgets what belongs to another moment; shapes stay. */
+  #goElsewhere(): void {
+    const charts = new Map<string, ChartState>();
+    for (const [key, chart] of this.charts) {
+      charts.set(key, { ...chart, steps: [], enteredBy: new Map(), decisions: [] });
+    }
+    this.charts = charts;
+    this.log = [];
+    this.histories = new Map();
+    this.#tableTime = 0;
+  }
+
   #forget(): void {
     this.charts = new Map();
     this.pictures = new Map();
@@ -196,6 +224,7 @@ export class StudioClient {
     this.topics = [];
     this.log = [];
     this.scene = null;
+    this.tape = null;
     this.#tableTime = 0;
     this.#asked.clear();
     if (this.#watched && this.run) {

@@ -182,7 +182,9 @@ export interface Sample {
 export interface TapeFacts {
   begin: number;
   end: number;
+  /** The speed of playing, 0 while it is held. */
   factor: number;
+  events: { t: number; text: string }[];
 }
 
 export interface Frame {
@@ -196,6 +198,9 @@ export interface Frame {
   charts?: ChartNews[];
   scene?: SceneNews;
   sample?: Sample;
+  /** The moment is not a later one: what came since holds no more. */
+  elsewhere?: boolean;
+  tape?: TapeFacts;
   pace?: { is_set_here: boolean; factor: number | null };
 }
 

@@ -1,41 +1,17 @@
 //! The studio of a run, over real sockets: who is answered, and what a viewer gets.
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)] // a test may fail
-
-use std::io::{Read, Write};
-use std::net::{SocketAddr, TcpStream};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 
 use monas::records::{self, AgentEntry, Agents, ChartEntry, ChartState, Inquiry, Reply, foxglove::Log};
 use monas_link::control::{ControlServer, ControlTarget};
-use monas_studio::{Body, Pace, Scene, SceneMessages, ScenePicture, Studio, StudioSettings};
-use narukom::{Hub, State, Timestamp, topic};
+use monas_studio::{Pace, Studio, StudioSettings};
+use narukom::{Hub, Timestamp};
 use prost::Message as _;
 use serde_json::{Value, json};
-use tungstenite::{Message, WebSocket, client};
-use yase::{Node, NodeKind, Statechart, Transition};
+use yase::Statechart;
 
-topic! {
-    /// The newest log line, as a message of a type that has a text.
-    pub NOTE: State<Log> = "test/note";
-}
-
-const SOON: Duration = Duration::from_secs(20);
-
-/// A lamp: START, off, on.
-fn lamp() -> Statechart {
-    let mut lamp = Statechart::new("lamp");
-    let [start, off, on] = [(NodeKind::Start, ""), (NodeKind::Basic, "off"), (NodeKind::Basic, "on")]
-        .map(|(kind, name)| lamp.add(Statechart::ROOT, Node::new(kind, name)));
-    for (source, target, text) in [(start, off, ""), (off, on, "[A.x == 1]"), (on, off, "enough")] {
-        let expression = yase::expression::parse_transition(text).0;
-        lamp.connect(Transition { expression, ..Transition::new(source, target) });
-    }
-    lamp
-}
+use crate::kit::{NOTE, Notes, Viewer, address, exchange, lamp};
 
 /// A run of one host with one agent.
 struct OneHub([Hub; 1]);
@@ -76,24 +52,6 @@ impl ControlTarget for OneHub {
     }
 }
 
-/// Draws one body for each note, with its text as label.
-struct Notes;
-
-impl Scene for Notes {
-    fn topics(&self) -> &[&'static str] {
-        &["test/note"]
-    }
-
-    fn draw(&self, messages: &SceneMessages<'_>) -> ScenePicture {
-        let bodies = messages.all("test/note").map(|(host, note)| Body {
-            host: host.into(),
-            label: note["message"].as_str().unwrap_or_default().into(),
-            ..Body::default()
-        });
-        ScenePicture { bodies: bodies.collect(), ..ScenePicture::default() }
-    }
-}
-
 struct Run {
     folder: tempfile::TempDir,
     hub: Hub,
@@ -126,54 +84,6 @@ impl Run {
 fn studio(socket: &Path, listen: &str, pace: Option<Pace>) -> Studio {
     let listen = Some(listen.parse().unwrap());
     Studio::of_run(socket, StudioSettings { listen, scene: Some(Arc::new(Notes)), pace }).unwrap()
-}
-
-fn address(studio: &Studio) -> SocketAddr {
-    let rest = studio.url().strip_prefix("http://").unwrap();
-    let address: SocketAddr = rest.split('/').next().unwrap().parse().unwrap();
-    SocketAddr::new([127, 0, 0, 1].into(), address.port())
-}
-
-/// The reply to a request, whose head has these lines.
-fn exchange(studio: &Studio, request: &str, lines: &[&str]) -> String {
-    let mut stream = TcpStream::connect(address(studio)).unwrap();
-    stream.set_read_timeout(Some(SOON)).unwrap();
-    stream.write_all(format!("{request} HTTP/1.1\r\n{}\r\n\r\n", lines.join("\r\n")).as_bytes()).unwrap();
-    let mut reply = Vec::new();
-    stream.read_to_end(&mut reply).unwrap();
-    String::from_utf8_lossy(&reply).into_owned()
-}
-
-struct Viewer(WebSocket<TcpStream>);
-
-impl Viewer {
-    fn open(studio: &Studio) -> Result<Viewer, String> {
-        let stream = TcpStream::connect(address(studio)).unwrap();
-        stream.set_read_timeout(Some(SOON)).unwrap();
-        let url = format!("ws://{}/socket", address(studio));
-        let (socket, _) = client(url, stream).map_err(|error| error.to_string())?;
-        Ok(Viewer(socket))
-    }
-
-    fn send(&mut self, message: Value) {
-        self.0.send(Message::text(message.to_string())).unwrap();
-    }
-
-    /// The first message that has what is looked for.
-    fn wait<T>(&mut self, mut find: impl FnMut(&Value) -> Option<T>) -> T {
-        loop {
-            if let Message::Text(text) = self.0.read().unwrap() {
-                let message = serde_json::from_str(text.as_str()).unwrap();
-                if let Some(found) = find(&message) {
-                    return found;
-                }
-            }
-        }
-    }
-
-    fn wait_for_link(&mut self, link: &str) -> Value {
-        self.wait(|message| (message["run"]["link"] == link).then(|| message["run"].clone()))
-    }
 }
 
 #[test]
