@@ -72,7 +72,7 @@ pub(crate) fn exchange(studio: &Studio, request: &str, lines: &[&str]) -> String
     String::from_utf8_lossy(&reply).into_owned()
 }
 
-pub(crate) struct Viewer(WebSocket<TcpStream>);
+pub(crate) struct Viewer(pub(crate) WebSocket<TcpStream>);
 
 impl Viewer {
     pub(crate) fn open(studio: &Studio) -> Result<Viewer, String> {

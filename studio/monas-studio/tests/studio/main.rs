@@ -1,6 +1,6 @@
 //! The studio over real sockets.
 
-#![allow(clippy::unwrap_used)] // a test may fail
+#![allow(clippy::panic, clippy::unwrap_used)] // a test may fail
 
 mod kit;
 #[cfg(unix)]

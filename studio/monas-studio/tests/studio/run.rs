@@ -201,6 +201,26 @@ fn a_run_that_ends_is_looked_for_until_it_comes_back() {
 }
 
 #[test]
+fn the_end_of_the_studio_reaches_viewers_with_requests_under_way() {
+    let run = Run::start();
+    let studio = studio(&run.socket(), "127.0.0.1:0", None);
+    let mut viewer = Viewer::open(&studio).unwrap();
+    viewer.wait_for_link("live");
+    let end = std::thread::spawn(move || drop(studio));
+    let code = loop {
+        // A request that the studio has not read when it ends.
+        let _ = viewer.0.send(tungstenite::Message::text(r#"{"type": "unwatch"}"#));
+        match viewer.0.read() {
+            Ok(tungstenite::Message::Close(reason)) => break reason.map(|reason| u16::from(reason.code)),
+            Ok(_) => {}
+            Err(error) => panic!("{error}"),
+        }
+    };
+    assert_eq!(code, Some(1001));
+    end.join().unwrap();
+}
+
+#[test]
 fn the_pace_is_set_only_where_a_run_gives_it() {
     let run = Run::start();
     let pace = Pace::new(1.0);
