@@ -91,8 +91,8 @@ pub(crate) enum Command {
     /// View a run or a tape in the browser: charts, agents, topics, log, and the field.
     ///
     /// Serves a page on this computer, which needs no other program and no network, and prints its
-    /// address. The page only looks: it does not change the run, which is neither blocked nor
-    /// waits. `monas run --studio` does the same from within a run. A tape is played, and opened at any
+    /// address. The page only looks: it does not change the run, which does not wait for it.
+    /// `monas run --studio` does the same from within a run. A tape is played, and opened at any
     /// moment.
     #[cfg(unix)]
     #[command(after_help = "Example: monas studio match.mcap")]
