@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::outline::is_region;
-use yase::statechart::{Node, NodeId, NodeKind, Statechart, Transition};
+use yase::statechart::{Node, NodeId, NodeKind, Statechart, Transition, TransitionId};
 
 /// The chart without transitions that are never taken, without ENDs that nothing leads to then, and
 /// without composites that only enclose another: the outer one has the content, and the name that
@@ -12,13 +12,28 @@ use yase::statechart::{Node, NodeId, NodeKind, Statechart, Transition};
 /// Only for drawings: paths and labels are others, and so is what completes when. Given positions
 /// are kept for states that keep their surroundings.
 pub fn compact(chart: &Statechart) -> Statechart {
-    let mut compaction = Compaction::new(chart);
-    compaction.drop_unused_ends();
-    // composites inside others first
-    for id in chart.nodes().map(|(id, _)| id).collect::<Vec<_>>().into_iter().rev() {
-        compaction.dissolve_child_of(id);
+    CompactChart::of(chart).chart
+}
+
+/// A compact chart with what its parts were.
+pub(crate) struct CompactChart {
+    pub(crate) chart: Statechart,
+    /// The nodes of the whole chart, by the node that is left of them.
+    pub(crate) nodes: BTreeMap<NodeId, NodeId>,
+    /// The transition of the whole chart, by index of the one that is left of it.
+    pub(crate) transitions: Vec<TransitionId>,
+}
+
+impl CompactChart {
+    pub(crate) fn of(chart: &Statechart) -> CompactChart {
+        let mut compaction = Compaction::new(chart);
+        compaction.drop_unused_ends();
+        // composites inside others first
+        for id in chart.nodes().map(|(id, _)| id).collect::<Vec<_>>().into_iter().rev() {
+            compaction.dissolve_child_of(id);
+        }
+        compaction.chart()
     }
-    compaction.chart()
 }
 
 struct Compaction<'a> {
@@ -132,7 +147,8 @@ impl<'a> Compaction<'a> {
         }
     }
 
-    fn chart(self) -> Statechart {
+    fn chart(self) -> CompactChart {
+        let mut transitions = Vec::with_capacity(self.transitions.len());
         let mut compact = Statechart::new(self.chart.name.clone());
         compact.constants.clone_from(&self.chart.constants);
         *compact.node_mut(Statechart::ROOT) = self.node(Statechart::ROOT).clone();
@@ -152,11 +168,12 @@ impl<'a> Compaction<'a> {
             let ends = [transition.source, transition.target].map(|end| places.get(&end).copied());
             let [Some(source), Some(target)] = ends else { continue };
             let id = compact.connect(Transition { source, target, ..(*transition).clone() });
-            if let Some(bends) = self.chart.layout.bends.get(&yase::TransitionId(*index)) {
+            transitions.push(TransitionId(*index));
+            if let Some(bends) = self.chart.layout.bends.get(&TransitionId(*index)) {
                 compact.layout.bends.insert(id, bends.clone());
             }
         }
-        compact
+        CompactChart { chart: compact, nodes: places, transitions }
     }
 }
 

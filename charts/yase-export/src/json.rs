@@ -10,6 +10,7 @@ const LINE: usize = 110;
 /// A small value.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) enum JsonValue {
+    Null,
     Bool(bool),
     /// A number; JSON has no infinities.
     Number(f64),
@@ -31,8 +32,16 @@ impl From<String> for JsonValue {
 }
 
 impl JsonValue {
+    /// The value on one line.
+    pub(crate) fn to_line(&self) -> String {
+        let mut out = String::new();
+        self.in_one_line(&mut out);
+        out
+    }
+
     fn in_one_line(&self, out: &mut String) {
         match self {
+            JsonValue::Null => out.push_str("null"),
             JsonValue::Bool(value) => write!(out, "{value}").unwrap_or_default(),
             JsonValue::Number(value) if value.is_finite() => write!(out, "{value}").unwrap_or_default(),
             JsonValue::Number(value) => quote(&value.to_string(), out),

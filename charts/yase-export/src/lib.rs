@@ -1,7 +1,8 @@
 //! Charts as drawings, and as text for other tools.
 //!
 //! [`to_svg`] draws a chart, [`to_svg_marked`] with highlighted parts; [`compact`] leaves out what
-//! only formulas need. The other functions write it for a tool: [`to_xstate`] for XState and
+//! only formulas need, [`to_picture`] gives a viewer the shapes with the numbers of nodes and
+//! transitions. The other functions write it for a tool: [`to_xstate`] for XState and
 //! compatible libraries, [`to_mermaid`] and [`to_plantuml`] for documents, [`to_dot`] for Graphviz.
 //! [`Exported::lost`] lists everything that the tool cannot express, by node and transition:
 //! nothing is omitted silently.
@@ -55,6 +56,7 @@ mod loss_report;
 mod mermaid;
 pub mod notation;
 mod outline;
+mod picture;
 mod plantuml;
 mod svg;
 mod xstate;
@@ -63,6 +65,7 @@ pub use compact::compact;
 pub use dot::{to_dot, to_dot_marked};
 pub use highlights::{Highlights, Mark};
 pub use mermaid::to_mermaid;
+pub use picture::to_picture;
 pub use plantuml::to_plantuml;
 pub use svg::{to_svg, to_svg_marked};
 pub use xstate::to_xstate;

@@ -19,6 +19,8 @@ mod ranks;
 mod rectangle;
 mod route;
 
+pub(crate) use layout::layout;
+
 use super::highlights::Highlights;
 use yase::statechart::Statechart;
 
@@ -35,5 +37,5 @@ pub fn to_svg(chart: &Statechart) -> String {
 
 /// The same with highlighted parts in the colours of their marks.
 pub fn to_svg_marked(chart: &Statechart, marks: &Highlights) -> String {
-    draw::document(chart, &layout::layout(chart, marks), marks)
+    draw::document(chart, &layout(chart, marks), marks)
 }

@@ -18,6 +18,8 @@ use crate::commands::model::ModelCommand;
 use crate::commands::module::ModuleCommand;
 use crate::commands::new::NewArguments;
 use crate::commands::run::RunArguments;
+#[cfg(unix)]
+use crate::commands::studio::StudioArguments;
 use crate::commands::tape::TapeCommand;
 #[cfg(unix)]
 use crate::commands::top::TopArguments;
@@ -92,6 +94,15 @@ pub(crate) enum Command {
     #[cfg(unix)]
     #[command(after_help = "Example: monas top --host blue-2")]
     Top(TopArguments),
+    /// View a run or a tape in the browser: charts, agents, topics, log, and the field.
+    ///
+    /// Serves a page on this computer, which needs no other program and no network, and prints its
+    /// address. The page only looks: it does not change the run, which does not wait for it.
+    /// `monas run --studio` does the same from within a run. A tape is played, and opened at any
+    /// moment.
+    #[cfg(unix)]
+    #[command(after_help = "Example: monas studio match.mcap")]
+    Studio(StudioArguments),
     /// Follow the log of a run, or read it from a tape.
     ///
     /// The lines are the messages on `monas/log` of each robot, whatever the logger's settings keep

@@ -15,6 +15,8 @@ pub(crate) mod model;
 pub(crate) mod module;
 pub(crate) mod new;
 pub(crate) mod run;
+#[cfg(unix)]
+pub(crate) mod studio;
 pub(crate) mod tape;
 #[cfg(unix)]
 pub(crate) mod top;

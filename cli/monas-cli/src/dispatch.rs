@@ -62,6 +62,8 @@ fn execute(command: Command, console: &mut CommandOutput<'_>) -> Result<Exit, Co
         Command::Module(command) => commands::module::execute(&command, console),
         #[cfg(unix)]
         Command::Top(arguments) => commands::top::execute(&arguments, console),
+        #[cfg(unix)]
+        Command::Studio(arguments) => commands::studio::execute(&arguments, console),
         Command::Log(arguments) => commands::log::execute(&arguments, console),
         Command::Tape(command) => commands::tape::execute(&command, console),
         Command::New(arguments) => commands::new::execute(&arguments, console),

@@ -14,5 +14,5 @@ pub(crate) use change::{print_outcome, request_change};
 pub(crate) use connection::failure;
 pub(crate) use link_targets::LinkTargets;
 pub(crate) use request::{request, unexpected_reply};
-pub(crate) use run_selector::{RunSelector, hosts, topics};
+pub(crate) use run_selector::{RunSelector, hosts, runs, topics};
 pub(crate) use watch::{WatchLimits, watch};

@@ -209,3 +209,21 @@ fn a_socket_is_the_owners_alone_and_is_gone_when_its_run_is() {
     let nameless = ControlServer::start(&folder, "a/b", Arc::new(OneHub([served.hub.clone()]))).unwrap_err();
     assert_eq!(nameless.kind(), ErrorKind::Settings);
 }
+
+#[test]
+fn several_patterns_are_watched_on_one_connection() {
+    let served = served();
+    let mut ball = served.hub.publisher(BALL, "vision").unwrap();
+    let mut path = served.hub.publisher(PATH, "vision").unwrap();
+    let mut watch =
+        served.client().watch_all("", &["soccer/ball", "other/topic", "soccer/path"], true).unwrap();
+    // The stream is set up when the retained message arrives.
+    ball.publish(Ball::default(), Timestamp::from_nanos(1));
+    let first = watch.wait(SOON).unwrap().unwrap();
+    path.publish(Ball::default(), Timestamp::from_nanos(2));
+    let second = watch.wait(SOON).unwrap().unwrap();
+    assert_eq!([first.path, second.path], ["soccer/ball", "soccer/path"]);
+
+    let mut refused = served.client().watch_all("", &["other/topic", "none/at_all"], true).unwrap();
+    assert!(refused.wait(SOON).unwrap_err().to_string().contains("none of the patterns"));
+}

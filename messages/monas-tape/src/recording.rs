@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -72,6 +73,18 @@ impl Recording {
     /// Whether the recording was finished, so that nothing is missing at its end.
     pub fn is_finished(&self) -> bool {
         self.bytes.len() > MAGIC.len() && self.bytes.ends_with(MAGIC)
+    }
+
+    /// Where the bytes of one of its messages are, to find them again with
+    /// [`bytes_at`](Recording::bytes_at).
+    pub fn range_of(&self, message: &RecordedSample<'_>) -> Range<usize> {
+        let begin = (message.bytes.as_ptr() as usize).saturating_sub(self.bytes.as_ptr() as usize);
+        begin..begin + message.bytes.len()
+    }
+
+    /// The bytes in a range; none if it is not in the file.
+    pub fn bytes_at(&self, range: Range<usize>) -> Option<&[u8]> {
+        self.bytes.get(range)
     }
 
     /// The size in bytes.

@@ -42,7 +42,8 @@ const LAYERS: [(&str, u8); 32] = [
 ];
 
 /// The folders of the product's crates.
-const FOLDERS: [&str; 7] = ["charts", "methodology", "messages", "runtime", "robots", "soccer", "cli"];
+const FOLDERS: [&str; 8] =
+    ["charts", "methodology", "messages", "runtime", "robots", "soccer", "studio", "cli"];
 
 /// Bodies: only the binary depends on them.
 const ROBOTS: u8 = 15;

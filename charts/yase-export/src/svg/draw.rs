@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 use super::drawing_layout::{Arrow, DrawingLayout, Shape};
-use super::layout::MARGIN;
 use super::lettering::{LABEL_LINE, LABEL_SIZE, NAME_LINE, NAME_SIZE, escaped};
 use super::placed::frame;
 use crate::highlights::{Highlights, Mark};
@@ -26,7 +25,7 @@ text{font-family:system-ui,-apple-system,'Segoe UI','Liberation Sans','DejaVu Sa
 /// Writes the whole document.
 pub(crate) fn document(chart: &Statechart, layout: &DrawingLayout<'_>, marks: &Highlights) -> String {
     let mut page = SvgWriter { svg: String::new() };
-    let (width, height) = page_size(chart, layout);
+    let (width, height) = layout.page_size(chart);
     page.line(format_args!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\">"
     ));
@@ -54,16 +53,6 @@ pub(crate) fn document(chart: &Statechart, layout: &DrawingLayout<'_>, marks: &H
     }
     page.line(format_args!("</svg>"));
     page.svg
-}
-
-/// Encloses the root and the given corners of arrows.
-fn page_size(chart: &Statechart, layout: &DrawingLayout) -> Point {
-    let root = layout.shape(Statechart::ROOT);
-    let end = (root.at.0 + root.size.0, root.at.1 + root.size.1);
-    let arrows = if chart.layout.bends.is_empty() { &[][..] } else { &layout.arrows };
-    let corners = arrows.iter().flat_map(|arrow| &arrow.points);
-    let (right, bottom) = corners.fold(end, |end, corner| (end.0.max(corner.0), end.1.max(corner.1)));
-    (right + MARGIN, bottom + MARGIN)
 }
 
 fn head(id: &str, colour: &str) -> String {

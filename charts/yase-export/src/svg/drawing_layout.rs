@@ -1,10 +1,11 @@
 //! A drawing: shapes of nodes, arrows of transitions. Lengths are in pixels.
 
+use super::layout::MARGIN;
 use super::lettering::{LABEL_LINE, LABEL_SIZE, NAME_LINE, widest, wrap_condition};
 use super::rectangle::Rectangle;
 use crate::highlights::{Highlights, Mark};
 use crate::notation::inscription;
-use yase::statechart::{NodeId, NodeKind, Point, Statechart, Transition};
+use yase::statechart::{NodeId, NodeKind, Point, Statechart, Transition, TransitionId};
 
 /// Maximum width of a label line, where it can be broken.
 pub(crate) const LABEL_WIDTH: f64 = 290.0;
@@ -65,6 +66,7 @@ pub(crate) struct Arrow {
 /// The label of a transition.
 #[derive(Clone, Debug)]
 pub(crate) struct Label {
+    pub(crate) transition: TransitionId,
     pub(crate) lines: Vec<String>,
     /// Whether it marks a transition that is never taken.
     pub(crate) never: bool,
@@ -73,9 +75,10 @@ pub(crate) struct Label {
 }
 
 impl Label {
-    pub(crate) fn of(transition: &Transition, marks: &Highlights) -> Label {
+    pub(crate) fn of(id: TransitionId, transition: &Transition, marks: &Highlights) -> Label {
         let text = inscription(transition);
         Label {
+            transition: id,
             lines: wrap_condition(&text, LABEL_SIZE, LABEL_WIDTH),
             never: transition.expression.is_never(),
             mark: marks.of_transition(transition),
@@ -104,6 +107,16 @@ pub(crate) struct DrawingLayout<'m> {
 impl DrawingLayout<'_> {
     pub(crate) fn shape(&self, id: NodeId) -> &Shape {
         &self.shapes[id.0 as usize]
+    }
+
+    /// The size of the page: encloses the root and the given corners of arrows.
+    pub(crate) fn page_size(&self, chart: &Statechart) -> Point {
+        let root = self.shape(Statechart::ROOT);
+        let end = (root.at.0 + root.size.0, root.at.1 + root.size.1);
+        let arrows = if chart.layout.bends.is_empty() { &[][..] } else { &self.arrows };
+        let corners = arrows.iter().flat_map(|arrow| &arrow.points);
+        let (right, bottom) = corners.fold(end, |end, corner| (end.0.max(corner.0), end.1.max(corner.1)));
+        (right + MARGIN, bottom + MARGIN)
     }
 
     pub(crate) fn shape_mut(&mut self, id: NodeId) -> &mut Shape {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use super::drawing_layout::{Arrow, DrawingLayout, Label};
 use super::ranks::{EdgeCourse, ranks};
-use yase::statechart::{NodeId, NodeKind, Point, Statechart, Transition};
+use yase::statechart::{NodeId, NodeKind, Point, Statechart, Transition, TransitionId};
 
 /// Gap between neighbours in a row.
 const GAP: f64 = 22.0;
@@ -31,7 +31,7 @@ const LOOP_HEIGHT: f64 = 16.0;
 pub(crate) fn rows(
     chart: &Statechart,
     id: NodeId,
-    transitions: &[&Transition],
+    transitions: &[Drawn<'_>],
     leads: &[(NodeId, NodeId)],
     layout: &mut DrawingLayout<'_>,
 ) -> Point {
@@ -124,6 +124,9 @@ impl FlowCell {
     }
 }
 
+/// A transition among the rows.
+type Drawn<'a> = (TransitionId, &'a Transition);
+
 struct FlowEdge {
     source: usize,
     target: usize,
@@ -167,14 +170,14 @@ impl Flow {
     fn new(
         chart: &Statechart,
         children: &[NodeId],
-        transitions: &[&Transition],
+        transitions: &[Drawn<'_>],
         leads: &[(NodeId, NodeId)],
         layout: &DrawingLayout<'_>,
     ) -> Flow {
         let places: BTreeMap<NodeId, usize> =
             children.iter().enumerate().map(|(place, &child)| (child, place)).collect();
         let place = |node: NodeId| places.get(&node).copied().unwrap_or(0);
-        let drawn = transitions.iter().map(|it| (it.source, it.target));
+        let drawn = transitions.iter().map(|(_, it)| (it.source, it.target));
         let ends: Vec<(usize, usize)> =
             drawn.chain(leads.iter().copied()).map(|(from, to)| (place(from), place(to))).collect();
         let (row_of, courses) = ranks(children.len(), &ends);
@@ -189,20 +192,22 @@ impl Flow {
         let cells = children.iter().zip(row_of).map(cell).collect();
         let mut twins: BTreeMap<(usize, usize), (usize, usize)> = BTreeMap::new();
         ends.iter().take(transitions.len()).for_each(|ends| twins.entry(*ends).or_default().1 += 1);
-        let edge =
-            |((&transition, &(source, target)), course): ((&&Transition, &(usize, usize)), EdgeCourse)| {
-                let twin = twins.entry((source, target)).or_default();
-                twin.0 += 1;
-                FlowEdge {
-                    twin: (twin.0 - 1, twin.1),
-                    source,
-                    target,
-                    course,
-                    label: Label::of(transition, layout.marks),
-                    at_target: true,
-                    offset: 0.0,
-                }
-            };
+        let edge = |((&(id, transition), &(source, target)), course): (
+            (&Drawn<'_>, &(usize, usize)),
+            EdgeCourse,
+        )| {
+            let twin = twins.entry((source, target)).or_default();
+            twin.0 += 1;
+            FlowEdge {
+                twin: (twin.0 - 1, twin.1),
+                source,
+                target,
+                course,
+                label: Label::of(id, transition, layout.marks),
+                at_target: true,
+                offset: 0.0,
+            }
+        };
         let edges = transitions.iter().zip(&ends).zip(courses).map(edge).collect();
         Flow { cells, edges, rows, turns: Vec::new(), left: 0.0, right: 0.0, height: 0.0 }
     }

@@ -8,7 +8,7 @@ use super::{flow, placed, route};
 use crate::highlights::Highlights;
 use crate::notation::refinements;
 use crate::outline::sound_transitions;
-use yase::statechart::{Node, NodeId, NodeKind, Point, Statechart, Transition};
+use yase::statechart::{Node, NodeId, NodeKind, Point, Statechart, Transition, TransitionId};
 
 /// Distance between a border and the content.
 const PADDING: f64 = 14.0;
@@ -57,11 +57,11 @@ fn lettered(node: &Node) -> Shape {
 }
 
 /// For each OR the transitions between its children that are drawn among its rows.
-fn transitions_inside(chart: &Statechart) -> Vec<Vec<&Transition>> {
+fn transitions_inside(chart: &Statechart) -> Vec<Vec<(TransitionId, &Transition)>> {
     let mut inside = vec![Vec::new(); chart.nodes().len()];
     for (id, transition) in sound_transitions(chart) {
         if let Some(parent) = placed::among_rows(chart, id, transition) {
-            inside[parent.0 as usize].push(transition);
+            inside[parent.0 as usize].push((id, transition));
         }
     }
     inside

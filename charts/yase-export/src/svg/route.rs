@@ -42,7 +42,7 @@ pub(crate) fn across_borders(chart: &Statechart, layout: &mut DrawingLayout) {
             [] => router.way(chart, transition),
             bends => router.around(chart, transition, bends, layout),
         };
-        let label = Label::of(transition, layout.marks);
+        let label = Label::of(id, transition, layout.marks);
         let label_at = router.label_place(&points, label.size());
         let arrow = Arrow { frame: Statechart::ROOT, points, label, label_at };
         router.occupy(&arrow);

@@ -2,7 +2,7 @@
 
 use yase::{NodeKind, Statechart};
 use yase_export::notation::kind_word;
-use yase_export::{compact, to_svg};
+use yase_export::{compact, to_picture, to_svg};
 
 use super::drawing::{lines, readable};
 use super::text::chart;
@@ -147,4 +147,36 @@ fn regions_are_placed_where_the_drawing_is_smallest() {
     let height = alone.split('"').filter_map(|part| part.parse::<f64>().ok()).nth(1).unwrap();
     assert_eq!(numbers[1], height);
     assert!(numbers[0] < height, "{numbers:?}");
+}
+
+#[test]
+fn pictures_have_the_numbers_of_the_whole_chart() {
+    let whole = chart("c", WRAPPED);
+    let active = whole.find("A~||b/1/A~/A").unwrap();
+    let picture: serde_json::Value = serde_json::from_str(&to_picture(&whole, &[active])).unwrap();
+    assert_eq!(picture["active"], serde_json::json!([active.0]));
+    let nodes = picture["nodes"].as_array().unwrap();
+    assert_eq!(nodes.len(), whole.nodes().len());
+    for (id, node) in whole.nodes() {
+        let drawn = &nodes[id.0 as usize];
+        assert_eq!(drawn["kind"], kind_word(node.kind));
+        assert_eq!(drawn["parent"].as_u64(), node.parent.map(|parent| parent.0.into()));
+    }
+    let shape = |path: &str| &nodes[whole.find(path).unwrap().0 as usize]["shape"];
+    assert_eq!(shape("A~||b/1/A~/A")["lines"], serde_json::json!(["A"]));
+    // composites are folded into what is around them, or shown without a term as their title
+    assert!(shape("A~||b").is_null());
+    assert_eq!(shape("A~||b/2/b/(C.D)")["lines"], serde_json::json!([]));
+    // arrows have the numbers and ends of the chart's transitions; those never taken are not drawn
+    let (repeat, _) = whole.transitions().find(|(_, it)| it.expression.to_string() == "tick").unwrap();
+    let arrow = picture["arrows"].as_array().unwrap().iter().find(|arrow| arrow["id"] == repeat.0).unwrap();
+    assert_eq!(
+        (&arrow["source"], &arrow["lines"]),
+        (&serde_json::json!(active.0), &serde_json::json!(["tick"]))
+    );
+    let never = whole.transitions().filter(|(_, it)| it.expression.is_never());
+    for (id, _) in never {
+        assert!(!picture["arrows"].as_array().unwrap().iter().any(|arrow| arrow["id"] == id.0));
+    }
+    assert_eq!(picture["transitions"].as_array().unwrap().len(), whole.transitions().len());
 }

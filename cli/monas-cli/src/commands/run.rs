@@ -8,6 +8,8 @@ mod field_view;
 mod links;
 mod outputs;
 #[cfg(feature = "soccer")]
+mod pacer;
+#[cfg(feature = "soccer")]
 mod play;
 mod real_time;
 #[cfg(feature = "soccer")]
@@ -72,8 +74,29 @@ pub(crate) struct RunArguments {
     /// Do not serve a control socket.
     #[arg(long, conflicts_with = "control")]
     pub(crate) no_control: bool,
+    /// View the run in the browser: serve the studio, and print its address. Simulated time then
+    /// runs as fast as real time; the page and --pace change that, and results do not depend on it.
+    #[cfg(unix)]
+    #[arg(long, conflicts_with = "no_control")]
+    pub(crate) studio: bool,
+    #[cfg(unix)]
+    #[command(flatten)]
+    pub(crate) listen: crate::commands::studio::ListenArgument,
+    /// How many seconds of simulated time pass in a second, at most: 0.5 for slow motion, 10 for
+    /// ten times real time. 1 with --realtime or --studio, unlimited otherwise.
+    #[arg(long, value_name = "FACTOR", value_parser = pace)]
+    pub(crate) pace: Option<f64>,
     #[command(flatten)]
     pub(crate) format: FormatArgument,
+}
+
+/// Parses a pace.
+fn pace(text: &str) -> Result<f64, String> {
+    let factor: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    match factor > 0.0 {
+        true => Ok(factor),
+        false => Err("the pace is more than 0".into()),
+    }
 }
 
 pub(crate) fn execute(
@@ -86,6 +109,15 @@ pub(crate) fn execute(
         let message =
             "--robot is for the agents of one robot; a match configures each robot in its `<robot>`";
         return Err(CommandFailure::Usage(message.into()));
+    }
+    #[cfg(unix)]
+    if arguments.listen.is_given() && !arguments.studio {
+        return Err(CommandFailure::Usage("--listen is for the studio: add --studio".into()));
+    }
+    if kind == ConfigurationKind::Agents && arguments.pace.is_some() {
+        return Err(CommandFailure::Usage(
+            "--pace is for simulated time; these agents run in real time".into(),
+        ));
     }
     let unlinked = differences(&arguments.config);
     if unlinked.iter().any(Diagnostic::is_error) {

@@ -44,6 +44,7 @@ pub(crate) fn hosts() -> Vec<CompletionCandidate> {
     candidates(live_runs::known_hosts())
 }
 
-fn runs() -> Vec<CompletionCandidate> {
+/// The names of all runs.
+pub(crate) fn runs() -> Vec<CompletionCandidate> {
     candidates(live_runs::live_runs().into_iter().map(|(name, _)| name).collect())
 }

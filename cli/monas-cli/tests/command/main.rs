@@ -40,6 +40,8 @@ mod run;
 mod running;
 mod scenario;
 mod schema;
+#[cfg(unix)]
+mod studio;
 mod tape;
 #[cfg(unix)]
 mod top;

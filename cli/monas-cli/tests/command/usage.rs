@@ -75,6 +75,13 @@ fn each_exit_code_means_one_thing() {
         (&["model", "ontology", "models/goalie.srm", "--package", "1"], 2),
         #[cfg(unix)]
         (&["topic", "list", "--run", "unknown-run"], 4),
+        #[cfg(unix)]
+        (&["studio", "--run", "unknown-run"], 4),
+        #[cfg(unix)]
+        (&["run", "config/match.xml", "--listen", "127.0.0.1:0"], 2),
+        #[cfg(unix)]
+        (&["run", "config/match.xml", "--studio", "--listen", "somewhere"], 2),
+        (&["run", "config/match.xml", "--pace", "0"], 2),
     ] {
         let answer = command(arguments).env("XDG_RUNTIME_DIR", folder.path()).output().expect("it starts");
         assert_eq!(

@@ -125,8 +125,19 @@ impl ControlClient {
     ///
     /// # Errors
     /// The connection is lost. An unknown host or topic is reported by [`WatchStream::wait`].
-    pub fn watch(mut self, host: &str, pattern: &str, payload: bool) -> Result<WatchStream, Error> {
-        let watch = Some(Watch { host: host.into(), pattern: pattern.into(), payload });
+    pub fn watch(self, host: &str, pattern: &str, payload: bool) -> Result<WatchStream, Error> {
+        self.watch_all(host, &[pattern], payload)
+    }
+
+    /// The same for several patterns. Those that match no topic are skipped if another does;
+    /// messages of different patterns may arrive out of order.
+    ///
+    /// # Errors
+    /// As [`watch`](ControlClient::watch).
+    pub fn watch_all(mut self, host: &str, patterns: &[&str], payload: bool) -> Result<WatchStream, Error> {
+        let mut patterns = patterns.iter().map(|pattern| (*pattern).to_owned());
+        let (pattern, more) = (patterns.next().unwrap_or_default(), patterns.collect());
+        let watch = Some(Watch { host: host.into(), pattern, payload, more });
         self.send(&Request { watch, ..Request::default() })?;
         Ok(WatchStream { stream: self.stream, bytes: Vec::new(), looked_at: 0 })
     }

@@ -26,8 +26,8 @@ const CHUNK: usize = 64 << 10;
 /// The topics that a tool watches.
 pub(super) struct TopicWatch {
     feeds: Vec<HostWatch>,
-    slots: Vec<TopicSlot>,
-    pattern: String,
+    /// Each pattern with the topics that match it.
+    patterns: Vec<(String, Vec<TopicSlot>)>,
     payload: bool,
 }
 
@@ -35,6 +35,8 @@ pub(super) struct TopicWatch {
 struct HostWatch {
     hub: Hub,
     host: HostId,
+    /// Index of the pattern.
+    pattern: usize,
     subscriber: Subscriber,
 }
 
@@ -42,43 +44,53 @@ impl TopicWatch {
     /// # Errors
     /// The reason why the pattern matches no topic.
     pub(super) fn new(hubs: Vec<Hub>, watch: &Watch) -> Result<TopicWatch, String> {
-        let pattern = if watch.pattern.is_empty() { "**" } else { &watch.pattern };
-        let mut watcher = TopicWatch {
-            feeds: Vec::new(),
-            slots: Vec::new(),
-            pattern: pattern.to_owned(),
-            payload: watch.payload,
-        };
-        for hub in hubs {
-            watcher.slots = hub.matching(pattern).map_err(|error| error.to_string())?;
-            watcher.watch_host(hub, HostId::LOCAL)?;
+        let first = if watch.pattern.is_empty() { "**" } else { &watch.pattern };
+        let mut watcher = TopicWatch { feeds: Vec::new(), patterns: Vec::new(), payload: watch.payload };
+        for pattern in std::iter::once(first).chain(watch.more.iter().map(String::as_str)) {
+            let topics = hubs.iter().map(|hub| hub.matching(pattern));
+            let topics: Result<Vec<Vec<TopicSlot>>, narukom::Error> = topics.collect();
+            match topics {
+                Ok(topics) => {
+                    watcher
+                        .patterns
+                        .push((pattern.to_owned(), topics.into_iter().next().unwrap_or_default()));
+                    for hub in &hubs {
+                        watcher.watch_host(hub.clone(), HostId::LOCAL, watcher.patterns.len() - 1)?;
+                    }
+                }
+                Err(error) if watch.more.is_empty() => return Err(error.to_string()),
+                Err(_) => {}
+            }
+        }
+        if watcher.patterns.is_empty() {
+            return Err("none of the patterns matches a topic".into());
         }
         watcher.add_new_hosts()?;
         Ok(watcher)
     }
 
-    fn watch_host(&mut self, hub: Hub, host: HostId) -> Result<(), String> {
-        let subscriber = hub.subscriber_of(host, &self.pattern).map_err(|error| error.to_string())?;
-        self.feeds.push(HostWatch { hub, host, subscriber });
+    fn watch_host(&mut self, hub: Hub, host: HostId, pattern: usize) -> Result<(), String> {
+        let subscriber =
+            hub.subscriber_of(host, &self.patterns[pattern].0).map_err(|error| error.to_string())?;
+        self.feeds.push(HostWatch { hub, host, pattern, subscriber });
         Ok(())
     }
 
     /// Watches further remote hosts whose messages have arrived at a hub.
     fn add_new_hosts(&mut self) -> Result<(), String> {
-        let hubs: Vec<Hub> = self
-            .feeds
-            .iter()
-            .filter(|feed| feed.host == HostId::LOCAL)
-            .map(|feed| feed.hub.clone())
-            .collect();
-        for hub in hubs {
-            let mut hosts: Vec<HostId> = self.slots.iter().flat_map(|slot| hub.hosts_of(*slot)).collect();
+        let feeds = self.feeds.iter().filter(|feed| feed.host == HostId::LOCAL);
+        let hubs: Vec<(Hub, usize)> = feeds.map(|feed| (feed.hub.clone(), feed.pattern)).collect();
+        for (hub, pattern) in hubs {
+            let topics = &self.patterns[pattern].1;
+            let mut hosts: Vec<HostId> = topics.iter().flat_map(|slot| hub.hosts_of(*slot)).collect();
             hosts.sort_unstable();
             hosts.dedup();
             for host in hosts {
-                let is_known = |feed: &HostWatch| feed.host == host && feed.hub.host() == hub.host();
+                let is_known = |feed: &HostWatch| {
+                    feed.host == host && feed.pattern == pattern && feed.hub.host() == hub.host()
+                };
                 if !self.feeds.iter().any(is_known) {
-                    self.watch_host(hub.clone(), host)?;
+                    self.watch_host(hub.clone(), host, pattern)?;
                 }
             }
         }

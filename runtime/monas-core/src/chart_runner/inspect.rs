@@ -2,23 +2,25 @@
 
 use narukom::{Hub, Timestamp, TopicSlot};
 use yase::{Element, Machine, NodeId, NodeKind, Status};
-use yase_export::{Highlights, Mark, to_svg_marked};
+use yase_export::{Highlights, Mark, to_picture, to_svg_marked};
 
 use super::ChartRunner;
 use crate::coverage::ChartCoverage;
 use crate::statistics::ActivityStatistics;
 
 impl ChartRunner {
-    /// A snapshot of its machine in JSON, and the chart as SVG with the active states highlighted.
+    /// A snapshot of its machine in JSON, the chart as SVG with the active states highlighted, and
+    /// its shapes for viewers.
     pub fn inspect(&self) -> Vec<String> {
         let chart = self.machine.chart().statechart();
         let mut marks = Highlights::default();
-        for node in self.machine.configuration() {
+        let active = self.machine.configuration();
+        for &node in &active {
             marks.set(chart, Element::Node(node), Mark::Active);
         }
         // A snapshot always serializes; an empty text would be noticed.
         let snapshot = serde_json::to_string(&self.machine.snapshot()).unwrap_or_default();
-        vec![snapshot, to_svg_marked(chart, &marks)]
+        vec![snapshot, to_svg_marked(chart, &marks), to_picture(chart, &active)]
     }
 
     /// The paths of the BASIC states that are active.

@@ -13,7 +13,7 @@ pub(crate) trait AgentControl {
     /// The status of a chart of an agent, by its index.
     fn chart_status(&self, agent: &str, place: usize) -> AgentStatus;
 
-    /// The state of a chart of an agent: a snapshot of its machine in JSON, and a drawing.
+    /// The state of a chart of an agent: the documents of `ChartRunner::inspect`.
     fn inspect_chart(&self, agent: &str, place: usize) -> Result<Vec<String>, String>;
 
     /// Whether it has a list, which may be empty.

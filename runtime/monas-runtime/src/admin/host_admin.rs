@@ -302,6 +302,7 @@ impl HostAdmin {
             state: staff.chart_status(agent, place).word().into(),
             snapshot: documents.next().unwrap_or_default(),
             drawing: documents.next().unwrap_or_default(),
+            picture: documents.next().unwrap_or_default(),
         })
     }
 

@@ -1,6 +1,7 @@
 //! The control socket of a run.
 
 use monas::RunHandle;
+use monas_studio::{Pace, Studio};
 use monas_tape::Tape;
 
 use super::RunArguments;
@@ -8,7 +9,7 @@ use crate::terminal::{CommandFailure, CommandOutput};
 
 #[cfg(feature = "soccer")] // only matches name the type
 pub(crate) use socket::ControlSocket;
-pub(crate) use socket::{bind, serve};
+pub(crate) use socket::{bind, serve, view};
 
 /// The largest number in names of sockets of one configuration.
 #[cfg(unix)]
@@ -39,8 +40,9 @@ mod socket {
     pub(crate) use monas_link::control::ControlSocket;
 
     use crate::commands::run::control::{
-        CommandFailure, CommandOutput, NAMESAKES, RunArguments, RunHandle, Tape, name_of,
+        CommandFailure, CommandOutput, NAMESAKES, Pace, RunArguments, RunHandle, Studio, Tape, name_of,
     };
+    use crate::commands::studio;
     use crate::terminal::Format;
 
     /// A run with the alarms of its recording.
@@ -152,11 +154,30 @@ mod socket {
         let served = socket.map(|socket| socket.serve(Arc::new(RecordedRun { run, tape })));
         served.transpose().map_err(|error| CommandFailure::failed(arguments.format.value, error))
     }
+
+    /// Serves the studio of a run, if it is wanted.
+    pub(crate) fn view(
+        control: Option<&ControlServer>,
+        pace: Option<Pace>,
+        arguments: &RunArguments,
+        console: &mut CommandOutput<'_>,
+    ) -> Result<Option<Studio>, CommandFailure> {
+        if !arguments.studio {
+            return Ok(None);
+        }
+        let format = arguments.format.value;
+        let control = control.ok_or_else(|| {
+            CommandFailure::failed(format, "the studio needs the control socket, which cannot be served here")
+        })?;
+        studio::serve(control.path(), &arguments.listen, pace, format, console).map(Some)
+    }
 }
 
 #[cfg(not(unix))]
 mod socket {
-    use crate::commands::run::control::{CommandFailure, CommandOutput, RunArguments, RunHandle, Tape};
+    use crate::commands::run::control::{
+        CommandFailure, CommandOutput, Pace, RunArguments, RunHandle, Studio, Tape,
+    };
 
     /// Control sockets exist only on Unix.
     pub(crate) enum ControlSocket {}
@@ -180,5 +201,15 @@ mod socket {
         _: &RunArguments,
     ) -> Result<Option<ControlSocket>, CommandFailure> {
         Ok(socket)
+    }
+
+    /// The studio of a run needs its control socket.
+    pub(crate) fn view(
+        _: Option<&ControlSocket>,
+        _: Option<Pace>,
+        _: &RunArguments,
+        _: &mut CommandOutput<'_>,
+    ) -> Result<Option<Studio>, CommandFailure> {
+        Ok(None)
     }
 }

@@ -4,15 +4,17 @@ use std::time::Duration;
 
 use monas::config::Layers;
 use monas_match::{MatchOptions, MatchPlan, MatchSource, RunningMatch};
+use monas_studio::Pace;
 use monas_tape::Tape;
 
 use super::outputs::RecordingAlarm;
+use super::pacer::Pacer;
 use super::{RunArguments, control, outputs, scoreboard, summary};
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Interrupt, WallClock, report};
 
 /// Simulated time between two updates of the scoreboard.
 const LOOK: Duration = Duration::from_millis(100);
-/// The same with --realtime, so that watchers see continuous progress.
+/// The same with a pace, so that watchers see continuous progress.
 const PACED_LOOK: Duration = Duration::from_millis(10);
 
 pub(crate) fn execute(
@@ -76,23 +78,34 @@ fn play(
     })?;
     // The socket closes with this function, since nothing advances the match afterwards.
     let handle = running.simulation().run_handle();
-    let _control = control::serve(socket, handle.clone(), tape.clone(), arguments)?;
+    let control = control::serve(socket, handle.clone(), tape.clone(), arguments)?;
+    let pace = Pace::new(factor(arguments));
+    let _studio = control::view(control.as_ref(), Some(pace.clone()), arguments, console)?;
+    let mut pacer = Pacer::new(clock, pace.clone());
     let mut alarm = RecordingAlarm::new(tape, handle);
-    if arguments.realtime {
+    if pace.factor().is_finite() {
         running.measure();
     }
-    let look = if arguments.realtime { PACED_LOOK } else { LOOK };
     let mut scoreboard = scoreboard::for_console(console, length, arguments.field);
     scoreboard.show(&running)?;
     while running.now() < length && !running.is_over() && !interrupt.is_requested() {
+        let look = if pace.factor().is_finite() { PACED_LOOK } else { LOOK };
         let next = (running.now() + look).min(length);
         running = running.advance_until_cancelled(next, || interrupt.is_requested()).map_err(failed)?;
         alarm.check(running.simulation().now());
         scoreboard.show(&running)?;
-        if arguments.realtime {
-            clock.wait_until(running.now(), interrupt);
-        }
+        pacer.wait(running.now(), interrupt);
     }
     alarm.check(running.simulation().now());
     Ok(running)
+}
+
+/// The pace at the beginning.
+fn factor(arguments: &RunArguments) -> f64 {
+    #[cfg(unix)]
+    let is_viewed = arguments.studio;
+    #[cfg(not(unix))]
+    let is_viewed = false;
+    let unlimited = if arguments.realtime || is_viewed { 1.0 } else { f64::INFINITY };
+    arguments.pace.unwrap_or(unlimited)
 }

@@ -39,6 +39,7 @@ pub(crate) fn execute(
     let running = talws.start().map_err(|error| CommandFailure::not_started(format, error))?;
     let overview = running.run_handle();
     let control = control::serve(socket, overview.clone(), tape.clone(), arguments)?;
+    let _studio = control::view(control.as_ref(), None, arguments, console)?;
     let mut alarm = RecordingAlarm::new(tape.clone(), overview.clone());
     writeln!(console.remarks(), "running, Ctrl-C stops")?;
     let length = arguments.length.unwrap_or(Duration::MAX);

@@ -1,0 +1,142 @@
+//! `monas studio`: a view of a run or of a tape in the browser.
+
+#[cfg(feature = "soccer")]
+mod soccer_field;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use clap::{Args, ValueHint};
+use clap_complete::engine::ArgValueCandidates;
+use monas::{Agent, HostConfig};
+use monas_studio::{ListenAddress, Pace, Scene, Studio, StudioSettings, TapeChart};
+use monas_tape::Recording;
+use yase::Statechart;
+
+use crate::input::recorded_hosts;
+use crate::remote::{RunSelector, connection, runs};
+use crate::terminal::{
+    CommandFailure, CommandOutput, Exit, Format, FormatArgument, Interrupt, WallClock, failed, report,
+};
+
+#[derive(Args, Debug)]
+pub(crate) struct StudioArguments {
+    /// Open this tape, at any moment of the run; without it, view a run on this computer.
+    #[arg(value_hint = ValueHint::FilePath)]
+    tape: Option<PathBuf>,
+    /// The run, by the name of its control socket; not needed if there is only one.
+    #[arg(long, value_name = "NAME", conflicts_with = "tape", add = ArgValueCandidates::new(runs))]
+    run: Option<String>,
+    #[command(flatten)]
+    listen: ListenArgument,
+    #[command(flatten)]
+    format: FormatArgument,
+}
+
+/// Where a studio listens.
+#[derive(Args, Debug, Default)]
+pub(crate) struct ListenArgument {
+    /// The studio's address, such as 127.0.0.1:8080; 127.0.0.1 with the first free port from 4810
+    /// on if not given. At any other address than loopback the page needs a token, which is part of
+    /// the printed address; the connection is not encrypted.
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    listen: Option<ListenAddress>,
+}
+
+impl ListenArgument {
+    pub(crate) fn is_given(&self) -> bool {
+        self.listen.is_some()
+    }
+}
+
+/// Serves the studio of a run until Ctrl-C.
+pub(crate) fn execute(
+    arguments: &StudioArguments,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let format = arguments.format.value;
+    let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
+    let _studio = match &arguments.tape {
+        Some(tape) => serve_tape(tape, &arguments.listen, format, console)?,
+        None => {
+            let selector = RunSelector::of(arguments.run.clone(), None, arguments.format);
+            serve(&connection::socket(&selector)?, &arguments.listen, None, format, console)?
+        }
+    };
+    WallClock::start().wait_until(Duration::MAX, &interrupt);
+    // An interrupt is the usual way to stop, not a failure.
+    Ok(Exit::Success)
+}
+
+/// Serves the studio of the run with a control socket, and prints its address.
+pub(crate) fn serve(
+    socket: &Path,
+    listen: &ListenArgument,
+    pace: Option<Pace>,
+    format: Format,
+    console: &mut CommandOutput<'_>,
+) -> Result<Studio, CommandFailure> {
+    let settings = StudioSettings { listen: listen.listen, scene: scene(), pace };
+    let studio = Studio::of_run(socket, settings).map_err(|error| CommandFailure::failed(format, error))?;
+    announce(studio, console)
+}
+
+fn announce(studio: Studio, console: &mut CommandOutput<'_>) -> Result<Studio, CommandFailure> {
+    writeln!(console.err, "studio: {}", studio.url())?;
+    console.err.flush()?;
+    Ok(studio)
+}
+
+/// Serves the studio of a tape, and prints its address. Charts are those of the recorded
+/// configuration; without it, all but their drawings is shown, and the reason is printed.
+fn serve_tape(
+    tape: &Path,
+    listen: &ListenArgument,
+    format: Format,
+    console: &mut CommandOutput<'_>,
+) -> Result<Studio, CommandFailure> {
+    let recording = Recording::open(tape).map_err(failed(format))?;
+    let charts = match recorded_hosts(&recording, format) {
+        Ok(hosts) => hosts.iter().flat_map(charts).collect(),
+        Err(failure) => {
+            failure.report(console);
+            report::note(
+                console,
+                format,
+                "charts are not drawn, since the tape's configuration cannot be used",
+            )?;
+            Vec::new()
+        }
+    };
+    let name = tape.file_name().unwrap_or_default().to_string_lossy();
+    let settings = StudioSettings { listen: listen.listen, scene: scene(), pace: None };
+    let studio = Studio::of_tape(&name, recording, &charts, settings);
+    announce(studio.map_err(|error| CommandFailure::failed(format, error))?, console)
+}
+
+/// The charts of a host's agents.
+fn charts(host: &HostConfig) -> impl Iterator<Item = TapeChart> {
+    let of_agent = |agent: &Agent| {
+        let of_chart = |(chart, index): (&Statechart, u32)| TapeChart {
+            host: host.name.clone(),
+            agent: agent.name().to_owned(),
+            chart: index,
+            model: chart.name.clone(),
+            picture: yase_export::to_picture(chart, &[]),
+        };
+        agent.charts().iter().zip(0..).map(of_chart).collect::<Vec<_>>()
+    };
+    host.agents.iter().flat_map(of_agent)
+}
+
+/// What this program draws from above.
+#[cfg(feature = "soccer")]
+fn scene() -> Option<Arc<dyn Scene>> {
+    Some(Arc::new(soccer_field::SoccerField))
+}
+
+#[cfg(not(feature = "soccer"))]
+fn scene() -> Option<Arc<dyn Scene>> {
+    None
+}

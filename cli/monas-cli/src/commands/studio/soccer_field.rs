@@ -1,0 +1,202 @@
+//! The field of a match from above.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use monas_studio::{
+    Banner, Belief, Body, Ground, GroundMark, Scene, SceneMessages, SceneObject, ScenePicture,
+};
+use serde_json::Value;
+
+const TRUTH: &str = "sim/truth";
+const SCORE: &str = "sim/score";
+const INCIDENT: &str = "sim/incident";
+const HOST: &str = "monas/host";
+const GAME_STATE: &str = "soccer/game_state";
+const POSE: &str = "soccer/pose";
+const BALL: &str = "soccer/ball";
+
+/// Carpet around the lines, and measures that messages do not have: those of the SPL of 2010.
+const BORDER: f64 = 0.7;
+const CIRCLE: f64 = 0.6;
+const BALL_RADIUS: f64 = 0.05;
+const GOAL_DEPTH: f64 = 0.4;
+
+/// Draws the ground truth of the simulated field if there is one, what each robot believes, and the
+/// score.
+pub(super) struct SoccerField;
+
+impl Scene for SoccerField {
+    fn topics(&self) -> &[&'static str] {
+        &[TRUTH, SCORE, HOST, GAME_STATE, POSE, BALL]
+    }
+
+    fn event_topics(&self) -> &[&'static str] {
+        &[INCIDENT]
+    }
+
+    fn event(&self, _: &str, message: &Value) -> Option<String> {
+        message["text"].as_str().map(str::to_owned)
+    }
+
+    fn draw(&self, messages: &SceneMessages<'_>) -> ScenePicture {
+        let truth = messages.all(TRUTH).next().map(|(_, truth)| truth);
+        ScenePicture {
+            ground: ground(messages),
+            bodies: truth.map(|truth| bodies(truth, messages)).unwrap_or_default(),
+            objects: truth.and_then(ball).into_iter().collect(),
+            beliefs: messages.all(POSE).flat_map(|(host, pose)| beliefs(host, pose, messages)).collect(),
+            banner: messages.all(SCORE).next().map(|(_, score)| banner(score, messages)),
+        }
+    }
+}
+
+fn number(message: &Value, field: &str) -> Option<f64> {
+    message[field].as_f64().filter(|number| number.is_finite())
+}
+
+/// The field with the measures of the first robot that knows them.
+fn ground(messages: &SceneMessages<'_>) -> Ground {
+    let known = messages.all(GAME_STATE).map(|(_, game)| game);
+    let mut known = known.filter(|game| number(game, "field_length").is_some_and(|length| length > 0.0));
+    let game = known.next().unwrap_or(&Value::Null);
+    let measure = |field, default| number(game, field).filter(|size| *size > 0.0).unwrap_or(default);
+    let (length, width) = (measure("field_length", 6.0), measure("field_width", 4.0));
+    let goal = measure("goal_width", 1.4);
+    let (depth, area) = (measure("area_depth", 0.6), measure("area_width", 2.2));
+    let rectangle = |x, y, width, height, group| GroundMark::Rectangle { x, y, width, height, group };
+    let (half_length, half_width) = (length / 2.0, width / 2.0);
+    let marks = vec![
+        rectangle(-half_length - GOAL_DEPTH, -goal / 2.0, GOAL_DEPTH, goal, Some(0)),
+        rectangle(half_length, -goal / 2.0, GOAL_DEPTH, goal, Some(1)),
+        rectangle(-half_length, -half_width, length, width, None),
+        rectangle(-half_length, -area / 2.0, depth, area, None),
+        rectangle(half_length - depth, -area / 2.0, depth, area, None),
+        GroundMark::Line { ends: [0.0, -half_width, 0.0, half_width] },
+        GroundMark::Circle { x: 0.0, y: 0.0, radius: CIRCLE },
+    ];
+    Ground { width: length + 2.0 * BORDER, height: width + 2.0 * BORDER, marks }
+}
+
+fn bodies(truth: &Value, messages: &SceneMessages<'_>) -> Vec<Body> {
+    let hosts: BTreeMap<(u64, u64), &str> = messages
+        .all(HOST)
+        .filter_map(|(host, message)| Some(((message["team"].as_u64()?, message["number"].as_u64()?), host)))
+        .collect();
+    let mut teams: Vec<u64> = robots(truth).filter_map(|robot| robot["team"].as_u64()).collect();
+    teams.sort_unstable();
+    teams.dedup();
+    let body = |robot: &Value| {
+        let (team, player) = (robot["team"].as_u64()?, robot["number"].as_u64()?);
+        Some(Body {
+            host: hosts.get(&(team, player)).copied().unwrap_or_default().to_owned(),
+            label: player.to_string(),
+            group: teams.iter().position(|known| *known == team)?,
+            x: number(robot, "x")?,
+            y: number(robot, "y")?,
+            heading: number(robot, "heading")?,
+            upright: robot["upright"].as_bool()?,
+            active: robot["on_field"].as_bool()?,
+        })
+    };
+    robots(truth).filter_map(body).collect()
+}
+
+fn robots(truth: &Value) -> impl Iterator<Item = &Value> {
+    truth["robots"].as_array().into_iter().flatten()
+}
+
+fn ball(truth: &Value) -> Option<SceneObject> {
+    let [x, y, vx, vy] = ["ball_x", "ball_y", "ball_vx", "ball_vy"].map(|field| number(truth, field));
+    Some(SceneObject { kind: "ball".into(), x: x?, y: y?, vx: vx?, vy: vy?, radius: BALL_RADIUS })
+}
+
+/// Where a robot believes that it and the ball are. Its frame is the field's if it attacks the
+/// yellow goal, on the right, and turned by half a turn otherwise.
+fn beliefs(host: &str, pose: &Value, messages: &SceneMessages<'_>) -> Vec<Belief> {
+    let fields = ["x", "y", "heading", "confidence"].map(|field| number(pose, field));
+    let [Some(x), Some(y), Some(heading), Some(confidence)] = fields else { return Vec::new() };
+    let attacks_left = messages.of(host, GAME_STATE).is_some_and(|game| game["goal_to_attack"] == "BLUE");
+    let sign = if attacks_left { -1.0 } else { 1.0 };
+    let belief = |kind: &str, x: f64, y: f64, heading: Option<f64>| Belief {
+        host: host.to_owned(),
+        kind: kind.to_owned(),
+        x: sign * x,
+        y: sign * y,
+        heading: heading.map(|heading| if attacks_left { heading + PI } else { heading }),
+        confidence,
+    };
+    let mut beliefs = vec![belief("self", x, y, Some(heading))];
+    let ball = messages.of(host, BALL).filter(|ball| ball["found"] == true);
+    if let Some((ahead, left)) = ball.and_then(|ball| Some((number(ball, "x")?, number(ball, "y")?))) {
+        let (sine, cosine) = (libm::sin(heading), libm::cos(heading));
+        let (dx, dy) = (cosine * ahead - sine * left, sine * ahead + cosine * left);
+        beliefs.push(belief("ball", x + dx, y + dy, None));
+    }
+    beliefs
+}
+
+fn banner(score: &Value, messages: &SceneMessages<'_>) -> Banner {
+    let teams = score["teams"].as_array().into_iter().flatten();
+    let group = |team: &Value| {
+        (
+            team["name"].as_str().unwrap_or_default().to_owned(),
+            team["goals"].as_u64().unwrap_or(0).to_string(),
+        )
+    };
+    let half = if score["half"] == 2 { "second half" } else { "first half" };
+    let state = score["state"].as_str().unwrap_or_default().to_lowercase();
+    let left = messages.all(GAME_STATE).find_map(|(_, game)| number(game, "secs_remaining"));
+    let left = left.map(|left| format!(" · {}:{:02} left", left as u64 / 60, left as u64 % 60));
+    let text = format!("{half} · {state}{}", left.unwrap_or_default());
+    Banner { groups: teams.map(group).collect(), text }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn draw(messages: &[(&str, &str, Value)]) -> ScenePicture {
+        let messages = messages.iter().map(|(host, topic, message)| ((*host, *topic), message));
+        SoccerField.draw(&messages.collect())
+    }
+
+    #[test]
+    fn beliefs_of_a_robot_that_attacks_the_left_goal_are_turned() {
+        let pose = json!({"x": 1.0, "y": 0.5, "heading": 0.0, "confidence": 0.5});
+        let ball = json!({"found": true, "x": 1.0, "y": 0.25});
+        let at = |goal: &str, found: bool| {
+            let ball = if found { ball.clone() } else { json!({"found": false, "x": 9.0, "y": 9.0}) };
+            let game = json!({"goal_to_attack": goal});
+            let beliefs =
+                draw(&[("b", POSE, pose.clone()), ("b", GAME_STATE, game), ("b", BALL, ball)]).beliefs;
+            beliefs.iter().map(|one| (one.kind.clone(), one.x, one.y, one.heading)).collect::<Vec<_>>()
+        };
+        let own = |x: f64, y: f64, heading: f64| ("self".to_owned(), x, y, Some(heading));
+        let ball_at = |x: f64, y: f64| ("ball".to_owned(), x, y, None);
+        assert_eq!(at("YELLOW", true), [own(1.0, 0.5, 0.0), ball_at(2.0, 0.75)]);
+        assert_eq!(at("BLUE", true), [own(-1.0, -0.5, PI), ball_at(-2.0, -0.75)]);
+        assert_eq!(at("BLUE", false), [own(-1.0, -0.5, PI)]);
+    }
+
+    #[test]
+    fn robots_are_drawn_with_their_hosts_and_the_field_has_the_known_measures() {
+        let robot = |team: u32, number: u32| {
+            json!({"team": team, "number": number, "x": 1.0, "y": -1.0, "heading": 0.5,
+            "on_field": true, "upright": false})
+        };
+        let truth = json!({"robots": [robot(7, 1), robot(3, 2)], "ball_x": 0.1, "ball_y": 0.2, "ball_vx": 0.0, "ball_vy": 0.0});
+        let picture = draw(&[
+            ("field", TRUTH, truth),
+            ("red-2", HOST, json!({"team": 3, "number": 2})),
+            ("red-2", GAME_STATE, json!({"field_length": 9.0, "field_width": 6.0})),
+        ]);
+        let bodies: Vec<_> =
+            picture.bodies.iter().map(|body| (body.host.as_str(), body.group, body.upright)).collect();
+        assert_eq!(bodies, [("", 1, false), ("red-2", 0, false)]);
+        assert_eq!((picture.ground.width, picture.ground.height), (9.0 + 2.0 * BORDER, 6.0 + 2.0 * BORDER));
+        assert_eq!(picture.objects.len(), 1);
+    }
+}

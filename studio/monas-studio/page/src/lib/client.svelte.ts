@@ -1,0 +1,293 @@
+import { addDecision, type Decision, mainRegion } from './decisions';
+import { lineage } from './picture';
+import type {
+  AgentRow,
+  ChartNews,
+  ChartStep,
+  Frame,
+  Ground,
+  LogLine,
+  Picture,
+  RunFacts,
+  Sample,
+  SceneNews,
+  ServerMessage,
+  TapeFacts,
+  TopicRow,
+} from './protocol';
+
+const LINES = 1000;
+const STEPS = 200;
+const HISTORY = 60;
+const FIRST_RETRY = 500;
+const LAST_RETRY = 5000;
+/** The server's word that it ends. */
+const GOING_AWAY = 1001;
+
+/** A chart as the page knows it. */
+export interface ChartState extends Omit<ChartNews, 'steps'> {
+  steps: ChartStep[];
+  /** The step that entered each active node, if it was seen. */
+  enteredBy: Map<number, ChartStep>;
+  /** What was decided in its main region, the latest last. */
+  decisions: Decision[];
+}
+
+/** The shapes of a chart. */
+export interface KnownPicture {
+  drawing: number;
+  picture: Picture;
+  region: number;
+}
+
+/** The figures of an agent over the last minute, one a second. */
+export interface AgentHistory {
+  rates: number[];
+  means: number[];
+  overruns: number[];
+}
+
+/** The connection to the server, and what is known of the run. */
+export class StudioClient {
+  connection = $state<'connecting' | 'open' | 'closed'>('connecting');
+  /** Whether the server said that it ends. */
+  hasEnded = $state(false);
+  run = $state.raw<RunFacts | null>(null);
+  now = $state(0);
+  alarms = $state.raw<string[]>([]);
+  agents = $state.raw<AgentRow[]>([]);
+  topics = $state.raw<TopicRow[]>([]);
+  histories = $state.raw<Map<string, AgentHistory>>(new Map());
+  log = $state.raw<LogLine[]>([]);
+  charts = $state.raw<Map<string, ChartState>>(new Map());
+  pictures = $state.raw<Map<string, KnownPicture>>(new Map());
+  ground = $state.raw<Ground | null>(null);
+  scene = $state.raw<SceneNews | null>(null);
+  sample = $state.raw<Sample | null>(null);
+  /** The speed of simulated time, null if it is unlimited; undefined if it is not set here. */
+  pace = $state.raw<number | null | undefined>(undefined);
+  tape = $state.raw<TapeFacts | null>(null);
+
+  #socket: WebSocket | null = null;
+  #retry = FIRST_RETRY;
+  #watched: { host: string; topic: string } | null = null;
+  /** The drawings that were asked for, by chart. */
+  #asked = new Map<string, number>();
+  #tableTime = 0;
+
+  connect(): void {
+    const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
+    const socket = new WebSocket(`${scheme}://${location.host}/socket${location.search}`);
+    this.#socket = socket;
+    socket.onopen = () => {
+      this.connection = 'open';
+      this.hasEnded = false;
+      this.#retry = FIRST_RETRY;
+      this.#asked.clear();
+      if (this.#watched) {
+        this.#send({ type: 'watch', ...this.#watched });
+      }
+    };
+    socket.onmessage = (event) => this.#take(JSON.parse(String(event.data)) as ServerMessage);
+    socket.onclose = (event) => {
+      if (this.#socket !== socket) {
+        return;
+      }
+      this.connection = 'closed';
+      this.hasEnded = event.code === GOING_AWAY;
+      setTimeout(() => this.connect(), this.#retry);
+      this.#retry = Math.min(this.#retry * 2, LAST_RETRY);
+    };
+  }
+
+  watch(host: string, topic: string): void {
+    this.#watched = { host, topic };
+    this.sample = null;
+    this.#send({ type: 'watch', host, topic });
+  }
+
+  unwatch(): void {
+    this.#watched = null;
+    this.sample = null;
+    this.#send({ type: 'unwatch' });
+  }
+
+  setPace(factor: number): void {
+    this.#send({ type: 'pace', factor: Number.isFinite(factor) ? factor : null });
+  }
+
+  seek(seconds: number): void {
+    this.#send({ type: 'seek', seconds });
+  }
+
+  step(key: string, back: boolean): void {
+    this.#send({ type: 'step', key, back });
+  }
+
+  #send(message: object): void {
+    if (this.#socket?.readyState === WebSocket.OPEN) {
+      this.#socket.send(JSON.stringify(message));
+    }
+  }
+
+  #fetchPictures(): void {
+    for (const { key, drawing } of this.charts.values()) {
+      if (drawing > 0 && this.#asked.get(key) !== drawing) {
+        this.#asked.set(key, drawing);
+        this.#send({ type: 'picture', key });
+      }
+    }
+  }
+
+  #take(message: ServerMessage): void {
+    switch (message.type) {
+      case 'frame':
+        this.#takeFrame(message);
+        break;
+      case 'picture': {
+        const chart = this.charts.get(message.key);
+        if (chart && message.picture) {
+          const pictures = new Map(this.pictures);
+          const { picture } = message;
+          pictures.set(message.key, { drawing: chart.drawing, picture, region: mainRegion(picture) });
+          this.pictures = pictures;
+          const charts = new Map(this.charts);
+          charts.set(message.key, this.#follow({ ...chart, enteredBy: new Map(), decisions: [] }, chart.steps));
+          this.charts = charts;
+        }
+        break;
+      }
+      case 'refused':
+        this.sample = message;
+        break;
+    }
+  }
+
+  #takeFrame(frame: Frame): void {
+    if (frame.run) {
+      if (frame.run.epoch !== this.run?.epoch) {
+        this.#forget();
+      }
+      this.run = frame.run;
+    }
+    this.now = frame.now;
+    if (frame.elsewhere) {
+      this.#goElsewhere();
+    }
+    if (frame.tape) {
+      this.tape = frame.tape;
+    }
+    if (frame.alarms) {
+      this.alarms = frame.alarms;
+    }
+    if (frame.pace) {
+      this.pace = frame.pace.is_set_here ? frame.pace.factor : undefined;
+    }
+    if (frame.agents) {
+      this.#takeAgents(frame.agents, frame.now);
+    }
+    if (frame.topics) {
+      this.topics = frame.topics;
+    }
+    if (frame.log) {
+      this.log = [...this.log, ...frame.log].slice(-LINES);
+    }
+    if (frame.charts) {
+      this.#takeCharts(frame.charts);
+    }
+    if (frame.scene) {
+      this.ground = frame.scene.ground ?? this.ground;
+      this.scene = frame.scene;
+    }
+    if (frame.sample) {
+      this.sample = frame.sample;
+    }
+  }
+
+  /** Forgets what belongs to another moment; shapes stay. */
+  #goElsewhere(): void {
+    const charts = new Map<string, ChartState>();
+    for (const [key, chart] of this.charts) {
+      charts.set(key, { ...chart, steps: [], enteredBy: new Map(), decisions: [] });
+    }
+    this.charts = charts;
+    this.log = [];
+    this.histories = new Map();
+    this.#tableTime = 0;
+  }
+
+  #forget(): void {
+    this.charts = new Map();
+    this.pictures = new Map();
+    this.histories = new Map();
+    this.agents = [];
+    this.topics = [];
+    this.log = [];
+    this.scene = null;
+    this.tape = null;
+    this.#tableTime = 0;
+    this.#asked.clear();
+    if (this.#watched && this.run) {
+      this.#send({ type: 'watch', ...this.#watched });
+    }
+  }
+
+  #takeAgents(rows: AgentRow[], now: number): void {
+    const span = now - this.#tableTime;
+    if (this.#tableTime > 0 && span > 0) {
+      const before = new Map(this.agents.map((row) => [agentKey(row), row]));
+      const histories = new Map<string, AgentHistory>();
+      for (const row of rows) {
+        const key = agentKey(row);
+        const last = before.get(key);
+        const known = this.histories.get(key) ?? { rates: [], means: [], overruns: [] };
+        const add = (list: number[], value: number) => [...list, value].slice(-HISTORY);
+        histories.set(key, {
+          rates: last ? add(known.rates, Math.max(0, row.cycles - last.cycles) / span) : known.rates,
+          means: row.time ? add(known.means, row.time.mean) : known.means,
+          overruns: last ? add(known.overruns, Math.max(0, row.overruns - last.overruns)) : known.overruns,
+        });
+      }
+      this.histories = histories;
+    }
+    this.#tableTime = now;
+    this.agents = rows;
+  }
+
+  #takeCharts(news: ChartNews[]): void {
+    const charts = new Map(this.charts);
+    for (const chart of news) {
+      const known = charts.get(chart.key);
+      const steps = [...(known?.steps ?? []), ...chart.steps].slice(-STEPS);
+      const enteredBy = known?.enteredBy ?? new Map<number, ChartStep>();
+      charts.set(chart.key, this.#follow({ ...chart, steps, enteredBy, decisions: known?.decisions ?? [] }, chart.steps));
+    }
+    this.charts = charts;
+    this.#fetchPictures();
+  }
+
+  /** Notes who entered what, and what was decided. */
+  #follow(chart: ChartState, steps: ChartStep[]): ChartState {
+    const known = this.pictures.get(chart.key);
+    const enteredBy = new Map(chart.enteredBy);
+    let { decisions } = chart;
+    for (const step of steps) {
+      step.exits.forEach((node) => enteredBy.delete(node));
+      step.entries.forEach((node) => enteredBy.set(node, step));
+      if (known) {
+        decisions = addDecision(decisions, known.picture, known.region, enteredBy, step);
+      }
+    }
+    return { ...chart, enteredBy, decisions };
+  }
+}
+
+export function agentKey(row: { host: string; name: string }): string {
+  return `${row.host}/${row.name}`;
+}
+
+/** The active states without active children. */
+export function activeLeaves(chart: ChartState, picture: Picture): number[] {
+  const parents = new Set(chart.active.flatMap((node) => lineage(picture, node).slice(1)));
+  return chart.active.filter((node) => !parents.has(node));
+}

@@ -1,0 +1,210 @@
+// The messages between server and page; `run_view.rs` writes them.
+
+export interface RunFacts {
+  epoch: number;
+  link: 'connecting' | 'live' | 'lost' | 'tape';
+  reason: string;
+  name: string;
+  process: number;
+  simulated: boolean;
+  hosts: string[];
+  scene: boolean;
+}
+
+export interface ChartStep {
+  t: number;
+  number: number;
+  event: string | null;
+  fired: number[];
+  held: number[];
+  exits: number[];
+  entries: number[];
+}
+
+export interface ChartNews {
+  key: string;
+  host: string;
+  agent: string;
+  chart: number;
+  model: string;
+  state: string;
+  drawing: number;
+  active: number[];
+  steps: ChartStep[];
+}
+
+export interface Shape {
+  x: number;
+  y: number;
+  w: number;
+  h: number;
+  head: number;
+  region: boolean;
+  lines: string[];
+  notes: string[];
+}
+
+export interface PictureNode {
+  kind: string;
+  name: string;
+  parent: number | null;
+  activity: string | null;
+  shape: Shape | null;
+}
+
+export type Point = [number, number];
+
+export interface PictureArrow {
+  id: number;
+  source: number;
+  target: number;
+  points: Point[];
+  lines: string[];
+  at: Point;
+}
+
+export interface Picture {
+  name: string;
+  width: number;
+  height: number;
+  nodes: PictureNode[];
+  arrows: PictureArrow[];
+  transitions: { source: number; target: number; text: string }[];
+}
+
+export type GroundMark =
+  | { shape: 'rectangle'; x: number; y: number; width: number; height: number; group: number | null }
+  | { shape: 'line'; ends: [number, number, number, number] }
+  | { shape: 'circle'; x: number; y: number; radius: number };
+
+export interface Ground {
+  width: number;
+  height: number;
+  marks: GroundMark[];
+}
+
+export interface Body {
+  host: string;
+  label: string;
+  group: number;
+  x: number;
+  y: number;
+  heading: number;
+  upright: boolean;
+  active: boolean;
+}
+
+export interface SceneObject {
+  kind: string;
+  x: number;
+  y: number;
+  vx: number;
+  vy: number;
+  radius: number;
+}
+
+export interface Belief {
+  host: string;
+  kind: string;
+  x: number;
+  y: number;
+  heading: number | null;
+  confidence: number;
+}
+
+export interface SceneNews {
+  ground?: Ground;
+  bodies: Body[];
+  objects: SceneObject[];
+  beliefs: Belief[];
+  banner: { groups: [string, string][]; text: string } | null;
+}
+
+export interface Times {
+  count: number;
+  mean: number;
+  deviation: number;
+  p50: number;
+  p90: number;
+  p99: number;
+  longest: number;
+}
+
+export interface AgentRow {
+  host: string;
+  name: string;
+  state: string;
+  reason: string;
+  frequency: number;
+  cycles: number;
+  overruns: number;
+  missed: number;
+  steps: number;
+  time: Times | null;
+  activities: { name: string; state: string; calls: number; failures: number; time: Times | null }[];
+}
+
+export interface TopicRow {
+  host: string;
+  path: string;
+  kind: string;
+  type: string;
+  count: number;
+  rate: number | null;
+  publisher: string | null;
+  t: number | null;
+}
+
+export interface LogLine {
+  number: number;
+  t: number;
+  host: string;
+  level: string;
+  name: string;
+  text: string;
+}
+
+export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
+
+export interface Sample {
+  host: string;
+  topic: string;
+  from?: string;
+  publisher?: string;
+  sequence?: number;
+  t?: number;
+  size?: number;
+  count?: number;
+  message?: Json;
+  reason?: string;
+}
+
+export interface TapeFacts {
+  begin: number;
+  end: number;
+  /** The speed of playing, 0 while it is held. */
+  factor: number;
+  events: { t: number; text: string }[];
+}
+
+export interface Frame {
+  type: 'frame';
+  now: number;
+  run?: RunFacts;
+  alarms?: string[];
+  agents?: AgentRow[];
+  topics?: TopicRow[];
+  log?: LogLine[];
+  charts?: ChartNews[];
+  scene?: SceneNews;
+  sample?: Sample;
+  /** The moment is not a later one: what came since holds no more. */
+  elsewhere?: boolean;
+  tape?: TapeFacts;
+  pace?: { is_set_here: boolean; factor: number | null };
+}
+
+export type ServerMessage =
+  | Frame
+  | { type: 'picture'; key: string; picture: Picture | null }
+  | { type: 'refused'; host: string; topic: string; reason: string };

@@ -1,0 +1,305 @@
+// The studio in headless Chromium on real runs: `MONAS=path/to/monas npm test`. Screenshots are
+// written to tests/screenshots.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { launch, start, useBuiltPage } from './browser.mjs';
+
+const PROGRAM = process.env.MONAS ?? fileURLToPath(new URL('../../../../target/debug/monas', import.meta.url));
+const MATCH = fileURLToPath(new URL('../../../../config/match.xml', import.meta.url));
+const SCREENSHOTS = fileURLToPath(new URL('screenshots', import.meta.url));
+const SOON = 60_000;
+
+/** A page that fails the test on errors, and on requests to anywhere else. */
+async function open(browser, url, viewport = { width: 1280, height: 720 }) {
+  const page = await browser.newPage({ viewport });
+  const faults = [];
+  page.on('pageerror', (error) => faults.push(error.message));
+  page.on('console', (message) => message.type() === 'error' && faults.push(message.text()));
+  page.on('request', (request) => {
+    const { protocol, host } = new URL(request.url());
+    if (!['data:', 'blob:'].includes(protocol) && host !== new URL(url).host) {
+      faults.push(`a request to ${host}`);
+    }
+  });
+  page.setDefaultTimeout(SOON);
+  await useBuiltPage(page);
+  await page.goto(url);
+  return { page, faults };
+}
+
+const shot = (page, name) => page.screenshot({ path: `${SCREENSHOTS}/${name}.png` });
+const textOf = (page, selector) => page.locator(selector).first().innerText();
+
+/** The condition, within a time. */
+async function until(page, what, condition, argument) {
+  await page.waitForFunction(condition, argument, { timeout: SOON }).catch(() => assert.fail(`not within a minute: ${what}`));
+}
+
+const seconds = (clock) => clock.split(':').reduce((all, part) => all * 60 + Number(part), 0);
+
+const TESTS = {
+  async 'the first view explains itself'({ page }) {
+    await until(page, 'six robots and the ball', () => document.querySelectorAll('.body').length === 6 && document.querySelector('.ball'));
+    await until(page, 'six charts', () => document.querySelectorAll('.robots li').length === 6);
+    await until(page, 'an active state', () => document.querySelector('.chart .node.BASIC.active'));
+    await until(page, 'a reason with a condition', () => /because\s+\[/.test(document.querySelector('.why')?.textContent ?? ''));
+    await until(page, 'decisions', () => document.querySelectorAll('.steps li b').length > 1);
+    assert.match(await textOf(page, '.score'), /Blue \d+\s*:\s*Red \d+/);
+    await until(page, 'a transition that fires', () => document.querySelector('.way.flash'));
+    await shot(page, 'overview');
+  },
+
+  async 'charts are chosen on the field, in the list and with keys'({ page }) {
+    const title = () => textOf(page, '.chart h2');
+    const before = await title();
+    await page.keyboard.press('j');
+    assert.notEqual(await title(), before);
+    await page.locator('.robots button', { hasText: 'red-1' }).click();
+    assert.match(await title(), /red-1\s+Goalie/);
+    await page.evaluate(() => {
+      const body = [...document.querySelectorAll('.body')].find((one) => one.textContent?.startsWith('blue-3'));
+      body?.dispatchEvent(new MouseEvent('click', { bubbles: true }));
+    });
+    await until(page, 'the chosen robot', () => document.querySelector('.chart h2')?.textContent?.includes('blue-3'));
+  },
+
+  async 'a state says how it was entered'({ page }) {
+    await page.locator('.chart button', { hasText: 'Fit' }).click();
+    const state = page.locator('.chart [data-state$="RobotController"]').first();
+    await state.focus();
+    await page.keyboard.press('Enter');
+    assert.match(await textOf(page, '.why'), /RobotController\s+runs activity\s+RobotController/);
+    await until(page, 'how it was entered', () => /robot_timeout/.test(document.querySelector('.why')?.textContent ?? ''));
+    await page.locator('.why button').click();
+    await shot(page, 'chart');
+  },
+
+  async 'the drawing is saved as SVG'({ page }) {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('.chart button', { hasText: 'SVG' }).click()]);
+    assert.match(download.suggestedFilename(), /^blue-3-Attacker\.svg$/);
+  },
+
+  async 'simulated time is held and goes on'({ page }) {
+    await page.locator('h2').first().click();
+    await page.keyboard.press(' ');
+    await until(page, 'the run is held', () => document.querySelector('.link')?.textContent === 'Held');
+    await page.waitForFunction(
+      () => {
+        const now = document.querySelector('.time')?.textContent;
+        const isSame = window.heldTime === now;
+        window.heldTime = now;
+        return isSame;
+      },
+      undefined,
+      { polling: 500, timeout: SOON },
+    );
+    const held = seconds(await textOf(page, '.time'));
+    await page.keyboard.press(' ');
+    await until(page, 'time goes on', (held) => (document.querySelector('.time')?.textContent ?? '') !== held, await textOf(page, '.time'));
+    assert.ok(held > 0);
+  },
+
+  async 'agents have figures, and activities'({ page }) {
+    await page.keyboard.press('2');
+    await until(page, 'six agents', () => document.querySelectorAll('tr.choice').length === 6);
+    await until(page, 'a rate', () => Number(document.querySelector('tr.choice td.number')?.textContent) > 0);
+    await page.locator('tr.choice', { hasText: 'blue-2' }).click();
+    assert.match(await textOf(page, '.inner'), /WalkTowardsBall/);
+    await shot(page, 'agents');
+  },
+
+  async 'topics have rates, the last message as a tree, and plots'({ page }) {
+    await page.keyboard.press('3');
+    await page.getByLabel('Filter topics').fill('soccer/ball');
+    await until(page, 'a row for each robot', () => document.querySelectorAll('tr.choice').length >= 6);
+    await page.locator('tr.choice', { hasText: 'blue-2' }).click();
+    await until(page, 'the last message', () => /distance/.test(document.querySelector('.message')?.textContent ?? ''));
+    await page.locator('.leaf', { hasText: 'distance' }).getByRole('button').click();
+    await until(page, 'a plot', () => document.querySelector('.u-over'));
+    await until(page, 'a line', () => {
+      const canvas = document.querySelector('.uplot canvas');
+      const data = canvas?.getContext('2d')?.getImageData(0, 0, canvas.width, canvas.height).data ?? [];
+      for (let at = 0; at < data.length; at += 4) {
+        if (data[at] === 0 && data[at + 1] === 114 && data[at + 2] === 178 && data[at + 3] === 255) {
+          return true;
+        }
+      }
+      return false;
+    });
+    await shot(page, 'topics');
+  },
+
+  async 'the log has filters'({ page }) {
+    await page.locator('h2').first().click();
+    await page.keyboard.press('4');
+    await until(page, 'a line', () => document.querySelector('.line'));
+    await page.getByLabel('Filter lines').fill('no line has this');
+    await until(page, 'no line', () => /No line fits/.test(document.querySelector('.lines')?.textContent ?? ''));
+    await page.getByLabel('Filter lines').fill('motion');
+    await until(page, 'lines with the word', () => document.querySelector('.line'));
+    await shot(page, 'log');
+  },
+
+  async 'help, light and dark'({ page }) {
+    await page.locator('h2').first().click();
+    await page.keyboard.press('1');
+    await page.keyboard.press('?');
+    await page.getByRole('dialog').waitFor();
+    await page.keyboard.press('Escape');
+    const theme = () => page.evaluate(() => document.documentElement.dataset.theme);
+    const before = await theme();
+    await page.keyboard.press('t');
+    assert.notEqual(await theme(), before);
+    await until(page, 'the chart', () => document.querySelector('.chart .node.BASIC.active'));
+    await shot(page, 'dark');
+    await page.keyboard.press('t');
+  },
+
+  async 'a phone shows all in one column'({ page }) {
+    await page.setViewportSize({ width: 390, height: 844 });
+    for (const key of ['1', '2', '3', '4', '1']) {
+      await page.keyboard.press(key);
+      const width = await page.evaluate(() => document.documentElement.scrollWidth);
+      assert.ok(width <= 390, `view ${key} is ${width} pixels wide`);
+    }
+    await shot(page, 'phone');
+    await page.setViewportSize({ width: 1280, height: 720 });
+  },
+
+  async 'an end is said'({ page, run }) {
+    await run.stop();
+    await until(page, 'the notice', () => /The studio has ended/.test(document.querySelector('.notice')?.textContent ?? ''));
+    assert.equal(await page.locator('.robots li').count(), 6);
+    await shot(page, 'ended');
+  },
+};
+
+/** A studio beside runs: it shows that there is none, the next one, and its end. */
+async function beside(browser) {
+  const args = ['run', MATCH, '--control', 'side', '--realtime', '--for', '300s'];
+  const first = start(PROGRAM, args);
+  first.url.catch(() => {});
+  await first.printed(/^control socket: /m);
+  const studio = start(PROGRAM, ['studio', '--run', 'side'], first.folder);
+  const { page } = await open(browser, await studio.url);
+  await until(page, 'the run', () => document.querySelector('.link')?.textContent === 'Live');
+  await until(page, 'its charts', () => document.querySelectorAll('.robots li').length === 6);
+  assert.equal(await page.locator('.dial').count(), 0, 'a studio beside a run does not set its pace');
+  await first.stop();
+  await until(page, 'its end', () => document.querySelector('.link')?.textContent === 'Run ended');
+  const second = start(PROGRAM, args, first.folder);
+  second.url.catch(() => {});
+  await until(page, 'the next run', () => document.querySelector('.link')?.textContent === 'Live');
+  await until(page, 'its robots', () => document.querySelectorAll('.body').length === 6);
+  await second.stop();
+  await studio.stop();
+}
+
+/** A tape: everything on the page follows the moment on the timeline. */
+async function tape(browser) {
+  const folder = mkdtempSync(join(tmpdir(), 'monas-tape-'));
+  const file = join(folder, 'match.mcap');
+  execFileSync(PROGRAM, ['run', MATCH, '--seed', '1', '--for', '60s', '--no-control', '--record', file], { stdio: 'ignore' });
+  const studio = start(PROGRAM, ['studio', file]);
+  const { page, faults } = await open(browser, await studio.url);
+  await until(page, 'six charts', () => document.querySelectorAll('.robots li').length === 6);
+  await page.locator('.play', { hasText: 'Hold' }).click();
+  await until(page, 'the tape is held', () => document.querySelector('.play')?.textContent === 'Play');
+  const time = async () => seconds(await textOf(page, '.time'));
+  const seek = async (to) => {
+    await page.getByLabel('Moment').fill(String(to));
+    await until(page, `moment ${to}`, (to) => {
+      const [minutes, rest] = (document.querySelector('.time')?.textContent ?? '').split(':').map(Number);
+      return Math.abs(minutes * 60 + rest - to) < 0.06;
+    }, to);
+  };
+  const place = () => page.locator('.body').evaluateAll((all) => all.map((one) => one.outerHTML.match(/translate\([^)]*\)/)?.[0]).join());
+  const decided = () => textOf(page, '.why');
+  const log = async () => {
+    await page.keyboard.press('4');
+    const lines = await page.locator('.line').allInnerTexts();
+    await page.keyboard.press('1');
+    return lines;
+  };
+  // the same moment is the same, from whichever side it is reached
+  await seek(30);
+  await until(page, 'robots', () => document.querySelectorAll('.body').length === 6);
+  await until(page, 'a decision', () => /because/.test(document.querySelector('.why')?.textContent ?? ''));
+  await page.locator('h2').first().click();
+  const [first, why, lines] = [await place(), await decided(), await log()];
+  await seek(50);
+  await until(page, 'robots elsewhere', (first) => {
+    const all = [...document.querySelectorAll('.body')];
+    return all.map((one) => one.outerHTML.match(/translate\([^)]*\)/)?.[0]).join() !== first;
+  }, first);
+  await seek(30);
+  await until(page, 'robots where they were', (first) => {
+    const all = [...document.querySelectorAll('.body')];
+    return all.map((one) => one.outerHTML.match(/translate\([^)]*\)/)?.[0]).join() === first;
+  }, first);
+  await page.locator('h2').first().click();
+  assert.equal((await decided()).split(',')[0].split(' for ')[0], why.split(',')[0].split(' for ')[0]);
+  assert.deepEqual(await log(), lines);
+  // steps of the chosen chart, on and back
+  const active = () => page.locator('.chart .node.active').evaluateAll((all) => all.map((one) => one.dataset.state).join());
+  await page.keyboard.press('.');
+  await page.waitForTimeout(300);
+  const [atStep, stepTime] = [await active(), await time()];
+  await page.keyboard.press('.');
+  await page.keyboard.press(',');
+  await page.waitForTimeout(300);
+  assert.equal(await active(), atStep);
+  assert.equal(await time(), stepTime);
+  // events
+  await seek(1);
+  const events = await page.locator('.marks button').count();
+  assert.ok(events > 0, 'the timeline has events');
+  await page.getByRole('button', { name: 'event ›' }).click();
+  await until(page, 'the kick-off', () => /kick-off/.test(document.querySelector('.latest')?.textContent ?? ''));
+  assert.equal(await time(), 6);
+  // playing
+  await page.getByLabel('Speed').selectOption('16');
+  await page.locator('.play').click();
+  await until(page, 'the tape is played to its end', () => document.querySelector('.play')?.textContent === 'Play' && document.querySelector('.time')?.textContent?.startsWith('1:00'));
+  await seek(22.5);
+  await page.locator('.robots button', { hasText: 'blue-2' }).click();
+  await page.waitForTimeout(300);
+  await shot(page, 'tape');
+  assert.deepEqual(faults, []);
+  await page.close();
+  await studio.stop();
+}
+
+mkdirSync(SCREENSHOTS, { recursive: true });
+const browser = await launch();
+const run = start(PROGRAM, ['run', MATCH, '--studio', '--seed', '1', '--for', '600s']);
+let failed = 0;
+const check = async (name, test) => {
+  try {
+    await test();
+    console.log(`ok      ${name}`);
+  } catch (error) {
+    failed += 1;
+    console.error(`FAILED  ${name}\n${error.stack}`);
+  }
+};
+try {
+  const { page, faults } = await open(browser, await run.url);
+  for (const [name, test] of Object.entries(TESTS)) {
+    if (name === 'an end is said') {
+      await check('no error on the page, no request elsewhere', () => assert.deepEqual(faults, []));
+    }
+    await check(name, () => test({ page, run }));
+  }
+  await page.close();
+  await check('a studio beside runs follows them', () => beside(browser));
+  await check('a tape is played, searched and stepped', () => tape(browser));
+} finally {
+  await browser.close();
+  await run.stop();
+}
+process.exit(failed === 0 ? 0 : 1);

@@ -1,0 +1,58 @@
+//! A view of a run, or of a recording, in the browser.
+//!
+//! A [`Studio`] serves a page on loopback: statecharts with their active states, agents, topics,
+//! the log, and a view from above. It watches a run through its control socket, as the commands of
+//! the terminal do, so that a run without a studio pays nothing, and a viewer can neither block
+//! a run nor change it. What is drawn from above is a [`Scene`], which the program gives: this
+//! crate knows no sport.
+//!
+//! # Design rationale
+//!
+//! - **Threads, no runtime.** A thread accepts connections, one follows the run, and each viewer
+//!   has one: at most 32 connections and eight viewers. HTTP is a page of three files, so a request
+//!   line and its headers are all that is parsed.
+//! - **Newest wins.** A viewer gets at most 30 frames per second, each with all that has changed
+//!   since its last one. A slow page gets fewer frames, and after five seconds none.
+//! - **Only its own page is answered.** The `Host` must name this server, an `Origin` must be its
+//!   own, and any other address than loopback needs a random token.
+//! - **The drawing comes from the run.** Shapes are those of [`yase_export::to_picture`], the same
+//!   layout as in drawings of models. The page only draws them.
+//!
+//! # Example
+//!
+//! ```
+//! use monas_studio::{Studio, StudioSettings};
+//!
+//! # let folder = tempfile::tempdir()?;
+//! let socket = folder.path().join("match.sock");
+//! let listen = Some("127.0.0.1:0".parse()?);
+//! let studio = Studio::of_run(&socket, StudioSettings { listen, ..StudioSettings::default() })?;
+//! assert!(studio.url().starts_with("http://127.0.0.1:"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod access;
+mod asset;
+mod chart_view;
+mod error;
+mod http_request;
+mod live_run;
+mod message_decoder;
+mod pace;
+mod run_view;
+mod scene;
+mod server;
+mod source;
+mod tape_moment;
+mod tape_run;
+mod tape_session;
+mod time;
+mod viewer;
+mod viewer_request;
+
+pub use error::{Error, ErrorKind};
+pub use message_decoder::message_json;
+pub use pace::Pace;
+pub use scene::{Banner, Belief, Body, Ground, GroundMark, Scene, SceneMessages, SceneObject, ScenePicture};
+pub use server::{ListenAddress, Studio, StudioSettings};
+pub use tape_run::TapeChart;

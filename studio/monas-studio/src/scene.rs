@@ -1,0 +1,177 @@
+//! What a program draws on the plane: the field of a match, the rooms of a robot.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use serde_json::Value;
+
+/// A view from above, which a program gives: the studio knows no sport.
+///
+/// The plane has x to the right and y up, in metres; headings are in radians.
+pub trait Scene: Send + Sync {
+    /// The topics that it reads, on all hosts.
+    fn topics(&self) -> &[&'static str];
+
+    /// The topics with events that are marked on the timeline of a tape.
+    fn event_topics(&self) -> &[&'static str] {
+        &[]
+    }
+
+    /// The text of an event, if a message on such a topic is one.
+    fn event(&self, topic: &str, message: &Value) -> Option<String> {
+        let _ = (topic, message);
+        None
+    }
+
+    /// Draws the present messages.
+    fn draw(&self, messages: &SceneMessages<'_>) -> ScenePicture;
+}
+
+/// The newest message of each topic that a scene reads, as JSON with the fields' names.
+#[derive(Debug)]
+pub struct SceneMessages<'a> {
+    latest: BTreeMap<(&'a str, &'a str), &'a Value>,
+}
+
+/// From messages by host and topic, for tests of scenes.
+impl<'a> FromIterator<((&'a str, &'a str), &'a Value)> for SceneMessages<'a> {
+    fn from_iter<Items: IntoIterator<Item = ((&'a str, &'a str), &'a Value)>>(messages: Items) -> Self {
+        SceneMessages { latest: messages.into_iter().collect() }
+    }
+}
+
+impl<'a> SceneMessages<'a> {
+    /// The newest message of a topic from a host.
+    pub fn of(&self, host: &str, topic: &str) -> Option<&'a Value> {
+        self.latest.get(&(host, topic)).copied()
+    }
+
+    /// The newest messages of a topic, with their hosts.
+    pub fn all<'t>(&'t self, topic: &'t str) -> impl Iterator<Item = (&'a str, &'a Value)> + 't {
+        let of_topic = self.latest.iter().filter(move |((_, known), _)| *known == topic);
+        of_topic.map(|((host, _), value)| (*host, *value))
+    }
+}
+
+/// What is on the plane at one time.
+#[derive(Clone, PartialEq, Default, Debug, Serialize)]
+pub struct ScenePicture {
+    /// What does not move.
+    pub ground: Ground,
+    /// Robots where they are.
+    pub bodies: Vec<Body>,
+    /// Other things where they are.
+    pub objects: Vec<SceneObject>,
+    /// Where hosts believe that things are.
+    pub beliefs: Vec<Belief>,
+    /// What is said above the plane.
+    pub banner: Option<Banner>,
+}
+
+/// The plane.
+#[derive(Clone, PartialEq, Default, Debug, Serialize)]
+pub struct Ground {
+    /// Its size in metres; the origin is in the middle.
+    pub width: f64,
+    /// See `width`.
+    pub height: f64,
+    /// Lines and areas on it.
+    pub marks: Vec<GroundMark>,
+}
+
+/// A line or an area on the plane, in metres.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+#[serde(tag = "shape", rename_all = "lowercase")]
+pub enum GroundMark {
+    /// A rectangle by its lowest corner.
+    Rectangle {
+        /// The corner.
+        x: f64,
+        /// The corner.
+        y: f64,
+        /// The size.
+        width: f64,
+        /// The size.
+        height: f64,
+        /// The group whose colour it has; none for a line.
+        group: Option<usize>,
+    },
+    /// A line.
+    Line {
+        /// Begin and end: x, y, x, y.
+        ends: [f64; 4],
+    },
+    /// A circle.
+    Circle {
+        /// The middle.
+        x: f64,
+        /// The middle.
+        y: f64,
+        /// The radius.
+        radius: f64,
+    },
+}
+
+/// A robot.
+#[derive(Clone, PartialEq, Default, Debug, Serialize)]
+pub struct Body {
+    /// Its host; empty if it is not known.
+    pub host: String,
+    /// A short text on it, such as its number.
+    pub label: String,
+    /// The group whose colour it has: 0 or 1.
+    pub group: usize,
+    /// Its place, m.
+    pub x: f64,
+    /// Its place, m.
+    pub y: f64,
+    /// Its heading, rad.
+    pub heading: f64,
+    /// Whether it stands; a fallen one is drawn as such.
+    pub upright: bool,
+    /// Whether it takes part; others are drawn faint.
+    pub active: bool,
+}
+
+/// A ball or another thing.
+#[derive(Clone, PartialEq, Default, Debug, Serialize)]
+pub struct SceneObject {
+    /// What it is: `ball`.
+    pub kind: String,
+    /// Its place, m.
+    pub x: f64,
+    /// Its place, m.
+    pub y: f64,
+    /// Its velocity, m/s.
+    pub vx: f64,
+    /// Its velocity, m/s.
+    pub vy: f64,
+    /// Its radius, m.
+    pub radius: f64,
+}
+
+/// Where a host believes that it, or something, is.
+#[derive(Clone, PartialEq, Default, Debug, Serialize)]
+pub struct Belief {
+    /// The host.
+    pub host: String,
+    /// What is believed: `self` or the kind of an object.
+    pub kind: String,
+    /// Its place, m.
+    pub x: f64,
+    /// Its place, m.
+    pub y: f64,
+    /// Its heading, rad, if it has one.
+    pub heading: Option<f64>,
+    /// How sure the host is, from 0 to 1.
+    pub confidence: f64,
+}
+
+/// A score or another summary.
+#[derive(Clone, PartialEq, Default, Debug, Serialize)]
+pub struct Banner {
+    /// The name and the score of each group.
+    pub groups: Vec<(String, String)>,
+    /// The rest, such as half and phase.
+    pub text: String,
+}

@@ -1,0 +1,22 @@
+//! Where a studio has its view from.
+
+use std::time::Duration;
+
+use serde_json::Value;
+
+use crate::viewer_request::ViewerRequest;
+
+/// A run or a tape that viewers can open.
+pub(crate) trait Source: Send + Sync {
+    /// A view for one viewer.
+    fn open(&self) -> Box<dyn Session>;
+}
+
+/// The view of one viewer.
+pub(crate) trait Session: Send {
+    /// Handles a request. Returns the reply, if it has one.
+    fn handle(&mut self, request: ViewerRequest) -> Option<Value>;
+
+    /// What the viewer has not seen; `elapsed` is the time since the last call.
+    fn frame(&mut self, elapsed: Duration) -> Option<Value>;
+}

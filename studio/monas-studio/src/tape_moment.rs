@@ -1,0 +1,93 @@
+//! A run at one moment of its tape.
+
+use serde_json::{Value, json};
+
+use crate::chart_view::seconds;
+use crate::run_view::{CHART, RunView, ViewedMessage};
+use crate::tape_run::TapeRun;
+
+/// The topic whose messages are the cycles of agents.
+const CYCLE: &str = "monas/cycle";
+
+/// The state of a run after some of the messages of its tape.
+#[derive(Clone, Default, Debug)]
+pub(crate) struct TapeMoment {
+    pub(crate) view: RunView,
+    /// By channel: how many messages it has had, and the last of them.
+    channels: Vec<(u64, usize)>,
+    /// How many messages there were.
+    pub(crate) count: usize,
+}
+
+impl TapeMoment {
+    pub(crate) fn new(view: RunView, channels: usize) -> TapeMoment {
+        TapeMoment { view, channels: vec![(0, 0); channels], count: 0 }
+    }
+
+    /// Takes messages up to a number of them.
+    pub(crate) fn advance(&mut self, tape: &TapeRun, count: usize) {
+        for index in self.count..count.min(tape.len()) {
+            let Some((entry, channel)) = tape.entry(index) else { break };
+            if let Some(known) = self.channels.get_mut(entry.channel as usize) {
+                *known = (known.0 + 1, index);
+            }
+            if channel.is_viewed {
+                let message = ViewedMessage {
+                    host: &channel.host,
+                    topic: &channel.topic,
+                    publisher: &channel.publisher,
+                    time: entry.time,
+                    bytes: tape.bytes(entry),
+                };
+                self.view.take(&message, channel.is_of_scene);
+            }
+            self.count = index + 1;
+        }
+    }
+
+    /// The newest message of a topic from a host.
+    pub(crate) fn newest(&self, tape: &TapeRun, host: &str, topic: &str) -> Option<usize> {
+        let fitting = tape.channels().iter().zip(&self.channels);
+        let fitting = fitting
+            .filter(|(channel, (count, _))| *count > 0 && channel.host == host && channel.topic == topic);
+        fitting.map(|(_, (_, last))| *last).max()
+    }
+
+    /// How many messages a topic of a host has had.
+    pub(crate) fn topic_count(&self, tape: &TapeRun, host: &str, topic: &str) -> u64 {
+        let fitting = tape.channels().iter().zip(&self.channels);
+        let fitting = fitting.filter(|(channel, _)| channel.host == host && channel.topic == topic);
+        fitting.map(|(_, (count, _))| count).sum()
+    }
+
+    /// Brings the tables of agents and topics up to date.
+    pub(crate) fn set_tables(&mut self, tape: &TapeRun) {
+        let now = seconds(self.view.now.saturating_sub(tape.begin()));
+        let mut topics = Vec::new();
+        let mut agents = Vec::new();
+        for (channel, &(count, last)) in tape.channels().iter().zip(&self.channels) {
+            let time = tape.entry(last).filter(|_| count > 0).map(|(entry, _)| seconds(entry.time));
+            let rate = (now > 0.0).then(|| count as f64 / now);
+            topics.push(json!({"host": channel.host, "path": channel.topic, "kind": channel.kind,
+                "type": channel.message_type, "count": count, "rate": rate, "publisher": channel.publisher, "t": time}));
+            if channel.topic == CYCLE {
+                agents.push(self.agent(tape, &channel.host, &channel.publisher));
+            }
+        }
+        topics.dedup_by(|a, b| a["host"] == b["host"] && a["path"] == b["path"]);
+        agents.dedup();
+        self.view.set_table_objects(Value::Array(agents), Value::Array(topics));
+    }
+
+    fn agent(&self, tape: &TapeRun, host: &str, name: &str) -> Value {
+        let count = |topic: &str| -> u64 {
+            let fitting = tape.channels().iter().zip(&self.channels);
+            let of_agent = fitting.filter(|(channel, _)| {
+                channel.topic == topic && channel.host == host && channel.publisher == name
+            });
+            of_agent.map(|(_, (count, _))| count).sum()
+        };
+        json!({"host": host, "name": name, "state": "recorded", "reason": "", "frequency": 0.0, "cycles": count(CYCLE),
+            "overruns": 0, "missed": 0, "steps": count(CHART), "time": null, "activities": []})
+    }
+}

@@ -1,0 +1,260 @@
+//! A recorded run, opened at any moment.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use monas_tape::{Recording, RecordingItem};
+use serde_json::{Value, json};
+
+use crate::chart_view::{ChartKey, seconds};
+use crate::error::{Error, ErrorKind};
+use crate::message_decoder::MessageDecoder;
+use crate::run_view::{CHART, LOG, Link, MODEL, RunView};
+use crate::scene::Scene;
+use crate::source::{Session, Source};
+use crate::tape_moment::TapeMoment;
+use crate::tape_session::TapeSession;
+
+/// The number of messages between two moments that are kept.
+const INTERVAL: usize = 20_000;
+
+/// The shapes of a chart of a recorded run.
+#[derive(Clone, PartialEq, Eq, Default, Debug)]
+pub struct TapeChart {
+    /// The host of its agent.
+    pub host: String,
+    /// Its agent.
+    pub agent: String,
+    /// Its index in the agent.
+    pub chart: u32,
+    /// The name of its model.
+    pub model: String,
+    /// Its shapes, by [`yase_export::to_picture`].
+    pub picture: String,
+}
+
+/// A message of a tape.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TapeEntry {
+    /// Nanoseconds.
+    pub(crate) time: u64,
+    pub(crate) channel: u32,
+    begin: usize,
+    size: u32,
+}
+
+/// The common properties of messages.
+#[derive(Clone, Debug)]
+pub(crate) struct TapeChannel {
+    pub(crate) host: String,
+    pub(crate) topic: String,
+    pub(crate) publisher: String,
+    pub(crate) kind: String,
+    pub(crate) message_type: String,
+    pub(crate) is_of_scene: bool,
+    /// Whether a view takes its messages.
+    pub(crate) is_viewed: bool,
+}
+
+/// An indexed recording, shared by its viewers.
+#[derive(Clone)]
+pub(crate) struct TapeRun(Arc<TapeIndex>);
+
+struct TapeIndex {
+    recording: Recording,
+    scene: Option<Arc<dyn Scene>>,
+    channels: Vec<TapeChannel>,
+    entries: Vec<TapeEntry>,
+    decoder: MessageDecoder,
+    /// What is marked on the timeline.
+    events: Vec<Value>,
+    /// After each [`INTERVAL`] messages.
+    moments: Vec<TapeMoment>,
+}
+
+impl TapeRun {
+    /// Reads a recording once from begin to end.
+    pub(crate) fn new(
+        name: &str,
+        recording: Recording,
+        charts: &[TapeChart],
+        scene: Option<Arc<dyn Scene>>,
+    ) -> Result<TapeRun, Error> {
+        let failed = |error: monas_tape::Error| Error::new(ErrorKind::Recording, error);
+        let mut index = TapeIndex {
+            recording,
+            scene,
+            channels: Vec::new(),
+            entries: Vec::new(),
+            decoder: MessageDecoder::default(),
+            events: Vec::new(),
+            moments: Vec::new(),
+        };
+        let mut numbers: BTreeMap<*const monas_tape::Channel, u32> = BTreeMap::new();
+        // Channels are kept, so that their addresses stay different.
+        let mut kept = Vec::new();
+        let recording = index.recording.clone();
+        for item in recording.contents().map_err(failed)? {
+            let RecordingItem::Message(message) = item.map_err(failed)? else { continue };
+            // What a host received from another is shown where it was published.
+            if message.channel.received_by.is_some() {
+                continue;
+            }
+            let channel = *numbers.entry(Arc::as_ptr(&message.channel)).or_insert_with(|| {
+                kept.push(message.channel.clone());
+                index.add_channel(&message.channel)
+            });
+            let range = recording.range_of(&message);
+            let time = message.published.as_nanos();
+            let size = u32::try_from(range.len()).unwrap_or(u32::MAX);
+            index.entries.push(TapeEntry { time, channel, begin: range.start, size });
+            index.note_event(channel, time, message.bytes);
+        }
+        // By time of publication; equal times stay in the order of the tape.
+        index.entries.sort_by_key(|entry| entry.time);
+        let first = index.first_moment(name, charts);
+        let mut tape = TapeRun(Arc::new(index));
+        let moments = tape.moments(first);
+        if let Some(index) = Arc::get_mut(&mut tape.0) {
+            index.moments = moments;
+        }
+        Ok(tape)
+    }
+
+    fn moments(&self, first: TapeMoment) -> Vec<TapeMoment> {
+        let mut moments = vec![first.clone()];
+        let mut moment = first;
+        while moment.count + INTERVAL < self.len() {
+            moment.advance(self, moment.count + INTERVAL);
+            moments.push(moment.clone());
+        }
+        moments
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.0.entries.len()
+    }
+
+    pub(crate) fn channels(&self) -> &[TapeChannel] {
+        &self.0.channels
+    }
+
+    pub(crate) fn scene(&self) -> Option<&dyn Scene> {
+        self.0.scene.as_deref()
+    }
+
+    pub(crate) fn decoder(&self) -> &MessageDecoder {
+        &self.0.decoder
+    }
+
+    pub(crate) fn events(&self) -> &[Value] {
+        &self.0.events
+    }
+
+    pub(crate) fn entry(&self, index: usize) -> Option<(TapeEntry, &TapeChannel)> {
+        let entry = *self.0.entries.get(index)?;
+        Some((entry, self.0.channels.get(entry.channel as usize)?))
+    }
+
+    pub(crate) fn bytes(&self, entry: TapeEntry) -> &[u8] {
+        self.0.recording.bytes_at(entry.begin..entry.begin + entry.size as usize).unwrap_or_default()
+    }
+
+    /// The time of the first message.
+    pub(crate) fn begin(&self) -> u64 {
+        self.0.entries.first().map_or(0, |entry| entry.time)
+    }
+
+    /// The time of the last message.
+    pub(crate) fn end(&self) -> u64 {
+        self.0.entries.last().map_or(0, |entry| entry.time)
+    }
+
+    /// The number of messages up to a time.
+    pub(crate) fn count_until(&self, time: u64) -> usize {
+        self.0.entries.partition_point(|entry| entry.time <= time)
+    }
+
+    /// The latest kept moment with at most so many messages.
+    pub(crate) fn moment_before(&self, count: usize) -> &TapeMoment {
+        let moments = &self.0.moments;
+        let place = moments.partition_point(|moment| moment.count <= count);
+        &moments[place.max(1) - 1]
+    }
+
+    /// The number of messages up to and with the next step of a chart after `count` messages, or
+    /// the last one before.
+    pub(crate) fn step_from(&self, count: usize, key: &str, is_back: bool) -> Option<usize> {
+        let is_step = |index: &usize| {
+            self.entry(*index).is_some_and(|(entry, channel)| {
+                channel.topic == CHART && key_of(channel, self.bytes(entry)).is_some_and(|known| known == key)
+            })
+        };
+        match is_back {
+            false => (count..self.len()).find(is_step).map(|index| index + 1),
+            true => (0..count.saturating_sub(1)).rev().find(is_step).map(|index| index + 1),
+        }
+    }
+}
+
+fn key_of(channel: &TapeChannel, bytes: &[u8]) -> Option<String> {
+    let step = <monas::records::Chart as prost::Message>::decode(bytes).ok()?;
+    let key = ChartKey { host: channel.host.clone(), agent: channel.publisher.clone(), chart: step.chart };
+    Some(key.text())
+}
+
+impl TapeIndex {
+    fn add_channel(&mut self, channel: &monas_tape::Channel) -> u32 {
+        let scene = self.scene.as_deref();
+        let is_of_scene = scene.is_some_and(|scene| scene.topics().contains(&channel.topic.as_str()));
+        let is_record = [CHART, MODEL, LOG].contains(&channel.topic.as_str());
+        if !self.decoder.knows(&channel.topic) {
+            self.decoder.learn(&channel.topic, &channel.schema.name, &channel.schema.data);
+        }
+        self.channels.push(TapeChannel {
+            host: channel.host.clone(),
+            topic: channel.topic.clone(),
+            publisher: channel.publisher.clone(),
+            kind: channel.kind.clone(),
+            message_type: channel.schema.name.clone(),
+            is_of_scene,
+            is_viewed: is_of_scene || is_record,
+        });
+        self.channels.len() as u32 - 1
+    }
+
+    fn note_event(&mut self, channel: u32, time: u64, bytes: &[u8]) {
+        let Some(scene) = self.scene.as_deref() else { return };
+        let topic = &self.channels[channel as usize].topic;
+        if scene.event_topics().contains(&topic.as_str())
+            && let Some(text) = scene.event(topic, &self.decoder.decode(topic, bytes))
+        {
+            self.events.push(json!({"t": seconds(time), "text": text}));
+        }
+    }
+
+    /// The run before its first message.
+    fn first_moment(&self, name: &str, charts: &[TapeChart]) -> TapeMoment {
+        let mut view = RunView::default();
+        view.begin();
+        view.link = Link::Tape;
+        name.clone_into(&mut view.name);
+        view.is_simulated = true;
+        view.decoder = self.decoder.clone();
+        view.hosts = self.channels.iter().map(|channel| channel.host.clone()).collect();
+        view.hosts.sort_unstable();
+        view.hosts.dedup();
+        view.now = self.entries.first().map_or(0, |entry| entry.time);
+        for TapeChart { host, agent, chart, model, picture } in charts {
+            let key = ChartKey { host: host.clone(), agent: agent.clone(), chart: *chart };
+            view.show_chart(key, model, picture);
+        }
+        TapeMoment::new(view, self.channels.len())
+    }
+}
+
+impl Source for TapeRun {
+    fn open(&self) -> Box<dyn Session> {
+        Box::new(TapeSession::new(self.clone()))
+    }
+}

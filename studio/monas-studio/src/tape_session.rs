@@ -1,0 +1,157 @@
+//! A viewer of a tape: the moment that it sees.
+
+use std::time::Duration;
+
+use serde_json::{Value, json};
+
+use crate::chart_view::seconds;
+use crate::run_view::ViewCursor;
+use crate::source::Session;
+use crate::tape_moment::TapeMoment;
+use crate::tape_run::TapeRun;
+use crate::viewer_request::ViewerRequest;
+
+/// The fastest playing.
+const FASTEST: f64 = 1000.0;
+
+/// The time on the tape between two looks at the tables, in nanoseconds.
+const TABLES: u64 = 500_000_000;
+
+/// The view of one viewer, which plays and seeks for itself.
+pub(crate) struct TapeSession {
+    tape: TapeRun,
+    moment: TapeMoment,
+    cursor: ViewCursor,
+    /// How many seconds of the tape are played in a second; 0 while it is held.
+    factor: f64,
+    /// Whether the viewer has to be sent the facts of the tape.
+    is_new: bool,
+    /// Whether it has to forget what it has, since the moment is not a later one.
+    is_elsewhere: bool,
+    /// The moment of the last tables.
+    tables: Option<u64>,
+    watched: Option<(String, String)>,
+    /// The message of the watched topic that was sent last.
+    sent: Option<usize>,
+}
+
+impl TapeSession {
+    pub(crate) fn new(tape: TapeRun) -> TapeSession {
+        let moment = tape.moment_before(0).clone();
+        TapeSession {
+            tape,
+            moment,
+            cursor: ViewCursor::default(),
+            factor: 1.0,
+            is_new: true,
+            is_elsewhere: false,
+            tables: None,
+            watched: None,
+            sent: None,
+        }
+    }
+
+    /// Goes to the moment after some messages, at a time.
+    fn go_to(&mut self, count: usize, time: u64) {
+        let kept = self.tape.moment_before(count);
+        if count < self.moment.count || kept.count > self.moment.count {
+            self.moment = kept.clone();
+            self.is_elsewhere = true;
+        }
+        self.moment.advance(&self.tape, count);
+        self.moment.view.now = time;
+    }
+
+    fn play(&mut self, elapsed: Duration) {
+        if self.factor == 0.0 {
+            return;
+        }
+        let passed = elapsed.as_secs_f64() * self.factor * 1e9;
+        let time = self.moment.view.now.saturating_add(passed as u64).min(self.tape.end());
+        self.go_to(self.tape.count_until(time), time);
+        if time == self.tape.end() {
+            self.factor = 0.0;
+            self.is_new = true;
+        }
+    }
+
+    fn sample(&mut self) -> Option<Value> {
+        let (host, topic) = self.watched.as_ref()?;
+        let index = self.moment.newest(&self.tape, host, topic).filter(|index| Some(*index) != self.sent)?;
+        let (entry, channel) = self.tape.entry(index)?;
+        let bytes = self.tape.bytes(entry);
+        let message = self.tape.decoder().decode(topic, bytes);
+        let count = self.moment.topic_count(&self.tape, host, topic);
+        let sample = json!({"host": host, "from": host, "topic": topic, "publisher": channel.publisher,
+            "sequence": count, "t": seconds(entry.time), "size": bytes.len(), "count": count, "message": message});
+        self.sent = Some(index);
+        Some(sample)
+    }
+}
+
+impl Session for TapeSession {
+    fn handle(&mut self, request: ViewerRequest) -> Option<Value> {
+        match request {
+            ViewerRequest::Picture(key) => {
+                return Some(
+                    json!({"type": "picture", "key": key, "picture": self.moment.view.picture(&key)}),
+                );
+            }
+            ViewerRequest::Watch { host, topic } => {
+                self.watched = Some((host, topic));
+                self.sent = None;
+            }
+            ViewerRequest::Unwatch => self.watched = None,
+            ViewerRequest::Pace(factor) => {
+                // At its end a tape is played again from its begin.
+                if factor > 0.0 && self.moment.view.now >= self.tape.end() {
+                    self.go_to(0, self.tape.begin());
+                }
+                self.factor = factor.min(FASTEST);
+                self.is_new = true;
+            }
+            ViewerRequest::Seek(time) => {
+                let time = ((time * 1e9) as u64).clamp(self.tape.begin(), self.tape.end());
+                self.go_to(self.tape.count_until(time), time);
+            }
+            ViewerRequest::Step { key, is_back } => {
+                self.factor = 0.0;
+                self.is_new = true;
+                if let Some(count) = self.tape.step_from(self.moment.count, &key, is_back) {
+                    let time = self.tape.entry(count - 1).map_or(0, |(entry, _)| entry.time);
+                    self.go_to(count, time);
+                }
+            }
+        }
+        None
+    }
+
+    fn frame(&mut self, elapsed: Duration) -> Option<Value> {
+        self.play(elapsed);
+        let now = self.moment.view.now;
+        if self.is_elsewhere || self.tables.is_none_or(|tables| now.abs_diff(tables) >= TABLES) {
+            self.moment.set_tables(&self.tape);
+            self.tables = Some(now);
+        }
+        if self.is_elsewhere {
+            self.cursor = ViewCursor::default();
+        }
+        let sample = self.sample();
+        let frame = self.moment.view.frame(&mut self.cursor, self.tape.scene());
+        if frame.is_none() && sample.is_none() && !self.is_new {
+            return None;
+        }
+        let mut frame = frame.unwrap_or_else(|| json!({"type": "frame", "now": seconds(now)}));
+        if let Some(sample) = sample {
+            frame["sample"] = sample;
+        }
+        if std::mem::take(&mut self.is_elsewhere) {
+            frame["elsewhere"] = json!(true);
+        }
+        if std::mem::take(&mut self.is_new) || frame.get("run").is_some() {
+            frame["tape"] = json!({"begin": seconds(self.tape.begin()), "end": seconds(self.tape.end()),
+                "factor": self.factor, "events": self.tape.events()});
+        }
+        Some(frame)
+    }
+}

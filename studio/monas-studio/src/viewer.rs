@@ -1,0 +1,98 @@
+//! One page with its WebSocket.
+
+use std::io;
+use std::net::TcpStream;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use serde_json::Value;
+use tungstenite::protocol::frame::coding::CloseCode;
+use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
+use tungstenite::{Message, WebSocket};
+
+use crate::source::Session;
+use crate::time::now;
+use crate::viewer_request::ViewerRequest;
+
+/// The interval between two frames.
+const FRAME: Duration = Duration::from_nanos(1_000_000_000 / 30);
+
+/// The longest that a page may take to receive a frame; a slower one is disconnected.
+const SLOWEST: Duration = Duration::from_secs(5);
+
+/// How long to wait for the page's reply to the end of the studio.
+const FAREWELL: Duration = Duration::from_millis(200);
+
+/// The longest request of a page, in bytes.
+const REQUEST_LIMIT: usize = 16 << 10;
+
+/// The most requests that are handled between two frames.
+const REQUESTS: usize = 32;
+
+/// Serves a page until it leaves, is too slow, or the studio ends.
+pub(crate) fn serve(stream: TcpStream, mut session: Box<dyn Session>, is_over: &AtomicBool) {
+    // A page that has left needs no report.
+    let _ = exchange(stream, &mut *session, is_over);
+}
+
+fn exchange(stream: TcpStream, session: &mut dyn Session, is_over: &AtomicBool) -> tungstenite::Result<()> {
+    stream.set_nodelay(true)?;
+    stream.set_write_timeout(Some(SLOWEST))?;
+    let limits =
+        WebSocketConfig::default().max_message_size(Some(REQUEST_LIMIT)).max_frame_size(Some(REQUEST_LIMIT));
+    let mut socket = WebSocket::from_raw_socket(stream, Role::Server, Some(limits));
+    let mut last = now();
+    let mut due = last;
+    while !is_over.load(Ordering::SeqCst) {
+        for _ in 0..REQUESTS {
+            let left = due.saturating_duration_since(now());
+            let Some(request) = next_request(&mut socket, left)? else { break };
+            if let Some(reply) = ViewerRequest::parse(&request).and_then(|request| session.handle(request)) {
+                send(&mut socket, &reply)?;
+            }
+        }
+        let time = now();
+        if time < due {
+            continue;
+        }
+        let frame = session.frame(time - last);
+        (last, due) = (time, time + FRAME);
+        if let Some(frame) = frame {
+            send(&mut socket, &frame)?;
+        }
+    }
+    let reason = "the studio has ended".into();
+    socket.close(Some(CloseFrame { code: CloseCode::Away, reason }))?;
+    socket.flush()?;
+    // What the page has sent is read, or else the system resets the connection, and the page may
+    // lose the reason. At its reply the socket reports that it is closed.
+    socket.get_ref().set_read_timeout(Some(FAREWELL))?;
+    for _ in 0..REQUESTS {
+        socket.read()?;
+    }
+    Ok(())
+}
+
+fn send(socket: &mut WebSocket<TcpStream>, object: &Value) -> tungstenite::Result<()> {
+    // A frame that cannot be written in time would be followed by others: the page reconnects.
+    socket.send(Message::text(object.to_string()))
+}
+
+/// The next text of the page; `None` if there is none in time.
+fn next_request(
+    socket: &mut WebSocket<TcpStream>,
+    patience: Duration,
+) -> tungstenite::Result<Option<String>> {
+    // A timeout of zero would mean no timeout.
+    socket.get_ref().set_read_timeout(Some(patience.max(Duration::from_millis(1))))?;
+    match socket.read() {
+        Ok(Message::Text(text)) => Ok(Some(text.as_str().to_owned())),
+        Ok(_) => Ok(None),
+        Err(tungstenite::Error::Io(error)) if is_timeout(&error) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+fn is_timeout(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted)
+}

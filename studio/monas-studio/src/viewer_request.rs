@@ -1,0 +1,56 @@
+//! What a page asks for.
+
+use serde_json::Value;
+
+/// A request of a page. None of them changes what a run does.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) enum ViewerRequest {
+    /// The shapes of a chart.
+    Picture(String),
+    /// Messages of a topic of a host from now on; none of any other.
+    Watch { host: String, topic: String },
+    /// No messages from now on.
+    Unwatch,
+    /// Another speed of simulated time, or of a tape.
+    Pace(f64),
+    /// Another moment of a tape, in seconds.
+    Seek(f64),
+    /// The next step of a chart on a tape, or the one before.
+    Step { key: String, is_back: bool },
+}
+
+impl ViewerRequest {
+    /// Reads a request.
+    pub(crate) fn parse(text: &str) -> Option<ViewerRequest> {
+        let value: Value = serde_json::from_str(text).ok()?;
+        let word = |key: &str| value[key].as_str().map(str::to_owned);
+        match value["type"].as_str()? {
+            "picture" => Some(ViewerRequest::Picture(word("key")?)),
+            "watch" => Some(ViewerRequest::Watch { host: word("host")?, topic: word("topic")? }),
+            "unwatch" => Some(ViewerRequest::Unwatch),
+            // JSON has no infinity
+            "pace" if value["factor"].is_null() => Some(ViewerRequest::Pace(f64::INFINITY)),
+            "pace" => Some(ViewerRequest::Pace(value["factor"].as_f64().filter(|factor| *factor >= 0.0)?)),
+            "step" => Some(ViewerRequest::Step { key: word("key")?, is_back: value["back"].as_bool()? }),
+            "seek" => Some(ViewerRequest::Seek(value["seconds"].as_f64().filter(|time| *time >= 0.0)?)),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn requests_are_read_and_anything_else_is_none() {
+        let watch = ViewerRequest::Watch { host: "a".into(), topic: "b/c".into() };
+        let parse = ViewerRequest::parse;
+        assert_eq!(parse(r#"{"type":"watch","host":"a","topic":"b/c"}"#), Some(watch));
+        assert_eq!(parse(r#"{"type":"pace","factor":null}"#), Some(ViewerRequest::Pace(f64::INFINITY)));
+        assert_eq!(parse(r#"{"type":"pace","factor":-1}"#), None);
+        for wrong in ["", "1", "[]", r#"{"type":"publish","host":"a"}"#, r#"{"type":"watch","host":1}"#] {
+            assert_eq!(parse(wrong), None, "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! The studio of a run, over real sockets: who is answered, and what a viewer gets.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use monas::records::{self, AgentEntry, Agents, ChartEntry, ChartState, Inquiry, Reply, foxglove::Log};
+use monas_link::control::{ControlServer, ControlTarget};
+use monas_studio::{Pace, Studio, StudioSettings};
+use narukom::{Hub, Timestamp};
+use prost::Message as _;
+use serde_json::{Value, json};
+use yase::Statechart;
+
+use crate::kit::{NOTE, Notes, Viewer, address, exchange, lamp};
+
+/// A run of one host with one agent.
+struct OneHub([Hub; 1]);
+
+impl ControlTarget for OneHub {
+    fn hubs(&self) -> &[Hub] {
+        &self.0
+    }
+
+    fn now(&self) -> Timestamp {
+        Timestamp::from_nanos(1_500_000_000)
+    }
+
+    fn is_simulated(&self) -> bool {
+        true
+    }
+
+    fn publish(&self, _: &str, _: &str, _: &[u8]) -> Result<(), String> {
+        Err("a viewer publishes nothing".into())
+    }
+
+    fn manage(&self, inquiry: &[u8]) -> Result<Vec<u8>, String> {
+        let inquiry = Inquiry::decode(inquiry).map_err(|error| error.to_string())?;
+        assert!(inquiry.change.is_none(), "a viewer changes nothing");
+        let mut reply = Reply::default();
+        if inquiry.agents {
+            let charts =
+                vec![ChartEntry { model: "lamp.srm".into(), state: "runs".into(), ..ChartEntry::default() }];
+            let agent =
+                AgentEntry { host: "robot".into(), name: "Lamp".into(), charts, ..AgentEntry::default() };
+            reply.agents = Some(Agents { agents: vec![agent] });
+        }
+        if inquiry.chart.is_some() {
+            let picture = yase_export::to_picture(&lamp(), &[Statechart::ROOT, yase::NodeId(2)]);
+            reply.chart = Some(ChartState { model: "lamp.srm".into(), picture, ..ChartState::default() });
+        }
+        Ok(reply.encode_to_vec())
+    }
+}
+
+struct Run {
+    folder: tempfile::TempDir,
+    hub: Hub,
+    server: Option<ControlServer>,
+}
+
+impl Run {
+    fn start() -> Run {
+        let folder = tempfile::tempdir().unwrap();
+        let mut run = Run { hub: Hub::with_linked_topics("robot").unwrap(), folder, server: None };
+        run.serve();
+        run
+    }
+
+    fn serve(&mut self) {
+        let target = Arc::new(OneHub([self.hub.clone()]));
+        self.server = Some(ControlServer::start(&self.folder.path().join("monas"), "run", target).unwrap());
+    }
+
+    fn socket(&self) -> PathBuf {
+        self.folder.path().join("monas/run.sock")
+    }
+
+    fn note(&self, text: &str) {
+        let log = Log { message: text.into(), ..Log::default() };
+        self.hub.publisher(NOTE, "tester").unwrap().publish(log, Timestamp::from_nanos(1_000_000));
+    }
+}
+
+fn studio(socket: &Path, listen: &str, pace: Option<Pace>) -> Studio {
+    let listen = Some(listen.parse().unwrap());
+    Studio::of_run(socket, StudioSettings { listen, scene: Some(Arc::new(Notes)), pace }).unwrap()
+}
+
+#[test]
+fn the_page_is_served_to_its_own_name_only() {
+    let run = Run::start();
+    let studio = studio(&run.socket(), "127.0.0.1:0", None);
+    let host = format!("Host: {}", address(&studio));
+    let gzip = "Accept-Encoding: gzip";
+    let page = exchange(&studio, "GET /", &[&host, gzip]);
+    assert!(page.starts_with("HTTP/1.1 200 OK\r\n"), "{page}");
+    for header in ["Content-Encoding: gzip", "frame-ancestors 'none'", "nosniff", "Cache-Control: no-store"] {
+        assert!(page.contains(header), "{header}");
+    }
+    assert!(!page.contains("Access-Control-Allow"));
+    let status = |request: &str, lines: &[&str]| exchange(&studio, request, lines)[9..12].to_owned();
+    assert_eq!(status("GET /", &["Host: rebound.example", gzip]), "403");
+    assert_eq!(status("GET /", &[gzip]), "403");
+    assert_eq!(status("GET /", &[&host, gzip, "Origin: http://evil.example"]), "403");
+    assert_eq!(status("POST /", &[&host, gzip]), "405");
+    assert_eq!(status("GET /../Cargo.toml", &[&host, gzip]), "404");
+    assert_eq!(status("GET /", &[&host]), "406");
+    assert_eq!(status("GET /socket", &[&host]), "426");
+    assert_eq!(status("nonsense", &["x"]), "400");
+    let upgrade = [
+        "Upgrade: websocket",
+        "Connection: Upgrade",
+        "Sec-WebSocket-Version: 13",
+        "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==",
+    ];
+    let foreign = [&[host.as_str(), "Origin: http://evil.example"][..], &upgrade].concat();
+    assert_eq!(status("GET /socket", &foreign), "403");
+}
+
+#[test]
+fn other_addresses_than_loopback_need_the_printed_token() {
+    let run = Run::start();
+    let studio = studio(&run.socket(), "0.0.0.0:0", None);
+    let host = format!("Host: {}", address(&studio));
+    let gzip = "Accept-Encoding: gzip";
+    assert!(exchange(&studio, "GET /", &[&host, gzip]).contains("a token is needed"));
+    assert!(exchange(&studio, "GET /?token=0", &[&host, gzip]).contains("the token is wrong"));
+    let (_, token) = studio.url().split_once("?token=").unwrap();
+    let page = exchange(&studio, &format!("GET /?token={token}"), &[&host, gzip]);
+    assert!(page.starts_with("HTTP/1.1 200 OK"), "{page}");
+    assert!(page.contains(&format!("Set-Cookie: monas_studio={token}; HttpOnly; SameSite=Strict")));
+    let cookie = format!("Cookie: monas_studio={token}");
+    assert!(exchange(&studio, "GET /studio.js", &[&host, gzip, &cookie]).starts_with("HTTP/1.1 200 OK"));
+    assert!(Viewer::open(&studio).is_err());
+}
+
+#[test]
+fn a_viewer_sees_the_run_its_chart_and_each_step() {
+    let run = Run::start();
+    let studio = studio(&run.socket(), "127.0.0.1:0", None);
+    let mut viewer = Viewer::open(&studio).unwrap();
+    let facts = viewer.wait_for_link("live");
+    assert_eq!(
+        (&facts["name"], &facts["simulated"], &facts["hosts"]),
+        (&json!("run"), &json!(true), &json!(["robot"]))
+    );
+    let chart = viewer
+        .wait(|message| message["charts"].as_array()?.iter().find(|chart| chart["drawing"] == 1).cloned());
+    assert_eq!((&chart["key"], &chart["active"]), (&json!("robot/Lamp/0"), &json!([0, 2])));
+    viewer.send(json!({"type": "picture", "key": "robot/Lamp/0"}));
+    let picture = viewer.wait(|message| message.get("picture").cloned());
+    assert_eq!(picture["nodes"][3]["name"], "on");
+    assert_eq!(picture["transitions"][1]["text"], "[A.x == 1]");
+    assert!(picture["nodes"][3]["shape"]["w"].as_f64().unwrap() > 10.0);
+
+    let step =
+        records::Chart { time: 7, selected: vec![1], exits: vec![2], entries: vec![3], ..Default::default() };
+    run.hub.publisher(records::CHART, "Lamp").unwrap().publish(step, Timestamp::from_nanos(2_500_000_000));
+    let news = viewer.wait(|message| Some(message["charts"][0].clone()).filter(|chart| !chart.is_null()));
+    assert_eq!(news["active"], json!([0, 3]));
+    assert_eq!(
+        news["steps"][0],
+        json!({"t": 2.5, "number": 0, "event": null, "fired": [1], "held": [], "exits": [2], "entries": [3]})
+    );
+    // one who comes later sees the same
+    let mut late = Viewer::open(&studio).unwrap();
+    assert_eq!(late.wait(|message| message.get("charts").cloned())[0]["steps"], news["steps"]);
+}
+
+#[test]
+fn scenes_and_watched_topics_show_the_newest_message() {
+    let run = Run::start();
+    let studio = studio(&run.socket(), "127.0.0.1:0", None);
+    let mut viewer = Viewer::open(&studio).unwrap();
+    run.note("one");
+    let is_label =
+        |message: &Value, label: &str| (message["scene"]["bodies"][0]["label"] == label).then_some(());
+    viewer.wait(|message| is_label(message, "one"));
+    viewer.send(json!({"type": "watch", "host": "robot", "topic": "test/note"}));
+    let sample = viewer.wait(|message| message.get("sample").cloned());
+    assert_eq!((&sample["message"]["message"], &sample["publisher"]), (&json!("one"), &json!("tester")));
+    run.note("two");
+    viewer.wait(|message| (message["sample"]["message"]["message"] == "two").then_some(()));
+    viewer.send(json!({"type": "watch", "host": "robot", "topic": "no/such"}));
+    let refused = viewer.wait(|message| (message["type"] == "refused").then(|| message.clone()));
+    assert!(refused["reason"].as_str().unwrap().contains("no/such"), "{refused}");
+}
+
+#[test]
+fn a_run_that_ends_is_looked_for_until_it_comes_back() {
+    let mut run = Run::start();
+    let studio = studio(&run.socket(), "127.0.0.1:0", None);
+    let mut viewer = Viewer::open(&studio).unwrap();
+    let first = viewer.wait_for_link("live");
+    run.server = None;
+    let lost = viewer.wait_for_link("lost");
+    assert!(!lost["reason"].as_str().unwrap().is_empty());
+    run.serve();
+    let second = viewer.wait_for_link("live");
+    assert!(second["epoch"].as_u64() > first["epoch"].as_u64());
+}
+
+#[test]
+fn the_end_of_the_studio_reaches_viewers_with_requests_under_way() {
+    let run = Run::start();
+    let studio = studio(&run.socket(), "127.0.0.1:0", None);
+    let mut viewer = Viewer::open(&studio).unwrap();
+    viewer.wait_for_link("live");
+    let end = std::thread::spawn(move || drop(studio));
+    let code = loop {
+        // A request that the studio has not read when it ends.
+        let _ = viewer.0.send(tungstenite::Message::text(r#"{"type": "unwatch"}"#));
+        match viewer.0.read() {
+            Ok(tungstenite::Message::Close(reason)) => break reason.map(|reason| u16::from(reason.code)),
+            Ok(_) => {}
+            Err(error) => panic!("{error}"),
+        }
+    };
+    assert_eq!(code, Some(1001));
+    end.join().unwrap();
+}
+
+#[test]
+fn the_pace_is_set_only_where_a_run_gives_it() {
+    let run = Run::start();
+    let pace = Pace::new(1.0);
+    let paced = studio(&run.socket(), "127.0.0.1:0", Some(pace.clone()));
+    let mut viewer = Viewer::open(&paced).unwrap();
+    assert_eq!(
+        viewer.wait(|message| message.get("pace").cloned()),
+        json!({"is_set_here": true, "factor": 1.0})
+    );
+    viewer.send(json!({"type": "pace", "factor": -3}));
+    viewer.send(json!({"type": "pace", "factor": 4}));
+    assert_eq!(viewer.wait(|message| message.get("pace").cloned())["factor"], json!(4.0));
+    assert_eq!(pace.factor(), 4.0);
+    let own = studio(&run.socket(), "127.0.0.1:0", None);
+    let mut viewer = Viewer::open(&own).unwrap();
+    assert_eq!(viewer.wait(|message| message.get("pace").cloned())["is_set_here"], json!(false));
+}
+
+#[test]
+fn viewers_that_do_not_read_block_no_others_and_their_number_is_limited() {
+    let run = Run::start();
+    let studio = studio(&run.socket(), "127.0.0.1:0", None);
+    let idle: Vec<Viewer> = (0..7).map(|_| Viewer::open(&studio).unwrap()).collect();
+    let mut viewer = Viewer::open(&studio).unwrap();
+    for number in 0..50 {
+        let text = format!("{number}{}", "x".repeat(100_000));
+        run.note(&text);
+        viewer.wait(|message| (message["scene"]["bodies"][0]["label"] == text.as_str()).then_some(()));
+    }
+    assert!(Viewer::open(&studio).err().unwrap().contains("503"));
+    drop(idle);
+}
