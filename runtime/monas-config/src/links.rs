@@ -49,7 +49,7 @@ impl LinkReader<'_> {
         let errors = self.errors();
         let is_refused = self.is_refused(element);
         let values = Values::of(element, self.grammar);
-        let way = values.word("transport", &[("local", false), ("zenoh", true)]).unwrap_or(false);
+        let is_zenoh = values.word("transport", &[("local", false), ("zenoh", true)]).unwrap_or(false);
         let mut draft = PartialLink::default();
         draft.settings.name = values.text("name").unwrap_or_default().to_owned();
         draft.settings.guests = values.flag("guests").unwrap_or_default();
@@ -61,7 +61,7 @@ impl LinkReader<'_> {
         draft.endpoints.realm = values.text("realm").map(str::to_owned);
         draft.endpoints.scouting = values.flag("scouting").unwrap_or_default();
         draft.endpoints.shared_memory = values.flag("shared_memory").unwrap_or(true);
-        self.misplaced(element, way);
+        self.misplaced(element, is_zenoh);
         if let Some(named) = values.given("access") {
             draft.settings.access = self.access(named).unwrap_or_default();
         }
@@ -69,7 +69,7 @@ impl LinkReader<'_> {
         if !is_refused {
             self.contradictions(element, &draft.settings, errors);
         }
-        let transport = match way {
+        let transport = match is_zenoh {
             true => self.zenoh(element, draft.endpoints, &draft.settings.access, errors),
             false => LinkTransport::Local { folder: draft.folder },
         };
@@ -234,10 +234,10 @@ impl LinkReader<'_> {
     /// Reports settings that do not apply to the transport.
     fn misplaced(&mut self, element: &Element, zenoh: bool) {
         let keys: &[&str] = if zenoh { &["folder"] } else { &["realm", "scouting", "shared_memory"] };
-        let way = if zenoh { "zenoh" } else { "local" };
+        let transport = if zenoh { "zenoh" } else { "local" };
         for given in element.attributes() {
             if keys.iter().any(|key| given.is(key)) {
-                let message = format!("`{}` has no effect with the transport `{way}`", given.name);
+                let message = format!("`{}` has no effect with the transport `{transport}`", given.name);
                 let hint = match zenoh {
                     true => "a `folder` is for `transport=\"local\"`",
                     false => "use `transport=\"zenoh\"` to reach other computers",

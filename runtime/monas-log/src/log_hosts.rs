@@ -43,7 +43,7 @@ struct LogPublisherState {
 }
 
 thread_local! {
-    static DESK: RefCell<Option<Arc<Mutex<LogPublisherState>>>> = const { RefCell::new(None) };
+    static CURRENT: RefCell<Option<Arc<Mutex<LogPublisherState>>>> = const { RefCell::new(None) };
 }
 
 impl LogHosts {
@@ -67,7 +67,7 @@ impl LogHosts {
 
     /// Until the guard is dropped, this thread works for these hosts.
     pub fn begin(&self) -> LogHostsGuard {
-        LogHostsGuard(DESK.replace(Some(self.state.clone())))
+        LogHostsGuard(CURRENT.replace(Some(self.state.clone())))
     }
 
     /// Runs a function on this thread for these hosts.
@@ -82,7 +82,7 @@ pub struct LogHostsGuard(Option<Arc<Mutex<LogPublisherState>>>);
 
 impl Drop for LogHostsGuard {
     fn drop(&mut self) {
-        DESK.replace(self.0.take());
+        CURRENT.replace(self.0.take());
     }
 }
 
@@ -90,12 +90,12 @@ impl Drop for LogHostsGuard {
 /// being published are not published.
 pub(crate) fn publish(event: &Event<'_>) {
     // The thread-local is destroyed already when the thread ends.
-    let desk = DESK.try_with(|desk| desk.try_borrow().ok().and_then(|desk| desk.clone()));
-    let Ok(Some(desk)) = desk else { return };
-    match desk.try_lock() {
-        Ok(mut desk) => desk.publish(event),
+    let state = CURRENT.try_with(|state| state.try_borrow().ok().and_then(|state| state.clone()));
+    let Ok(Some(state)) = state else { return };
+    match state.try_lock() {
+        Ok(mut state) => state.publish(event),
         // Formatting a value has panicked before; the next line starts over.
-        Err(TryLockError::Poisoned(desk)) => desk.into_inner().publish(event),
+        Err(TryLockError::Poisoned(state)) => state.into_inner().publish(event),
         Err(TryLockError::WouldBlock) => {}
     }
 }

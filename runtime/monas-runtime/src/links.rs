@@ -49,8 +49,8 @@ impl RunningLink {
             let slots = hub.matching(&rule.topics).map_err(Error::hub)?;
             slots.iter().for_each(|slot| sent[slot.number() as usize] = true);
         }
-        let way = ResolvedTransport::of(transport, &host)?;
-        let link = Link::start(hub, settings, |bridge, inbox| way.connect(bridge, inbox), clock);
+        let transport = ResolvedTransport::of(transport, &host)?;
+        let link = Link::start(hub, settings, |bridge, inbox| transport.connect(bridge, inbox), clock);
         let link = link.map_err(|error| {
             Error::new(ErrorKind::Link, format!("the link `{name}` of `{host}`: {error}")).caused_by(error)
         })?;

@@ -47,7 +47,7 @@ struct ConnectedHost {
 impl RealTimeRun {
     /// Prepares all hosts, then starts the threads.
     pub(crate) fn start(config: RunConfig, seed: u64) -> Result<RealTimeRun, Error> {
-        let PreparedRun { world, stations, factory: crew } = PreparedRun::new(config, seed)?;
+        let PreparedRun { world, stations, factory } = PreparedRun::new(config, seed)?;
         let (line, events) = channel();
         let mut running = RealTimeRun {
             stopper: StopHandle::new(),
@@ -59,7 +59,7 @@ impl RealTimeRun {
             hubs: world.iter().map(|world| world.hub().clone()).collect(),
         };
         let mut hosts = Vec::new();
-        let launched = running.launch(world, stations, &crew, &mut hosts);
+        let launched = running.launch(world, stations, &factory, &mut hosts);
         wake_on_stop(&running.line, &running.stopper);
         let supervisor = Supervisor { hosts, events, stopper: running.stopper.clone(), clock: running.clock };
         if launched.is_err() {
@@ -148,10 +148,10 @@ impl RealTimeRun {
         &mut self,
         world: Option<WorldDriver>,
         stations: Vec<PreparedHost>,
-        crew: &Arc<AgentFactory>,
+        factory: &Arc<AgentFactory>,
         hosts: &mut Vec<RealTimeHost>,
     ) -> Result<(), Error> {
-        let connected = stations.into_iter().map(|station| self.connect_host(station, crew, hosts));
+        let connected = stations.into_iter().map(|station| self.connect_host(station, factory, hosts));
         let connected = connected.collect::<Result<Vec<ConnectedHost>, Error>>()?;
         world.map_or(Ok(()), |world| self.launch_world(world))?;
         for (host, ConnectedHost { agents, body, safe_state }) in hosts.iter_mut().zip(connected) {
@@ -165,7 +165,7 @@ impl RealTimeRun {
     fn connect_host(
         &mut self,
         station: PreparedHost,
-        crew: &Arc<AgentFactory>,
+        factory: &Arc<AgentFactory>,
         hosts: &mut Vec<RealTimeHost>,
     ) -> Result<ConnectedHost, Error> {
         let PreparedHost { hub, body, agents: members, links, context: ground, profiles, configuration } =
@@ -176,7 +176,7 @@ impl RealTimeRun {
         let (place, line) = (hosts.len(), self.line.clone());
         let site =
             HostSite { hub: hub.clone(), place, clock, safe_state: safe_state.clone(), supervisor: line };
-        hosts.push(RealTimeHost::new(site, crew.clone(), ground, profiles, configuration)?);
+        hosts.push(RealTimeHost::new(site, factory.clone(), ground, profiles, configuration)?);
         let agents = hosts[place].connect(members)?;
         let links = links.into_iter().map(|link| RunningLink::start(&hub, link, move || clock.now()));
         let links = links.collect::<Result<Vec<_>, Error>>()?;

@@ -112,7 +112,7 @@ impl RealTimeHost {
     /// A host without agents.
     pub(crate) fn new(
         site: HostSite,
-        crew: Arc<AgentFactory>,
+        factory: Arc<AgentFactory>,
         ground: HostContext,
         profiles: Vec<AgentProfile>,
         configuration: Option<Arc<yase::Source>>,
@@ -128,7 +128,7 @@ impl RealTimeHost {
             handles: Vec::new(),
             removed: Vec::new(),
         };
-        Ok(RealTimeHost { admin: HostAdmin::new(ground, crew, profiles, configuration)?, agents: team })
+        Ok(RealTimeHost { admin: HostAdmin::new(ground, factory, profiles, configuration)?, agents: team })
     }
 
     /// Subscribes agents: their charts are notified of messages from now on.

@@ -60,17 +60,17 @@ impl PreparedRun {
         configs.sort_by(|a, b| (a.team, a.number, &a.name).cmp(&(b.team, b.number, &b.name)));
         let names = configs.iter().map(|host| host.name.as_str());
         distinct("hosts", names.chain(world.iter().map(|world| world.name())))?;
-        let crew = AgentFactory {
+        let factory = AgentFactory {
             registry: with_modules(registry.unwrap_or_else(Registry::linked), &configs)?,
             listeners: ListenerSet::new(listeners),
             observers: SharedObservers::new(observers),
             seed,
             publishers: company,
         };
-        let world = world.map(|world| crew.environment(world)).transpose()?;
-        let binder = Binder::new(&crew.registry)?;
-        let stations = collect_all(configs.into_iter().map(|config| crew.prepare_host(&binder, config)))?;
-        Ok(PreparedRun { world, stations, factory: Arc::new(crew) })
+        let world = world.map(|world| factory.environment(world)).transpose()?;
+        let binder = Binder::new(&factory.registry)?;
+        let stations = collect_all(configs.into_iter().map(|config| factory.prepare_host(&binder, config)))?;
+        Ok(PreparedRun { world, stations, factory: Arc::new(factory) })
     }
 }
 

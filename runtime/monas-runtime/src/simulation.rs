@@ -50,12 +50,12 @@ pub struct Simulation {
 
 impl Simulation {
     pub(crate) fn new(config: RunConfig, seed: u64) -> Result<Simulation, Error> {
-        let PreparedRun { world, stations, factory: crew } = PreparedRun::new(config, seed)?;
+        let PreparedRun { world, stations, factory } = PreparedRun::new(config, seed)?;
         let shown = Arc::new(SimulatedClock::default());
         let mut links = Vec::new();
         let watchdog = StallWatchdog::new(limits(&stations));
         let hosts =
-            stations.into_iter().map(|station| SimulatedHost::new(station, &crew, &shown, &mut links));
+            stations.into_iter().map(|station| SimulatedHost::new(station, &factory, &shown, &mut links));
         let hosts = hosts.collect::<Result<Vec<SimulatedHost>, Error>>()?;
         let hubs = world.iter().map(WorldDriver::hub).chain(hosts.iter().map(SimulatedHost::hub));
         let hosting = LogHosts::simulated(hubs);

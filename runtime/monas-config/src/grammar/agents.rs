@@ -195,11 +195,11 @@ fn module() -> ElementRule {
 
 fn link() -> ElementRule {
     let beat = Kind::Duration { least: Duration::from_millis(1) };
-    let ways = Kind::Word(vec!["local", "zenoh"]);
+    let transports = Kind::Word(vec!["local", "zenoh"]);
     ElementRule::new("link", "a connection to other processes and hosts")
         .attributes([
             attribute("name", Kind::Name, "the name of this end; by default that of the host"),
-            attribute("transport", ways, "local sockets, or zenoh in programs built with it").or("local"),
+            attribute("transport", transports, "local sockets, or zenoh in programs built with it").or("local"),
             attribute(
                 "folder",
                 Kind::Text,

@@ -195,10 +195,10 @@ impl PlanContext<'_> {
         if standing != AgentStatus::Stopped {
             return Err(refusal("E0352", format!("{} has not stopped", named(&profile, place))));
         }
-        let HostAdmin { factory: crew, registry, .. } = self.host;
+        let HostAdmin { factory, registry, .. } = self.host;
         let (names, failed) = (self.names(), |error: Error| build_refusal("E0354", &error));
         let binder = Binder::new(registry).map_err(failed)?;
-        let runner = crew.rebuild_chart(&binder, &profile, place, &self.place(&profile, &names));
+        let runner = factory.rebuild_chart(&binder, &profile, place, &self.place(&profile, &names));
         let charts = vec![runner.map_err(failed)?];
         Ok(update_plan(
             profile,
@@ -290,13 +290,13 @@ impl PlanContext<'_> {
             return Err(refusal_with("E0311", message, "give each agent of a host a unique name"));
         }
         names.extend(setup.agents.iter().map(|agent| agent.name.clone()));
-        let HostAdmin { factory: crew, context: ground, registry, .. } = self.host;
+        let HostAdmin { factory, context: ground, registry, .. } = self.host;
         let failed = |error: Error| build_refusal("E0354", &error);
         let binder = Binder::new(registry).map_err(failed)?;
         let wanted = setup.agents.into_iter().filter(|agent| is_wanted(&agent.name));
         let members = wanted.map(|agent| {
             let profile = AgentProfile::of(&agent);
-            Ok((profile, crew.prepare_agent(&binder, agent, ground, &names, self.now).map_err(failed)?))
+            Ok((profile, factory.prepare_agent(&binder, agent, ground, &names, self.now).map_err(failed)?))
         });
         let members = members.collect::<Result<Vec<_>, ChangeRefusal>>()?;
         Ok(ChangePlan { warnings: diagnostics, step: PlanStep::Launch(members) })
@@ -330,9 +330,9 @@ impl PlanContext<'_> {
             let message = format!("the list of `{}` has no frequency", profile.name);
             return Err(refusal_with("E0305", message, "set its `frequency` first"));
         }
-        let HostAdmin { factory: crew, context: ground, .. } = self.host;
+        let HostAdmin { factory, context: ground, .. } = self.host;
         let part = part(profile.charts.len());
-        let list = Box::new(crew.list((&profile.name, part), profile.policy, more, &ground.hub));
+        let list = Box::new(factory.list((&profile.name, part), profile.policy, more, &ground.hub));
         Ok((profile, AgentUpdate { list: Some(list), ..AgentUpdate::default() }))
     }
 
@@ -402,11 +402,11 @@ impl PlanContext<'_> {
         }
         let place = settings::chart(&profile, &self.change.chart)?;
         let Change { file, text, states, accept_losses, .. } = self.change;
-        let crew = &self.host.factory;
+        let factory = &self.host.factory;
         let failed = |error: Error| build_refusal("E0355", &error);
         let binder = Binder::new(&self.host.registry).map_err(failed)?;
         let (bound, warnings) = match text.is_empty() {
-            true => (crew.generated(&binder, file, profile.semantics).map_err(failed)?, Vec::new()),
+            true => (factory.generated(&binder, file, profile.semantics).map_err(failed)?, Vec::new()),
             false => {
                 let source = Source::new(file, text.clone());
                 let (chart, diagnostics) = aseme_models::statechart_of(&source);
@@ -419,7 +419,7 @@ impl PlanContext<'_> {
         let statechart = bound.chart.statechart().clone();
         let names = self.names();
         let own = profile.charts[place].own.clone();
-        let bound = crew.fitting(bound, &own, &self.place(&profile, &names)).map_err(failed)?;
+        let bound = factory.fitting(bound, &own, &self.place(&profile, &names)).map_err(failed)?;
         let (model, is_generated) = (file.clone(), text.is_empty());
         let compiled = (!is_generated).then(|| binder.model(&bound));
         profile.charts[place] = ChartProfile { model, statechart, compiled, is_generated, own };

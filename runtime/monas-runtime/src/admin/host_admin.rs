@@ -43,7 +43,7 @@ pub(crate) struct HostAdmin {
 impl HostAdmin {
     pub(crate) fn new(
         ground: HostContext,
-        crew: Arc<AgentFactory>,
+        factory: Arc<AgentFactory>,
         profiles: Vec<AgentProfile>,
         configuration: Option<Arc<Source>>,
     ) -> Result<HostAdmin, Error> {
@@ -52,9 +52,9 @@ impl HostAdmin {
             requests: hub.subscriber_of(HostId::LOCAL, CHANGE.path()).map_err(Error::hub)?,
             external_changes: hub.publisher(CHANGE, OUTSIDE).map_err(Error::hub)?,
             replies: hub.publisher(CHANGED, HOST_ITSELF).map_err(Error::hub)?,
-            registry: crew.registry.clone(),
+            registry: factory.registry.clone(),
             context: ground,
-            factory: crew,
+            factory,
             profiles,
             configuration,
         })

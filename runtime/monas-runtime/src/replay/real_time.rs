@@ -311,7 +311,7 @@ impl ThreadReplay {
         let agent = profile.name.clone();
         let ear = OwnOutputTap::new(&agent, thread.part());
         config.observers.push(Box::new(ear.clone()));
-        let PreparedRun { mut stations, factory: crew, .. } = PreparedRun::new(config, REAL_TIME_SEED)?;
+        let PreparedRun { mut stations, factory, .. } = PreparedRun::new(config, REAL_TIME_SEED)?;
         let Some(PreparedHost { hub, agents: mut members, links, context: ground, .. }) = stations.pop()
         else {
             return Err(nothing_to_run(&agent));
@@ -321,7 +321,7 @@ impl ThreadReplay {
         let feed = RecordedInputs::new(ear.clone());
         let member = members.pop().ok_or_else(|| nothing_to_run(&agent))?;
         let repeated = ReplayedThread::new(member, &feed)?.ok_or_else(|| nothing_to_run(&agent))?;
-        let ordered = RecordedChanges::new(ground, crew, profile, thread)?;
+        let ordered = RecordedChanges::new(ground, factory, profile, thread)?;
         let window = MomentComparison::new(&host, &agent);
         let (own, begun, numbers) = (Vec::new(), None, Vec::new());
         Ok(ThreadReplay {

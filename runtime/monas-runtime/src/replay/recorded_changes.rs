@@ -80,11 +80,11 @@ struct RecordedRequest {
 impl RecordedChanges {
     pub(crate) fn new(
         ground: HostContext,
-        crew: Arc<AgentFactory>,
+        factory: Arc<AgentFactory>,
         profile: AgentProfile,
         thread: ThreadPosition,
     ) -> Result<RecordedChanges, Error> {
-        let roster = HostAdmin::new(ground, crew, vec![profile], None)?;
+        let roster = HostAdmin::new(ground, factory, vec![profile], None)?;
         Ok(RecordedChanges {
             admin: roster,
             thread,

@@ -102,7 +102,7 @@ pub(crate) struct ReplayedAgent {
 impl ReplayHost {
     pub(crate) fn new(
         station: PreparedHost,
-        crew: &Arc<AgentFactory>,
+        factory: &Arc<AgentFactory>,
         company: &[RecordedPublisher],
     ) -> Result<ReplayHost, Error> {
         let PreparedHost { hub, agents: members, context: ground, profiles, configuration, .. } = station;
@@ -121,7 +121,7 @@ impl ReplayHost {
         };
         let actors = members.into_iter().map(actor).collect();
         Ok(ReplayHost {
-            admin: HostAdmin::new(ground, crew.clone(), profiles, configuration)?,
+            admin: HostAdmin::new(ground, factory.clone(), profiles, configuration)?,
             hub,
             moved,
             removed: Vec::new(),

@@ -57,8 +57,8 @@ impl SimulatedReplay {
         let spy = OutputCapture::default();
         config.observers.push(Box::new(spy.clone()));
         config.publishers = company.to_vec();
-        let PreparedRun { stations, factory: crew, .. } = PreparedRun::new(config, seed)?;
-        let scenes = stations.into_iter().map(|station| ReplayHost::new(station, &crew, company));
+        let PreparedRun { stations, factory, .. } = PreparedRun::new(config, seed)?;
+        let scenes = stations.into_iter().map(|station| ReplayHost::new(station, &factory, company));
         let mut scenes = scenes.collect::<Result<Vec<ReplayHost>, Error>>()?;
         for produced in spy.take() {
             let scene = scenes.iter_mut().find(|scene| scene.hub.host() == produced.host);

@@ -45,7 +45,7 @@ struct BodyAndAgents {
 impl SimulatedHost {
     pub(crate) fn new(
         station: PreparedHost,
-        crew: &Arc<AgentFactory>,
+        factory: &Arc<AgentFactory>,
         shown: &Arc<SimulatedClock>,
         running: &mut Vec<RunningLink>,
     ) -> Result<SimulatedHost, Error> {
@@ -60,7 +60,7 @@ impl SimulatedHost {
                 ring.store(true, Ordering::Relaxed);
             }
         });
-        let roster = HostAdmin::new(ground, crew.clone(), profiles, configuration)?;
+        let roster = HostAdmin::new(ground, factory.clone(), profiles, configuration)?;
         // Links bring messages at once: what they bring before all of them stand is noted too.
         hub.set_waker(noted.clone());
         let mut linked = Vec::new();

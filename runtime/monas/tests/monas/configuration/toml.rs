@@ -37,8 +37,7 @@ name = "Behavior"
 enable = false
 "#;
 
-/// A table after an array in brackets cannot be added to it, so that the rest is written in one
-/// way.
+/// A table after an array in brackets cannot be added to it, so that the rest has one form.
 const REST: &str = r#"
 [[provider]]
 name = "Sensors"
