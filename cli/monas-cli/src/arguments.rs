@@ -223,6 +223,17 @@ mod tests {
     }
 
     #[test]
+    fn every_help_fits_80_columns() {
+        let mut found = Vec::new();
+        leaves(&Arguments::command(), "monas", &mut found);
+        for (words, command) in found {
+            let help = command.term_width(80).render_long_help().to_string();
+            let wide = help.lines().find(|line| line.chars().count() > 80);
+            assert_eq!(wide, None, "{words}");
+        }
+    }
+
+    #[test]
     fn run_has_defaults() {
         let Command::Run(run) = Arguments::parse_from(["monas", "run"]).command else { panic!("not a run") };
         assert_eq!(run.config, PathBuf::from(DEFAULT_CONFIGURATION));

@@ -131,7 +131,7 @@ pub use grammar::{AttributeRule, ElementRule, Grammar, Identity, Kind};
 pub use layers::{Layers, UnmatchedSetting};
 pub use log_settings::{LogFormat, LogSettings};
 pub use model::load as load_model;
-pub use paths::{locate, read as read_file};
+pub use paths::{locate, read as read_file, shown_name};
 pub use resolve::{Resolved, ResolvedEntry, entries, resolve, resolve_text, sort as sort_diagnostics};
 pub use severity::Severity;
 pub use tree::{Xml, XmlNode};

@@ -22,6 +22,14 @@ pub(crate) fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")
 }
 
+/// The name of a file in messages: its path as given, `<stdin>` for standard input.
+pub fn shown_name(path: &Path) -> String {
+    match is_standard_input(path) {
+        true => STANDARD_INPUT.to_owned(),
+        false => path.display().to_string(),
+    }
+}
+
 /// The text of a file; that of standard input for the path `-`, which is read once.
 ///
 /// # Errors
@@ -39,9 +47,10 @@ pub fn read(path: &Path) -> Result<Arc<Source>, Box<Diagnostic>> {
 }
 
 fn read_up_to(path: &Path, largest: u64) -> Result<Arc<Source>, Box<Diagnostic>> {
-    let (name, content) = match is_standard_input(path) {
-        true => (STANDARD_INPUT.to_owned(), bytes_of(io::stdin(), largest)),
-        false => (path.display().to_string(), fs::File::open(path).and_then(|file| bytes_of(file, largest))),
+    let name = shown_name(path);
+    let content = match is_standard_input(path) {
+        true => bytes_of(io::stdin(), largest),
+        false => fs::File::open(path).and_then(|file| bytes_of(file, largest)),
     };
     match content {
         Ok(bytes) if bytes.len() as u64 > largest => {

@@ -107,7 +107,7 @@ const CONFIGURATION: &str = "configuration";
 /// Checks the configuration as `config check` does.
 fn configuration(arguments: &DoctorArguments) -> (CheckResult, Vec<Diagnostic>) {
     let path = &arguments.config;
-    let name = path.display();
+    let name = monas::config::shown_name(path);
     if !arguments.has_configuration() {
         let hint = "give one: `monas doctor FILE`, or create a project: `monas new my-team`";
         return (CheckResult::warning(CONFIGURATION, format!("there is no {name}"), hint), Vec::new());

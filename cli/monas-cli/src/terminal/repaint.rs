@@ -22,11 +22,13 @@ impl Repaint {
     }
 
     /// On the terminal of the command's progress.
+    #[cfg(feature = "soccer")]
     pub(crate) fn of_progress(console: &CommandOutput<'_>) -> Repaint {
         Repaint { columns: console.bars.as_ref().and_then(|_| table::columns()), rows: 0 }
     }
 
     /// Whether lines replace those shown before.
+    #[cfg(feature = "soccer")]
     pub(crate) const fn replaces(&self) -> bool {
         self.columns.is_some()
     }

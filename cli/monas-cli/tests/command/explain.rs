@@ -73,7 +73,7 @@ fn each_example_gives_its_code() {
             }
         }
     };
-    std::thread::scope(|scope| (0..4).for_each(|_| drop(scope.spawn(work))));
+    std::thread::scope(|scope| (0..2).for_each(|_| drop(scope.spawn(work))));
     let wrong = wrong.into_inner().expect("no thread has panicked");
     assert!(wrong.is_empty(), "examples without their code: {wrong:#?}");
 }

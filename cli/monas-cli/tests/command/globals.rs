@@ -29,6 +29,7 @@ fn a_quiet_command_prints_no_warnings_and_no_remarks() {
         assert_eq!((quiet.code, quiet.err.as_str()), (Some(0), ""), "{quiet:?}");
         assert_eq!(quiet.out, loud.out, "results stay");
     }
+    assert!(loud.out.starts_with("<stdin>: "), "{loud:?}");
     let wrong = given(&["-q", "model", "check", "-"], "Role: a\nLiveness:\na = Stand .\n");
     assert!(wrong.code == Some(3) && wrong.err.contains("error[E0205]"), "{wrong:?}");
     let run = ["run", "config/match.xml", "--seed", "7", "--for", "2s"];

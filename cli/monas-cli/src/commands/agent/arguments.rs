@@ -47,7 +47,10 @@ pub(crate) enum AgentCommand {
     #[command(after_help = "Example: monas agent remove Motion")]
     Remove(OneAgent),
     /// Add an activity to the list of an agent.
-    #[command(after_help = "Example: monas agent add-activity Motion LedHandler colour=red --at 1")]
+    #[command(
+        after_help = "Example: monas agent add-activity Motion LedHandler colour=red --at 1",
+        override_usage = "monas agent add-activity [OPTIONS] <AGENT> <ACTIVITY>\n           [PARAMETER=VALUE]..."
+    )]
     AddActivity {
         /// The agent.
         #[arg(add = ArgValueCandidates::new(agents))]
@@ -89,7 +92,10 @@ pub(crate) enum AgentCommand {
         run: RunSelector,
     },
     /// Replace an activity by another one.
-    #[command(after_help = "Example: monas agent replace-activity Motion LedHandler QuietLedHandler")]
+    #[command(
+        after_help = "Example: monas agent replace-activity Motion LedHandler QuietLedHandler",
+        override_usage = "monas agent replace-activity [OPTIONS] <AGENT> <ACTIVITY> <REPLACEMENT>\n           [PARAMETER=VALUE]..."
+    )]
     ReplaceActivity {
         /// The agent.
         #[arg(add = ArgValueCandidates::new(agents))]

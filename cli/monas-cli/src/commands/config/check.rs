@@ -15,7 +15,7 @@ pub(crate) fn execute(
     let diagnostics = checked_with(config, format, &layers)?;
     report::write(console, format, &diagnostics)?;
     if format == Format::Text {
-        writeln!(console.out, "{}: no errors", config.display())?;
+        writeln!(console.out, "{}: no errors", monas::config::shown_name(config))?;
     }
     Ok(Exit::Success)
 }

@@ -136,7 +136,7 @@ fn text(
             writeln!(
                 console.out,
                 "{}: {what}{}, no errors",
-                path.display(),
+                config::shown_name(path),
                 extent(report.explored.as_ref())
             )?;
         }

@@ -89,7 +89,7 @@ pub(crate) fn text(
     console: &mut CommandOutput<'_>,
 ) -> Result<(), CommandFailure> {
     for CheckedProperty { model, judgement } in judged {
-        let (model, outcome, states) = (model.display(), word(judgement.outcome), judgement.states);
+        let (model, outcome, states) = (config::shown_name(model), word(judgement.outcome), judgement.states);
         writeln!(console.out, "{model}: `{}` {outcome}; {states} states explored", judgement.name)?;
     }
     Ok(())
@@ -102,7 +102,7 @@ pub(crate) fn json(
 ) -> Result<(), CommandFailure> {
     for CheckedProperty { model, judgement } in judged {
         let PropertyResult { name, outcome, states, .. } = judgement;
-        let (model, outcome) = (model.display().to_string(), word(*outcome));
+        let (model, outcome) = (config::shown_name(model), word(*outcome));
         let object = json!({"model": model, "property": name, "outcome": outcome, "states": states});
         writeln!(console.out, "{object}")?;
     }
