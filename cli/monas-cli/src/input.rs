@@ -10,4 +10,4 @@ pub(crate) use configuration::{
 };
 pub(crate) use layers::LayerArguments;
 pub(crate) use model::{valid_chart, valid_model};
-pub(crate) use recorded_run::{chosen_hosts, recorded_hosts, replay, run_of};
+pub(crate) use recorded_run::{chosen_hosts, recorded_charts, recorded_hosts, replay, run_of};
