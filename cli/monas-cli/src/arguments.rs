@@ -25,6 +25,7 @@ use crate::commands::tape::TapeCommand;
 use crate::commands::top::TopArguments;
 #[cfg(unix)]
 use crate::commands::topic::TopicArguments;
+use crate::commands::why::WhyArguments;
 use crate::terminal::GlobalArguments;
 
 /// From a formula to a running robot team.
@@ -103,6 +104,13 @@ pub(crate) enum Command {
     #[cfg(unix)]
     #[command(after_help = "Example: monas studio match.mcap")]
     Studio(StudioArguments),
+    /// Explain why a state was active at a moment of a tape.
+    ///
+    /// Shows the transitions that led to the state, and the fields that their conditions read, with
+    /// the messages as they had been delivered to the agent. A click on a state in the studio of a
+    /// tape shows the same.
+    #[command(after_help = "Example: monas why match.mcap blue-2 --state RightKick --at 22.5")]
+    Why(WhyArguments),
     /// Follow the log of a run, or read it from a tape.
     ///
     /// The lines are the messages on `monas/log` of each robot, whatever the logger's settings keep

@@ -22,3 +22,4 @@ pub(crate) mod tape;
 pub(crate) mod top;
 #[cfg(unix)]
 pub(crate) mod topic;
+pub(crate) mod why;

@@ -66,6 +66,7 @@ fn execute(command: Command, console: &mut CommandOutput<'_>) -> Result<Exit, Co
         Command::Studio(arguments) => commands::studio::execute(&arguments, console),
         Command::Log(arguments) => commands::log::execute(&arguments, console),
         Command::Tape(command) => commands::tape::execute(&command, console),
+        Command::Why(arguments) => commands::why::execute(&arguments, console),
         Command::New(arguments) => commands::new::execute(&arguments, console),
         Command::Deploy(arguments) => commands::deploy::execute(&arguments, console),
         Command::Doctor(arguments) => commands::doctor::execute(&arguments, console),

@@ -12,4 +12,4 @@ pub(crate) use layers::LayerArguments;
 pub(crate) use model::{valid_chart, valid_model};
 #[cfg(feature = "soccer")]
 pub(crate) use recorded_run::recorded_configuration;
-pub(crate) use recorded_run::{chosen_hosts, recorded_hosts, replay, run_of};
+pub(crate) use recorded_run::{chosen_hosts, recorded_charts, recorded_hosts, replay, run_of};

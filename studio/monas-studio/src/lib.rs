@@ -33,12 +33,15 @@
 
 mod access;
 mod asset;
+#[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are followed"))]
 mod chart_view;
 mod error;
 mod http_request;
+#[cfg(unix)]
 mod live_run;
 mod message_decoder;
 mod pace;
+#[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are followed"))]
 mod run_view;
 mod scene;
 mod server;
@@ -49,10 +52,12 @@ mod tape_session;
 mod time;
 mod viewer;
 mod viewer_request;
+mod why;
 
 pub use error::{Error, ErrorKind};
 pub use message_decoder::message_json;
 pub use pace::Pace;
 pub use scene::{Banner, Belief, Body, Ground, GroundMark, Scene, SceneMessages, SceneObject, ScenePicture};
 pub use server::{ListenAddress, Studio, StudioSettings};
-pub use tape_run::TapeChart;
+pub use tape_run::{TapeChart, TapeRun};
+pub use why::{Explanation, ReadValue, TakenSegment, WhyQuestion};

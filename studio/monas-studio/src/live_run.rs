@@ -316,7 +316,7 @@ impl Session for LiveSession {
                 }
                 None
             }
-            ViewerRequest::Seek(_) | ViewerRequest::Step { .. } => None,
+            ViewerRequest::Seek(_) | ViewerRequest::Step { .. } | ViewerRequest::Why { .. } => None,
         }
     }
 

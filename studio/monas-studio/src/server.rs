@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 use std::net::{IpAddr, Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
+#[cfg(unix)]
 use std::path::Path;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -9,18 +10,18 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use monas_tape::Recording;
 use tungstenite::handshake::derive_accept_key;
 
 use crate::access::AccessPolicy;
 use crate::asset::Asset;
 use crate::error::{Error, ErrorKind};
 use crate::http_request::HttpRequest;
+#[cfg(unix)]
 use crate::live_run::LiveRun;
 use crate::pace::Pace;
 use crate::scene::Scene;
 use crate::source::Source;
-use crate::tape_run::{TapeChart, TapeRun};
+use crate::tape_run::TapeRun;
 use crate::viewer;
 
 /// The port that is tried first, and how many after it.
@@ -62,7 +63,7 @@ pub struct StudioSettings {
     /// The address; the first free port from 4810 on of loopback if not given. For any other
     /// address than loopback the page needs a token.
     pub listen: Option<ListenAddress>,
-    /// What is drawn from above.
+    /// What is drawn from above; of a tape, what the tape was opened with.
     pub scene: Option<Arc<dyn Scene>>,
     /// The pace of simulated time, if viewers may set it.
     pub pace: Option<Pace>,
@@ -90,23 +91,18 @@ impl Studio {
     ///
     /// # Errors
     /// The address is not available.
+    #[cfg(unix)]
     pub fn of_run(socket: &Path, settings: StudioSettings) -> Result<Studio, Error> {
         let StudioSettings { listen, scene, pace } = settings;
         Studio::serve(listen, Box::new(LiveRun::new(socket, scene, pace)?))
     }
 
-    /// Serves a tape under a name.
+    /// Serves a tape.
     ///
     /// # Errors
-    /// The tape cannot be read, or the address is not available.
-    pub fn of_tape(
-        name: &str,
-        recording: Recording,
-        charts: &[TapeChart],
-        settings: StudioSettings,
-    ) -> Result<Studio, Error> {
-        let StudioSettings { listen, scene, .. } = settings;
-        Studio::serve(listen, Box::new(TapeRun::new(name, recording, charts, scene)?))
+    /// The address is not available.
+    pub fn of_tape(tape: TapeRun, settings: StudioSettings) -> Result<Studio, Error> {
+        Studio::serve(settings.listen, Box::new(tape))
     }
 
     pub(crate) fn serve(listen: Option<ListenAddress>, source: Box<dyn Source>) -> Result<Studio, Error> {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use monas_tape::{Recording, RecordingItem};
 use serde_json::{Value, json};
+use yase::Statechart;
 
 use crate::chart_view::{ChartKey, seconds};
 use crate::error::{Error, ErrorKind};
@@ -18,8 +19,8 @@ use crate::tape_session::TapeSession;
 /// The number of messages between two moments that are kept.
 const INTERVAL: usize = 20_000;
 
-/// The shapes of a chart of a recorded run.
-#[derive(Clone, PartialEq, Eq, Default, Debug)]
+/// A chart of a recorded run.
+#[derive(Clone, PartialEq, Debug)]
 pub struct TapeChart {
     /// The host of its agent.
     pub host: String,
@@ -29,8 +30,8 @@ pub struct TapeChart {
     pub chart: u32,
     /// The name of its model.
     pub model: String,
-    /// Its shapes, by [`yase_export::to_picture`].
-    pub picture: String,
+    /// The chart.
+    pub statechart: Statechart,
 }
 
 /// A message of a tape.
@@ -41,6 +42,8 @@ pub(crate) struct TapeEntry {
     pub(crate) channel: u32,
     begin: usize,
     size: u32,
+    /// The number of the message among those of its channel, from 1.
+    pub(crate) sequence: u32,
 }
 
 /// The common properties of messages.
@@ -56,13 +59,15 @@ pub(crate) struct TapeChannel {
     pub(crate) is_viewed: bool,
 }
 
-/// An indexed recording, shared by its viewers.
+/// A recording that is read once and indexed, so that each of its moments can be looked at. Clones
+/// share it.
 #[derive(Clone)]
-pub(crate) struct TapeRun(Arc<TapeIndex>);
+pub struct TapeRun(Arc<TapeIndex>);
 
 struct TapeIndex {
     recording: Recording,
     scene: Option<Arc<dyn Scene>>,
+    charts: Vec<TapeChart>,
     channels: Vec<TapeChannel>,
     entries: Vec<TapeEntry>,
     decoder: MessageDecoder,
@@ -74,7 +79,10 @@ struct TapeIndex {
 
 impl TapeRun {
     /// Reads a recording once from begin to end.
-    pub(crate) fn new(
+    ///
+    /// # Errors
+    /// The recording is damaged.
+    pub fn new(
         name: &str,
         recording: Recording,
         charts: &[TapeChart],
@@ -84,6 +92,7 @@ impl TapeRun {
         let mut index = TapeIndex {
             recording,
             scene,
+            charts: charts.to_vec(),
             channels: Vec::new(),
             entries: Vec::new(),
             decoder: MessageDecoder::default(),
@@ -107,12 +116,18 @@ impl TapeRun {
             let range = recording.range_of(&message);
             let time = message.published.as_nanos();
             let size = u32::try_from(range.len()).unwrap_or(u32::MAX);
-            index.entries.push(TapeEntry { time, channel, begin: range.start, size });
+            index.entries.push(TapeEntry {
+                time,
+                channel,
+                begin: range.start,
+                size,
+                sequence: message.sequence,
+            });
             index.note_event(channel, time, message.bytes);
         }
         // By time of publication; equal times stay in the order of the tape.
         index.entries.sort_by_key(|entry| entry.time);
-        let first = index.first_moment(name, charts);
+        let first = index.first_moment(name);
         let mut tape = TapeRun(Arc::new(index));
         let moments = tape.moments(first);
         if let Some(index) = Arc::get_mut(&mut tape.0) {
@@ -133,6 +148,10 @@ impl TapeRun {
 
     pub(crate) fn len(&self) -> usize {
         self.0.entries.len()
+    }
+
+    pub(crate) fn charts(&self) -> &[TapeChart] {
+        &self.0.charts
     }
 
     pub(crate) fn channels(&self) -> &[TapeChannel] {
@@ -234,7 +253,7 @@ impl TapeIndex {
     }
 
     /// The run before its first message.
-    fn first_moment(&self, name: &str, charts: &[TapeChart]) -> TapeMoment {
+    fn first_moment(&self, name: &str) -> TapeMoment {
         let mut view = RunView::default();
         view.begin();
         view.link = Link::Tape;
@@ -245,11 +264,17 @@ impl TapeIndex {
         view.hosts.sort_unstable();
         view.hosts.dedup();
         view.now = self.entries.first().map_or(0, |entry| entry.time);
-        for TapeChart { host, agent, chart, model, picture } in charts {
+        for TapeChart { host, agent, chart, model, statechart } in &self.charts {
             let key = ChartKey { host: host.clone(), agent: agent.clone(), chart: *chart };
-            view.show_chart(key, model, picture);
+            view.show_chart(key, model, &yase_export::to_picture(statechart, &[]));
         }
         TapeMoment::new(view, self.channels.len())
+    }
+}
+
+impl std::fmt::Debug for TapeRun {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "TapeRun({} messages)", self.len())
     }
 }
 

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use serde_json::{Value, json};
+use yase::NodeId;
 
 use crate::chart_view::seconds;
 use crate::run_view::ViewCursor;
@@ -113,6 +114,11 @@ impl Session for TapeSession {
             ViewerRequest::Seek(time) => {
                 let time = ((time * 1e9) as u64).clamp(self.tape.begin(), self.tape.end());
                 self.go_to(self.tape.count_until(time), time);
+            }
+            ViewerRequest::Why { key, node } => {
+                let chart = self.tape.charts().iter().find(|chart| chart.key().text() == key)?;
+                let why = self.tape.explain_until(chart, NodeId(node), self.moment.count);
+                return Some(json!({"type": "why", "key": key, "node": node, "why": why}));
             }
             ViewerRequest::Step { key, is_back } => {
                 self.factor = 0.0;

@@ -15,6 +15,8 @@ pub(crate) enum ViewerRequest {
     Pace(f64),
     /// Another moment of a tape, in seconds.
     Seek(f64),
+    /// Why a state is active, or was last, at the moment of a tape.
+    Why { key: String, node: u32 },
     /// The next step of a chart on a tape, or the one before.
     Step { key: String, is_back: bool },
 }
@@ -31,6 +33,9 @@ impl ViewerRequest {
             // JSON has no infinity
             "pace" if value["factor"].is_null() => Some(ViewerRequest::Pace(f64::INFINITY)),
             "pace" => Some(ViewerRequest::Pace(value["factor"].as_f64().filter(|factor| *factor >= 0.0)?)),
+            "why" => {
+                Some(ViewerRequest::Why { key: word("key")?, node: value["node"].as_u64()?.try_into().ok()? })
+            }
             "step" => Some(ViewerRequest::Step { key: word("key")?, is_back: value["back"].as_bool()? }),
             "seek" => Some(ViewerRequest::Seek(value["seconds"].as_f64().filter(|time| *time >= 0.0)?)),
             _ => None,

@@ -72,6 +72,13 @@ pub(crate) fn build(
     builder.finish(&ways, regions)
 }
 
+impl Statechart {
+    /// The scope of each node, with the numbers of the compiled chart; a chart need not be valid.
+    pub fn scopes(&self) -> Vec<ScopeId> {
+        regions(self, &NodeOrder::new(self)).0
+    }
+}
+
 /// The scope of each node, and the scopes in document order.
 fn regions(chart: &Statechart, layout: &NodeOrder) -> (Vec<ScopeId>, Vec<Scope>) {
     let mut nodes: Vec<NodeId> = chart.nodes().map(|(id, _)| id).collect();

@@ -9,12 +9,10 @@ use std::time::Duration;
 
 use clap::{Args, ValueHint};
 use clap_complete::engine::ArgValueCandidates;
-use monas::{Agent, HostConfig};
-use monas_studio::{ListenAddress, Pace, Scene, Studio, StudioSettings, TapeChart};
+use monas_studio::{ListenAddress, Pace, Scene, Studio, StudioSettings, TapeRun};
 use monas_tape::Recording;
-use yase::Statechart;
 
-use crate::input::recorded_hosts;
+use crate::input::recorded_charts;
 use crate::remote::{RunSelector, connection, runs};
 use crate::terminal::{
     CommandFailure, CommandOutput, Exit, Format, FormatArgument, Interrupt, WallClock, failed, report,
@@ -97,8 +95,8 @@ fn serve_tape(
     console: &mut CommandOutput<'_>,
 ) -> Result<Studio, CommandFailure> {
     let recording = Recording::open(tape).map_err(failed(format))?;
-    let charts = match recorded_hosts(&recording, format) {
-        Ok(hosts) => hosts.iter().flat_map(charts).collect(),
+    let charts = match recorded_charts(&recording, format) {
+        Ok(charts) => charts,
         Err(failure) => {
             failure.report(console);
             report::note(
@@ -110,24 +108,10 @@ fn serve_tape(
         }
     };
     let name = tape.file_name().unwrap_or_default().to_string_lossy();
-    let settings = StudioSettings { listen: listen.listen, scene: scene(), pace: None };
-    let studio = Studio::of_tape(&name, recording, &charts, settings);
+    let tape = TapeRun::new(&name, recording, &charts, scene());
+    let tape = tape.map_err(|error| CommandFailure::failed(format, error))?;
+    let studio = Studio::of_tape(tape, StudioSettings { listen: listen.listen, ..StudioSettings::default() });
     announce(studio.map_err(|error| CommandFailure::failed(format, error))?, console)
-}
-
-/// The charts of a host's agents.
-fn charts(host: &HostConfig) -> impl Iterator<Item = TapeChart> {
-    let of_agent = |agent: &Agent| {
-        let of_chart = |(chart, index): (&Statechart, u32)| TapeChart {
-            host: host.name.clone(),
-            agent: agent.name().to_owned(),
-            chart: index,
-            model: chart.name.clone(),
-            picture: yase_export::to_picture(chart, &[]),
-        };
-        agent.charts().iter().zip(0..).map(of_chart).collect::<Vec<_>>()
-    };
-    host.agents.iter().flat_map(of_agent)
 }
 
 /// What this program draws from above.

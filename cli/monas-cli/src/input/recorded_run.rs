@@ -10,8 +10,9 @@ use monas::replay::{RecordedPublisher, Replay};
 use monas::{Agent, ConfigurationBundle, HostConfig, Registry, Talws};
 #[cfg(feature = "soccer")]
 use monas_match::MatchSource;
+use monas_studio::TapeChart;
 use monas_tape::{CONTINUATION, Channel, Recording, RecordingItem, TapeOverview};
-use yase::Diagnostic;
+use yase::{Diagnostic, Statechart};
 
 use super::configuration::{ConfigurationKind, kind_of};
 use super::layers::{self, LayerArguments};
@@ -153,6 +154,25 @@ pub(crate) fn recorded_hosts(
     let overview = recording.overview().map_err(failed(format))?;
     let run = run_of(&overview).map_err(|message| CommandFailure::Failed(format, message))?;
     configured(recording, &run, format)
+}
+
+/// The charts of a recording, from the recorded configuration and models.
+pub(crate) fn recorded_charts(
+    recording: &Recording,
+    format: Format,
+) -> Result<Vec<TapeChart>, CommandFailure> {
+    let hosts = recorded_hosts(recording, format)?;
+    let of_agent = |host: &HostConfig, agent: &Agent| {
+        let of_chart = |(statechart, chart): (&Statechart, u32)| TapeChart {
+            host: host.name.clone(),
+            agent: agent.name().to_owned(),
+            chart,
+            model: statechart.name.clone(),
+            statechart: statechart.clone(),
+        };
+        agent.charts().iter().zip(0..).map(of_chart).collect::<Vec<_>>()
+    };
+    Ok(hosts.iter().flat_map(|host| host.agents.iter().flat_map(|agent| of_agent(host, agent))).collect())
 }
 
 fn configured(

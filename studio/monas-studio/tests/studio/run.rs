@@ -206,7 +206,7 @@ fn the_end_of_the_studio_reaches_viewers_with_requests_under_way() {
     let studio = studio(&run.socket(), "127.0.0.1:0", None);
     let mut viewer = Viewer::open(&studio).unwrap();
     viewer.wait_for_link("live");
-    let end = std::thread::spawn(move || drop(studio));
+    let end = std::thread::Builder::new().spawn(move || drop(studio)).unwrap();
     let code = loop {
         // A request that the studio has not read when it ends.
         let _ = viewer.0.send(tungstenite::Message::text(r#"{"type": "unwatch"}"#));

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use monas::records::{self, foxglove::Log};
-use monas_studio::{Studio, StudioSettings, TapeChart};
+use monas_studio::{Studio, StudioSettings, TapeChart, TapeRun};
 use monas_tape::{Recording, Tape};
 use narukom::{Hub, Timestamp};
 use serde_json::{Value, json};
@@ -32,12 +32,11 @@ fn record(path: &Path, steps: u32) -> Recording {
 fn open(steps: u32) -> (Studio, Viewer, Value) {
     let folder = tempfile::tempdir().unwrap();
     let recording = record(&folder.path().join("lamp.mcap"), steps);
-    let picture = yase_export::to_picture(&lamp(), &[]);
     let (host, agent, model) = ("robot".into(), "Lamp".into(), "lamp".into());
-    let charts = [TapeChart { host, agent, chart: 0, model, picture }];
+    let charts = [TapeChart { host, agent, chart: 0, model, statechart: lamp() }];
     let listen = Some("127.0.0.1:0".parse().unwrap());
-    let settings = StudioSettings { listen, scene: Some(Arc::new(Notes)), pace: None };
-    let studio = Studio::of_tape("lamp.mcap", recording, &charts, settings).unwrap();
+    let tape = TapeRun::new("lamp.mcap", recording, &charts, Some(Arc::new(Notes))).unwrap();
+    let studio = Studio::of_tape(tape, StudioSettings { listen, ..StudioSettings::default() }).unwrap();
     let mut viewer = Viewer::open(&studio).unwrap();
     let facts = viewer.wait_for_link("tape");
     assert_eq!(facts["name"], "lamp.mcap");

@@ -4,6 +4,7 @@ import type {
   AgentRow,
   ChartNews,
   ChartStep,
+  Explanation,
   Frame,
   Ground,
   LogLine,
@@ -67,6 +68,8 @@ export class StudioClient {
   /** The speed of simulated time, null if it is unlimited; undefined if it is not set here. */
   pace = $state.raw<number | null | undefined>(undefined);
   tape = $state.raw<TapeFacts | null>(null);
+  /** The latest explanation of a tape. */
+  why = $state.raw<{ key: string; node: number; why: Explanation } | null>(null);
 
   #socket: WebSocket | null = null;
   #retry = FIRST_RETRY;
@@ -120,6 +123,11 @@ export class StudioClient {
     this.#send({ type: 'seek', seconds });
   }
 
+  /** Asks why a state is active at the moment of a tape. */
+  askWhy(key: string, node: number): void {
+    this.#send({ type: 'why', key, node });
+  }
+
   step(key: string, back: boolean): void {
     this.#send({ type: 'step', key, back });
   }
@@ -157,6 +165,9 @@ export class StudioClient {
         }
         break;
       }
+      case 'why':
+        this.why = message;
+        break;
       case 'refused':
         this.sample = message;
         break;
@@ -225,6 +236,7 @@ export class StudioClient {
     this.log = [];
     this.scene = null;
     this.tape = null;
+    this.why = null;
     this.#tableTime = 0;
     this.#asked.clear();
     if (this.#watched && this.run) {

@@ -179,6 +179,23 @@ export interface Sample {
   reason?: string;
 }
 
+export interface ReadValue {
+  name: string;
+  value: Json;
+  topic: string | null;
+  publisher: string | null;
+  sequence: number | null;
+  published: number | null;
+}
+
+export interface Explanation {
+  state: string;
+  is_active: boolean;
+  entered: number | null;
+  left: number | null;
+  segments: { source: string; target: string; text: string; reads: ReadValue[] }[];
+}
+
 export interface TapeFacts {
   begin: number;
   end: number;
@@ -207,4 +224,5 @@ export interface Frame {
 export type ServerMessage =
   | Frame
   | { type: 'picture'; key: string; picture: Picture | null }
+  | { type: 'why'; key: string; node: number; why: Explanation }
   | { type: 'refused'; host: string; topic: string; reason: string };
