@@ -16,9 +16,11 @@ pub mod dice;
 mod readmes;
 mod row;
 mod season;
+mod team_play;
 
 pub use row::{MatchRow, play};
 pub use season::{SEASON_LENGTH, SEASON_SEEDS, SHORT_LENGTH, SHORT_SEEDS, SeasonTable, season, short_rows};
+pub use team_play::{PassCounts, StateTime, TeamPlay, TeamPlayObserver};
 
 /// A match file of the season.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -37,9 +39,41 @@ pub const STANDING: Variant = Variant { name: "standing", file: "tests/season/st
 pub const DICE: Variant = Variant { name: "dice", file: "tests/season/dice.xml" };
 /// Blue has no goalie.
 pub const NO_GOALIE: Variant = Variant { name: "no_goalie", file: "tests/season/no_goalie.xml" };
+/// Blue's field players execute the attack protocol.
+pub const ATTACK: Variant = Variant { name: "attack", file: "config/match_attack.xml" };
+/// Red's field players execute the attack protocol.
+pub const ATTACK_RED: Variant = Variant { name: "attack_red", file: "tests/season/attack_red.xml" };
+/// Blue's field players execute the attack protocol, and red stands still.
+pub const ATTACK_STANDING: Variant =
+    Variant { name: "attack_standing", file: "tests/season/attack_standing.xml" };
+
+/// As [`ATTACK`], with a radio that loses 20 % of the messages.
+pub const ATTACK_LOSS20: Variant =
+    Variant { name: "attack_loss20", file: "tests/season/attack_loss20_blue.xml" };
+/// As [`ATTACK_RED`], with a radio that loses 20 % of the messages.
+pub const ATTACK_RED_LOSS20: Variant =
+    Variant { name: "attack_red_loss20", file: "tests/season/attack_loss20_red.xml" };
+/// As [`ATTACK`], with a radio that loses 50 % of the messages.
+pub const ATTACK_LOSS50: Variant =
+    Variant { name: "attack_loss50", file: "tests/season/attack_loss50_blue.xml" };
+/// As [`ATTACK_RED`], with a radio that loses 50 % of the messages.
+pub const ATTACK_RED_LOSS50: Variant =
+    Variant { name: "attack_red_loss50", file: "tests/season/attack_loss50_red.xml" };
 
 /// Every variant.
-pub const VARIANTS: [Variant; 4] = [MATCH, STANDING, DICE, NO_GOALIE];
+pub const VARIANTS: [Variant; 11] = [
+    MATCH,
+    STANDING,
+    DICE,
+    NO_GOALIE,
+    ATTACK,
+    ATTACK_RED,
+    ATTACK_STANDING,
+    ATTACK_LOSS20,
+    ATTACK_RED_LOSS20,
+    ATTACK_LOSS50,
+    ATTACK_RED_LOSS50,
+];
 
 /// The root of the project.
 pub fn root() -> std::path::PathBuf {

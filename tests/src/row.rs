@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use monas_match::{MatchOptions, MatchSource, MatchSummary, TeamSummary};
 
-use crate::{Variant, root};
+use crate::{TeamPlay, TeamPlayObserver, Variant, root};
 
 /// The results of a match for both teams: blue first.
 #[derive(Clone, PartialEq, Debug)]
@@ -32,6 +32,8 @@ pub struct MatchRow {
     pub returns: (u32, f64),
     /// Seconds of play before a robot touched the ball.
     pub first_touch: Option<f64>,
+    /// Passes, kick-offs and crowding.
+    pub team_play: TeamPlay,
     /// The run's hash.
     pub hash: String,
 }
@@ -44,14 +46,17 @@ pub fn play(variant: &Variant, seed: u64, length: Duration) -> Result<MatchRow, 
     let path = root().join(variant.file);
     let plan = MatchSource::load(path, &monas::Registry::linked())
         .map_err(|found| found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))?;
+    let observer = TeamPlayObserver::default();
+    let plan = observer.listen(plan);
     let mut running = plan.start(MatchOptions { seed, record: None }).map_err(|error| error.to_string())?;
     running.advance(length).map_err(|error| error.to_string())?;
+    let team_play = observer.team_play(&running);
     let summary = running.finish().map_err(|error| error.to_string())?;
-    Ok(MatchRow::new(variant, seed, &summary))
+    Ok(MatchRow::new(variant, seed, &summary, team_play))
 }
 
 impl MatchRow {
-    fn new(variant: &Variant, seed: u64, summary: &MatchSummary) -> MatchRow {
+    fn new(variant: &Variant, seed: u64, summary: &MatchSummary, team_play: TeamPlay) -> MatchRow {
         let both = |figure: fn(&TeamSummary) -> u32| [figure(&summary.teams[0]), figure(&summary.teams[1])];
         let sum = |figure: fn(&TeamSummary) -> u32| summary.teams.iter().map(figure).sum();
         MatchRow {
@@ -66,12 +71,15 @@ impl MatchRow {
             actions: [sum(|team| team.actions), sum(|team| team.actions_to_ball)],
             returns: (sum(|team| team.returns), summary.teams.iter().map(|team| team.return_seconds).sum()),
             first_touch: summary.time_to_first_touch.map(|time| time.as_secs_f64()),
+            team_play,
             hash: summary.hash.clone(),
         }
     }
 
-    /// The names of the columns.
-    pub const HEADER: &'static str = "variant    seed  goals  kicks    shots    saves    falls    penalties  to ball  returns        touch  hash";
+    /// The names of the columns. Passes are attempts, those completed, and shots after them;
+    /// `kept` are kick-offs after which the team that took it was the first to kick the ball;
+    /// `rolls` and `crowd` are percentages of the playing time.
+    pub const HEADER: &'static str = "variant            seed  goals  kicks    shots    saves    falls    penalties  to ball  returns        touch  passes           kept   rolls  crowd  hash";
 }
 
 impl fmt::Display for MatchRow {
@@ -83,13 +91,18 @@ impl fmt::Display for MatchRow {
         let hash = self.hash.get(..16).unwrap_or(&self.hash);
         write!(
             f,
-            "{:<10} {:>4}  {:<5}  {:<7}  ",
+            "{:<18} {:>4}  {:<5}  {:<7}  ",
             self.variant,
             self.seed,
             pair(self.goals),
             pair(self.kicks)
         )?;
         write!(f, "{:<7}  {:<7}  {:<7}  ", pair(self.shots), pair(self.saves), pair(self.falls))?;
-        write!(f, "{:<9}  {side:<7}  {returns:<13}  {touch:<5}  {hash}", pair(self.penalties))
+        write!(f, "{:<9}  {side:<7}  {returns:<13}  {touch:<5}  ", pair(self.penalties))?;
+        let TeamPlay { passes, kick_offs, kick_offs_kept, rolling, crowded, .. } = &self.team_play;
+        let [blue, red] = passes.map(|it| format!("{}/{}/{}", it.attempts, it.completed, it.shots));
+        let (passes, kept) = (format!("{blue}:{red}"), format!("{kick_offs_kept}/{kick_offs}"));
+        let percent = |part: &f64| format!("{:.0} %", part * 100.0);
+        write!(f, "{passes:<15}  {kept:<5}  {:<5}  {:<5}  {hash}", percent(rolling), percent(crowded))
     }
 }

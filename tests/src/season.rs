@@ -1,20 +1,24 @@
 //! A season: every variant with many seeds, and bounds on the figures.
 
 use std::fmt::Write as _;
+use std::ops::RangeInclusive;
 use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::time::Duration;
 
-use crate::{DICE, MATCH, MatchRow, NO_GOALIE, STANDING, VARIANTS, Variant, play};
+use crate::{
+    ATTACK, ATTACK_LOSS20, ATTACK_LOSS50, ATTACK_RED, ATTACK_RED_LOSS20, ATTACK_RED_LOSS50, ATTACK_STANDING,
+    DICE, MATCH, MatchRow, NO_GOALIE, PassCounts, STANDING, VARIANTS, Variant, play,
+};
 
 /// The length of a match of the season.
 pub const SEASON_LENGTH: Duration = Duration::from_secs(600);
 /// The seeds of the season's matches.
-pub const SEASON_SEEDS: std::ops::RangeInclusive<u64> = 1..=20;
+pub const SEASON_SEEDS: RangeInclusive<u64> = 1..=20;
 /// The length of the short matches in the tests.
 pub const SHORT_LENGTH: Duration = Duration::from_secs(120);
 /// The seeds of the short matches.
-pub const SHORT_SEEDS: std::ops::RangeInclusive<u64> = 1..=2;
+pub const SHORT_SEEDS: RangeInclusive<u64> = 1..=2;
 
 /// The rows of a season.
 #[derive(Clone, PartialEq, Debug)]
@@ -27,14 +31,23 @@ pub struct SeasonTable {
 /// # Errors
 /// The diagnostics of the files of the season, or the failure.
 pub fn season(report: impl Fn(&MatchRow) + Sync) -> Result<SeasonTable, String> {
+    SeasonTable::play(&VARIANTS, SEASON_SEEDS, SEASON_LENGTH, report)
+}
+
+fn play_all(
+    variants: &[Variant],
+    seeds: RangeInclusive<u64>,
+    length: Duration,
+    report: impl Fn(&MatchRow) + Sync,
+) -> Result<SeasonTable, String> {
     let games: Vec<(Variant, u64)> =
-        VARIANTS.iter().flat_map(|variant| SEASON_SEEDS.map(move |seed| (*variant, seed))).collect();
+        variants.iter().flat_map(|variant| seeds.clone().map(move |seed| (*variant, seed))).collect();
     let next = Mutex::new(games.iter().enumerate());
     let results = Mutex::new(vec![Err(String::from("not played")); games.len()]);
     let play_on = || loop {
         let game = next.lock().unwrap_or_else(PoisonError::into_inner).next();
         let Some((index, (variant, seed))) = game else { return };
-        let row = play(variant, *seed, SEASON_LENGTH);
+        let row = play(variant, *seed, length);
         row.iter().for_each(&report);
         results.lock().unwrap_or_else(PoisonError::into_inner)[index] = row;
     };
@@ -76,6 +89,46 @@ impl FigureCheck {
 }
 
 impl SeasonTable {
+    /// Plays variants with every seed, two at a time.
+    ///
+    /// # Errors
+    /// The diagnostics of the files of the matches, or the failure.
+    pub fn play(
+        variants: &[Variant],
+        seeds: RangeInclusive<u64>,
+        length: Duration,
+        report: impl Fn(&MatchRow) + Sync,
+    ) -> Result<SeasonTable, String> {
+        play_all(variants, seeds, length, report)
+    }
+
+    /// The sums of a variant over its seeds.
+    pub fn sums(&self, variant: &Variant) -> String {
+        let both = |figure: fn(&MatchRow) -> [u32; 2]| {
+            let sum = |team: usize| self.sum(variant, |row| f64::from(figure(row)[team]));
+            format!("{}:{}", sum(0), sum(1))
+        };
+        let passes = |figure: fn(&PassCounts) -> u32| {
+            let sum = |team: usize| self.sum(variant, |row| f64::from(figure(&row.team_play.passes[team])));
+            format!("{}:{}", sum(0), sum(1))
+        };
+        let kept = self.sum(variant, |row| row.team_play.kick_offs_kept.into());
+        let kick_offs = self.sum(variant, |row| row.team_play.kick_offs.into());
+        format!(
+            "goals {}, kicks {}, shots {}, falls {}; passes attempted {}, completed {}, shots after them {}; \
+             kick-offs kept {kept} of {kick_offs}; ball rolls {:.0} %, robots crowd {:.0} %",
+            both(|row| row.goals),
+            both(|row| row.kicks),
+            both(|row| row.shots),
+            both(|row| row.falls),
+            passes(|it| it.attempts),
+            passes(|it| it.completed),
+            passes(|it| it.shots),
+            self.mean(variant, |row| row.team_play.rolling * 100.0),
+            self.mean(variant, |row| row.team_play.crowded * 100.0),
+        )
+    }
+
     /// The rows and the verdicts as text.
     pub fn text(&self) -> String {
         let mut text = String::from("# What every seed comes to: 600 s a match, blue first.\n");
@@ -107,6 +160,11 @@ impl SeasonTable {
         let to_ball = self.sum(&MATCH, |row| row.actions[1].into());
         let returns = self.sum(&MATCH, |row| row.returns.0.into());
         let return_time = self.sum(&MATCH, |row| row.returns.1) / returns.max(1.0);
+        let with_pass = |variant: &Variant, team: usize| {
+            self.of(variant).filter(|row| row.team_play.passes[team].completed > 0).count() as f64
+        };
+        let shots =
+            |variant: &Variant, team: usize| self.sum(variant, |row| row.team_play.passes[team].shots.into());
         vec![
             at_least(
                 "goals of both teams in a match",
@@ -136,7 +194,52 @@ impl SeasonTable {
                 self.mean(&MATCH, |row| row.first_touch.unwrap_or(600.0)),
                 20.0,
             ),
+            at_least(
+                "part of kick-offs after which the team that took it was the first to kick",
+                self.sum(&MATCH, |row| row.team_play.kick_offs_kept.into())
+                    / self.sum(&MATCH, |row| row.team_play.kick_offs.into()).max(1.0),
+                0.5,
+            ),
+            at_most(
+                "part of the time in which two robots crowd",
+                self.mean(&MATCH, |row| row.team_play.crowded),
+                0.4,
+            ),
+            at_least(
+                "part of the goals that extended attackers score against plain ones",
+                self.share(&ATTACK, &ATTACK_RED),
+                0.55,
+            ),
+            at_least(
+                "matches of 40 in which extended attackers completed a pass",
+                with_pass(&ATTACK, 0) + with_pass(&ATTACK_RED, 1),
+                30.0,
+            ),
+            at_least("shots after these passes", shots(&ATTACK, 0) + shots(&ATTACK_RED, 1), 10.0),
+            at_least(
+                "goals of extended attackers against a team that stands still, as a part of plain ones'",
+                self.mean(&ATTACK_STANDING, |row| row.goals[0].into()) / standing.max(1e-9),
+                0.85,
+            ),
+            at_least(
+                "part of the goals of extended attackers, with 20 % of the messages lost",
+                self.share(&ATTACK_LOSS20, &ATTACK_RED_LOSS20),
+                0.38,
+            ),
+            at_least(
+                "part of the goals of extended attackers, with 50 % of the messages lost",
+                self.share(&ATTACK_LOSS50, &ATTACK_RED_LOSS50),
+                0.35,
+            ),
         ]
+    }
+
+    /// The part of the goals that fall for a team which plays blue in one variant and red in
+    /// another.
+    fn share(&self, blue: &Variant, red: &Variant) -> f64 {
+        let goals = |variant, team: usize| self.sum(variant, |row| f64::from(row.goals[team]));
+        let own = goals(blue, 0) + goals(red, 1);
+        own / (own + goals(blue, 1) + goals(red, 0)).max(1.0)
     }
 
     fn of(&self, variant: &Variant) -> impl Iterator<Item = &MatchRow> {

@@ -46,7 +46,7 @@ fn played(path: &Path, seed: u64, seconds: u64) -> (MatchSummary, monas::Statist
 #[test]
 fn no_robot_kicks_when_the_chart_never_takes_that_branch() {
     let folder = tempfile::tempdir().unwrap();
-    let branch = "CONDITION -> kickBall : [Ball.distance <= near\n        \
+    let branch = "CONDITION -> kickBall : [Ball.distance <= near && Ball.speed < still\n        \
                   && abs(Ball.x - kick_x) <= tolerance && abs(abs(Ball.y) - kick_y) <= tolerance]";
     let path = changed(folder.path(), "models/attacker.srm", branch, "CONDITION -> kickBall : [false]");
     for seed in 1..=20 {

@@ -36,6 +36,7 @@
 
 mod events;
 mod exploration;
+mod freshness;
 mod guards;
 mod messages;
 mod profiles;
@@ -146,6 +147,12 @@ pub const CHECKS: &[Check] = {
         of("M26", Exploration, Information, "how large the chart is"),
         of("M27", Exploration, Warning, "a loop in which nothing waits"),
         of("M28", Exploration, Warning, "an event that may wait any number of times"),
+        of(
+            "M29",
+            Structure,
+            Warning,
+            "a guard that reads, right after an activity ended, what is derived elsewhere from what ended it",
+        ),
         of("S01", Roles, Warning, "an activity without a functionality"),
         of("S02", Roles, Warning, "a functionality that no activity uses"),
         of("S03", Roles, Warning, "an activity in no formula"),
@@ -269,6 +276,7 @@ fn charted(
             }
             None => found.extend(messages::names_like_formulas(&subject)),
         }
+        found.extend(settings.world.iter().flat_map(|world| freshness::stale(&subject, world)));
     }
     let can_be_explored = settings.states > 0 && is_ours(&subject) && !found.iter().any(Diagnostic::is_error);
     let (explored, extent) = match can_be_explored {

@@ -44,7 +44,7 @@ pub(crate) use search::GuardModel;
 use search::SatisfiabilitySearch;
 
 /// Limit of alternatives that are searched before the answer is unknown.
-const ALTERNATIVES: usize = 500;
+const ALTERNATIVES: usize = 2_500;
 
 /// The same for the conditions of a whole run.
 const MANY_ALTERNATIVES: usize = 20_000;

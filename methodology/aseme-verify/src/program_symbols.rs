@@ -14,6 +14,8 @@ pub struct ProgramSymbols {
     pub activities: BTreeMap<String, Option<BTreeSet<String>>>,
     /// The paths of the topics that each activity reads, if it declares them.
     pub readers: BTreeMap<String, Option<BTreeSet<String>>>,
+    /// The paths of the topics on whose messages each activity ends, if it waits for any.
+    pub ended_by: BTreeMap<String, BTreeSet<String>>,
     /// The paths of the topics that are published or read outside activities: by bodies or the
     /// runtime.
     pub elsewhere: BTreeSet<String>,

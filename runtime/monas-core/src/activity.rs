@@ -148,6 +148,7 @@ impl<P: IntoProgress, E: Into<BoxError>> IntoProgress for Result<P, E> {
 pub struct Topics {
     declared: bool,
     reads: Vec<&'static str>,
+    ends_on: Vec<&'static str>,
     publishes: Vec<&'static str>,
 }
 
@@ -168,6 +169,16 @@ impl Topics {
         self
     }
 
+    /// Adds a topic that is read and whose messages end the activity. An activity without such a
+    /// topic ends by itself, in the call in which it starts or after a time.
+    ///
+    /// A guard after the activity must not read what is derived from this topic elsewhere: it would
+    /// read what was derived from an older message (M29 of `monas model check`).
+    pub fn ends_on<K>(mut self, topic: narukom::Topic<K>) -> Topics {
+        self.ends_on.push(topic.path());
+        self.reads(topic)
+    }
+
     /// Adds a topic that is published.
     pub fn publishes<K>(mut self, topic: narukom::Topic<K>) -> Topics {
         self.publishes.push(topic.path());
@@ -182,6 +193,11 @@ impl Topics {
     /// The paths of the topics that are read.
     pub fn read_paths(&self) -> &[&'static str] {
         &self.reads
+    }
+
+    /// The paths of the topics whose messages end the activity.
+    pub fn ending_paths(&self) -> &[&'static str] {
+        &self.ends_on
     }
 
     /// The paths of the topics that are published.

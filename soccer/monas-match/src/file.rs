@@ -21,7 +21,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use monas::config::{self, Attribute, Element, Grammar, Layers, Values};
-use monas_sim::{FieldGeometry, FieldSide, MatchRules, Physics, TeamColour, TeamSetup};
+use monas_sim::{FieldGeometry, FieldSide, MatchRules, Physics, Radio, TeamColour, TeamSetup};
 use yase::{Diagnostic, Source, Span};
 
 use crate::grammar;
@@ -34,6 +34,7 @@ pub(crate) struct MatchFile {
     pub(crate) geometry: FieldGeometry,
     pub(crate) physics: Physics,
     pub(crate) rules: MatchRules,
+    pub(crate) radio: Radio,
     pub(crate) teams: Vec<TeamFile>,
 }
 
@@ -60,12 +61,15 @@ pub(crate) fn read(path: &Path, layers: &Layers, diagnostics: &mut Vec<Diagnosti
     let root = files.root(path, "match", diagnostics)?;
     let (field, simulator) = files.environment(&root, path, diagnostics);
     let geometry = geometry(field, files.grammar, diagnostics);
-    let (physics, mut rules) =
-        simulator.map(|root| physics_and_rules(&root, files.grammar)).unwrap_or_default();
+    let (physics, mut rules, radio) =
+        simulator.map(|root| simulator_parts(&root, files.grammar)).unwrap_or_default();
+    if let Err(error) = radio.validate() {
+        diagnostics.push(root.error("E0405", root.name_span(), error.to_string()));
+    }
     set_half(&mut rules, Values::of(&root, files.grammar).duration("half"), &root, diagnostics);
     let team = |team| read_team(team, path, files.grammar, diagnostics);
     let teams = root.children_named("team").filter_map(team).collect();
-    let file = MatchFile { geometry, physics, rules, teams };
+    let file = MatchFile { geometry, physics, rules, radio, teams };
     check(&file, &root, diagnostics);
     Some(file)
 }
@@ -78,7 +82,7 @@ pub(crate) fn elements(path: &Path, layers: &Layers, diagnostics: &mut Vec<Diagn
     let (field, simulator) = files.environment(&root, path, diagnostics);
     let nowhere = |name: &str| Element::new(name, root.source());
     let mut simulator = simulator.unwrap_or_else(|| nowhere("simulator"));
-    for part in ["physics", "rules"] {
+    for part in ["physics", "rules", "radio"] {
         if simulator.children_named(part).next().is_none() {
             simulator = simulator.with_children([nowhere(part)]);
         }
@@ -220,8 +224,8 @@ fn geometry(field: Option<Element>, grammar: &Grammar, diagnostics: &mut Vec<Dia
     geometry
 }
 
-fn physics_and_rules(root: &Element, grammar: &Grammar) -> (Physics, MatchRules) {
-    let (mut physics, mut rules) = (Physics::default(), MatchRules::default());
+fn simulator_parts(root: &Element, grammar: &Grammar) -> (Physics, MatchRules, Radio) {
+    let (mut physics, mut rules, mut radio) = (Physics::default(), MatchRules::default(), Radio::default());
     for part in root.children_named("physics") {
         parameters::from_children(part, grammar, |key, value| {
             let _ = physics.set(key, value);
@@ -232,7 +236,12 @@ fn physics_and_rules(root: &Element, grammar: &Grammar) -> (Physics, MatchRules)
             let _ = rules.set(key, value);
         });
     }
-    (physics, rules)
+    for part in root.children_named("radio") {
+        parameters::from_children(part, grammar, |key, value| {
+            let _ = radio.set(key, value);
+        });
+    }
+    (physics, rules, radio)
 }
 
 fn set_half(

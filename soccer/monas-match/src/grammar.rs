@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use monas::config::{AttributeRule, ElementRule, Grammar, Identity, Kind};
-use monas_sim::{FieldGeometry, MatchRules, Parameter, Physics};
+use monas_sim::{FieldGeometry, MatchRules, Parameter, Physics, Radio};
 
 /// The roots of a robot's role.
 pub(crate) const ROLE: [&str; 3] = ["agent", "provider", "link"];
@@ -13,10 +13,12 @@ pub fn of_matches() -> Grammar {
     let simulator =
         ElementRule::new("simulator", "every number of the simulator that is not to keep its default")
             .child("physics")
-            .child("rules");
+            .child("rules")
+            .child("radio");
     let parts = [
         ("physics", "how bodies, ball and cameras behave", Physics::keys()),
         ("rules", "the referee's rules", MatchRules::keys()),
+        ("radio", "how the radio carries the messages of a team", Radio::keys()),
     ];
     let grammar = Grammar::agents().root(game()).with(team()).with(robot()).root(field()).root(simulator);
     parts.into_iter().fold(grammar, |grammar, (name, doc, keys)| part(grammar, name, doc, keys))

@@ -39,6 +39,7 @@ pub fn simulator_file() -> String {
     );
     section(&mut text, "physics", monas_sim::Physics::keys());
     section(&mut text, "rules", monas_sim::MatchRules::keys());
+    section(&mut text, "radio", monas_sim::Radio::keys());
     text.push_str("</simulator>\n");
     text
 }

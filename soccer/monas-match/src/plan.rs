@@ -8,7 +8,7 @@ use monas::config::{self, Element, Grammar, Layers};
 use monas::{
     Agent, ChartListener, ConfigurationBundle, HostConfig, LinkConfig, Module, Registry, RunHash, Talws,
 };
-use monas_sim::{FieldGeometry, MatchRules, Physics, Setup, SharedField, SimulatedWorld, TeamSetup};
+use monas_sim::{FieldGeometry, MatchRules, Physics, Radio, Setup, SharedField, SimulatedWorld, TeamSetup};
 use monas_tape::Tape;
 use yase::{Diagnostic, Source};
 
@@ -121,6 +121,7 @@ pub struct MatchPlan {
     geometry: FieldGeometry,
     physics: Physics,
     rules: MatchRules,
+    radio: Radio,
     teams: [TeamSetup; 2],
     robots: Vec<RobotPlan>,
     registry: Registry,
@@ -173,6 +174,7 @@ impl MatchPlan {
             geometry: file.geometry,
             physics: file.physics,
             rules: file.rules,
+            radio: file.radio,
             teams,
             robots,
             registry,
@@ -276,6 +278,7 @@ impl MatchPlan {
             field: self.geometry,
             physics: self.physics,
             rules: self.rules,
+            radio: self.radio,
             teams: self.teams,
             robots: lineup.collect(),
             seed,

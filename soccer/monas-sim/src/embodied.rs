@@ -44,7 +44,7 @@ impl SharedField {
     pub fn new(world: SimulatedWorld) -> SharedField {
         let placements =
             world.robots().iter().map(|robot| Placement { count: 1, pose: robot.pose }).collect();
-        let air = RadioChannel::new(world.robots());
+        let air = RadioChannel::new(world.robots(), world.radio().clone(), world.seed());
         SharedField { world: Arc::new(Mutex::new(SharedWorld { world, placements, air, seen_events: 0 })) }
     }
 
@@ -63,6 +63,11 @@ impl SharedField {
     /// Gives write access to the world, for tests and exercises.
     pub fn change<T>(&self, change: impl FnOnce(&mut SimulatedWorld) -> T) -> T {
         change(&mut self.lock().world)
+    }
+
+    /// The number of radio messages that each team has sent.
+    pub fn messages_sent(&self) -> [u32; 2] {
+        self.lock().air.sent()
     }
 
     /// The body of a robot, by its index in the world.

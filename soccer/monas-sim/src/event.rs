@@ -50,6 +50,22 @@ pub enum EventKind {
         /// The robot that kicked.
         robot: usize,
     },
+    /// A ball that a robot kicked is touched next by a team mate.
+    Pass {
+        /// The robot that kicked.
+        from: usize,
+        /// The robot that received it.
+        to: usize,
+        /// Time since the kick, s.
+        after: f64,
+        /// Distance from the place of the kick, m.
+        length: f64,
+    },
+    /// The shot that was just reported was made by a robot that had received a pass.
+    ShotAfterPass {
+        /// The robot that shot.
+        robot: usize,
+    },
     /// A shot that the goalie touched and that is no goal.
     Save {
         /// The goalie.

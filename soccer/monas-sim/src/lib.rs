@@ -8,9 +8,9 @@
 //! - [`SimulatedWorld`] is the whole simulation. [`SimulatedWorld::step`] advances it by [`STEP`];
 //!   between steps each robot gets a [`Command`], and its sensors and cameras are read into
 //!   [`Senses`].
-//! - [`Setup`] configures a world: [`FieldGeometry`], [`Physics`] and [`MatchRules`] are plain
-//!   structs of documented numbers that a configuration file can set by name; [`TeamSetup`] and
-//!   [`RobotSetup`] are the line-up.
+//! - [`Setup`] configures a world: [`FieldGeometry`], [`Physics`], [`MatchRules`] and [`Radio`] are
+//!   plain structs of documented numbers that a configuration file can set by name; [`TeamSetup`]
+//!   and [`RobotSetup`] are the line-up.
 //! - [`Referee`] keeps states, clock, score and penalties; it sends an [`Announcement`] to each
 //!   robot.
 //! - [`SimulationEvent`]s report what happened, [`Statistics`] counts it, [`render_svg`] and
@@ -95,8 +95,10 @@ mod geometry;
 mod lineup;
 pub mod messages;
 mod parameters;
+mod passes;
 mod physics;
 mod pose;
+mod radio;
 mod referee;
 mod restart;
 mod return_tracker;
@@ -126,6 +128,7 @@ pub use lineup::{FieldSide, GoalColour, RobotSetup, Side, TeamColour, TeamSetup}
 pub use parameters::Parameter;
 pub use physics::Physics;
 pub use pose::{Pose, Vector, Velocity, normalize_angle};
+pub use radio::Radio;
 pub use referee::{Announcement, GameState, Penalty, Referee};
 pub use rules::MatchRules;
 pub use senses::{Buttons, Senses};

@@ -1,8 +1,8 @@
 //! Configuration of a world.
 
-use crate::{FieldGeometry, FieldSide, MatchRules, Physics, RobotSetup, TeamColour, TeamSetup};
+use crate::{FieldGeometry, FieldSide, MatchRules, Physics, Radio, RobotSetup, TeamColour, TeamSetup};
 
-/// Configuration of a world: field, physics, rules, teams and random seed.
+/// Configuration of a world: field, physics, rules, radio, teams and random seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setup {
     /// The field.
@@ -11,6 +11,8 @@ pub struct Setup {
     pub physics: Physics,
     /// The rules.
     pub rules: MatchRules,
+    /// The radio.
+    pub radio: Radio,
     /// The two teams.
     pub teams: [TeamSetup; 2],
     /// The robots of both teams, in the order of their indices.
@@ -29,6 +31,7 @@ impl Setup {
             field: FieldGeometry::default(),
             physics: Physics::default(),
             rules: MatchRules::default(),
+            radio: Radio::default(),
             teams: [
                 team(1, "Blue", TeamColour::Blue, FieldSide::Left),
                 team(2, "Red", TeamColour::Red, FieldSide::Right),

@@ -29,19 +29,22 @@ pub(crate) struct ShotTracker {
 
 impl ShotTracker {
     /// Checks a ball that `robot` has just struck; the robot's team attacks the goal at `attacks`.
+    /// Returns whether it is a shot.
     pub(crate) fn strike(
         &mut self,
         robot: usize,
         attacks: FieldSide,
         scene: &WorldView<'_>,
         events: &mut Vec<EventKind>,
-    ) {
+    ) -> bool {
         self.resolve(events);
-        if meets_goal(attacks, scene) {
+        let is_shot = meets_goal(attacks, scene);
+        if is_shot {
             self.pending =
                 Some(PendingShot { robot, team: scene.robots[robot].team, goalie: None, age: 0.0 });
             events.push(EventKind::Shot { robot });
         }
+        is_shot
     }
 
     /// Updates the shot for one step.

@@ -59,7 +59,7 @@ pub(crate) struct WorldView<'a> {
 
 impl WorldView<'_> {
     /// The robots on the field, with their indices.
-    pub(crate) fn on_field(&self) -> impl Iterator<Item = (usize, &RobotState)> {
+    pub(crate) fn on_field(&self) -> impl Iterator<Item = (usize, &RobotState)> + Clone {
         self.robots.iter().enumerate().filter(|(_, robot)| robot.on_field)
     }
 

@@ -2,15 +2,22 @@
 //!
 //! Possession: the robot nearest to the ball has it, if it is upright and within 0.3 m. A shot is a
 //! kick whose line crosses the goal's mouth; a save is a shot that the goalie touched and that is
-//! no goal. A goal counts for the robot that shot, even if the ball was deflected. A fall is the
-//! loss of balance of an upright robot; intentional dives and falls are actions, counted
-//! separately.
+//! no goal. A pass is a kick after which a team mate is the next to touch the ball, wanted or not.
+//! Robots crowd while the middles of any two are closer than 0.35 m. A goal counts for the robot
+//! that shot, even if the ball was deflected. A fall is the loss of balance of an upright robot;
+//! intentional dives and falls are actions, counted separately.
 
-use crate::state::WorldView;
+use crate::state::{RobotState, WorldView};
 use crate::{EventKind, STEP};
 
 /// A robot that is farther from the ball than this does not possess it, m.
 pub const POSSESSION_DISTANCE: f64 = 0.3;
+
+/// Two robots that are closer than this crowd, m.
+const CROWDING_DISTANCE: f64 = 0.35;
+
+/// A ball that is slower than this lies still, m/s.
+const ROLLING_SPEED: f64 = 0.05;
 
 /// Counts of a robot, or the sums of a team.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -25,6 +32,10 @@ pub struct PlayCounts {
     pub strikes: u32,
     /// Shots on the goal.
     pub shots: u32,
+    /// Kicks after which a team mate was the next to touch the ball.
+    pub passes: u32,
+    /// Shots of a robot that had received a pass.
+    pub shots_after_pass: u32,
     /// Shots saved by the goalie.
     pub saves: u32,
     /// Unintentional falls.
@@ -53,6 +64,8 @@ pub struct Statistics {
     first_touches: u32,
     first_touch_time: f64,
     playing_time: f64,
+    rolling_time: f64,
+    crowded_time: f64,
 }
 
 impl Statistics {
@@ -86,6 +99,16 @@ impl Statistics {
         self.playing_time
     }
 
+    /// Time in PLAYING in which the ball moved, s.
+    pub fn rolling_time(&self) -> f64 {
+        self.rolling_time
+    }
+
+    /// Time in PLAYING in which two robots crowded, s.
+    pub fn crowded_time(&self) -> f64 {
+        self.crowded_time
+    }
+
     pub(crate) fn record(&mut self, event: &EventKind) {
         match *event {
             EventKind::FirstTouch { after, .. } => {
@@ -97,6 +120,8 @@ impl Statistics {
                 self.robots[robot].strikes += u32::from(struck);
             }
             EventKind::Shot { robot } => self.robots[robot].shots += 1,
+            EventKind::Pass { from, .. } => self.robots[from].passes += 1,
+            EventKind::ShotAfterPass { robot } => self.robots[robot].shots_after_pass += 1,
             EventKind::Save { robot } => self.robots[robot].saves += 1,
             EventKind::Goal { team, robot, own_goal } => self.record_goal(team, robot, own_goal),
             EventKind::Fall { robot } => self.robots[robot].falls += 1,
@@ -121,6 +146,12 @@ impl Statistics {
     /// Counts one step of play.
     pub(crate) fn observe(&mut self, scene: &WorldView<'_>) {
         self.playing_time += STEP;
+        if scene.ball.velocity.norm() > ROLLING_SPEED {
+            self.rolling_time += STEP;
+        }
+        if is_crowded(scene) {
+            self.crowded_time += STEP;
+        }
         let mut holder = None;
         let mut least = POSSESSION_DISTANCE;
         for (index, robot) in scene.on_field().filter(|(_, robot)| robot.phase.is_upright()) {
@@ -146,6 +177,17 @@ impl Statistics {
     }
 }
 
+/// Whether the middles of two robots on the field are closer than [`CROWDING_DISTANCE`].
+fn is_crowded(scene: &WorldView<'_>) -> bool {
+    let mut robots = scene.on_field();
+    std::iter::from_fn(|| {
+        let (_, one) = robots.next()?;
+        let near = |other: &RobotState| (one.pose.position - other.pose.position).norm() < CROWDING_DISTANCE;
+        Some(robots.clone().any(|(_, other)| near(other)))
+    })
+    .any(|crowds| crowds)
+}
+
 impl PlayCounts {
     fn plus(self, other: &PlayCounts) -> PlayCounts {
         PlayCounts {
@@ -154,6 +196,8 @@ impl PlayCounts {
             kicks: self.kicks + other.kicks,
             strikes: self.strikes + other.strikes,
             shots: self.shots + other.shots,
+            passes: self.passes + other.passes,
+            shots_after_pass: self.shots_after_pass + other.shots_after_pass,
             saves: self.saves + other.saves,
             falls: self.falls + other.falls,
             penalties: self.penalties + other.penalties,

@@ -3,6 +3,7 @@
 use crate::arena::{Arena, BallObstacle};
 use crate::body::{BodyEvent, SimulatedBody};
 use crate::camera::CameraView;
+use crate::passes::PassTracker;
 use crate::pose::{Vector, rotate, shortened};
 use crate::referee::Referee;
 use crate::return_tracker::ReturnTracker;
@@ -12,7 +13,7 @@ use crate::snapshot::Snapshot;
 use crate::state::GOALIE;
 use crate::{
     Announcement, BallState, Buttons, Command, Error, ErrorKind, EventKind, FieldGeometry, GameState,
-    MatchRules, Physics, Pose, RobotSetup, RobotState, STEP, Senses, Setup, Side, SimulationEvent,
+    MatchRules, Physics, Pose, Radio, RobotSetup, RobotState, STEP, Senses, Setup, Side, SimulationEvent,
     Statistics, TeamSetup, lineup, restart,
 };
 
@@ -21,6 +22,8 @@ use crate::{
 /// The same setup and the same commands between the same steps give the same bits.
 pub struct SimulatedWorld {
     rules: MatchRules,
+    radio: Radio,
+    seed: u64,
     teams: [TeamSetup; 2],
     now: Snapshot,
     arena: Arena,
@@ -28,6 +31,7 @@ pub struct SimulatedWorld {
     sensors: Vec<SensorState>,
     referee: Referee,
     shots: ShotTracker,
+    passes: PassTracker,
     returns: ReturnTracker,
     statistics: Statistics,
     events: Vec<SimulationEvent>,
@@ -52,10 +56,11 @@ impl SimulatedWorld {
     /// [`OutOfRange`](ErrorKind::OutOfRange) and [`Inconsistent`](ErrorKind::Inconsistent) for
     /// parameters, [`Lineup`](ErrorKind::Lineup) for teams and robots.
     pub fn new(setup: Setup) -> Result<Self, Error> {
-        let Setup { field, physics, rules, teams, robots, seed } = setup;
+        let Setup { field, physics, rules, radio, teams, robots, seed } = setup;
         field.validate()?;
         physics.validate()?;
         rules.validate()?;
+        radio.validate()?;
         let team_of = lineup::check(&teams, &robots)?;
         let path = |robot: &RobotSetup| format!("robot/{}/{}", robot.team, robot.number);
         let count = robots.len();
@@ -66,6 +71,7 @@ impl SimulatedWorld {
             sensors: robots.iter().map(|robot| SensorState::new(seed, &path(robot))).collect(),
             now: Snapshot::new(field, physics, &robots, &team_of),
             shots: ShotTracker::default(),
+            passes: PassTracker::default(),
             returns: ReturnTracker::new(count),
             statistics: Statistics::new(&team_of),
             events: Vec::with_capacity(1024),
@@ -73,6 +79,8 @@ impl SimulatedWorld {
             kicks: RandomStream::new(seed, "kicks"),
             steps: 0,
             rules,
+            radio,
+            seed,
             teams,
         };
         world.place_for_kick_off();
@@ -160,6 +168,16 @@ impl SimulatedWorld {
     /// The rules of this match.
     pub fn rules(&self) -> &MatchRules {
         &self.rules
+    }
+
+    /// The numbers of the radio.
+    pub fn radio(&self) -> &Radio {
+        &self.radio
+    }
+
+    /// The seed of all random numbers.
+    pub fn seed(&self) -> u64 {
+        self.seed
     }
 
     /// The teams, in the order of their indices.
@@ -269,7 +287,10 @@ impl SimulatedWorld {
         self.referee.note_kick(robot);
         let team = self.now.robots[robot].team;
         let attacks = self.referee.defends()[1 - team];
-        self.shots.strike(robot, attacks, &self.now.scene(), &mut self.decisions);
+        let is_shot = self.shots.strike(robot, attacks, &self.now.scene(), &mut self.decisions);
+        if self.passes.strike(robot, &self.now.scene()) && is_shot {
+            self.decisions.push(EventKind::ShotAfterPass { robot });
+        }
     }
 
     fn note_act(&mut self, robot: usize, side: Side, dive: bool) {
@@ -333,15 +354,21 @@ impl SimulatedWorld {
         let before = self.decisions.len();
         self.referee.update(&scene, self.shots.shooter(), &mut self.decisions);
         self.shots.follow(&scene, &mut self.decisions);
+        self.passes.follow(&scene, &mut self.decisions);
         self.returns.follow(self.referee.defends(), &scene, &mut self.decisions);
         if self.referee.state() == GameState::Playing {
             self.statistics.observe(&scene);
         }
         let decided = &self.decisions[before..];
-        if decided.iter().any(|event| matches!(event, EventKind::Goal { .. })) {
+        let is_goal = decided.iter().any(|event| matches!(event, EventKind::Goal { .. }));
+        let ends = is_goal || decided.iter().any(ends_play);
+        if is_goal {
             self.shots.goal();
-        } else if decided.iter().any(ends_play) {
+        } else if ends {
             self.shots.resolve(&mut self.decisions);
+        }
+        if ends {
+            self.passes.forget();
         }
     }
 

@@ -18,5 +18,6 @@ pub mod lights;
 pub mod localisation;
 pub mod motion;
 pub mod obstacles;
+pub mod report_budget;
 pub mod support;
 pub mod walk;

@@ -18,7 +18,7 @@
 //! body/sensors --Sensors--> sensors --+
 //! body/sightings ---------------------+--Vision--> ball, pose, robots   what is known
 //! body/heard, ball, pose, motion --TeamRadio--> team, body/said         what the team knows
-//! team, ball, pose, robots --AttackWatch--> attack                      how an attack of two stands
+//! team, ball, pose, robots --AssessAttack--> attack                     how an attack of two stands
 //! SearchBall, TrackBall, WalkTowardsBall, ... --> motion, head          what is wanted
 //! motion, head, leds --MotionController--> body/actuators               what is done
 //! ```
@@ -35,9 +35,9 @@
 //! perception and the radio reports of its team mates ([`TeamReport`]); its chart reads the result
 //! ([`Attack`]) in its guards. No player has information that a real robot could not have.
 //!
-//! **The goalkeeper's return** is not part of a dive: MotionController gets every fallen robot up,
-//! and the next activity, TrackBall or SearchBall, walks the goalkeeper ([`GameState::goalkeeper`])
-//! back between its posts.
+//! **No activity knows its player.** None reads the player's number or role: an activity does one
+//! thing, whichever chart calls it. The goalkeeper's chart calls KeepGoal and ReturnToGoal, which
+//! also walk it back between its posts after a dive.
 //!
 //! All frames are named: the robot's has x ahead and y to the left; the field's is that of the
 //! player's own team, with x towards the goal to attack. Values are in SI units and radians. No

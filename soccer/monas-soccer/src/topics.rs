@@ -28,7 +28,7 @@ narukom::topic! {
     pub LEDS: State<LedRequest> = "soccer/leds";
     /// Reports of team mates, published by TeamRadio.
     pub TEAM: State<Team> = "soccer/team";
-    /// State of the attack protocol, published by AttackWatch.
+    /// State of the attack protocol, published by AssessAttack.
     pub ATTACK: State<Attack> = "soccer/attack";
     /// Reset of Vision, requested by SendCalibration.
     pub CALIBRATION: State<Calibration> = "soccer/calibration";

@@ -2,8 +2,9 @@
 
 use ::monas::generated::Instance;
 use ::monas_soccer::activities::{
-    AlignWithBall, LedHandler, LeftKick, MotionController, RightKick, RobotController, SearchBall,
-    SendCalibration, Sensors, Stand, TrackBall, Vision, WaitForBallMessage, WalkTowardsBall,
+    AlignWithBall, LedHandler, LeftKick, LookAtGoal, MotionController, RightKick, RobotController,
+    SearchBall, SendCalibration, Sensors, Stand, SupportMate, TrackBall, TurnAround, Vision,
+    WaitForBallMessage, WalkTowardsBall, WalkTowardsCentre,
 };
 
 use super::states::State;
@@ -20,9 +21,13 @@ pub(crate) fn instances() -> Vec<Instance> {
         Instance::of::<Vision>(State::Vision),
         Instance::of::<WaitForBallMessage>(State::WaitForBallMessage),
         Instance::of::<SearchBall>(State::SearchBall),
+        Instance::of::<TurnAround>(State::TurnAround),
+        Instance::of::<WalkTowardsCentre>(State::WalkTowardsCentre),
         Instance::of::<TrackBall>(State::TrackBall),
+        Instance::of::<LookAtGoal>(State::LookAtGoal),
         Instance::of::<WalkTowardsBall>(State::WalkTowardsBall),
         Instance::of::<AlignWithBall>(State::AlignWithBall),
+        Instance::of::<SupportMate>(State::SupportMate),
         Instance::of::<LeftKick>(State::LeftKick),
         Instance::of::<RightKick>(State::RightKick),
     ]

@@ -22,11 +22,13 @@ pub fn chart() -> Result<TypedChart, Vec<Diagnostic>> {
 fn words(chart: &mut TypedChartBuilder) {
     chart.reads(messages::GAME_STATE, SourceDeclaration::own("soccer/game_state", "GameState"));
     chart.reads(messages::BALL, SourceDeclaration::own("soccer/ball", "Ball"));
+    chart.reads(messages::POSE, SourceDeclaration::own("soccer/pose", "Pose"));
     chart.starts(timers::robot_timeout, "robot_timeout");
     chart.starts(timers::led_timeout, "led_timeout");
     chart.starts(timers::motion_timeout, "motion_timeout");
     chart.starts(timers::sensors_timeout, "sensors_timeout");
     chart.starts(timers::vision_timeout, "vision_timeout");
+    chart.starts(timers::glance_timeout, "glance_timeout");
     chart.starts(timers::decision_timeout, "decision_timeout");
     chart.calls(functions::abs, "abs");
     chart.means("PlayerState", "PLAYING", values::PLAYING);
@@ -34,6 +36,14 @@ fn words(chart: &mut TypedChartBuilder) {
     chart.constant("kick_x", constants::kick_x);
     chart.constant("kick_y", constants::kick_y);
     chart.constant("tolerance", constants::tolerance);
+    chart.constant("nearer", constants::nearer);
+    chart.constant("look", constants::look);
+    chart.constant("wander", constants::wander);
+    chart.constant("central", constants::central);
+    chart.constant("certain", constants::certain);
+    chart.constant("quiet", constants::quiet);
+    chart.constant("still", constants::still);
+    chart.constant("seen", constants::seen);
 }
 
 /// The states and connectors, in the order of the document.
@@ -263,88 +273,136 @@ fn states(chart: &mut TypedChartBuilder) {
     chart.add(State::WaitForBallMessage, State::decision, NodeKind::Basic, "WaitForBallMessage");
     chart.activity(State::WaitForBallMessage, "WaitForBallMessage");
     chart.add(
-        State::__open__SearchBall__or__takeAction__close__,
+        State::__open__search__or__takeAction__close__,
         State::decision,
         NodeKind::Or,
-        "(SearchBall|takeAction)",
+        "(search|takeAction)",
     );
     chart.add(State::END__of__decision, State::decision, NodeKind::End, "");
     chart.add(
-        State::START__of____open__SearchBall__or__takeAction__close__,
-        State::__open__SearchBall__or__takeAction__close__,
+        State::START__of____open__search__or__takeAction__close__,
+        State::__open__search__or__takeAction__close__,
         NodeKind::Start,
         "",
     );
     chart.add(
-        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
-        State::__open__SearchBall__or__takeAction__close__,
+        State::CONDITION__of____open__search__or__takeAction__close__,
+        State::__open__search__or__takeAction__close__,
+        NodeKind::Condition,
+        "",
+    );
+    chart.add(State::search, State::__open__search__or__takeAction__close__, NodeKind::Or, "search");
+    chart.add(State::takeAction, State::__open__search__or__takeAction__close__, NodeKind::Or, "takeAction");
+    chart.add(
+        State::END__of____open__search__or__takeAction__close__,
+        State::__open__search__or__takeAction__close__,
+        NodeKind::End,
+        "",
+    );
+    chart.add(State::START__of__search, State::search, NodeKind::Start, "");
+    chart.add(State::SearchBall, State::search, NodeKind::Basic, "SearchBall");
+    chart.activity(State::SearchBall, "SearchBall");
+    chart.add(State::__opt__roam__end__, State::search, NodeKind::Or, "[roam]");
+    chart.add(State::END__of__search, State::search, NodeKind::End, "");
+    chart.add(State::START__of____opt__roam__end__, State::__opt__roam__end__, NodeKind::Start, "");
+    chart.add(State::CONDITION__of____opt__roam__end__, State::__opt__roam__end__, NodeKind::Condition, "");
+    chart.add(State::roam, State::__opt__roam__end__, NodeKind::Or, "roam");
+    chart.add(State::START__of__roam, State::roam, NodeKind::Start, "");
+    chart.add(State::CONDITION__of__roam, State::roam, NodeKind::Condition, "");
+    chart.add(State::TurnAround, State::roam, NodeKind::Basic, "TurnAround");
+    chart.activity(State::TurnAround, "TurnAround");
+    chart.add(State::WalkTowardsCentre, State::roam, NodeKind::Basic, "WalkTowardsCentre");
+    chart.activity(State::WalkTowardsCentre, "WalkTowardsCentre");
+    chart.add(State::END__of__roam, State::roam, NodeKind::End, "");
+    chart.add(State::END__of____opt__roam__end__, State::__opt__roam__end__, NodeKind::End, "");
+    chart.add(State::START__of__takeAction, State::takeAction, NodeKind::Start, "");
+    chart.add(
+        State::__open__TrackBall__or__LookAtGoal__close__,
+        State::takeAction,
+        NodeKind::Or,
+        "(TrackBall|LookAtGoal)",
+    );
+    chart.add(
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
+        State::takeAction,
+        NodeKind::Or,
+        "(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)",
+    );
+    chart.add(State::END__of__takeAction, State::takeAction, NodeKind::End, "");
+    chart.add(
+        State::START__of____open__TrackBall__or__LookAtGoal__close__,
+        State::__open__TrackBall__or__LookAtGoal__close__,
+        NodeKind::Start,
+        "",
+    );
+    chart.add(
+        State::CONDITION__of____open__TrackBall__or__LookAtGoal__close__,
+        State::__open__TrackBall__or__LookAtGoal__close__,
         NodeKind::Condition,
         "",
     );
     chart.add(
-        State::SearchBall,
-        State::__open__SearchBall__or__takeAction__close__,
+        State::TrackBall,
+        State::__open__TrackBall__or__LookAtGoal__close__,
         NodeKind::Basic,
-        "SearchBall",
+        "TrackBall",
     );
-    chart.activity(State::SearchBall, "SearchBall");
+    chart.activity(State::TrackBall, "TrackBall");
     chart.add(
-        State::takeAction,
-        State::__open__SearchBall__or__takeAction__close__,
-        NodeKind::Or,
-        "takeAction",
+        State::LookAtGoal,
+        State::__open__TrackBall__or__LookAtGoal__close__,
+        NodeKind::Basic,
+        "LookAtGoal",
     );
+    chart.activity(State::LookAtGoal, "LookAtGoal");
     chart.add(
-        State::END__of____open__SearchBall__or__takeAction__close__,
-        State::__open__SearchBall__or__takeAction__close__,
+        State::END__of____open__TrackBall__or__LookAtGoal__close__,
+        State::__open__TrackBall__or__LookAtGoal__close__,
         NodeKind::End,
         "",
     );
-    chart.add(State::START__of__takeAction, State::takeAction, NodeKind::Start, "");
-    chart.add(State::TrackBall, State::takeAction, NodeKind::Basic, "TrackBall");
-    chart.activity(State::TrackBall, "TrackBall");
     chart.add(
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
-        State::takeAction,
-        NodeKind::Or,
-        "(WalkTowardsBall|AlignWithBall|kickBall)",
-    );
-    chart.add(State::END__of__takeAction, State::takeAction, NodeKind::End, "");
-    chart.add(
-        State::START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         NodeKind::Start,
         "",
     );
     chart.add(
-        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         NodeKind::Condition,
         "",
     );
     chart.add(
         State::WalkTowardsBall,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         NodeKind::Basic,
         "WalkTowardsBall",
     );
     chart.activity(State::WalkTowardsBall, "WalkTowardsBall");
     chart.add(
         State::AlignWithBall,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         NodeKind::Basic,
         "AlignWithBall",
     );
     chart.activity(State::AlignWithBall, "AlignWithBall");
     chart.add(
         State::kickBall,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         NodeKind::Or,
         "kickBall",
     );
     chart.add(
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::SupportMate,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
+        NodeKind::Basic,
+        "SupportMate",
+    );
+    chart.activity(State::SupportMate, "SupportMate");
+    chart.add(
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         NodeKind::End,
         "",
     );

@@ -49,26 +49,64 @@ pub(crate) fn from_Vision_to_Vision(world: &World<'_>) -> GuardResult {
     )
 }
 
-/// From `CONDITION` in `(SearchBall|takeAction)` to `SearchBall`: `[!Ball.found]`
-pub(crate) fn from_CONDITION_to_SearchBall(world: &World<'_>) -> GuardResult {
+/// From `CONDITION` in `(search|takeAction)` to `search`: `[!Ball.found]`
+pub(crate) fn from_CONDITION_to_search(world: &World<'_>) -> GuardResult {
     Ok(!holds(world.latest(messages::BALL)?.found)?)
 }
 
-/// From `CONDITION` in `(SearchBall|takeAction)` to `takeAction`: `[Ball.found]`
+/// From `CONDITION` in `(search|takeAction)` to `takeAction`: `[Ball.found]`
 pub(crate) fn from_CONDITION_to_takeAction(world: &World<'_>) -> GuardResult {
     holds(world.latest(messages::BALL)?.found)
 }
 
-/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall)` to `WalkTowardsBall`: `[Ball.distance > near]`
-pub(crate) fn from_CONDITION_to_WalkTowardsBall(world: &World<'_>) -> GuardResult {
-    more(world.latest(messages::BALL)?.distance, constants::near)
+/// From `CONDITION` in `roam` to `WalkTowardsCentre`: `[Ball.age > wander && (abs(Pose.x) > central || abs(Pose.y) > central)]`
+pub(crate) fn from_CONDITION_to_WalkTowardsCentre(world: &World<'_>) -> GuardResult {
+    all!(
+        more(world.latest(messages::BALL)?.age, constants::wander)?,
+        any!(
+            more(
+                world.call(functions::abs, &[given(world.latest(messages::POSE)?.x)?])?,
+                constants::central,
+            )?,
+            more(
+                world.call(functions::abs, &[given(world.latest(messages::POSE)?.y)?])?,
+                constants::central,
+            )?,
+        )?,
+    )
 }
 
-/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall)` to `AlignWithBall`: `[Ball.distance <= near && (abs(Ball.x - kick_x) > tolerance || abs(abs(Ball.y) - kick_y) > tolerance)]`
+/// From `CONDITION` in `[roam]` to `roam`: `[Ball.age >= look]`
+pub(crate) fn from_CONDITION_to_roam(world: &World<'_>) -> GuardResult {
+    at_least(world.latest(messages::BALL)?.age, constants::look)
+}
+
+/// From `CONDITION` in `(TrackBall|LookAtGoal)` to `LookAtGoal`: `[glance_timeout && Pose.confidence < certain && Ball.distance > quiet && Ball.speed < still && Ball.age < seen]`
+pub(crate) fn from_CONDITION_to_LookAtGoal(world: &World<'_>) -> GuardResult {
+    all!(
+        world.is_over(timers::glance_timeout),
+        less(world.latest(messages::POSE)?.confidence, constants::certain)?,
+        more(world.latest(messages::BALL)?.distance, constants::quiet)?,
+        less(world.latest(messages::BALL)?.speed, constants::still)?,
+        less(world.latest(messages::BALL)?.age, constants::seen)?,
+    )
+}
+
+/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)` to `WalkTowardsBall`: `[Ball.distance > near && Ball.mate_lead <= nearer && !Ball.in_own_area]`
+pub(crate) fn from_CONDITION_to_WalkTowardsBall(world: &World<'_>) -> GuardResult {
+    all!(
+        more(world.latest(messages::BALL)?.distance, constants::near)?,
+        at_most(world.latest(messages::BALL)?.mate_lead, constants::nearer)?,
+        !holds(world.latest(messages::BALL)?.in_own_area)?,
+    )
+}
+
+/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)` to `AlignWithBall`: `[Ball.distance <= near && (Ball.speed >= still || abs(Ball.x - kick_x) > tolerance || abs(abs(Ball.y) - kick_y) > tolerance)]`
 pub(crate) fn from_CONDITION_to_AlignWithBall(world: &World<'_>) -> GuardResult {
     all!(
         at_most(world.latest(messages::BALL)?.distance, constants::near)?,
         any!(
+            at_least(world.latest(messages::BALL)?.speed, constants::still)?,
             more(
                 world.call(functions::abs, &[minus(world.latest(messages::BALL)?.x, constants::kick_x)?])?,
                 constants::tolerance,
@@ -87,10 +125,11 @@ pub(crate) fn from_CONDITION_to_AlignWithBall(world: &World<'_>) -> GuardResult 
     )
 }
 
-/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall)` to `kickBall`: `[Ball.distance <= near && abs(Ball.x - kick_x) <= tolerance && abs(abs(Ball.y) - kick_y) <= tolerance]`
+/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)` to `kickBall`: `[Ball.distance <= near && Ball.speed < still && abs(Ball.x - kick_x) <= tolerance && abs(abs(Ball.y) - kick_y) <= tolerance]`
 pub(crate) fn from_CONDITION_to_kickBall(world: &World<'_>) -> GuardResult {
     all!(
         at_most(world.latest(messages::BALL)?.distance, constants::near)?,
+        less(world.latest(messages::BALL)?.speed, constants::still)?,
         at_most(
             world.call(functions::abs, &[minus(world.latest(messages::BALL)?.x, constants::kick_x)?])?,
             constants::tolerance,
@@ -104,6 +143,17 @@ pub(crate) fn from_CONDITION_to_kickBall(world: &World<'_>) -> GuardResult {
                 )?],
             )?,
             constants::tolerance,
+        )?,
+    )
+}
+
+/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)` to `SupportMate`: `[Ball.distance > near && (Ball.mate_lead > nearer || Ball.in_own_area)]`
+pub(crate) fn from_CONDITION_to_SupportMate(world: &World<'_>) -> GuardResult {
+    all!(
+        more(world.latest(messages::BALL)?.distance, constants::near)?,
+        any!(
+            more(world.latest(messages::BALL)?.mate_lead, constants::nearer)?,
+            holds(world.latest(messages::BALL)?.in_own_area)?,
         )?,
     )
 }

@@ -120,49 +120,87 @@ pub enum State {
     START__of__decision,
     /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/WaitForBallMessage`
     WaitForBallMessage,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)`
-    __open__SearchBall__or__takeAction__close__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)`
+    __open__search__or__takeAction__close__,
     /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/END`
     END__of__decision,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/START`
-    START__of____open__SearchBall__or__takeAction__close__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/CONDITION`
-    CONDITION__of____open__SearchBall__or__takeAction__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/SearchBall`
-    SearchBall,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/START`
+    START__of____open__search__or__takeAction__close__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/CONDITION`
+    CONDITION__of____open__search__or__takeAction__close__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search`
+    search,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction`
     takeAction,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/END`
-    END__of____open__SearchBall__or__takeAction__close__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/START`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/END`
+    END__of____open__search__or__takeAction__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/START`
+    START__of__search,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/SearchBall`
+    SearchBall,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]`
+    __opt__roam__end__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/END`
+    END__of__search,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/START`
+    START__of____opt__roam__end__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/CONDITION`
+    CONDITION__of____opt__roam__end__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam`
+    roam,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/START`
+    START__of__roam,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/CONDITION`
+    CONDITION__of__roam,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/TurnAround`
+    TurnAround,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/WalkTowardsCentre`
+    WalkTowardsCentre,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/END`
+    END__of__roam,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/END`
+    END__of____opt__roam__end__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/START`
     START__of__takeAction,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/TrackBall`
-    TrackBall,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall)`
-    __open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/END`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)`
+    __open__TrackBall__or__LookAtGoal__close__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)`
+    __open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/END`
     END__of__takeAction,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall)/START`
-    START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall)/CONDITION`
-    CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall)/WalkTowardsBall`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/START`
+    START__of____open__TrackBall__or__LookAtGoal__close__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/CONDITION`
+    CONDITION__of____open__TrackBall__or__LookAtGoal__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/TrackBall`
+    TrackBall,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/LookAtGoal`
+    LookAtGoal,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/END`
+    END__of____open__TrackBall__or__LookAtGoal__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)/START`
+    START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)/CONDITION`
+    CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)/WalkTowardsBall`
     WalkTowardsBall,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall)/AlignWithBall`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)/AlignWithBall`
     AlignWithBall,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall)/kickBall`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)/kickBall`
     kickBall,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall)/END`
-    END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall)/kickBall/START`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)/SupportMate`
+    SupportMate,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)/END`
+    END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)/kickBall/START`
     START__of__kickBall,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall)/kickBall/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)/kickBall/CONDITION`
     CONDITION__of__kickBall,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall)/kickBall/LeftKick`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)/kickBall/LeftKick`
     LeftKick,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall)/kickBall/RightKick`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)/kickBall/RightKick`
     RightKick,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall)/kickBall/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)/kickBall/END`
     END__of__kickBall,
 }
 

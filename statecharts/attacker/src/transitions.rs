@@ -129,74 +129,117 @@ pub(crate) fn transitions(chart: &mut TypedChartBuilder) {
     );
     chart.guard(guards::from_Vision_to_Vision);
     chart.connect(State::START__of__decision, State::WaitForBallMessage, "");
-    chart.connect(State::WaitForBallMessage, State::__open__SearchBall__or__takeAction__close__, "");
-    chart.connect(State::__open__SearchBall__or__takeAction__close__, State::END__of__decision, "");
+    chart.connect(State::WaitForBallMessage, State::__open__search__or__takeAction__close__, "");
+    chart.connect(State::__open__search__or__takeAction__close__, State::END__of__decision, "");
     chart.connect(
-        State::START__of____open__SearchBall__or__takeAction__close__,
-        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
+        State::START__of____open__search__or__takeAction__close__,
+        State::CONDITION__of____open__search__or__takeAction__close__,
         "",
     );
     chart.connect(
-        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
-        State::SearchBall,
+        State::CONDITION__of____open__search__or__takeAction__close__,
+        State::search,
         "[!Ball.found]",
     );
-    chart.guard(guards::from_CONDITION_to_SearchBall);
+    chart.guard(guards::from_CONDITION_to_search);
     chart.connect(
-        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
+        State::CONDITION__of____open__search__or__takeAction__close__,
         State::takeAction,
         "[Ball.found]",
     );
     chart.guard(guards::from_CONDITION_to_takeAction);
-    chart.connect(State::takeAction, State::END__of____open__SearchBall__or__takeAction__close__, "");
-    chart.connect(State::SearchBall, State::END__of____open__SearchBall__or__takeAction__close__, "");
-    chart.connect(State::START__of__takeAction, State::TrackBall, "");
+    chart.connect(State::takeAction, State::END__of____open__search__or__takeAction__close__, "");
+    chart.connect(State::search, State::END__of____open__search__or__takeAction__close__, "");
+    chart.connect(State::START__of__search, State::SearchBall, "");
+    chart.connect(State::SearchBall, State::__opt__roam__end__, "");
+    chart.connect(State::__opt__roam__end__, State::END__of__search, "");
+    chart.connect(State::START__of__roam, State::CONDITION__of__roam, "");
+    chart.connect(State::CONDITION__of__roam, State::TurnAround, "");
     chart.connect(
-        State::TrackBall,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::CONDITION__of__roam,
+        State::WalkTowardsCentre,
+        "[Ball.age > wander && (abs(Pose.x) > central || abs(Pose.y) > central)]",
+    );
+    chart.guard(guards::from_CONDITION_to_WalkTowardsCentre);
+    chart.connect(State::WalkTowardsCentre, State::END__of__roam, "");
+    chart.connect(State::TurnAround, State::END__of__roam, "");
+    chart.connect(State::START__of____opt__roam__end__, State::CONDITION__of____opt__roam__end__, "");
+    chart.connect(State::CONDITION__of____opt__roam__end__, State::roam, "[Ball.age >= look]");
+    chart.guard(guards::from_CONDITION_to_roam);
+    chart.connect(State::CONDITION__of____opt__roam__end__, State::END__of____opt__roam__end__, "");
+    chart.connect(State::roam, State::END__of____opt__roam__end__, "");
+    chart.connect(State::START__of__takeAction, State::__open__TrackBall__or__LookAtGoal__close__, "");
+    chart.connect(
+        State::__open__TrackBall__or__LookAtGoal__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         "",
     );
     chart.connect(
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         State::END__of__takeAction,
         "",
     );
     chart.connect(
-        State::START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
-        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::START__of____open__TrackBall__or__LookAtGoal__close__,
+        State::CONDITION__of____open__TrackBall__or__LookAtGoal__close__,
+        "",
+    );
+    chart.connect(State::CONDITION__of____open__TrackBall__or__LookAtGoal__close__, State::TrackBall, "");
+    chart.connect(
+        State::CONDITION__of____open__TrackBall__or__LookAtGoal__close__,
+        State::LookAtGoal,
+        "[glance_timeout && Pose.confidence < certain && Ball.distance > quiet && Ball.speed < still && Ball.age < seen] / StartTimeout(glance_timeout, 3000ms)",
+    );
+    chart.guard(guards::from_CONDITION_to_LookAtGoal);
+    chart.connect(State::LookAtGoal, State::END__of____open__TrackBall__or__LookAtGoal__close__, "");
+    chart.connect(State::TrackBall, State::END__of____open__TrackBall__or__LookAtGoal__close__, "");
+    chart.connect(
+        State::START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         "",
     );
     chart.connect(
-        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         State::WalkTowardsBall,
-        "[Ball.distance > near]",
+        "[Ball.distance > near && Ball.mate_lead <= nearer && !Ball.in_own_area]",
     );
     chart.guard(guards::from_CONDITION_to_WalkTowardsBall);
     chart.connect(
-        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         State::AlignWithBall,
-        "[Ball.distance <= near && (abs(Ball.x - kick_x) > tolerance || abs(abs(Ball.y) - kick_y) > tolerance)]",
+        "[Ball.distance <= near && (Ball.speed >= still || abs(Ball.x - kick_x) > tolerance || abs(abs(Ball.y) - kick_y) > tolerance)]",
     );
     chart.guard(guards::from_CONDITION_to_AlignWithBall);
     chart.connect(
-        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         State::kickBall,
-        "[Ball.distance <= near && abs(Ball.x - kick_x) <= tolerance && abs(abs(Ball.y) - kick_y) <= tolerance]",
+        "[Ball.distance <= near && Ball.speed < still && abs(Ball.x - kick_x) <= tolerance && abs(abs(Ball.y) - kick_y) <= tolerance]",
     );
     chart.guard(guards::from_CONDITION_to_kickBall);
     chart.connect(
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
+        State::SupportMate,
+        "[Ball.distance > near && (Ball.mate_lead > nearer || Ball.in_own_area)]",
+    );
+    chart.guard(guards::from_CONDITION_to_SupportMate);
+    chart.connect(
+        State::SupportMate,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
+        "",
+    );
+    chart.connect(
         State::kickBall,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         "",
     );
     chart.connect(
         State::AlignWithBall,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         "",
     );
     chart.connect(
         State::WalkTowardsBall,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__close__,
         "",
     );
     chart.connect(State::START__of__kickBall, State::CONDITION__of__kickBall, "");

@@ -11,6 +11,22 @@ pub(crate) mod constants {
     pub(crate) const kick_y: f64 = 0.05;
     /// `tolerance`
     pub(crate) const tolerance: f64 = 0.025;
+    /// `nearer`
+    pub(crate) const nearer: f64 = 0.3;
+    /// `look`
+    pub(crate) const look: f64 = 2.5;
+    /// `wander`
+    pub(crate) const wander: f64 = 13.0;
+    /// `central`
+    pub(crate) const central: f64 = 0.5;
+    /// `certain`
+    pub(crate) const certain: f64 = 0.85;
+    /// `quiet`
+    pub(crate) const quiet: f64 = 0.7;
+    /// `still`
+    pub(crate) const still: f64 = 0.3;
+    /// `seen`
+    pub(crate) const seen: f64 = 0.6;
 }
 
 /// The functions that expressions call.
@@ -31,6 +47,8 @@ pub(crate) mod messages {
     pub(crate) const GAME_STATE: Source<::monas_soccer::GameState> = Source::new(0);
     /// `soccer/ball`
     pub(crate) const BALL: Source<::monas_soccer::Ball> = Source::new(1);
+    /// `soccer/pose`
+    pub(crate) const POSE: Source<::monas_soccer::Pose> = Source::new(2);
 }
 
 /// The timers.
@@ -48,8 +66,10 @@ pub(crate) mod timers {
     pub(crate) const sensors_timeout: Timer = Timer(3);
     /// `vision_timeout`
     pub(crate) const vision_timeout: Timer = Timer(4);
+    /// `glance_timeout`
+    pub(crate) const glance_timeout: Timer = Timer(5);
     /// `decision_timeout`
-    pub(crate) const decision_timeout: Timer = Timer(5);
+    pub(crate) const decision_timeout: Timer = Timer(6);
 }
 
 /// The values of enumerations.

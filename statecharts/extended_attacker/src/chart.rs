@@ -23,11 +23,13 @@ fn words(chart: &mut TypedChartBuilder) {
     chart.reads(messages::GAME_STATE, SourceDeclaration::own("soccer/game_state", "GameState"));
     chart.reads(messages::BALL, SourceDeclaration::own("soccer/ball", "Ball"));
     chart.reads(messages::ATTACK, SourceDeclaration::own("soccer/attack", "Attack"));
+    chart.reads(messages::POSE, SourceDeclaration::own("soccer/pose", "Pose"));
     chart.starts(timers::robot_timeout, "robot_timeout");
     chart.starts(timers::led_timeout, "led_timeout");
     chart.starts(timers::motion_timeout, "motion_timeout");
     chart.starts(timers::sensors_timeout, "sensors_timeout");
     chart.starts(timers::vision_timeout, "vision_timeout");
+    chart.starts(timers::glance_timeout, "glance_timeout");
     chart.starts(timers::decision_timeout, "decision_timeout");
     chart.calls(functions::abs, "abs");
     chart.means("AttackPart", "CENTER", values::CENTER);
@@ -37,6 +39,14 @@ fn words(chart: &mut TypedChartBuilder) {
     chart.constant("kick_x", constants::kick_x);
     chart.constant("kick_y", constants::kick_y);
     chart.constant("tolerance", constants::tolerance);
+    chart.constant("nearer", constants::nearer);
+    chart.constant("look", constants::look);
+    chart.constant("wander", constants::wander);
+    chart.constant("central", constants::central);
+    chart.constant("certain", constants::certain);
+    chart.constant("quiet", constants::quiet);
+    chart.constant("still", constants::still);
+    chart.constant("seen", constants::seen);
 }
 
 /// The states and connectors, in the order of the document.
@@ -266,147 +276,210 @@ fn states(chart: &mut TypedChartBuilder) {
     chart.add(State::WaitForBallMessage, State::decision, NodeKind::Basic, "WaitForBallMessage");
     chart.activity(State::WaitForBallMessage, "WaitForBallMessage");
     chart.add(
-        State::__open__SearchBall__or__takeAction__close__,
+        State::__open__search__or__takeAction__close__,
         State::decision,
         NodeKind::Or,
-        "(SearchBall|takeAction)",
+        "(search|takeAction)",
     );
     chart.add(State::END__of__decision, State::decision, NodeKind::End, "");
     chart.add(
-        State::START__of____open__SearchBall__or__takeAction__close__,
-        State::__open__SearchBall__or__takeAction__close__,
+        State::START__of____open__search__or__takeAction__close__,
+        State::__open__search__or__takeAction__close__,
         NodeKind::Start,
         "",
     );
     chart.add(
-        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
-        State::__open__SearchBall__or__takeAction__close__,
+        State::CONDITION__of____open__search__or__takeAction__close__,
+        State::__open__search__or__takeAction__close__,
         NodeKind::Condition,
         "",
     );
+    chart.add(State::search, State::__open__search__or__takeAction__close__, NodeKind::Or, "search");
+    chart.add(State::takeAction, State::__open__search__or__takeAction__close__, NodeKind::Or, "takeAction");
     chart.add(
-        State::SearchBall,
-        State::__open__SearchBall__or__takeAction__close__,
-        NodeKind::Basic,
-        "SearchBall",
-    );
-    chart.activity(State::SearchBall, "SearchBall");
-    chart.add(
-        State::takeAction,
-        State::__open__SearchBall__or__takeAction__close__,
-        NodeKind::Or,
-        "takeAction",
-    );
-    chart.add(
-        State::END__of____open__SearchBall__or__takeAction__close__,
-        State::__open__SearchBall__or__takeAction__close__,
+        State::END__of____open__search__or__takeAction__close__,
+        State::__open__search__or__takeAction__close__,
         NodeKind::End,
         "",
     );
+    chart.add(State::START__of__search, State::search, NodeKind::Start, "");
+    chart.add(State::SearchBall, State::search, NodeKind::Basic, "SearchBall");
+    chart.activity(State::SearchBall, "SearchBall");
+    chart.add(State::AssessAttack__of__search, State::search, NodeKind::Basic, "AssessAttack");
+    chart.activity(State::AssessAttack__of__search, "AssessAttack");
+    chart.add(State::__opt__roam__end__, State::search, NodeKind::Or, "[roam]");
+    chart.add(State::END__of__search, State::search, NodeKind::End, "");
+    chart.add(State::START__of____opt__roam__end__, State::__opt__roam__end__, NodeKind::Start, "");
+    chart.add(State::CONDITION__of____opt__roam__end__, State::__opt__roam__end__, NodeKind::Condition, "");
+    chart.add(State::roam, State::__opt__roam__end__, NodeKind::Or, "roam");
+    chart.add(State::START__of__roam, State::roam, NodeKind::Start, "");
+    chart.add(State::CONDITION__of__roam, State::roam, NodeKind::Condition, "");
+    chart.add(State::TurnAround, State::roam, NodeKind::Basic, "TurnAround");
+    chart.activity(State::TurnAround, "TurnAround");
+    chart.add(State::WalkTowardsCentre, State::roam, NodeKind::Basic, "WalkTowardsCentre");
+    chart.activity(State::WalkTowardsCentre, "WalkTowardsCentre");
+    chart.add(State::TurnToReport, State::roam, NodeKind::Basic, "TurnToReport");
+    chart.activity(State::TurnToReport, "TurnToReport");
+    chart.add(State::END__of__roam, State::roam, NodeKind::End, "");
+    chart.add(State::END__of____opt__roam__end__, State::__opt__roam__end__, NodeKind::End, "");
     chart.add(State::START__of__takeAction, State::takeAction, NodeKind::Start, "");
-    chart.add(State::TrackBall, State::takeAction, NodeKind::Basic, "TrackBall");
-    chart.activity(State::TrackBall, "TrackBall");
     chart.add(
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::__open__TrackBall__or__LookAtGoal__close__,
         State::takeAction,
         NodeKind::Or,
-        "(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)",
+        "(TrackBall|LookAtGoal)",
+    );
+    chart.add(State::AssessAttack__of__takeAction, State::takeAction, NodeKind::Basic, "AssessAttack");
+    chart.activity(State::AssessAttack__of__takeAction, "AssessAttack");
+    chart.add(
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::takeAction,
+        NodeKind::Or,
+        "(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)",
     );
     chart.add(State::END__of__takeAction, State::takeAction, NodeKind::End, "");
     chart.add(
-        State::START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::START__of____open__TrackBall__or__LookAtGoal__close__,
+        State::__open__TrackBall__or__LookAtGoal__close__,
         NodeKind::Start,
         "",
     );
     chart.add(
-        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::CONDITION__of____open__TrackBall__or__LookAtGoal__close__,
+        State::__open__TrackBall__or__LookAtGoal__close__,
         NodeKind::Condition,
         "",
     );
     chart.add(
-        State::WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::TrackBall,
+        State::__open__TrackBall__or__LookAtGoal__close__,
+        NodeKind::Basic,
+        "TrackBall",
+    );
+    chart.activity(State::TrackBall, "TrackBall");
+    chart.add(
+        State::LookAtGoal,
+        State::__open__TrackBall__or__LookAtGoal__close__,
+        NodeKind::Basic,
+        "LookAtGoal",
+    );
+    chart.activity(State::LookAtGoal, "LookAtGoal");
+    chart.add(
+        State::END__of____open__TrackBall__or__LookAtGoal__close__,
+        State::__open__TrackBall__or__LookAtGoal__close__,
+        NodeKind::End,
+        "",
+    );
+    chart.add(
+        State::START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        NodeKind::Start,
+        "",
+    );
+    chart.add(
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        NodeKind::Condition,
+        "",
+    );
+    chart.add(
+        State::WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         NodeKind::Basic,
         "WalkTowardsBall",
     );
     chart.activity(
-        State::WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "WalkTowardsBall",
     );
     chart.add(
         State::AlignWithBall,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         NodeKind::Basic,
         "AlignWithBall",
     );
     chart.activity(State::AlignWithBall, "AlignWithBall");
     chart.add(
-        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         NodeKind::Or,
         "kickBall",
     );
     chart.add(
+        State::SupportMate,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        NodeKind::Basic,
+        "SupportMate",
+    );
+    chart.activity(State::SupportMate, "SupportMate");
+    chart.add(
+        State::CoverGoal,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        NodeKind::Basic,
+        "CoverGoal",
+    );
+    chart.activity(State::CoverGoal, "CoverGoal");
+    chart.add(
         State::center,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         NodeKind::Or,
         "center",
     );
     chart.add(
         State::center_for,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         NodeKind::Or,
         "center_for",
     );
     chart.add(
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         NodeKind::End,
         "",
     );
     chart.add(
-        State::START__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::START__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         NodeKind::Start,
         "",
     );
     chart.add(
-        State::CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         NodeKind::Condition,
         "",
     );
     chart.add(
-        State::LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         NodeKind::Basic,
         "LeftKick",
     );
     chart.activity(
-        State::LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "LeftKick",
     );
     chart.add(
-        State::RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         NodeKind::Basic,
         "RightKick",
     );
     chart.activity(
-        State::RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "RightKick",
     );
     chart.add(
-        State::END__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         NodeKind::End,
         "",
     );
     chart.add(State::START__of__center, State::center, NodeKind::Start, "");
     chart.add(State::WalkTowardsBall__of__center, State::center, NodeKind::Basic, "WalkTowardsBall");
     chart.activity(State::WalkTowardsBall__of__center, "BringBallToPass");
+    chart.add(State::AssessAttack__of__center, State::center, NodeKind::Basic, "AssessAttack");
+    chart.activity(State::AssessAttack__of__center, "AssessAttack");
     chart.add(State::__opt__passBall__end__, State::center, NodeKind::Or, "[passBall]");
     chart.add(State::END__of__center, State::center, NodeKind::End, "");
     chart.add(State::START__of____opt__passBall__end__, State::__opt__passBall__end__, NodeKind::Start, "");
@@ -423,55 +496,65 @@ fn states(chart: &mut TypedChartBuilder) {
     chart.add(State::WalkTowardsGoal, State::center_for, NodeKind::Basic, "WalkTowardsGoal");
     chart.activity(State::WalkTowardsGoal, "WalkTowardsGoal");
     chart.add(
-        State::__opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::__opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
         State::center_for,
         NodeKind::Or,
-        "[WalkTowardsBall.[kickBall]]",
+        "[WalkTowardsBall.AssessAttack.[kickBall]]",
     );
     chart.add(State::END__of__center_for, State::center_for, NodeKind::End, "");
     chart.add(
-        State::START__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
-        State::__opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::START__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
+        State::__opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
         NodeKind::Start,
         "",
     );
     chart.add(
-        State::CONDITION__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
-        State::__opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::CONDITION__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
+        State::__opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
         NodeKind::Condition,
         "",
     );
     chart.add(
-        State::WalkTowardsBall__then____opt__kickBall__end__,
-        State::__opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+        State::__opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
         NodeKind::Or,
-        "WalkTowardsBall.[kickBall]",
+        "WalkTowardsBall.AssessAttack.[kickBall]",
     );
     chart.add(
-        State::START__of__WalkTowardsBall__then____opt__kickBall__end__,
-        State::WalkTowardsBall__then____opt__kickBall__end__,
+        State::START__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+        State::WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
         NodeKind::Start,
         "",
     );
     chart.add(
-        State::WalkTowardsBall__of__WalkTowardsBall__then____opt__kickBall__end__,
-        State::WalkTowardsBall__then____opt__kickBall__end__,
+        State::WalkTowardsBall__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+        State::WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
         NodeKind::Basic,
         "WalkTowardsBall",
     );
     chart.activity(
-        State::WalkTowardsBall__of__WalkTowardsBall__then____opt__kickBall__end__,
+        State::WalkTowardsBall__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
         "BringBallToShoot",
     );
     chart.add(
+        State::AssessAttack__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+        State::WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+        NodeKind::Basic,
+        "AssessAttack",
+    );
+    chart.activity(
+        State::AssessAttack__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+        "AssessAttack",
+    );
+    chart.add(
         State::__opt__kickBall__end__,
-        State::WalkTowardsBall__then____opt__kickBall__end__,
+        State::WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
         NodeKind::Or,
         "[kickBall]",
     );
     chart.add(
-        State::END__of__WalkTowardsBall__then____opt__kickBall__end__,
-        State::WalkTowardsBall__then____opt__kickBall__end__,
+        State::END__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+        State::WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
         NodeKind::End,
         "",
     );
@@ -522,8 +605,8 @@ fn states(chart: &mut TypedChartBuilder) {
     );
     chart.add(State::END__of____opt__kickBall__end__, State::__opt__kickBall__end__, NodeKind::End, "");
     chart.add(
-        State::END__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
-        State::__opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::END__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
+        State::__opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
         NodeKind::End,
         "",
     );

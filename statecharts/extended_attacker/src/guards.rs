@@ -49,26 +49,63 @@ pub(crate) fn from_Vision_to_Vision(world: &World<'_>) -> GuardResult {
     )
 }
 
-/// From `CONDITION` in `(SearchBall|takeAction)` to `SearchBall`: `[!Ball.found]`
-pub(crate) fn from_CONDITION_to_SearchBall(world: &World<'_>) -> GuardResult {
+/// From `CONDITION` in `(search|takeAction)` to `search`: `[!Ball.found]`
+pub(crate) fn from_CONDITION_to_search(world: &World<'_>) -> GuardResult {
     Ok(!holds(world.latest(messages::BALL)?.found)?)
 }
 
-/// From `CONDITION` in `(SearchBall|takeAction)` to `takeAction`: `[Ball.found]`
+/// From `CONDITION` in `(search|takeAction)` to `takeAction`: `[Ball.found]`
 pub(crate) fn from_CONDITION_to_takeAction(world: &World<'_>) -> GuardResult {
     holds(world.latest(messages::BALL)?.found)
 }
 
-/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)` to `WalkTowardsBall`: `[Ball.distance > near]`
-pub(crate) fn from_CONDITION_to_WalkTowardsBall(world: &World<'_>) -> GuardResult {
-    more(world.latest(messages::BALL)?.distance, constants::near)
+/// From `CONDITION` in `roam` to `WalkTowardsCentre`: `[Ball.age > wander && (abs(Pose.x) > central || abs(Pose.y) > central)]`
+pub(crate) fn from_CONDITION_to_WalkTowardsCentre(world: &World<'_>) -> GuardResult {
+    all!(
+        more(world.latest(messages::BALL)?.age, constants::wander)?,
+        any!(
+            more(
+                world.call(functions::abs, &[given(world.latest(messages::POSE)?.x)?])?,
+                constants::central,
+            )?,
+            more(
+                world.call(functions::abs, &[given(world.latest(messages::POSE)?.y)?])?,
+                constants::central,
+            )?,
+        )?,
+    )
 }
 
-/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)` to `AlignWithBall`: `[Ball.distance <= near && (abs(Ball.x - kick_x) > tolerance || abs(abs(Ball.y) - kick_y) > tolerance)]`
+/// From `CONDITION` in `roam` to `TurnToReport`: `[Attack.mate_sees_ball]`
+pub(crate) fn from_CONDITION_to_TurnToReport(world: &World<'_>) -> GuardResult {
+    holds(world.latest(messages::ATTACK)?.mate_sees_ball)
+}
+
+/// From `CONDITION` in `[roam]` to `roam`: `[Ball.age >= look || Attack.mate_sees_ball]`
+pub(crate) fn from_CONDITION_to_roam(world: &World<'_>) -> GuardResult {
+    any!(
+        at_least(world.latest(messages::BALL)?.age, constants::look)?,
+        holds(world.latest(messages::ATTACK)?.mate_sees_ball)?,
+    )
+}
+
+/// From `CONDITION` in `(TrackBall|LookAtGoal)` to `LookAtGoal`: `[glance_timeout && Pose.confidence < certain && Ball.distance > quiet && Ball.speed < still && Ball.age < seen]`
+pub(crate) fn from_CONDITION_to_LookAtGoal(world: &World<'_>) -> GuardResult {
+    all!(
+        world.is_over(timers::glance_timeout),
+        less(world.latest(messages::POSE)?.confidence, constants::certain)?,
+        more(world.latest(messages::BALL)?.distance, constants::quiet)?,
+        less(world.latest(messages::BALL)?.speed, constants::still)?,
+        less(world.latest(messages::BALL)?.age, constants::seen)?,
+    )
+}
+
+/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)` to `AlignWithBall`: `[Ball.distance <= near && (Ball.speed >= still || abs(Ball.x - kick_x) > tolerance || abs(abs(Ball.y) - kick_y) > tolerance)]`
 pub(crate) fn from_CONDITION_to_AlignWithBall(world: &World<'_>) -> GuardResult {
     all!(
         at_most(world.latest(messages::BALL)?.distance, constants::near)?,
         any!(
+            at_least(world.latest(messages::BALL)?.speed, constants::still)?,
             more(
                 world.call(functions::abs, &[minus(world.latest(messages::BALL)?.x, constants::kick_x)?])?,
                 constants::tolerance,
@@ -87,10 +124,11 @@ pub(crate) fn from_CONDITION_to_AlignWithBall(world: &World<'_>) -> GuardResult 
     )
 }
 
-/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)` to `kickBall`: `[Ball.distance <= near && abs(Ball.x - kick_x) <= tolerance && abs(abs(Ball.y) - kick_y) <= tolerance]`
+/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)` to `kickBall`: `[Ball.distance <= near && Ball.speed < still && abs(Ball.x - kick_x) <= tolerance && abs(abs(Ball.y) - kick_y) <= tolerance]`
 pub(crate) fn from_CONDITION_to_kickBall(world: &World<'_>) -> GuardResult {
     all!(
         at_most(world.latest(messages::BALL)?.distance, constants::near)?,
+        less(world.latest(messages::BALL)?.speed, constants::still)?,
         at_most(
             world.call(functions::abs, &[minus(world.latest(messages::BALL)?.x, constants::kick_x)?])?,
             constants::tolerance,
@@ -108,7 +146,31 @@ pub(crate) fn from_CONDITION_to_kickBall(world: &World<'_>) -> GuardResult {
     )
 }
 
-/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)` to `center`: `[Attack.ball_is_free && Attack.center_is_closest && Attack.center_for_is_farthest && Attack.part == CENTER]`
+/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)` to `SupportMate`: `[Ball.distance > near && (Attack.mate_lead > nearer || Ball.in_own_area) && !Attack.opponent_leads]`
+pub(crate) fn from_CONDITION_to_SupportMate(world: &World<'_>) -> GuardResult {
+    all!(
+        more(world.latest(messages::BALL)?.distance, constants::near)?,
+        any!(
+            more(world.latest(messages::ATTACK)?.mate_lead, constants::nearer)?,
+            holds(world.latest(messages::BALL)?.in_own_area)?,
+        )?,
+        !holds(world.latest(messages::ATTACK)?.opponent_leads)?,
+    )
+}
+
+/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)` to `CoverGoal`: `[Ball.distance > near && (Attack.mate_lead > nearer || Ball.in_own_area) && Attack.opponent_leads]`
+pub(crate) fn from_CONDITION_to_CoverGoal(world: &World<'_>) -> GuardResult {
+    all!(
+        more(world.latest(messages::BALL)?.distance, constants::near)?,
+        any!(
+            more(world.latest(messages::ATTACK)?.mate_lead, constants::nearer)?,
+            holds(world.latest(messages::BALL)?.in_own_area)?,
+        )?,
+        holds(world.latest(messages::ATTACK)?.opponent_leads)?,
+    )
+}
+
+/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)` to `center`: `[Attack.ball_is_free && Attack.center_is_closest && Attack.center_for_is_farthest && Attack.part == CENTER]`
 pub(crate) fn from_CONDITION_to_center(world: &World<'_>) -> GuardResult {
     all!(
         holds(world.latest(messages::ATTACK)?.ball_is_free)?,
@@ -118,7 +180,7 @@ pub(crate) fn from_CONDITION_to_center(world: &World<'_>) -> GuardResult {
     )
 }
 
-/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)` to `center_for`: `[Attack.ball_is_free && Attack.center_is_closest && Attack.center_for_is_farthest && Attack.part == CENTER_FOR]`
+/// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)` to `center_for`: `[Attack.ball_is_free && Attack.center_is_closest && Attack.center_for_is_farthest && Attack.part == CENTER_FOR]`
 pub(crate) fn from_CONDITION_to_center_for(world: &World<'_>) -> GuardResult {
     all!(
         holds(world.latest(messages::ATTACK)?.ball_is_free)?,
@@ -158,8 +220,8 @@ pub(crate) fn from_CONDITION_to_kickBall_2(world: &World<'_>) -> GuardResult {
     holds(world.latest(messages::ATTACK)?.path_is_clear)
 }
 
-/// From `CONDITION` in `[WalkTowardsBall.[kickBall]]` to `WalkTowardsBall.[kickBall]`: `[Attack.ball_is_passed]`
-pub(crate) fn transition_84(world: &World<'_>) -> GuardResult {
+/// From `CONDITION` in `[WalkTowardsBall.AssessAttack.[kickBall]]` to `WalkTowardsBall.AssessAttack.[kickBall]`: `[Attack.ball_is_passed]`
+pub(crate) fn transition_111(world: &World<'_>) -> GuardResult {
     holds(world.latest(messages::ATTACK)?.ball_is_passed)
 }
 
@@ -176,32 +238,32 @@ pub(crate) fn from_decision_to_decision(world: &World<'_>) -> GuardResult {
     )
 }
 
-/// From `center` to `END` in `(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)`: `[Attack.shot_at_goal]`
+/// From `center` to `END` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)`: `[Attack.shot_at_goal]`
 pub(crate) fn from_center_to_END(world: &World<'_>) -> GuardResult {
     holds(world.latest(messages::ATTACK)?.shot_at_goal)
 }
 
-/// From `center` to `END` in `(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)`: `[Attack.opponent_has_ball]`
+/// From `center` to `END` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)`: `[Attack.opponent_has_ball]`
 pub(crate) fn from_center_to_END_2(world: &World<'_>) -> GuardResult {
     holds(world.latest(messages::ATTACK)?.opponent_has_ball)
 }
 
-/// From `center` to `END` in `(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)`: `[Attack.ball_is_out]`
+/// From `center` to `END` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)`: `[Attack.ball_is_out]`
 pub(crate) fn from_center_to_END_3(world: &World<'_>) -> GuardResult {
     holds(world.latest(messages::ATTACK)?.ball_is_out)
 }
 
-/// From `center_for` to `END` in `(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)`: `[Attack.shot_at_goal]`
+/// From `center_for` to `END` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)`: `[Attack.shot_at_goal]`
 pub(crate) fn from_center_for_to_END(world: &World<'_>) -> GuardResult {
     holds(world.latest(messages::ATTACK)?.shot_at_goal)
 }
 
-/// From `center_for` to `END` in `(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)`: `[Attack.opponent_has_ball]`
+/// From `center_for` to `END` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)`: `[Attack.opponent_has_ball]`
 pub(crate) fn from_center_for_to_END_2(world: &World<'_>) -> GuardResult {
     holds(world.latest(messages::ATTACK)?.opponent_has_ball)
 }
 
-/// From `center_for` to `END` in `(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)`: `[Attack.ball_is_out]`
+/// From `center_for` to `END` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)`: `[Attack.ball_is_out]`
 pub(crate) fn from_center_for_to_END_3(world: &World<'_>) -> GuardResult {
     holds(world.latest(messages::ATTACK)?.ball_is_out)
 }

@@ -120,112 +120,162 @@ pub enum State {
     START__of__decision,
     /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/WaitForBallMessage`
     WaitForBallMessage,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)`
-    __open__SearchBall__or__takeAction__close__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)`
+    __open__search__or__takeAction__close__,
     /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/END`
     END__of__decision,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/START`
-    START__of____open__SearchBall__or__takeAction__close__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/CONDITION`
-    CONDITION__of____open__SearchBall__or__takeAction__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/SearchBall`
-    SearchBall,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/START`
+    START__of____open__search__or__takeAction__close__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/CONDITION`
+    CONDITION__of____open__search__or__takeAction__close__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search`
+    search,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction`
     takeAction,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/END`
-    END__of____open__SearchBall__or__takeAction__close__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/START`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/END`
+    END__of____open__search__or__takeAction__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/START`
+    START__of__search,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/SearchBall`
+    SearchBall,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/AssessAttack`
+    AssessAttack__of__search,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]`
+    __opt__roam__end__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/END`
+    END__of__search,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/START`
+    START__of____opt__roam__end__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/CONDITION`
+    CONDITION__of____opt__roam__end__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam`
+    roam,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/START`
+    START__of__roam,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/CONDITION`
+    CONDITION__of__roam,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/TurnAround`
+    TurnAround,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/WalkTowardsCentre`
+    WalkTowardsCentre,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/TurnToReport`
+    TurnToReport,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/END`
+    END__of__roam,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/END`
+    END__of____opt__roam__end__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/START`
     START__of__takeAction,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/TrackBall`
-    TrackBall,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)`
-    __open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/END`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)`
+    __open__TrackBall__or__LookAtGoal__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/AssessAttack`
+    AssessAttack__of__takeAction,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)`
+    __open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/END`
     END__of__takeAction,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/START`
-    START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/CONDITION`
-    CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/WalkTowardsBall`
-    WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/AlignWithBall`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/START`
+    START__of____open__TrackBall__or__LookAtGoal__close__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/CONDITION`
+    CONDITION__of____open__TrackBall__or__LookAtGoal__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/TrackBall`
+    TrackBall,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/LookAtGoal`
+    LookAtGoal,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/END`
+    END__of____open__TrackBall__or__LookAtGoal__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/START`
+    START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/CONDITION`
+    CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/WalkTowardsBall`
+    WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/AlignWithBall`
     AlignWithBall,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/kickBall`
-    kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall`
+    kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/SupportMate`
+    SupportMate,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/CoverGoal`
+    CoverGoal,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center`
     center,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for`
     center_for,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/END`
-    END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/kickBall/START`
-    START__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/kickBall/CONDITION`
-    CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/kickBall/LeftKick`
-    LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/kickBall/RightKick`
-    RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/kickBall/END`
-    END__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/START`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/END`
+    END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/START`
+    START__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/CONDITION`
+    CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/LeftKick`
+    LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/RightKick`
+    RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/END`
+    END__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/START`
     START__of__center,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/WalkTowardsBall`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/WalkTowardsBall`
     WalkTowardsBall__of__center,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/[passBall]`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/AssessAttack`
+    AssessAttack__of__center,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]`
     __opt__passBall__end__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/END`
     END__of__center,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/[passBall]/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]/START`
     START__of____opt__passBall__end__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/[passBall]/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]/CONDITION`
     CONDITION__of____opt__passBall__end__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/[passBall]/passBall`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]/passBall`
     passBall,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center/[passBall]/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]/END`
     END__of____opt__passBall__end__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/START`
     START__of__center_for,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/WalkTowardsGoal`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/WalkTowardsGoal`
     WalkTowardsGoal,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]`
-    __opt__WalkTowardsBall__then____opt__kickBall__end____end__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/END`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]`
+    __opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/END`
     END__of__center_for,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/START`
-    START__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/CONDITION`
-    CONDITION__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]`
-    WalkTowardsBall__then____opt__kickBall__end__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/START`
-    START__of__WalkTowardsBall__then____opt__kickBall__end__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/WalkTowardsBall`
-    WalkTowardsBall__of__WalkTowardsBall__then____opt__kickBall__end__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/START`
+    START__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/CONDITION`
+    CONDITION__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]`
+    WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/START`
+    START__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/WalkTowardsBall`
+    WalkTowardsBall__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/AssessAttack`
+    AssessAttack__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]`
     __opt__kickBall__end__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/END`
-    END__of__WalkTowardsBall__then____opt__kickBall__end__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/START`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/END`
+    END__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/START`
     START__of____opt__kickBall__end__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/CONDITION`
     CONDITION__of____opt__kickBall__end__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/kickBall`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall`
     kickBall__of____opt__kickBall__end__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/kickBall/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/START`
     START__of__kickBall__of____opt__kickBall__end__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/kickBall/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/CONDITION`
     CONDITION__of__kickBall__of____opt__kickBall__end__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/kickBall/LeftKick`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/LeftKick`
     LeftKick__of__kickBall__of____opt__kickBall__end__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/kickBall/RightKick`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/RightKick`
     RightKick__of__kickBall__of____opt__kickBall__end__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/kickBall/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/END`
     END__of__kickBall__of____opt__kickBall__end__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/WalkTowardsBall.[kickBall]/[kickBall]/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/END`
     END__of____opt__kickBall__end__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|center|center_for)/center_for/[WalkTowardsBall.[kickBall]]/END`
-    END__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/END`
+    END__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
 }
 
 impl From<State> for NodeId {

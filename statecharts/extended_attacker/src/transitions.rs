@@ -129,70 +129,123 @@ pub(crate) fn transitions(chart: &mut TypedChartBuilder) {
     );
     chart.guard(guards::from_Vision_to_Vision);
     chart.connect(State::START__of__decision, State::WaitForBallMessage, "");
-    chart.connect(State::WaitForBallMessage, State::__open__SearchBall__or__takeAction__close__, "");
-    chart.connect(State::__open__SearchBall__or__takeAction__close__, State::END__of__decision, "");
+    chart.connect(State::WaitForBallMessage, State::__open__search__or__takeAction__close__, "");
+    chart.connect(State::__open__search__or__takeAction__close__, State::END__of__decision, "");
     chart.connect(
-        State::START__of____open__SearchBall__or__takeAction__close__,
-        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
+        State::START__of____open__search__or__takeAction__close__,
+        State::CONDITION__of____open__search__or__takeAction__close__,
         "",
     );
     chart.connect(
-        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
-        State::SearchBall,
+        State::CONDITION__of____open__search__or__takeAction__close__,
+        State::search,
         "[!Ball.found]",
     );
-    chart.guard(guards::from_CONDITION_to_SearchBall);
+    chart.guard(guards::from_CONDITION_to_search);
     chart.connect(
-        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
+        State::CONDITION__of____open__search__or__takeAction__close__,
         State::takeAction,
         "[Ball.found]",
     );
     chart.guard(guards::from_CONDITION_to_takeAction);
-    chart.connect(State::takeAction, State::END__of____open__SearchBall__or__takeAction__close__, "");
-    chart.connect(State::SearchBall, State::END__of____open__SearchBall__or__takeAction__close__, "");
-    chart.connect(State::START__of__takeAction, State::TrackBall, "");
+    chart.connect(State::takeAction, State::END__of____open__search__or__takeAction__close__, "");
+    chart.connect(State::search, State::END__of____open__search__or__takeAction__close__, "");
+    chart.connect(State::START__of__search, State::SearchBall, "");
+    chart.connect(State::SearchBall, State::AssessAttack__of__search, "");
+    chart.connect(State::AssessAttack__of__search, State::__opt__roam__end__, "");
+    chart.connect(State::__opt__roam__end__, State::END__of__search, "");
+    chart.connect(State::START__of__roam, State::CONDITION__of__roam, "");
+    chart.connect(State::CONDITION__of__roam, State::TurnAround, "");
     chart.connect(
-        State::TrackBall,
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::CONDITION__of__roam,
+        State::WalkTowardsCentre,
+        "[Ball.age > wander && (abs(Pose.x) > central || abs(Pose.y) > central)]",
+    );
+    chart.guard(guards::from_CONDITION_to_WalkTowardsCentre);
+    chart.connect(State::CONDITION__of__roam, State::TurnToReport, "[Attack.mate_sees_ball]");
+    chart.guard(guards::from_CONDITION_to_TurnToReport);
+    chart.prefer(1);
+    chart.connect(State::TurnToReport, State::END__of__roam, "");
+    chart.connect(State::WalkTowardsCentre, State::END__of__roam, "");
+    chart.connect(State::TurnAround, State::END__of__roam, "");
+    chart.connect(State::START__of____opt__roam__end__, State::CONDITION__of____opt__roam__end__, "");
+    chart.connect(
+        State::CONDITION__of____opt__roam__end__,
+        State::roam,
+        "[Ball.age >= look || Attack.mate_sees_ball]",
+    );
+    chart.guard(guards::from_CONDITION_to_roam);
+    chart.connect(State::CONDITION__of____opt__roam__end__, State::END__of____opt__roam__end__, "");
+    chart.connect(State::roam, State::END__of____opt__roam__end__, "");
+    chart.connect(State::START__of__takeAction, State::__open__TrackBall__or__LookAtGoal__close__, "");
+    chart.connect(State::__open__TrackBall__or__LookAtGoal__close__, State::AssessAttack__of__takeAction, "");
+    chart.connect(
+        State::AssessAttack__of__takeAction,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "",
     );
     chart.connect(
-        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::__open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         State::END__of__takeAction,
         "",
     );
     chart.connect(
-        State::START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::START__of____open__TrackBall__or__LookAtGoal__close__,
+        State::CONDITION__of____open__TrackBall__or__LookAtGoal__close__,
+        "",
+    );
+    chart.connect(State::CONDITION__of____open__TrackBall__or__LookAtGoal__close__, State::TrackBall, "");
+    chart.connect(
+        State::CONDITION__of____open__TrackBall__or__LookAtGoal__close__,
+        State::LookAtGoal,
+        "[glance_timeout && Pose.confidence < certain && Ball.distance > quiet && Ball.speed < still && Ball.age < seen] / StartTimeout(glance_timeout, 3000ms)",
+    );
+    chart.guard(guards::from_CONDITION_to_LookAtGoal);
+    chart.connect(State::LookAtGoal, State::END__of____open__TrackBall__or__LookAtGoal__close__, "");
+    chart.connect(State::TrackBall, State::END__of____open__TrackBall__or__LookAtGoal__close__, "");
+    chart.connect(
+        State::START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "",
     );
     chart.connect(
-        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        "[Ball.distance > near]",
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        "",
     );
-    chart.guard(guards::from_CONDITION_to_WalkTowardsBall);
     chart.connect(
-        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         State::AlignWithBall,
-        "[Ball.distance <= near && (abs(Ball.x - kick_x) > tolerance || abs(abs(Ball.y) - kick_y) > tolerance)]",
+        "[Ball.distance <= near && (Ball.speed >= still || abs(Ball.x - kick_x) > tolerance || abs(abs(Ball.y) - kick_y) > tolerance)]",
     );
     chart.guard(guards::from_CONDITION_to_AlignWithBall);
     chart.connect(
-        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        "[Ball.distance <= near && abs(Ball.x - kick_x) <= tolerance && abs(abs(Ball.y) - kick_y) <= tolerance]",
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        "[Ball.distance <= near && Ball.speed < still && abs(Ball.x - kick_x) <= tolerance && abs(abs(Ball.y) - kick_y) <= tolerance]",
     );
     chart.guard(guards::from_CONDITION_to_kickBall);
     chart.connect(
-        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::SupportMate,
+        "[Ball.distance > near && (Attack.mate_lead > nearer || Ball.in_own_area) && !Attack.opponent_leads]",
+    );
+    chart.guard(guards::from_CONDITION_to_SupportMate);
+    chart.connect(
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::CoverGoal,
+        "[Ball.distance > near && (Attack.mate_lead > nearer || Ball.in_own_area) && Attack.opponent_leads]",
+    );
+    chart.guard(guards::from_CONDITION_to_CoverGoal);
+    chart.connect(
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         State::center,
         "[Attack.ball_is_free && Attack.center_is_closest && Attack.center_for_is_farthest && Attack.part == CENTER]",
     );
     chart.guard(guards::from_CONDITION_to_center);
     chart.prefer(1);
     chart.connect(
-        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         State::center_for,
         "[Attack.ball_is_free && Attack.center_is_closest && Attack.center_for_is_farthest && Attack.part == CENTER_FOR]",
     );
@@ -200,58 +253,69 @@ pub(crate) fn transitions(chart: &mut TypedChartBuilder) {
     chart.prefer(1);
     chart.connect(
         State::center_for,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "",
     );
     chart.connect(
         State::center,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "",
     );
     chart.connect(
-        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::CoverGoal,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        "",
+    );
+    chart.connect(
+        State::SupportMate,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        "",
+    );
+    chart.connect(
+        State::kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "",
     );
     chart.connect(
         State::AlignWithBall,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "",
     );
     chart.connect(
-        State::WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "",
     );
     chart.connect(
-        State::START__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::START__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "",
     );
     chart.connect(
-        State::CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "[Ball.y >= 0]",
     );
     chart.guard(guards::from_CONDITION_to_LeftKick);
     chart.connect(
-        State::CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "[Ball.y < 0]",
     );
     chart.guard(guards::from_CONDITION_to_RightKick);
     chart.connect(
-        State::RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::END__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::END__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "",
     );
     chart.connect(
-        State::LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
-        State::END__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
+        State::END__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "",
     );
     chart.connect(State::START__of__center, State::WalkTowardsBall__of__center, "");
-    chart.connect(State::WalkTowardsBall__of__center, State::__opt__passBall__end__, "");
+    chart.connect(State::WalkTowardsBall__of__center, State::AssessAttack__of__center, "");
+    chart.connect(State::AssessAttack__of__center, State::__opt__passBall__end__, "");
     chart.connect(State::__opt__passBall__end__, State::END__of__center, "");
     chart.connect(State::START__of____opt__passBall__end__, State::CONDITION__of____opt__passBall__end__, "");
     chart.connect(State::CONDITION__of____opt__passBall__end__, State::passBall, "[Attack.pass_is_open]");
@@ -261,27 +325,32 @@ pub(crate) fn transitions(chart: &mut TypedChartBuilder) {
     chart.connect(State::START__of__center_for, State::WalkTowardsGoal, "");
     chart.connect(
         State::WalkTowardsGoal,
-        State::__opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::__opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
         "",
     );
     chart.connect(
-        State::__opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::__opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
         State::END__of__center_for,
         "",
     );
     chart.connect(
-        State::START__of__WalkTowardsBall__then____opt__kickBall__end__,
-        State::WalkTowardsBall__of__WalkTowardsBall__then____opt__kickBall__end__,
+        State::START__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+        State::WalkTowardsBall__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
         "",
     );
     chart.connect(
-        State::WalkTowardsBall__of__WalkTowardsBall__then____opt__kickBall__end__,
+        State::WalkTowardsBall__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+        State::AssessAttack__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+        "",
+    );
+    chart.connect(
+        State::AssessAttack__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
         State::__opt__kickBall__end__,
         "",
     );
     chart.connect(
         State::__opt__kickBall__end__,
-        State::END__of__WalkTowardsBall__then____opt__kickBall__end__,
+        State::END__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
         "",
     );
     chart.connect(
@@ -321,24 +390,24 @@ pub(crate) fn transitions(chart: &mut TypedChartBuilder) {
     chart.connect(State::CONDITION__of____opt__kickBall__end__, State::END__of____opt__kickBall__end__, "");
     chart.connect(State::kickBall__of____opt__kickBall__end__, State::END__of____opt__kickBall__end__, "");
     chart.connect(
-        State::START__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
-        State::CONDITION__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::START__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
+        State::CONDITION__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
         "",
     );
     chart.connect(
-        State::CONDITION__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
-        State::WalkTowardsBall__then____opt__kickBall__end__,
+        State::CONDITION__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
+        State::WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
         "[Attack.ball_is_passed]",
     );
-    chart.guard(guards::transition_84);
+    chart.guard(guards::transition_111);
     chart.connect(
-        State::CONDITION__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
-        State::END__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::CONDITION__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
+        State::END__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
         "",
     );
     chart.connect(
-        State::WalkTowardsBall__then____opt__kickBall__end__,
-        State::END__of____opt__WalkTowardsBall__then____opt__kickBall__end____end__,
+        State::WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
+        State::END__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
         "",
     );
     chart.connect(State::START__of__decision__ever__, State::decision, "[GameState.player_state == PLAYING]");
@@ -351,37 +420,37 @@ pub(crate) fn transitions(chart: &mut TypedChartBuilder) {
     chart.guard(guards::from_decision_to_decision);
     chart.connect(
         State::center,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "[Attack.shot_at_goal]",
     );
     chart.guard(guards::from_center_to_END);
     chart.connect(
         State::center,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "[Attack.opponent_has_ball]",
     );
     chart.guard(guards::from_center_to_END_2);
     chart.connect(
         State::center,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "[Attack.ball_is_out]",
     );
     chart.guard(guards::from_center_to_END_3);
     chart.connect(
         State::center_for,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "[Attack.shot_at_goal]",
     );
     chart.guard(guards::from_center_for_to_END);
     chart.connect(
         State::center_for,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "[Attack.opponent_has_ball]",
     );
     chart.guard(guards::from_center_for_to_END_2);
     chart.connect(
         State::center_for,
-        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__center__or__center_for__close__,
+        State::END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
         "[Attack.ball_is_out]",
     );
     chart.guard(guards::from_center_for_to_END_3);

@@ -2,8 +2,9 @@
 
 use ::monas::generated::Instance;
 use ::monas_soccer::activities::{
-    LedHandler, LeftDive, LeftFall, MotionController, RightDive, RightFall, RobotController, SearchBall,
-    SendCalibration, Sensors, Stand, TrackBall, Vision, WaitForBallMessage,
+    KeepGoal, LedHandler, LeftDive, LeftFall, MotionController, ReturnToGoal, RightDive, RightFall,
+    RobotController, SearchBall, SendCalibration, Sensors, Stand, StepAside, TrackBall, Vision,
+    WaitForBallMessage,
 };
 
 use super::states::State;
@@ -20,7 +21,10 @@ pub(crate) fn instances() -> Vec<Instance> {
         Instance::of::<Vision>(State::Vision),
         Instance::of::<WaitForBallMessage>(State::WaitForBallMessage),
         Instance::of::<SearchBall>(State::SearchBall),
+        Instance::of::<ReturnToGoal>(State::ReturnToGoal),
         Instance::of::<TrackBall>(State::TrackBall),
+        Instance::of::<KeepGoal>(State::KeepGoal),
+        Instance::of::<StepAside>(State::StepAside),
         Instance::of::<RightFall>(State::RightFall),
         Instance::of::<LeftFall>(State::LeftFall),
         Instance::of::<RightDive>(State::RightDive),

@@ -269,49 +269,80 @@ fn states(chart: &mut TypedChartBuilder) {
     chart.add(State::WaitForBallMessage, State::decision, NodeKind::Basic, "WaitForBallMessage");
     chart.activity(State::WaitForBallMessage, "WaitForBallMessage");
     chart.add(
-        State::__open__SearchBall__or__takeAction__close__,
+        State::__open__search__or__takeAction__close__,
         State::decision,
         NodeKind::Or,
-        "(SearchBall|takeAction)",
+        "(search|takeAction)",
     );
     chart.add(State::END__of__decision, State::decision, NodeKind::End, "");
     chart.add(
-        State::START__of____open__SearchBall__or__takeAction__close__,
-        State::__open__SearchBall__or__takeAction__close__,
+        State::START__of____open__search__or__takeAction__close__,
+        State::__open__search__or__takeAction__close__,
         NodeKind::Start,
         "",
     );
     chart.add(
-        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
-        State::__open__SearchBall__or__takeAction__close__,
+        State::CONDITION__of____open__search__or__takeAction__close__,
+        State::__open__search__or__takeAction__close__,
         NodeKind::Condition,
         "",
     );
+    chart.add(State::search, State::__open__search__or__takeAction__close__, NodeKind::Or, "search");
+    chart.add(State::takeAction, State::__open__search__or__takeAction__close__, NodeKind::Or, "takeAction");
     chart.add(
-        State::SearchBall,
-        State::__open__SearchBall__or__takeAction__close__,
-        NodeKind::Basic,
-        "SearchBall",
-    );
-    chart.activity(State::SearchBall, "SearchBall");
-    chart.add(
-        State::takeAction,
-        State::__open__SearchBall__or__takeAction__close__,
-        NodeKind::Or,
-        "takeAction",
-    );
-    chart.add(
-        State::END__of____open__SearchBall__or__takeAction__close__,
-        State::__open__SearchBall__or__takeAction__close__,
+        State::END__of____open__search__or__takeAction__close__,
+        State::__open__search__or__takeAction__close__,
         NodeKind::End,
         "",
     );
+    chart.add(State::START__of__search, State::search, NodeKind::Start, "");
+    chart.add(State::SearchBall, State::search, NodeKind::Basic, "SearchBall");
+    chart.activity(State::SearchBall, "SearchBall");
+    chart.add(State::ReturnToGoal, State::search, NodeKind::Basic, "ReturnToGoal");
+    chart.activity(State::ReturnToGoal, "ReturnToGoal");
+    chart.add(State::END__of__search, State::search, NodeKind::End, "");
     chart.add(State::START__of__takeAction, State::takeAction, NodeKind::Start, "");
     chart.add(State::CONDITION__of__takeAction, State::takeAction, NodeKind::Condition, "");
-    chart.add(State::TrackBall, State::takeAction, NodeKind::Basic, "TrackBall");
-    chart.activity(State::TrackBall, "TrackBall");
+    chart.add(State::guardGoal, State::takeAction, NodeKind::Or, "guardGoal");
     chart.add(State::action, State::takeAction, NodeKind::Or, "action");
     chart.add(State::END__of__takeAction, State::takeAction, NodeKind::End, "");
+    chart.add(State::START__of__guardGoal, State::guardGoal, NodeKind::Start, "");
+    chart.add(State::TrackBall, State::guardGoal, NodeKind::Basic, "TrackBall");
+    chart.activity(State::TrackBall, "TrackBall");
+    chart.add(
+        State::__open__KeepGoal__or__StepAside__close__,
+        State::guardGoal,
+        NodeKind::Or,
+        "(KeepGoal|StepAside)",
+    );
+    chart.add(State::END__of__guardGoal, State::guardGoal, NodeKind::End, "");
+    chart.add(
+        State::START__of____open__KeepGoal__or__StepAside__close__,
+        State::__open__KeepGoal__or__StepAside__close__,
+        NodeKind::Start,
+        "",
+    );
+    chart.add(
+        State::CONDITION__of____open__KeepGoal__or__StepAside__close__,
+        State::__open__KeepGoal__or__StepAside__close__,
+        NodeKind::Condition,
+        "",
+    );
+    chart.add(State::KeepGoal, State::__open__KeepGoal__or__StepAside__close__, NodeKind::Basic, "KeepGoal");
+    chart.activity(State::KeepGoal, "KeepGoal");
+    chart.add(
+        State::StepAside,
+        State::__open__KeepGoal__or__StepAside__close__,
+        NodeKind::Basic,
+        "StepAside",
+    );
+    chart.activity(State::StepAside, "StepAside");
+    chart.add(
+        State::END__of____open__KeepGoal__or__StepAside__close__,
+        State::__open__KeepGoal__or__StepAside__close__,
+        NodeKind::End,
+        "",
+    );
     chart.add(State::START__of__action, State::action, NodeKind::Start, "");
     chart.add(State::CONDITION__of__action, State::action, NodeKind::Condition, "");
     chart.add(State::RightFall, State::action, NodeKind::Basic, "RightFall");

@@ -47,18 +47,18 @@ pub(crate) fn from_Vision_to_Vision(world: &World<'_>) -> GuardResult {
     )
 }
 
-/// From `CONDITION` in `(SearchBall|takeAction)` to `SearchBall`: `[!Ball.found]`
-pub(crate) fn from_CONDITION_to_SearchBall(world: &World<'_>) -> GuardResult {
+/// From `CONDITION` in `(search|takeAction)` to `search`: `[!Ball.found]`
+pub(crate) fn from_CONDITION_to_search(world: &World<'_>) -> GuardResult {
     Ok(!holds(world.latest(messages::BALL)?.found)?)
 }
 
-/// From `CONDITION` in `(SearchBall|takeAction)` to `takeAction`: `[Ball.found]`
+/// From `CONDITION` in `(search|takeAction)` to `takeAction`: `[Ball.found]`
 pub(crate) fn from_CONDITION_to_takeAction(world: &World<'_>) -> GuardResult {
     holds(world.latest(messages::BALL)?.found)
 }
 
-/// From `CONDITION` in `takeAction` to `TrackBall`: `[!(Ball.approaching && Ball.time_to_cross <= act_within && abs(Ball.crossing_bearing) >= fall_from)]`
-pub(crate) fn from_CONDITION_to_TrackBall(world: &World<'_>) -> GuardResult {
+/// From `CONDITION` in `takeAction` to `guardGoal`: `[!(Ball.approaching && Ball.time_to_cross <= act_within && abs(Ball.crossing_bearing) >= fall_from)]`
+pub(crate) fn from_CONDITION_to_guardGoal(world: &World<'_>) -> GuardResult {
     Ok(!all!(
         holds(world.latest(messages::BALL)?.approaching)?,
         at_most(world.latest(messages::BALL)?.time_to_cross, constants::act_within)?,
@@ -79,6 +79,16 @@ pub(crate) fn from_CONDITION_to_action(world: &World<'_>) -> GuardResult {
             constants::fall_from,
         )?,
     )
+}
+
+/// From `CONDITION` in `(KeepGoal|StepAside)` to `KeepGoal`: `[!Ball.approaching]`
+pub(crate) fn from_CONDITION_to_KeepGoal(world: &World<'_>) -> GuardResult {
+    Ok(!holds(world.latest(messages::BALL)?.approaching)?)
+}
+
+/// From `CONDITION` in `(KeepGoal|StepAside)` to `StepAside`: `[Ball.approaching]`
+pub(crate) fn from_CONDITION_to_StepAside(world: &World<'_>) -> GuardResult {
+    holds(world.latest(messages::BALL)?.approaching)
 }
 
 /// From `CONDITION` in `action` to `RightFall`: `[Ball.crossing_bearing < 0 && Ball.crossing_bearing >= -dive_from]`

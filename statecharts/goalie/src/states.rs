@@ -114,43 +114,69 @@ pub enum State {
     START__of__decision,
     /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/WaitForBallMessage`
     WaitForBallMessage,
-    /// OR: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)`
-    __open__SearchBall__or__takeAction__close__,
+    /// OR: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)`
+    __open__search__or__takeAction__close__,
     /// END: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/END`
     END__of__decision,
-    /// START: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/START`
-    START__of____open__SearchBall__or__takeAction__close__,
-    /// CONDITION: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/CONDITION`
-    CONDITION__of____open__SearchBall__or__takeAction__close__,
-    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/SearchBall`
-    SearchBall,
-    /// OR: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction`
+    /// START: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/START`
+    START__of____open__search__or__takeAction__close__,
+    /// CONDITION: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/CONDITION`
+    CONDITION__of____open__search__or__takeAction__close__,
+    /// OR: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search`
+    search,
+    /// OR: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction`
     takeAction,
-    /// END: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/END`
-    END__of____open__SearchBall__or__takeAction__close__,
-    /// START: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/START`
+    /// END: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/END`
+    END__of____open__search__or__takeAction__close__,
+    /// START: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/START`
+    START__of__search,
+    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/SearchBall`
+    SearchBall,
+    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/ReturnToGoal`
+    ReturnToGoal,
+    /// END: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/END`
+    END__of__search,
+    /// START: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/START`
     START__of__takeAction,
-    /// CONDITION: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/CONDITION`
+    /// CONDITION: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/CONDITION`
     CONDITION__of__takeAction,
-    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/TrackBall`
-    TrackBall,
-    /// OR: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/action`
+    /// OR: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/guardGoal`
+    guardGoal,
+    /// OR: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/action`
     action,
-    /// END: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/END`
+    /// END: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/END`
     END__of__takeAction,
-    /// START: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/action/START`
+    /// START: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/guardGoal/START`
+    START__of__guardGoal,
+    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/guardGoal/TrackBall`
+    TrackBall,
+    /// OR: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/guardGoal/(KeepGoal|StepAside)`
+    __open__KeepGoal__or__StepAside__close__,
+    /// END: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/guardGoal/END`
+    END__of__guardGoal,
+    /// START: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/guardGoal/(KeepGoal|StepAside)/START`
+    START__of____open__KeepGoal__or__StepAside__close__,
+    /// CONDITION: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/guardGoal/(KeepGoal|StepAside)/CONDITION`
+    CONDITION__of____open__KeepGoal__or__StepAside__close__,
+    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/guardGoal/(KeepGoal|StepAside)/KeepGoal`
+    KeepGoal,
+    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/guardGoal/(KeepGoal|StepAside)/StepAside`
+    StepAside,
+    /// END: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/guardGoal/(KeepGoal|StepAside)/END`
+    END__of____open__KeepGoal__or__StepAside__close__,
+    /// START: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/action/START`
     START__of__action,
-    /// CONDITION: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/action/CONDITION`
+    /// CONDITION: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/action/CONDITION`
     CONDITION__of__action,
-    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/action/RightFall`
+    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/action/RightFall`
     RightFall,
-    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/action/LeftFall`
+    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/action/LeftFall`
     LeftFall,
-    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/action/RightDive`
+    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/action/RightDive`
     RightDive,
-    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/action/LeftDive`
+    /// BASIC: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/action/LeftDive`
     LeftDive,
-    /// END: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(SearchBall|takeAction)/takeAction/action/END`
+    /// END: `goalie/RobotController~||LedHandler~||MotionController~||(Stand.SendCalibration.active)/4/(Stand.SendCalibration.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/action/END`
     END__of__action,
 }
 

@@ -143,34 +143,37 @@ pub(crate) fn transitions(chart: &mut TypedChartBuilder) {
     );
     chart.guard(guards::from_Vision_to_Vision);
     chart.connect(State::START__of__decision, State::WaitForBallMessage, "");
-    chart.connect(State::WaitForBallMessage, State::__open__SearchBall__or__takeAction__close__, "");
-    chart.connect(State::__open__SearchBall__or__takeAction__close__, State::END__of__decision, "");
+    chart.connect(State::WaitForBallMessage, State::__open__search__or__takeAction__close__, "");
+    chart.connect(State::__open__search__or__takeAction__close__, State::END__of__decision, "");
     chart.connect(
-        State::START__of____open__SearchBall__or__takeAction__close__,
-        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
+        State::START__of____open__search__or__takeAction__close__,
+        State::CONDITION__of____open__search__or__takeAction__close__,
         "",
     );
     chart.connect(
-        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
-        State::SearchBall,
+        State::CONDITION__of____open__search__or__takeAction__close__,
+        State::search,
         "[!Ball.found]",
     );
-    chart.guard(guards::from_CONDITION_to_SearchBall);
+    chart.guard(guards::from_CONDITION_to_search);
     chart.connect(
-        State::CONDITION__of____open__SearchBall__or__takeAction__close__,
+        State::CONDITION__of____open__search__or__takeAction__close__,
         State::takeAction,
         "[Ball.found]",
     );
     chart.guard(guards::from_CONDITION_to_takeAction);
-    chart.connect(State::takeAction, State::END__of____open__SearchBall__or__takeAction__close__, "");
-    chart.connect(State::SearchBall, State::END__of____open__SearchBall__or__takeAction__close__, "");
+    chart.connect(State::takeAction, State::END__of____open__search__or__takeAction__close__, "");
+    chart.connect(State::search, State::END__of____open__search__or__takeAction__close__, "");
+    chart.connect(State::START__of__search, State::SearchBall, "");
+    chart.connect(State::SearchBall, State::ReturnToGoal, "");
+    chart.connect(State::ReturnToGoal, State::END__of__search, "");
     chart.connect(State::START__of__takeAction, State::CONDITION__of__takeAction, "");
     chart.connect(
         State::CONDITION__of__takeAction,
-        State::TrackBall,
+        State::guardGoal,
         "[!(Ball.approaching && Ball.time_to_cross <= act_within && abs(Ball.crossing_bearing) >= fall_from)]",
     );
-    chart.guard(guards::from_CONDITION_to_TrackBall);
+    chart.guard(guards::from_CONDITION_to_guardGoal);
     chart.connect(
         State::CONDITION__of__takeAction,
         State::action,
@@ -178,7 +181,29 @@ pub(crate) fn transitions(chart: &mut TypedChartBuilder) {
     );
     chart.guard(guards::from_CONDITION_to_action);
     chart.connect(State::action, State::END__of__takeAction, "");
-    chart.connect(State::TrackBall, State::END__of__takeAction, "");
+    chart.connect(State::guardGoal, State::END__of__takeAction, "");
+    chart.connect(State::START__of__guardGoal, State::TrackBall, "");
+    chart.connect(State::TrackBall, State::__open__KeepGoal__or__StepAside__close__, "");
+    chart.connect(State::__open__KeepGoal__or__StepAside__close__, State::END__of__guardGoal, "");
+    chart.connect(
+        State::START__of____open__KeepGoal__or__StepAside__close__,
+        State::CONDITION__of____open__KeepGoal__or__StepAside__close__,
+        "",
+    );
+    chart.connect(
+        State::CONDITION__of____open__KeepGoal__or__StepAside__close__,
+        State::KeepGoal,
+        "[!Ball.approaching]",
+    );
+    chart.guard(guards::from_CONDITION_to_KeepGoal);
+    chart.connect(
+        State::CONDITION__of____open__KeepGoal__or__StepAside__close__,
+        State::StepAside,
+        "[Ball.approaching]",
+    );
+    chart.guard(guards::from_CONDITION_to_StepAside);
+    chart.connect(State::StepAside, State::END__of____open__KeepGoal__or__StepAside__close__, "");
+    chart.connect(State::KeepGoal, State::END__of____open__KeepGoal__or__StepAside__close__, "");
     chart.connect(State::START__of__action, State::CONDITION__of__action, "");
     chart.connect(
         State::CONDITION__of__action,

@@ -1,19 +1,24 @@
 //! Plays a season and writes or checks its golden table: see `cargo xtask season`.
 //!
-//! `season row VARIANT SEED SECONDS` plays one match and prints its row.
+//! `season row VARIANT SEED SECONDS` plays one match and prints its row, `season rows VARIANT 1-20
+//! SECONDS` several and their sums, `season count` with the arguments of `row` prints passes,
+//! kick-offs, crowding and the time in each state.
 
 use std::process::ExitCode;
 use std::time::Duration;
 
-use monas_tests::{MatchRow, VARIANTS, play, root, season, short_rows};
+use monas_tests::{MatchRow, SeasonTable, VARIANTS, Variant, play, root, season, short_rows};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         [] => write(),
         ["--check"] => check(),
+        ["rows", variant, seeds, seconds] => rows(variant, seeds, seconds),
         ["row", variant, seed, seconds] => row(variant, seed, seconds),
-        _ => Err("usage: season [--check | row VARIANT SEED SECONDS]".into()),
+        ["count", variant, seed, seconds] => count(variant, seed, seconds),
+        _ => Err("usage: season [--check | (row | count) VARIANT SEED SECONDS | rows VARIANT FROM-TO SECONDS]"
+            .into()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -25,12 +30,33 @@ fn main() -> ExitCode {
 }
 
 fn row(variant: &str, seed: &str, seconds: &str) -> Result<(), String> {
+    let (variant, seed, length) = game(variant, seed, seconds)?;
+    println!("{}\n{}", MatchRow::HEADER, play(variant, seed, length)?);
+    Ok(())
+}
+
+fn rows(variant: &str, seeds: &str, seconds: &str) -> Result<(), String> {
+    let (from, to) = seeds.split_once('-').ok_or_else(|| format!("`{seeds}` are no seeds"))?;
+    let (_, from, length) = game(variant, from, seconds)?;
+    let (variant, to, _) = game(variant, to, seconds)?;
+    println!("{}", MatchRow::HEADER);
+    let table = SeasonTable::play(&[*variant], from..=to, length, |row| println!("{row}"))?;
+    println!("{}", table.sums(variant));
+    Ok(())
+}
+
+fn count(variant: &str, seed: &str, seconds: &str) -> Result<(), String> {
+    let (variant, seed, length) = game(variant, seed, seconds)?;
+    print!("{}", play(variant, seed, length)?.team_play);
+    Ok(())
+}
+
+fn game(variant: &str, seed: &str, seconds: &str) -> Result<(&'static Variant, u64, Duration), String> {
     let known = VARIANTS.iter().find(|known| known.name == variant);
     let variant = known.ok_or_else(|| format!("no variant `{variant}`"))?;
     let seed = seed.parse().map_err(|_| format!("`{seed}` is no seed"))?;
     let seconds = seconds.parse().map_err(|_| format!("`{seconds}` is no number of seconds"))?;
-    println!("{}\n{}", MatchRow::HEADER, play(variant, seed, Duration::from_secs(seconds))?);
-    Ok(())
+    Ok((variant, seed, Duration::from_secs(seconds)))
 }
 
 fn played() -> Result<String, String> {

@@ -63,7 +63,7 @@ fn played(file: &str, seed: u64, seconds: u64) -> Vec<Turn> {
 fn two_players_engage_in_the_protocol_and_leave_it_by_each_outcome() {
     let mut left: BTreeMap<String, usize> = BTreeMap::new();
     for seed in 1..=2 {
-        let turns = played("config/match_attack.xml", seed, 120);
+        let turns = played("config/match_attack.xml", seed, 600);
         for part in PARTS {
             assert!(
                 turns.iter().any(|turn| turn.part == part && turn.left_by.is_none()),

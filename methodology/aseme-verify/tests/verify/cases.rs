@@ -35,7 +35,7 @@ fn report(file: &Path) -> CheckReport {
     settings.events.extend(["kick".into(), "shot".into()]);
     settings.states = 500;
     let id = file.parent().and_then(Path::file_name).and_then(|name| name.to_str());
-    let of_names = matches!(id, Some("m17" | "m18")) || name.contains("known");
+    let of_names = matches!(id, Some("m17" | "m18" | "m29")) || name.contains("known");
     settings.recorded = recorded(file);
     settings.world = of_names.then(|| world(name));
     let report = check(&Source::new(name, std::fs::read_to_string(file).unwrap()), &settings);
@@ -60,7 +60,7 @@ fn recorded(file: &Path) -> Vec<RecordedCoverage> {
 }
 
 /// A program in which Look publishes a ball and nothing reads the news. The activity Hearsay
-/// declares no topics.
+/// declares no topics. For a bringer, Bring ends on the ball and Judge derives news from it.
 fn world(model: &str) -> ProgramSymbols {
     let field = |id, name: &str, kind| FieldEntry { id: FieldId(id), name: name.into(), kind };
     let topic = |id, path: &str, message: &str| TopicEntry {
@@ -97,12 +97,19 @@ fn world(model: &str) -> ProgramSymbols {
         activities.insert("Hearsay", None);
         readers.insert("Hearsay", None);
     }
+    let mut ended_by = BTreeMap::new();
+    if model.contains("bringer") {
+        activities.extend([("Bring", paths(&[])), ("Judge", paths(&["soccer/news"]))]);
+        readers.extend([("Bring", paths(&["soccer/ball"])), ("Judge", paths(&["soccer/ball"]))]);
+        ended_by.insert("Bring".to_owned(), BTreeSet::from(["soccer/ball".to_owned()]));
+    }
     let named =
         |list: BTreeMap<&str, _>| list.into_iter().map(|(name, topics)| (name.to_owned(), topics)).collect();
     ProgramSymbols {
         vocabulary,
         activities: named(activities),
         readers: named(readers),
+        ended_by,
         elsewhere: BTreeSet::from(["body/eyes".into()]),
     }
 }

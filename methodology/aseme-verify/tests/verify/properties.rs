@@ -254,5 +254,6 @@ fn a_mistake_in_a_shipped_role_is_noticed() {
     let slow = ("StartTimeout(robot_timeout, 100ms)", "StartTimeout(robot_timeout, 150ms)");
     assert_eq!(broken("goalie", slow), ["the body is served ten times a second"]);
     let far = ("kickBall : [Ball.distance <= near", "kickBall : [Ball.distance > near");
-    assert_eq!(broken("attacker", far), ["a look at the ball is followed by a deed"]);
+    let followed = ["it kicks only what lies near", "a look at the ball is followed by a deed"];
+    assert_eq!(broken("attacker", far), followed);
 }

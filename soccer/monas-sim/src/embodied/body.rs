@@ -9,7 +9,7 @@ use monas_robot::{
 use narukom::Timestamp;
 
 use super::skill::SkillTrack;
-use super::{SharedField, announce, radio_channel};
+use super::{SharedField, announce};
 use crate::{BodyPhase, Command, Motion, Physics, Senses, Side, Sighting, Velocity};
 
 /// How often a body senses and acts: every second step of the world, 50 Hz.
@@ -33,7 +33,8 @@ pub struct FieldBody {
 
 impl FieldBody {
     pub(super) fn new(pitch: SharedField, robot: usize) -> FieldBody {
-        let anatomy = pitch.with_world(|world| anatomy(world.physics()));
+        let longest_message = pitch.lock().air.longest();
+        let anatomy = pitch.with_world(|world| anatomy(world.physics(), longest_message));
         let (senses, skill, command) = Default::default();
         FieldBody { pitch, robot, anatomy, senses, skill, command, announced: None, rests: false }
     }
@@ -145,13 +146,13 @@ impl Robot for FieldBody {
         self.drive()
     }
 
-    fn say(&mut self, _now: Timestamp, words: &[u8]) -> Result<(), Error> {
+    fn say(&mut self, now: Timestamp, words: &[u8]) -> Result<(), Error> {
         if words.len() > self.anatomy.radio {
             let message =
                 format!("{} bytes are more than the {} of a message", words.len(), self.anatomy.radio);
             return Err(Error::new(ErrorKind::Protocol, message));
         }
-        self.pitch.lock().air.broadcast(self.robot, words);
+        self.pitch.lock().air.broadcast(self.robot, now.as_nanos(), words);
         Ok(())
     }
 }
@@ -160,7 +161,7 @@ fn refused(error: crate::Error) -> Error {
     Error::new(ErrorKind::Protocol, error.to_string())
 }
 
-fn anatomy(physics: &Physics) -> Anatomy {
+fn anatomy(physics: &Physics, longest_message: usize) -> Anatomy {
     Anatomy {
         head_yaw: Limits::symmetric(physics.head_yaw_limit),
         head_pitch: Limits::new(physics.head_pitch_least, physics.head_pitch_most),
@@ -181,7 +182,7 @@ fn anatomy(physics: &Physics) -> Anatomy {
             Skill::DiveRight,
             Skill::StandUp,
         ],
-        radio: radio_channel::LONGEST,
+        radio: longest_message,
         ..Anatomy::new("field robot", CYCLE)
     }
 }
@@ -234,6 +235,7 @@ mod tests {
             field: Default::default(),
             physics: Default::default(),
             rules: Default::default(),
+            radio: Default::default(),
             teams: [team(1, TeamColour::Blue, FieldSide::Left), team(2, TeamColour::Red, FieldSide::Right)],
             robots: vec![RobotSetup { team: 1, number: 2 }],
             seed: 7,
@@ -285,7 +287,7 @@ mod tests {
                 });
             assert_eq!(heard.collect::<Vec<_>>(), heard_then);
         }
-        assert!(bodies[1].say(Timestamp::ZERO, &[0; 129]).is_err());
+        assert!(bodies[1].say(Timestamp::ZERO, &[0; 513]).is_err());
     }
 
     #[test]

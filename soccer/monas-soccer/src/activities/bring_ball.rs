@@ -12,6 +12,7 @@ use crate::functionality::align::Alignment;
 use crate::functionality::approach::Approach;
 use crate::functionality::avoidance::keep_out;
 use crate::functionality::geometry::angle_of;
+use crate::functionality::guard::GoalPositioning;
 use crate::functionality::head::HeadController;
 use crate::functionality::walk::Walk;
 use crate::{Ball, topics};
@@ -25,7 +26,7 @@ pub(super) const LOST: f64 = 2.5;
 /// Distance from the ball within which the robot aligns instead of approaching, metres.
 const NEAR: f64 = 0.25;
 /// Accepted final error of the heading to the target, radians.
-const FACING: f64 = 0.15;
+const FACING: f64 = 0.2;
 
 /// Walks to the ball and round it, looking at it, until it lies in front of a foot and the robot
 /// faces a target.
@@ -52,7 +53,7 @@ impl BringBall {
         };
         let ground = ground(blackboard);
         let target = target(blackboard, &ball, ground.as_ref());
-        if late || self.is_there(&ball, target) {
+        if late || ball.in_own_area || self.is_there(&ball, target) {
             return Ok(Progress::Done);
         }
         request_gaze(blackboard, self.head.look_at(ball.position()))?;
@@ -73,6 +74,9 @@ impl BringBall {
         target: Point2<f64>,
         ground: Option<&RobotAndField>,
     ) -> Walk {
+        if ball.approaching {
+            return GoalPositioning::default().step_before(ball.crossing_y);
+        }
         if ball.distance <= NEAR {
             return self.alignment.walk(ball.position(), target);
         }
@@ -115,7 +119,7 @@ macro_rules! bring_ball {
             }
 
             fn topics(&self) -> Topics {
-                let topics = Topics::declared().reads(topics::BALL).reads(topics::GAME_STATE).reads(topics::POSE);
+                let topics = Topics::declared().ends_on(topics::BALL).reads(topics::GAME_STATE).reads(topics::POSE);
                 let topics = topics.reads(topics::ROBOTS).reads(topics::MOTION)$(.reads(topics::$topic))*;
                 topics.publishes(topics::MOTION).publishes(topics::HEAD)
             }
@@ -127,10 +131,10 @@ macro_rules! bring_ball {
 
 bring_ball! {
     /// Walks to the ball and lines up for a pass to the partner in the attack. Ends when the ball
-    /// lies in front of a foot, is lost, or after 25 s; it never kicks.
+    /// lies in front of a foot or in the own goal area, is lost, or after 25 s; it never kicks.
     BringBallToPass: mate, [ATTACK];
     /// Walks to the ball and lines up for a shot at the widest gap in the goal. Ends when the ball
-    /// lies in front of a foot, is lost, or after 25 s; it never kicks.
+    /// lies in front of a foot or in the own goal area, is lost, or after 25 s; it never kicks.
     BringBallToShoot: target, [];
 }
 
@@ -180,6 +184,10 @@ mod tests {
         let mut lost = stage((2.0, 0.0));
         lost.publish(topics::BALL, Ball { x: 2.0, distance: 2.0, age: LOST, ..Ball::default() });
         assert!(lost.run(&mut activity));
+        let mut kept_out = stage((2.0, 0.0));
+        let ball = Ball { found: true, x: 2.0, distance: 2.0, in_own_area: true, ..Ball::default() };
+        kept_out.publish(topics::BALL, ball);
+        assert!(kept_out.run(&mut activity), "no field player may enter the own area");
         let mut stage = stage((2.0, 0.0));
         assert!(!stage.run(&mut activity));
         assert!(stage.wait(PATIENCE + LOOK).run(&mut activity));

@@ -14,15 +14,22 @@ pub(super) fn request_stand(blackboard: &mut Blackboard) -> Result<(), BoxError>
 pub(super) fn request_walk(blackboard: &mut Blackboard, walk: Walk) -> Result<(), BoxError> {
     let number = last_number(blackboard);
     let Walk { ahead: vx, left: vy, turn: wz } = walk;
-    publish(blackboard, MotionRequest { kind: MotionKind::Walk.into(), vx, vy, wz, number })
+    publish(
+        blackboard,
+        MotionRequest { kind: MotionKind::Walk.into(), vx, vy, wz, number, ..MotionRequest::default() },
+    )
 }
 
 /// Requests a one-time motion; the returned number identifies its completion.
-pub(super) fn request_skill(blackboard: &mut Blackboard, kind: MotionKind) -> Result<u64, BoxError> {
+pub(super) fn request_skill(
+    blackboard: &mut Blackboard,
+    kind: MotionKind,
+    is_pass: bool,
+) -> Result<u64, BoxError> {
     let done = blackboard.read(topics::MOTION_STATE).map_or(0, |state| state.done);
     let number = last_number(blackboard).max(done) + 1;
     tracing::info!(motion = kind.as_str_name(), "motion requested");
-    publish(blackboard, MotionRequest { kind: kind.into(), number, ..MotionRequest::default() })?;
+    publish(blackboard, MotionRequest { kind: kind.into(), number, is_pass, ..MotionRequest::default() })?;
     Ok(number)
 }
 

@@ -23,7 +23,7 @@ pub struct PassBall {
 }
 
 /// How long the outcome of a pass is watched.
-const WATCH: Duration = Duration::from_secs(6);
+const WATCH: Duration = Duration::from_millis(500);
 
 impl Activity for PassBall {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
@@ -50,7 +50,8 @@ impl Activity for PassBall {
     }
 
     fn topics(&self) -> Topics {
-        let topics = Topics::declared().reads(topics::BALL).reads(topics::MOTION).reads(topics::MOTION_STATE);
+        let topics =
+            Topics::declared().reads(topics::BALL).reads(topics::MOTION).ends_on(topics::MOTION_STATE);
         topics.publishes(topics::MOTION).publishes(topics::HEAD)
     }
 }
@@ -64,7 +65,7 @@ impl PassBall {
         let is_left = blackboard.read(topics::BALL).is_some_and(|ball| ball.y >= 0.0);
         let foot = if is_left { MotionKind::KickLeft } else { MotionKind::KickRight };
         let kick = *self.kick.get_or_insert(foot);
-        perform(&mut self.under_way, kick, blackboard)
+        perform(&mut self.under_way, kick, true, blackboard)
     }
 
     /// Stands facing the ball.

@@ -11,12 +11,10 @@ use crate::{GameState, PlayerState, convert, topics};
 /// Publishes the state of the game from the referee's announcements and presses of the chest
 /// button.
 ///
-/// Parameters are rules of the league that the referee does not announce: `goalkeeper`, the number
-/// of the goalkeeper; `area_depth` and `area_width` (m), the size of the goal area. The defaults
-/// are those of 2010.
+/// Parameters are rules of the league that the referee does not announce: `area_depth` and
+/// `area_width` (m), the size of the goal area. The defaults are those of 2010.
 #[derive(Clone, Debug)]
 pub struct RobotController {
-    goalkeeper: u32,
     area: (f64, f64),
     game: GameTracker,
     heard: Option<(PublisherId, u64)>,
@@ -35,7 +33,6 @@ impl Default for RobotController {
     fn default() -> RobotController {
         let FieldModel { area_depth, area_width, .. } = FieldModel::LEAGUE_2010;
         RobotController {
-            goalkeeper: 1,
             area: (area_depth, area_width),
             game: GameTracker::default(),
             heard: None,
@@ -47,9 +44,6 @@ impl Default for RobotController {
 
 impl Activity for RobotController {
     fn configure(&mut self, parameters: &Parameters) {
-        if let Some(number) = parameters.read("goalkeeper", "a player's number", |text| text.parse().ok()) {
-            self.goalkeeper = number;
-        }
         self.area.0 = parameters.number("area_depth").unwrap_or(self.area.0);
         self.area.1 = parameters.number("area_width").unwrap_or(self.area.1);
     }
@@ -104,7 +98,6 @@ impl RobotController {
             player_state,
             team: said.team,
             number: said.number,
-            goalkeeper: said.number == self.goalkeeper,
             team_colour: said.team_colour,
             goal_to_attack: said.goal_to_attack,
             own_score: said.own_score,
@@ -152,10 +145,7 @@ mod tests {
             .publish(body::ANNOUNCEMENT, announcement(monas_robot::GamePhase::Playing, false))
             .run(&mut activity);
         let game = stage.latest(topics::GAME_STATE).unwrap();
-        assert_eq!(
-            (game.player_state(), game.team, game.number, game.goalkeeper),
-            (PlayerState::Playing, 3, 2, false)
-        );
+        assert_eq!((game.player_state(), game.team, game.number), (PlayerState::Playing, 3, 2));
         assert_eq!(stage.count_arrivals(topics::GAME_STATE), 0);
         stage.wait(TICK).run(&mut activity);
         assert_eq!(stage.count_arrivals(topics::GAME_STATE), 0);
@@ -166,17 +156,14 @@ mod tests {
     }
 
     #[test]
-    fn the_number_of_the_goalkeeper_is_a_parameter() {
+    fn the_size_of_the_goal_area_is_a_parameter() {
         let (mut stage, mut activity) = (ActivityFixture::new(), RobotController::default());
-        activity.configure(&Parameters::new().with("goalkeeper", "2"));
-        stage
-            .publish(body::ANNOUNCEMENT, announcement(monas_robot::GamePhase::Ready, false))
-            .run(&mut activity);
-        let game = stage.latest(topics::GAME_STATE).unwrap();
-        assert!(game.goalkeeper && game.field().area_depth == 0.6);
-        let parameters = Parameters::new().with("goalkeeper", "first");
-        activity.configure(&parameters);
-        assert_eq!(parameters.faults().len(), 1);
+        let announced = announcement(monas_robot::GamePhase::Ready, false);
+        stage.publish(body::ANNOUNCEMENT, announced).run(&mut activity);
+        assert_eq!(stage.latest(topics::GAME_STATE).unwrap().field().area_depth, 0.6);
+        activity.configure(&Parameters::new().with("area_depth", "0.8"));
+        stage.publish(body::ANNOUNCEMENT, announced).run(&mut activity);
+        assert_eq!(stage.latest(topics::GAME_STATE).unwrap().field().area_depth, 0.8);
     }
 
     #[test]

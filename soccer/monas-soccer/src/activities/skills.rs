@@ -20,11 +20,12 @@ pub(super) type RunningSkill = Option<(u64, Timestamp)>;
 pub(super) fn perform(
     under_way: &mut RunningSkill,
     kind: MotionKind,
+    is_pass: bool,
     blackboard: &mut Blackboard,
 ) -> Result<Progress, BoxError> {
     let now = blackboard.now();
     let Some((number, since)) = *under_way else {
-        *under_way = Some((request_skill(blackboard, kind)?, now));
+        *under_way = Some((request_skill(blackboard, kind, is_pass)?, now));
         return Ok(Progress::after(LOOK));
     };
     let over = blackboard.read(topics::MOTION_STATE).is_some_and(|state| state.done >= number);
@@ -55,7 +56,7 @@ macro_rules! skill {
             }
 
             fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
-                perform(&mut self.under_way, MotionKind::$kind, blackboard)
+                perform(&mut self.under_way, MotionKind::$kind, false, blackboard)
             }
 
             fn stop(&mut self, _: &mut Blackboard) {
@@ -63,7 +64,7 @@ macro_rules! skill {
             }
 
             fn topics(&self) -> Topics {
-                Topics::declared().reads(topics::MOTION).reads(topics::MOTION_STATE).publishes(topics::MOTION)
+                Topics::declared().reads(topics::MOTION).ends_on(topics::MOTION_STATE).publishes(topics::MOTION)
             }
         }
 

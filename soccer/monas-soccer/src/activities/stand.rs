@@ -22,7 +22,7 @@ impl Activity for Stand {
     }
 
     fn topics(&self) -> Topics {
-        Topics::declared().reads(topics::MOTION).reads(topics::MOTION_STATE).publishes(topics::MOTION)
+        Topics::declared().reads(topics::MOTION).ends_on(topics::MOTION_STATE).publishes(topics::MOTION)
     }
 }
 

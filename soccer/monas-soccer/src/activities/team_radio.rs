@@ -3,37 +3,46 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use monas::{Activity, Blackboard, BoxError, Progress, Topics};
+use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
 use monas_robot::Said;
 use monas_robot::topics as body;
-use narukom::AnyMessage;
+use narukom::{AnyMessage, Timestamp};
 
 use super::shot::ground;
 use crate::functionality::kicks::Kicks;
-use crate::{AttackPart, MotionKind, Team, TeamReport, topics};
+use crate::functionality::report_budget::ReportBudget;
+use crate::{MotionKind, MotionPhase, PlayerState, Team, TeamReport, topics};
 
 /// Sends this player's pose, its estimate of the ball and the times of its kicks to the team, and
-/// collects the reports of team mates. A report is valid for a second.
+/// collects the reports of team mates. A report is valid for four seconds.
 ///
-/// A kick by the center while a pass is open counts as a pass; any other as a shot.
+/// A team may send a limited number of messages in a match. A report is sent when it says enough
+/// that the last one did not, and the more so the fewer messages are left.
+///
+/// Parameter `rate` (1/s): the number of reports that this player may send on average.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TeamRadio {
     kicks: Kicks,
+    budget: ReportBudget,
+    said: Option<(Timestamp, TeamReport)>,
+    sequence: u32,
 }
 
 /// How long a report is valid.
-const MEMORY: Duration = Duration::from_secs(1);
+const MEMORY: Duration = Duration::from_secs(4);
 /// Time since a kick that never happened, seconds.
 const NEVER: f64 = 1e6;
 
 impl Activity for TeamRadio {
+    fn configure(&mut self, parameters: &Parameters) {
+        self.budget.rate = parameters.number("rate").unwrap_or(self.budget.rate);
+    }
+
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         self.note_kicks(blackboard);
         let (own, mates) = (self.report(blackboard), listen(blackboard));
         if let Some(report) = own {
-            let mut words = Vec::new();
-            report.encode_to(&mut words);
-            blackboard.publish(body::SAID, Said { words })?;
+            self.say(blackboard, report)?;
         }
         blackboard.publish(topics::TEAM, Team { own, mates })?;
         Ok(Progress::Done)
@@ -41,7 +50,7 @@ impl Activity for TeamRadio {
 
     fn topics(&self) -> Topics {
         let topics = Topics::declared().reads(body::HEARD).reads(topics::GAME_STATE).reads(topics::POSE);
-        let topics = topics.reads(topics::BALL).reads(topics::MOTION).reads(topics::ATTACK);
+        let topics = topics.reads(topics::BALL).reads(topics::MOTION).reads(topics::MOTION_STATE);
         topics.publishes(body::SAID).publishes(topics::TEAM)
     }
 }
@@ -50,21 +59,39 @@ impl TeamRadio {
     fn note_kicks(&mut self, blackboard: &Blackboard) {
         let Some(motion) = blackboard.read(topics::MOTION) else { return };
         let is_kick = matches!(motion.kind(), MotionKind::KickLeft | MotionKind::KickRight);
-        let attack = blackboard.read(topics::ATTACK);
-        let is_pass = attack.is_some_and(|it| it.part() == AttackPart::Center && it.pass_is_open);
-        self.kicks.observe_request(blackboard.now(), if is_kick { motion.number } else { 0 }, is_pass);
+        let number = if is_kick { motion.number } else { 0 };
+        self.kicks.observe_request(blackboard.now(), number, motion.is_pass);
     }
 
-    /// None while the player's identity or pose is unknown.
+    /// Sends a report, if it is worth one of the messages that are left.
+    fn say(&mut self, blackboard: &mut Blackboard, report: TeamReport) -> Result<(), BoxError> {
+        let now = blackboard.now();
+        let worth = match &self.said {
+            Some((at, last)) => news(last, &report, now.since(*at)),
+            None => f64::INFINITY,
+        };
+        if !self.budget.spend(now, worth) {
+            return Ok(());
+        }
+        self.sequence = self.sequence.wrapping_add(1);
+        let report = TeamReport { sequence: self.sequence, ..report };
+        self.said = Some((now, report));
+        let mut words = Vec::new();
+        report.encode_to(&mut words);
+        Ok(blackboard.publish(body::SAID, Said { words })?)
+    }
+
+    /// None while the player does not play or does not know its pose.
     fn report(&self, blackboard: &Blackboard) -> Option<TeamReport> {
-        let number = blackboard.read(topics::GAME_STATE)?.number;
-        let pose = blackboard.read(topics::POSE)?;
+        let plays = blackboard.read(topics::GAME_STATE)?.player_state() == PlayerState::Playing;
+        let pose = blackboard.read(topics::POSE).filter(|_| plays)?;
         let ground = ground(blackboard)?;
         let ball = blackboard.read(topics::BALL).copied().unwrap_or_default();
         let ball_in_field = ground.field_from_robot * ball.position();
+        let phase = blackboard.read(topics::MOTION_STATE).map(|state| state.phase());
         let now = blackboard.now();
         Some(TeamReport {
-            number,
+            number: 0,
             x: pose.x,
             y: pose.y,
             heading: pose.heading,
@@ -75,6 +102,8 @@ impl TeamRadio {
             since_pass: self.kicks.since_pass(now).unwrap_or(NEVER),
             since_shot: self.kicks.since_shot(now).unwrap_or(NEVER),
             age: 0.0,
+            is_down: phase == Some(MotionPhase::Fallen),
+            sequence: 0,
         })
     }
 }
@@ -83,10 +112,15 @@ impl TeamRadio {
 /// versions and are ignored.
 fn listen(blackboard: &Blackboard) -> Vec<TeamReport> {
     let now = blackboard.now();
-    let mut newest = BTreeMap::new();
+    let mut newest: BTreeMap<u32, TeamReport> = BTreeMap::new();
     for heard in blackboard.recent(body::HEARD, MEMORY) {
         let Some(report) = understood(&heard.words) else { continue };
-        let age = now.since(narukom::Timestamp::from_nanos(heard.heard_at)).as_secs_f64();
+        // A message may arrive twice, or after one that was sent later.
+        let is_old = |known: &TeamReport| report.sequence.wrapping_sub(known.sequence) as i32 <= 0;
+        if newest.get(&heard.number).is_some_and(is_old) {
+            continue;
+        }
+        let age = now.since(Timestamp::from_nanos(heard.heard_at)).as_secs_f64();
         // The sender is identified by the channel, not by the content.
         newest.insert(heard.number, TeamReport { number: heard.number, age, ..report });
     }
@@ -102,6 +136,22 @@ fn understood(words: &[u8]) -> Option<TeamReport> {
     numbers.into_iter().all(f64::is_finite).then_some(report)
 }
 
+/// How much a report says that the last one, sent `age` ago, did not; one for half a metre.
+fn news(last: &TeamReport, report: &TeamReport, age: Duration) -> f64 {
+    let age = age.as_secs_f64();
+    let moved = libm::hypot(report.x - last.x, report.y - last.y) / 0.5;
+    let turned = (report.heading - last.heading).abs().min(1.0) * 0.3;
+    let rolled = match (last.ball_found, report.ball_found) {
+        (true, true) => libm::hypot(report.ball_x - last.ball_x, report.ball_y - last.ball_y) / 0.5,
+        (false, false) => 0.0,
+        _ => 1.0,
+    };
+    let kicked = |before: f64, now: f64| if now < before { 3.0 } else { 0.0 };
+    let kicks = kicked(last.since_pass, report.since_pass) + kicked(last.since_shot, report.since_shot);
+    let fell = if last.is_down == report.is_down { 0.0 } else { 1.5 };
+    moved + turned + rolled + kicks + fell + age / 2.0
+}
+
 monas::activity!(TeamRadio);
 
 #[cfg(test)]
@@ -110,11 +160,16 @@ mod tests {
 
     use super::*;
     use crate::activities::activity_fixture::{ActivityFixture, TICK};
-    use crate::{Attack, Ball, GameState, MotionRequest, Pose};
+    use crate::{Ball, GameState, MotionRequest, Pose};
 
     fn player() -> (ActivityFixture, TeamRadio) {
         let mut stage = ActivityFixture::new();
-        let game = GameState { number: 2, field_length: 6.0, field_width: 4.0, ..GameState::default() };
+        let game = GameState {
+            player_state: PlayerState::Playing.into(),
+            field_length: 6.0,
+            field_width: 4.0,
+            ..GameState::default()
+        };
         stage.publish(topics::GAME_STATE, game);
         stage.publish(topics::POSE, Pose { x: 1.0, y: 0.5, ..Pose::default() });
         stage.publish(topics::BALL, Ball { found: true, distance: 0.5, x: 0.5, ..Ball::default() });
@@ -139,9 +194,9 @@ mod tests {
         let (mut stage, mut radio) = player();
         stage.run(&mut radio);
         let report = last_report(&mut stage);
-        assert_eq!((report.number, report.x, report.y), (2, 1.0, 0.5));
+        assert_eq!((report.sequence, report.x, report.y), (1, 1.0, 0.5));
         assert_eq!((report.ball_found, report.ball_x, report.ball_y), (true, 1.5, 0.5));
-        assert!(stage.latest(body::SAID).unwrap().words.len() <= 128, "as much as a robot may say");
+        assert!(stage.latest(body::SAID).unwrap().words.len() <= 128, "a robot may say 512 bytes");
     }
 
     #[test]
@@ -152,47 +207,75 @@ mod tests {
     }
 
     #[test]
-    fn the_newest_report_of_each_mate_is_kept_for_a_second() {
+    fn the_newest_report_of_each_mate_is_kept_for_a_while() {
         let (mut stage, mut radio) = player();
-        heard(&mut stage, 3, TeamReport { x: 1.0, ..TeamReport::default() });
-        heard(&mut stage, 4, TeamReport { x: 9.0, number: 77, ..TeamReport::default() });
+        heard(&mut stage, 3, TeamReport { x: 1.0, sequence: 1, ..TeamReport::default() });
+        heard(&mut stage, 4, TeamReport { x: 9.0, number: 77, sequence: 7, ..TeamReport::default() });
         stage.wait(TICK);
-        heard(&mut stage, 3, TeamReport { x: 2.0, ..TeamReport::default() });
+        heard(&mut stage, 3, TeamReport { x: 2.0, sequence: 2, ..TeamReport::default() });
         stage.wait(TICK);
         stage.run(&mut radio);
         let mates = stage.latest(topics::TEAM).unwrap().mates;
         let known: Vec<_> = mates.iter().map(|it| (it.number, it.x, (it.age * 10.0).round())).collect();
         assert_eq!(known, [(3, 2.0, 1.0), (4, 9.0, 2.0)]);
-        stage.wait(Duration::from_millis(850));
+        stage.wait(Duration::from_millis(3850));
         stage.run(&mut radio);
         let mates = stage.latest(topics::TEAM).unwrap().mates;
         assert_eq!(mates.iter().map(|it| it.number).collect::<Vec<_>>(), [3]);
     }
 
     #[test]
-    fn a_kick_with_an_open_pass_is_a_pass_and_another_a_shot() {
-        for (pass_is_open, expected) in [(true, (0.0, NEVER)), (false, (NEVER, 0.0))] {
+    fn a_report_that_arrives_twice_or_late_is_not_believed() {
+        let (mut stage, mut radio) = player();
+        for (sequence, x) in [(1, 1.0), (3, 3.0), (2, 2.0), (3, 4.0)] {
+            heard(&mut stage, 3, TeamReport { x, sequence, ..TeamReport::default() });
+            stage.wait(TICK);
+        }
+        stage.run(&mut radio);
+        assert_eq!(stage.latest(topics::TEAM).unwrap().mates[0].x, 3.0);
+    }
+
+    #[test]
+    fn a_kick_that_is_meant_for_a_mate_is_a_pass_and_another_a_shot() {
+        for (is_pass, expected) in [(true, (0.0, NEVER)), (false, (NEVER, 0.0))] {
             let (mut stage, mut radio) = player();
-            let attack = Attack { part: AttackPart::Center.into(), pass_is_open, ..Attack::default() };
-            stage.publish(topics::ATTACK, attack);
-            let kick =
-                MotionRequest { kind: MotionKind::KickLeft.into(), number: 1, ..MotionRequest::default() };
-            stage.publish(topics::MOTION, kick);
-            stage.run(&mut radio);
-            assert_eq!(
-                (last_report(&mut stage).since_pass, last_report(&mut stage).since_shot),
-                (NEVER, NEVER)
+            let kind = MotionKind::KickLeft.into();
+            stage.publish(
+                topics::MOTION,
+                MotionRequest { kind, number: 1, is_pass, ..MotionRequest::default() },
             );
+            stage.run(&mut radio);
+            let since = |report: TeamReport| (report.since_pass, report.since_shot);
+            assert_eq!(since(last_report(&mut stage)), (NEVER, NEVER));
             stage.wait(8 * TICK);
             stage.run(&mut radio);
-            assert_eq!((last_report(&mut stage).since_pass, last_report(&mut stage).since_shot), expected);
+            assert_eq!(since(last_report(&mut stage)), expected, "and it is said at once");
         }
+    }
+
+    #[test]
+    fn a_player_that_does_not_play_says_nothing() {
+        let (mut stage, mut radio) = player();
+        let game = GameState { field_length: 6.0, ..GameState::default() };
+        stage.publish(topics::GAME_STATE, game).run(&mut radio);
+        assert_eq!(stage.latest(body::SAID), None);
+    }
+
+    #[test]
+    fn a_kick_is_news_and_standing_still_is_not() {
+        let report =
+            TeamReport { ball_found: true, since_pass: 1e6, since_shot: 1e6, ..TeamReport::default() };
+        let second = Duration::from_millis(100);
+        assert!(news(&report, &report, second) < 0.1);
+        assert!(news(&report, &TeamReport { since_pass: 0.0, ..report }, second) > 2.5);
+        assert!(news(&report, &TeamReport { x: 0.5, ..report }, second) > 0.9);
+        assert!(news(&report, &TeamReport { ball_found: false, ..report }, second) > 0.9);
     }
 
     #[test]
     fn invalid_reports_are_skipped() {
         let (mut stage, mut radio) = player();
-        heard(&mut stage, 3, TeamReport { x: 1.0, ..TeamReport::default() });
+        heard(&mut stage, 3, TeamReport { x: 1.0, sequence: 1, ..TeamReport::default() });
         heard(&mut stage, 4, TeamReport { x: f64::NAN, ..TeamReport::default() });
         let heard_at = stage.now.as_nanos();
         stage.publish(body::HEARD, Heard { number: 5, heard_at, words: vec![0xff] });

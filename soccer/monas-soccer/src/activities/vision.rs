@@ -8,6 +8,7 @@ use nalgebra::Isometry2;
 use narukom::Timestamp;
 
 use crate::functionality::ball_filter::{BallEstimate, BallFilter, BallModel};
+use crate::functionality::field::FieldModel;
 use crate::functionality::geometry::pose;
 use crate::functionality::interception::{Crossing, crossing};
 use crate::functionality::localisation::{Localisation, LocalisationModel};
@@ -110,8 +111,10 @@ impl Vision {
 
     fn publish(&self, blackboard: &mut Blackboard) -> Result<(), BoxError> {
         let Some(sight) = &self.state else { return Ok(()) };
-        blackboard.publish(topics::BALL, self.ball(sight))?;
-        blackboard.publish(topics::ROBOTS, sight.robots())?;
+        let field = blackboard.read(topics::GAME_STATE).map(GameState::field);
+        let robots = sight.robots();
+        blackboard.publish(topics::BALL, sight.in_surroundings(self.ball(sight), &robots, field))?;
+        blackboard.publish(topics::ROBOTS, robots)?;
         if let Some(filter) = &sight.localisation {
             blackboard.publish(topics::POSE, Pose::from_filter(filter))?;
         }
@@ -223,6 +226,17 @@ impl VisionState {
             filter.advance(&old_from_new);
         }
         (self.moment, self.odometry) = (moment, *odometry);
+    }
+
+    /// Sets where the ball lies to the team mates that were seen, and to the own goal area.
+    fn in_surroundings(&self, ball: Ball, robots: &Robots, field: Option<FieldModel>) -> Ball {
+        let mates = robots.robots.iter().filter(|robot| robot.team_mate);
+        let nearest = mates.map(|mate| (mate.position() - ball.position()).norm()).fold(NOBODY, f64::min);
+        let in_area = |(field, filter): (FieldModel, &Localisation)| {
+            field.in_own_area(filter.field_from_robot() * ball.position(), 0.0)
+        };
+        let in_own_area = ball.found && field.zip(self.localisation.as_ref()).is_some_and(in_area);
+        Ball { mate_lead: (ball.distance - nearest).max(0.0), in_own_area, ..ball }
     }
 
     fn robots(&self) -> Robots {

@@ -28,7 +28,7 @@ impl Activity for WaitForBallMessage {
     }
 
     fn topics(&self) -> Topics {
-        Topics::declared().reads(topics::BALL)
+        Topics::declared().ends_on(topics::BALL)
     }
 }
 

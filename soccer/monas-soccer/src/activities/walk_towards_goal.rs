@@ -9,13 +9,13 @@ use narukom::Timestamp;
 use super::bring_ball::{LOOK, LOST};
 use super::motion_requests::{request_gaze, request_walk};
 use super::shot::{ground, others};
-use super::walk_towards_ball::wait_at;
+use super::support_mate::wait_at;
 use crate::functionality::head::HeadController;
 use crate::functionality::support::support_place;
-use crate::topics;
+use crate::{AttackPart, topics};
 
 /// Walks towards the opponents' goal to a position for receiving a pass, and waits there facing the
-/// ball until it is passed or lost, or for 30 s.
+/// ball until it is passed, until the attack is over for this player, or for 30 s.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WalkTowardsGoal {
     head: HeadController,
@@ -29,11 +29,14 @@ impl Activity for WalkTowardsGoal {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let now = blackboard.now();
         let late = now.since(*self.since.get_or_insert(now)) > PATIENCE;
-        let passed = blackboard.read(topics::ATTACK).is_some_and(|attack| attack.ball_is_passed);
-        let ball = blackboard.read(topics::BALL).copied().filter(|ball| ball.age < LOST);
-        let (Some(ball), Some(ground), false) = (ball, ground(blackboard), late || passed) else {
+        let attack = blackboard.read(topics::ATTACK).copied().unwrap_or_default();
+        if late || attack.ball_is_passed || attack.part() != AttackPart::CenterFor {
             self.since = None;
             return Ok(Progress::Done);
+        }
+        let ball = blackboard.read(topics::BALL).copied().filter(|ball| ball.age < LOST);
+        let (Some(ball), Some(ground)) = (ball, ground(blackboard)) else {
+            return Ok(Progress::after(LOOK));
         };
         let here = Point2::from(ground.field_from_robot.translation.vector);
         let place = support_place(&ground.field, ground.field_from_robot * ball.position(), here);
@@ -50,7 +53,7 @@ impl Activity for WalkTowardsGoal {
 
     fn topics(&self) -> Topics {
         let topics = Topics::declared().reads(topics::BALL).reads(topics::GAME_STATE).reads(topics::POSE);
-        let topics = topics.reads(topics::ROBOTS).reads(topics::MOTION).reads(topics::ATTACK);
+        let topics = topics.reads(topics::ROBOTS).reads(topics::MOTION).ends_on(topics::ATTACK);
         topics.publishes(topics::MOTION).publishes(topics::HEAD)
     }
 }
@@ -67,7 +70,12 @@ mod tests {
         let mut stage = ActivityFixture::new();
         let game = GameState { field_length: 6.0, field_width: 4.0, goal_width: 1.4, ..GameState::default() };
         stage.publish(topics::GAME_STATE, game).publish(topics::POSE, pose).publish(topics::BALL, ball);
+        stage.publish(topics::ATTACK, engaged());
         stage
+    }
+
+    fn engaged() -> Attack {
+        Attack { part: AttackPart::CenterFor.into(), ..Attack::default() }
     }
 
     fn ball(x: f64, y: f64) -> Ball {
@@ -86,12 +94,16 @@ mod tests {
     }
 
     #[test]
-    fn it_is_done_when_the_ball_is_passed_or_lost_and_after_a_while() {
+    fn it_is_done_when_the_ball_is_passed_or_the_attack_is_over_and_after_a_while() {
         let pose = Pose { x: -1.0, ..Pose::default() };
         let mut passed = stage(pose, ball(1.0, 0.0));
-        passed.publish(topics::ATTACK, Attack { ball_is_passed: true, ..Attack::default() });
+        passed.publish(topics::ATTACK, Attack { ball_is_passed: true, ..engaged() });
         assert!(passed.run(&mut WalkTowardsGoal::default()));
-        assert!(stage(pose, Ball { age: LOST, ..ball(1.0, 0.0) }).run(&mut WalkTowardsGoal::default()));
+        let mut over = stage(pose, ball(1.0, 0.0));
+        over.publish(topics::ATTACK, Attack::default());
+        assert!(over.run(&mut WalkTowardsGoal::default()));
+        let mut unseen = stage(pose, Ball { age: LOST, ..ball(1.0, 0.0) });
+        assert!(!unseen.run(&mut WalkTowardsGoal::default()), "the mate may see it");
         let (mut waiting, mut activity) = (stage(pose, ball(1.0, 0.0)), WalkTowardsGoal::default());
         assert!(!waiting.run(&mut activity));
         assert!(waiting.wait(PATIENCE + LOOK).run(&mut activity));

@@ -1,5 +1,5 @@
-//! Evaluates an attack of two players: their parts, whether a pass or a shot is open, and the
-//! outcome.
+//! Evaluates an attack of two players: who goes to the ball, their parts, whether a pass or a shot
+//! is open, and the outcome.
 //!
 //! Each player evaluates this from its perception and the reports of its team mates, so two players
 //! may disagree temporarily. Parts are assigned with a margin: while it is unclear which player is
@@ -8,7 +8,7 @@
 use nalgebra::{Point2, Vector2};
 
 use super::aim::shot_target;
-use super::field::FieldModel;
+use super::field::{FieldModel, Goal};
 use super::geometry::{angle_of, distance_to_segment, wrap};
 
 /// Distance within which a robot has the ball in reach, metres.
@@ -21,12 +21,26 @@ const WAY: f64 = 0.3;
 const PASS: (f64, f64) = (0.7, 3.5);
 /// Accepted error of the heading for a kick, radians.
 const FACING: f64 = 0.22;
-/// How long after a pass the ball belongs to the partner, and how long a shot counts as outcome,
-/// seconds.
-const PASSED: f64 = 8.0;
+/// How long after a pass the ball belongs to the partner: it rolls, and the partner walks to it and
+/// round it, seconds.
+const PASSED: f64 = 20.0;
+/// How long a shot counts as outcome, seconds.
 const SHOT: f64 = 1.0;
+/// By how much an opponent must be nearer to the ball than the team to have it, metres: reports of
+/// mates that walk to the ball are old.
+const HAS: f64 = 0.1;
+/// Distance from the goal beyond which no shot is expected to score, metres.
+const SHOT_LENGTH: f64 = 2.8;
 /// Prediction time for a rolling ball, seconds.
 const FORESIGHT: f64 = 0.4;
+/// Way that turning by a radian costs, metres.
+const TURN_COST: f64 = 0.15;
+/// Way that walking round the ball by a radian costs, metres.
+const ROUND_COST: f64 = 0.25;
+/// How long a player leaves the ball to its mates after a pass, seconds, and what that costs as
+/// way, metres.
+const YIELDING: f64 = 6.0;
+const YIELD_COST: f64 = 2.0;
 
 /// A part in the attack.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -40,14 +54,14 @@ pub enum AttackRole {
 /// A field player of the own team. Positions are in the field frame of the team.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct AttackPlayer {
-    /// Its number.
-    pub number: u32,
     /// Its position.
     pub place: Point2<f64>,
     /// Its heading, radians.
     pub heading: f64,
     /// Its distance from the ball, metres.
     pub ball_distance: f64,
+    /// What hinders it on its way to the ball, as metres of straight walk.
+    pub handicap: f64,
     /// Seconds since its last pass.
     pub since_pass: f64,
     /// Seconds since its last other kick.
@@ -76,7 +90,7 @@ pub struct AttackSituation<'a> {
 /// The state of an attack from the view of the evaluating player.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct AttackState {
-    /// No robot has the ball within reach.
+    /// No robot but the nearest of the team has the ball within reach.
     pub ball_is_free: bool,
     /// The center is nearer to the ball than every other known robot.
     pub center_is_closest: bool,
@@ -98,6 +112,11 @@ pub struct AttackState {
     pub opponent_has_ball: bool,
     /// The ball is over a line or about to cross it.
     pub ball_is_out: bool,
+    /// How much shorter the way to the ball is for the team mate with the shortest, metres; zero if
+    /// it is not shorter.
+    pub mate_lead: f64,
+    /// An opponent is nearer to the ball than every player of the team.
+    pub opponent_leads: bool,
 }
 
 /// Evaluates a situation. Conditions that do not need two players are evaluated for any number.
@@ -107,12 +126,20 @@ pub fn evaluate(scene: &AttackSituation<'_>) -> AttackState {
         shot_at_goal: players(scene).any(|it| it.since_shot < SHOT),
         opponent_has_ball: opponent_has_ball(scene),
         ball_is_out: ball_is_out(scene),
+        mate_lead: mate_lead(scene),
+        opponent_leads: opponent_leads(scene),
         ..AttackState::default()
     };
-    let Some((center, center_for)) = parts(scene) else { return alone };
-    let (part, mate) = match scene.own.number {
-        number if number == center.number => (Some(AttackRole::Center), Some(center_for.place)),
-        number if number == center_for.number => (Some(AttackRole::CenterFor), Some(center.place)),
+    let is_kept_out = scene.field.in_own_area(scene.ball, 0.0);
+    let Some((center, center_for)) = parts(scene).filter(|_| !is_kept_out) else { return alone };
+    let pays = pass_pays(scene, center_for.place);
+    let is_passed = center.since_pass < PASSED;
+    let (part, mate) = match (std::ptr::eq(center, &scene.own), std::ptr::eq(center_for, &scene.own)) {
+        // The part of the center ends with its pass.
+        (true, _) if is_passed => (None, None),
+        _ if !is_passed && !pays => (None, None),
+        (true, _) => (Some(AttackRole::Center), Some(center_for.place)),
+        (_, true) => (Some(AttackRole::CenterFor), Some(center.place)),
         _ => (None, None),
     };
     AttackState {
@@ -121,7 +148,7 @@ pub fn evaluate(scene: &AttackSituation<'_>) -> AttackState {
         part,
         mate,
         pass_is_open: part == Some(AttackRole::Center) && pass_is_open(scene, center_for.place),
-        ball_is_passed: center.since_pass < PASSED,
+        ball_is_passed: is_passed,
         path_is_clear: part == Some(AttackRole::CenterFor) && path_is_clear(scene),
         ..alone
     }
@@ -134,29 +161,43 @@ fn players<'a>(scene: &'a AttackSituation<'_>) -> impl Iterator<Item = &'a Attac
 /// The center and its partner: the players nearest to and farthest from the ball. During a pass:
 /// the player that has passed, and the nearest of the others.
 fn parts<'a>(scene: &'a AttackSituation<'_>) -> Option<(&'a AttackPlayer, &'a AttackPlayer)> {
-    let nearest_but = |but: Option<u32>| {
-        let others = players(scene).filter(move |it| Some(it.number) != but);
-        others.min_by(|a, b| a.ball_distance.total_cmp(&b.ball_distance).then(a.number.cmp(&b.number)))
-    };
+    let but = |but: &'a AttackPlayer| players(scene).filter(move |it| !std::ptr::eq(*it, but));
+    let by_distance = |a: &&AttackPlayer, b: &&AttackPlayer| a.ball_distance.total_cmp(&b.ball_distance);
     let passers = players(scene).filter(|it| it.since_pass < PASSED);
     if let Some(passer) = passers.min_by(|a, b| a.since_pass.total_cmp(&b.since_pass)) {
-        return Some((passer, nearest_but(Some(passer.number))?));
+        return Some((passer, but(passer).min_by(by_distance)?));
     }
-    let nearest = nearest_but(None)?;
-    let others = players(scene).filter(|it| it.number != nearest.number);
-    let farthest =
-        others.max_by(|a, b| a.ball_distance.total_cmp(&b.ball_distance).then(a.number.cmp(&b.number)));
-    Some((nearest, farthest?))
+    let nearest = players(scene).min_by(by_distance)?;
+    Some((nearest, but(nearest).max_by(by_distance)?))
+}
+
+/// The way to the place behind the ball, as metres of straight walk.
+fn cost(scene: &AttackSituation<'_>, player: &AttackPlayer) -> f64 {
+    let (to_ball, shot) = (scene.ball - player.place, scene.field.goal(Goal::Opponent) - scene.ball);
+    let yields = if player.since_pass < YIELDING { YIELD_COST } else { 0.0 };
+    let turn = wrap(angle_of(&to_ball) - player.heading).abs();
+    let round = wrap(angle_of(&shot) - angle_of(&to_ball)).abs();
+    player.ball_distance + TURN_COST * turn + ROUND_COST * round + player.handicap + yields
+}
+
+fn opponent_leads(scene: &AttackSituation<'_>) -> bool {
+    let own = players(scene).map(|it| it.ball_distance).fold(f64::INFINITY, f64::min);
+    scene.opponents.iter().any(|it| (it - scene.ball).norm() < own)
+}
+
+fn mate_lead(scene: &AttackSituation<'_>) -> f64 {
+    let mates = scene.mates.iter().map(|mate| cost(scene, mate));
+    (cost(scene, &scene.own) - mates.fold(f64::INFINITY, f64::min)).max(0.0)
 }
 
 fn ball_is_free(scene: &AttackSituation<'_>) -> bool {
-    let of_team = players(scene).all(|it| it.ball_distance > REACH);
-    of_team && scene.opponents.iter().all(|it| (it - scene.ball).norm() > REACH)
+    let of_team = players(scene).filter(|it| it.ball_distance <= REACH).count();
+    of_team <= 1 && scene.opponents.iter().all(|it| (it - scene.ball).norm() > REACH)
 }
 
 fn opponent_has_ball(scene: &AttackSituation<'_>) -> bool {
     let own = players(scene).map(|it| it.ball_distance).fold(f64::INFINITY, f64::min);
-    scene.opponents.iter().map(|it| (it - scene.ball).norm()).any(|it| it < REACH && it < own)
+    scene.opponents.iter().map(|it| (it - scene.ball).norm()).any(|it| it < REACH && it < own - HAS)
 }
 
 fn ball_is_out(scene: &AttackSituation<'_>) -> bool {
@@ -169,6 +210,16 @@ fn pass_is_open(scene: &AttackSituation<'_>, receiver: Point2<f64>) -> bool {
     let way = (receiver - scene.ball).norm();
     (PASS.0..PASS.1).contains(&way) && faces(scene, receiver) && is_free(scene, receiver)
 }
+
+/// Whether a pass is better than a shot: the goal is far, and the receiver is not behind the ball.
+fn pass_pays(scene: &AttackSituation<'_>, receiver: Point2<f64>) -> bool {
+    let (shot, pass) = (scene.field.goal(Goal::Opponent) - scene.ball, receiver - scene.ball);
+    let aside = wrap(angle_of(&pass) - angle_of(&shot)).abs();
+    shot.norm() > SHOT_LENGTH && aside < ASIDE
+}
+
+/// Greatest angle between a pass and a shot, radians.
+const ASIDE: f64 = 0.8;
 
 fn path_is_clear(scene: &AttackSituation<'_>) -> bool {
     let target = shot_target(&scene.field, scene.ball, scene.opponents);
@@ -188,20 +239,20 @@ fn is_free(scene: &AttackSituation<'_>, target: Point2<f64>) -> bool {
 mod tests {
     use super::*;
 
-    fn player(number: u32, x: f64, y: f64) -> AttackPlayer {
+    fn player(x: f64, y: f64) -> AttackPlayer {
         let place = Point2::new(x, y);
         let far = f64::INFINITY;
         AttackPlayer {
-            number,
             place,
             heading: 0.0,
             ball_distance: place.coords.norm(),
+            handicap: 0.0,
             since_pass: far,
             since_shot: far,
         }
     }
 
-    /// The ball lies in the middle of the field; player 2 evaluates.
+    /// The ball lies in the middle of the field.
     fn scene<'a>(
         own: AttackPlayer,
         mates: &'a [AttackPlayer],
@@ -221,7 +272,7 @@ mod tests {
 
     #[test]
     fn both_agree_on_their_roles() {
-        let (near, far) = (player(2, -1.0, 0.0), player(3, -1.0, 1.5));
+        let (near, far) = (player(-1.0, 0.0), player(1.2, 1.0));
         let one = evaluate(&scene(near, &[far], &[]));
         let other = evaluate(&scene(far, &[near], &[]));
         assert_eq!((one.part, other.part), (Some(AttackRole::Center), Some(AttackRole::CenterFor)));
@@ -233,32 +284,32 @@ mod tests {
 
     #[test]
     fn the_middle_one_of_three_has_no_part() {
-        let (near, far) = (player(3, -0.5, 0.0), player(4, -2.5, 0.0));
-        assert_eq!(evaluate(&scene(player(2, -1.0, 0.0), &[near, far], &[])).part, None);
+        let (near, far) = (player(-0.5, 0.0), player(-2.5, 0.0));
+        assert_eq!(evaluate(&scene(player(-1.0, 0.0), &[near, far], &[])).part, None);
     }
 
     #[test]
-    fn a_ball_in_reach_of_any_robot_is_not_free() {
-        let (own, mate) = (player(2, -1.0, 0.0), player(3, -2.0, 0.0));
+    fn a_ball_in_reach_of_two_players_or_an_opponent_is_not_free() {
+        let (own, mate) = (player(-1.0, 0.0), player(-2.0, 0.0));
         let judged = |own, mate, opponent| evaluate(&scene(own, &[mate], &[opponent])).ball_is_free;
         let away = Point2::new(2.0, 0.0);
         assert!(judged(own, mate, away));
-        assert!(!judged(player(2, 0.2, 0.0), mate, away));
-        assert!(!judged(own, player(3, 0.0, 0.3), away));
+        assert!(judged(player(0.2, 0.0), mate, away), "it takes the ball");
+        assert!(!judged(player(0.2, 0.0), player(0.0, 0.3), away));
         assert!(!judged(own, mate, Point2::new(0.0, -0.3)));
     }
 
     #[test]
     fn rules_fail_where_an_opponent_is_nearer_or_the_two_are_equally_near() {
-        let (own, mate) = (player(2, -1.0, 0.0), player(3, -2.0, 0.0));
+        let (own, mate) = (player(-1.0, 0.0), player(-2.0, 0.0));
         assert!(!evaluate(&scene(own, &[mate], &[Point2::new(0.0, 0.8)])).center_is_closest);
-        assert!(!evaluate(&scene(own, &[player(3, 0.0, 1.1)], &[])).center_for_is_farthest);
+        assert!(!evaluate(&scene(own, &[player(0.0, 1.1)], &[])).center_for_is_farthest);
     }
 
     #[test]
     fn a_pass_is_open_when_the_center_faces_its_partner_and_no_robot_is_between() {
-        let center = AttackPlayer { heading: 0.5, ..player(2, -0.15, -0.05) };
-        let other = player(3, 1.5, 0.8);
+        let center = AttackPlayer { heading: 0.5, ..player(-0.15, -0.05) };
+        let other = player(1.5, 0.8);
         let open = |at_foot, own, mate, opponents: &[Point2<f64>]| {
             evaluate(&AttackSituation { at_foot, ..scene(own, &[mate], opponents) }).pass_is_open
         };
@@ -266,27 +317,27 @@ mod tests {
         assert!(!open(false, center, other, &[]), "the ball is not at its foot");
         assert!(!open(true, AttackPlayer { heading: 0.0, ..center }, other, &[]), "it faces elsewhere");
         assert!(!open(true, center, other, &[Point2::new(0.8, 0.3)]), "a robot is between");
-        assert!(!open(true, center, player(3, 0.5, 0.27), &[]), "the other is too near");
+        assert!(!open(true, center, player(0.5, 0.27), &[]), "the other is too near");
         assert!(!open(true, other, center, &[]), "it is not the center");
     }
 
     #[test]
     fn after_a_pass_the_parts_stay_though_the_other_is_nearer_now() {
-        let passer = AttackPlayer { since_pass: 2.0, ..player(2, -1.0, 0.0) };
-        let other = AttackPlayer { heading: 0.0, ..player(3, -0.15, 0.0) };
+        let passer = AttackPlayer { since_pass: 2.0, ..player(-1.0, 0.0) };
+        let other = AttackPlayer { heading: 0.0, ..player(-0.15, 0.0) };
         let it = evaluate(&AttackSituation { at_foot: true, ..scene(other, &[passer], &[]) });
         assert!(it.part == Some(AttackRole::CenterFor) && it.ball_is_passed && it.path_is_clear);
         let it = evaluate(&scene(passer, &[other], &[]));
-        assert!(it.part == Some(AttackRole::Center) && it.ball_is_passed && !it.shot_at_goal);
-        let forgotten = AttackPlayer { since_pass: PASSED, ..passer };
+        assert!(it.part.is_none() && it.ball_is_passed && !it.shot_at_goal, "it has done its part");
+        let forgotten = AttackPlayer { since_pass: PASSED, ..player(0.8, 0.7) };
         let it = evaluate(&scene(forgotten, &[other], &[]));
         assert!(it.part == Some(AttackRole::CenterFor) && !it.ball_is_passed);
     }
 
     #[test]
     fn a_path_is_clear_when_part_of_the_goal_is() {
-        let passer = AttackPlayer { since_pass: 2.0, ..player(2, -1.0, 0.0) };
-        let shooter = |heading| AttackPlayer { heading, ..player(3, -0.15, 0.0) };
+        let passer = AttackPlayer { since_pass: 2.0, ..player(-1.0, 0.0) };
+        let shooter = |heading| AttackPlayer { heading, ..player(-0.15, 0.0) };
         let clear = |heading, opponents: &[Point2<f64>]| {
             evaluate(&AttackSituation { at_foot: true, ..scene(shooter(heading), &[passer], opponents) })
                 .path_is_clear
@@ -296,14 +347,39 @@ mod tests {
     }
 
     #[test]
+    fn the_shorter_way_counts_with_its_turns() {
+        let lead = |own, mate| evaluate(&scene(own, &[mate], &[])).mate_lead;
+        let (behind, before) = (player(-1.0, 0.0), player(1.0, 0.0));
+        assert_eq!(lead(behind, before), 0.0);
+        assert!(lead(before, behind) > 0.8, "it would have to walk round the ball: {}", lead(before, behind));
+        assert!((lead(player(-1.5, 0.0), behind) - 0.5).abs() < 1e-9);
+        let down = AttackPlayer { handicap: 1.0, ..behind };
+        assert_eq!(lead(player(-1.5, 0.0), down), 0.0, "one that lies is no help");
+        assert_eq!(evaluate(&scene(behind, &[], &[])).mate_lead, 0.0);
+        let passer = AttackPlayer { since_pass: 1.0, ..behind };
+        assert_eq!(lead(player(-1.5, 0.0), passer), 0.0, "it does not run after its own pass");
+    }
+
+    #[test]
+    fn no_pass_is_planned_where_a_shot_is_better_or_backwards() {
+        let (own, mate) = (player(-1.0, 0.0), player(1.0, 0.9));
+        let part =
+            |ball: Point2<f64>, mate| evaluate(&AttackSituation { ball, ..scene(own, &[mate], &[]) }).part;
+        assert_eq!(part(Point2::origin(), mate), Some(AttackRole::Center));
+        assert_eq!(part(Point2::new(0.5, 0.0), mate), None, "the goal is near enough");
+        assert_eq!(part(Point2::new(-2.7, 0.0), mate), None, "no field player may enter the own area");
+        assert_eq!(part(Point2::origin(), player(-1.0, 1.5)), None, "the mate is behind the ball");
+    }
+
+    #[test]
     fn each_outcome_is_seen() {
-        let (own, mate) = (player(2, -1.0, 0.0), player(3, -2.0, 0.0));
+        let (own, mate) = (player(-1.0, 0.0), player(-2.0, 0.0));
         let nothing = evaluate(&scene(own, &[mate], &[Point2::new(1.0, 0.0)]));
         assert!(!nothing.shot_at_goal && !nothing.opponent_has_ball && !nothing.ball_is_out);
         let shot = AttackPlayer { since_shot: 0.5, ..mate };
         assert!(evaluate(&scene(own, &[shot], &[])).shot_at_goal);
         assert!(evaluate(&scene(own, &[mate], &[Point2::new(0.3, 0.0)])).opponent_has_ball);
-        let contested = player(2, 0.2, 0.0);
+        let contested = player(0.2, 0.0);
         assert!(!evaluate(&scene(contested, &[mate], &[Point2::new(0.3, 0.0)])).opponent_has_ball);
         for (place, rolling, is_out) in [
             ((0.0, 1.9), (0.0, 1.0), true),

@@ -54,12 +54,13 @@ impl HeadController {
         }
     }
 
-    /// The gaze at a time of a search: from side to side at constant speed, alternating between far
-    /// and near.
+    /// The gaze at a time of a search: from side to side at constant speed, alternating between
+    /// near and far. Near comes first: this view also shows the field up to its border, while the
+    /// far one does not show a ball before the feet, where it lies at a kick-off.
     pub fn scan(&self, since_start: Duration) -> Gaze {
         let sweeps = since_start.as_secs_f64() / self.sweep_time.as_secs_f64().max(0.1);
         let part = sweeps - libm::floor(sweeps);
-        let far = libm::fmod(libm::floor(sweeps), 2.0) == 0.0;
+        let far = libm::fmod(libm::floor(sweeps), 2.0) == 1.0;
         // A triangle wave from the middle: 0, 1, 0, -1, 0.
         let swing = if part < 0.25 {
             4.0 * part
@@ -87,13 +88,13 @@ mod tests {
     }
 
     #[test]
-    fn a_search_sweeps_both_sides_far_and_near() {
+    fn a_search_sweeps_both_sides_near_and_far() {
         let head = HeadController::default();
         let gazes: Vec<Gaze> = (0..60).map(|step| head.scan(Duration::from_millis(100 * step))).collect();
         let yaw = |pick: fn(f64, f64) -> f64| gazes.iter().map(|gaze| gaze.yaw).fold(0.0, pick);
         assert!(yaw(f64::max) > 1.4 && yaw(f64::min) < -1.4);
-        assert!(gazes[..30].iter().all(|gaze| gaze.pitch < 0.0));
-        assert!(gazes[30..].iter().all(|gaze| gaze.pitch > 0.3));
+        assert!(gazes[..30].iter().all(|gaze| gaze.pitch > 0.3));
+        assert!(gazes[30..].iter().all(|gaze| gaze.pitch < 0.0));
         let jump = gazes.windows(2).map(|pair| (pair[1].yaw - pair[0].yaw).abs()).fold(0.0, f64::max);
         assert!(jump < 0.3, "the head moves evenly: {jump}");
     }

@@ -1,8 +1,8 @@
-//! Where a player waits while a team mate has the ball.
+//! Where a player waits while a team mate goes to the ball.
 
 use nalgebra::Point2;
 
-use super::field::FieldModel;
+use super::field::{FieldModel, Goal};
 
 /// Distance ahead of the ball, metres.
 const AHEAD: f64 = 1.0;
@@ -20,6 +20,18 @@ pub fn support_place(field: &FieldModel, ball: Point2<f64>, player: Point2<f64>)
     Point2::new(x, y.clamp(-reach, reach))
 }
 
+/// Distance that a cover keeps from the ball, and from the own goal area, metres.
+const FROM_BALL: f64 = 0.8;
+const FROM_AREA: f64 = 0.2;
+
+/// The position between the ball and the own goal, outside its area, where a shot of an opponent is
+/// blocked. All in the field frame.
+pub fn cover_place(field: &FieldModel, ball: Point2<f64>) -> Point2<f64> {
+    let to_goal = field.goal(Goal::Own) - ball;
+    let place = ball + to_goal.try_normalize(1e-6).unwrap_or_default() * FROM_BALL;
+    Point2::new(place.x.max(field.area_front() + FROM_AREA), place.y)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -32,6 +44,14 @@ mod tests {
         assert_eq!(place, Point2::new(AHEAD, ASIDE));
         let place = support_place(&FIELD, Point2::new(0.0, 0.0), Point2::new(-1.0, -0.2));
         assert_eq!(place, Point2::new(AHEAD, -ASIDE));
+    }
+
+    #[test]
+    fn the_cover_is_between_ball_and_goal_and_not_in_the_area() {
+        let place = cover_place(&FIELD, Point2::origin());
+        assert!((place - Point2::new(-FROM_BALL, 0.0)).norm() < 1e-9);
+        let place = cover_place(&FIELD, Point2::new(-2.0, 1.0));
+        assert!((place.x + 2.2).abs() < 1e-9 && (0.2..0.9).contains(&place.y), "{place}");
     }
 
     #[test]

@@ -22,6 +22,8 @@ pub(crate) fn linked() -> Result<ProgramSymbols, CommandFailure> {
         };
         world.activities.insert(name.to_owned(), named(topics.published_paths()));
         world.readers.insert(name.to_owned(), named(topics.read_paths()));
+        let ends = topics.ending_paths().iter().map(|&path| path.to_owned());
+        world.ended_by.insert(name.to_owned(), ends.collect());
     }
     let paths = world.vocabulary.topics.iter().map(|topic| topic.path.clone());
     let is_elsewhere = |path: &String| ELSEWHERE.iter().any(|begin| path.starts_with(begin));

@@ -11,11 +11,11 @@ use crate::{Attack, AttackPart, TeamReport, topics};
 /// Publishes the conditions that the guards of the attack protocol use, as far as this player can
 /// evaluate them from perception and team reports. Unknown conditions are false.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct AttackWatch {
+pub struct AssessAttack {
     alignment: Alignment,
 }
 
-impl Activity for AttackWatch {
+impl Activity for AssessAttack {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let attack = self.attack(blackboard).unwrap_or_default();
         blackboard.publish(topics::ATTACK, attack)?;
@@ -28,14 +28,14 @@ impl Activity for AttackWatch {
     }
 }
 
-impl AttackWatch {
+impl AssessAttack {
     /// None while the player's pose is unknown, or no player sees the ball.
     fn attack(&self, blackboard: &Blackboard) -> Option<Attack> {
         let ground = ground(blackboard)?;
         let team = blackboard.read(topics::TEAM)?;
         let own = team.own?;
         let BallObservation { ball, rolling, at_foot } = self.sight(blackboard, &ground, &team.mates)?;
-        let mates: Vec<AttackPlayer> = team.mates.iter().map(|mate| player(mate, ball)).collect();
+        let mates = mates(blackboard, &ground, &team.mates, ball);
         let opponents = others(blackboard).filter(|robot| !robot.team_mate);
         let opponents: Vec<Point2<f64>> =
             opponents.map(|robot| ground.field_from_robot * robot.position()).collect();
@@ -49,7 +49,8 @@ impl AttackWatch {
             mates: &mates,
             opponents: &opponents,
         };
-        Some(message(&evaluate(&scene), own.place))
+        let mate_sees_ball = !blackboard.read(topics::BALL).is_some_and(|ball| ball.found);
+        Some(Attack { mate_sees_ball, ..message(&evaluate(&scene), own.place) })
     }
 
     /// The ball as seen by this player or, if it does not see it, by the team mate with the newest
@@ -86,14 +87,51 @@ struct BallObservation {
     at_foot: bool,
 }
 
+/// The field players of the team. A mate that is seen near the place that it reported is where it
+/// is seen; one that is seen and has not reported stands still.
+fn mates(
+    blackboard: &Blackboard,
+    ground: &RobotAndField,
+    reports: &[TeamReport],
+    ball: Point2<f64>,
+) -> Vec<AttackPlayer> {
+    let seen = others(blackboard).filter(|robot| robot.team_mate);
+    let mut seen: Vec<Point2<f64>> = seen.map(|robot| ground.field_from_robot * robot.position()).collect();
+    let mut mates: Vec<AttackPlayer> = Vec::new();
+    for report in reports {
+        let mut mate = player(report, ball);
+        let distance = |place: &Point2<f64>| (place - mate.place).norm();
+        let nearest = (0..seen.len()).min_by(|a, b| distance(&seen[*a]).total_cmp(&distance(&seen[*b])));
+        if let Some(index) = nearest.filter(|index| distance(&seen[*index]) < SAME + SPEED * report.age) {
+            mate.place = seen.swap_remove(index);
+            mate.ball_distance = (mate.place - ball).norm();
+        }
+        mates.push(mate);
+    }
+    mates
+}
+
+/// Distance within which a mate that is seen is the one that reported, metres, and how much this
+/// grows with the age of the report, m/s.
+const SAME: f64 = 0.5;
+const SPEED: f64 = 0.3;
+
+/// What hinders a player on its way to the ball, as metres of straight walk: that it lies on the
+/// ground, that it does not see the ball, and each second since it has reported.
+const DOWN: f64 = 1.0;
+const BLIND: f64 = 1.0;
+const OLD: f64 = 0.15;
+
 fn player(report: &TeamReport, ball: Point2<f64>) -> AttackPlayer {
     let place = Point2::new(report.x, report.y);
     AttackPlayer {
-        number: report.number,
         place,
         heading: report.heading,
         // A player's own measurement of its distance from the ball is the most accurate.
         ball_distance: if report.ball_found { report.ball_distance } else { (place - ball).norm() },
+        handicap: DOWN * f64::from(u8::from(report.is_down))
+            + BLIND * f64::from(u8::from(!report.ball_found))
+            + OLD * report.age,
         since_pass: report.since_pass + report.age,
         since_shot: report.since_shot + report.age,
     }
@@ -119,10 +157,13 @@ fn message(standing: &AttackState, own: Point2<f64>) -> Attack {
         ball_is_out: standing.ball_is_out,
         mate_x: mate.x,
         mate_y: mate.y,
+        mate_lead: standing.mate_lead,
+        opponent_leads: standing.opponent_leads,
+        mate_sees_ball: false,
     }
 }
 
-monas::activity!(AttackWatch);
+monas::activity!(AssessAttack);
 
 #[cfg(test)]
 mod tests {
@@ -130,27 +171,23 @@ mod tests {
     use crate::activities::activity_fixture::ActivityFixture;
     use crate::{Ball, GameState, OtherRobot, Pose, Robots, Team};
 
-    /// The evaluation of a player in the middle of the field that faces the opponents' goal.
+    /// The evaluation of a player in its own half that faces the opponents' goal.
     fn judged(ball: Ball, mates: &[TeamReport], opponents: &[(f64, f64)]) -> Attack {
         let mut stage = ActivityFixture::new();
-        let game = GameState {
-            number: 2,
-            field_length: 6.0,
-            field_width: 4.0,
-            goal_width: 1.4,
-            ..GameState::default()
-        };
+        let game = GameState { field_length: 6.0, field_width: 4.0, goal_width: 1.4, ..GameState::default() };
         let robot = |&(x, y)| OtherRobot { x, y, team_mate: false, age: 0.0 };
-        let own = TeamReport { number: 2, ball_found: ball.found, ball_distance: ball.distance, ..far() };
+        let own = TeamReport { x: OWN_X, ball_found: ball.found, ball_distance: ball.distance, ..far() };
         stage
             .publish(topics::GAME_STATE, game)
-            .publish(topics::POSE, Pose::default())
+            .publish(topics::POSE, Pose { x: OWN_X, ..Pose::default() })
             .publish(topics::BALL, ball);
         stage.publish(topics::ROBOTS, Robots { robots: opponents.iter().map(robot).collect(), nearest: 0.0 });
         stage.publish(topics::TEAM, Team { own: Some(own), mates: mates.to_vec() });
-        assert!(stage.run(&mut AttackWatch::default()));
+        assert!(stage.run(&mut AssessAttack::default()));
         stage.latest(topics::ATTACK).unwrap()
     }
+
+    const OWN_X: f64 = -2.0;
 
     fn far() -> TeamReport {
         TeamReport { since_pass: 1e6, since_shot: 1e6, ..TeamReport::default() }
@@ -162,14 +199,14 @@ mod tests {
 
     #[test]
     fn the_nearer_one_is_the_center() {
-        let mate = TeamReport { number: 3, x: -1.0, y: 1.0, ..far() };
+        let mate = TeamReport { number: 3, x: 0.5, y: 1.0, ..far() };
         let attack = judged(ball(1.0, 0.0), &[mate], &[]);
         assert_eq!(attack.part(), AttackPart::Center);
         assert!(attack.ball_is_free && attack.center_is_closest && attack.center_for_is_farthest);
-        assert_eq!((attack.mate_x, attack.mate_y), (-1.0, 1.0));
-        let mate = TeamReport { x: 1.0, y: 0.4, ..mate };
+        assert_eq!((attack.mate_x, attack.mate_y), (0.5, 1.0));
+        let mate = TeamReport { x: -1.0, y: 0.2, ..mate };
         let attack = judged(ball(1.0, 0.0), &[mate], &[]);
-        assert_eq!(attack.part(), AttackPart::CenterFor);
+        assert_eq!(attack.part(), AttackPart::NoPart, "one behind the ball gets no pass");
     }
 
     #[test]
@@ -181,8 +218,16 @@ mod tests {
 
     #[test]
     fn a_ball_that_only_the_mate_sees_is_believed_to_be_there() {
-        let mate =
-            TeamReport { number: 3, ball_found: true, ball_x: 2.0, x: 1.5, ball_distance: 0.5, ..far() };
+        let mate = TeamReport {
+            number: 3,
+            ball_found: true,
+            ball_x: -2.9,
+            ball_y: 1.2,
+            x: -2.5,
+            y: 1.5,
+            ball_distance: 0.5,
+            ..far()
+        };
         let attack = judged(Ball::default(), &[mate], &[]);
         assert_eq!((attack.part(), attack.center_is_closest), (AttackPart::CenterFor, true));
         assert_eq!(

@@ -1,0 +1,186 @@
+//! M29: guards that judge a moment that is gone.
+//!
+//! An activity that waits ends on a message. Its return and the guards that follow it are evaluated
+//! in the same step. A guard that reads another topic, which some activity elsewhere derives from
+//! that message, reads what was derived from an older one: the derivation has not run yet. The
+//! derivation has to stand between the activity and the guard, in the same region.
+//!
+//! The check follows the completions of states through connectors. At each place it knows the
+//! topics on whose messages the last waiting activity ended, and those published in the region
+//! since. Activities say what they end on (`Activity::topics`); for those that do not, nothing is
+//! reported.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use yase::{Diagnostic, NodeId, NodeKind, TransitionId};
+
+use crate::checked_model::CheckedModel;
+use crate::program_symbols::ProgramSymbols;
+
+/// What is known of the moment in which a place is reached.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
+struct Moment<'a> {
+    /// The state whose activity ended, none before the first that waits.
+    state: Option<NodeId>,
+    /// The topics on whose messages it may have ended.
+    ended_on: BTreeSet<&'a str>,
+    /// The topics that it and its successors have published since.
+    published: BTreeSet<&'a str>,
+}
+
+/// Guards that are read before what they read is derived.
+pub(crate) fn stale(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagnostic> {
+    let Ok(chart) = subject.chart.compile_with(&world.vocabulary, subject.semantics) else {
+        return Vec::new();
+    };
+    let topic = |id: yase::TopicId| world.vocabulary.topics.iter().find(|topic| topic.id == id);
+    let reads: BTreeMap<TransitionId, BTreeSet<&str>> = chart
+        .guards()
+        .map(|(id, _, guard)| {
+            let read = guard.reads().iter().filter_map(|&read| topic(read));
+            (id, read.map(|topic| topic.path.as_str()).collect())
+        })
+        .collect();
+    let activities = chart.activities().map(|entry| (entry.node, entry.name.to_owned())).collect();
+    let moments = MomentSearch { subject, world, activities }.run();
+    let mut found = Vec::new();
+    for (&id, read) in &reads {
+        let source = subject.chart.transition(id).source;
+        let ways = &subject.outgoing[source.0 as usize];
+        let target = |id: TransitionId| subject.chart.transition(id).target;
+        if ways.iter().all(|&way| target(way) == target(id)) {
+            // Nothing is decided.
+            continue;
+        }
+        for (moment, path) in
+            moments[source.0 as usize].iter().flat_map(|it| read.iter().map(move |path| (it, *path)))
+        {
+            if moment.published.contains(path) || moment.ended_on.contains(path) {
+                continue;
+            }
+            let origin = origins(world, path);
+            let (Some(state), Some(cause)) = (moment.state, origin.intersection(&moment.ended_on).next())
+            else {
+                continue;
+            };
+            found.push(report(subject, world, id, state, path, cause));
+        }
+    }
+    found.sort_by(|a, b| (a.span, &a.message).cmp(&(b.span, &b.message)));
+    found.dedup();
+    found
+}
+
+fn report(
+    subject: &CheckedModel,
+    world: &ProgramSymbols,
+    guard: TransitionId,
+    state: NodeId,
+    path: &str,
+    cause: &str,
+) -> Diagnostic {
+    let state = subject.path(state);
+    let message = format!(
+        "the guard reads `{path}` when `{state}` ends on `{cause}`, from which `{path}` is derived elsewhere: \
+         it may be that of an older `{cause}`"
+    );
+    let publishes = |(_, topics): &(&String, &Option<BTreeSet<String>>)| {
+        topics.as_ref().is_some_and(|topics| topics.contains(path))
+    };
+    let found = Diagnostic::warning("M29", subject.places.guard(guard), message);
+    match world.activities.iter().find(publishes) {
+        Some((activity, _)) => {
+            found.with_hint(format!("let `{activity}` stand between the two: `{state} . {activity}`"))
+        }
+        None => found,
+    }
+}
+
+/// The topics from which a topic is derived, directly or through others.
+fn origins<'a>(world: &'a ProgramSymbols, path: &'a str) -> BTreeSet<&'a str> {
+    let (mut origins, mut open) = (BTreeSet::new(), vec![path]);
+    while let Some(path) = open.pop() {
+        let publishers = world
+            .activities
+            .iter()
+            .filter(|(_, topics)| topics.as_ref().is_some_and(|topics| topics.contains(path)));
+        let read = publishers.filter_map(|(activity, _)| world.readers.get(activity)?.as_ref()).flatten();
+        for origin in read {
+            if origins.insert(origin.as_str()) {
+                open.push(origin);
+            }
+        }
+    }
+    origins
+}
+
+/// Follows the completions of states.
+struct MomentSearch<'a> {
+    subject: &'a CheckedModel,
+    world: &'a ProgramSymbols,
+    activities: BTreeMap<NodeId, String>,
+}
+
+impl<'a> MomentSearch<'a> {
+    /// The moments in which each node completes, or is passed through.
+    fn run(&self) -> Vec<BTreeSet<Moment<'a>>> {
+        let mut moments = vec![BTreeSet::new(); self.subject.chart.nodes().len()];
+        let basic = self.subject.chart.nodes().filter(|(_, node)| node.kind == NodeKind::Basic);
+        let mut open: Vec<(NodeId, Moment<'a>)> = basic.map(|(id, _)| (id, Moment::default())).collect();
+        while let Some((node, before)) = open.pop() {
+            let moment = self.after(node, before);
+            if moments[node.0 as usize].insert(moment.clone()) {
+                open.extend(self.next(node).into_iter().map(|next| (next, moment.clone())));
+            }
+        }
+        moments
+    }
+
+    /// The moment after a node that is reached in a moment.
+    fn after(&self, node: NodeId, before: Moment<'a>) -> Moment<'a> {
+        let Some(activity) = self.activities.get(&node) else { return before };
+        let paths = |topics: Option<&'a BTreeSet<String>>| topics.into_iter().flatten().map(String::as_str);
+        let published = paths(self.world.activities.get(activity).and_then(Option::as_ref));
+        match self.world.ended_by.get(activity).filter(|topics| !topics.is_empty()) {
+            Some(topics) => Moment {
+                state: Some(node),
+                ended_on: paths(Some(topics)).collect(),
+                published: published.collect(),
+            },
+            None => Moment { published: before.published.into_iter().chain(published).collect(), ..before },
+        }
+    }
+
+    /// What is reached by a completion of a node: the targets of its transitions, the beginning of
+    /// a composite, the composite whose END it is.
+    fn next(&self, node: NodeId) -> Vec<NodeId> {
+        let chart = &self.subject.chart;
+        let here = chart.node(node);
+        if here.kind == NodeKind::End {
+            let parent = here.parent.filter(|parent| chart.node(*parent).kind == NodeKind::Or);
+            return parent.into_iter().collect();
+        }
+        let ways = self.subject.outgoing[node.0 as usize].iter();
+        let ways = ways.filter(|&&way| self.subject.trigger(way).is_none());
+        ways.flat_map(|&way| self.entered(chart.transition(way).target)).collect()
+    }
+
+    /// The nodes that are reached by entering a node.
+    fn entered(&self, node: NodeId) -> Vec<NodeId> {
+        let chart = &self.subject.chart;
+        match chart.node(node).kind {
+            NodeKind::Or | NodeKind::And => {
+                let inside = chart.nodes().filter(|(_, it)| it.parent == Some(node));
+                let begins = inside.filter(|(_, it)| matches!(it.kind, NodeKind::Start | NodeKind::Or));
+                begins
+                    .flat_map(|(id, it)| match (it.kind, chart.node(node).kind) {
+                        (NodeKind::Start, _) => vec![id],
+                        (_, NodeKind::And) => self.entered(id),
+                        _ => Vec::new(),
+                    })
+                    .collect()
+            }
+            _ => vec![node],
+        }
+    }
+}

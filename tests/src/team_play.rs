@@ -1,0 +1,189 @@
+//! How the teams of a match play together: passes, kick-offs, crowding, and the time in each state.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use monas::MicroStep;
+use monas_match::{MatchPlan, RunningMatch};
+use monas_sim::{EventKind, SimulatedWorld};
+use yase::NodeKind;
+
+/// The state in which a robot passes.
+const PASSING: &str = "passBall";
+
+/// A kick later than this after the entry of [`PASSING`] is not its kick, s.
+const KICK_WITHIN: f64 = 3.0;
+
+/// Passes of a team.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct PassCounts {
+    /// How often a robot entered the state in which it passes.
+    pub attempts: u32,
+    /// Attempts after whose kick a team mate was the next to touch the ball.
+    pub completed: u32,
+    /// Shots of the team mate that received such a pass.
+    pub shots: u32,
+    /// Kicks, meant as passes or not, after which a team mate was the next to touch the ball.
+    pub any: u32,
+}
+
+/// How often and how long a robot was in a state.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct StateTime {
+    /// Number of entries.
+    pub entries: u32,
+    /// Total time, s.
+    pub seconds: f64,
+}
+
+/// How the teams of a match play together; blue first.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct TeamPlay {
+    /// The passes of each team.
+    pub passes: [PassCounts; 2],
+    /// Kick-offs of both teams after which a ball was kicked.
+    pub kick_offs: u32,
+    /// Those after which the team with the kick-off was the first to kick the ball.
+    pub kick_offs_kept: u32,
+    /// Part of the playing time in which the ball moved.
+    pub rolling: f64,
+    /// Part of the playing time in which two robots crowded.
+    pub crowded: f64,
+    /// The states with activities by host and name, with the time in them.
+    pub states: BTreeMap<(String, String), StateTime>,
+}
+
+/// Observes the charts of a match.
+#[derive(Clone, Default)]
+pub struct TeamPlayObserver {
+    seen: Arc<Mutex<StateLog>>,
+}
+
+#[derive(Default)]
+struct StateLog {
+    states: BTreeMap<(String, String), StateTime>,
+    /// When a state was entered that has not been left.
+    since: BTreeMap<(String, u32), f64>,
+    /// When a host began to pass.
+    passing: Vec<(String, f64)>,
+}
+
+impl StateLog {
+    fn note(&mut self, step: &MicroStep<'_>) {
+        let now = step.record.time.as_nanos() as f64 * 1e-9;
+        let chart = step.chart.statechart();
+        let nodes = |nodes: &[yase::NodeId]| -> Vec<(u32, String)> {
+            let basic = nodes.iter().filter(|node| chart.node(**node).kind == NodeKind::Basic);
+            basic.map(|node| (node.0, chart.node(*node).name.clone())).collect()
+        };
+        for (node, name) in nodes(step.record.exits) {
+            if let Some(since) = self.since.remove(&(step.host.to_owned(), node)) {
+                self.states.entry((step.host.to_owned(), name)).or_default().seconds += now - since;
+            }
+        }
+        for (node, name) in nodes(step.record.entries) {
+            if name == PASSING {
+                self.passing.push((step.host.to_owned(), now));
+            }
+            self.since.insert((step.host.to_owned(), node), now);
+            self.states.entry((step.host.to_owned(), name)).or_default().entries += 1;
+        }
+    }
+}
+
+impl TeamPlayObserver {
+    /// Observes a match that will be started.
+    pub fn listen(&self, plan: MatchPlan) -> MatchPlan {
+        let seen = self.seen.clone();
+        plan.listen(Box::new(move |step: MicroStep<'_>| {
+            seen.lock().unwrap_or_else(PoisonError::into_inner).note(&step);
+        }))
+    }
+
+    /// What was observed of a match so far.
+    pub fn team_play(&self, running: &RunningMatch) -> TeamPlay {
+        let seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut play = running.pitch().with_world(|world| {
+            let playing = world.statistics().playing_time().max(1e-9);
+            let mut play = TeamPlay {
+                rolling: world.statistics().rolling_time() / playing,
+                crowded: world.statistics().crowded_time() / playing,
+                ..TeamPlay::default()
+            };
+            count_kick_offs(world, &mut play);
+            count_passes(world, &seen.passing, &mut play);
+            play
+        });
+        play.states = seen.states.clone();
+        play
+    }
+}
+
+fn count_kick_offs(world: &SimulatedWorld, play: &mut TeamPlay) {
+    let mut kicks_off = None;
+    for event in world.events() {
+        match event.kind {
+            EventKind::KickOff { team } => kicks_off = Some(team),
+            EventKind::Kick { robot, struck: true, .. } => {
+                if let Some(team) = kicks_off.take() {
+                    play.kick_offs += 1;
+                    play.kick_offs_kept += u32::from(world.robots()[robot].team == team);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+fn count_passes(world: &SimulatedWorld, passing: &[(String, f64)], play: &mut TeamPlay) {
+    let host = |robot: usize| {
+        let robot = &world.robots()[robot];
+        format!("{}-{}", world.teams()[robot.team].name.to_lowercase(), robot.number)
+    };
+    for (who, _) in passing {
+        let team = (0..world.robots().len()).find(|robot| host(*robot) == *who);
+        team.into_iter().for_each(|robot| play.passes[world.robots()[robot].team].attempts += 1);
+    }
+    let is_meant = |robot: usize, at: f64| {
+        let who = host(robot);
+        passing.iter().any(|(by, since)| *by == who && (0.0..KICK_WITHIN).contains(&(at - since)))
+    };
+    // The last pass that was completed, and whether it was meant.
+    let mut meant = false;
+    for event in world.events() {
+        match event.kind {
+            EventKind::Pass { from, after, .. } => {
+                let counts = &mut play.passes[world.robots()[from].team];
+                meant = is_meant(from, event.time - after);
+                counts.any += 1;
+                counts.completed += u32::from(meant);
+            }
+            EventKind::ShotAfterPass { robot } => {
+                play.passes[world.robots()[robot].team].shots += u32::from(meant);
+            }
+            _ => {}
+        }
+    }
+}
+
+impl fmt::Display for TeamPlay {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (team, PassCounts { attempts, completed, shots, any }) in ["blue", "red"].iter().zip(self.passes)
+        {
+            writeln!(
+                f,
+                "{team:<5} passes attempted {attempts}, completed {completed}, shots after them {shots}; \
+                 kicks that a team mate was next to touch {any}"
+            )?;
+        }
+        writeln!(f, "kick-offs kept   {} of {}", self.kick_offs_kept, self.kick_offs)?;
+        writeln!(f, "ball moves       {:.0} % of the playing time", self.rolling * 100.0)?;
+        writeln!(f, "robots crowd     {:.0} % of the playing time", self.crowded * 100.0)?;
+        writeln!(f, "{:<8} {:<22} {:>7} {:>9}", "host", "state", "entries", "seconds")?;
+        for ((host, state), StateTime { entries, seconds }) in &self.states {
+            writeln!(f, "{host:<8} {state:<22} {entries:>7} {seconds:>9.1}")?;
+        }
+        Ok(())
+    }
+}
