@@ -224,12 +224,12 @@ impl SeasonTable {
             at_least(
                 "part of the goals of extended attackers, with 20 % of the messages lost",
                 self.share(&ATTACK_LOSS20, &ATTACK_RED_LOSS20),
-                0.38,
+                0.5,
             ),
             at_least(
                 "part of the goals of extended attackers, with 50 % of the messages lost",
                 self.share(&ATTACK_LOSS50, &ATTACK_RED_LOSS50),
-                0.35,
+                0.45,
             ),
         ]
     }

@@ -33,6 +33,8 @@ pub(crate) struct CheckedModel {
     pub(crate) outgoing: Vec<Vec<TransitionId>>,
     /// The transitions into each node.
     pub(crate) incoming: Vec<Vec<TransitionId>>,
+    /// By node: its number in a walk through the tree, and the number after those inside it.
+    extents: Vec<(u32, u32)>,
 }
 
 /// Builds the chart of a role as far as possible, and reports what does not fit.
@@ -145,7 +147,8 @@ impl CheckedModel {
                 (Reverse(transition.priority), is_unguarded)
             });
         }
-        CheckedModel { chart, places, semantics, liveness: None, outgoing, incoming }
+        let extents = extents(&chart);
+        CheckedModel { chart, places, semantics, liveness: None, outgoing, incoming, extents }
     }
 
     pub(crate) fn kind(&self, node: NodeId) -> NodeKind {
@@ -170,7 +173,8 @@ impl CheckedModel {
 
     /// Whether a node is another or lies inside it.
     pub(crate) fn contains(&self, outer: NodeId, inner: NodeId) -> bool {
-        outer == inner || self.chart.ancestors(inner).any(|ancestor| ancestor == outer)
+        let ((first, end), (number, _)) = (self.extents[outer.0 as usize], self.extents[inner.0 as usize]);
+        (first..end).contains(&number)
     }
 
     /// Whether a node is a region of an AND.
@@ -243,4 +247,22 @@ impl CheckedModel {
     pub(crate) fn warn_of(&self, code: &'static str, id: TransitionId, message: String) -> Diagnostic {
         Diagnostic::warning(code, self.places.transition(id), message)
     }
+}
+
+/// The extent of each node in a walk that visits a node before those inside it.
+fn extents(chart: &Statechart) -> Vec<(u32, u32)> {
+    let mut extents = vec![(0, 0); chart.nodes().len()];
+    let (mut number, mut open) = (0, vec![(Statechart::ROOT, false)]);
+    while let Some((node, is_left)) = open.pop() {
+        let extent = &mut extents[node.0 as usize];
+        if is_left {
+            extent.1 = number;
+            continue;
+        }
+        extent.0 = number;
+        number += 1;
+        open.push((node, true));
+        open.extend(chart.children(node).iter().map(|&child| (child, false)));
+    }
+    extents
 }

@@ -17,8 +17,3 @@ pub fn load(path: &Path) -> (Option<(Statechart, Arc<Source>)>, Vec<Diagnostic>)
         Err(diagnostic) => (None, vec![*diagnostic]),
     }
 }
-
-/// Whether a diagnostic is about formulas rather than their refinements.
-pub(crate) fn is_about_formulas(diagnostic: &Diagnostic) -> bool {
-    diagnostic.is_error() && ("E0200".."E0220").contains(&diagnostic.code)
-}

@@ -127,10 +127,10 @@ impl Language {
             Term::Sequence(items) => self.several(liveness, items, open, Language::sequence),
             Term::Choice(items) => self
                 .several(liveness, items, open, |it, one, other| it.intern(LanguageTerm::Either(one, other))),
-            Term::Parallel(items) => self.several(liveness, items, open, Language::shuffle),
+            Term::Parallel(items) => self.parallel(liveness, items, open),
             Term::Copies { term, count } => {
                 let copies = vec![*term; (*count).min(64) as usize];
-                self.several(liveness, &copies, open, Language::shuffle)
+                self.parallel(liveness, &copies, open)
             }
             Term::Optional(inner) => {
                 let (inner, done) = (self.nested(liveness, *inner, open)?, self.empty_residual());
@@ -173,6 +173,22 @@ impl Language {
             items.iter().map(|&item| self.nested(liveness, item, open)).collect::<Option<_>>()?;
         let (&last, before) = rests.split_last()?;
         Some(before.iter().rev().fold(last, |rest, &item| join(self, item, rest)))
+    }
+
+    /// A balanced tree of shuffles: a step changes as many residuals as the tree is deep.
+    fn parallel(&mut self, liveness: &Liveness, items: &[TermId], open: &mut Vec<usize>) -> Option<Residual> {
+        let mut rests: Vec<Residual> =
+            items.iter().map(|&item| self.nested(liveness, item, open)).collect::<Option<_>>()?;
+        while rests.len() > 1 {
+            rests = rests
+                .chunks(2)
+                .map(|pair| match *pair {
+                    [one, other] => self.shuffle(one, other),
+                    _ => pair[0],
+                })
+                .collect();
+        }
+        rests.first().copied()
     }
 
     fn letter(&mut self, name: &str) -> Symbol {

@@ -185,7 +185,7 @@ impl AgentReader<'_> {
         };
         let (chart, diagnostics) = model::load(&found);
         // A chart with faulty formulas is incomplete, so further diagnostics would mislead.
-        let is_known = !diagnostics.iter().any(model::is_about_formulas);
+        let is_known = !aseme::have_formula_errors(&diagnostics);
         self.diagnostics.extend(diagnostics);
         let (chart, source) = chart.filter(|_| is_known)?;
         let compiled = match Binder::new(&self.registry) {

@@ -1,5 +1,7 @@
 //! M15: transitions that wait for the completion of a composite that never completes.
 
+use std::collections::BTreeSet;
+
 use yase::{Diagnostic, NodeId, NodeKind, TransitionId};
 
 use crate::checked_model::CheckedModel;
@@ -61,16 +63,26 @@ pub(crate) fn never_taken(subject: &CheckedModel) -> Vec<TransitionId> {
 
 /// Whether each node can complete, by what its transitions lead to, whatever their guards say.
 fn completes(subject: &CheckedModel) -> Vec<bool> {
+    completion(subject).0
+}
+
+/// The same, with the number of examined nodes.
+///
+/// Whether a composite completes depends on what is inside it. Nodes precede their children, so
+/// that in reverse order one pass finds all; the second one confirms it.
+fn completion(subject: &CheckedModel) -> (Vec<bool>, usize) {
     let mut completes: Vec<bool> =
         subject.chart.nodes().map(|(_, node)| node.kind == NodeKind::Basic).collect();
-    loop {
-        let open = subject.chart.nodes().map(|(id, _)| id).filter(|id| !completes[id.0 as usize]);
-        let new: Vec<NodeId> = open.filter(|&id| can_now(subject, &completes, id)).collect();
-        if new.is_empty() {
-            return completes;
+    let (mut examined, mut has_changed) = (0, true);
+    while std::mem::take(&mut has_changed) {
+        for index in (0..completes.len()).rev().filter(|&index| !completes[index]).collect::<Vec<_>>() {
+            examined += 1;
+            if can_now(subject, &completes, NodeId(index as u32)) {
+                (completes[index], has_changed) = (true, true);
+            }
         }
-        new.into_iter().for_each(|id| completes[id.0 as usize] = true);
     }
+    (completes, examined)
 }
 
 /// Whether a composite can complete, given the nodes known to complete.
@@ -89,9 +101,9 @@ fn reaches_end(subject: &CheckedModel, completes: &[bool], composite: NodeId) ->
     let starts =
         subject.chart.children(composite).iter().filter(|&&child| subject.kind(child) == NodeKind::Start);
     let mut open: Vec<NodeId> = starts.copied().collect();
-    let mut seen = vec![false; completes.len()];
+    let mut seen = BTreeSet::new();
     while let Some(node) = open.pop() {
-        if std::mem::replace(&mut seen[node.0 as usize], true) {
+        if !seen.insert(node) {
             continue;
         }
         let inside = subject.contains(composite, node) && node != composite;
@@ -121,4 +133,25 @@ fn can_leave(subject: &CheckedModel, completes: &[bool], id: TransitionId) -> bo
         && (expression.guard.is_none() || transition.source == transition.target);
     let is_ready = !subject.is_state(transition.source) || completes[transition.source.0 as usize];
     !expression.is_never() && (!waits || is_ready)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write;
+
+    use super::*;
+
+    #[test]
+    fn nested_composites_are_examined_twice_however_deep_they_are() {
+        let mut role = String::from("Role: r\nLiveness:\nr = (a1)\n");
+        (1..100).for_each(|level| writeln!(role, "a{level} = A{level} . a{}", level + 1).unwrap());
+        role.push_str("a100 = A100\n");
+        let subject = crate::checked_model::subject_of(&yase::Source::new("r.srm", &role)).unwrap();
+        let (completes, examined) = completion(&subject);
+        let composites =
+            subject.chart.nodes().filter(|(_, node)| node.kind == NodeKind::Or).map(|(id, _)| id);
+        let composites: Vec<NodeId> = composites.collect();
+        assert!(composites.len() >= 99 && composites.iter().all(|&id| completes[id.0 as usize]));
+        assert!(examined <= 2 * subject.chart.nodes().len(), "{examined} examined");
+    }
 }

@@ -11,6 +11,9 @@ use crate::logic::{Claim, Satisfiability};
 const LONGEST: usize = 16;
 const MOST: usize = 256;
 
+/// So many paths out of one node are compared for contradictions.
+const COMPARED: usize = 4096;
+
 impl GuardCheck<'_> {
     /// M05 for a branch, M01 for a START: no outgoing guard covers some cases.
     ///
@@ -58,9 +61,10 @@ impl GuardCheck<'_> {
             // a path that continues from here is analysed from its beginning
             return found;
         }
-        let mut open: Vec<Vec<TransitionId>> =
-            self.subject.outgoing(node).iter().map(|&id| vec![id]).collect();
-        while let Some(way) = open.pop() {
+        let leads_on = |&id: &TransitionId| self.is_static(self.subject.transition(id).target);
+        let segments = self.subject.outgoing(node).iter().copied();
+        let mut open: Vec<Vec<TransitionId>> = segments.filter(leads_on).map(|id| vec![id]).collect();
+        while let Some(way) = open.pop().filter(|_| looked < COMPARED) {
             looked += 1;
             let Some(&last) = way.last() else { continue };
             let target = self.subject.transition(last).target;
@@ -69,8 +73,11 @@ impl GuardCheck<'_> {
                 continue;
             }
             if self.is_static(target) && way.len() < LONGEST && looked < MOST {
-                let longer = self.subject.outgoing(target).iter().map(|&id| [way.as_slice(), &[id]].concat());
-                open.extend(longer);
+                // a last segment without a guard contradicts nothing, nor does the only guard
+                let is_guarded = way.iter().any(|&id| self.guard(id).is_some());
+                let matters = |id: &TransitionId| is_guarded && self.guard(*id).is_some() || leads_on(id);
+                let segments = self.subject.outgoing(target).iter().copied().filter(matters);
+                open.extend(segments.take(COMPARED).map(|id| [way.as_slice(), &[id]].concat()));
             }
         }
         found
@@ -92,8 +99,7 @@ impl GuardCheck<'_> {
     }
 
     fn dead_way(&self, way: &[TransitionId]) -> Diagnostic {
-        let first =
-            way.first().map_or_else(String::new, |&id| self.subject.path(self.subject.transition(id).source));
+        let first = way.first().map_or_else(String::new, |&id| self.subject.path(self.subject.transition(id).source));
         let last = way[way.len() - 1];
         let targets = way.iter().map(|&id| self.subject.path(self.subject.transition(id).target));
         let path = std::iter::once(first).chain(targets).collect::<Vec<_>>().join("` -> `");
