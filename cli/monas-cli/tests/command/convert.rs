@@ -176,7 +176,7 @@ fn a_role_goes_to_scxml_without_guards_that_would_be_open() {
     let is_refused = |line: &str| line.contains("/END` cannot be the target");
     assert!(!answer.err.lines().any(is_refused), "END is `<final>`: {}", answer.err);
     let text = fs::read_to_string(&output).expect("written");
-    assert!(text.contains("<transition cond=\"false\" target=\"SearchBall\""), "{text}");
+    assert!(text.contains("<transition cond=\"false\" target=\"search\""), "{text}");
     assert!(text.contains("<transition cond=\"false\" target=\"Vision\""), "{text}");
     assert!(text.contains("<final id=\"END_"), "{text}");
     let answer = monas(&["model", "check", &output]);

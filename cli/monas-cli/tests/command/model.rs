@@ -234,7 +234,7 @@ message Attack {
     CENTER = 0;
     CENTER_FOR = 1;
   }
-  bool ball_is_free = 1;
+  bool mate_sees_ball = 1;
 ";
     assert!(answer.out.contains(attack), "{}", answer.out);
     let folder = tempfile::tempdir().expect("a folder");
@@ -294,10 +294,10 @@ fn the_coverage_of_tapes_is_summed_reported_and_drawn() {
         "{}",
         answer.out
     );
-    for (name, is_something_missed) in [("goalie.svg", true), ("player.svg", true), ("player-2.svg", false)] {
+    for name in ["goalie.svg", "player.svg", "player-2.svg"] {
         let drawing = fs::read_to_string(folder.path().join("drawings").join(name)).expect("it is drawn");
         assert!(drawing.contains("<g class=\"added\">"), "{name}");
-        assert_eq!(drawing.contains("<g class=\"missed\">"), is_something_missed, "{name}");
+        assert!(drawing.contains("<g class=\"missed\">"), "{name}");
         assert!(!drawing.contains("<g class=\"removed\">"), "{name}: nothing is struck out");
     }
 

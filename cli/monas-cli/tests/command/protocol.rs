@@ -21,11 +21,11 @@ fn the_player_is_made_from_role_and_protocol_and_conforms() {
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
     assert_eq!(
         answer.out,
-        "models/attack.eac: `Attack` conforms; all of its 20 states were explored\n\
-         models/extended_attacker.iac: `center` conforms; all of its 3 states were explored\n\
-         models/extended_attacker.iac: `center within player` conforms; all of its 39 states were explored\n\
-         models/extended_attacker.iac: `center_for` conforms; all of its 4 states were explored\n\
-         models/extended_attacker.iac: `center_for within player` conforms; all of its 39 states were explored\n"
+        "models/attack.eac: `Attack` conforms; all of its 30 states were explored\n\
+         models/extended_attacker.iac: `center` conforms; all of its 4 states were explored\n\
+         models/extended_attacker.iac: `center within player` conforms; all of its 111 states were explored\n\
+         models/extended_attacker.iac: `center_for` conforms; all of its 5 states were explored\n\
+         models/extended_attacker.iac: `center_for within player` conforms; all of its 111 states were explored\n"
     );
 }
 

@@ -120,14 +120,14 @@ fn each_mistake_is_found_before_anything_runs() {
         ("models/attacker.srm", "kickBall = LeftKick", "kickBall = player", "`player`"),
         (
             "models/goalie.srm",
-            "CONDITION -> SearchBall : [!Ball.found]",
-            "CONDITION -> SearchBall : [!Ball.fuond]",
+            "CONDITION -> search : [!Ball.found]",
+            "CONDITION -> search : [!Ball.fuond]",
             "`found`",
         ),
         (
             "models/goalie.srm",
-            "CONDITION -> SearchBall : [!Ball.found]",
-            "CONDITION -> SearchBall : [!(Ball.found]",
+            "CONDITION -> search : [!Ball.found]",
+            "CONDITION -> search : [!(Ball.found]",
             "`)`",
         ),
     ];
@@ -146,10 +146,10 @@ fn each_mistake_is_found_before_anything_runs() {
 
 #[test]
 fn unreachable_sources_are_found_before_the_run() {
-    let guard = "CONDITION -> SearchBall : [!Ball.found]";
+    let guard = "CONDITION -> search : [!Ball.found]";
     for (other, said) in [
-        ("CONDITION -> SearchBall : [!striker.ball.State.Ball.found]", ["E0320", "host `striker`"]),
-        ("CONDITION -> SearchBall : [!Visoin.Ball.found]", ["E0321", "`Goalie`"]),
+        ("CONDITION -> search : [!striker.ball.State.Ball.found]", ["E0320", "host `striker`"]),
+        ("CONDITION -> search : [!Visoin.Ball.found]", ["E0321", "`Goalie`"]),
     ] {
         let (folder, _) = changed("models/goalie.srm", guard, other);
         for config in [MATCH, "config/roles/goalie.xml"] {

@@ -40,10 +40,13 @@ fn the_attacker_as_a_tree() {
 fn every_choice_is_guarded_and_every_exit_of_an_endless_term_is_closed() {
     for name in ["goalie.srm", "attacker.srm"] {
         let chart = model(name);
+        for (id, node) in chart.nodes().filter(|(_, node)| node.kind == NodeKind::Condition) {
+            let choices = chart.transitions().filter(|(_, transition)| transition.source == id);
+            let unguarded = choices.filter(|(_, transition)| transition.expression.guard.is_none()).count();
+            assert!(unguarded <= 1, "{name}: {unguarded} choices of {node:?} are taken otherwise");
+        }
         for (_, transition) in chart.transitions() {
-            let (source, target) = (chart.node(transition.source), chart.node(transition.target));
-            let guarded = transition.expression.guard.is_some();
-            assert!(source.kind != NodeKind::Condition || guarded, "{name}: {}", target.name);
+            let source = chart.node(transition.source);
             let forever = source.name.ends_with('~') || source.kind == NodeKind::And;
             assert!(!forever || transition.expression.is_never(), "{name}: {}", source.name);
         }
