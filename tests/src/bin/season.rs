@@ -17,8 +17,10 @@ fn main() -> ExitCode {
         ["rows", variant, seeds, seconds] => rows(variant, seeds, seconds),
         ["row", variant, seed, seconds] => row(variant, seed, seconds),
         ["count", variant, seed, seconds] => count(variant, seed, seconds),
-        _ => Err("usage: season [--check | (row | count) VARIANT SEED SECONDS | rows VARIANT FROM-TO SECONDS]"
-            .into()),
+        _ => {
+            Err("usage: season [--check | (row | count) VARIANT SEED SECONDS | rows VARIANT FROM-TO SECONDS]"
+                .into())
+        }
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -200,7 +200,8 @@ fn a_match_in_toml_is_the_match_in_xml() {
                 )
             })
             .filter(|(path, value)| {
-                let is_of_file = ["role", "match.field", "match.simulator"].iter().any(|it| path.contains(it));
+                let is_of_file =
+                    ["role", "match.field", "match.simulator"].iter().any(|it| path.contains(it));
                 !is_of_file && value != "null"
             })
             .collect();

@@ -99,7 +99,8 @@ impl GuardCheck<'_> {
     }
 
     fn dead_way(&self, way: &[TransitionId]) -> Diagnostic {
-        let first = way.first().map_or_else(String::new, |&id| self.subject.path(self.subject.transition(id).source));
+        let first =
+            way.first().map_or_else(String::new, |&id| self.subject.path(self.subject.transition(id).source));
         let last = way[way.len() - 1];
         let targets = way.iter().map(|&id| self.subject.path(self.subject.transition(id).target));
         let path = std::iter::once(first).chain(targets).collect::<Vec<_>>().join("` -> `");
