@@ -34,7 +34,7 @@ fn why_names_the_transitions_and_the_messages_that_their_conditions_read() {
     let why = |state: &str, more: &[&str]| {
         monas(&[&["why", tape, "blue-2", "--state", state, "--at", "12"], more].concat())
     };
-    let json = why("SearchBall", &["--format", "json"]);
+    let json = why("search", &["--format", "json"]);
     assert_eq!(json.code, Some(0), "{}", json.err);
     let json: Value = serde_json::from_str(&json.out).expect("JSON");
     let segments = json["segments"].as_array().expect("segments");
@@ -52,7 +52,7 @@ fn why_names_the_transitions_and_the_messages_that_their_conditions_read() {
     let ball = ball.into_iter().find(|ball| ball["sequence"] == read["sequence"]).expect("the message");
     assert_eq!((&ball["message"]["found"], ball["seconds"].as_f64()), (&false.into(), Some(published)));
 
-    let text = why("SearchBall", &[]).out;
+    let text = why("search", &[]).out;
     assert!(text.contains(" : [!Ball.found]\n    Ball.found = false  (number "), "{text}");
     assert!(why("SearchBal", &[]).err.contains("there is no state `SearchBal`"));
     assert!(monas(&["why", tape, "blue-9", "--state", "x", "--at", "1"]).err.contains("no host"));
