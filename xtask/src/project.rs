@@ -107,7 +107,7 @@ const FAILING: (&str, &str, &str, &[&str]) =
 const LEFT_OUT: [&str; 5] = ["monas-match", "monas-sim", "monas-soccer", "nalgebra", "rapier2d"];
 
 /// The most crates that the first test of a project compiles, its own included.
-const CRATES: usize = 215;
+const CRATES: usize = 230;
 
 /// A configuration with a module, whose file is filled in. It is separate from the project's
 /// configuration, whose test needs no module.
