@@ -1,12 +1,8 @@
 //! Covers the own goal.
 
 use monas::{Activity, Blackboard, BoxError, Progress, Topics};
-use nalgebra::Point2;
 
-use super::motion_requests::request_walk;
-use super::shot::{ground, others};
 use super::support_mate::wait_at;
-use crate::functionality::avoidance::keep_out;
 use crate::functionality::support::cover_place;
 use crate::topics;
 
@@ -17,14 +13,7 @@ pub struct CoverGoal;
 
 impl Activity for CoverGoal {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
-        let (Some(ball), Some(ground)) = (blackboard.read(topics::BALL).copied(), ground(blackboard)) else {
-            return Ok(Progress::Done);
-        };
-        let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
-        let place = cover_place(&ground.field, ground.field_from_robot * ball.position());
-        let walk = wait_at(ground.field_from_robot.inverse_transform_point(&place), &ball, &obstacles);
-        request_walk(blackboard, keep_out(walk, &ground.field, &ground.field_from_robot))?;
-        Ok(Progress::Done)
+        wait_at(blackboard, |ground, ball| cover_place(&ground.field, ball))
     }
 
     fn topics(&self) -> Topics {

@@ -3,8 +3,8 @@
 use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 use nalgebra::Point2;
 
-use super::motion_requests::request_walk;
-use super::shot::{ground, others};
+use super::motion_requests::{request_stand, request_walk};
+use super::shot::{RobotAndField, ground, others};
 use crate::Ball;
 use crate::functionality::avoidance::{avoid, keep_out};
 use crate::functionality::support::support_place;
@@ -18,15 +18,10 @@ pub struct SupportMate;
 
 impl Activity for SupportMate {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
-        let (Some(ball), Some(ground)) = (blackboard.read(topics::BALL).copied(), ground(blackboard)) else {
-            return Ok(Progress::Done);
-        };
-        let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
-        let here = Point2::from(ground.field_from_robot.translation.vector);
-        let place = support_place(&ground.field, ground.field_from_robot * ball.position(), here);
-        let walk = wait_at(ground.field_from_robot.inverse_transform_point(&place), &ball, &obstacles);
-        request_walk(blackboard, keep_out(walk, &ground.field, &ground.field_from_robot))?;
-        Ok(Progress::Done)
+        wait_at(blackboard, |ground, ball| {
+            let here = Point2::from(ground.field_from_robot.translation.vector);
+            support_place(&ground.field, ball, here)
+        })
     }
 
     fn topics(&self) -> Topics {
@@ -35,14 +30,32 @@ impl Activity for SupportMate {
     }
 }
 
-/// Walks to a position, avoiding robots and ball, and stays there facing the ball.
-pub(super) fn wait_at(place: Point2<f64>, ball: &Ball, obstacles: &[Point2<f64>]) -> Walk {
-    let way = place.coords.norm();
-    if way < 0.2 {
+/// Walks to a place that depends on the ball's, both in the field frame, and stays there facing the
+/// ball. Stands still while the pose is unknown.
+pub(super) fn wait_at(
+    blackboard: &mut Blackboard,
+    place: impl FnOnce(&RobotAndField, Point2<f64>) -> Point2<f64>,
+) -> Result<Progress, BoxError> {
+    let (Some(ball), Some(ground)) = (blackboard.read(topics::BALL).copied(), ground(blackboard)) else {
+        request_stand(blackboard)?;
+        return Ok(Progress::Done);
+    };
+    let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
+    let place = place(&ground, ground.field_from_robot * ball.position());
+    let walk = walk_to(ground.field_from_robot.inverse_transform_point(&place), &ball, &obstacles);
+    request_walk(blackboard, keep_out(walk, &ground.field, &ground.field_from_robot))?;
+    Ok(Progress::Done)
+}
+
+/// The walk to a position in the robot's frame, which avoids robots and ball; there it turns to the
+/// ball.
+pub(super) fn walk_to(place: Point2<f64>, ball: &Ball, obstacles: &[Point2<f64>]) -> Walk {
+    let distance = place.coords.norm();
+    if distance < 0.2 {
         return Walk::turning(turn_to(ball.bearing));
     }
     let obstacles: Vec<Point2<f64>> = obstacles.iter().copied().chain([ball.position()]).collect();
-    stride_to(avoid(place, &obstacles), way)
+    stride_to(avoid(place, &obstacles), distance)
 }
 
 monas::activity!(SupportMate);
@@ -51,7 +64,15 @@ monas::activity!(SupportMate);
 mod tests {
     use super::*;
     use crate::activities::activity_fixture::ActivityFixture;
-    use crate::{GameState, Pose};
+    use crate::{GameState, MotionKind, Pose};
+
+    #[test]
+    fn it_stands_while_its_pose_is_unknown() {
+        let mut stage = ActivityFixture::new();
+        stage.publish(topics::BALL, Ball { x: 1.0, distance: 1.0, ..Ball::default() });
+        assert!(stage.run(&mut SupportMate));
+        assert_eq!(stage.latest(topics::MOTION).unwrap().kind(), MotionKind::Stand);
+    }
 
     #[test]
     fn it_walks_ahead_of_the_ball_and_waits_there() {

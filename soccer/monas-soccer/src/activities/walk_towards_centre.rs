@@ -3,7 +3,7 @@
 use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 use nalgebra::Point2;
 
-use super::motion_requests::request_walk;
+use super::motion_requests::{request_stand, request_walk};
 use super::shot::{ground, others};
 use crate::functionality::avoidance::{avoid, keep_out};
 use crate::functionality::walk::stride_to;
@@ -16,7 +16,10 @@ pub struct WalkTowardsCentre;
 
 impl Activity for WalkTowardsCentre {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
-        let Some(ground) = ground(blackboard) else { return Ok(Progress::Done) };
+        let Some(ground) = ground(blackboard) else {
+            request_stand(blackboard)?;
+            return Ok(Progress::Done);
+        };
         let centre = ground.field_from_robot.inverse_transform_point(&Point2::origin());
         let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
         let walk = stride_to(avoid(centre, &obstacles), centre.coords.norm());
@@ -36,13 +39,14 @@ monas::activity!(WalkTowardsCentre);
 mod tests {
     use super::*;
     use crate::activities::activity_fixture::ActivityFixture;
-    use crate::{GameState, Pose};
+    use crate::{GameState, MotionKind, Pose};
 
     #[test]
     fn it_walks_to_the_middle_of_the_field() {
         let mut stage = ActivityFixture::new();
         assert!(stage.run(&mut WalkTowardsCentre));
-        assert_eq!(stage.latest(topics::MOTION), None, "it does not know where it is");
+        let motion = stage.latest(topics::MOTION).unwrap();
+        assert_eq!(motion.kind(), MotionKind::Stand, "it does not know where it is");
         let game = GameState { field_length: 6.0, field_width: 4.0, ..GameState::default() };
         stage.publish(topics::GAME_STATE, game);
         stage.publish(topics::POSE, Pose { x: -2.0, ..Pose::default() });

@@ -9,7 +9,7 @@ use narukom::Timestamp;
 use super::bring_ball::{LOOK, LOST};
 use super::motion_requests::{request_gaze, request_walk};
 use super::shot::{ground, others};
-use super::support_mate::wait_at;
+use super::support_mate::walk_to;
 use crate::functionality::head::HeadController;
 use crate::functionality::support::support_place;
 use crate::{AttackPart, topics};
@@ -41,7 +41,7 @@ impl Activity for WalkTowardsGoal {
         let here = Point2::from(ground.field_from_robot.translation.vector);
         let place = support_place(&ground.field, ground.field_from_robot * ball.position(), here);
         let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
-        let walk = wait_at(ground.field_from_robot.inverse_transform_point(&place), &ball, &obstacles);
+        let walk = walk_to(ground.field_from_robot.inverse_transform_point(&place), &ball, &obstacles);
         request_gaze(blackboard, self.head.look_at(ball.position()))?;
         request_walk(blackboard, walk)?;
         Ok(Progress::after(LOOK))
