@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use monas_link::control::ControlClient;
-use prost_reflect::{DynamicMessage, MessageDescriptor, SerializeOptions};
+use prost_reflect::MessageDescriptor;
 use serde_json::Value;
 
 use crate::remote::failure;
@@ -54,14 +54,6 @@ impl Schemas {
         let odd = |what: String| {
             CommandFailure::failed(format, format!("a message of `{topic}` cannot be read: {what}"))
         };
-        let message =
-            DynamicMessage::decode(self.of(topic)?, bytes).map_err(|error| odd(error.to_string()))?;
-        let options = SerializeOptions::new()
-            .use_proto_field_name(true)
-            .stringify_64_bit_integers(false)
-            .skip_default_fields(false);
-        message
-            .serialize_with_options(serde_json::value::Serializer, &options)
-            .map_err(|error| odd(error.to_string()))
+        monas_studio::message_json(&self.of(topic)?, bytes).map_err(odd)
     }
 }
