@@ -20,6 +20,23 @@ fn a_large_role_is_checked() {
     assert!(!report.has_errors());
 }
 
+/// Branches without a guard contradict nothing, so they do not use up the paths that are compared.
+#[test]
+fn a_contradiction_is_found_behind_any_number_of_harmless_branches() {
+    let harmless = "  CONDITION -> END\n".repeat(4_500);
+    let chart = format!(
+        "IAC: r\n\nStates:\n  r OR\n    START\n    a BASIC\n    CONDITION\n    b BASIC\n    END\n\nTransitions:\n  \
+         START -> a\n  a -> CONDITION : [Ball.distance < 1]\n{harmless}  CONDITION -> b : [Ball.distance > 2]\n  \
+         b -> END\n"
+    );
+    let mut settings = CheckSettings::default();
+    settings.states = 0;
+    let report = check(&Source::new("r.iac", chart), &settings);
+    assert!(!report.is_unreadable(), "{:?}", report.findings.first());
+    let dead = report.findings.iter().filter(|it| it.diagnostic.message.contains("is never enabled"));
+    assert_eq!(dead.map(|it| it.diagnostic.code).collect::<Vec<_>>(), ["M06"]);
+}
+
 /// Asserts that all states are explored and all traces compared, so that nothing is undecided.
 fn is_explored_to_the_end(name: &str, configurations: usize, expected: &[&str]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name);

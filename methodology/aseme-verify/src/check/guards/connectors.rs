@@ -11,7 +11,7 @@ use crate::logic::{Claim, Satisfiability};
 const LONGEST: usize = 16;
 const MOST: usize = 256;
 
-/// So many paths out of one node are compared for contradictions.
+/// Limit on the paths out of one node that are compared; contradictions beyond it are not found.
 const COMPARED: usize = 4096;
 
 impl GuardCheck<'_> {
