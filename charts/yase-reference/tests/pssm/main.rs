@@ -9,7 +9,9 @@
 
 mod borders;
 mod deferral;
+mod events;
 mod states;
+mod transitions;
 
 use yase::Semantics;
 
