@@ -107,7 +107,8 @@ impl GameState {
         if colour == self.goal_to_attack { Goal::Opponent } else { Goal::Own }
     }
 
-    pub(crate) fn state(&self) -> game::PlayerState {
+    /// The player's state as functionalities know it.
+    pub fn state(&self) -> game::PlayerState {
         match self.player_state() {
             PlayerState::Initial => game::PlayerState::Initial,
             PlayerState::Ready => game::PlayerState::Ready,
@@ -150,7 +151,8 @@ impl MotionRequest {
     }
 }
 
-pub(crate) fn phase(phase: GamePhase) -> game::GamePhase {
+/// The phase of the game in an announcement.
+pub fn phase(phase: GamePhase) -> game::GamePhase {
     match phase {
         GamePhase::Initial => game::GamePhase::Initial,
         GamePhase::Ready => game::GamePhase::Ready,
@@ -160,7 +162,8 @@ pub(crate) fn phase(phase: GamePhase) -> game::GamePhase {
     }
 }
 
-pub(crate) fn report(sensors: &monas_robot::Sensors) -> BodyReport {
+/// What the arbiter of motions needs to know of a body.
+pub fn report(sensors: &monas_robot::Sensors) -> BodyReport {
     let posture = match sensors.posture() {
         BodyPosture::Standing | BodyPosture::Walking => Posture::Upright,
         BodyPosture::Busy | BodyPosture::StandingUp | BodyPosture::Sitting | BodyPosture::Unknown => {
@@ -173,7 +176,7 @@ pub(crate) fn report(sensors: &monas_robot::Sensors) -> BodyReport {
 }
 
 /// The motion since the sensors' previous message: the new pose in the old frame.
-pub(crate) fn odometry(sensors: &monas_robot::Sensors) -> Isometry2<f64> {
+pub fn odometry(sensors: &monas_robot::Sensors) -> Isometry2<f64> {
     geometry::pose(sensors.odometry_x, sensors.odometry_y, sensors.odometry_turn)
 }
 
@@ -195,11 +198,7 @@ pub(crate) fn post(sighting: &Sighting, game: &GameState) -> Option<PostSighting
 }
 
 /// The commands to the body: motion, head (yaw, pitch) and LEDs.
-pub(crate) fn actuators(
-    order: &MotionCommand,
-    (head_yaw, head_pitch): (f64, f64),
-    lights: LedRequest,
-) -> Actuators {
+pub fn actuators(order: &MotionCommand, (head_yaw, head_pitch): (f64, f64), lights: LedRequest) -> Actuators {
     let skill = match order.skill {
         None => BodySkill::NoSkill,
         Some(Skill::KickLeft) => BodySkill::KickLeft,

@@ -73,8 +73,9 @@
 //! A program whose configuration names these activities links this crate: `use monas_soccer as _;`.
 
 pub mod activities;
-mod convert;
+pub mod convert;
 pub mod functionality;
+pub mod perception;
 pub mod topics;
 
 narukom::include_messages!("monas.soccer");

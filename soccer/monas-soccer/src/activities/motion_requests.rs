@@ -1,4 +1,4 @@
-//! Requests of the behaviours.
+//! Requests of the behaviours to MotionController.
 
 use monas::{Blackboard, BoxError};
 
@@ -6,12 +6,20 @@ use crate::functionality::head::Gaze;
 use crate::functionality::walk::Walk;
 use crate::{HeadMode, HeadRequest, MotionKind, MotionRequest, topics};
 
-pub(super) fn request_stand(blackboard: &mut Blackboard) -> Result<(), BoxError> {
+/// Requests standing still.
+///
+/// # Errors
+/// The calling activity does not declare the topic.
+pub fn request_stand(blackboard: &mut Blackboard) -> Result<(), BoxError> {
     let number = last_number(blackboard);
     publish(blackboard, MotionRequest { kind: MotionKind::Stand.into(), number, ..MotionRequest::default() })
 }
 
-pub(super) fn request_walk(blackboard: &mut Blackboard, walk: Walk) -> Result<(), BoxError> {
+/// Requests a walk; it ends half a second after the last request.
+///
+/// # Errors
+/// The calling activity does not declare the topic.
+pub fn request_walk(blackboard: &mut Blackboard, walk: Walk) -> Result<(), BoxError> {
     let number = last_number(blackboard);
     let Walk { ahead: vx, left: vy, turn: wz } = walk;
     publish(
@@ -21,11 +29,10 @@ pub(super) fn request_walk(blackboard: &mut Blackboard, walk: Walk) -> Result<()
 }
 
 /// Requests a one-time motion; the returned number identifies its completion.
-pub(super) fn request_skill(
-    blackboard: &mut Blackboard,
-    kind: MotionKind,
-    is_pass: bool,
-) -> Result<u64, BoxError> {
+///
+/// # Errors
+/// The calling activity does not declare the topic.
+pub fn request_skill(blackboard: &mut Blackboard, kind: MotionKind, is_pass: bool) -> Result<u64, BoxError> {
     let done = blackboard.read(topics::MOTION_STATE).map_or(0, |state| state.done);
     let number = last_number(blackboard).max(done) + 1;
     tracing::info!(motion = kind.as_str_name(), "motion requested");
@@ -33,12 +40,20 @@ pub(super) fn request_skill(
     Ok(number)
 }
 
-pub(super) fn request_gaze(blackboard: &mut Blackboard, gaze: Gaze) -> Result<(), BoxError> {
+/// Requests the head to look in a direction.
+///
+/// # Errors
+/// The calling activity does not declare the topic.
+pub fn request_gaze(blackboard: &mut Blackboard, gaze: Gaze) -> Result<(), BoxError> {
     let Gaze { yaw, pitch } = gaze;
     Ok(blackboard.publish(topics::HEAD, HeadRequest { mode: HeadMode::Look.into(), yaw, pitch })?)
 }
 
-pub(super) fn request_scan(blackboard: &mut Blackboard) -> Result<(), BoxError> {
+/// Requests the head to search.
+///
+/// # Errors
+/// The calling activity does not declare the topic.
+pub fn request_scan(blackboard: &mut Blackboard) -> Result<(), BoxError> {
     Ok(blackboard
         .publish(topics::HEAD, HeadRequest { mode: HeadMode::Scan.into(), ..HeadRequest::default() })?)
 }

@@ -8,21 +8,23 @@ use crate::functionality::field::FieldModel;
 use crate::{Ball, OtherRobot, topics};
 
 /// The estimated pose of the robot and the field.
-#[derive(Clone, Copy)]
-pub(super) struct RobotAndField {
+#[derive(Clone, Copy, Debug)]
+pub struct RobotAndField {
+    /// The field.
     pub field: FieldModel,
+    /// The pose as a transformation from the robot's frame to the field frame.
     pub field_from_robot: Isometry2<f64>,
 }
 
-/// None while the pose or the field is unknown.
-pub(super) fn ground(blackboard: &Blackboard) -> Option<RobotAndField> {
+/// The pose and the field; none while either is unknown.
+pub fn ground(blackboard: &Blackboard) -> Option<RobotAndField> {
     let field = blackboard.read(topics::GAME_STATE)?.field();
     let field_from_robot = blackboard.read(topics::POSE)?.field_from_robot();
     (field.length > 0.0).then_some(RobotAndField { field, field_from_robot })
 }
 
 /// The target of a kick in the robot's frame; straight ahead if the pose is unknown.
-pub(super) fn target(blackboard: &Blackboard, ball: &Ball, ground: Option<&RobotAndField>) -> Point2<f64> {
+pub fn target(blackboard: &Blackboard, ball: &Ball, ground: Option<&RobotAndField>) -> Point2<f64> {
     let Some(RobotAndField { field, field_from_robot }) = ground else {
         return Point2::new(ball.x + 3.0, ball.y);
     };
@@ -36,6 +38,6 @@ pub(super) fn target(blackboard: &Blackboard, ball: &Ball, ground: Option<&Robot
 }
 
 /// Other robots that were seen recently.
-pub(super) fn others(blackboard: &Blackboard) -> impl Iterator<Item = &OtherRobot> {
+pub fn others(blackboard: &Blackboard) -> impl Iterator<Item = &OtherRobot> {
     blackboard.read(topics::ROBOTS).into_iter().flat_map(|robots| &robots.robots)
 }

@@ -3,17 +3,12 @@
 use std::time::Duration;
 
 use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
-use monas_robot::{ObjectKind, Sighting, Sightings, topics as body};
+use monas_robot::topics as body;
 use nalgebra::Isometry2;
 use narukom::Timestamp;
 
-use crate::functionality::ball_filter::{BallEstimate, BallFilter, BallModel};
-use crate::functionality::field::FieldModel;
-use crate::functionality::geometry::pose;
-use crate::functionality::interception::{Crossing, crossing};
-use crate::functionality::localisation::{Localisation, LocalisationModel};
-use crate::functionality::obstacles::{Obstacle, Obstacles};
-use crate::{Ball, GameState, OtherRobot, Pose, Robots, convert, topics};
+use crate::perception::{Perception, PerceptionModel};
+use crate::{GameState, convert, topics};
 
 /// Filters what the body sees: the ball with its velocity, the robot's pose from goal posts, the
 /// other robots.
@@ -25,56 +20,20 @@ use crate::{Ball, GameState, OtherRobot, Pose, Robots, convert, topics};
 /// Parameters `memory` (s): how long a ball counts as found after it was last seen;
 /// `rolling_deceleration` (m/s²) of the ball; `least_speed` (m/s) and `reach` (m): least speed, and
 /// largest lateral distance from the robot, of an approaching ball.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Vision {
-    memory: f64,
-    least_speed: f64,
-    reach: f64,
-    ball_model: BallModel,
-    state: Option<VisionState>,
+    model: PerceptionModel,
+    perception: Option<Perception>,
     calibration: u32,
-}
-
-/// State of Vision between calls.
-#[derive(Clone, Debug)]
-struct VisionState {
-    /// The time to which the filters are propagated, and the odometry at that time.
-    moment: Timestamp,
-    odometry: Isometry2<f64>,
-    /// Time of the last image.
-    taken_at: u64,
-    ball: BallFilter,
-    /// When the ball was last seen, or the search for it began.
-    ball_at: Timestamp,
-    localisation: Option<Localisation>,
-    placements: Option<u32>,
-    obstacles: Obstacles,
-    fallen: bool,
-}
-
-/// Distance of the nearest robot when there is none, metres.
-const NOBODY: f64 = 1e6;
-
-impl Default for Vision {
-    fn default() -> Vision {
-        Vision {
-            memory: 1.2,
-            least_speed: 0.3,
-            reach: 0.9,
-            ball_model: BallModel::default(),
-            state: None,
-            calibration: 0,
-        }
-    }
 }
 
 impl Activity for Vision {
     fn configure(&mut self, parameters: &Parameters) {
-        self.memory = parameters.number("memory").unwrap_or(self.memory);
-        self.least_speed = parameters.number("least_speed").unwrap_or(self.least_speed);
-        self.reach = parameters.number("reach").unwrap_or(self.reach);
-        let deceleration = &mut self.ball_model.rolling_deceleration;
-        *deceleration = parameters.number("rolling_deceleration").unwrap_or(*deceleration);
+        let read = |key, value: &mut f64| *value = parameters.number(key).unwrap_or(*value);
+        read("memory", &mut self.model.memory);
+        read("least_speed", &mut self.model.least_speed);
+        read("reach", &mut self.model.reach);
+        read("rolling_deceleration", &mut self.model.ball.rolling_deceleration);
     }
 
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
@@ -82,13 +41,13 @@ impl Activity for Vision {
         let now = blackboard.now();
         // Without a history from Sensors, images cannot be related to odometry.
         let Some(odometry) = odometry_at(blackboard, now) else { return Ok(Progress::Done) };
-        let sight = self.state.get_or_insert_with(|| VisionState::new(self.ball_model, now, odometry));
+        let perception = self.perception.get_or_insert_with(|| Perception::new(&self.model, now, odometry));
         if let Some(game) = blackboard.read(topics::GAME_STATE) {
-            sight.apply_placement(game, now, odometry);
+            perception.apply_placement(game, now, odometry);
         }
-        sight.feel(blackboard);
-        sight.process_sightings(blackboard);
-        sight.advance(now, &odometry);
+        perception.feel(blackboard.read(body::SENSORS).map(|sensors| sensors.posture()));
+        see(perception, blackboard);
+        perception.advance(now, &odometry);
         self.publish(blackboard)?;
         Ok(Progress::Done)
     }
@@ -105,151 +64,29 @@ impl Vision {
         let number = blackboard.read(topics::CALIBRATION).map_or(0, |calibration| calibration.number);
         if number != self.calibration {
             self.calibration = number;
-            self.state = None;
+            self.perception = None;
         }
     }
 
     fn publish(&self, blackboard: &mut Blackboard) -> Result<(), BoxError> {
-        let Some(sight) = &self.state else { return Ok(()) };
+        let Some(perception) = &self.perception else { return Ok(()) };
         let field = blackboard.read(topics::GAME_STATE).map(GameState::field);
-        let robots = sight.robots();
-        blackboard.publish(topics::BALL, sight.in_surroundings(self.ball(sight), &robots, field))?;
+        let robots = perception.robots();
+        blackboard.publish(topics::BALL, perception.ball(&self.model, &robots, field))?;
         blackboard.publish(topics::ROBOTS, robots)?;
-        if let Some(filter) = &sight.localisation {
-            blackboard.publish(topics::POSE, Pose::from_filter(filter))?;
+        if let Some(pose) = perception.pose() {
+            blackboard.publish(topics::POSE, pose)?;
         }
         Ok(())
     }
-
-    fn ball(&self, sight: &VisionState) -> Ball {
-        let age = sight.moment.since(sight.ball_at).as_secs_f64();
-        let unseen = Ball { age, ..Ball::default() }.with_crossing(None);
-        let Some(estimate) = sight.ball.estimate() else { return unseen };
-        let ball = Ball { found: age <= self.memory, seen_at: sight.ball_at.as_nanos(), ..unseen };
-        ball.with_estimate(&estimate).with_crossing(self.approach(&estimate))
-    }
-
-    /// Where the ball crosses the robot's lateral axis, if it is certainly rolling and will pass
-    /// within reach.
-    fn approach(&self, ball: &BallEstimate) -> Option<Crossing> {
-        let surely = self.least_speed.max(2.0 * ball.velocity_deviation);
-        if -ball.velocity.x < surely {
-            return None;
-        }
-        let crossing = crossing(ball.position, ball.velocity, self.ball_model.rolling_deceleration);
-        crossing.filter(|crossing| crossing.y.abs() <= self.reach)
-    }
 }
 
-impl VisionState {
-    fn new(model: BallModel, moment: Timestamp, odometry: Isometry2<f64>) -> VisionState {
-        VisionState {
-            moment,
-            odometry,
-            taken_at: 0,
-            ball: BallFilter::new(model),
-            ball_at: moment,
-            localisation: None,
-            placements: None,
-            obstacles: Obstacles::default(),
-            fallen: false,
-        }
-    }
-
-    /// Applies a placement by the referee and discards earlier sightings.
-    fn apply_placement(&mut self, game: &GameState, now: Timestamp, odometry: Isometry2<f64>) {
-        if self.placements == Some(game.placements) || game.placements == 0 {
-            return;
-        }
-        self.placements = Some(game.placements);
-        let placed = pose(game.placed_x, game.placed_y, game.placed_heading);
-        self.localisation = Some(Localisation::new(LocalisationModel::default(), placed));
-        self.ball.forget();
-        self.obstacles.forget();
-        (self.moment, self.odometry, self.ball_at) = (now, odometry, now);
-        self.taken_at = now.as_nanos();
-    }
-
-    /// Increases the uncertainty of the pose after a fall, which odometry does not measure.
-    fn feel(&mut self, blackboard: &Blackboard) {
-        let posture = blackboard.read(body::SENSORS).map(|sensors| sensors.posture());
-        let fallen = posture == Some(monas_robot::Posture::Fallen);
-        if let (true, false, Some(filter)) = (fallen, self.fallen, &mut self.localisation) {
-            filter.disturb(0.1, 0.3);
-        }
-        self.fallen = fallen;
-    }
-
-    /// Processes the newest image, if it is new, at the time it was taken.
-    fn process_sightings(&mut self, blackboard: &Blackboard) {
-        let image = blackboard.read(body::SIGHTINGS).filter(|image| image.taken_at > self.taken_at);
-        let (Some(image), Some(game)) = (image, blackboard.read(topics::GAME_STATE)) else { return };
-        let taken_at = Timestamp::from_nanos(image.taken_at);
-        let Some(odometry) = odometry_at(blackboard, taken_at) else { return };
-        self.taken_at = image.taken_at;
-        self.advance(taken_at, &odometry);
-        self.see(image, game);
-    }
-
-    fn see(&mut self, image: &Sightings, game: &GameState) {
-        for sighting in &image.objects {
-            if let (Some(post), Some(filter)) = (convert::post(sighting, game), &mut self.localisation) {
-                filter.correct(&game.field(), &post);
-            }
-            match sighting.kind() {
-                ObjectKind::Ball => self.see_ball(sighting),
-                ObjectKind::Robot => self.obstacles.see(Obstacle {
-                    position: convert::position(sighting),
-                    team_mate: sighting.colour == game.team_colour,
-                    seen_at: self.moment,
-                }),
-                _ => {}
-            }
-        }
-    }
-
-    fn see_ball(&mut self, sighting: &Sighting) {
-        self.ball.correct(sighting.distance, sighting.bearing);
-        self.ball_at = self.moment;
-    }
-
-    /// Propagates all filters to a time; earlier times are ignored.
-    fn advance(&mut self, moment: Timestamp, odometry: &Isometry2<f64>) {
-        if moment <= self.moment {
-            return;
-        }
-        let old_from_new = self.odometry.inverse() * odometry;
-        let elapsed = moment.since(self.moment);
-        self.ball.predict(elapsed, &old_from_new);
-        self.obstacles.advance(moment, &old_from_new);
-        if let Some(filter) = &mut self.localisation {
-            filter.advance(&old_from_new);
-        }
-        (self.moment, self.odometry) = (moment, *odometry);
-    }
-
-    /// Sets where the ball lies to the team mates that were seen, and to the own goal area.
-    fn in_surroundings(&self, ball: Ball, robots: &Robots, field: Option<FieldModel>) -> Ball {
-        let mates = robots.robots.iter().filter(|robot| robot.team_mate);
-        let nearest = mates.map(|mate| (mate.position() - ball.position()).norm()).fold(NOBODY, f64::min);
-        let in_area = |(field, filter): (FieldModel, &Localisation)| {
-            field.in_own_area(filter.field_from_robot() * ball.position(), 0.0)
-        };
-        let in_own_area = ball.found && field.zip(self.localisation.as_ref()).is_some_and(in_area);
-        Ball { mate_lead: (ball.distance - nearest).max(0.0), in_own_area, ..ball }
-    }
-
-    fn robots(&self) -> Robots {
-        let robots = self.obstacles.iter().map(|robot| OtherRobot {
-            x: robot.position.x,
-            y: robot.position.y,
-            team_mate: robot.team_mate,
-            age: self.moment.since(robot.seen_at).as_secs_f64(),
-        });
-        let robots: Vec<OtherRobot> = robots.collect();
-        let distances = robots.iter().map(|robot| robot.position().coords.norm());
-        Robots { nearest: distances.fold(NOBODY, f64::min), robots }
-    }
+/// Processes the newest image, if it is new, at the time it was taken.
+fn see(perception: &mut Perception, blackboard: &Blackboard) {
+    let image = blackboard.read(body::SIGHTINGS).filter(|image| image.taken_at > perception.taken_at());
+    let (Some(image), Some(game)) = (image, blackboard.read(topics::GAME_STATE)) else { return };
+    let Some(odometry) = odometry_at(blackboard, Timestamp::from_nanos(image.taken_at)) else { return };
+    perception.see(image, game, &odometry);
 }
 
 /// The odometry at a time: from the history of Sensors and the newer sensor readings.
@@ -266,9 +103,10 @@ monas::activity!(Vision);
 
 #[cfg(test)]
 mod tests {
-    use monas_robot::{Colour, Sensors as Felt};
+    use monas_robot::{Colour, ObjectKind, Sensors as Felt, Sighting, Sightings};
 
     use super::*;
+    use crate::Ball;
     use crate::activities::activity_fixture::ActivityFixture;
     use crate::activities::{SendCalibration, Sensors};
 

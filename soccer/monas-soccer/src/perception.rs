@@ -1,0 +1,196 @@
+//! Ball, pose and other robots, estimated from sightings and odometry.
+//!
+//! [`Perception`] is the work of the activity [`Vision`](crate::activities::Vision) without a
+//! blackboard, for programs that have none.
+
+use monas_robot::{ObjectKind, Posture, Sighting, Sightings};
+use nalgebra::Isometry2;
+use narukom::Timestamp;
+
+use crate::functionality::ball_filter::{BallEstimate, BallFilter, BallModel};
+use crate::functionality::field::FieldModel;
+use crate::functionality::geometry::pose;
+use crate::functionality::interception::{Crossing, crossing};
+use crate::functionality::localisation::{Localisation, LocalisationModel};
+use crate::functionality::obstacles::{Obstacle, Obstacles};
+use crate::{Ball, GameState, OtherRobot, Pose, Robots, convert};
+
+/// When a ball counts as found and as approaching.
+#[derive(Clone, Copy, Debug)]
+pub struct PerceptionModel {
+    /// How long a ball counts as found after it was last seen, seconds.
+    pub memory: f64,
+    /// Least speed of an approaching ball, m/s.
+    pub least_speed: f64,
+    /// Largest lateral distance at which an approaching ball passes the robot, metres.
+    pub reach: f64,
+    /// How a ball rolls.
+    pub ball: BallModel,
+}
+
+impl Default for PerceptionModel {
+    fn default() -> PerceptionModel {
+        PerceptionModel { memory: 1.2, least_speed: 0.3, reach: 0.9, ball: BallModel::default() }
+    }
+}
+
+/// The filters for ball, pose and other robots, at one time and one odometry.
+#[derive(Clone, Debug)]
+pub struct Perception {
+    /// The time to which the filters are propagated, and the odometry at that time.
+    moment: Timestamp,
+    odometry: Isometry2<f64>,
+    /// Time of the last image.
+    taken_at: u64,
+    ball: BallFilter,
+    /// When the ball was last seen, or the search for it began.
+    ball_at: Timestamp,
+    localisation: Option<Localisation>,
+    placements: Option<u32>,
+    obstacles: Obstacles,
+    fallen: bool,
+}
+
+/// Distance of the nearest robot when there is none, metres.
+const NOBODY: f64 = 1e6;
+
+impl Perception {
+    /// Filters that have seen nothing. The odometry is the pose of the robot relative to any fixed
+    /// point, the same for all calls.
+    pub fn new(model: &PerceptionModel, moment: Timestamp, odometry: Isometry2<f64>) -> Perception {
+        Perception {
+            moment,
+            odometry,
+            taken_at: 0,
+            ball: BallFilter::new(model.ball),
+            ball_at: moment,
+            localisation: None,
+            placements: None,
+            obstacles: Obstacles::default(),
+            fallen: false,
+        }
+    }
+
+    /// The time of the last image, nanoseconds.
+    pub fn taken_at(&self) -> u64 {
+        self.taken_at
+    }
+
+    /// Applies a placement by the referee and discards earlier sightings.
+    pub fn apply_placement(&mut self, game: &GameState, now: Timestamp, odometry: Isometry2<f64>) {
+        if self.placements == Some(game.placements) || game.placements == 0 {
+            return;
+        }
+        self.placements = Some(game.placements);
+        let placed = pose(game.placed_x, game.placed_y, game.placed_heading);
+        self.localisation = Some(Localisation::new(LocalisationModel::default(), placed));
+        self.ball.forget();
+        self.obstacles.forget();
+        (self.moment, self.odometry, self.ball_at) = (now, odometry, now);
+        self.taken_at = now.as_nanos();
+    }
+
+    /// Increases the uncertainty of the pose after a fall, which odometry does not measure.
+    pub fn feel(&mut self, posture: Option<Posture>) {
+        let fallen = posture == Some(Posture::Fallen);
+        if let (true, false, Some(filter)) = (fallen, self.fallen, &mut self.localisation) {
+            filter.disturb(0.1, 0.3);
+        }
+        self.fallen = fallen;
+    }
+
+    /// Processes an image, given the odometry at the time it was taken.
+    pub fn see(&mut self, image: &Sightings, game: &GameState, odometry: &Isometry2<f64>) {
+        self.taken_at = image.taken_at;
+        self.advance(Timestamp::from_nanos(image.taken_at), odometry);
+        for sighting in &image.objects {
+            if let (Some(post), Some(filter)) = (convert::post(sighting, game), &mut self.localisation) {
+                filter.correct(&game.field(), &post);
+            }
+            match sighting.kind() {
+                ObjectKind::Ball => self.see_ball(sighting),
+                ObjectKind::Robot => self.obstacles.see(Obstacle {
+                    position: convert::position(sighting),
+                    team_mate: sighting.colour == game.team_colour,
+                    seen_at: self.moment,
+                }),
+                _ => {}
+            }
+        }
+    }
+
+    fn see_ball(&mut self, sighting: &Sighting) {
+        self.ball.correct(sighting.distance, sighting.bearing);
+        self.ball_at = self.moment;
+    }
+
+    /// Propagates all filters to a time; earlier times are ignored.
+    pub fn advance(&mut self, moment: Timestamp, odometry: &Isometry2<f64>) {
+        if moment <= self.moment {
+            return;
+        }
+        let old_from_new = self.odometry.inverse() * odometry;
+        let elapsed = moment.since(self.moment);
+        self.ball.predict(elapsed, &old_from_new);
+        self.obstacles.advance(moment, &old_from_new);
+        if let Some(filter) = &mut self.localisation {
+            filter.advance(&old_from_new);
+        }
+        (self.moment, self.odometry) = (moment, *odometry);
+    }
+
+    /// The ball, with its relation to the robots that are seen and to the own goal area.
+    pub fn ball(&self, model: &PerceptionModel, robots: &Robots, field: Option<FieldModel>) -> Ball {
+        self.in_surroundings(self.estimated_ball(model), robots, field)
+    }
+
+    fn estimated_ball(&self, model: &PerceptionModel) -> Ball {
+        let age = self.moment.since(self.ball_at).as_secs_f64();
+        let unseen = Ball { age, ..Ball::default() }.with_crossing(None);
+        let Some(estimate) = self.ball.estimate() else { return unseen };
+        let ball = Ball { found: age <= model.memory, seen_at: self.ball_at.as_nanos(), ..unseen };
+        ball.with_estimate(&estimate).with_crossing(model.approach(&estimate))
+    }
+
+    /// Sets where the ball lies to the team mates that were seen, and to the own goal area.
+    fn in_surroundings(&self, ball: Ball, robots: &Robots, field: Option<FieldModel>) -> Ball {
+        let mates = robots.robots.iter().filter(|robot| robot.team_mate);
+        let nearest = mates.map(|mate| (mate.position() - ball.position()).norm()).fold(NOBODY, f64::min);
+        let in_area = |(field, filter): (FieldModel, &Localisation)| {
+            field.in_own_area(filter.field_from_robot() * ball.position(), 0.0)
+        };
+        let in_own_area = ball.found && field.zip(self.localisation.as_ref()).is_some_and(in_area);
+        Ball { mate_lead: (ball.distance - nearest).max(0.0), in_own_area, ..ball }
+    }
+
+    /// The other robots that were seen recently.
+    pub fn robots(&self) -> Robots {
+        let robots = self.obstacles.iter().map(|robot| OtherRobot {
+            x: robot.position.x,
+            y: robot.position.y,
+            team_mate: robot.team_mate,
+            age: self.moment.since(robot.seen_at).as_secs_f64(),
+        });
+        let robots: Vec<OtherRobot> = robots.collect();
+        let distances = robots.iter().map(|robot| robot.position().coords.norm());
+        Robots { nearest: distances.fold(NOBODY, f64::min), robots }
+    }
+
+    /// The pose; none before the first placement.
+    pub fn pose(&self) -> Option<Pose> {
+        self.localisation.as_ref().map(Pose::from_filter)
+    }
+}
+
+impl PerceptionModel {
+    /// Where the ball crosses the robot's lateral axis, if it is certainly rolling and will pass
+    /// within reach.
+    fn approach(&self, ball: &BallEstimate) -> Option<Crossing> {
+        let surely = self.least_speed.max(2.0 * ball.velocity_deviation);
+        if -ball.velocity.x < surely {
+            return None;
+        }
+        let crossing = crossing(ball.position, ball.velocity, self.ball.rolling_deceleration);
+        crossing.filter(|crossing| crossing.y.abs() <= self.reach)
+    }
+}
