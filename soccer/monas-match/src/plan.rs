@@ -8,6 +8,7 @@ use monas::config::{self, Element, Grammar, Layers};
 use monas::{
     Agent, ChartListener, ConfigurationBundle, HostConfig, LinkConfig, Module, Registry, RunHash, Talws,
 };
+use monas_robot::Robot;
 use monas_sim::{FieldGeometry, MatchRules, Physics, Radio, Setup, SharedField, SimulatedWorld, TeamSetup};
 use monas_tape::Tape;
 use yase::{Diagnostic, Source};
@@ -130,7 +131,11 @@ pub struct MatchPlan {
     is_linked: bool,
     files: ConfigurationBundle,
     settings: String,
+    embody: Embody,
 }
+
+/// Replaces the body of a robot, given its team and number.
+type Embody = Box<dyn Fn(u8, u8, Box<dyn Robot>) -> Box<dyn Robot> + Send>;
 
 impl std::fmt::Debug for MatchPlan {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -183,6 +188,7 @@ impl MatchPlan {
             is_linked: false,
             files: ConfigurationBundle::default(),
             settings: String::new(),
+            embody: Box::new(|_, _, body| body),
         })
     }
 
@@ -213,6 +219,25 @@ impl MatchPlan {
     /// The match file and all files it refers to, as they were read.
     pub fn files(&self) -> &ConfigurationBundle {
         &self.files
+    }
+
+    /// Replaces bodies on the field, given team, number and body: programs that command a body
+    /// themselves take it over. What was replaced before is given to the next.
+    pub fn embody(
+        mut self,
+        embody: impl Fn(u8, u8, Box<dyn Robot>) -> Box<dyn Robot> + Send + 'static,
+    ) -> MatchPlan {
+        let before = self.embody;
+        self.embody = Box::new(move |team, number, body| embody(team, number, before(team, number, body)));
+        self
+    }
+
+    /// Removes the agents of a team, whose robots then stay where they are placed.
+    pub fn without_agents(mut self, team: u8) -> MatchPlan {
+        for robot in self.robots.iter_mut().filter(|robot| robot.team == team) {
+            robot.agents.clear();
+        }
+        self
     }
 
     /// The robots with their agents but without bodies, for replays.
@@ -287,7 +312,7 @@ impl MatchPlan {
         let mut talws = Talws::new().registry(self.registry);
         for (index, robot) in self.robots.into_iter().enumerate() {
             let RobotPlan { team, number, host, agents, links, modules, source } = robot;
-            let body = pitch.body(index).map(|body| Box::new(body) as _);
+            let body = pitch.body(index).map(|body| (self.embody)(team, number, Box::new(body)));
             let (team, number) = (team.into(), number.into());
             let configuration = source;
             talws.host(HostConfig { name: host, team, number, body, agents, links, modules, configuration });
