@@ -48,6 +48,12 @@ static ENTRIES: [[AtomicU64; ROW]; ROWS] = [const { [const { AtomicU64::new(0) }
 
 thread_local! {
     static WORKS_FOR: Cell<AccountId> = const { Cell::new(0) };
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// The number of allocations that this thread has made; zero without the counting allocator.
+pub fn allocations() -> u64 {
+    ALLOCATIONS.get()
 }
 
 /// An account for one activity, opened at its first use. When all accounts are in use, further
@@ -155,6 +161,8 @@ unsafe impl GlobalAlloc for CountingAllocator {
         if !IS_COUNTING.load(Ordering::Relaxed) {
             IS_COUNTING.store(true, Ordering::Relaxed);
         }
+        // The thread-local is destroyed already when the thread ends.
+        let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
         // SAFETY: the caller upholds the contract of `alloc` for `layout`, which is passed on
         // unchanged.
         let block = unsafe { System.alloc(layout) };

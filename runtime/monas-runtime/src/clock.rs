@@ -11,14 +11,14 @@ pub(crate) const CPU_EVERY: u64 = 64;
 
 /// CPU time of the calling thread; `None` if the system does not provide it.
 #[cfg(unix)]
-pub(crate) fn cpu_time() -> Option<Duration> {
+pub fn cpu_time() -> Option<Duration> {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     Duration::try_from(time).ok()
 }
 
 /// CPU time of the calling thread; `None` if the system does not provide it.
 #[cfg(not(unix))]
-pub(crate) fn cpu_time() -> Option<Duration> {
+pub fn cpu_time() -> Option<Duration> {
     None
 }
 

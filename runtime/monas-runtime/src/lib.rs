@@ -74,7 +74,8 @@ pub use simulation::Simulation;
 pub use stop_handle::StopHandle;
 pub use talws::Talws;
 
-pub(crate) use clock::{RunClock, cpu_time};
+pub(crate) use clock::RunClock;
+pub use clock::cpu_time;
 pub(crate) use watchdog::Watchdog;
 
 /// Stop reason of agents at the regular end of a run.
