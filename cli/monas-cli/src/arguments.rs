@@ -10,6 +10,8 @@ use crate::commands::chart::ChartCommand;
 use crate::commands::config::ConfigCommand;
 use crate::commands::deploy::DeployArguments;
 use crate::commands::doctor::DoctorArguments;
+#[cfg(feature = "soccer")]
+use crate::commands::eval::EvalArguments;
 use crate::commands::explain::ExplainArguments;
 use crate::commands::generate::GenerateArguments;
 use crate::commands::log::LogArguments;
@@ -137,6 +139,14 @@ pub(crate) enum Command {
     /// Check toolchain, permissions, clock, ports and configuration, and suggest repairs.
     #[command(after_help = "Example: monas doctor config/agents.xml")]
     Doctor(DoctorArguments),
+    /// Compare goalie and attacker built in three ways: play, cost, lines and state.
+    ///
+    /// Directly on the robot interface, as Monas agents with one activity for all decisions, and by
+    /// ASEME from liveness formulas; all three with the same skills. Plays matches against the team
+    /// of config/match.xml, so that it takes a minute.
+    #[cfg(feature = "soccer")]
+    #[command(after_help = "Example: monas eval --seeds 4")]
+    Eval(EvalArguments),
     /// Explain the code of a diagnostic: what it means, an example, and the remedy.
     #[command(after_help = "Example: monas explain E0205")]
     Explain(ExplainArguments),

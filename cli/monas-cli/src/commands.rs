@@ -7,6 +7,8 @@ pub(crate) mod chart;
 pub(crate) mod config;
 pub(crate) mod deploy;
 pub(crate) mod doctor;
+#[cfg(feature = "soccer")]
+pub(crate) mod eval;
 pub(crate) mod explain;
 pub(crate) mod generate;
 pub(crate) mod log;

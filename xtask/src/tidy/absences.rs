@@ -23,7 +23,7 @@ struct Absence {
     because: &'static str,
 }
 
-const ABSENCES: [Absence; 26] = [
+const ABSENCES: [Absence; 27] = [
     Absence {
         crate_name: "narukom",
         names: &[&OUTSIDE, &CHANCE, &PRINTING, &["Agent", "Activity", "Statechart"]],
@@ -159,6 +159,12 @@ const ABSENCES: [Absence; 26] = [
         names: &[&["std::thread", "std::net", "std::env", "std::process"], &CHANCE, &PRINTING],
         except: &[],
         because: "a match runs in simulated time; pacing and display belong to its callers",
+    },
+    Absence {
+        crate_name: "monas-eval",
+        names: &[&["std::thread", "std::net", "std::env", "Instant", "SystemTime"], &CHANCE, &PRINTING],
+        except: &[],
+        because: "its caller measures the time",
     },
     Absence {
         crate_name: "narukom-build",

@@ -6,7 +6,7 @@ use super::TidyFinding;
 use super::workspace::{Crate, Dependency, Workspace};
 
 /// Every crate of the product and its layer.
-const LAYERS: [(&str, u8); 32] = [
+const LAYERS: [(&str, u8); 33] = [
     ("monas-diagnostics", 0),
     ("monas-files", 0),
     ("narukom", 0),
@@ -35,6 +35,7 @@ const LAYERS: [(&str, u8); 32] = [
     ("monas-recording", 13),
     ("monas-soccer", 13),
     ("monas-match", 14),
+    ("monas-eval", 15),
     ("monas-studio", 15),
     ("monas-project", 15),
     ("monas-deploy", 16),

@@ -1,0 +1,39 @@
+//! `monas eval`: goalie and attacker built in three ways, compared.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, ValueHint};
+use monas::Registry;
+use monas_eval::EvaluationSettings;
+
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, duration};
+
+/// Arguments of `monas eval`.
+#[derive(Args, Debug)]
+pub(crate) struct EvalArguments {
+    /// The folder with the match files of the evaluation.
+    #[arg(default_value = "config/evaluation", value_hint = ValueHint::DirPath)]
+    folder: PathBuf,
+    /// The number of matches of each way, with the seeds from 1.
+    #[arg(long, value_name = "COUNT", default_value_t = 10)]
+    seeds: u64,
+    /// The simulated time of each match, for example 600s or 2min.
+    #[arg(long = "for", value_name = "DURATION", value_parser = duration::parse, default_value = "600s")]
+    length: Duration,
+}
+
+pub(crate) fn execute(
+    arguments: &EvalArguments,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let EvalArguments { folder, seeds, length } = arguments;
+    let settings = EvaluationSettings { folder: folder.clone(), seeds: *seeds, length: *length };
+    let processor_time = || monas::cpu_time().unwrap_or_default();
+    let err = &mut *console.err;
+    let mut progress = |line: &str| drop(writeln!(err, "playing {line}"));
+    let evaluation = monas_eval::evaluate(&settings, &Registry::linked(), &processor_time, &mut progress)
+        .map_err(|error| CommandFailure::failed(Format::Text, error.to_string()))?;
+    write!(console.out, "{evaluation}")?;
+    Ok(Exit::Success)
+}

@@ -1,0 +1,50 @@
+//! Players as Monas agents, one an activity with a frequency of its own: all decisions are in one
+//! activity, [`BehaviorGoalie`] or [`BehaviorPlayer`].
+
+mod goalie;
+mod player;
+
+use monas::{Blackboard, BoxError};
+use monas_soccer::activities::motion_requests::request_stand;
+use monas_soccer::{Calibration, MotionPhase, PlayerState, topics};
+use narukom::PublisherId;
+
+pub use goalie::BehaviorGoalie;
+pub use player::BehaviorPlayer;
+
+/// What both behaviours know of the start of the robot and of the messages they have used.
+#[derive(Clone, Copy, Debug, Default)]
+struct StartUp {
+    is_calibrated: bool,
+    used_ball: Option<(PublisherId, u64)>,
+}
+
+impl StartUp {
+    /// Whether the behaviour decides now: the robot has stood up, it plays, and the ball is news.
+    fn is_ready(&mut self, blackboard: &mut Blackboard) -> Result<bool, BoxError> {
+        if !self.is_calibrated {
+            let phase = blackboard.read(topics::MOTION_STATE).map(|state| state.phase());
+            if phase != Some(MotionPhase::Standing) {
+                request_stand(blackboard)?;
+                return Ok(false);
+            }
+            blackboard.publish(topics::CALIBRATION, Calibration { number: 1 })?;
+            self.is_calibrated = true;
+        }
+        let state = blackboard.read(topics::GAME_STATE).map(|game| game.player_state());
+        if state != Some(PlayerState::Playing) {
+            return Ok(false);
+        }
+        let newest =
+            blackboard.sample(topics::BALL).map(|ball| (ball.header.publisher, ball.header.sequence));
+        let is_news = newest.is_some() && newest != self.used_ball;
+        self.used_ball = newest;
+        Ok(is_news)
+    }
+}
+
+/// Whether a motion is under way that was requested under this number.
+fn is_under_way(blackboard: &Blackboard, number: Option<u64>) -> bool {
+    let done = blackboard.read(topics::MOTION_STATE).map_or(0, |state| state.done);
+    number.is_some_and(|number| done < number)
+}

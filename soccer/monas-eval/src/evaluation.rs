@@ -1,0 +1,317 @@
+//! Matches of each methodology, and what its programs cost.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use monas::Registry;
+use monas_match::{MatchOptions, MatchPlan, MatchSource};
+use monas_robot::{Actuators, Anatomy, Percepts, Robot};
+use narukom::Timestamp;
+
+use crate::direct::{DirectGoalie, DirectPlayer, DirectRobot};
+use crate::sources::{self, SourceFigures};
+
+/// How a player is built.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Methodology {
+    /// Directly on the robot interface.
+    Direct,
+    /// As Monas agents, one an activity.
+    Agents,
+    /// By ASEME, from liveness formulas.
+    Aseme,
+}
+
+impl Methodology {
+    /// Every methodology, in the order of the thesis.
+    pub const ALL: [Methodology; 3] = [Methodology::Direct, Methodology::Agents, Methodology::Aseme];
+
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Methodology::Direct => "direct",
+            Methodology::Agents => "agents",
+            Methodology::Aseme => "aseme",
+        }
+    }
+
+    /// The match file in which blue is built so, from the folder of the evaluation.
+    fn file(self) -> &'static str {
+        match self {
+            Methodology::Direct => "direct.xml",
+            Methodology::Agents => "agents.xml",
+            Methodology::Aseme => "../match.xml",
+        }
+    }
+}
+
+/// What is played.
+#[derive(Clone, Debug)]
+pub struct EvaluationSettings {
+    /// The folder with the match files, `config/evaluation`.
+    pub folder: PathBuf,
+    /// The number of matches of each methodology, with the seeds from 1.
+    pub seeds: u64,
+    /// The simulated time of each match.
+    pub length: Duration,
+}
+
+/// The play of blue against the team of `config/match.xml`, summed over all seeds.
+#[derive(Clone, Copy, PartialEq, Default, Debug)]
+pub struct PlayFigures {
+    /// Goals of blue.
+    pub goals: u32,
+    /// Goals of red.
+    pub conceded: u32,
+    /// Shots of blue.
+    pub shots: u32,
+    /// Shots of red.
+    pub shots_faced: u32,
+    /// Shots of red that the goalie stopped.
+    pub saves: u32,
+    /// Falls of blue.
+    pub falls: u32,
+}
+
+/// What the programs of one robot cost, without the field: the difference to a match whose robots
+/// have no programs.
+#[derive(Clone, Copy, PartialEq, Default, Debug)]
+pub struct CostFigures {
+    /// Processor time a cycle of the body, 20 ms of simulated time.
+    pub cycle: Duration,
+    /// Allocations a cycle; zero if the program does not count them.
+    pub allocations: f64,
+    /// Messages a second of simulated time.
+    pub messages: f64,
+}
+
+/// The figures of all.
+#[derive(Clone, Debug)]
+pub struct Evaluation {
+    settings: EvaluationSettings,
+    /// A row for each methodology.
+    pub rows: Vec<Row>,
+}
+
+/// A match that cannot be played.
+#[derive(Debug)]
+pub struct Error(String);
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// Cycles of a body in a second.
+const CYCLES: f64 = 50.0;
+/// Robots of blue.
+const ROBOTS: f64 = 3.0;
+/// Seeds of the matches without opponents that measure the cost; the median counts.
+const COST_SEEDS: u64 = 3;
+
+/// Plays and measures every methodology. `processor_time` is that of the calling thread, and
+/// `progress` takes a line for each match.
+///
+/// # Errors
+/// A match file is missing or wrong, or a match ends early.
+pub fn evaluate(
+    settings: &EvaluationSettings,
+    registry: &Registry,
+    processor_time: &dyn Fn() -> Duration,
+    progress: &mut dyn FnMut(&str),
+) -> Result<Evaluation, Error> {
+    let mut rows = Vec::new();
+    let mut idle = Vec::new();
+    for seed in 1..=COST_SEEDS {
+        let plan = alone(plan(settings, Methodology::Aseme, registry)?).without_agents(1);
+        let plan = plan.embody(|_, _, body| Box::new(IdleRobot(body)));
+        idle.push(measure(plan, seed, settings.length, processor_time)?);
+    }
+    let idle = median(idle);
+    for methodology in Methodology::ALL {
+        let mut play = PlayFigures::default();
+        for seed in 1..=settings.seeds {
+            progress(&format!("{} {seed} of {}", methodology.name(), settings.seeds));
+            play = play.plus(self::play(plan(settings, methodology, registry)?, seed, settings.length)?);
+        }
+        let mut costs = Vec::new();
+        for seed in 1..=COST_SEEDS {
+            let plan = alone(plan(settings, methodology, registry)?);
+            costs.push(measure(plan, seed, settings.length, processor_time)?);
+        }
+        let cost = median(costs).per_robot_beyond(&idle, settings.length);
+        rows.push((methodology, play, cost, sources::of(methodology)));
+    }
+    Ok(Evaluation { settings: settings.clone(), rows })
+}
+
+/// The match in which blue is built by a methodology.
+///
+/// # Errors
+/// The match file is missing or wrong.
+pub fn plan(
+    settings: &EvaluationSettings,
+    methodology: Methodology,
+    registry: &Registry,
+) -> Result<MatchPlan, Error> {
+    let path = settings.folder.join(methodology.file());
+    let plan = MatchSource::load(&path, registry).map_err(|found| {
+        Error(found.first().map_or_else(|| path.display().to_string(), ToString::to_string))
+    })?;
+    Ok(match methodology {
+        Methodology::Direct => plan.embody(|team, number, body| match (team, number) {
+            (1, 1) => Box::new(DirectRobot::new(body, DirectGoalie::default())) as Box<dyn Robot>,
+            (1, _) => Box::new(DirectRobot::new(body, DirectPlayer::default())),
+            _ => body,
+        }),
+        Methodology::Agents | Methodology::Aseme => plan,
+    })
+}
+
+fn play(plan: MatchPlan, seed: u64, length: Duration) -> Result<PlayFigures, Error> {
+    let failed = |error: monas_match::Error| Error(error.to_string());
+    let mut running = plan.start(MatchOptions { seed, record: None }).map_err(failed)?;
+    running.advance(length).map_err(failed)?;
+    let summary = running.finish().map_err(failed)?;
+    let [blue, red] = summary.teams.as_slice() else {
+        return Err(Error("a match has two teams".into()));
+    };
+    Ok(PlayFigures {
+        goals: blue.goals,
+        conceded: red.goals,
+        shots: blue.shots,
+        shots_faced: red.shots,
+        saves: blue.saves,
+        falls: blue.falls,
+    })
+}
+
+/// A body without a program: nothing of what it sees and hears is used.
+struct IdleRobot(Box<dyn Robot>);
+
+impl Robot for IdleRobot {
+    fn anatomy(&self) -> &Anatomy {
+        self.0.anatomy()
+    }
+
+    fn sense(&mut self, now: Timestamp, percepts: &mut Percepts) -> Result<(), monas_robot::Error> {
+        self.0.sense(now, percepts)?;
+        (percepts.sightings, percepts.announcement) = (None, None);
+        percepts.heard.clear();
+        Ok(())
+    }
+
+    fn act(&mut self, now: Timestamp, actuators: &Actuators) -> Result<(), monas_robot::Error> {
+        self.0.act(now, actuators)
+    }
+}
+
+/// The match against robots without programs.
+fn alone(plan: MatchPlan) -> MatchPlan {
+    let idle = |team, _, body| if team == 2 { Box::new(IdleRobot(body)) } else { body };
+    plan.without_agents(2).embody(idle)
+}
+
+/// The cost of a whole match.
+#[derive(Clone, Copy, Default, Debug)]
+struct MatchCost {
+    processor_time: Duration,
+    allocations: u64,
+    messages: u64,
+}
+
+fn measure(
+    plan: MatchPlan,
+    seed: u64,
+    length: Duration,
+    processor_time: &dyn Fn() -> Duration,
+) -> Result<MatchCost, Error> {
+    let failed = |error: monas_match::Error| Error(error.to_string());
+    let mut running = plan.start(MatchOptions { seed, record: None }).map_err(failed)?;
+    let (began, allocated) = (processor_time(), monas::memory::allocations());
+    running.advance(length).map_err(failed)?;
+    let (ended, allocations) = (processor_time(), monas::memory::allocations() - allocated);
+    let messages = running.finish().map_err(failed)?.messages;
+    Ok(MatchCost { processor_time: ended.saturating_sub(began), allocations, messages })
+}
+
+/// The match of median processor time.
+fn median(mut costs: Vec<MatchCost>) -> MatchCost {
+    costs.sort_by_key(|cost| cost.processor_time);
+    costs.get(costs.len() / 2).copied().unwrap_or_default()
+}
+
+impl MatchCost {
+    fn per_robot_beyond(&self, idle: &MatchCost, length: Duration) -> CostFigures {
+        let robot_seconds = length.as_secs_f64() * ROBOTS;
+        let beyond = |all: u64, idle: u64| all.saturating_sub(idle) as f64 / robot_seconds;
+        let time = self.processor_time.saturating_sub(idle.processor_time);
+        CostFigures {
+            cycle: time.div_f64((robot_seconds * CYCLES).max(1.0)),
+            allocations: beyond(self.allocations, idle.allocations) / CYCLES,
+            messages: beyond(self.messages, idle.messages),
+        }
+    }
+}
+
+impl PlayFigures {
+    fn plus(self, other: PlayFigures) -> PlayFigures {
+        PlayFigures {
+            goals: self.goals + other.goals,
+            conceded: self.conceded + other.conceded,
+            shots: self.shots + other.shots,
+            shots_faced: self.shots_faced + other.shots_faced,
+            saves: self.saves + other.saves,
+            falls: self.falls + other.falls,
+        }
+    }
+}
+
+/// The figures of one methodology.
+pub type Row = (Methodology, PlayFigures, CostFigures, SourceFigures);
+/// The text of a figure of a row.
+type Figure<'a> = &'a dyn Fn(&Row) -> String;
+
+impl fmt::Display for Evaluation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (seeds, seconds) = (self.settings.seeds, self.settings.length.as_secs());
+        writeln!(f, "{seeds} matches of {seconds} s each, against the team of config/match.xml\n")?;
+        write!(f, "{:<44}", "")?;
+        for (methodology, ..) in &self.rows {
+            write!(f, "{:>11}", methodology.name())?;
+        }
+        writeln!(f)?;
+        let lines: [(&str, Figure<'_>); 16] = [
+            ("goals", &|row| row.1.goals.to_string()),
+            ("goals conceded", &|row| row.1.conceded.to_string()),
+            ("shots", &|row| row.1.shots.to_string()),
+            ("shots faced", &|row| row.1.shots_faced.to_string()),
+            ("saves", &|row| row.1.saves.to_string()),
+            ("falls", &|row| row.1.falls.to_string()),
+            ("processor time a cycle of a robot, us", &|row| {
+                format!("{:.1}", row.2.cycle.as_secs_f64() * 1e6)
+            }),
+            ("allocations a cycle of a robot", &|row| format!("{:.2}", row.2.allocations)),
+            ("messages a second of a robot", &|row| format!("{:.0}", row.2.messages)),
+            ("lines written: goalie", &|row| row.3.goalie_lines.to_string()),
+            ("lines written: both players", &|row| row.3.written_lines.to_string()),
+            ("lines of activities used only by behaviours", &|row| row.3.activity_lines.to_string()),
+            ("lines generated", &|row| row.3.generated_lines.to_string()),
+            ("state variables kept by hand", &|row| row.3.state_variables.to_string()),
+            ("coupling: names imported by a unit, mean", &|row| format!("{:.1}", row.3.coupling)),
+            ("cohesion: most decisions in one unit", &|row| row.3.decisions.to_string()),
+        ];
+        for (name, figure) in lines {
+            write!(f, "{name:<44}")?;
+            for row in &self.rows {
+                write!(f, "{:>11}", figure(row))?;
+            }
+            writeln!(f)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,27 @@
+//! All ways play soccer, and about equally well.
+
+use std::path::Path;
+use std::time::Duration;
+
+use monas_eval::{EvaluationSettings, Methodology, evaluate};
+
+#[test]
+fn every_way_shoots_saves_and_costs() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config/evaluation");
+    let settings = EvaluationSettings { folder, seeds: 2, length: Duration::from_secs(150) };
+    let mut played = Vec::new();
+    let evaluation = evaluate(&settings, &monas::Registry::linked(), &|| Duration::ZERO, &mut |line| {
+        played.push(line.to_owned())
+    })
+    .unwrap();
+    assert_eq!(played.len(), 6);
+    let text = evaluation.to_string();
+    for (methodology, play, cost, sources) in &evaluation.rows {
+        assert!(play.shots >= 4 && play.shots_faced >= 4, "{} plays:\n{text}", methodology.name());
+        assert!(sources.written_lines > sources.goalie_lines, "{text}");
+        // Without a program that talks over Narukom only the body publishes.
+        assert_eq!(cost.messages > 20.0, *methodology != Methodology::Direct, "{text}");
+    }
+    let saves: u32 = evaluation.rows.iter().map(|row| row.1.saves).sum();
+    assert!(saves > 0, "{text}");
+}
