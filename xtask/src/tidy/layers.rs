@@ -6,7 +6,7 @@ use super::TidyFinding;
 use super::workspace::{Crate, Dependency, Workspace};
 
 /// Every crate of the product and its layer.
-const LAYERS: [(&str, u8); 32] = [
+const LAYERS: [(&str, u8); 33] = [
     ("monas-diagnostics", 0),
     ("monas-files", 0),
     ("narukom", 0),
@@ -17,6 +17,7 @@ const LAYERS: [(&str, u8); 32] = [
     ("monas-robot", 1),
     ("monas-tape", 1),
     ("yase-codegen", 3),
+    ("monas-gamecontroller", 2),
     ("yase-explore", 2),
     ("yase-export", 2),
     ("yase-reference", 2),
