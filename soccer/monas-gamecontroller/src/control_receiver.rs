@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::io;
-use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
+use std::net::{SocketAddr, UdpSocket};
 
 use crate::received::{self, Received};
-use crate::{GameControlData, RETURN_PORT, ReturnData};
+use crate::{Endpoint, GameControlData, Peer, RETURN_PORT, ReturnData};
 
 /// Receives control data, and sends the return data of the robots of this host.
 pub struct ControlReceiver {
@@ -17,16 +17,16 @@ pub struct ControlReceiver {
 
 impl ControlReceiver {
     /// Listens at an address: usually [`CONTROL_PORT`](crate::CONTROL_PORT) of all interfaces,
-    /// since a GameController broadcasts.
+    /// since a GameController broadcasts. Reports go to [`RETURN_PORT`] of the GameController.
     ///
     /// # Errors
     /// The address is in use, or none of this host.
-    pub fn open(listen: SocketAddr) -> io::Result<ControlReceiver> {
-        let control = received::socket(listen)?;
+    pub fn open(listen: Endpoint) -> io::Result<ControlReceiver> {
+        let control = received::socket(listen.0)?;
         Ok(ControlReceiver { control, return_port: RETURN_PORT, robots: BTreeMap::new() })
     }
 
-    /// Sends return data to another port than the league's.
+    /// Sends reports to another port than the league's.
     pub fn with_return_port(self, return_port: u16) -> ControlReceiver {
         ControlReceiver { return_port, ..self }
     }
@@ -35,8 +35,8 @@ impl ControlReceiver {
     ///
     /// # Errors
     /// As the operating system reports.
-    pub fn address(&self) -> io::Result<SocketAddr> {
-        self.control.local_addr()
+    pub fn address(&self) -> io::Result<Endpoint> {
+        self.control.local_addr().map(Endpoint)
     }
 
     /// The next control data that has arrived; returns at once if there is none.
@@ -53,26 +53,14 @@ impl ControlReceiver {
     ///
     /// # Errors
     /// The robot's address is not available, or the report cannot be sent.
-    pub fn report(&mut self, report: &ReturnData, referee: IpAddr) -> io::Result<()> {
+    pub fn report(&mut self, report: &ReturnData, referee: Peer) -> io::Result<()> {
         let packet = report.encode().map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
         let robot = (report.team, report.player);
         if !self.robots.contains_key(&robot) {
-            let source = source(referee, self.robots.len());
+            let source = referee.source(self.robots.len());
             self.robots.insert(robot, received::socket((source, 0).into())?);
         }
-        let to = SocketAddr::from((referee, self.return_port));
+        let to = SocketAddr::from((referee.0, self.return_port));
         self.robots[&robot].send_to(&packet, to).map(drop)
-    }
-}
-
-/// The address from which a robot reports to a referee; `before` counts the robots before it.
-fn source(referee: IpAddr, before: usize) -> IpAddr {
-    match referee {
-        IpAddr::V4(referee) if referee.is_loopback() => {
-            let offset = u32::try_from(before).unwrap_or(u32::MAX);
-            Ipv4Addr::from(u32::from(Ipv4Addr::new(127, 0, 0, 2)).saturating_add(offset)).into()
-        }
-        IpAddr::V4(_) => Ipv4Addr::UNSPECIFIED.into(),
-        IpAddr::V6(_) => std::net::Ipv6Addr::UNSPECIFIED.into(),
     }
 }

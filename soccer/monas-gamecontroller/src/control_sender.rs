@@ -7,7 +7,7 @@ use std::time::Duration;
 use narukom::Timestamp;
 
 use crate::received::{self, Received};
-use crate::{GameControlData, OnlinePlayers, ReturnData};
+use crate::{Endpoint, GameControlData, OnlinePlayers, ReturnData};
 
 /// Time between two packets of control data.
 const INTERVAL: Duration = Duration::from_millis(500);
@@ -23,25 +23,27 @@ pub struct ControlSender {
 }
 
 impl ControlSender {
-    /// Sends to an address, which may be a broadcast address, and receives return data at another,
-    /// usually [`RETURN_PORT`](crate::RETURN_PORT) of the same interface.
+    /// Sends to an address, which may be a broadcast address, and receives return data at a port,
+    /// usually [`RETURN_PORT`](crate::RETURN_PORT): of the loopback interface if it sends there,
+    /// otherwise of all.
     ///
     /// # Errors
-    /// The address for return data is in use, or none of this host.
-    pub fn open(to: SocketAddr, listen: SocketAddr) -> io::Result<ControlSender> {
-        let socket = received::socket((listen.ip(), 0).into())?;
+    /// The port for return data is in use.
+    pub fn open(to: Endpoint, return_port: u16) -> io::Result<ControlSender> {
+        let interface = to.reporting_interface();
+        let socket = received::socket((interface, 0).into())?;
         socket.set_broadcast(true)?;
-        let reports = received::socket(listen)?;
+        let reports = received::socket((interface, return_port).into())?;
         let online = OnlinePlayers::default();
-        Ok(ControlSender { socket, to, reports, sent: 0, due: Timestamp::ZERO, online })
+        Ok(ControlSender { socket, to: to.0, reports, sent: 0, due: Timestamp::ZERO, online })
     }
 
-    /// The address at which it receives return data.
+    /// The port at which it receives return data.
     ///
     /// # Errors
     /// As the operating system reports.
-    pub fn address(&self) -> io::Result<SocketAddr> {
-        self.reports.local_addr()
+    pub fn return_port(&self) -> io::Result<u16> {
+        self.reports.local_addr().map(|address| address.port())
     }
 
     /// Whether half a second has passed since the last packet.

@@ -12,13 +12,11 @@
 //! reads.
 //!
 //! ```
-//! use std::net::{Ipv4Addr, SocketAddr};
-//! use monas_gamecontroller::{Competition, ControlReceiver, ControlSender, GameControlData};
+//! use monas_gamecontroller::{Competition, ControlReceiver, ControlSender, Endpoint, GameControlData};
 //! use narukom::Timestamp;
 //!
-//! let any: SocketAddr = (Ipv4Addr::LOCALHOST, 0).into();
-//! let mut robots = ControlReceiver::open(any)?;
-//! let mut referee = ControlSender::open(robots.address()?, any)?;
+//! let mut robots = ControlReceiver::open(Endpoint::LOOPBACK)?;
+//! let mut referee = ControlSender::open(robots.address()?, 0)?;
 //! let control = GameControlData::new(Competition::default(), [5, 24]);
 //! referee.send(&control, Timestamp::ZERO)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -27,6 +25,7 @@
 mod competition;
 mod control_receiver;
 mod control_sender;
+mod endpoint;
 mod error;
 mod game_control_data;
 mod jersey_colour;
@@ -46,6 +45,7 @@ mod whistle_delay;
 pub use competition::{Competition, CompetitionPhase, CompetitionType, RobotSize};
 pub use control_receiver::ControlReceiver;
 pub use control_sender::ControlSender;
+pub use endpoint::{Endpoint, Peer};
 pub use error::{Error, ErrorKind};
 pub use game_control_data::{Audience, GameControlData};
 pub use jersey_colour::JerseyColour;

@@ -3,7 +3,7 @@
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
 
-use crate::Error;
+use crate::{Error, Peer};
 
 /// Longer than any packet of the protocol, so that one that is too long is seen as such.
 const LONGEST: usize = 256;
@@ -12,7 +12,7 @@ const LONGEST: usize = 256;
 #[derive(Clone, PartialEq, Debug)]
 pub struct Received<T> {
     /// Its sender.
-    pub from: SocketAddr,
+    pub from: Peer,
     /// Its content.
     pub content: Result<T, Error>,
 }
@@ -31,7 +31,7 @@ pub(crate) fn next<T>(
 ) -> io::Result<Option<Received<T>>> {
     let mut bytes = [0; LONGEST];
     match socket.recv_from(&mut bytes) {
-        Ok((length, from)) => Ok(Some(Received { from, content: decode(&bytes[..length]) })),
+        Ok((length, from)) => Ok(Some(Received { from: Peer(from.ip()), content: decode(&bytes[..length]) })),
         Err(error) if error.kind() == io::ErrorKind::WouldBlock => Ok(None),
         Err(error) => Err(error),
     }

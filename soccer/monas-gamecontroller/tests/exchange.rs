@@ -1,16 +1,13 @@
 //! Both ends of the protocol over the loopback interface.
 #![allow(clippy::unwrap_used, clippy::expect_used)] // tests may panic
 
-use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
 use monas_gamecontroller::{
-    Competition, Connection, ControlReceiver, ControlSender, ErrorKind, GameControlData, LeagueState,
-    Received, ReturnData, RuleBook,
+    Competition, Connection, ControlReceiver, ControlSender, Endpoint, ErrorKind, GameControlData,
+    LeagueState, Received, ReturnData, RuleBook,
 };
 use narukom::Timestamp;
-
-const ANY: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0);
 
 /// What arrives; packets on the loopback interface arrive soon, but not always at once.
 fn arrived<T>(mut receive: impl FnMut() -> std::io::Result<Option<T>>) -> T {
@@ -28,9 +25,9 @@ fn report(player: u8) -> ReturnData {
 
 #[test]
 fn control_data_arrives_and_reports_come_back() {
-    let mut robots = ControlReceiver::open(ANY).unwrap();
-    let mut referee = ControlSender::open(robots.address().unwrap(), ANY).unwrap();
-    robots = robots.with_return_port(referee.address().unwrap().port());
+    let robots = ControlReceiver::open(Endpoint::LOOPBACK).unwrap();
+    let mut referee = ControlSender::open(robots.address().unwrap(), 0).unwrap();
+    let mut robots = robots.with_return_port(referee.return_port().unwrap());
     assert!(robots.receive().unwrap().is_none(), "it does not wait");
     for rules in RuleBook::ALL {
         let mut control = GameControlData::new(Competition::of(rules), [5, 24]);
@@ -40,17 +37,16 @@ fn control_data_arrives_and_reports_come_back() {
         let read = content.unwrap();
         assert_eq!((read.state, read.competition.rules()), (LeagueState::Playing, rules));
         assert_eq!(u64::from(read.packet_number) + 1, referee.sent());
-        let sources: Vec<IpAddr> = (2..=3)
+        let sources: Vec<String> = (2..=3)
             .map(|player| {
-                robots.report(&report(player), from.ip()).unwrap();
+                robots.report(&report(player), from).unwrap();
                 let received = arrived(|| referee.receive(Timestamp::ZERO));
                 assert_eq!(received.content, Ok(report(player)));
-                received.from.ip()
+                received.from.to_string()
             })
             .collect();
         // Only Linux has all of 127.0.0.0/8.
-        let own = [2, 3].map(|last| IpAddr::from([127, 0, 0, last]));
-        assert_eq!(sources, own, "each robot has an address of its own");
+        assert_eq!(sources, ["127.0.0.2", "127.0.0.3"], "each robot has an address of its own");
     }
     let later = Timestamp::ZERO + Duration::from_secs(3);
     assert_eq!(referee.online().connection(5, 2, later), Connection::Bad);
@@ -59,8 +55,8 @@ fn control_data_arrives_and_reports_come_back() {
 
 #[test]
 fn control_data_is_due_twice_a_second() {
-    let mut referee =
-        ControlSender::open(ControlReceiver::open(ANY).unwrap().address().unwrap(), ANY).unwrap();
+    let robots = ControlReceiver::open(Endpoint::LOOPBACK).unwrap();
+    let mut referee = ControlSender::open(robots.address().unwrap(), 0).unwrap();
     let control = GameControlData::new(Competition::default(), [1, 2]);
     let mut sent = 0;
     for step in 0..300 {
@@ -75,13 +71,13 @@ fn control_data_is_due_twice_a_second() {
 
 #[test]
 fn a_malformed_packet_is_reported_and_the_next_is_read() {
-    let mut robots = ControlReceiver::open(ANY).unwrap();
-    let stranger = std::net::UdpSocket::bind(ANY).unwrap();
-    let to = robots.address().unwrap();
-    stranger.send_to(b"RGme", to).unwrap();
-    stranger.send_to(&[0; 1000], to).unwrap();
+    let mut robots = ControlReceiver::open(Endpoint::LOOPBACK).unwrap();
+    let stranger = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
+    let to = robots.address().unwrap().to_string();
+    stranger.send_to(b"RGme", &to).unwrap();
+    stranger.send_to(&[0; 1000], &to).unwrap();
     let control = GameControlData::new(Competition::default(), [1, 2]);
-    stranger.send_to(&control.encode().unwrap(), to).unwrap();
+    stranger.send_to(&control.encode().unwrap(), &to).unwrap();
     let kinds: Vec<_> =
         (0..3).map(|_| arrived(|| robots.receive()).content.map_err(|error| error.kind())).collect();
     assert_eq!(kinds, [Err(ErrorKind::Length), Err(ErrorKind::Header), Ok(control)]);
