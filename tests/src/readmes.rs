@@ -26,6 +26,8 @@ mod aseme_models {}
 mod aseme_verify {}
 #[doc = include_str!("../../robots/monas-robot/README.md")]
 mod monas_robot {}
+#[doc = include_str!("../../soccer/monas-gamecontroller/README.md")]
+mod monas_gamecontroller {}
 #[doc = include_str!("../../runtime/monas/README.md")]
 mod monas {}
 #[doc = include_str!("../../runtime/monas-config/README.md")]

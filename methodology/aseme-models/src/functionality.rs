@@ -61,6 +61,18 @@ static METAMODEL: Metamodel = Metamodel {
     }],
 };
 
+impl FunctionalityTable {
+    /// Fills the rows without a functionality with the functionality and the technology that
+    /// `implemented` returns for the name of the activity.
+    pub fn complete(&mut self, implemented: impl Fn(&str) -> Option<(String, String)>) {
+        for row in self.rows.iter_mut().filter(|row| row.functionality.is_empty()) {
+            if let Some((functionality, technology)) = implemented(&row.activity) {
+                (row.functionality, row.technology) = (functionality, technology);
+            }
+        }
+    }
+}
+
 impl FunctionalityRow {
     /// Its cells, in order.
     pub fn cells(&self) -> [&str; 8] {

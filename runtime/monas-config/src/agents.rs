@@ -2,6 +2,7 @@
 
 mod charts;
 mod monitors;
+mod publishers;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -90,6 +91,7 @@ pub fn assemble(
     // Links are read first: activities executed elsewhere are checked against them.
     reader.links(elements);
     reader.agents(elements);
+    reader.unpublished(elements);
     reader.setup
 }
 

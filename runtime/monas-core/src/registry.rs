@@ -232,6 +232,15 @@ impl Registry {
         }
     }
 
+    /// The path of the Rust module that registers an activity; none if the name is unknown or
+    /// ambiguous.
+    pub fn activity_module(&self, name: &str) -> Option<&str> {
+        match self.activities.get(name)?.makers.as_slice() {
+            [(module, _)] => Some(module),
+            _ => None,
+        }
+    }
+
     fn unknown(&self, name: &str) -> Error {
         let error = Error::new(ErrorKind::UnknownActivity, format!("unknown activity `{name}`"));
         match nearest(name, self.activities.keys().map(String::as_str)) {

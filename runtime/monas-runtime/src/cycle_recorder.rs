@@ -8,10 +8,11 @@ use narukom::{Hub, Publisher, Timestamp};
 
 use super::agent_entry;
 use super::agent_update::{AgentUpdate, ChangeRef};
+use super::duration_text::DurationText;
 use monas_core::error::Error;
 use monas_core::monitors::PropertyViolation;
 use monas_core::records::{self, CYCLE, Delivery, STATISTICS, Turn};
-use monas_core::statistics::AgentStatistics;
+use monas_core::statistics::{AgentStatistics, MovingAverage, Percentiles};
 
 /// Records the cycles of an agent. Several recorders share one counter when the list and the charts
 /// run on separate threads.
@@ -143,14 +144,23 @@ impl CycleRecorder {
 pub(crate) fn log_times(statistics: &AgentStatistics) {
     let AgentStatistics { agent, cycles, overruns, missed, cycle_time, cycle_cpu, cycle_percentiles, .. } =
         statistics;
-    let (mean, deviation) = (cycle_time.map(|time| time.mean()), cycle_time.map(|time| time.deviation()));
-    let (cpu, of) = (cycle_cpu.map(|cpu| cpu.mean()), cycle_percentiles.unwrap_or_default());
-    tracing::info!(%agent, cycles, ?mean, ?deviation, ?cpu, p50 = ?of.p50, p99 = ?of.p99, overruns, missed, "a cycle takes");
+    let [mean, deviation, cpu] = measured(*cycle_time, *cycle_cpu);
+    let [p50, p99] = percentiles(*cycle_percentiles);
+    tracing::info!(%agent, cycles, %mean, %deviation, %cpu, %p50, %p99, overruns, missed, "a cycle takes");
     for activity in &statistics.activities {
-        let time = activity.call_time;
-        let (mean, deviation) = (time.map(|time| time.mean()), time.map(|time| time.deviation()));
-        let (cpu, of) =
-            (activity.call_cpu.map(|cpu| cpu.mean()), activity.call_percentiles.unwrap_or_default());
-        tracing::info!(%agent, activity = %activity.name, ?mean, ?deviation, ?cpu, p50 = ?of.p50, p99 = ?of.p99, "a call takes");
+        let [mean, deviation, cpu] = measured(activity.call_time, activity.call_cpu);
+        let [p50, p99] = percentiles(activity.call_percentiles);
+        tracing::info!(%agent, activity = %activity.name, %mean, %deviation, %cpu, %p50, %p99, "a call takes");
     }
+}
+
+/// Mean, deviation and mean CPU time.
+fn measured(time: Option<MovingAverage>, cpu: Option<MovingAverage>) -> [DurationText; 3] {
+    let (mean, deviation) = (time.map(|time| time.mean()), time.map(|time| time.deviation()));
+    [mean, deviation, cpu.map(|cpu| cpu.mean())].map(DurationText)
+}
+
+/// The median and the 99th percentile.
+fn percentiles(of: Option<Percentiles>) -> [DurationText; 2] {
+    [of.map(|of| of.p50), of.map(|of| of.p99)].map(DurationText)
 }

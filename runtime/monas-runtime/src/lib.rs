@@ -37,6 +37,7 @@ mod chart_thread;
 mod clock;
 mod cycle_recorder;
 mod deadlines;
+mod duration_text;
 mod free_loop;
 mod host_status;
 mod links;
@@ -73,6 +74,7 @@ pub use run_handle::RunHandle;
 pub use simulation::Simulation;
 pub use stop_handle::StopHandle;
 pub use talws::Talws;
+pub use thread_scheduling::permits_real_time;
 
 pub(crate) use clock::RunClock;
 pub use clock::cpu_time;

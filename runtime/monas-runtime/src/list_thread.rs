@@ -193,7 +193,7 @@ impl ListThread {
             return;
         }
         let (agent, cycle, unsaid) = (&self.agent.name, self.cycles, self.suppressed_warnings);
-        tracing::warn!(%agent, cycle, unsaid, "cycle ended {late:?} after the next was due");
+        tracing::warn!(%agent, cycle, unsaid, "cycle ended {late:.1?} after the next was due");
         (self.last_warning, self.suppressed_warnings) = (Some(now), 0);
     }
 

@@ -18,6 +18,14 @@ pub(crate) fn apply(wanted: &Scheduling, was: &Scheduling) -> Vec<String> {
     refused
 }
 
+/// Whether the system grants real-time scheduling with this priority, from 1 to 99: a short-lived
+/// thread requests it.
+pub fn permits_real_time(priority: u8) -> bool {
+    let wanted = Scheduling { priority: priority.into(), real_time: true, ..Scheduling::default() };
+    let tried = std::thread::Builder::new().spawn(move || system::schedule(&wanted).is_ok());
+    tried.is_ok_and(|thread| thread.join().unwrap_or(false))
+}
+
 #[cfg(target_os = "linux")]
 mod system {
     use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};

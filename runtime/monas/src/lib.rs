@@ -83,7 +83,9 @@ pub use monas_log as logger;
 pub use monas_log::fatal;
 pub use monas_module::{ModuleFile, seal as seal_module};
 pub use monas_runtime::replay;
-pub use monas_runtime::{HostConfig, RealTimeRun, RunHandle, Simulation, StopHandle, Talws, World, cpu_time};
+pub use monas_runtime::{
+    HostConfig, RealTimeRun, RunHandle, Simulation, StopHandle, Talws, World, cpu_time, permits_real_time,
+};
 
 /// Items used by the expansions of macros.
 #[doc(hidden)]

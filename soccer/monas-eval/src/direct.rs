@@ -191,7 +191,7 @@ impl<B: Behaviour> DirectRobot<B> {
         }
         if let Some(announcement) = percepts.announcement {
             memory.announcement = Some(announcement);
-            self.tracker.announce(convert::phase(announcement.phase()), announcement.penalized);
+            self.tracker.announce(convert::phase(&announcement), announcement.penalized);
         }
         if percepts.sensors.chest_button && !self.button_was_pressed {
             self.tracker.press_chest_button();

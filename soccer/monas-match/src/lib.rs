@@ -27,6 +27,9 @@
 mod error;
 mod file;
 mod grammar;
+mod league;
+mod league_player;
+mod league_referee;
 mod match_events;
 mod match_world;
 mod parameters;
@@ -38,6 +41,7 @@ mod summary;
 
 pub use error::{Error, ErrorKind};
 pub use grammar::of_matches as grammar;
+pub use league::LeagueCounts;
 pub use parameters::simulator_file;
 pub use plan::{MatchOptions, MatchPlan, MatchSource};
 pub use recorded_field::RecordedField;

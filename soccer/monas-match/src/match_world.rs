@@ -8,6 +8,7 @@ use monas_sim::messages::{Incident, RefereeState, Score, TeamScore, TrueRobot, T
 use monas_sim::{GameState, STEP, SharedField};
 use narukom::{Blackboard, Timestamp};
 
+use crate::league::League;
 use crate::match_events;
 
 /// Steps between two messages of ground truth.
@@ -18,15 +19,16 @@ pub(crate) struct MatchWorld {
     pitch: SharedField,
     seen_events: usize,
     score: Score,
+    league: Option<League>,
 }
 
 impl MatchWorld {
-    pub(crate) fn new(pitch: SharedField) -> MatchWorld {
-        MatchWorld { pitch, seen_events: 0, score: Score::default() }
+    pub(crate) fn new(pitch: SharedField, league: Option<League>) -> MatchWorld {
+        MatchWorld { pitch, seen_events: 0, score: Score::default(), league }
     }
 
     fn publish_state(&mut self, blackboard: &mut Blackboard) -> Result<(), BoxError> {
-        let MatchWorld { pitch, seen_events, score } = self;
+        let MatchWorld { pitch, seen_events, score, .. } = self;
         pitch.with_world(|world| {
             if world.steps() % TRUTH_EVERY == 0 {
                 blackboard.publish(TRUTH, truth(world))?;
@@ -58,8 +60,13 @@ impl World for MatchWorld {
         self.publish_state(blackboard)
     }
 
-    fn advance(&mut self, _now: Timestamp, blackboard: &mut Blackboard) -> Result<(), BoxError> {
+    fn advance(&mut self, now: Timestamp, blackboard: &mut Blackboard) -> Result<(), BoxError> {
         self.pitch.step();
+        if let Some(league) = &self.league {
+            for text in league.exchange(&self.pitch, now)? {
+                blackboard.publish(INCIDENT, Incident { text })?;
+            }
+        }
         self.publish_state(blackboard)
     }
 }

@@ -8,6 +8,7 @@ use monas::config::{self, Element, Grammar, Layers};
 use monas::{
     Agent, ChartListener, ConfigurationBundle, HostConfig, LinkConfig, Module, Registry, RunHash, Talws,
 };
+use monas_gamecontroller::{ControlReceiver, ControlSender, RuleBook};
 use monas_robot::Robot;
 use monas_sim::{FieldGeometry, MatchRules, Physics, Radio, Setup, SharedField, SimulatedWorld, TeamSetup};
 use monas_tape::Tape;
@@ -15,6 +16,9 @@ use yase::{Diagnostic, Source};
 
 use crate::error::Error;
 use crate::file::{self, MatchFile};
+use crate::league::League;
+use crate::league_player::LeaguePlayers;
+use crate::league_referee::LeagueReferee;
 use crate::match_world::MatchWorld;
 use crate::running_match::RunningMatch;
 use crate::settings::MatchSettings;
@@ -129,6 +133,7 @@ pub struct MatchPlan {
     listeners: Vec<Box<dyn ChartListener>>,
     warnings: Vec<Diagnostic>,
     is_linked: bool,
+    league: Option<LeagueSetup>,
     files: ConfigurationBundle,
     settings: String,
     embody: Embody,
@@ -146,6 +151,17 @@ impl std::fmt::Debug for MatchPlan {
     }
 }
 
+/// The end of the league's protocol that a match has.
+enum LeagueSetup {
+    /// A GameController elsewhere decides.
+    Players(ControlReceiver),
+    /// The referee of the match announces its decisions to robots elsewhere.
+    Referee(ControlSender, RuleBook, Duration),
+}
+
+/// The longest match that a GameController elsewhere decides.
+const LONGEST: Duration = Duration::from_secs(24 * 3600);
+
 /// A robot of a match and its agents.
 #[derive(Debug)]
 struct RobotPlan {
@@ -157,6 +173,13 @@ struct RobotPlan {
     modules: Vec<Module>,
     /// The text of its role.
     source: Option<Arc<Source>>,
+}
+
+/// A match that is set up.
+struct MatchParts {
+    talws: Talws,
+    pitch: SharedField,
+    league: Option<League>,
 }
 
 /// Options of a match.
@@ -186,6 +209,7 @@ impl MatchPlan {
             listeners: Vec::new(),
             warnings: Vec::new(),
             is_linked: false,
+            league: None,
             files: ConfigurationBundle::default(),
             settings: String::new(),
             embody: Box::new(|_, _, body| body),
@@ -213,6 +237,28 @@ impl MatchPlan {
     /// of its seed. Without this, a match with links is rejected.
     pub fn linked(mut self) -> MatchPlan {
         self.is_linked = true;
+        self
+    }
+
+    /// Lets a GameController decide instead of the match's own referee: states, penalties and goals
+    /// are those of the packets that arrive, which the robots receive as announcements, and each
+    /// robot reports its pose and the ball. The match ends with the second half, or after a day.
+    /// The caller of [`advance`](RunningMatch::advance) sets the pace.
+    pub fn follow_gamecontroller(mut self, receiver: ControlReceiver) -> MatchPlan {
+        self.league = Some(LeagueSetup::Players(receiver));
+        self
+    }
+
+    /// Sends the decisions of the match's referee to robots elsewhere, twice a second, in packets
+    /// of a rule book. The beginning of play and goals are hidden for `whistle_delay`. The caller
+    /// of [`advance`](RunningMatch::advance) sets the pace.
+    pub fn referee_others(
+        mut self,
+        sender: ControlSender,
+        rules: RuleBook,
+        whistle_delay: Duration,
+    ) -> MatchPlan {
+        self.league = Some(LeagueSetup::Referee(sender, rules, whistle_delay));
         self
     }
 
@@ -258,6 +304,9 @@ impl MatchPlan {
 
     /// The length of the match in simulated time.
     pub fn length(&self) -> Duration {
+        if matches!(self.league, Some(LeagueSetup::Players(_))) {
+            return LONGEST;
+        }
         Duration::from_secs_f64(2.0 * self.rules.half_duration)
     }
 
@@ -267,7 +316,7 @@ impl MatchPlan {
     /// # Errors
     /// The field rejects its parameters or the line-up.
     pub fn check(self) -> Result<Vec<Diagnostic>, Error> {
-        Ok(self.set_up(0)?.0.check())
+        Ok(self.set_up(0)?.talws.check())
     }
 
     /// Starts the match.
@@ -278,7 +327,7 @@ impl MatchPlan {
         let (length, is_linked, files) = (self.length(), self.is_linked, self.files.clone());
         let settings = self.settings.clone();
         let hosts: Vec<String> = self.robots.iter().map(|robot| robot.host.clone()).collect();
-        let (mut talws, pitch) = self.set_up(options.seed)?;
+        let MatchParts { mut talws, pitch, league } = self.set_up(options.seed)?;
         let hash = RunHash::new();
         talws.observe(Box::new(hash.clone()));
         let tape = options.record;
@@ -292,11 +341,11 @@ impl MatchPlan {
             false => talws.simulate(options.seed),
         };
         let simulation = simulation.map_err(Error::agents)?;
-        Ok(RunningMatch::new(simulation, pitch, hash, tape, length))
+        Ok(RunningMatch::new(simulation, pitch, hash, tape, length, league))
     }
 
     /// The robots with their bodies on the field.
-    fn set_up(self, seed: u64) -> Result<(Talws, SharedField), Error> {
+    fn set_up(self, seed: u64) -> Result<MatchParts, Error> {
         let lineup =
             self.robots.iter().map(|robot| monas_sim::RobotSetup { team: robot.team, number: robot.number });
         let setup = Setup {
@@ -309,7 +358,19 @@ impl MatchPlan {
             seed,
         };
         let pitch = SharedField::new(SimulatedWorld::new(setup).map_err(Error::field)?);
+        let hosts: Vec<String> = self.robots.iter().map(|robot| robot.host.clone()).collect();
         let mut talws = Talws::new().registry(self.registry);
+        let league = self.league.map(|setup| match setup {
+            LeagueSetup::Players(receiver) => {
+                pitch.await_league();
+                let players = LeaguePlayers::new(receiver, &pitch, hosts);
+                talws.observe(players.beliefs());
+                League::new(Box::new(players))
+            }
+            LeagueSetup::Referee(sender, rules, delay) => {
+                League::new(Box::new(LeagueReferee::new(sender, rules, delay)))
+            }
+        });
         for (index, robot) in self.robots.into_iter().enumerate() {
             let RobotPlan { team, number, host, agents, links, modules, source } = robot;
             let body = pitch.body(index).map(|body| (self.embody)(team, number, Box::new(body)));
@@ -317,10 +378,10 @@ impl MatchPlan {
             let configuration = source;
             talws.host(HostConfig { name: host, team, number, body, agents, links, modules, configuration });
         }
-        talws.world(Box::new(MatchWorld::new(pitch.clone())));
+        talws.world(Box::new(MatchWorld::new(pitch.clone(), league.clone())));
         for listener in self.listeners {
             talws.listen(listener);
         }
-        Ok((talws, pitch))
+        Ok(MatchParts { talws, pitch, league })
     }
 }

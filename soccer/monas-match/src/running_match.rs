@@ -3,10 +3,11 @@
 use std::time::Duration;
 
 use monas::{RunHash, Simulation, Statistics, Timestamp};
-use monas_sim::{SharedField, SimulatedWorld, TeamColour};
+use monas_sim::{GameState, SharedField, SimulatedWorld, TeamColour};
 use monas_tape::Tape;
 
 use crate::error::Error;
+use crate::league::{League, LeagueCounts};
 use crate::match_events;
 use crate::summary::{AgentSummary, MatchEvent, MatchSummary, Scoreboard, TeamScore, TeamSummary};
 
@@ -22,6 +23,7 @@ pub struct RunningMatch {
     length: Duration,
     events: Vec<MatchEvent>,
     seen_events: usize,
+    league: Option<League>,
 }
 
 impl RunningMatch {
@@ -31,8 +33,9 @@ impl RunningMatch {
         hash: RunHash,
         tape: Option<Tape>,
         length: Duration,
+        league: Option<League>,
     ) -> RunningMatch {
-        RunningMatch { simulation, pitch, hash, tape, length, events: Vec::new(), seen_events: 0 }
+        RunningMatch { simulation, pitch, hash, tape, length, events: Vec::new(), seen_events: 0, league }
     }
 
     /// Advances the match to the given time since its start.
@@ -62,7 +65,8 @@ impl RunningMatch {
     }
 
     fn collect_events(&mut self) {
-        let RunningMatch { pitch, events, seen_events, .. } = self;
+        let RunningMatch { pitch, events, seen_events, league, .. } = self;
+        events.extend(league.iter().flat_map(League::take_events));
         pitch.with_world(|world| {
             events.extend(match_events::since(world, *seen_events));
             *seen_events = world.events().len();
@@ -81,7 +85,15 @@ impl RunningMatch {
 
     /// Whether both halves have been played.
     pub fn is_over(&self) -> bool {
-        self.now() >= self.length
+        let has_ended = |world: &SimulatedWorld| {
+            (world.referee().state(), world.referee().half()) == (GameState::Finished, 2)
+        };
+        self.now() >= self.length || (self.league.is_some() && self.pitch.with_world(has_ended))
+    }
+
+    /// What the match has exchanged with a GameController, or as one; none if it has neither.
+    pub fn league(&self) -> Option<LeagueCounts> {
+        self.league.as_ref().map(League::counts)
     }
 
     /// The scoreboard.
@@ -134,6 +146,7 @@ impl RunningMatch {
     /// The tape is finished already.
     pub fn finish(self) -> Result<MatchSummary, Error> {
         let simulated = self.now();
+        let league = self.league();
         let RunningMatch { simulation, pitch, hash, tape, events, .. } = self;
         if let Some(tape) = &tape {
             monas_recording::ended(tape, simulation.now()).map_err(Error::recording)?;
@@ -155,6 +168,7 @@ impl RunningMatch {
             coverage,
             links: statistics.links,
             events,
+            league,
             unstopped,
         })
     }

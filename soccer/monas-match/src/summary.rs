@@ -56,6 +56,8 @@ pub struct MatchSummary {
     pub coverage: Vec<monas::ChartCoverage>,
     /// Statistics of the robots' links.
     pub links: Vec<monas::LinkStatistics>,
+    /// What was exchanged with a GameController, or as one.
+    pub league: Option<crate::LeagueCounts>,
     /// Names the activity that has not returned at the end, if there is one. Its thread remains.
     pub unstopped: Option<String>,
 }

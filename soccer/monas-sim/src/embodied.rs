@@ -11,7 +11,9 @@ mod skill;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::{EventKind, GameState, Pose, SimulatedWorld};
+use monas_robot::Announcement;
+
+use crate::{Error, EventKind, GameState, Pose, SimulatedWorld};
 
 use radio_channel::RadioChannel;
 
@@ -30,6 +32,9 @@ pub(crate) struct SharedWorld {
     /// Radio messages that the robots have not received yet.
     pub(crate) air: RadioChannel,
     seen_events: usize,
+    /// What a referee outside the simulation has announced to each robot: nothing, if it has not
+    /// spoken yet; none without such a referee.
+    pub(crate) league: Option<Vec<Announcement>>,
 }
 
 /// How often a robot was placed by hand, and its last such pose in the field frame.
@@ -45,7 +50,9 @@ impl SharedField {
         let placements =
             world.robots().iter().map(|robot| Placement { count: 1, pose: robot.pose }).collect();
         let air = RadioChannel::new(world.robots(), world.radio().clone(), world.seed());
-        SharedField { world: Arc::new(Mutex::new(SharedWorld { world, placements, air, seen_events: 0 })) }
+        SharedField {
+            world: Arc::new(Mutex::new(SharedWorld { world, placements, air, seen_events: 0, league: None })),
+        }
     }
 
     /// Advances the world by one [`STEP`](crate::STEP).
@@ -53,6 +60,30 @@ impl SharedField {
         let mut ground = self.lock();
         ground.world.step();
         ground.note_placements();
+    }
+
+    /// Lets a referee outside the simulation decide. Until it has [announced](Self::follow)
+    /// something, robots wait and receive no announcement.
+    pub fn await_league(&self) {
+        let mut ground = self.lock();
+        let order = ground.world.referee().to_order();
+        // An order for the robots and teams of the world itself is always accepted.
+        let _ = ground.world.follow(order);
+        ground.league = Some(Vec::new());
+    }
+
+    /// Carries out what a referee outside the simulation announces to each robot, in the order of
+    /// the robots. The bodies receive the announcements, with the field, the placements by hand and
+    /// the jerseys of the simulation.
+    ///
+    /// # Errors
+    /// There are more or fewer announcements than robots.
+    pub fn follow(&self, announcements: Vec<Announcement>) -> Result<(), Error> {
+        let mut ground = self.lock();
+        let order = announce::order(&ground.world, &announcements);
+        ground.world.follow(order)?;
+        ground.league = Some(announcements);
+        Ok(())
     }
 
     /// Gives read access to the world.

@@ -12,6 +12,8 @@ pub enum Offence {
     BallHolding,
     /// A field player was in its own goal area.
     IllegalDefender,
+    /// What a referee outside the simulation has announced as a penalty.
+    Announced,
 }
 
 /// A ball that is touched continuously and slower than this is held, m/s.

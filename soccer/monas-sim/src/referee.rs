@@ -8,6 +8,8 @@
 //! from a kick-off, and robots that leave the field: the first two cannot occur while robots are
 //! placed by hand, the last do not affect play.
 
+mod game_order;
+
 use crate::fouls::FoulDetector;
 use crate::rng::RandomStream;
 use crate::state::WorldView;
@@ -15,6 +17,8 @@ use crate::{
     BallState, EventKind, FieldSide, GoalColour, MatchRules, Offence, RobotSetup, STEP, TeamColour,
     TeamSetup, restart,
 };
+
+pub use game_order::GameOrder;
 
 /// The state of the game. PENALIZED is a state of a single robot: see [`Referee::penalty`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -104,6 +108,8 @@ pub struct Referee {
     touched_since_kick_off: bool,
     fouls: FoulDetector,
     coin: RandomStream,
+    /// What a referee outside the simulation has decided, if there is one.
+    order: Option<GameOrder>,
 }
 
 impl Referee {
@@ -137,6 +143,7 @@ impl Referee {
             touched_since_kick_off: false,
             fouls: FoulDetector::new(robots.len()),
             coin,
+            order: None,
         }
     }
 
@@ -152,6 +159,9 @@ impl Referee {
 
     /// Time left in this half, s.
     pub fn seconds_remaining(&self) -> f64 {
+        if let Some(order) = &self.order {
+            return order.seconds_remaining;
+        }
         (self.rules.half_duration - self.half_steps as f64 * STEP).max(0.0)
     }
 
@@ -205,7 +215,12 @@ impl Referee {
 
     /// Whether robots must not move their legs.
     pub(crate) fn holds_robots(&self) -> bool {
-        self.state != GameState::Playing
+        self.state != GameState::Playing || self.order.as_ref().is_some_and(|order| order.is_halted)
+    }
+
+    /// Decides nothing by itself any more: a referee outside the simulation decides.
+    pub(crate) fn follow(&mut self, order: GameOrder) {
+        self.order = Some(order);
     }
 
     /// Judges one step while the shot of `shooter`, if any, is in progress; appends its decisions
@@ -216,6 +231,12 @@ impl Referee {
         shooter: Option<usize>,
         events: &mut Vec<EventKind>,
     ) {
+        if let Some(order) = self.order.take() {
+            self.state_steps += 1;
+            self.apply(&order, scene, events);
+            self.order = Some(order);
+            return;
+        }
         if self.state == GameState::Finished {
             return;
         }

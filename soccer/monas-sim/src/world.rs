@@ -12,9 +12,9 @@ use crate::shots::ShotTracker;
 use crate::snapshot::Snapshot;
 use crate::state::GOALIE;
 use crate::{
-    Announcement, BallState, Buttons, Command, Error, ErrorKind, EventKind, FieldGeometry, GameState,
-    MatchRules, Physics, Pose, Radio, RobotSetup, RobotState, STEP, Senses, Setup, Side, SimulationEvent,
-    Statistics, TeamSetup, lineup, restart,
+    Announcement, BallState, Buttons, Command, Error, ErrorKind, EventKind, FieldGeometry, GameOrder,
+    GameState, MatchRules, Physics, Pose, Radio, RobotSetup, RobotState, STEP, Senses, Setup, Side,
+    SimulationEvent, Statistics, TeamSetup, lineup, restart,
 };
 
 /// A field with robots, a ball and a referee, in simulated time.
@@ -153,6 +153,22 @@ impl SimulatedWorld {
     pub fn announcement(&self, robot: usize) -> Result<Announcement, Error> {
         self.check_robot(robot)?;
         Ok(self.referee.announcement(robot))
+    }
+
+    /// From the next step on the referee carries out this order, and decides nothing by itself.
+    ///
+    /// # Errors
+    /// [`UnknownRobot`](ErrorKind::UnknownRobot) if the order is for more or fewer robots, or
+    /// [`OutOfRange`](ErrorKind::OutOfRange) for a team that does not play.
+    pub fn follow(&mut self, order: GameOrder) -> Result<(), Error> {
+        if order.penalties.len() != self.bodies.len() {
+            return Err(Error::unknown_robot(order.penalties.len(), self.bodies.len()));
+        }
+        if order.kick_off >= self.teams.len() || order.defends[0] == order.defends[1] {
+            return Err(Error::new(ErrorKind::OutOfRange, "each of the two teams defends one end"));
+        }
+        self.referee.follow(order);
+        Ok(())
     }
 
     /// The measures of the field.

@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use monas_robot::{Actuators, GamePhase, ObjectKind, Posture as BodyPosture, Sighting, Skill as BodySkill};
+use monas_robot::{
+    Actuators, Announcement, GamePhase, ObjectKind, Posture as BodyPosture, Sighting, Skill as BodySkill,
+};
 use nalgebra::{Isometry2, Point2, Vector2};
 
 use crate::functionality::ball_filter::BallEstimate;
@@ -151,9 +153,10 @@ impl MotionRequest {
     }
 }
 
-/// The phase of the game in an announcement.
-pub fn phase(phase: GamePhase) -> game::GamePhase {
-    match phase {
+/// The phase of the game. Robots that must stand still while the game goes on wait as in SET.
+pub fn phase(announced: &Announcement) -> game::GamePhase {
+    match announced.phase() {
+        GamePhase::Ready | GamePhase::Playing if announced.halted => game::GamePhase::Set,
         GamePhase::Initial => game::GamePhase::Initial,
         GamePhase::Ready => game::GamePhase::Ready,
         GamePhase::Set => game::GamePhase::Set,
@@ -229,10 +232,19 @@ mod tests {
 
     #[test]
     fn colours_have_the_same_numbers_on_both_sides() {
-        for number in 0..=9 {
+        for number in 0..=11 {
             let body = monas_robot::Colour::try_from(number).map(|colour| colour.as_str_name().to_owned());
             let soccer = crate::Colour::try_from(number).map(|colour| colour.as_str_name().to_owned());
             assert_eq!(body.ok(), soccer.ok(), "colour {number}");
+        }
+    }
+
+    #[test]
+    fn set_plays_have_the_same_numbers_on_both_sides() {
+        for number in 0..=7 {
+            let body = monas_robot::SetPlay::try_from(number).map(|play| play.as_str_name().to_owned());
+            let soccer = crate::SetPlay::try_from(number).map(|play| play.as_str_name().to_owned());
+            assert_eq!(body.ok(), soccer.ok(), "set play {number}");
         }
     }
 

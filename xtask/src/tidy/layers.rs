@@ -17,6 +17,7 @@ const LAYERS: [(&str, u8); 33] = [
     ("monas-robot", 1),
     ("monas-tape", 1),
     ("yase-codegen", 3),
+    ("monas-gamecontroller", 2),
     ("yase-explore", 2),
     ("yase-export", 2),
     ("yase-reference", 2),

@@ -172,6 +172,18 @@ impl<'t> Cursor<'t> {
         self.refuse_closing("E0109", open, "(", ")")
     }
 
+    /// The name that `blue-2.` was probably meant to begin with, if the current token is its dot.
+    fn hyphenated_name(&self) -> Option<&'t str> {
+        let before = &self.tokens[..self.next.min(self.tokens.len())];
+        let [.., first, hyphen, last] = before else { return None };
+        let is_name = first.kind == TokenKind::Word
+            && hyphen.kind == TokenKind::Symbol(Symbol::Minus)
+            && last.kind == TokenKind::Integer
+            && first.span.end == hyphen.span.start
+            && hyphen.span.end == last.span.start;
+        (self.at(Symbol::Dot) && is_name).then(|| self.source(first.span.to(last.span)))
+    }
+
     pub(crate) fn expect_close_bracket(&mut self, open: Span) -> Parsed<()> {
         if self.accept(Symbol::CloseBracket) {
             return Ok(());
@@ -198,6 +210,10 @@ impl<'t> Cursor<'t> {
 
     /// Rejects a token after a complete operand that is not an operator.
     pub(crate) fn refuse_operator(&mut self, expected: &str) -> Parsed<()> {
+        if let Some(name) = self.hyphenated_name() {
+            let hint = format!("a name with a hyphen is written in backquotes: `` `{name}` ``");
+            return self.refuse_here("E0107", expected, &hint);
+        }
         self.refuse_here(
             "E0107",
             expected,

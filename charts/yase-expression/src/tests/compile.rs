@@ -55,6 +55,7 @@ fn the_prefix_of_a_message_is_its_origin() {
         ("Vision.Ball.distance", Origin::Publisher(publisher())),
         ("`Vision`.Ball.distance", Origin::Publisher(publisher())),
         ("striker.ball.State.Ball.distance", Origin::Host(host())),
+        ("`blue-2`.ball.State.Ball.distance", Origin::Host("blue-2".into())),
         ("striker.Vision.Ball.distance", Origin::HostPublisher { host: host(), publisher: publisher() }),
     ] {
         let world = World::new().with_from(origin.clone(), BALL, &[DISTANCE], Value::Int(1));

@@ -5,6 +5,8 @@ mod control;
 mod coverage;
 #[cfg(feature = "soccer")]
 mod field_view;
+#[cfg(feature = "soccer")]
+mod league;
 mod links;
 mod outputs;
 #[cfg(feature = "soccer")]
@@ -86,6 +88,9 @@ pub(crate) struct RunArguments {
     /// ten times real time. 1 with --realtime or --studio, unlimited otherwise.
     #[arg(long, value_name = "FACTOR", value_parser = pace)]
     pub(crate) pace: Option<f64>,
+    #[cfg(feature = "soccer")]
+    #[command(flatten)]
+    pub(crate) league: league::LeagueArguments,
     #[command(flatten)]
     pub(crate) format: FormatArgument,
 }
@@ -118,6 +123,11 @@ pub(crate) fn execute(
         return Err(CommandFailure::Usage(
             "--pace is for simulated time; these agents run in real time".into(),
         ));
+    }
+    #[cfg(feature = "soccer")]
+    if kind == ConfigurationKind::Agents && arguments.league.is_given() {
+        let message = "--gamecontroller and --referee are for matches; these agents have no field";
+        return Err(CommandFailure::Usage(message.into()));
     }
     let unlinked = differences(&arguments.config);
     if unlinked.iter().any(Diagnostic::is_error) {

@@ -226,3 +226,39 @@ fn shipped_configurations_are_valid() {
     }
     assert!(root().join("config/simulator.xml").is_file());
 }
+
+#[test]
+fn without_vision_nothing_publishes_the_ball_and_both_checks_say_so() {
+    let model = fs::read_to_string(root().join("models/goalie.srm")).expect("the role");
+    let lines =
+        model.lines().filter(|line| !line.starts_with("START -> Vision") && !line.starts_with("Vision ->"));
+    let model = lines
+        .collect::<Vec<_>>()
+        .join("\n")
+        .replace("Sensorsω || Visionω || decisionω", "Sensorsω || decisionω");
+    assert!(!model.contains("Vision"), "{model}");
+    let role = fs::read_to_string(root().join("config/roles/goalie.xml")).expect("the agents of the role");
+    let folder = folder(&[("goalie.xml", &role), ("models/goalie.srm", &model)]);
+    let agents = at(folder.path(), "goalie.xml");
+
+    let check = monas(&["config", "check", &agents]);
+    assert_eq!(check.code, Some(0), "{}", check.err);
+    let expected = "warning[E0369]: `models/goalie.srm` reads `soccer/ball`, but no agent here publishes it";
+    assert!(check.err.contains(expected), "{}", check.err);
+    assert!(check.err.contains("let an agent run one of `Vision`"), "{}", check.err);
+    let check = monas(&["model", "check", &at(folder.path(), "models/goalie.srm"), "--all"]);
+    let expected = "information[M17]: `soccer/ball` is read here, but no activity of this chart publishes it";
+    assert!(check.err.contains(expected), "{}", check.err);
+
+    let whole = monas(&["config", "check", &root().join("config/roles/goalie.xml").display().to_string()]);
+    assert!(!whole.err.contains("E0369"), "{}", whole.err);
+    let whole = monas(&["model", "check", "models/goalie.srm", "--all"]);
+    assert!(!whole.err.contains("M17"), "{}", whole.err);
+
+    // Another agent of the robot may run it.
+    let other =
+        "<agent thread_frequency=\"5\"><name>Eyes</name><activity>Vision</activity></agent>\n</agents>";
+    fs::write(&agents, role.replace("</agents>", other)).expect("a file");
+    let check = monas(&["config", "check", &agents]);
+    assert!(!check.err.contains("E0369"), "{}", check.err);
+}

@@ -197,3 +197,19 @@ fn a_chart_in_a_file_of_models_can_be_read() {
         assert_eq!((again.code, again.out.as_str()), (Some(0), first.as_str()), "{name}: {}", again.err);
     }
 }
+
+#[test]
+fn the_functionality_table_knows_the_activities_of_the_program() {
+    let answer = monas(&["model", "transform", "models/goalie.srm", "--to", "ft"]);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    let rows: Vec<Vec<&str>> = answer.out.lines().map(|line| line.split_whitespace().collect()).collect();
+    for (activity, functionality, module) in [
+        ("RobotController", "hardware abstraction layer, Narukom", "robot_controller"),
+        ("KeepGoal", "Narukom", "keep_goal"),
+        ("LeftDive", "Narukom", "skills"),
+    ] {
+        let row = rows.iter().find(|row| row.contains(&activity)).expect("a row of each activity").join(" ");
+        let module = format!(" {functionality} monas_soccer::activities::{module}");
+        assert!(row.ends_with(&module), "{module} is not in {row}");
+    }
+}

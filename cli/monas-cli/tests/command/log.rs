@@ -86,6 +86,7 @@ fn lines_are_on_the_tape_between_the_messages_of_their_moment_and_what_is_replay
         lines.iter().any(|(_, name, words)| name == "Eyes" && words.starts_with("a cycle takes")),
         "{lines:?}"
     );
+    assert!(!lines.iter().any(|(.., words)| words.contains("Some(")), "durations for people: {lines:?}");
     let replayed = monas(&["tape", "replay", &live, "--verify"]);
     assert_eq!(replayed.code, Some(0), "{replayed:?}");
 }

@@ -25,6 +25,7 @@ mod generate;
 mod globals;
 mod hints;
 mod kit;
+mod league;
 mod linked_topics;
 mod log;
 mod model;

@@ -225,3 +225,17 @@ fn the_functionality_table_is_there_in_every_form() {
     roxmltree::Document::parse(&table.to_html()).expect("well-formed");
     assert_eq!(table.to_csv().matches("\r\n").count(), table.rows.len() + 1);
 }
+
+#[test]
+fn a_program_completes_only_what_the_model_leaves_open() {
+    let mut table = transformations::functionality_table(&roles("table/in.srm"));
+    let whole = table.clone();
+    table.complete(|_| Some(("other".into(), "other".into())));
+    assert_eq!(table, whole, "each row has a functionality");
+    (table.rows[0].functionality, table.rows[0].technology) = (String::new(), String::new());
+    table.complete(|name| (name == "RobotController").then(|| ("Narukom".into(), "game::controller".into())));
+    assert_eq!(
+        (table.rows[0].functionality.as_str(), table.rows[0].technology.as_str()),
+        ("Narukom", "game::controller")
+    );
+}

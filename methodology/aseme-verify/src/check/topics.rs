@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use yase::expression::{Effect, Origin};
 use yase::vocabulary::TopicEntry;
-use yase::{ActionLocation, CompiledChart, Diagnostic, Span, TopicId};
+use yase::{ActionLocation, CompiledChart, Diagnostic, Severity, Span, TopicId};
 
 use crate::checked_model::CheckedModel;
 use crate::program_symbols::ProgramSymbols;
@@ -19,6 +19,7 @@ pub(crate) fn unmet(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagn
     };
     let (read, written) = (read(subject, &chart), written(subject, &chart));
     let (published, taken) = (all_of(&world.activities), all_of(&world.readers));
+    let own = of_chart(subject, world);
     let mut found = Vec::new();
     for topic in world.vocabulary.topics.iter().filter(|topic| !world.elsewhere.contains(&topic.path)) {
         let meets = |others: &Option<BTreeSet<&str>>| {
@@ -26,6 +27,11 @@ pub(crate) fn unmet(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagn
         };
         match (read.get(&topic.id), written.get(&topic.id)) {
             (Some(&place), None) if !meets(&published) => found.push(never_published(topic, place)),
+            (Some(&place), None) if own.as_ref().is_some_and(|own| !own.contains(topic.path.as_str())) => {
+                found.extend(
+                    published_elsewhere(topic, world).map(|others| from_elsewhere(topic, place, &others)),
+                );
+            }
             (None, Some(&place)) if !meets(&taken) => found.push(never_read(topic, place)),
             _ => {}
         }
@@ -40,6 +46,25 @@ fn all_of(activities: &BTreeMap<String, Option<BTreeSet<String>>>) -> Option<BTr
         all.extend(topics.as_ref()?.iter().map(String::as_str));
     }
     (!activities.is_empty()).then_some(all)
+}
+
+/// The topics that the activities of the chart publish, or `None` if one of them declares none.
+fn of_chart<'w>(subject: &CheckedModel, world: &'w ProgramSymbols) -> Option<BTreeSet<&'w str>> {
+    let mut own = BTreeSet::new();
+    for name in subject.chart.nodes().filter_map(|(_, node)| node.activity.as_deref()) {
+        own.extend(world.activities.get(name)?.as_ref()?.iter().map(String::as_str));
+    }
+    Some(own)
+}
+
+/// The activities of the program that publish a topic, if all declare their topics.
+fn published_elsewhere(topic: &TopicEntry, world: &ProgramSymbols) -> Option<String> {
+    all_of(&world.activities)?;
+    let publishes = |topics: &Option<BTreeSet<String>>| {
+        topics.as_ref().is_some_and(|topics| topics.contains(&topic.path))
+    };
+    let names = world.activities.iter().filter(|(_, topics)| publishes(topics));
+    Some(names.map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(", "))
 }
 
 /// The topics of the own host that guards and triggers read, with their spans.
@@ -82,6 +107,12 @@ fn never_published(topic: &TopicEntry, place: Span) -> Diagnostic {
     let message = format!("`{}` is read here, but no activity publishes it", topic.path);
     let found = Diagnostic::warning("M17", place, message);
     found.with_hint("write an activity that publishes it, or declare the topic (`Activity::topics`)")
+}
+
+fn from_elsewhere(topic: &TopicEntry, place: Span, others: &str) -> Diagnostic {
+    let message = format!("`{}` is read here, but no activity of this chart publishes it", topic.path);
+    let found = Diagnostic { severity: Severity::Information, ..Diagnostic::warning("M17", place, message) };
+    found.with_hint(format!("another agent of the robot has to run one of {others}"))
 }
 
 fn never_read(topic: &TopicEntry, place: Span) -> Diagnostic {

@@ -151,7 +151,7 @@ impl AgentReader<'_> {
     }
 
     /// Whether a link delivers a topic as one of this host.
-    fn is_brought(&self, topic: &str) -> bool {
+    pub(super) fn is_brought(&self, topic: &str) -> bool {
         let rules = self.setup.links.iter().flat_map(|link| &link.settings.receive);
         let mut own = rules.filter(|rule| rule.publish_as == PublishAs::Own);
         let hub = Hub::with_linked_topics("configuration").ok();

@@ -3,7 +3,7 @@
 use monas_robot::{Announcement, Colour, GamePhase};
 
 use super::SharedWorld;
-use crate::{FieldSide, GameState, GoalColour, Pose, TeamColour};
+use crate::{FieldSide, GameOrder, GameState, GoalColour, Pose, SimulatedWorld, TeamColour};
 
 /// The referee's current announcement to a robot.
 pub(super) fn announcement(ground: &SharedWorld, robot: usize) -> Option<Announcement> {
@@ -11,6 +11,30 @@ pub(super) fn announcement(ground: &SharedWorld, robot: usize) -> Option<Announc
     let placement = ground.placements.get(robot)?;
     let own = in_frame_of_team(placement.pose, said.attacks);
     let field = ground.world.field();
+    let of_field = Announcement {
+        team_colour: team_colour(said.colour) as i32,
+        placements: placement.count,
+        placed_x: own.position.x,
+        placed_y: own.position.y,
+        placed_heading: own.heading,
+        field_length: field.length,
+        field_width: field.width,
+        goal_width: field.goal_width,
+        ..Announcement::default()
+    };
+    if let Some(league) = &ground.league {
+        return league.get(robot).map(|announced| Announcement {
+            team_colour: of_field.team_colour,
+            placements: of_field.placements,
+            placed_x: of_field.placed_x,
+            placed_y: of_field.placed_y,
+            placed_heading: of_field.placed_heading,
+            field_length: of_field.field_length,
+            field_width: of_field.field_width,
+            goal_width: of_field.goal_width,
+            ..*announced
+        });
+    }
     Some(Announcement {
         phase: phase(said.state) as i32,
         penalized: said.penalty.is_some(),
@@ -19,19 +43,38 @@ pub(super) fn announcement(ground: &SharedWorld, robot: usize) -> Option<Announc
         first_half: said.half == 1,
         team: said.team.into(),
         number: said.robot.into(),
-        team_colour: team_colour(said.colour) as i32,
         goal_to_attack: goal_colour(said.attacks) as i32,
         kick_off: said.kick_off_team == said.team,
         own_score: said.own_score,
         opponent_score: said.opponent_score,
-        placements: placement.count,
-        placed_x: own.position.x,
-        placed_y: own.position.y,
-        placed_heading: own.heading,
-        field_length: field.length,
-        field_width: field.width,
-        goal_width: field.goal_width,
+        ..of_field
     })
+}
+
+/// What the field has to carry out of announcements to its robots.
+pub(super) fn order(world: &SimulatedWorld, announcements: &[Announcement]) -> GameOrder {
+    let mut order = world.referee().to_order();
+    order.penalties = announcements.iter().map(|it| it.penalized.then_some(it.penalty_left)).collect();
+    for (robot, announced) in world.robots().iter().zip(announcements) {
+        let team = robot.team;
+        order.state = state(announced.phase());
+        order.is_halted = announced.halted;
+        order.half = if announced.first_half { 1 } else { 2 };
+        order.seconds_remaining = announced.seconds_left;
+        order.score[team] = announced.own_score;
+        order.score[1 - team] = announced.opponent_score;
+        if announced.kick_off {
+            order.kick_off = team;
+        }
+        let attacks = match announced.goal_to_attack() {
+            Colour::Blue => FieldSide::Left,
+            Colour::Yellow => FieldSide::Right,
+            _ => continue,
+        };
+        order.defends[team] = attacks.opposite();
+        order.defends[1 - team] = attacks;
+    }
+    order
 }
 
 /// Converts a pose to the frame of a team, with x towards the goal that it attacks.
@@ -56,6 +99,16 @@ fn phase(state: GameState) -> GamePhase {
         GameState::Set => GamePhase::Set,
         GameState::Playing => GamePhase::Playing,
         GameState::Finished => GamePhase::Finished,
+    }
+}
+
+fn state(phase: GamePhase) -> GameState {
+    match phase {
+        GamePhase::Initial => GameState::Initial,
+        GamePhase::Ready => GameState::Ready,
+        GamePhase::Set => GameState::Set,
+        GamePhase::Playing => GameState::Playing,
+        GamePhase::Finished => GameState::Finished,
     }
 }
 

@@ -54,7 +54,7 @@ impl Activity for RobotController {
         if let Some(announcement) = announcement
             && self.is_news(announcement.header)
         {
-            self.game.announce(convert::phase(announcement.phase()), announcement.penalized);
+            self.game.announce(convert::phase(announcement.message), announcement.penalized);
         }
         let game_state = self.game_state(announcement.map(|sample| sample.message));
         if self.said.as_ref() != Some(&game_state) {
@@ -114,6 +114,7 @@ impl RobotController {
             goal_width: said.goal_width,
             area_depth: self.area.0,
             area_width: self.area.1,
+            set_play: said.set_play,
         }
     }
 }
@@ -153,6 +154,23 @@ mod tests {
             .publish(body::ANNOUNCEMENT, announcement(monas_robot::GamePhase::Playing, true))
             .run(&mut activity);
         assert_eq!(stage.latest(topics::GAME_STATE).unwrap().player_state(), PlayerState::Penalized);
+    }
+
+    #[test]
+    fn a_halted_robot_waits_and_a_set_play_is_published() {
+        let (mut stage, mut activity) = (ActivityFixture::new(), RobotController::default());
+        for (phase, state) in [
+            (monas_robot::GamePhase::Initial, PlayerState::Initial),
+            (monas_robot::GamePhase::Ready, PlayerState::Set),
+            (monas_robot::GamePhase::Playing, PlayerState::Set),
+            (monas_robot::GamePhase::Finished, PlayerState::Finished),
+        ] {
+            let set_play = monas_robot::SetPlay::CornerKick.into();
+            let announced = Announcement { halted: true, set_play, ..announcement(phase, false) };
+            stage.publish(body::ANNOUNCEMENT, announced).run(&mut activity);
+            let game = stage.latest(topics::GAME_STATE).unwrap();
+            assert_eq!((game.player_state(), game.set_play()), (state, crate::SetPlay::CornerKick));
+        }
     }
 
     #[test]

@@ -47,6 +47,18 @@ pub(crate) const PARSING: Table = &[
             "E0107 <m>: an operator or `]` is expected, not `m` (names have no blanks, numbers no unit; operators are `&&`, `||`, `==`, `<` and the like)",
         ],
     ),
+    (
+        "[blue-2.Vision.Ball.distance > 1]",
+        &[
+            "E0107 <.>: an operator or `]` is expected, not `.` (a name with a hyphen is written in backquotes: `` `blue-2` ``)",
+        ],
+    ),
+    (
+        "[blue - 2.a]",
+        &[
+            "E0107 <.>: an operator or `]` is expected, not `.` (names have no blanks, numbers no unit; operators are `&&`, `||`, `==`, `<` and the like)",
+        ],
+    ),
     ("[a = 1]", &["E0108 <=>: `=` assigns; a condition compares (write `==`)"]),
     ("[(a]", &["E0109 <(>: `(` is not closed (add `)`)"]),
     ("[f(a, b]", &["E0109 <(>: `(` is not closed (add `)`)"]),

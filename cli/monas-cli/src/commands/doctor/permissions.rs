@@ -15,10 +15,21 @@ pub(crate) fn findings() -> Vec<CheckResult> {
 
 /// Whether threads may use real-time scheduling.
 fn real_time() -> CheckResult {
-    let read = |file| std::fs::read_to_string(file).unwrap_or_default();
-    let most = match is_privileged(&read("/proc/self/status")) {
+    real_time_by(monas::permits_real_time, || {
+        let read = |file| std::fs::read_to_string(file).unwrap_or_default();
+        match is_privileged(&read("/proc/self/status")) {
+            true => Some(99),
+            false => priority(&read("/proc/self/limits")),
+        }
+    })
+}
+
+/// What is permitted, by trying a priority, from the highest that the limits allow on: what the
+/// system grants decides, since the limits do not concern privileged users.
+fn real_time_by(permits: impl Fn(u8) -> bool, limit: impl Fn() -> Option<u64>) -> CheckResult {
+    let most = match permits(99) {
         true => Some(99),
-        false => priority(&read("/proc/self/limits")),
+        false => limit().map(|limit| if permits(1) { limit } else { 0 }),
     };
     match most {
         Some(0) => CheckResult::warning(
@@ -91,6 +102,17 @@ mod tests {
         assert_eq!(priority(limits), Some(95));
         assert_eq!(priority(&limits.replace("95", "unlimited")), Some(99));
         assert_eq!(priority(""), None);
+    }
+
+    #[test]
+    fn what_the_system_grants_decides() {
+        let by = |granted: u8, limit| real_time_by(|priority| priority <= granted, || limit);
+        assert_eq!((by(99, Some(0)).state, by(99, None).state), (CheckStatus::Ok, CheckStatus::Ok));
+        assert_eq!(by(40, Some(40)).state, CheckStatus::Ok);
+        let refused = [by(0, Some(0)), by(0, Some(99)), by(0, None)];
+        assert!(refused.iter().all(|found| found.state == CheckStatus::Warning));
+        // What is reported holds for this process.
+        assert_eq!(real_time().state == CheckStatus::Ok, monas::permits_real_time(1));
     }
 
     #[test]

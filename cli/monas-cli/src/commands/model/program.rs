@@ -6,7 +6,28 @@ use monas::Registry;
 use crate::terminal::{CommandFailure, Format};
 
 /// Prefixes of the topics that the runtime, bodies and the simulator publish and read.
-const ELSEWHERE: [&str; 3] = ["monas/", "body/", "sim/"];
+const ELSEWHERE: [&str; 3] = ["monas/", BODY, "sim/"];
+
+/// The prefix of the topics of bodies.
+const BODY: &str = "body/";
+
+/// The functionality behind an activity of this program: the hardware abstraction layer if it uses
+/// topics of the body, Narukom if it uses others; and its technology, the path of its Rust module.
+/// None if the program does not have the activity.
+pub(crate) fn functionality(registry: &Registry, activity: &str) -> Option<(String, String)> {
+    let module = registry.activity_module(activity)?;
+    let topics = registry.activity(activity).ok()?.topics();
+    let paths = || topics.read_paths().iter().chain(topics.published_paths());
+    let of_body = paths().any(|path| path.starts_with(BODY));
+    let of_others = paths().any(|path| !path.starts_with(BODY));
+    let functionality = match (of_body, of_others) {
+        (true, true) => "hardware abstraction layer, Narukom",
+        (true, false) => "hardware abstraction layer",
+        (false, true) => "Narukom",
+        (false, false) => "code without topics",
+    };
+    Some((functionality.to_owned(), module.to_owned()))
+}
 
 /// The messages and functions of this program, and its activities with their declared topics.
 pub(crate) fn linked() -> Result<ProgramSymbols, CommandFailure> {

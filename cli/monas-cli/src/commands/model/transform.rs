@@ -7,9 +7,11 @@ use aseme_models::convert::{Format as ModelFormat, Model};
 use aseme_models::iac::{ChartKind, Iac};
 use aseme_models::{Aip, SystemRoles, transformations};
 use clap::{Args, ValueEnum, ValueHint};
+use monas::Registry;
 use yase::{Diagnostic, Source};
 
 use super::model_format::{named, text_of};
+use super::program;
 use crate::input::{valid_chart, valid_model};
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report, write_text};
 
@@ -219,7 +221,9 @@ impl Transformation<'_, '_> {
     }
 
     fn table(&mut self, srm: &SystemRoles) -> Result<Exit, CommandFailure> {
-        let table = transformations::functionality_table(srm);
+        let mut table = transformations::functionality_table(srm);
+        let registry = Registry::linked();
+        table.complete(|activity| program::functionality(&registry, activity));
         let text = match self.arguments.written.as_deref() {
             None | Some("table") => table.to_table(),
             Some("html") => table.to_html(),

@@ -35,6 +35,7 @@ pub(crate) fn execute(
         true => plan.linked(),
         false => plan,
     };
+    let plan = arguments.league.join(plan).map_err(|error| CommandFailure::failed(format, error))?;
     let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
     let socket = control::bind(arguments, console)?;
     let tape = outputs::open(arguments, Tape::to_file, console)?;

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::time::Duration;
 
-use monas_match::{AgentSummary, MatchSummary, TeamSummary};
+use monas_match::{AgentSummary, LeagueCounts, MatchSummary, TeamSummary};
 use serde_json::{Value, json};
 
 use super::{coverage, links};
@@ -42,6 +42,12 @@ fn write_text(out: &mut dyn Write, summary: &MatchSummary, wall: Duration) -> io
         "{simulated:.1} s of play in {taken:.1} s: {:.1} simulated seconds per wall second",
         speed(summary, wall)
     )?;
+    if let Some(LeagueCounts { control, reports, refused }) = summary.league {
+        writeln!(
+            out,
+            "GameController: {control} announcements, {reports} reports of robots, {refused} refused"
+        )?;
+    }
     writeln!(out, "messages: {}", summary.messages)?;
     writeln!(out, "hash: {}", summary.hash)
 }
@@ -110,6 +116,10 @@ fn objects(summary: &MatchSummary, wall: Duration) -> Vec<Value> {
     let teams = summary.teams.iter().map(team_object);
     let agents = summary.agents.iter().map(agent_object);
     let roles = coverage::by_role(&summary.coverage);
+    let league = summary.league.map(|league| {
+        json!({"kind": "gamecontroller", "announcements": league.control, "reports": league.reports,
+            "refused": league.refused})
+    });
     let run = json!({
         "kind": "run",
         "simulated_seconds": summary.simulated.as_secs_f64(),
@@ -124,6 +134,7 @@ fn objects(summary: &MatchSummary, wall: Duration) -> Vec<Value> {
         .chain(agents)
         .chain(roles.iter().map(coverage::object))
         .chain(links::objects(&summary.links))
+        .chain(league)
         .chain(std::iter::once(run))
         .collect()
 }

@@ -1,0 +1,78 @@
+//! `monas run` with the league's GameController, and as one.
+
+use std::net::UdpSocket;
+use std::process::{Child, Stdio};
+
+use crate::kit::{Answer, command, monas};
+
+#[test]
+fn what_cannot_be_combined_is_a_clear_error() {
+    let agents = ["run", "config/roles/goalie.xml", "--realtime"];
+    let of_match = ["run", "config/match.xml"];
+    let cases: [(&[&str], &[&str], &str); 6] = [
+        (&of_match, &["--gamecontroller", "127.0.0.1"], "--realtime"),
+        (&of_match, &["--referee", "127.0.0.1"], "--realtime"),
+        (
+            &of_match,
+            &["--realtime", "--gamecontroller", "127.0.0.1", "--referee", "127.0.0.1"],
+            "cannot be used with",
+        ),
+        (&of_match, &["--realtime", "--gamecontroller", "field"], "expected an IP address"),
+        (&of_match, &["--realtime", "--rules", "hsl"], "--referee"),
+        (&agents, &["--referee", "127.0.0.1"], "these agents have no field"),
+    ];
+    for (run, options, expected) in cases {
+        let answer = monas(&[run, options].concat());
+        assert_eq!(answer.code, Some(2), "{options:?}: {}", answer.err);
+        assert!(answer.err.contains(expected), "{options:?}: {}", answer.err);
+    }
+}
+
+#[test]
+fn an_address_that_is_taken_is_an_error() {
+    let taken = UdpSocket::bind("127.0.0.1:0").expect("a free port");
+    let address = taken.local_addr().expect("its address").to_string();
+    let answer = monas(&["run", "config/match.xml", "--realtime", "--gamecontroller", &address]);
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    assert!(answer.err.contains(&format!("cannot listen at {address}")), "{}", answer.err);
+}
+
+/// The referee of one process decides the match of another, whose robots report.
+#[test]
+fn the_referee_of_one_process_decides_the_match_of_another() {
+    // Ports that were free a moment ago.
+    let ports: Vec<UdpSocket> =
+        (0..2).map(|_| UdpSocket::bind("127.0.0.1:0").expect("a free port")).collect();
+    let [control, reports] =
+        [0, 1].map(|index: usize| ports[index].local_addr().expect("its address").port().to_string());
+    drop(ports);
+    let to = format!("127.0.0.1:{control}");
+    let arguments = |option: &'static str| {
+        let fixed = ["run", "config/match.xml", "--realtime", "--no-control", "--format", "json", option];
+        [
+            fixed.map(str::to_owned).to_vec(),
+            [to.as_str(), "--return-port", &reports].map(str::to_owned).to_vec(),
+        ]
+        .concat()
+    };
+    let referee =
+        [arguments("--referee"), ["--for", "6s", "--rules", "hsl"].map(str::to_owned).to_vec()].concat();
+    let players = [arguments("--gamecontroller"), ["--for", "4s"].map(str::to_owned).to_vec()].concat();
+    let run = |arguments: Vec<String>| {
+        let mut command = command(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts")
+    };
+    let (referee, players) = (run(referee), run(players));
+    let answer = |child: Child| Answer::from(child.wait_with_output().expect("it ends"));
+    let count = |answer: Answer, key: &str| {
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        let mut objects =
+            answer.out.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
+        let found = objects.find(|object| object["kind"] == "gamecontroller").expect("the counts of packets");
+        assert_eq!(found["refused"], 0, "{found}");
+        found[key].as_u64().expect("a number")
+    };
+    let heard = count(answer(players), "announcements");
+    let reported = count(answer(referee), "reports");
+    assert!(heard >= 1 && reported >= 6, "{heard} announcements were heard, {reported} reports came");
+}
