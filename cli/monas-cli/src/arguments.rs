@@ -106,12 +106,15 @@ pub(crate) enum Command {
     #[cfg(unix)]
     #[command(after_help = "Example: monas studio match.mcap")]
     Studio(StudioArguments),
-    /// Explain why a state was active at a moment of a tape.
+    /// Explain why a state was active at a moment of a tape, or why a transition did not fire.
     ///
-    /// Shows the transitions that led to the state, and the fields that their conditions read, with
-    /// the messages as they had been delivered to the agent. A click on a state in the studio of a
-    /// tape shows the same.
-    #[command(after_help = "Example: monas why match.mcap blue-2 --state RightKick --at 22.5")]
+    /// Of a state: the transitions that led to it, and the fields that their conditions read, with
+    /// the messages as they had been delivered to the agent. Of a transition: what fired instead or
+    /// held it, each part of its guard with its value, and the messages behind these values, back
+    /// to the readings of sensors, also over the radio. A click on a state or a transition in the
+    /// studio of a tape shows the same.
+    #[command(after_help = "Examples: monas why match.mcap blue-2 --state RightKick --at 22.5\n          \
+                             monas why match.mcap blue-2 --transition 'CONDITION -> kickBall' --at 22.5")]
     Why(WhyArguments),
     /// Follow the log of a run, or read it from a tape.
     ///

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use monas::records::{Change, Changed};
 use monas::{RunHash, Simulation, Statistics, Timestamp};
 use monas_sim::{GameState, SharedField, SimulatedWorld, TeamColour};
 use monas_tape::Tape;
@@ -76,6 +77,14 @@ impl RunningMatch {
     /// From now on measures the agents, see [`Simulation::measure`].
     pub fn measure(&mut self) {
         self.simulation.measure();
+    }
+
+    /// Applies a change to the agents of a robot now, between two of their cycles.
+    ///
+    /// # Errors
+    /// There is no such robot. The refusal of a change is part of the reply.
+    pub fn change(&mut self, host: &str, change: Change) -> Result<Changed, Error> {
+        self.simulation.change(host, change).map_err(Error::agents)
     }
 
     /// The simulated time since the start.

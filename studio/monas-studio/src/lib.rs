@@ -14,7 +14,8 @@
 //! - **Newest wins.** A viewer gets at most 30 frames per second, each with all that has changed
 //!   since its last one. A slow page gets fewer frames, and after five seconds none.
 //! - **Only its own page is answered.** The `Host` must name this server, an `Origin` must be its
-//!   own, and any other address than loopback needs a random token.
+//!   own, and any other address than loopback needs a random token. Viewers that speak Foxglove's
+//!   protocol get the topics of a run under the same rules; origins of such can be allowed.
 //! - **The drawing comes from the run.** Shapes are those of [`yase_export::to_picture`], the same
 //!   layout as in drawings of models. The page only draws them.
 //!
@@ -33,31 +34,51 @@
 
 mod access;
 mod asset;
+mod chart_history;
 #[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are followed"))]
 mod chart_view;
 mod error;
+#[cfg(unix)]
+mod foxglove;
+mod guard_atom;
 mod http_request;
 #[cfg(unix)]
 mod live_run;
+#[cfg(unix)]
+mod live_session;
+mod message_chain;
 mod message_decoder;
 mod pace;
+mod read_value;
+#[cfg(unix)]
+mod run_ring;
 #[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are followed"))]
 mod run_view;
 mod scene;
 mod server;
 mod source;
+mod tape_difference;
 mod tape_moment;
 mod tape_run;
 mod tape_session;
 mod time;
+mod transition_explanation;
 mod viewer;
 mod viewer_request;
 mod why;
 
 pub use error::{Error, ErrorKind};
+pub use guard_atom::GuardAtom;
+pub use message_chain::{ChainLink, MessageChain};
 pub use message_decoder::message_json;
+
 pub use pace::Pace;
-pub use scene::{Banner, Belief, Body, Ground, GroundMark, Scene, SceneMessages, SceneObject, ScenePicture};
+pub use read_value::ReadValue;
+pub use scene::{
+    Banner, Belief, Body, Ground, GroundMark, Scene, SceneEvent, SceneMessages, SceneObject, ScenePicture,
+};
 pub use server::{ListenAddress, Studio, StudioSettings};
+pub use tape_difference::{TapeDifference, TapeEvent};
 pub use tape_run::{TapeChart, TapeRun};
-pub use why::{Explanation, ReadValue, TakenSegment, WhyQuestion};
+pub use transition_explanation::{TransitionExplanation, TransitionQuestion, TriggerArrival, Verdict};
+pub use why::{Explanation, TakenSegment, WhyQuestion};

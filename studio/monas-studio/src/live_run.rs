@@ -15,12 +15,14 @@ use serde_json::{Value, json};
 
 use crate::chart_view::{ChartKey, seconds};
 use crate::error::{Error, ErrorKind};
+use crate::foxglove::FoxgloveSource;
+use crate::live_session::LiveSession;
 use crate::pace::Pace;
-use crate::run_view::{CHART, LOG, Link, MODEL, RunView, ViewCursor, ViewedMessage};
-use crate::scene::Scene;
+use crate::run_ring::RunRing;
+use crate::run_view::{CHART, LOG, Link, MODEL, RunView, ViewedMessage};
+use crate::scene::{Scene, SceneEvent};
 use crate::source::{Session, Source};
 use crate::time::now;
-use crate::viewer_request::ViewerRequest;
 
 /// The longest wait for a message before the rest is looked after.
 const LOOK: Duration = Duration::from_millis(20);
@@ -34,9 +36,6 @@ const TABLES: Duration = Duration::from_secs(1);
 /// The interval between two attempts to connect.
 const RETRY: Duration = Duration::from_millis(500);
 
-/// The most messages of a watched topic that are skipped for the newest.
-const SKIPPED: usize = 4096;
-
 /// A connection to a run, which is renewed when the run is started again.
 pub(crate) struct LiveRun {
     state: Arc<LiveState>,
@@ -45,11 +44,14 @@ pub(crate) struct LiveRun {
     thread: Option<JoinHandle<()>>,
 }
 
-struct LiveState {
-    socket: PathBuf,
-    scene: Option<Arc<dyn Scene>>,
-    pace: Option<Pace>,
+/// A run as it is known to all of its viewers.
+pub(crate) struct LiveState {
+    pub(crate) socket: PathBuf,
+    pub(crate) scene: Option<Arc<dyn Scene>>,
+    pub(crate) pace: Option<Pace>,
     view: Mutex<RunView>,
+    /// What the run was before. It is locked after the view.
+    ring: Mutex<RunRing>,
 }
 
 impl LiveRun {
@@ -59,8 +61,8 @@ impl LiveRun {
         scene: Option<Arc<dyn Scene>>,
         pace: Option<Pace>,
     ) -> Result<LiveRun, Error> {
-        let (socket, view) = (socket.to_owned(), Mutex::default());
-        let state = Arc::new(LiveState { socket, scene, pace, view });
+        let (socket, view, ring) = (socket.to_owned(), Mutex::default(), Mutex::default());
+        let state = Arc::new(LiveState { socket, scene, pace, view, ring });
         let collector = state.clone();
         let (ends, ended) = mpsc::channel();
         let thread =
@@ -80,14 +82,21 @@ impl Drop for LiveRun {
 
 impl Source for LiveRun {
     fn open(&self) -> Box<dyn Session> {
-        let state = self.state.clone();
-        Box::new(LiveSession { state, cursor: ViewCursor::default(), pace: None, watched: None })
+        Box::new(LiveSession::new(self.state.clone()))
+    }
+
+    fn foxglove(&self) -> Option<FoxgloveSource> {
+        Some(FoxgloveSource { socket: self.state.socket.clone() })
     }
 }
 
 impl LiveState {
-    fn view(&self) -> MutexGuard<'_, RunView> {
+    pub(crate) fn view(&self) -> MutexGuard<'_, RunView> {
         self.view.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(crate) fn ring(&self) -> MutexGuard<'_, RunRing> {
+        self.ring.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Follows the run, and the next one with its name, until the studio ends.
@@ -107,7 +116,8 @@ impl LiveState {
         let mut client = ControlClient::connect(&self.socket)?;
         let run = client.describe()?;
         let mut patterns = vec![CHART, MODEL, LOG];
-        patterns.extend(self.scene.iter().flat_map(|scene| scene.topics()));
+        let of_scene = self.scene.iter().flat_map(|scene| scene.topics().iter().chain(scene.event_topics()));
+        patterns.extend(of_scene);
         let mut watch = ControlClient::connect(&self.socket)?.watch_all("", &patterns, true)?;
         {
             let mut view = self.view();
@@ -115,16 +125,18 @@ impl LiveState {
             view.link = Link::Live;
             (view.name, view.process, view.is_simulated) = (run.name, run.process, run.simulated);
             (view.hosts, view.now) = (run.hosts, run.now);
+            *self.ring() = RunRing::default();
         }
         let mut requests = RunRequests { client, sequences: BTreeMap::new(), last: 0 };
+        let mut events = EventLog::default();
         let mut lost = 0;
         let mut due = now();
         while ended.try_recv() == Err(TryRecvError::Empty) {
             let seen = next_batch(&mut watch)?;
             self.learn_schemas(&seen, &mut requests.client)?;
-            lost = self.take(&seen, lost);
+            lost = self.take(&seen, &mut events, lost);
             if now() >= due {
-                self.look_after(&mut requests)?;
+                self.look_after(&mut requests, &mut events)?;
                 due = now() + TABLES;
             }
         }
@@ -146,9 +158,10 @@ impl LiveState {
     }
 
     /// Takes messages. Returns how many were lost so far.
-    fn take(&self, batch: &[Seen], lost: u64) -> u64 {
+    fn take(&self, batch: &[Seen], events: &mut EventLog, lost: u64) -> u64 {
         let Some(last) = batch.last() else { return lost };
         let mut view = self.view();
+        let mut ring = self.ring();
         for seen in batch {
             let message = ViewedMessage {
                 host: &seen.from,
@@ -157,9 +170,17 @@ impl LiveState {
                 time: seen.local,
                 bytes: &seen.payload,
             };
-            view.take(&message, self.is_of_scene(&seen.path));
+            let is_of_scene = self.is_of_scene(&seen.path);
+            if is_of_scene || [CHART, MODEL, LOG].contains(&seen.path.as_str()) {
+                view.take(&message, is_of_scene);
+                ring.push(&message, is_of_scene);
+            }
+            if let Some(event) = self.scene.as_ref().and_then(|scene| events.event(&**scene, &message)) {
+                ring.note(message.time, &event);
+            }
         }
         view.now = view.now.max(last.now);
+        ring.keep(&view);
         let all_lost = batch.iter().map(|seen| seen.lost).max().unwrap_or(lost).max(lost);
         if all_lost > lost {
             view.mark_stale();
@@ -168,7 +189,7 @@ impl LiveState {
     }
 
     /// Asks for the tables, and for charts that are not known.
-    fn look_after(&self, requests: &mut RunRequests) -> Result<(), monas_link::Error> {
+    fn look_after(&self, requests: &mut RunRequests, events: &mut EventLog) -> Result<(), monas_link::Error> {
         let run = requests.client.describe()?;
         let agents = requests.agents()?;
         let topics = requests.client.topics("", "")?;
@@ -178,6 +199,10 @@ impl LiveState {
             let mut view = self.view();
             view.set_tables(&agents, topics);
             (view.now, view.alarms) = (view.now.max(run.now), run.alarms);
+            let mut ring = self.ring();
+            for event in events.overruns(&agents) {
+                ring.note(view.now, &event);
+            }
             for agent in &agents {
                 for (place, chart) in agent.charts.iter().enumerate() {
                     let (host, name) = (agent.host.clone(), agent.name.clone());
@@ -200,7 +225,46 @@ impl LiveState {
                 self.view().load_chart(key, &state);
             }
         }
+        // Before, the active states of charts are not known.
+        let view = self.view();
+        let mut ring = self.ring();
+        if !ring.has_begun() {
+            ring.begin(&view);
+        }
         Ok(())
+    }
+}
+
+/// The last event of each channel, and the overruns of each agent.
+#[derive(Default)]
+struct EventLog {
+    last: BTreeMap<(String, String), Option<SceneEvent>>,
+    overruns: BTreeMap<(String, String), u64>,
+}
+
+impl EventLog {
+    /// The event that a message is, unless it only lasts.
+    fn event(&mut self, scene: &dyn Scene, message: &ViewedMessage<'_>) -> Option<SceneEvent> {
+        if !scene.event_topics().contains(&message.topic) {
+            return None;
+        }
+        let event = scene.event(message.host, message.topic, message.bytes);
+        let key = (message.host.to_owned(), message.topic.to_owned());
+        let before = self.last.insert(key, event.clone()).flatten();
+        event.filter(|event| !event.lasts || before.as_ref() != Some(event))
+    }
+
+    /// The agents that have had overruns since the last call.
+    fn overruns(&mut self, agents: &[AgentEntry]) -> Vec<SceneEvent> {
+        let mut events = Vec::new();
+        for AgentEntry { host, name, overruns, .. } in agents {
+            let before = self.overruns.insert((host.clone(), name.clone()), *overruns);
+            if let Some(before) = before.filter(|before| before < overruns) {
+                let text = format!("{host} {name} overran its period {} times", overruns - before);
+                events.push(SceneEvent { kind: "overrun".into(), text, lasts: false });
+            }
+        }
+        events
     }
 }
 
@@ -265,123 +329,5 @@ impl RunRequests {
             );
         }
         Value::Array(objects)
-    }
-}
-
-/// A viewer of a run.
-struct LiveSession {
-    state: Arc<LiveState>,
-    cursor: ViewCursor,
-    /// The pace that the viewer knows.
-    pace: Option<f64>,
-    watched: Option<WatchedTopic>,
-}
-
-/// The topic whose messages a viewer sees.
-struct WatchedTopic {
-    stream: WatchStream,
-    /// The epoch of the run.
-    epoch: u64,
-    host: String,
-    topic: String,
-    count: u64,
-}
-
-impl Session for LiveSession {
-    fn handle(&mut self, request: ViewerRequest) -> Option<Value> {
-        match request {
-            ViewerRequest::Picture(key) => {
-                let view = self.state.view();
-                Some(json!({"type": "picture", "key": key, "picture": view.picture(&key)}))
-            }
-            ViewerRequest::Watch { host, topic } => {
-                self.watched = None;
-                match self.watch(&host, &topic) {
-                    Ok(watched) => {
-                        self.watched = Some(watched);
-                        None
-                    }
-                    Err(error) => Some(
-                        json!({"type": "refused", "host": host, "topic": topic, "reason": error.to_string()}),
-                    ),
-                }
-            }
-            ViewerRequest::Unwatch => {
-                self.watched = None;
-                None
-            }
-            ViewerRequest::Pace(factor) => {
-                if let Some(pace) = &self.state.pace {
-                    pace.set(factor);
-                }
-                None
-            }
-            ViewerRequest::Seek(_) | ViewerRequest::Step { .. } | ViewerRequest::Why { .. } => None,
-        }
-    }
-
-    fn frame(&mut self, _: Duration) -> Option<Value> {
-        let sample = self.sample();
-        let pace = self.state.pace.as_ref().map(Pace::factor);
-        let mut view = self.state.view();
-        let frame = view.frame(&mut self.cursor, self.state.scene.as_deref());
-        if frame.is_none() && sample.is_none() && pace == self.pace {
-            return None;
-        }
-        let mut frame = frame.unwrap_or_else(|| json!({"type": "frame", "now": seconds(view.now)}));
-        if let Some(sample) = sample {
-            frame["sample"] = sample;
-        }
-        if pace != self.pace || frame.get("run").is_some() {
-            self.pace = pace;
-            // null for a run whose pace is its own; JSON has no infinity
-            frame["pace"] =
-                json!({"is_set_here": pace.is_some(), "factor": pace.filter(|pace| pace.is_finite())});
-        }
-        Some(frame)
-    }
-}
-
-impl LiveSession {
-    fn watch(&self, host: &str, topic: &str) -> Result<WatchedTopic, monas_link::Error> {
-        let mut client = ControlClient::connect(&self.state.socket)?;
-        if !self.state.view().decoder.knows(topic) {
-            let schema = client.schema(topic)?;
-            self.state.view().decoder.learn(topic, &schema.r#type, &schema.descriptors);
-        }
-        let stream = client.watch(host, topic, true)?;
-        let epoch = self.state.view().epoch;
-        Ok(WatchedTopic { stream, epoch, host: host.into(), topic: topic.into(), count: 0 })
-    }
-
-    /// The newest message of the watched topic, if there is a new one.
-    fn sample(&mut self) -> Option<Value> {
-        let watched = self.watched.as_mut()?;
-        let mut newest = None;
-        for _ in 0..SKIPPED {
-            match watched.stream.wait(Duration::ZERO) {
-                Ok(Some(seen)) => {
-                    watched.count += 1;
-                    newest = Some(seen);
-                }
-                Ok(None) => break,
-                Err(error) => {
-                    let reason = error.to_string();
-                    let (host, topic) = (watched.host.clone(), watched.topic.clone());
-                    self.watched = None;
-                    return Some(json!({"host": host, "topic": topic, "reason": reason}));
-                }
-            }
-        }
-        let seen = newest?;
-        let (count, epoch) = (watched.count, watched.epoch);
-        let view = self.state.view();
-        if view.epoch != epoch {
-            return None;
-        }
-        let message = view.decoder.decode(&seen.path, &seen.payload);
-        Some(json!({"host": seen.host, "from": seen.from, "topic": seen.path, "publisher": seen.publisher,
-            "sequence": seen.sequence, "t": seconds(seen.local), "size": seen.size, "count": count,
-            "message": message}))
     }
 }

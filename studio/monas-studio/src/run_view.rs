@@ -15,6 +15,7 @@ const LINES: usize = 500;
 
 /// The topics of records.
 pub(crate) const CHART: &str = "monas/chart";
+pub(crate) const CYCLE: &str = "monas/cycle";
 pub(crate) const MODEL: &str = "monas/model";
 pub(crate) const LOG: &str = "monas/log";
 
@@ -243,7 +244,7 @@ impl RunView {
         object
     }
 
-    fn scene_picture(&mut self, scene: &dyn Scene) -> ScenePicture {
+    pub(crate) fn scene_picture(&mut self, scene: &dyn Scene) -> ScenePicture {
         for ((_, topic), latest) in &mut self.latest {
             if latest.value.is_none() && self.decoder.knows(topic) {
                 latest.value = Some(self.decoder.decode(topic, &latest.bytes));

@@ -17,14 +17,27 @@ pub trait Scene: Send + Sync {
         &[]
     }
 
-    /// The text of an event, if a message on such a topic is one.
-    fn event(&self, topic: &str, message: &Value) -> Option<String> {
-        let _ = (topic, message);
+    /// The event that a message on such a topic is, if it is one, from its protobuf encoding.
+    fn event(&self, host: &str, topic: &str, bytes: &[u8]) -> Option<SceneEvent> {
+        let _ = (host, topic, bytes);
         None
     }
 
     /// Draws the present messages.
     fn draw(&self, messages: &SceneMessages<'_>) -> ScenePicture;
+}
+
+/// What is marked on a timeline.
+#[derive(Clone, PartialEq, Eq, Default, Debug, Serialize)]
+pub struct SceneEvent {
+    /// What it is, in one word: events of a kind are gone through together.
+    pub kind: String,
+    /// The text.
+    pub text: String,
+    /// Whether it lasts: messages of one publisher that follow each other and are equal events are
+    /// one event.
+    #[serde(skip)]
+    pub lasts: bool,
 }
 
 /// The newest message of each topic that a scene reads, as JSON with the fields' names.

@@ -15,6 +15,8 @@ use tungstenite::handshake::derive_accept_key;
 use crate::access::AccessPolicy;
 use crate::asset::Asset;
 use crate::error::{Error, ErrorKind};
+#[cfg(unix)]
+use crate::foxglove;
 use crate::http_request::HttpRequest;
 #[cfg(unix)]
 use crate::live_run::LiveRun;
@@ -67,6 +69,9 @@ pub struct StudioSettings {
     pub scene: Option<Arc<dyn Scene>>,
     /// The pace of simulated time, if viewers may set it.
     pub pace: Option<Pace>,
+    /// Origins of pages that may read a run by Foxglove's protocol, such as
+    /// `https://app.foxglove.dev`; programs that are no pages need no origin.
+    pub origins: Vec<String>,
 }
 
 /// A running studio; dropping it ends it.
@@ -79,6 +84,8 @@ pub struct Studio {
 
 struct ServerState {
     access: AccessPolicy,
+    #[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are served to others"))]
+    origins: Vec<String>,
     source: Box<dyn Source>,
     is_over: AtomicBool,
     connections: AtomicUsize,
@@ -93,8 +100,8 @@ impl Studio {
     /// The address is not available.
     #[cfg(unix)]
     pub fn of_run(socket: &Path, settings: StudioSettings) -> Result<Studio, Error> {
-        let StudioSettings { listen, scene, pace } = settings;
-        Studio::serve(listen, Box::new(LiveRun::new(socket, scene, pace)?))
+        let StudioSettings { listen, scene, pace, origins } = settings;
+        Studio::serve(listen, origins, Box::new(LiveRun::new(socket, scene, pace)?))
     }
 
     /// Serves a tape.
@@ -102,10 +109,14 @@ impl Studio {
     /// # Errors
     /// The address is not available.
     pub fn of_tape(tape: TapeRun, settings: StudioSettings) -> Result<Studio, Error> {
-        Studio::serve(settings.listen, Box::new(tape))
+        Studio::serve(settings.listen, settings.origins, Box::new(tape))
     }
 
-    pub(crate) fn serve(listen: Option<ListenAddress>, source: Box<dyn Source>) -> Result<Studio, Error> {
+    fn serve(
+        listen: Option<ListenAddress>,
+        origins: Vec<String>,
+        source: Box<dyn Source>,
+    ) -> Result<Studio, Error> {
         let failed = |error: io::Error| Error::new(ErrorKind::Address, error);
         let listener = match listen {
             Some(ListenAddress(address)) => TcpListener::bind(address).map_err(|error| {
@@ -117,7 +128,8 @@ impl Studio {
         let access = AccessPolicy::for_address(address)?;
         let url = access.url();
         let (connections, viewers) = Default::default();
-        let state = Arc::new(ServerState { access, source, is_over: false.into(), connections, viewers });
+        let state =
+            Arc::new(ServerState { access, origins, source, is_over: false.into(), connections, viewers });
         let server = state.clone();
         let thread = thread::Builder::new().name("studio".into()).spawn(move || accept(&listener, &server));
         let thread = thread.map_err(|error| Error::new(ErrorKind::System, error))?;
@@ -210,7 +222,18 @@ impl ServerState {
         let Some(request) = HttpRequest::read(&mut stream)? else {
             return reply(&mut stream, "400 Bad Request", "text/plain", b"not an HTTP request\n", "");
         };
-        if let Err(refusal) = self.access.check(&request.origin()) {
+        #[cfg(unix)]
+        let protocol = foxglove::PROTOCOLS
+            .into_iter()
+            .find(|protocol| request.has_word("sec-websocket-protocol", protocol));
+        #[cfg(not(unix))]
+        let protocol: Option<&str> = None;
+        let mut origin = request.origin();
+        let is_allowed = |origin: &str| self.origins.iter().any(|allowed| allowed == origin);
+        if protocol.is_some() && origin.origin.is_some_and(is_allowed) {
+            origin.origin = None;
+        }
+        if let Err(refusal) = self.access.check(&origin) {
             let text = format!("{}\n", refusal.0);
             return reply(&mut stream, "403 Forbidden", "text/plain", text.as_bytes(), "");
         }
@@ -223,8 +246,8 @@ impl ServerState {
                 "Allow: GET\r\n",
             );
         }
-        if request.path == "/socket" {
-            return self.open_socket(stream, &request);
+        if request.path == "/socket" || protocol.is_some() {
+            return self.open_socket(stream, &request, protocol);
         }
         let Some(asset) = Asset::at(&request.path) else {
             return reply(&mut stream, "404 Not Found", "text/plain", b"there is no such file\n", "");
@@ -238,7 +261,13 @@ impl ServerState {
         reply(&mut stream, "200 OK", asset.media_type, asset.bytes, &more)
     }
 
-    fn open_socket(self: &Arc<ServerState>, mut stream: TcpStream, request: &HttpRequest) -> io::Result<()> {
+    /// Opens the WebSocket of a page, or of a viewer that speaks another protocol.
+    fn open_socket(
+        self: &Arc<ServerState>,
+        mut stream: TcpStream,
+        request: &HttpRequest,
+        protocol: Option<&str>,
+    ) -> io::Result<()> {
         let Some(key) = request.websocket_key() else {
             return reply(
                 &mut stream,
@@ -252,12 +281,26 @@ impl ServerState {
             let text = format!("{VIEWER_LIMIT} pages are open already\n");
             return reply(&mut stream, "503 Service Unavailable", "text/plain", text.as_bytes(), "");
         };
+        #[cfg(unix)]
+        let others = self.source.foxglove();
+        #[cfg(unix)]
+        if protocol.is_some() && others.is_none() {
+            let text = b"only a run is served by this protocol\n";
+            return reply(&mut stream, "404 Not Found", "text/plain", text, "");
+        }
         let accept = derive_accept_key(key.as_bytes());
+        let protocol = protocol.map(|name| format!("Sec-WebSocket-Protocol: {name}\r\n"));
         let head = format!(
             "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
-             Sec-WebSocket-Accept: {accept}\r\n\r\n"
+             Sec-WebSocket-Accept: {accept}\r\n{}\r\n",
+            protocol.as_deref().unwrap_or_default()
         );
         stream.write_all(head.as_bytes())?;
+        #[cfg(unix)]
+        if let (Some(_), Some(source)) = (protocol, others) {
+            foxglove::serve(stream, &source, &self.is_over);
+            return Ok(());
+        }
         viewer::serve(stream, self.source.open(), &self.is_over);
         Ok(())
     }

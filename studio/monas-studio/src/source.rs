@@ -4,12 +4,20 @@ use std::time::Duration;
 
 use serde_json::Value;
 
+#[cfg(unix)]
+use crate::foxglove::FoxgloveSource;
 use crate::viewer_request::ViewerRequest;
 
 /// A run or a tape that viewers can open.
 pub(crate) trait Source: Send + Sync {
     /// A view for one viewer.
     fn open(&self) -> Box<dyn Session>;
+
+    /// What is served to viewers of others, if it is a run.
+    #[cfg(unix)]
+    fn foxglove(&self) -> Option<FoxgloveSource> {
+        None
+    }
 }
 
 /// The view of one viewer.

@@ -3,11 +3,8 @@
 use serde_json::{Value, json};
 
 use crate::chart_view::seconds;
-use crate::run_view::{CHART, RunView, ViewedMessage};
+use crate::run_view::{CHART, CYCLE, RunView, ViewedMessage};
 use crate::tape_run::TapeRun;
-
-/// The topic whose messages are the cycles of agents.
-const CYCLE: &str = "monas/cycle";
 
 /// The state of a run after some of the messages of its tape.
 #[derive(Clone, Default, Debug)]

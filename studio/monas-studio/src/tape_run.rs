@@ -11,7 +11,7 @@ use crate::chart_view::{ChartKey, seconds};
 use crate::error::{Error, ErrorKind};
 use crate::message_decoder::MessageDecoder;
 use crate::run_view::{CHART, LOG, Link, MODEL, RunView};
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneEvent};
 use crate::source::{Session, Source};
 use crate::tape_moment::TapeMoment;
 use crate::tape_session::TapeSession;
@@ -100,6 +100,7 @@ impl TapeRun {
             moments: Vec::new(),
         };
         let mut numbers: BTreeMap<*const monas_tape::Channel, u32> = BTreeMap::new();
+        let mut last_events = BTreeMap::new();
         // Channels are kept, so that their addresses stay different.
         let mut kept = Vec::new();
         let recording = index.recording.clone();
@@ -123,8 +124,12 @@ impl TapeRun {
                 size,
                 sequence: message.sequence,
             });
-            index.note_event(channel, time, message.bytes);
+            index.note_event(&mut last_events, channel, time, message.bytes);
         }
+        index.events.sort_by(|a, b| {
+            let time = |event: &Value| event["t"].as_f64().unwrap_or_default();
+            time(a).total_cmp(&time(b))
+        });
         // By time of publication; equal times stay in the order of the tape.
         index.entries.sort_by_key(|entry| entry.time);
         let first = index.first_moment(name);
@@ -150,7 +155,8 @@ impl TapeRun {
         self.0.entries.len()
     }
 
-    pub(crate) fn charts(&self) -> &[TapeChart] {
+    /// Its charts.
+    pub fn charts(&self) -> &[TapeChart] {
         &self.0.charts
     }
 
@@ -242,13 +248,23 @@ impl TapeIndex {
         self.channels.len() as u32 - 1
     }
 
-    fn note_event(&mut self, channel: u32, time: u64, bytes: &[u8]) {
+    /// Notes the event that a message is; `last` has the last one of each channel.
+    fn note_event(
+        &mut self,
+        last: &mut BTreeMap<u32, Option<SceneEvent>>,
+        channel: u32,
+        time: u64,
+        bytes: &[u8],
+    ) {
         let Some(scene) = self.scene.as_deref() else { return };
-        let topic = &self.channels[channel as usize].topic;
-        if scene.event_topics().contains(&topic.as_str())
-            && let Some(text) = scene.event(topic, &self.decoder.decode(topic, bytes))
-        {
-            self.events.push(json!({"t": seconds(time), "text": text}));
+        let TapeChannel { host, topic, .. } = &self.channels[channel as usize];
+        if !scene.event_topics().contains(&topic.as_str()) {
+            return;
+        }
+        let event = scene.event(host, topic, bytes);
+        let before = last.insert(channel, event.clone()).flatten();
+        if let Some(event) = event.filter(|event| !event.lasts || before.as_ref() != Some(event)) {
+            self.events.push(json!({"t": seconds(time), "kind": event.kind, "text": event.text}));
         }
     }
 

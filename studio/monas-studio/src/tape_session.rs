@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use serde_json::{Value, json};
-use yase::NodeId;
+use yase::{NodeId, TransitionId};
 
 use crate::chart_view::seconds;
 use crate::run_view::ViewCursor;
@@ -76,6 +76,16 @@ impl TapeSession {
         }
     }
 
+    /// Holds the tape after a number of its messages, or where it is.
+    fn hold_at(&mut self, count: Option<usize>) {
+        self.factor = 0.0;
+        self.is_new = true;
+        if let Some(count) = count {
+            let time = self.tape.entry(count - 1).map_or(0, |(entry, _)| entry.time);
+            self.go_to(count, time);
+        }
+    }
+
     fn sample(&mut self) -> Option<Value> {
         let (host, topic) = self.watched.as_ref()?;
         let index = self.moment.newest(&self.tape, host, topic).filter(|index| Some(*index) != self.sent)?;
@@ -103,6 +113,7 @@ impl Session for TapeSession {
                 self.sent = None;
             }
             ViewerRequest::Unwatch => self.watched = None,
+            ViewerRequest::Live => {}
             ViewerRequest::Pace(factor) => {
                 // At its end a tape is played again from its begin.
                 if factor > 0.0 && self.moment.view.now >= self.tape.end() {
@@ -120,13 +131,19 @@ impl Session for TapeSession {
                 let why = self.tape.explain_until(chart, NodeId(node), self.moment.count);
                 return Some(json!({"type": "why", "key": key, "node": node, "why": why}));
             }
+            ViewerRequest::WhyTransition { key, transition } => {
+                let chart = self.tape.charts().iter().find(|chart| chart.key().text() == key)?;
+                let (id, now) = (TransitionId(transition), self.moment.view.now);
+                let why = self.tape.explain_transition_until(chart, id, self.moment.count, now)?;
+                return Some(
+                    json!({"type": "why transition", "key": key, "transition": transition, "why": why}),
+                );
+            }
             ViewerRequest::Step { key, is_back } => {
-                self.factor = 0.0;
-                self.is_new = true;
-                if let Some(count) = self.tape.step_from(self.moment.count, &key, is_back) {
-                    let time = self.tape.entry(count - 1).map_or(0, |(entry, _)| entry.time);
-                    self.go_to(count, time);
-                }
+                self.hold_at(self.tape.step_from(self.moment.count, &key, is_back));
+            }
+            ViewerRequest::Jump { key, transition, is_back } => {
+                self.hold_at(self.tape.firing_from(self.moment.count, &key, transition, is_back));
             }
         }
         None

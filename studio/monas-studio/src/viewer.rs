@@ -79,7 +79,7 @@ fn send(socket: &mut WebSocket<TcpStream>, object: &Value) -> tungstenite::Resul
 }
 
 /// The next text of the page; `None` if there is none in time.
-fn next_request(
+pub(crate) fn next_request(
     socket: &mut WebSocket<TcpStream>,
     patience: Duration,
 ) -> tungstenite::Result<Option<String>> {

@@ -11,12 +11,18 @@ pub(crate) enum ViewerRequest {
     Watch { host: String, topic: String },
     /// No messages from now on.
     Unwatch,
-    /// Another speed of simulated time, or of a tape.
+    /// Another speed of simulated time, or of what is played.
     Pace(f64),
-    /// Another moment of a tape, in seconds.
+    /// The present moment of a run.
+    Live,
+    /// Another moment of a run or a tape, in seconds.
     Seek(f64),
     /// Why a state is active, or was last, at the moment of a tape.
     Why { key: String, node: u32 },
+    /// Why a transition fired, or did not, at the moment of a tape.
+    WhyTransition { key: String, transition: u32 },
+    /// The next firing of a transition on a tape, or the one before.
+    Jump { key: String, transition: u32, is_back: bool },
     /// The next step of a chart on a tape, or the one before.
     Step { key: String, is_back: bool },
 }
@@ -26,16 +32,24 @@ impl ViewerRequest {
     pub(crate) fn parse(text: &str) -> Option<ViewerRequest> {
         let value: Value = serde_json::from_str(text).ok()?;
         let word = |key: &str| value[key].as_str().map(str::to_owned);
+        let number = |key: &str| value[key].as_u64().and_then(|number| number.try_into().ok());
         match value["type"].as_str()? {
             "picture" => Some(ViewerRequest::Picture(word("key")?)),
             "watch" => Some(ViewerRequest::Watch { host: word("host")?, topic: word("topic")? }),
+            "live" => Some(ViewerRequest::Live),
             "unwatch" => Some(ViewerRequest::Unwatch),
             // JSON has no infinity
             "pace" if value["factor"].is_null() => Some(ViewerRequest::Pace(f64::INFINITY)),
             "pace" => Some(ViewerRequest::Pace(value["factor"].as_f64().filter(|factor| *factor >= 0.0)?)),
-            "why" => {
-                Some(ViewerRequest::Why { key: word("key")?, node: value["node"].as_u64()?.try_into().ok()? })
+            "why" => Some(ViewerRequest::Why { key: word("key")?, node: number("node")? }),
+            "why transition" => {
+                Some(ViewerRequest::WhyTransition { key: word("key")?, transition: number("transition")? })
             }
+            "jump" => Some(ViewerRequest::Jump {
+                key: word("key")?,
+                transition: number("transition")?,
+                is_back: value["back"].as_bool()?,
+            }),
             "step" => Some(ViewerRequest::Step { key: word("key")?, is_back: value["back"].as_bool()? }),
             "seek" => Some(ViewerRequest::Seek(value["seconds"].as_f64().filter(|time| *time >= 0.0)?)),
             _ => None,

@@ -2,20 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use monas::records::{Chart, Cycle, Delivery};
-use narukom::topic_hash;
+use monas::records::Chart;
 use prost::Message;
 use serde::Serialize;
-use serde_json::Value;
-use yase::expression::{ConstantValue, Expression, ExpressionKind, Path};
 use yase::statechart::StateNames;
-use yase::{NodeId, NodeKind, ScopeId, Statechart, TransitionId};
+use yase::{NodeId, ScopeId, Statechart, TransitionId};
 
 use crate::chart_view::{ChartKey, seconds};
+use crate::read_value::{ReadMoment, ReadValue};
 use crate::run_view::CHART;
 use crate::tape_run::{TapeChart, TapeRun};
-
-const CYCLE: &str = "monas/cycle";
+use crate::transition_explanation::is_connector;
 
 /// What is asked of a tape.
 #[derive(Clone, PartialEq, Debug)]
@@ -62,23 +59,6 @@ pub struct TakenSegment {
     pub reads: Vec<ReadValue>,
 }
 
-/// A field, a constant or a timer in a condition.
-#[derive(Clone, PartialEq, Debug, Serialize)]
-pub struct ReadValue {
-    /// As it is written.
-    pub name: String,
-    /// Its value; null if no message had been delivered, or if it is no field and no constant.
-    pub value: Value,
-    /// The topic, if it is a field.
-    pub topic: Option<String>,
-    /// The publisher of the message.
-    pub publisher: Option<String>,
-    /// The number of the message among those of its publisher.
-    pub sequence: Option<u64>,
-    /// When it was published, s.
-    pub published: Option<f64>,
-}
-
 /// The steps that entered and left a state last.
 struct LastEntry {
     entered: Option<usize>,
@@ -99,8 +79,23 @@ impl TapeRun {
     /// # Errors
     /// The reason, in lower case: there is no such host, agent or state, or there are several.
     pub fn explain(&self, question: &WhyQuestion<'_>) -> Result<Explanation, String> {
-        let WhyQuestion { host, agent, state, seconds } = question;
-        let of_host: Vec<&TapeChart> = self.charts().iter().filter(|chart| chart.host == *host).collect();
+        let find = |chart: &TapeChart| {
+            let found = StateNames::of(&chart.statechart).find(question.state);
+            found.map_err(|error| error.to_string())
+        };
+        let (chart, node) = self.one_chart(question.host, question.agent, find)?;
+        let time = (question.seconds * 1e9).max(0.0) as u64;
+        Ok(self.explain_until(chart, node, self.count_until(time)))
+    }
+
+    /// The only chart of a host, or of one of its agents, that has what is looked for.
+    pub(crate) fn one_chart<T: Copy>(
+        &self,
+        host: &str,
+        agent: Option<&str>,
+        find: impl Fn(&TapeChart) -> Result<T, String>,
+    ) -> Result<(&TapeChart, T), String> {
+        let of_host: Vec<&TapeChart> = self.charts().iter().filter(|chart| chart.host == host).collect();
         if of_host.is_empty() {
             let mut hosts: Vec<&str> = self.charts().iter().map(|chart| chart.host.as_str()).collect();
             hosts.dedup();
@@ -110,18 +105,15 @@ impl TapeRun {
         let mut unknown = format!("`{host}` has no agent `{}` with a chart", agent.unwrap_or_default());
         let mut found = Vec::new();
         for chart in of_host.iter().filter(fits) {
-            match StateNames::of(&chart.statechart).find(state) {
-                Ok(node) => found.push((*chart, node)),
+            match find(chart) {
+                Ok(part) => found.push((*chart, part)),
                 Err(error) => unknown = format!("{error} in the chart of `{}`", chart.agent),
             }
         }
         match found[..] {
-            [(chart, node)] => {
-                let time = (seconds * 1e9).max(0.0) as u64;
-                Ok(self.explain_until(chart, node, self.count_until(time)))
-            }
+            [one] => Ok(one),
             [] => Err(unknown),
-            _ => Err(format!("several agents of `{host}` have a state `{state}`: name the agent")),
+            _ => Err(format!("several agents of `{host}` have it: name the agent")),
         }
     }
 
@@ -153,17 +145,26 @@ impl TapeRun {
         }
         steps.sort_unstable();
         let scopes = statechart.scopes();
+        let history = self.history(chart);
         for step in steps {
             let Some(record) = self.step_at(step) else { continue };
             for segment in way_to(statechart, &record, node) {
                 let transition = statechart.transition(segment);
                 let scope = scopes.get(transition.source.0 as usize).copied().unwrap_or(ScopeId::ROOT);
                 let guard = transition.expression.guard.as_ref();
+                let moment = ReadMoment {
+                    chart,
+                    scope,
+                    count: step,
+                    is_step: true,
+                    time: record.time,
+                    steps: history.until(step),
+                };
                 explanation.segments.push(TakenSegment {
                     source: names.name(transition.source).to_owned(),
                     target: names.name(transition.target).to_owned(),
                     text: transition.expression.to_string(),
-                    reads: guard.map(|guard| self.reads(chart, guard, scope, step)).unwrap_or_default(),
+                    reads: guard.map(|guard| self.reads(guard, &moment)).unwrap_or_default(),
                 });
             }
         }
@@ -196,121 +197,6 @@ impl TapeRun {
         }
         last
     }
-
-    /// What a condition read in a step, as its scope's blackboard had it.
-    fn reads(&self, chart: &TapeChart, guard: &Expression, scope: ScopeId, step: usize) -> Vec<ReadValue> {
-        let mut paths: Vec<&Path> = Vec::new();
-        guard.find_map::<()>(&mut |part| {
-            match &part.kind {
-                ExpressionKind::Variable(path)
-                | ExpressionKind::Absent(path)
-                | ExpressionKind::Present(path)
-                | ExpressionKind::TimeoutCheck(path) => paths.push(path),
-                _ => {}
-            }
-            None
-        });
-        let mut reads: Vec<ReadValue> = Vec::new();
-        for path in paths {
-            let read =
-                self.constant(&chart.statechart, path).or_else(|| self.field(chart, path, scope, step));
-            reads.extend(read.filter(|read| !reads.contains(read)));
-        }
-        reads
-    }
-
-    fn constant(&self, chart: &Statechart, path: &Path) -> Option<ReadValue> {
-        let constant = chart.constants.iter().find(|constant| Some(constant.name.as_str()) == path.bare())?;
-        let value = match &constant.value {
-            ConstantValue::Bool(value) => Value::from(*value),
-            ConstantValue::Number(value) => Value::from(*value),
-            ConstantValue::Text(value) => Value::from(value.as_str()),
-        };
-        Some(ReadValue {
-            name: path.text(),
-            value,
-            topic: None,
-            publisher: None,
-            sequence: None,
-            published: None,
-        })
-    }
-
-    /// The field that a path names: a message type, then fields, after a publisher or a host if one
-    /// is given. None if no segment is a message type of the host's topics.
-    fn field(&self, chart: &TapeChart, path: &Path, scope: ScopeId, step: usize) -> Option<ReadValue> {
-        let segments: Vec<&str> = path.segments.iter().map(|name| name.text.as_str()).collect();
-        let (place, topic) = segments.iter().enumerate().find_map(|(place, name)| {
-            let of_type = self.channels().iter().find(|channel| {
-                channel.host == chart.host && channel.message_type.rsplit('.').next() == Some(name)
-            });
-            Some((place, of_type?.topic.clone()))
-        })?;
-        let delivery = self.delivery(chart, &topic, scope, step);
-        let message = delivery.and_then(|delivery| self.message(chart, &topic, &delivery, step));
-        let mut value = match message {
-            Some(index) => {
-                self.entry(index).map(|(entry, _)| self.decoder().decode(&topic, self.bytes(entry)))
-            }
-            None => None,
-        };
-        for field in &segments[place + 1..] {
-            value = value.and_then(|value| value.get(*field).cloned());
-        }
-        let found = message.and_then(|index| self.entry(index));
-        Some(ReadValue {
-            name: path.text(),
-            value: value.unwrap_or(Value::Null),
-            topic: Some(topic),
-            publisher: found.map(|(_, channel)| channel.publisher.clone()),
-            sequence: found.map(|(entry, _)| entry.sequence.into()),
-            published: found.map(|(entry, _)| seconds(entry.time)),
-        })
-    }
-
-    /// The last delivery of a topic to a scope, or else to the chart's own, before a step. The
-    /// cycle of a step is recorded at its end.
-    fn delivery(&self, chart: &TapeChart, topic: &str, scope: ScopeId, step: usize) -> Option<Delivery> {
-        let hash = topic_hash(topic);
-        let is_cycle = |index: &usize| {
-            self.entry(*index).is_some_and(|(_, channel)| {
-                channel.topic == CYCLE && channel.host == chart.host && channel.publisher == chart.agent
-            })
-        };
-        let own = (step..self.len()).find(is_cycle);
-        let cycles = own.into_iter().chain((0..step).rev().filter(is_cycle));
-        let mut around = None;
-        for index in cycles {
-            let (entry, _) = self.entry(index)?;
-            let Ok(cycle) = Cycle::decode(self.bytes(entry)) else { continue };
-            let of_topic = cycle.delivered.into_iter().filter(|delivery| delivery.topic == hash);
-            for delivery in of_topic {
-                if delivery.region == scope.0 {
-                    return Some(delivery);
-                }
-                around = around.or(Some(delivery).filter(|delivery| delivery.region == ScopeId::ROOT.0));
-            }
-        }
-        around
-    }
-
-    /// The message of a delivery.
-    fn message(&self, chart: &TapeChart, topic: &str, delivery: &Delivery, step: usize) -> Option<usize> {
-        let host = if delivery.host.is_empty() { &chart.host } else { &delivery.host };
-        let own = (step + 1..self.len()).take_while(|index| {
-            let time = |index: usize| self.entry(index).map(|(entry, _)| entry.time);
-            time(*index) == time(step)
-        });
-        let mut near = (0..=step).rev().chain(own);
-        near.find(|index| {
-            self.entry(*index).is_some_and(|(entry, channel)| {
-                channel.topic == topic
-                    && channel.host == *host
-                    && u64::from(entry.sequence) == delivery.sequence & u64::from(u32::MAX)
-                    && (delivery.publisher.is_empty() || delivery.publisher == channel.publisher)
-            })
-        })
-    }
 }
 
 /// The segments of a step that lead to a node or into a composite around it, in order.
@@ -328,8 +214,7 @@ fn way_to(chart: &Statechart, step: &Chart, node: NodeId) -> Vec<TransitionId> {
     while let Some(segment) = next {
         way.insert(0, segment);
         let source = chart.transition(segment).source;
-        let is_connector = !matches!(chart.node(source).kind, NodeKind::Basic | NodeKind::Or | NodeKind::And);
-        next = if is_connector { into(source) } else { None };
+        next = if is_connector(chart.node(source).kind) { into(source) } else { None };
     }
     way
 }

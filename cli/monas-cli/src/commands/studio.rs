@@ -40,11 +40,15 @@ pub(crate) struct ListenArgument {
     /// the printed address; the connection is not encrypted.
     #[arg(long, value_name = "ADDRESS:PORT")]
     listen: Option<ListenAddress>,
+    /// Let pages of this origin read the topics of the run by Foxglove's protocol, for example
+    /// https://app.foxglove.dev. May be given several times.
+    #[arg(long = "allow-origin", value_name = "ORIGIN")]
+    origins: Vec<String>,
 }
 
 impl ListenArgument {
     pub(crate) fn is_given(&self) -> bool {
-        self.listen.is_some()
+        self.listen.is_some() || !self.origins.is_empty()
     }
 }
 
@@ -75,7 +79,8 @@ pub(crate) fn serve(
     format: Format,
     console: &mut CommandOutput<'_>,
 ) -> Result<Studio, CommandFailure> {
-    let settings = StudioSettings { listen: listen.listen, scene: scene(), pace };
+    let settings =
+        StudioSettings { listen: listen.listen, scene: scene(), pace, origins: listen.origins.clone() };
     let studio = Studio::of_run(socket, settings).map_err(|error| CommandFailure::failed(format, error))?;
     announce(studio, console)
 }
@@ -116,7 +121,7 @@ fn serve_tape(
 
 /// What this program draws from above.
 #[cfg(feature = "soccer")]
-fn scene() -> Option<Arc<dyn Scene>> {
+pub(crate) fn scene() -> Option<Arc<dyn Scene>> {
     Some(Arc::new(soccer_field::SoccerField))
 }
 

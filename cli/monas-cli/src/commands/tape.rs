@@ -9,6 +9,8 @@ mod info;
 mod replay;
 mod select;
 mod value_text;
+#[cfg(all(feature = "soccer", unix))]
+mod what_if;
 
 use crate::terminal::{CommandFailure, CommandOutput, Exit};
 use arguments::ReplayArguments;
@@ -24,6 +26,8 @@ pub(crate) fn execute(
         TapeCommand::Export(arguments) => export::execute(arguments, console),
         #[cfg(feature = "soccer")]
         TapeCommand::Draw(arguments) => draw::execute(arguments, console),
+        #[cfg(all(feature = "soccer", unix))]
+        TapeCommand::WhatIf(arguments) => what_if::execute(arguments, console),
         TapeCommand::Recover { file, output, format } => {
             edit::recover(file, output.as_deref(), format.value, console)
         }

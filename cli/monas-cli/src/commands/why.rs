@@ -1,9 +1,12 @@
-//! `monas why`: why a state was active at a moment of a tape.
+//! `monas why`: why a state was active at a moment of a tape, or a transition fired or not.
 
 use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
-use monas_studio::{Explanation, ReadValue, TapeRun, WhyQuestion};
+use monas_studio::{
+    ChainLink, Explanation, GuardAtom, MessageChain, ReadValue, TapeRun, TransitionExplanation,
+    TransitionQuestion, Verdict, WhyQuestion,
+};
 use monas_tape::Recording;
 use serde_json::{Value, json};
 
@@ -18,12 +21,16 @@ pub(crate) struct WhyArguments {
     /// The host (a robot of a match).
     host: String,
     /// The state: its name, or as much of the end of it as only one state has.
-    #[arg(long, value_name = "NAME")]
-    state: String,
+    #[arg(long, value_name = "NAME", required_unless_present = "transition", conflicts_with = "transition")]
+    state: Option<String>,
+    /// The transition: its number, or `A -> B` with as much of the end of both names as only one
+    /// transition has.
+    #[arg(long, value_name = "A -> B")]
+    transition: Option<String>,
     /// The moment, in seconds of the run, for example 31.4 or 1min.
     #[arg(long, value_name = "SECONDS", value_parser = moment)]
     at: f64,
-    /// The agent; not needed if only one agent of the host has such a state.
+    /// The agent; not needed if only one agent of the host has such a state or transition.
     #[arg(long, value_name = "NAME")]
     agent: Option<String>,
     #[command(flatten)]
@@ -42,18 +49,30 @@ pub(crate) fn execute(
     arguments: &WhyArguments,
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
-    let WhyArguments { tape, host, state, at, agent, format } = arguments;
+    let WhyArguments { tape, host, state, transition, at, agent, format } = arguments;
     let format = format.value;
     let recording = Recording::open(tape).map_err(failed(format))?;
     let charts = recorded_charts(&recording, format)?;
     let tape = TapeRun::new("", recording, &charts, None);
     let tape = tape.map_err(|error| CommandFailure::failed(format, error))?;
-    let question = WhyQuestion { host, agent: agent.as_deref(), state, seconds: *at };
-    let why = tape.explain(&question).map_err(|reason| CommandFailure::failed(format, reason))?;
+    let (agent, seconds) = (agent.as_deref(), *at);
+    let refused = |reason: String| CommandFailure::failed(format, reason);
+    let (object, lines) = match transition {
+        Some(transition) => {
+            let question = TransitionQuestion { host, agent, transition, seconds };
+            let why = tape.explain_transition(&question).map_err(refused)?;
+            (json!(why), transition_lines(&why, *at))
+        }
+        None => {
+            let state = state.as_deref().unwrap_or_default();
+            let why = tape.explain(&WhyQuestion { host, agent, state, seconds }).map_err(refused)?;
+            (json!(why), lines(&why, *at))
+        }
+    };
     match format {
-        Format::Json => writeln!(console.out, "{}", json!(why))?,
+        Format::Json => writeln!(console.out, "{object}")?,
         Format::Text => {
-            for line in lines(&why, *at) {
+            for line in lines {
                 writeln!(console.out, "{line}")?;
             }
         }
@@ -81,13 +100,53 @@ fn lines(why: &Explanation, at: f64) -> Vec<String> {
     lines
 }
 
+/// The explanation of a transition as text.
+fn transition_lines(why: &TransitionExplanation, at: f64) -> Vec<String> {
+    let TransitionExplanation { host, agent, number, source, target, text, reason, .. } = why;
+    let text = if text.is_empty() { String::new() } else { format!(" : {text}") };
+    let mut lines = vec![format!("{host} {agent}, transition {number}: {source} -> {target}{text}")];
+    let when = |time: Option<f64>| time.map_or("never".to_owned(), |time| format!("at {time:.3} s"));
+    lines.push(match (why.verdict, why.judged) {
+        (Verdict::Waits | Verdict::NotReached, _) | (_, None) => {
+            format!("did not fire at {at:.3} s: {reason}")
+        }
+        (_, Some(judged)) => format!("at {judged:.3} s: {reason}"),
+    });
+    lines.push(format!("fired last {}, fires next {}", when(why.fired), when(why.next)));
+    for trigger in &why.triggers {
+        lines.push(format!("  trigger `{}`: arrived last {}", trigger.text, when(trigger.arrived)));
+    }
+    for GuardAtom { text, value, reads } in &why.atoms {
+        let value = value.map_or("unknown", |value| if value { "true" } else { "false" });
+        lines.push(format!("  {value:7} {text}"));
+        lines.extend(reads.iter().map(|read| format!("            {}", read_line(read))));
+    }
+    for MessageChain { links } in &why.chains {
+        lines.push("  the messages behind it, each followed by those that were read for it".to_owned());
+        lines.extend(links.iter().map(link_line));
+    }
+    lines
+}
+
+fn link_line(link: &ChainLink) -> String {
+    let ChainLink { depth, host, publisher, activity, topic, sequence, published, end } = link;
+    let of = activity.as_ref().map(|activity| format!("{activity} of ")).unwrap_or_default();
+    let end = end.as_ref().map(|end| format!("; {end}")).unwrap_or_default();
+    let indent = "  ".repeat(*depth + 2);
+    format!("{indent}{published:.3} s {topic} number {sequence} by {of}{publisher} on {host}{end}")
+}
+
 fn read_line(read: &ReadValue) -> String {
-    let ReadValue { name, value, topic, publisher, sequence, published } = read;
+    let ReadValue { name, value, topic, publisher, sequence, published, .. } = read;
     let origin = match (topic, publisher, sequence, published) {
         (Some(topic), Some(publisher), Some(sequence), Some(published)) => {
             format!("number {sequence} on {topic} by {publisher}, at {published:.3} s")
         }
         (Some(topic), ..) => format!("nothing had been delivered on {topic}"),
+        (None, ..) if read.is_timer => match read.due {
+            Some(due) => format!("timer, expires at {due:.3} s"),
+            None => "timer, never started".to_owned(),
+        },
         (None, ..) => "constant".to_owned(),
     };
     match value {

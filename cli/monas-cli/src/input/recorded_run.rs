@@ -121,6 +121,15 @@ fn dropped(overview: &TapeOverview) -> Option<&str> {
 }
 
 impl RecordedRun {
+    /// The seed of a run in simulated time.
+    #[cfg(feature = "soccer")]
+    pub(crate) fn seed(&self) -> Option<u64> {
+        match self.time {
+            TimeMode::Simulated { seed } => Some(seed),
+            TimeMode::Real => None,
+        }
+    }
+
     /// Warns if the versions differ.
     pub(crate) fn warn(&self, err: &mut dyn Write) -> io::Result<()> {
         let ours = env!("CARGO_PKG_VERSION");

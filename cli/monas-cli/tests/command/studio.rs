@@ -56,4 +56,96 @@ fn why_names_the_transitions_and_the_messages_that_their_conditions_read() {
     assert!(text.contains(" : [!Ball.found]\n    Ball.found = false  (number "), "{text}");
     assert!(why("SearchBal", &[]).err.contains("there is no state `SearchBal`"));
     assert!(monas(&["why", tape, "blue-9", "--state", "x", "--at", "1"]).err.contains("no host"));
+
+    let not = |transition: &str, more: &[&str]| {
+        monas(&[&["why", tape, "blue-2", "--transition", transition, "--at", "8.3"], more].concat())
+    };
+    let json = not("CONDITION -> WalkTowardsBall", &["--format", "json"]);
+    assert_eq!(json.code, Some(0), "{}", json.err);
+    let json: Value = serde_json::from_str(&json.out).expect("JSON");
+    assert_eq!((&json["verdict"], &json["guard"]), (&"instead".into(), &false.into()));
+    assert_eq!(json["instead"][0], "decision/takeAction/2/CONDITION -> takeAction/kickBall");
+    let held: Vec<&Value> =
+        json["atoms"].as_array().expect("atoms").iter().map(|atom| &atom["value"]).collect();
+    assert_eq!(held, [&Value::from(false), &true.into(), &true.into()]);
+    let links = json["chains"][0]["links"].as_array().expect("links");
+    assert_eq!((&links[0]["topic"], &links[0]["activity"]), (&"soccer/ball".into(), &"Vision".into()));
+    let sensor = links.iter().find(|link| link["topic"] == "body/sensors").expect("a sensor reading");
+    assert!(sensor["end"].as_str().is_some_and(|end| end.contains("comes from outside")), "{sensor}");
+    assert!(
+        not("decision -> decision", &[]).out.contains("the activity of active/decision has not returned")
+    );
+    assert!(not("CONDITION -> nowhere", &[]).err.contains("there is no transition"));
+    assert_eq!(monas(&["why", tape, "blue-2", "--at", "1"]).code, Some(2));
+}
+
+#[test]
+fn the_messages_behind_a_guard_lead_over_the_radio_to_the_sensors_of_a_team_mate() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tape = folder.path().join("attack.mcap");
+    let tape = tape.to_str().expect("a path in UTF-8");
+    let arguments =
+        ["run", "config/match_attack.xml", "--for", "20s", "--seed", "1", "--no-control", "--record", tape];
+    let run = monas(&arguments);
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let why = monas(&[
+        "why",
+        tape,
+        "blue-2",
+        "--transition",
+        "CONDITION -> SupportMate",
+        "--at",
+        "20",
+        "--format",
+        "json",
+    ]);
+    assert_eq!(why.code, Some(0), "{}", why.err);
+    let why: Value = serde_json::from_str(&why.out).expect("JSON");
+    let links = why["chains"].as_array().expect("chains").iter().flat_map(|chain| chain["links"].as_array());
+    let links: Vec<&Value> = links.flatten().collect();
+    let heard = links.iter().position(|link| link["topic"] == "body/heard").expect("a radio message");
+    let said = links[heard + 1];
+    assert_eq!((&said["topic"], &said["host"]), (&"body/said".into(), &"blue-3".into()));
+    let sensors = links.iter().find(|link| link["host"] == "blue-3" && link["topic"] == "body/sensors");
+    assert!(sensors.is_some(), "{links:?}");
+}
+
+#[test]
+fn another_guard_from_a_moment_on_gives_another_future_and_the_same_guard_the_same() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tape = folder.path().join("match.mcap");
+    let tape = tape.to_str().expect("a path in UTF-8");
+    let run =
+        monas(&["run", "config/match.xml", "--for", "12s", "--seed", "1", "--no-control", "--record", tape]);
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let what_if = |more: &[&str]| monas(&[&["tape", "what-if", tape, "--at", "7.75s"], more].concat());
+    let object = |more: &[&str]| -> Value {
+        let answer = what_if(&[more, &["--format", "json"]].concat());
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        serde_json::from_str(&answer.out).expect("JSON")
+    };
+    let same = object(&["--guard", "CONDITION -> search=[!Ball.found]"]);
+    assert_eq!((&same["difference"], same["changes"].as_array().map(Vec::len)), (&Value::Null, Some(6)));
+    assert_eq!(same["recorded"], same["what_if"]);
+    // the kick of the attacker at 7.8 s
+    let other = folder.path().join("other.mcap");
+    let other = other.to_str().expect("a path in UTF-8");
+    let arguments = ["--guard", "CONDITION -> kickBall=[false]", "--host", "blue-2", "-o", other];
+    let without = object(&arguments);
+    let difference = &without["difference"];
+    assert_eq!((&difference["host"], &difference["topic"]), (&"blue-2".into(), &"soccer/motion".into()));
+    assert_eq!((difference["time"].as_f64(), &difference["first"]["kind"]), (Some(7.8), &"KICK_LEFT".into()));
+    assert_ne!(without["recorded"]["events"], without["what_if"]["events"]);
+    let why = monas(&["why", other, "blue-2", "--transition", "CONDITION -> kickBall", "--at", "12"]);
+    assert_eq!(why.code, Some(0), "{}", why.err);
+
+    let refused = |more: &[&str], reason: &str| {
+        let answer = what_if(more);
+        assert!(answer.code != Some(0) && answer.err.contains(reason), "{}", answer.err);
+    };
+    refused(&["--guard", "CONDITION -> kickBall"], "is not `A -> B=[condition]`");
+    refused(&["--guard", "CONDITION -> nowhere=[true]"], "there is no transition");
+    refused(&["--set", "agent.Nobody.frequency=5"], "no robot has an agent `Nobody`");
+    refused(&["--set", "agent.Attacker.WalkTowardsBall.no_such=5"], "unknown parameter");
+    refused(&[], "--set");
 }

@@ -103,6 +103,25 @@ const TESTS = {
     assert.ok(held > 0);
   },
 
+  async 'a run is looked back at while it goes on'({ page }) {
+    await until(page, 'some seconds', () => Number((document.querySelector('.time')?.textContent ?? '').split(':')[1]) > 9);
+    const link = () => textOf(page, '.link');
+    await page.getByLabel('Moment').fill('7');
+    await until(page, 'a moment before', () => document.querySelector('.link')?.textContent === 'Looking back' && document.querySelector('.time')?.textContent === '0:07.0');
+    await until(page, 'its robots and chart', () => document.querySelectorAll('.body').length === 6 && document.querySelector('.chart .node.active'));
+    await page.locator('h2').first().click();
+    await page.keyboard.press('.');
+    await until(page, 'the next step', () => /^0:07\.[1-9]$/.test(document.querySelector('.time')?.textContent ?? ''));
+    await shot(page, 'looking-back');
+    await page.keyboard.press(' ');
+    await until(page, 'that it plays', () => Number((document.querySelector('.time')?.textContent ?? '').split(':')[1]) > 8);
+    assert.equal(await link(), 'Looking back');
+    await page.keyboard.press('l');
+    await until(page, 'the present moment', () => document.querySelector('.link')?.textContent === 'Live');
+    assert.ok(seconds(await textOf(page, '.time')) > 9.9);
+    await until(page, 'an active state', () => document.querySelector('.chart .node.BASIC.active'));
+  },
+
   async 'agents have figures, and activities'({ page }) {
     await page.keyboard.press('2');
     await until(page, 'six agents', () => document.querySelectorAll('tr.choice').length === 6);
@@ -262,7 +281,7 @@ async function tape(browser) {
   await until(page, 'the kick-off', () => /kick-off/.test(document.querySelector('.latest')?.textContent ?? ''));
   assert.equal(await time(), 6);
   // playing
-  await page.getByLabel('Speed').selectOption('16');
+  await page.getByLabel('Speed', { exact: true }).selectOption('16');
   await page.locator('.play').click();
   await until(page, 'the tape is played to its end', () => document.querySelector('.play')?.textContent === 'Play' && document.querySelector('.time')?.textContent?.startsWith('1:00'));
   await seek(8.5);
@@ -273,9 +292,37 @@ async function tape(browser) {
   assert.match(await textOf(page, '.reads'), /near = 0\.25[\s\S]*constant/);
   assert.match(await page.locator('.reads li').first().getAttribute('title'), /number \d+ on soccer\/ball by Attacker/);
   await shot(page, 'tape');
+  await whyNot(page, seek, time);
   assert.deepEqual(faults, []);
   await page.close();
   await studio.stop();
+}
+
+/** A transition that does not fire, its values, the messages behind them, and its firings. */
+async function whyNot(page, seek, time) {
+  await seek(8.3);
+  await page.locator('.robots button', { hasText: 'blue-2' }).click();
+  const arrow = page.locator('[data-choice][aria-label*="takeAction/WalkTowardsBall [Ball.distance > near"]').first();
+  await arrow.focus();
+  await page.keyboard.press('Enter');
+  await until(page, 'what fired instead', () => /instead of it fired .*kickBall/.test(document.querySelector('.why .reason')?.textContent ?? ''));
+  assert.match(await textOf(page, '.atoms li.false'), /✗\s+Ball\.distance > near/);
+  assert.match(await textOf(page, '.atoms li.false .read'), /Ball\.distance = 0\.1631/);
+  assert.equal(await page.locator('.atoms li.true').count(), 2);
+  await page.locator('.why details summary').first().click();
+  assert.match(await textOf(page, '.why .chain'), /soccer\/ball[\s\S]*by Vision of Attacker on blue-2[\s\S]*body\/sensors[\s\S]*comes from outside/);
+  await shot(page, 'why-not');
+  await page.getByRole('button', { name: 'firing ›' }).click();
+  await until(page, 'that it fired', () => document.querySelector('.why .now')?.textContent === 'Fired');
+  assert.ok((await time()) > 12, 'its next firing');
+  await page.locator('h2').first().click();
+  await page.keyboard.press('<');
+  await until(page, 'its last firing', () => (document.querySelector('.time')?.textContent ?? '').startsWith('0:06'));
+  // events of one kind
+  await page.getByLabel('Kind of events').selectOption('kick-off');
+  await page.getByRole('button', { name: '‹ event' }).click();
+  await until(page, 'the kick-off before', () => /0:06\.0/.test(document.querySelector('.time')?.textContent ?? ''));
+  await page.locator('.why button', { hasText: 'back to now' }).click();
 }
 
 mkdirSync(SCREENSHOTS, { recursive: true });

@@ -5,8 +5,9 @@ use std::net::{SocketAddr, TcpStream};
 use std::time::Duration;
 
 use monas::records::foxglove::Log;
-use monas_studio::{Body, Scene, SceneMessages, ScenePicture, Studio};
+use monas_studio::{Body, Scene, SceneEvent, SceneMessages, ScenePicture, Studio};
 use narukom::{State, topic};
+use prost::Message as _;
 use serde_json::Value;
 use tungstenite::{Message, WebSocket, client};
 use yase::{Node, NodeKind, Statechart, Transition};
@@ -20,10 +21,15 @@ pub(crate) const SOON: Duration = Duration::from_secs(20);
 
 /// A lamp: START, off, on.
 pub(crate) fn lamp() -> Statechart {
+    chart("", "[A.x == 1]", "enough")
+}
+
+/// The chart of a lamp with the expressions of its start, and of its switching on and off.
+pub(crate) fn chart(begin: &str, switch_on: &str, switch_off: &str) -> Statechart {
     let mut lamp = Statechart::new("lamp");
     let [start, off, on] = [(NodeKind::Start, ""), (NodeKind::Basic, "off"), (NodeKind::Basic, "on")]
         .map(|(kind, name)| lamp.add(Statechart::ROOT, Node::new(kind, name)));
-    for (source, target, text) in [(start, off, ""), (off, on, "[A.x == 1]"), (on, off, "enough")] {
+    for (source, target, text) in [(start, off, begin), (off, on, switch_on), (on, off, switch_off)] {
         let expression = yase::expression::parse_transition(text).0;
         lamp.connect(Transition { expression, ..Transition::new(source, target) });
     }
@@ -42,8 +48,10 @@ impl Scene for Notes {
         &["test/note"]
     }
 
-    fn event(&self, _: &str, message: &Value) -> Option<String> {
-        message["message"].as_str().map(str::to_owned)
+    fn event(&self, _: &str, _: &str, bytes: &[u8]) -> Option<SceneEvent> {
+        let text = Log::decode(bytes).ok()?.message;
+        let kind = text.split(' ').next()?.to_owned();
+        Some(SceneEvent { lasts: kind == "lasting", kind, text })
     }
 
     fn draw(&self, messages: &SceneMessages<'_>) -> ScenePicture {

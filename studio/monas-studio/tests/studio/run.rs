@@ -1,7 +1,9 @@
 //! The studio of a run, over real sockets: who is answered, and what a viewer gets.
 
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use monas::records::{self, AgentEntry, Agents, ChartEntry, ChartState, Inquiry, Reply, foxglove::Log};
 use monas_link::control::{ControlServer, ControlTarget};
@@ -9,12 +11,14 @@ use monas_studio::{Pace, Studio, StudioSettings};
 use narukom::{Hub, Timestamp};
 use prost::Message as _;
 use serde_json::{Value, json};
+use tungstenite::WebSocket;
+use tungstenite::client::IntoClientRequest;
 use yase::Statechart;
 
-use crate::kit::{NOTE, Notes, Viewer, address, exchange, lamp};
+use crate::kit::{NOTE, Notes, SOON, Viewer, address, exchange, lamp};
 
-/// A run of one host with one agent.
-struct OneHub([Hub; 1]);
+/// A run of one host with one agent, with its time in nanoseconds.
+struct OneHub([Hub; 1], Arc<AtomicU64>);
 
 impl ControlTarget for OneHub {
     fn hubs(&self) -> &[Hub] {
@@ -22,7 +26,7 @@ impl ControlTarget for OneHub {
     }
 
     fn now(&self) -> Timestamp {
-        Timestamp::from_nanos(1_500_000_000)
+        Timestamp::from_nanos(self.1.load(Ordering::SeqCst))
     }
 
     fn is_simulated(&self) -> bool {
@@ -55,19 +59,25 @@ impl ControlTarget for OneHub {
 struct Run {
     folder: tempfile::TempDir,
     hub: Hub,
+    now: Arc<AtomicU64>,
     server: Option<ControlServer>,
 }
 
 impl Run {
     fn start() -> Run {
         let folder = tempfile::tempdir().unwrap();
-        let mut run = Run { hub: Hub::with_linked_topics("robot").unwrap(), folder, server: None };
+        let mut run = Run {
+            hub: Hub::with_linked_topics("robot").unwrap(),
+            now: Arc::new(1_500_000_000.into()),
+            folder,
+            server: None,
+        };
         run.serve();
         run
     }
 
     fn serve(&mut self) {
-        let target = Arc::new(OneHub([self.hub.clone()]));
+        let target = Arc::new(OneHub([self.hub.clone()], self.now.clone()));
         self.server = Some(ControlServer::start(&self.folder.path().join("monas"), "run", target).unwrap());
     }
 
@@ -83,7 +93,11 @@ impl Run {
 
 fn studio(socket: &Path, listen: &str, pace: Option<Pace>) -> Studio {
     let listen = Some(listen.parse().unwrap());
-    Studio::of_run(socket, StudioSettings { listen, scene: Some(Arc::new(Notes)), pace }).unwrap()
+    Studio::of_run(
+        socket,
+        StudioSettings { listen, scene: Some(Arc::new(Notes)), pace, ..StudioSettings::default() },
+    )
+    .unwrap()
 }
 
 #[test]
@@ -252,4 +266,158 @@ fn viewers_that_do_not_read_block_no_others_and_their_number_is_limited() {
     }
     assert!(Viewer::open(&studio).err().unwrap().contains("503"));
     drop(idle);
+}
+
+#[test]
+fn a_run_is_looked_back_at_while_it_goes_on() {
+    let run = Run::start();
+    let studio = studio(&run.socket(), "127.0.0.1:0", None);
+    let mut viewer = Viewer::open(&studio).unwrap();
+    let begin = viewer.wait(|message| Some(message["tape"].clone()).filter(|tape| tape["live"] == true));
+    assert_eq!(begin["begin"], 1.5);
+    let mut charts = run.hub.publisher(records::CHART, "Lamp").unwrap();
+    for (second, exit, entry) in [(3, 2, 3), (5, 3, 2), (7, 2, 3)] {
+        let time = second * 1_000_000_000;
+        run.now.store(time, Ordering::SeqCst);
+        let step = records::Chart {
+            time,
+            exits: vec![exit],
+            entries: vec![entry],
+            selected: vec![entry],
+            ..Default::default()
+        };
+        charts.publish(step, Timestamp::from_nanos(time));
+    }
+    viewer.wait(|message| {
+        (message["charts"][0]["active"] == json!([0, 3]) && message["now"] == 7.0).then_some(())
+    });
+    let moment = |viewer: &mut Viewer, request: Value| {
+        viewer.send(request);
+        viewer.wait(|message| {
+            let is_past = message["elsewhere"] == true;
+            is_past.then(|| {
+                (
+                    message["now"].clone(),
+                    message["charts"][0]["active"].clone(),
+                    message["tape"]["live"].clone(),
+                )
+            })
+        })
+    };
+    let seek = |seconds: f64| json!({"type": "seek", "seconds": seconds});
+    assert_eq!(moment(&mut viewer, seek(4.0)), (json!(4.0), json!([0, 3]), json!(false)));
+    assert_eq!(moment(&mut viewer, seek(2.0)), (json!(2.0), json!([0, 2]), json!(false)));
+    let step = |back: bool| json!({"type": "step", "key": "robot/Lamp/0", "back": back});
+    assert_eq!(moment(&mut viewer, step(false)), (json!(3.0), json!([0, 3]), json!(false)));
+    assert_eq!(moment(&mut viewer, step(false)), (json!(5.0), json!([0, 2]), json!(false)));
+    let jump = json!({"type": "jump", "key": "robot/Lamp/0", "transition": 3, "back": false});
+    assert_eq!(moment(&mut viewer, jump), (json!(7.0), json!([0, 3]), json!(true)));
+    assert_eq!(moment(&mut viewer, seek(6.0)), (json!(6.0), json!([0, 2]), json!(false)));
+    assert_eq!(moment(&mut viewer, json!({"type": "live"})), (json!(7.0), json!([0, 3]), json!(true)));
+    // what is played arrives at the present moment
+    moment(&mut viewer, seek(2.0));
+    assert_eq!(
+        moment(&mut viewer, json!({"type": "pace", "factor": 1000})),
+        (json!(7.0), json!([0, 3]), json!(true))
+    );
+}
+
+/// A client of Foxglove's protocol.
+struct FoxgloveClient(WebSocket<TcpStream>);
+
+impl FoxgloveClient {
+    /// Opens the protocol, with an origin if one is given.
+    fn open(studio: &Studio, protocol: &str, origin: Option<&str>) -> Result<FoxgloveClient, String> {
+        let stream = TcpStream::connect(address(studio)).unwrap();
+        stream.set_read_timeout(Some(SOON)).unwrap();
+        let mut request = format!("ws://{}/", address(studio)).into_client_request().unwrap();
+        request.headers_mut().insert("Sec-WebSocket-Protocol", protocol.parse().unwrap());
+        if let Some(origin) = origin {
+            request.headers_mut().insert("Origin", origin.parse().unwrap());
+        }
+        let (socket, reply) = tungstenite::client(request, stream).map_err(|error| error.to_string())?;
+        let chosen = reply.headers().get("Sec-WebSocket-Protocol").unwrap();
+        assert!(protocol.split(", ").any(|offered| chosen == offered), "{chosen:?}");
+        Ok(FoxgloveClient(socket))
+    }
+
+    fn object(&mut self, operation: &str) -> Value {
+        loop {
+            if let tungstenite::Message::Text(text) = self.0.read().unwrap() {
+                let object: Value = serde_json::from_str(text.as_str()).unwrap();
+                if object["op"] == operation {
+                    return object;
+                }
+            }
+        }
+    }
+
+    fn send(&mut self, object: &Value) {
+        self.0.send(tungstenite::Message::text(object.to_string())).unwrap();
+    }
+}
+
+fn from_base64(text: &str) -> Vec<u8> {
+    const DIGITS: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let bits: Vec<u32> =
+        text.chars().filter_map(|digit| DIGITS.find(digit)).map(|digit| digit as u32).collect();
+    let bytes = bits.chunks(4).flat_map(|chunk| {
+        let all = chunk.iter().fold(0, |all, bits| all << 6 | bits) << (6 * (4 - chunk.len()));
+        all.to_be_bytes()[1..chunk.len()].to_vec()
+    });
+    bytes.collect()
+}
+
+#[test]
+fn clients_of_the_foxglove_protocol_list_topics_and_decode_their_messages() {
+    let run = Run::start();
+    let studio = studio(&run.socket(), "127.0.0.1:0", None);
+    for protocol in ["foxglove.websocket.v1", "foxglove.sdk.v1", "other, foxglove.sdk.v1"] {
+        let mut client = FoxgloveClient::open(&studio, protocol, None).unwrap();
+        let info = client.object("serverInfo");
+        assert_eq!((&info["name"], &info["capabilities"]), (&json!("monas: run"), &json!([])));
+        let channels = client.object("advertise")["channels"].clone();
+        let channel =
+            channels.as_array().unwrap().iter().find(|one| one["topic"] == "/robot/test/note").unwrap();
+        assert_eq!(
+            (&channel["encoding"], &channel["schemaName"]),
+            (&json!("protobuf"), &json!("foxglove.Log"))
+        );
+        let schema = from_base64(channel["schema"].as_str().unwrap());
+        let pool = monas_tape::descriptor_pool(&schema).unwrap();
+        let log = pool.get_message_by_name("foxglove.Log").unwrap();
+        client.send(&json!({"op": "subscribe", "subscriptions": [{"id": 7, "channelId": channel["id"]}]}));
+        let frame = loop {
+            // The subscription has begun once a message arrives.
+            run.note("for others");
+            match client.0.read().unwrap() {
+                tungstenite::Message::Binary(frame) => break frame,
+                other => assert!(other.is_text(), "{other:?}"),
+            }
+        };
+        assert_eq!(
+            (frame[0], &frame[1..5], &frame[5..13]),
+            (1, &7_u32.to_le_bytes()[..], &1_000_000_u64.to_le_bytes()[..])
+        );
+        let message = monas_studio::message_json(&log, &frame[13..]).unwrap();
+        assert_eq!(message["message"], "for others");
+        client.send(&json!({"op": "advertise", "channels": []}));
+        assert!(client.object("status")["message"].as_str().unwrap().contains("clients can only subscribe"));
+    }
+}
+
+#[test]
+fn pages_of_others_need_an_allowed_origin() {
+    let run = Run::start();
+    let listen = Some("127.0.0.1:0".parse().unwrap());
+    let origins = vec!["https://viewer.example".to_owned()];
+    let settings = StudioSettings { listen, origins, ..StudioSettings::default() };
+    let studio = Studio::of_run(&run.socket(), settings).unwrap();
+    let open = |origin| FoxgloveClient::open(&studio, "foxglove.sdk.v1", origin).map(drop);
+    assert_eq!(open(Some("https://viewer.example")), Ok(()));
+    assert!(open(Some("https://evil.example")).unwrap_err().contains("403"));
+    // the page's own socket stays closed to them
+    let host = format!("Host: {}", address(&studio));
+    let reply = exchange(&studio, "GET /socket", &[&host, "Origin: https://viewer.example"]);
+    assert!(reply.starts_with("HTTP/1.1 403"), "{reply}");
 }

@@ -4,12 +4,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use monas::records::{self, foxglove::Log};
-use monas_studio::{Studio, StudioSettings, TapeChart, TapeRun};
+use monas_studio::{Studio, StudioSettings, TapeChart, TapeRun, TransitionQuestion, Verdict};
 use monas_tape::{Recording, Tape};
 use narukom::{Hub, Timestamp};
 use serde_json::{Value, json};
 
-use crate::kit::{NOTE, Notes, Viewer, lamp};
+use crate::kit::{NOTE, Notes, Viewer, chart, lamp};
 
 /// The lamp is switched at each second from 1 to `steps`, with a note before each.
 fn record(path: &Path, steps: u32) -> Recording {
@@ -65,7 +65,7 @@ fn look(viewer: &mut Viewer, seconds: f64) -> (Value, Value) {
 fn a_moment_is_the_same_whether_it_is_reached_forwards_or_backwards() {
     let (_studio, mut viewer, tape) = open(6);
     assert_eq!((&tape["begin"], &tape["end"]), (&json!(1.0), &json!(6.0)));
-    assert_eq!(tape["events"][2], json!({"t": 3.0, "text": "note 3"}));
+    assert_eq!(tape["events"][2], json!({"t": 3.0, "kind": "note", "text": "note 3"}));
     let forwards = look(&mut viewer, 3.5);
     assert_eq!(forwards, (json!("note 3"), json!([3])));
     assert_eq!(look(&mut viewer, 5.5), (json!("note 5"), json!([3])));
@@ -109,4 +109,143 @@ fn a_tape_is_played_to_its_end_with_its_topics_and_agents() {
     assert_eq!((&last["message"]["message"], &last["sequence"]), (&json!("note 300"), &json!(300)));
     let notes = topics.as_array().unwrap().iter().find(|topic| topic["path"] == "test/note").unwrap();
     assert!(notes["count"].as_u64().unwrap() > 200, "{notes}");
+}
+
+#[test]
+fn lasting_events_are_marked_where_they_begin() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("events.mcap");
+    let tape = Tape::create(&path).unwrap();
+    let hub = Hub::with_linked_topics("robot").unwrap();
+    hub.observe(Box::new(tape.clone()));
+    let mut notes = hub.publisher(NOTE, "tester").unwrap();
+    for (time, text) in (1_u64..).zip(["lasting", "lasting", "other", "other", "lasting"]) {
+        notes.publish(
+            Log { message: text.into(), ..Log::default() },
+            Timestamp::from_nanos(time * 1_000_000_000),
+        );
+    }
+    tape.finish().unwrap();
+    let run = TapeRun::new("events", Recording::open(&path).unwrap(), &[], Some(Arc::new(Notes))).unwrap();
+    let listen = Some("127.0.0.1:0".parse().unwrap());
+    let studio = Studio::of_tape(run, StudioSettings { listen, ..StudioSettings::default() }).unwrap();
+    let events = Viewer::open(&studio)
+        .unwrap()
+        .wait(|message| Some(message["tape"]["events"].clone()).filter(Value::is_array));
+    let times: Vec<f64> = events.as_array().unwrap().iter().filter_map(|event| event["t"].as_f64()).collect();
+    assert_eq!(times, [1.0, 3.0, 4.0, 5.0]);
+}
+
+/// The number of the transition from off to on, whose guard reads a note and a timer.
+const SWITCH: u32 = 1;
+
+/// A lamp that a note switches on once its timer has expired. The notes are `wait` at 1 s and `go`
+/// at 4 s; the lamp is switched on at 5 s, and off again at 6 s.
+fn guarded() -> TapeRun {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("guarded.mcap");
+    let tape = Tape::create(&path).unwrap();
+    let hub = Hub::with_linked_topics("robot").unwrap();
+    hub.observe(Box::new(tape.clone()));
+    let second = |number: u64| Timestamp::from_nanos(number * 1_000_000_000);
+    let mut notes = hub.publisher(NOTE, "tester").unwrap();
+    let mut steps = hub.publisher(records::CHART, "Lamp").unwrap();
+    let mut cycles = hub.publisher(records::CYCLE, "Lamp").unwrap();
+    let mut step = |time: u64, selected: u32, exit: u32, entry: u32, note: u64| {
+        let (exits, entries, selected) = (vec![exit], vec![entry], vec![selected]);
+        let time_of = second(time).as_nanos();
+        steps.publish(
+            records::Chart { time: time_of, selected, exits, entries, ..Default::default() },
+            second(time),
+        );
+        let delivery = records::Delivery {
+            topic: narukom::topic_hash("test/note"),
+            sequence: note,
+            ..Default::default()
+        };
+        let delivered = if note > 0 { vec![delivery] } else { Vec::new() };
+        cycles.publish(records::Cycle { delivered, ..Default::default() }, second(time));
+    };
+    let mut note =
+        |time: u64, text: &str| notes.publish(Log { message: text.into(), ..Log::default() }, second(time));
+    step(0, 0, 1, 2, 0);
+    note(1, "wait");
+    step(2, 3, 2, 2, 1);
+    note(4, "go");
+    step(5, SWITCH, 2, 3, 2);
+    step(6, 2, 3, 2, 0);
+    tape.finish().unwrap();
+    let texts = [
+        "/ StartTimeout(patience, 3s)",
+        "[Log.message == \"go\" && (patience || abs(near - 2) < 1)]",
+        "enough",
+        "[false]",
+    ];
+    let mut statechart = chart(texts[0], texts[1], texts[2]);
+    statechart.connect(yase::Transition {
+        expression: yase::expression::parse_transition(texts[3]).0,
+        ..yase::Transition::new(yase::NodeId(2), yase::NodeId(2))
+    });
+    let (host, agent, model) = ("robot".into(), "Lamp".into(), "lamp".into());
+    let charts = [TapeChart { host, agent, chart: 0, model, statechart }];
+    TapeRun::new("guarded", Recording::open(&path).unwrap(), &charts, None).unwrap()
+}
+
+#[test]
+fn a_transition_that_does_not_fire_names_the_parts_of_its_guard_with_their_values() {
+    let tape = guarded();
+    let ask = |transition: &str, seconds: f64| {
+        tape.explain_transition(&TransitionQuestion { host: "robot", agent: None, transition, seconds })
+    };
+    let early = ask("off -> on", 2.5).unwrap();
+    assert_eq!(
+        (early.verdict, early.guard, early.fired, early.next),
+        (Verdict::Waits, Some(false), None, Some(5.0))
+    );
+    let values = |why: &monas_studio::TransitionExplanation| -> Vec<(String, Option<bool>)> {
+        why.atoms.iter().map(|atom| (atom.text.clone(), atom.value)).collect()
+    };
+    let texts = ["Log.message == \"go\"", "patience", "abs(near - 2) < 1"].map(str::to_owned);
+    let [note, patience, distance] = texts;
+    let expected = [(note.clone(), Some(false)), (patience.clone(), Some(false)), (distance.clone(), None)];
+    assert_eq!(values(&early), expected);
+    let read = &early.atoms[0].reads[0];
+    assert_eq!((&read.value, read.sequence, read.published), (&json!("wait"), Some(1), Some(1.0)));
+    assert_eq!(early.atoms[1].reads[0].due, Some(3.0));
+    assert!(early.reason.contains("its guard was false: `Log.message == \"go\"`"), "{}", early.reason);
+    let link = &early.chains[0].links[0];
+    assert_eq!((link.publisher.as_str(), link.topic.as_str()), ("tester", "test/note"));
+    assert!(link.end.as_ref().unwrap().contains("`tester` is no agent"), "{link:?}");
+
+    let fired = ask("1", 5.0).unwrap();
+    assert_eq!((fired.verdict, fired.guard, fired.judged), (Verdict::Fired, Some(true), Some(5.0)));
+    assert_eq!(values(&fired), [(note, Some(true)), (patience, Some(true)), (distance, None)]);
+    // where the lamp is on, the other transition of `off` was left out
+    let other = ask("off -> off", 5.5).unwrap();
+    assert_eq!((other.verdict, &other.instead[..]), (Verdict::Instead, &["off -> on".to_owned()][..]));
+    let waiting = ask("on -> off", 5.5).unwrap();
+    assert_eq!((waiting.verdict, waiting.reason.as_str()), (Verdict::Waits, "it waits for `enough`"));
+    assert!(ask("on -> nowhere", 1.0).unwrap_err().contains("there is no transition"));
+    assert!(ask("9", 1.0).unwrap_err().contains("the last is 3"));
+}
+
+#[test]
+fn firings_of_a_transition_are_gone_through() {
+    let listen = Some("127.0.0.1:0".parse().unwrap());
+    let studio = Studio::of_tape(guarded(), StudioSettings { listen, ..StudioSettings::default() }).unwrap();
+    let mut viewer = Viewer::open(&studio).unwrap();
+    viewer.wait_for_link("tape");
+    viewer.send(json!({"type": "pace", "factor": 0}));
+    viewer.send(json!({"type": "seek", "seconds": 2.5}));
+    viewer.wait(|message| (message["now"] == 2.5).then_some(()));
+    let jump = |transition: u32, back: bool| json!({"type": "jump", "key": "robot/Lamp/0", "transition": transition, "back": back});
+    for (transition, back, time) in
+        [(SWITCH, false, 5.0), (2, false, 6.0), (SWITCH, true, 5.0), (3, true, 2.0)]
+    {
+        viewer.send(jump(transition, back));
+        viewer.wait(|message| (message["now"] == time).then_some(()));
+    }
+    viewer.send(json!({"type": "why transition", "key": "robot/Lamp/0", "transition": SWITCH}));
+    let why = viewer.wait(|message| (message["type"] == "why transition").then(|| message["why"].clone()));
+    assert_eq!((&why["verdict"], &why["atoms"][0]["value"]), (&json!("waits"), &json!(false)));
 }

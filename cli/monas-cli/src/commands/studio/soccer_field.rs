@@ -3,14 +3,18 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
+use monas_robot::{Posture, Sensors};
+use monas_sim::messages::Incident;
 use monas_studio::{
-    Banner, Belief, Body, Ground, GroundMark, Scene, SceneMessages, SceneObject, ScenePicture,
+    Banner, Belief, Body, Ground, GroundMark, Scene, SceneEvent, SceneMessages, SceneObject, ScenePicture,
 };
+use prost::Message;
 use serde_json::Value;
 
 const TRUTH: &str = "sim/truth";
 const SCORE: &str = "sim/score";
 const INCIDENT: &str = "sim/incident";
+const SENSORS: &str = "body/sensors";
 const HOST: &str = "monas/host";
 const GAME_STATE: &str = "soccer/game_state";
 const POSE: &str = "soccer/pose";
@@ -32,11 +36,18 @@ impl Scene for SoccerField {
     }
 
     fn event_topics(&self) -> &[&'static str] {
-        &[INCIDENT]
+        &[INCIDENT, SENSORS]
     }
 
-    fn event(&self, _: &str, message: &Value) -> Option<String> {
-        message["text"].as_str().map(str::to_owned)
+    fn event(&self, host: &str, topic: &str, bytes: &[u8]) -> Option<SceneEvent> {
+        if topic == SENSORS {
+            let has_fallen = Sensors::decode(bytes).ok()?.posture() == Posture::Fallen;
+            let (kind, text) = ("fall".to_owned(), format!("{host} has fallen"));
+            return has_fallen.then_some(SceneEvent { kind, text, lasts: true });
+        }
+        let text = Incident::decode(bytes).ok()?.text;
+        let kind = text.split([' ', ':']).next().unwrap_or_default().to_owned();
+        Some(SceneEvent { kind, text, lasts: false })
     }
 
     fn draw(&self, messages: &SceneMessages<'_>) -> ScenePicture {

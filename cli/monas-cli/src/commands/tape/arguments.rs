@@ -29,6 +29,16 @@ pub(crate) enum TapeCommand {
     #[cfg(feature = "soccer")]
     #[command(after_help = "Example: monas tape draw match.mcap --at 98s -o field.svg")]
     Draw(super::draw::DrawArguments),
+    /// Play a recorded match again up to a moment, change its agents there, and compare the rest.
+    ///
+    /// The match is played in simulated time from the recorded configuration and seed, so that it
+    /// is the recorded one up to the change. Prints the first message that differs afterwards, and
+    /// the score and the events of both.
+    #[cfg(all(feature = "soccer", unix))]
+    #[command(
+        after_help = "Example: monas tape what-if match.mcap --at 7.5s --guard 'CONDITION -> kickBall=[false]'"
+    )]
+    WhatIf(super::what_if::WhatIfArguments),
     /// Recover a truncated or damaged tape: writes all readable messages to a valid tape.
     #[command(after_help = "Example: monas tape recover match.mcap -o mended.mcap")]
     Recover {

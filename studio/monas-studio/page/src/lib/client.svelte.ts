@@ -15,6 +15,7 @@ import type {
   ServerMessage,
   TapeFacts,
   TopicRow,
+  TransitionExplanation,
 } from './protocol';
 
 const LINES = 1000;
@@ -71,6 +72,9 @@ export class StudioClient {
   /** The latest explanation of a tape. */
   why = $state.raw<{ key: string; node: number; why: Explanation } | null>(null);
 
+  /** The same of a transition. */
+  whyTransition = $state.raw<{ key: string; transition: number; why: TransitionExplanation } | null>(null);
+
   #socket: WebSocket | null = null;
   #retry = FIRST_RETRY;
   #watched: { host: string; topic: string } | null = null;
@@ -123,9 +127,29 @@ export class StudioClient {
     this.#send({ type: 'seek', seconds });
   }
 
+  /** Goes to the present moment of a run. */
+  goLive(): void {
+    this.#send({ type: 'live' });
+  }
+
+  /** Whether a recording is shown, which has all messages. */
+  get isTape(): boolean {
+    return this.tape !== null && this.tape.live === undefined;
+  }
+
   /** Asks why a state is active at the moment of a tape. */
   askWhy(key: string, node: number): void {
     this.#send({ type: 'why', key, node });
+  }
+
+  /** Asks why a transition fired, or did not, at the moment of a tape. */
+  askWhyTransition(key: string, transition: number): void {
+    this.#send({ type: 'why transition', key, transition });
+  }
+
+  /** Goes to the next firing of a transition, or to the one before. */
+  jump(key: string, transition: number, back: boolean): void {
+    this.#send({ type: 'jump', key, transition, back });
   }
 
   step(key: string, back: boolean): void {
@@ -167,6 +191,9 @@ export class StudioClient {
       }
       case 'why':
         this.why = message;
+        break;
+      case 'why transition':
+        this.whyTransition = message;
         break;
       case 'refused':
         this.sample = message;
@@ -237,6 +264,7 @@ export class StudioClient {
     this.scene = null;
     this.tape = null;
     this.why = null;
+    this.whyTransition = null;
     this.#tableTime = 0;
     this.#asked.clear();
     if (this.#watched && this.run) {

@@ -1,4 +1,4 @@
-import type { Picture } from './protocol';
+import type { Json, Picture } from './protocol';
 
 /** A node and the composites around it, outwards. */
 export function lineage(picture: Picture, node: number): number[] {
@@ -24,4 +24,9 @@ export function lastWord(name: string): string {
 
 export function nodeName(picture: Picture, node: number): string {
   return picture.nodes[node]?.name ?? `state ${node}`;
+}
+
+/** A value of a message for people. */
+export function valueText(value: Json): string {
+  return typeof value === 'number' && !Number.isInteger(value) ? value.toPrecision(4) : JSON.stringify(value);
 }

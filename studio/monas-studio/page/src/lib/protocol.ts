@@ -186,6 +186,40 @@ export interface ReadValue {
   publisher: string | null;
   sequence: number | null;
   published: number | null;
+  host: string | null;
+  due: number | null;
+  is_timer: boolean;
+}
+
+/** A message; those that its publisher had read follow one level deeper. */
+export interface ChainLink {
+  depth: number;
+  host: string;
+  publisher: string;
+  activity: string | null;
+  topic: string;
+  sequence: number;
+  published: number;
+  /** Why the chain ends here. */
+  end: string | null;
+}
+
+export interface TransitionExplanation {
+  number: number;
+  source: string;
+  target: string;
+  text: string;
+  verdict: 'fired' | 'instead' | 'waits' | 'not_reached';
+  reason: string;
+  judged: number | null;
+  fired: number | null;
+  next: number | null;
+  triggers: { text: string; arrived: number | null }[];
+  guard: boolean | null;
+  atoms: { text: string; value: boolean | null; reads: ReadValue[] }[];
+  instead: string[];
+  held_by: string | null;
+  chains: { links: ChainLink[] }[];
 }
 
 export interface Explanation {
@@ -201,7 +235,9 @@ export interface TapeFacts {
   end: number;
   /** The speed of playing, 0 while it is held. */
   factor: number;
-  events: { t: number; text: string }[];
+  events: { t: number; kind: string; text: string }[];
+  /** Of a run that goes on: whether its present moment is shown. */
+  live?: boolean;
 }
 
 export interface Frame {
@@ -225,4 +261,5 @@ export type ServerMessage =
   | Frame
   | { type: 'picture'; key: string; picture: Picture | null }
   | { type: 'why'; key: string; node: number; why: Explanation }
+  | { type: 'why transition'; key: string; transition: number; why: TransitionExplanation }
   | { type: 'refused'; host: string; topic: string; reason: string };

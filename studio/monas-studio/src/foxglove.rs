@@ -1,0 +1,225 @@
+//! The WebSocket protocol of Foxglove: topics of a run for viewers of others.
+//!
+//! The server describes itself and its channels as JSON; a client subscribes to channels, and gets
+//! their messages as frames of bytes. Each topic of each host is a channel, with its protobuf
+//! schema. Clients can only read.
+
+use std::collections::BTreeMap;
+use std::net::TcpStream;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use monas_link::control::messages::Seen;
+use monas_link::control::{ControlClient, WatchStream};
+use serde_json::{Value, json};
+use tungstenite::protocol::{Role, WebSocketConfig};
+use tungstenite::{Message, WebSocket};
+
+use crate::time::now;
+use crate::viewer::next_request;
+
+/// The names of the protocol, the one that is preferred first.
+pub(crate) const PROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
+
+/// The first byte of a frame with a message.
+const MESSAGE_DATA: u8 = 1;
+
+/// The longest wait for a request of the client, and for a message of the run.
+const PATIENCE: Duration = Duration::from_millis(5);
+
+/// The interval between two looks for new topics.
+const TOPICS: Duration = Duration::from_secs(1);
+
+/// The longest that a client may take to receive a frame; a slower one is disconnected.
+const SLOWEST: Duration = Duration::from_secs(5);
+
+/// The most messages that are sent between two requests.
+const BATCH: usize = 512;
+
+/// The longest request, in bytes, and the most subscriptions of a client.
+const REQUEST_LIMIT: usize = 64 << 10;
+const SUBSCRIPTIONS: usize = 1000;
+
+/// The run whose topics are served.
+#[derive(Clone, Debug)]
+pub(crate) struct FoxgloveSource {
+    pub(crate) socket: PathBuf,
+}
+
+/// Serves a client until it leaves, is too slow, or the run or the studio ends.
+pub(crate) fn serve(stream: TcpStream, source: &FoxgloveSource, is_over: &AtomicBool) {
+    // A client that has left needs no report, and the end of the run closes the connection.
+    let _ = exchange(stream, source, is_over);
+}
+
+fn exchange(
+    stream: TcpStream,
+    source: &FoxgloveSource,
+    is_over: &AtomicBool,
+) -> Result<(), Box<dyn std::error::Error>> {
+    stream.set_nodelay(true)?;
+    stream.set_write_timeout(Some(SLOWEST))?;
+    let limits =
+        WebSocketConfig::default().max_message_size(Some(REQUEST_LIMIT)).max_frame_size(Some(REQUEST_LIMIT));
+    let mut socket = WebSocket::from_raw_socket(stream, Role::Server, Some(limits));
+    let mut client = ControlClient::connect(&source.socket)?;
+    let run = client.describe()?;
+    let info = json!({"op": "serverInfo", "name": format!("monas: {}", run.name), "capabilities": [],
+        "supportedEncodings": ["protobuf"], "metadata": {}, "sessionId": run.process.to_string()});
+    socket.send(Message::text(info.to_string()))?;
+    let mut channels = Channels::default();
+    let mut watch: Option<WatchStream> = None;
+    let mut due = now();
+    while !is_over.load(Ordering::SeqCst) {
+        if now() >= due {
+            let news = channels.look(&mut client)?;
+            if !news.is_empty() {
+                let text = json!({"op": "advertise", "channels": news}).to_string();
+                socket.send(Message::text(text))?;
+            }
+            due = now() + TOPICS;
+        }
+        if let Some(request) = next_request(&mut socket, PATIENCE)? {
+            match channels.handle(&request) {
+                Ok(false) => {}
+                Ok(true) => watch = channels.watch(&source.socket)?,
+                Err(reason) => {
+                    let status = json!({"op": "status", "level": 2, "message": reason});
+                    socket.send(Message::text(status.to_string()))?;
+                }
+            }
+        }
+        let Some(watch) = &mut watch else { continue };
+        let mut patience = PATIENCE;
+        for _ in 0..BATCH {
+            let Some(seen) = watch.wait(patience)? else { break };
+            for frame in channels.frames(&seen) {
+                socket.send(Message::binary(frame))?;
+            }
+            patience = Duration::ZERO;
+        }
+    }
+    Ok(())
+}
+
+/// The channels of a run, and what a client has subscribed to.
+#[derive(Default)]
+struct Channels {
+    /// By host and topic.
+    ids: BTreeMap<(String, String), u64>,
+    /// By the client's number: the channel.
+    subscriptions: BTreeMap<u32, u64>,
+}
+
+impl Channels {
+    /// The topics that are new.
+    fn look(&mut self, client: &mut ControlClient) -> Result<Vec<Value>, monas_link::Error> {
+        let mut news = Vec::new();
+        for topic in client.topics("", "")? {
+            let key = (topic.host.clone(), topic.path.clone());
+            if self.ids.contains_key(&key) {
+                continue;
+            }
+            let schema = client.schema(&topic.path)?;
+            let id = self.ids.len() as u64 + 1;
+            news.push(json!({"id": id, "topic": format!("/{}/{}", topic.host, topic.path),
+                "encoding": "protobuf", "schemaName": schema.r#type, "schema": base64(&schema.descriptors),
+                "schemaEncoding": "protobuf"}));
+            self.ids.insert(key, id);
+        }
+        Ok(news)
+    }
+
+    /// Handles a request. Returns whether the subscriptions are others.
+    ///
+    /// # Errors
+    /// What is wrong, for people.
+    fn handle(&mut self, request: &str) -> Result<bool, String> {
+        let request: Value = serde_json::from_str(request).map_err(|error| error.to_string())?;
+        let number = |value: &Value| value.as_u64().and_then(|number| u32::try_from(number).ok());
+        let list = |key: &str| request[key].as_array().cloned().unwrap_or_default();
+        match request["op"].as_str().unwrap_or_default() {
+            "subscribe" => {
+                for one in list("subscriptions") {
+                    let (Some(id), Some(channel)) = (number(&one["id"]), one["channelId"].as_u64()) else {
+                        return Err("a subscription has the numbers `id` and `channelId`".into());
+                    };
+                    if !self.ids.values().any(|known| *known == channel) {
+                        return Err(format!("there is no channel {channel}"));
+                    }
+                    if self.subscriptions.len() >= SUBSCRIPTIONS {
+                        return Err(format!("no more than {SUBSCRIPTIONS} subscriptions"));
+                    }
+                    self.subscriptions.insert(id, channel);
+                }
+                Ok(true)
+            }
+            "unsubscribe" => {
+                for id in list("subscriptionIds").iter().filter_map(number) {
+                    self.subscriptions.remove(&id);
+                }
+                Ok(true)
+            }
+            other => Err(format!("`{other}` is not served: clients can only subscribe")),
+        }
+    }
+
+    /// A stream of all topics with subscriptions; none without any.
+    fn watch(&self, socket: &std::path::Path) -> Result<Option<WatchStream>, monas_link::Error> {
+        let wanted = self.ids.iter().filter(|(_, id)| self.subscriptions.values().any(|known| known == *id));
+        let mut topics: Vec<&str> = wanted.map(|((_, topic), _)| topic.as_str()).collect();
+        topics.sort_unstable();
+        topics.dedup();
+        if topics.is_empty() {
+            return Ok(None);
+        }
+        ControlClient::connect(socket)?.watch_all("", &topics, true).map(Some)
+    }
+
+    /// The frames of a message: its kind, the subscription, the time of publication in nanoseconds,
+    /// the encoding.
+    fn frames(&self, seen: &Seen) -> Vec<Vec<u8>> {
+        let Some(channel) = self.ids.get(&(seen.from.clone(), seen.path.clone())) else { return Vec::new() };
+        let subscribed = self.subscriptions.iter().filter(|(_, known)| *known == channel);
+        let frame = |(id, _): (&u32, &u64)| {
+            let mut frame = Vec::with_capacity(13 + seen.payload.len());
+            frame.push(MESSAGE_DATA);
+            frame.extend(id.to_le_bytes());
+            frame.extend(seen.local.to_le_bytes());
+            frame.extend(&seen.payload);
+            frame
+        };
+        subscribed.map(frame).collect()
+    }
+}
+
+/// The protocol's encoding of bytes in JSON.
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let byte = |place: usize| u32::from(chunk.get(place).copied().unwrap_or_default());
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for place in 0..4 {
+            let digit = DIGITS[(bits >> (18 - 6 * place) & 63) as usize];
+            text.push(if place <= chunk.len() { char::from(digit) } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::base64;
+
+    #[test]
+    fn bytes_are_encoded_with_padding() {
+        // RFC 4648, section 10
+        for (bytes, text) in
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
+        {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! A viewer of a run on this computer: its present moment, or one before.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use monas::records::Chart;
+use monas_link::control::{ControlClient, WatchStream};
+use serde_json::{Value, json};
+
+use crate::chart_view::seconds;
+use crate::live_run::LiveState;
+use crate::pace::Pace;
+use crate::run_view::{RunView, ViewCursor};
+use crate::source::Session;
+use crate::viewer_request::ViewerRequest;
+
+/// The fastest playing of a past moment.
+const FASTEST: f64 = 1000.0;
+
+/// A second in nanoseconds: the timeline grows in seconds.
+const SECOND: u64 = 1_000_000_000;
+
+/// The most messages of a watched topic that are skipped for the newest.
+const SKIPPED: usize = 4096;
+
+/// A viewer of a run.
+pub(crate) struct LiveSession {
+    state: Arc<LiveState>,
+    cursor: ViewCursor,
+    /// The pace that the viewer knows.
+    pace: Option<f64>,
+    watched: Option<WatchedTopic>,
+    /// The moment that is looked at, if it is not the present one.
+    past: Option<PastMoment>,
+    /// Whether the viewer has to forget what it has, since the moment is not a later one.
+    is_elsewhere: bool,
+    /// What the viewer has of the ring: its events, its end in seconds.
+    ring: Option<(u64, u64)>,
+}
+
+/// A moment of a run that goes on meanwhile.
+struct PastMoment {
+    view: RunView,
+    /// The number of the messages that it has.
+    number: u64,
+    /// How many seconds are played in a second; 0 while it is held.
+    factor: f64,
+}
+
+/// The topic whose messages a viewer sees.
+struct WatchedTopic {
+    stream: WatchStream,
+    /// The epoch of the run.
+    epoch: u64,
+    host: String,
+    topic: String,
+    count: u64,
+}
+
+impl Session for LiveSession {
+    fn handle(&mut self, request: ViewerRequest) -> Option<Value> {
+        match request {
+            ViewerRequest::Picture(key) => {
+                let view = self.state.view();
+                Some(json!({"type": "picture", "key": key, "picture": view.picture(&key)}))
+            }
+            ViewerRequest::Watch { host, topic } => {
+                self.watched = None;
+                match self.watch(&host, &topic) {
+                    Ok(watched) => {
+                        self.watched = Some(watched);
+                        None
+                    }
+                    Err(error) => Some(
+                        json!({"type": "refused", "host": host, "topic": topic, "reason": error.to_string()}),
+                    ),
+                }
+            }
+            ViewerRequest::Unwatch => {
+                self.watched = None;
+                None
+            }
+            ViewerRequest::Pace(factor) => {
+                if let Some(past) = &mut self.past {
+                    past.factor = factor.min(FASTEST);
+                    self.ring = None;
+                } else if let Some(pace) = &self.state.pace {
+                    pace.set(factor);
+                }
+                None
+            }
+            ViewerRequest::Seek(time) => {
+                let time = (time * 1e9) as u64;
+                let number = self.state.ring().number_until(time);
+                self.go_to(number, time);
+                None
+            }
+            ViewerRequest::Step { key, is_back } => self.step(&key, is_back, |_| true),
+            ViewerRequest::Jump { key, transition, is_back } => self.step(&key, is_back, |step| {
+                step.selected.contains(&transition) || step.taken.contains(&transition)
+            }),
+            ViewerRequest::Live => {
+                self.go_live();
+                None
+            }
+            ViewerRequest::Why { .. } | ViewerRequest::WhyTransition { .. } => None,
+        }
+    }
+
+    fn frame(&mut self, elapsed: Duration) -> Option<Value> {
+        self.play(elapsed);
+        let sample = self.sample();
+        let pace = self.state.pace.as_ref().map(Pace::factor);
+        let is_elsewhere = std::mem::take(&mut self.is_elsewhere);
+        if is_elsewhere {
+            self.cursor = ViewCursor::default();
+        }
+        let scene = self.state.scene.clone();
+        let (frame, now) = match &mut self.past {
+            Some(past) => {
+                past.view.link = self.state.view().link.clone();
+                (past.view.frame(&mut self.cursor, scene.as_deref()), past.view.now)
+            }
+            None => {
+                let mut view = self.state.view();
+                (view.frame(&mut self.cursor, scene.as_deref()), view.now)
+            }
+        };
+        let facts = self.facts(frame.as_ref().is_some_and(|frame| frame.get("run").is_some()));
+        if frame.is_none() && sample.is_none() && facts.is_none() && pace == self.pace {
+            return None;
+        }
+        let mut frame = frame.unwrap_or_else(|| json!({"type": "frame", "now": seconds(now)}));
+        if let Some(sample) = sample {
+            frame["sample"] = sample;
+        }
+        if let Some(facts) = facts {
+            frame["tape"] = facts;
+        }
+        if is_elsewhere {
+            frame["elsewhere"] = json!(true);
+        }
+        if pace != self.pace || frame.get("run").is_some() {
+            self.pace = pace;
+            // null for a run whose pace is its own; JSON has no infinity
+            frame["pace"] =
+                json!({"is_set_here": pace.is_some(), "factor": pace.filter(|pace| pace.is_finite())});
+        }
+        Some(frame)
+    }
+}
+
+impl LiveSession {
+    pub(crate) fn new(state: Arc<LiveState>) -> LiveSession {
+        LiveSession {
+            state,
+            cursor: ViewCursor::default(),
+            pace: None,
+            watched: None,
+            past: None,
+            is_elsewhere: false,
+            ring: None,
+        }
+    }
+
+    /// The facts of the timeline, if the viewer does not know them.
+    fn facts(&mut self, is_new: bool) -> Option<Value> {
+        let now = self.state.view().now;
+        let ring = self.state.ring();
+        let known = Some((ring.event_count, now / SECOND));
+        if !ring.has_begun() || (self.ring == known && !is_new) {
+            return None;
+        }
+        self.ring = known;
+        let factor = self.past.as_ref().map(|past| past.factor);
+        Some(
+            json!({"begin": seconds(ring.begin_time()), "end": seconds(now), "factor": factor.unwrap_or(1.0),
+            "events": ring.events(), "live": factor.is_none()}),
+        )
+    }
+
+    /// Goes to a moment of the run, or to the present one.
+    fn go_to(&mut self, number: u64, time: u64) {
+        let (now, ring) = (self.state.view().now, self.state.ring());
+        let time = time.max(ring.begin_time());
+        let number = number.max(ring.number_until(ring.begin_time()));
+        if !ring.has_begun() || time >= now {
+            drop(ring);
+            self.go_live();
+        } else if let Some(view) = ring.moment(number, time) {
+            drop(ring);
+            self.past = Some(PastMoment { view, number, factor: 0.0 });
+            (self.is_elsewhere, self.ring) = (true, None);
+        }
+    }
+
+    fn go_live(&mut self) {
+        self.is_elsewhere |= self.past.take().is_some();
+        self.ring = None;
+    }
+
+    /// Goes to another step of a chart.
+    fn step(&mut self, key: &str, is_back: bool, is_wanted: impl Fn(&Chart) -> bool) -> Option<Value> {
+        let ring = self.state.ring();
+        let number = self.past.as_ref().map_or(ring.end(), |past| past.number);
+        let found = ring.step_from(number, key, is_back, is_wanted);
+        drop(ring);
+        if let Some((number, time)) = found {
+            self.go_to(number, time);
+        }
+        None
+    }
+
+    /// Plays a past moment; at the present one it is live again.
+    fn play(&mut self, elapsed: Duration) {
+        let (now, epoch) = {
+            let view = self.state.view();
+            (view.now, view.epoch)
+        };
+        let Some(past) = self.past.as_mut() else { return };
+        let time = past.view.now.saturating_add((elapsed.as_secs_f64() * past.factor * 1e9) as u64);
+        if past.view.epoch != epoch || time >= now {
+            return self.go_live();
+        }
+        if past.factor == 0.0 {
+            return;
+        }
+        let ring = self.state.ring();
+        let number = ring.number_until(time).max(past.number);
+        if ring.advance(&mut past.view, past.number, number, time) {
+            past.number = number;
+        } else {
+            // It is no longer kept.
+            let begin = ring.begin_time();
+            drop(ring);
+            self.go_to(number, begin);
+        }
+    }
+
+    fn watch(&self, host: &str, topic: &str) -> Result<WatchedTopic, monas_link::Error> {
+        let mut client = ControlClient::connect(&self.state.socket)?;
+        if !self.state.view().decoder.knows(topic) {
+            let schema = client.schema(topic)?;
+            self.state.view().decoder.learn(topic, &schema.r#type, &schema.descriptors);
+        }
+        let stream = client.watch(host, topic, true)?;
+        let epoch = self.state.view().epoch;
+        Ok(WatchedTopic { stream, epoch, host: host.into(), topic: topic.into(), count: 0 })
+    }
+
+    /// The newest message of the watched topic, if there is a new one.
+    fn sample(&mut self) -> Option<Value> {
+        let watched = self.watched.as_mut()?;
+        let mut newest = None;
+        for _ in 0..SKIPPED {
+            match watched.stream.wait(Duration::ZERO) {
+                Ok(Some(seen)) => {
+                    watched.count += 1;
+                    newest = Some(seen);
+                }
+                Ok(None) => break,
+                Err(error) => {
+                    let reason = error.to_string();
+                    let (host, topic) = (watched.host.clone(), watched.topic.clone());
+                    self.watched = None;
+                    return Some(json!({"host": host, "topic": topic, "reason": reason}));
+                }
+            }
+        }
+        let seen = newest?;
+        let (count, epoch) = (watched.count, watched.epoch);
+        let view = self.state.view();
+        if view.epoch != epoch {
+            return None;
+        }
+        let message = view.decoder.decode(&seen.path, &seen.payload);
+        Some(json!({"host": seen.host, "from": seen.from, "topic": seen.path, "publisher": seen.publisher,
+            "sequence": seen.sequence, "t": seconds(seen.local), "size": seen.size, "count": count,
+            "message": message}))
+    }
+}
