@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::{Error, ErrorKind, Robot};
+use crate::{Disturbances, Error, ErrorKind, Robot, WrappedBody};
 
 /// A kind of body, as [`body_kind!`](crate::body_kind!) registers it at link time.
 #[derive(Clone, Copy)]
@@ -25,6 +25,41 @@ pub struct BodySite {
     /// The body of the simulated world that the robot stands in, in simulated time; none on a
     /// robot.
     pub simulated: Option<Box<dyn Robot>>,
+}
+
+/// The body of a robot, as a configuration names it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct BodySettings {
+    /// The name of its kind.
+    pub kind: String,
+    /// Where its interface answers; by default where the kind expects it.
+    pub address: Option<String>,
+    /// What lies between the body and the software.
+    pub disturbances: Disturbances,
+}
+
+impl Default for BodySettings {
+    /// The simulated world's own body, without disturbances.
+    fn default() -> BodySettings {
+        let disturbances = Disturbances::default();
+        BodySettings { kind: BodyKind::DEFAULT.to_owned(), address: None, disturbances }
+    }
+}
+
+impl BodySettings {
+    /// Opens the body, with the simulated world's body if there is one. The seed determines the
+    /// disturbances.
+    ///
+    /// # Errors
+    /// There is no such kind, or the body does not answer.
+    pub fn open(&self, simulated: Option<Box<dyn Robot>>, seed: u64) -> Result<Box<dyn Robot>, Error> {
+        let kind = BodyKind::named(&self.kind)?;
+        let body = (kind.open)(BodySite { address: self.address.clone(), simulated })?;
+        Ok(match self.disturbances == Disturbances::default() {
+            true => body,
+            false => Box::new(WrappedBody::new(body, self.disturbances, seed)),
+        })
+    }
 }
 
 /// Every kind of body in the crates of this program.

@@ -46,13 +46,15 @@ pub mod conformance;
 mod joint_targets;
 mod robot;
 pub mod topics;
+mod wrapped_body;
 
 narukom::include_messages!("monas.robot");
 
 pub use anatomy::{Anatomy, Camera, Joint, Limits};
-pub use body_kind::{BodyKind, BodySite};
+pub use body_kind::{BodyKind, BodySettings, BodySite};
 pub use joint_targets::JointTargets;
 pub use robot::{Error, ErrorKind, Percepts, Robot};
+pub use wrapped_body::{Disturbances, WrappedBody};
 
 /// What [`body_kind!`] expands to.
 #[doc(hidden)]
