@@ -3,6 +3,7 @@
 
 mod absences;
 mod allowances;
+mod body_kinds;
 mod circles;
 mod columns;
 mod documents;
@@ -77,6 +78,7 @@ fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     findings.extend(names::check(workspace));
     findings.extend(texts::check(workspace));
     findings.extend(documents::check(workspace));
+    findings.extend(body_kinds::check(workspace));
     findings.extend(road::check(workspace));
     findings.extend(allowances::check(workspace));
     findings.sort();

@@ -47,6 +47,22 @@ pub struct Camera {
     pub height: f64,
 }
 
+/// A joint with one axis.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Joint {
+    /// Its name: `HeadYaw`.
+    pub name: &'static str,
+    /// The range of its angle, radians.
+    pub limits: Limits,
+    /// The index of the joint that carries it; none for a joint at the torso.
+    pub parent: Option<usize>,
+    /// Where it is in the frame of that joint, or of the torso, with all angles zero; metres.
+    pub offset: [f64; 3],
+    /// The unit vector about which it turns, in its own frame. It is zero for a joint that does not
+    /// move the links after it, such as the fingers of a hand.
+    pub axis: [f64; 3],
+}
+
 /// The properties and capabilities of a body, known before it moves.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Anatomy {
@@ -70,6 +86,10 @@ pub struct Anatomy {
     pub skills: Vec<Skill>,
     /// Largest radio message in bytes; zero for a body without a radio.
     pub radio: usize,
+    /// The joints, in the order of all messages about joints; none for a body without.
+    pub joints: Vec<Joint>,
+    /// Whether the body has LEDs beyond those in [`Actuators`](crate::Actuators).
+    pub has_leds: bool,
 }
 
 impl Anatomy {
@@ -86,7 +106,14 @@ impl Anatomy {
             camera: None,
             skills: Vec::new(),
             radio: 0,
+            joints: Vec::new(),
+            has_leds: false,
         }
+    }
+
+    /// The index of a joint.
+    pub fn joint(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|joint| joint.name == name)
     }
 }
 

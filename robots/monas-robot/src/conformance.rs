@@ -2,7 +2,10 @@
 
 use narukom::Timestamp;
 
-use crate::{Actuators, Percepts, Posture, Robot, Sensors};
+use crate::{Actuators, ErrorKind, JointCommands, Joints, Percepts, Posture, Robot, Sensors};
+
+/// How far a measured joint may lie beyond its limits, radians: the encoders are not perfect.
+const JOINT_TOLERANCE: f64 = 0.02;
 
 /// Runs the suite on a free-standing body: about twenty seconds of simulated or real time. The body
 /// rests at the end.
@@ -25,7 +28,73 @@ pub fn check(robot: &mut dyn Robot) {
             }
         }
     }
+    now = move_joints(robot, now);
     come_to_rest(robot, now);
+}
+
+/// Checks that joints stay within their limits whatever is commanded, and that commands without a
+/// meaning are refused. A body without joints refuses all. Returns the time afterwards.
+#[allow(clippy::panic)] // see `check`
+fn move_joints(robot: &mut dyn Robot, mut now: Timestamp) -> Timestamp {
+    let command = |joint: usize, target: f64, stiffness: f64| JointCommands {
+        joints: vec![u32::try_from(joint).unwrap_or(u32::MAX)],
+        targets: vec![target],
+        stiffnesses: vec![stiffness],
+    };
+    let (cycle, count) = (robot.anatomy().cycle, robot.anatomy().joints.len());
+    if count == 0 {
+        assert!(robot.command_joints(now, &command(0, 0.0, 1.0)).is_err(), "a joint that is none was moved");
+        return now;
+    }
+    let longer = JointCommands { targets: vec![0.0; 2], ..command(0, 0.0, 1.0) };
+    for bad in [command(0, f64::NAN, 1.0), command(0, 0.0, f64::INFINITY), command(count, 0.0, 1.0), longer] {
+        match robot.command_joints(now, &bad) {
+            Err(error) if error.kind() == ErrorKind::Command => {}
+            other => panic!("{bad:?} was not refused as a command: {other:?}"),
+        }
+    }
+    let mut percepts = Percepts::default();
+    for (joint, target) in [(0, 1e9), (count - 1, -1e9), (0, 0.0)] {
+        now += cycle;
+        sense(robot, now, &mut percepts);
+        let before = clamped(&percepts);
+        if let Err(error) = robot.command_joints(now, &command(joint, target, 1.0)) {
+            panic!("a command beyond the limits was refused: {error}");
+        }
+        for _ in 0..100 {
+            now += cycle;
+            sense(robot, now, &mut percepts);
+        }
+        let reported = clamped(&percepts) - before;
+        assert_eq!(reported, u64::from(target != 0.0), "commands beyond a limit are counted");
+    }
+    if let Err(error) = robot.command_joints(now, &JointCommands::default()) {
+        panic!("the joints were not released: {error}");
+    }
+    now
+}
+
+fn clamped(percepts: &Percepts) -> u64 {
+    percepts.joints.as_ref().map_or(0, |joints| joints.clamped)
+}
+
+/// Checks the measurements of the joints.
+fn check_joints(robot: &dyn Robot, joints: Option<&Joints>, now: Timestamp) {
+    let anatomy = robot.anatomy();
+    let Some(joints) = joints else {
+        assert!(anatomy.joints.is_empty(), "a body with joints reports none");
+        return;
+    };
+    let Joints { measured_at, positions, velocities, temperatures, currents, stiffnesses, .. } = joints;
+    assert!(*measured_at <= now.as_nanos(), "the joints were measured in the future: {joints:?}");
+    for values in [positions, velocities, temperatures, currents, stiffnesses] {
+        assert_eq!(values.len(), anatomy.joints.len(), "a value for each joint: {joints:?}");
+        assert!(values.iter().all(|value| value.is_finite()), "a joint is no number: {joints:?}");
+    }
+    for (joint, &position) in anatomy.joints.iter().zip(positions) {
+        let beyond = (position - joint.limits.clamp(position)).abs();
+        assert!(beyond <= JOINT_TOLERANCE, "`{}` is beyond its limits: {position}", joint.name);
+    }
 }
 
 /// Checks that a body comes to rest on request and stays there.
@@ -76,8 +145,7 @@ fn speak(robot: &mut dyn Robot, now: Timestamp) {
 
 #[allow(clippy::panic)] // see `check`
 fn sense(robot: &mut dyn Robot, now: Timestamp, percepts: &mut Percepts) {
-    (percepts.sightings, percepts.announcement) = (None, None);
-    percepts.heard.clear();
+    percepts.clear_news();
     if let Err(error) = robot.sense(now, percepts) {
         panic!("sensing failed: {error}");
     }
@@ -96,6 +164,7 @@ fn sense(robot: &mut dyn Robot, now: Timestamp, percepts: &mut Percepts) {
         sensors.odometry_turn,
     ];
     assert!(felt.iter().all(|value| value.is_finite()), "a sensor is no number: {sensors:?}");
+    check_joints(robot, percepts.joints.as_ref(), now);
     for sighting in percepts.sightings.iter().flat_map(|sightings| &sightings.objects) {
         assert!(
             sighting.distance >= 0.0 && sighting.bearing.abs() <= 3.2,

@@ -1,15 +1,19 @@
 //! Bodies: sensor messages, command messages, and the trait that connects them.
 //!
-//! A robot's algorithms communicate with its body through six messages only: inputs are
-//! [`Sensors`], [`Sightings`], [`Announcement`] and [`Heard`] (radio messages of the team), outputs
-//! are [`Actuators`] and [`Said`]. The runtime owns the body, a value of a type that implements
-//! [`Robot`]; it publishes the sensor messages on the topics of [`topics`] and passes the newest
-//! actuators to the body. An activity is therefore independent of the robot it runs on: a disk on
-//! the embedded field, a humanoid on a physics server, or a Nao.
+//! A robot's algorithms communicate with its body through messages only. On the level of the plane,
+//! which every body has, the inputs are [`Sensors`], [`Sightings`], [`Announcement`] and [`Heard`]
+//! (radio messages of the team), the outputs [`Actuators`] and [`Said`]. On the level of the
+//! joints, as far as a body has them, the inputs are [`Joints`], [`Inertial`], [`Contacts`],
+//! [`Sonar`] and [`Battery`], the outputs [`JointCommands`] and [`Leds`]. The runtime owns the
+//! body, a value of a type that implements [`Robot`]; it publishes the sensor messages on the
+//! topics of [`topics`] and passes the newest actuators to the body. An activity is therefore
+//! independent of the robot it runs on: a disk on the embedded field, a humanoid on a physics
+//! server, or a Nao.
 //!
-//! The capabilities of a body are described by its [`Anatomy`]: joint limits, the camera's field of
-//! view, the named [skills](Skill). [`conformance::check`] is the test suite that every body has to
-//! pass.
+//! The capabilities of a body are described by its [`Anatomy`]: joints with their limits, the
+//! camera's field of view, the named [skills](Skill). A configuration names a body by its
+//! [`BodyKind`], which [`body_kind!`] registers. [`conformance::check`] is the test suite that
+//! every body has to pass.
 //!
 //! ```
 //! use std::time::Duration;
@@ -37,11 +41,24 @@
 //! ```
 
 mod anatomy;
+mod body_kind;
 pub mod conformance;
+mod joint_targets;
 mod robot;
 pub mod topics;
+mod wrapped_body;
 
 narukom::include_messages!("monas.robot");
 
-pub use anatomy::{Anatomy, Camera, Limits};
+pub use anatomy::{Anatomy, Camera, Joint, Limits};
+pub use body_kind::{BodyKind, BodySettings, BodySite};
+pub use joint_targets::JointTargets;
 pub use robot::{Error, ErrorKind, Percepts, Robot};
+pub use wrapped_body::{Disturbances, WrappedBody};
+
+/// What [`body_kind!`] expands to.
+#[doc(hidden)]
+pub mod linked {
+    pub use crate::body_kind::BODY_KINDS;
+    pub use narukom::linkme;
+}

@@ -2,7 +2,10 @@
 
 use narukom::Timestamp;
 
-use crate::{Actuators, Anatomy, Announcement, Heard, Sensors, Sightings};
+use crate::{
+    Actuators, Anatomy, Announcement, Battery, Contacts, Heard, Inertial, JointCommands, Joints, Leds,
+    Sensors, Sightings, Sonar,
+};
 
 /// Percepts of a body since the last call. Reused from cycle to cycle.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -15,6 +18,26 @@ pub struct Percepts {
     pub announcement: Option<Announcement>,
     /// Radio messages of team mates, in the order of reception.
     pub heard: Vec<Heard>,
+    /// The joints, for a body whose anatomy has joints. This and the following values are kept from
+    /// call to call and overwritten in place.
+    pub joints: Option<Joints>,
+    /// The inertial unit, if the body has one.
+    pub inertial: Option<Inertial>,
+    /// What touches the body, if it feels it.
+    pub contacts: Option<Contacts>,
+    /// Distances by sound, if the body measures them.
+    pub sonar: Option<Sonar>,
+    /// The battery, if the body reports more than its charge.
+    pub battery: Option<Battery>,
+}
+
+impl Percepts {
+    /// Clears what is present only when it is new: sightings, announcement and radio messages.
+    pub fn clear_news(&mut self) {
+        self.sightings = None;
+        self.announcement = None;
+        self.heard.clear();
+    }
 }
 
 /// A body. The runtime owns it and calls [`sense`](Robot::sense) and [`act`](Robot::act), in this
@@ -31,6 +54,25 @@ pub trait Robot: Send {
 
     /// Sets the commands from now on. Values beyond the limits of the anatomy are clamped.
     fn act(&mut self, now: Timestamp, actuators: &Actuators) -> Result<(), Error>;
+
+    /// Sets the commands to single joints from now on, see [`JointCommands`].
+    ///
+    /// # Errors
+    /// The body has no joints to command (the default implementation), a value is not finite, or
+    /// the commands do not fit the anatomy; the previous commands then hold.
+    fn command_joints(&mut self, _now: Timestamp, _commands: &JointCommands) -> Result<(), Error> {
+        let model = &self.anatomy().model;
+        Err(Error::new(ErrorKind::Hardware, format!("the {model} has no joints to command")))
+    }
+
+    /// Sets the LEDs, see [`Leds`].
+    ///
+    /// # Errors
+    /// The body has no LEDs of its own (the default implementation).
+    fn light(&mut self, _now: Timestamp, _leds: &Leds) -> Result<(), Error> {
+        let model = &self.anatomy().model;
+        Err(Error::new(ErrorKind::Hardware, format!("the {model} has no LEDs to set")))
+    }
 
     /// Makes the body safe permanently: in any state it comes to rest, sits down, switches off the
     /// stiffness of its joints, and ignores further commands. It may be called more than once. The
@@ -71,6 +113,10 @@ pub enum ErrorKind {
     Protocol,
     /// A part reports a fault.
     Hardware,
+    /// A command has no meaning for the body: a value is not finite, or there is no such joint.
+    Command,
+    /// There is no such kind of body, or it cannot be opened as configured.
+    Configuration,
 }
 
 impl Error {

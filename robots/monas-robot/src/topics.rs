@@ -1,6 +1,9 @@
 //! The topics between a body and the agents of its host.
 
-use crate::{Actuators, Announcement, Heard, Said, Sensors, Sightings};
+use crate::{
+    Actuators, Announcement, Battery, Contacts, Heard, Inertial, JointCommands, Joints, Leds, Said, Sensors,
+    Sightings, Sonar,
+};
 
 narukom::topic! {
     /// Sensor readings of every cycle of the body; more than half a second at 100 Hz.
@@ -15,4 +18,18 @@ narukom::topic! {
     pub HEARD: narukom::Data<Heard, 32> = "body/heard";
     /// Commands to the body.
     pub ACTUATORS: narukom::State<Actuators> = "body/actuators";
+    /// The joints, of every cycle of a body that has joints.
+    pub JOINTS: narukom::Data<Joints, 64> = "body/joints";
+    /// The inertial unit, of every cycle.
+    pub INERTIAL: narukom::Data<Inertial, 64> = "body/inertial";
+    /// What touches the body, of every cycle.
+    pub CONTACTS: narukom::State<Contacts> = "body/contacts";
+    /// Distances by sound.
+    pub SONAR: narukom::State<Sonar> = "body/sonar";
+    /// The battery.
+    pub BATTERY: narukom::State<Battery> = "body/power";
+    /// Commands to single joints.
+    pub JOINT_COMMANDS: narukom::State<JointCommands> = "body/joint_commands";
+    /// Colours of the LEDs.
+    pub LEDS: narukom::State<Leds> = "body/leds";
 }

@@ -7,6 +7,7 @@ mod publishers;
 use std::path::Path;
 use std::sync::Arc;
 
+use monas_robot::{BodyKind, BodySettings, Disturbances};
 use yase::{Diagnostic, Source};
 
 use super::element::Element;
@@ -35,6 +36,8 @@ pub struct HostSetup {
     pub links: Vec<LinkConfig>,
     /// Its loaded modules; the registry of a run with these agents contains them.
     pub modules: Vec<Module>,
+    /// The body that the configuration names.
+    pub body: Option<BodySettings>,
     /// The text they were read from.
     pub source: Option<Arc<Source>>,
 }
@@ -90,6 +93,7 @@ pub fn assemble(
     modules::read(&mut reader, elements);
     // Links are read first: activities executed elsewhere are checked against them.
     reader.links(elements);
+    reader.body(elements);
     reader.agents(elements);
     reader.unpublished(elements);
     reader.setup
@@ -114,6 +118,41 @@ impl AgentReader<'_> {
                     LinkReader { path: self.path, grammar: self.grammar, diagnostics: self.diagnostics };
                 self.setup.links.extend(reader.link(element));
             }
+        }
+    }
+
+    fn body(&mut self, elements: &[Element]) {
+        for element in elements {
+            if element.is("agents") {
+                self.body(element.children());
+            } else if element.is("body") {
+                if self.setup.body.is_some() {
+                    let found = element.error("E0329", element.name_span(), "a robot has one body");
+                    self.diagnostics.push(found.with_hint("remove one of the two `body`"));
+                }
+                self.setup.body = Some(self.body_settings(element));
+            }
+        }
+    }
+
+    fn body_settings(&mut self, element: &Element) -> BodySettings {
+        let values = Values::of(element, self.grammar);
+        let kind = values.text("kind").unwrap_or(BodyKind::DEFAULT).to_owned();
+        if let Err(error) = BodyKind::named(&kind) {
+            let found = match values.given("kind") {
+                Some(given) => given.error("E0328", error.to_string()),
+                None => element.error("E0328", element.name_span(), error.to_string()),
+            };
+            self.diagnostics.push(found.with_hint("link the crate of the body: `use its_name as _;`"));
+        }
+        BodySettings {
+            kind,
+            address: values.text("address").map(str::to_owned),
+            disturbances: Disturbances {
+                delay: values.duration("delay").unwrap_or_default(),
+                noise: values.number("noise").unwrap_or_default(),
+                loss: values.number("loss").unwrap_or_default(),
+            },
         }
     }
 

@@ -1,6 +1,8 @@
 //! The connection of a body to its host: publishes what it senses and forwards the agents'
 //! commands.
 
+mod joint_bridge;
+
 use std::time::Duration;
 
 use monas_robot::topics::{ACTUATORS, ANNOUNCEMENT, HEARD, SAID, SENSORS, SIGHTINGS};
@@ -8,6 +10,8 @@ use monas_robot::{Announcement, Heard, Percepts, Robot, Sensors, Sightings};
 use narukom::{Blackboard, Hub, Publisher, PublisherId, Retention, Timestamp, Topic};
 
 use monas_core::error::{Error, ErrorKind};
+
+use joint_bridge::JointBridge;
 
 /// The identity of a message: its publisher and sequence number.
 type MessageId = (PublisherId, u64);
@@ -20,6 +24,8 @@ pub(crate) struct BodyBridge {
     sightings: Publisher<Sightings>,
     announcement: Publisher<Announcement>,
     heard: Publisher<Heard>,
+    /// The level of the joints, for a body that has them.
+    joints: Option<JointBridge>,
     commands: Blackboard,
     /// The most recently forwarded actuator commands and speech.
     delivered_commands: Option<MessageId>,
@@ -33,8 +39,13 @@ impl BodyBridge {
     pub(crate) const PUBLISHER: &'static str = "body";
 
     pub(crate) fn new(robot: Box<dyn Robot>, hub: &Hub) -> Result<BodyBridge, Error> {
+        let joints = match robot.anatomy() {
+            anatomy if anatomy.joints.is_empty() && !anatomy.has_leds => None,
+            _ => Some(JointBridge::new(hub)?),
+        };
         Ok(BodyBridge {
             robot,
+            joints,
             percepts: Percepts::default(),
             sensors: hub.publisher(SENSORS, BodyBridge::PUBLISHER).map_err(Error::hub)?,
             sightings: hub.publisher(SIGHTINGS, BodyBridge::PUBLISHER).map_err(Error::hub)?,
@@ -54,9 +65,7 @@ impl BodyBridge {
 
     /// Publishes the present sensor values.
     pub(crate) fn sense(&mut self, now: Timestamp) -> Result<(), Error> {
-        self.percepts.sightings = None;
-        self.percepts.announcement = None;
-        self.percepts.heard.clear();
+        self.percepts.clear_news();
         self.robot.sense(now, &mut self.percepts).map_err(failed)?;
         self.sensors.publish(self.percepts.sensors, now);
         if let Some(sightings) = self.percepts.sightings.take() {
@@ -67,6 +76,9 @@ impl BodyBridge {
         }
         for heard in self.percepts.heard.drain(..) {
             self.heard.publish(heard, now);
+        }
+        if let Some(joints) = &mut self.joints {
+            joints.publish(&self.percepts, now);
         }
         Ok(())
     }
@@ -82,6 +94,9 @@ impl BodyBridge {
         {
             // A body without speech can still walk.
             tracing::error!(robot = %self.commands.hub().host(), "nothing is said: {error}");
+        }
+        if let Some(joints) = &mut self.joints {
+            joints.act(&self.commands, &mut *self.robot, now);
         }
         match newest(&self.commands, ACTUATORS, &mut self.delivered_commands) {
             Some(actuators) => self.robot.act(now, actuators).map_err(failed),

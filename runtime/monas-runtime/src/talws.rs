@@ -8,6 +8,7 @@ use monas_core::listener::ChartListener;
 use monas_core::registry::Registry;
 use monas_core::statistics::Statistics;
 use monas_link::LinkConfig;
+use monas_robot::BodySettings;
 use narukom::Observer;
 use yase::{Diagnostic, Span};
 
@@ -45,6 +46,8 @@ use crate::simulation::Simulation;
 #[derive(Default)]
 pub struct Talws {
     config: RunConfig,
+    /// The body of the host [`LOCAL`](Talws::LOCAL) that a configuration names.
+    body: Option<BodySettings>,
 }
 
 impl Talws {
@@ -71,10 +74,11 @@ impl Talws {
         Ok(Talws::new().registry(registry).setup(setup))
     }
 
-    /// Adds the agents, links and modules of a configuration to the host [`LOCAL`](Talws::LOCAL).
-    /// Changes at runtime can be saved into its text.
+    /// Adds the agents, links, modules and body of a configuration to the host [`LOCAL`](Talws::LOCAL).
+    /// The body is opened when the run begins. Changes at runtime can be saved into its text.
     pub fn setup(mut self, setup: monas_config::HostSetup) -> Talws {
-        let monas_config::HostSetup { agents, links, modules, source } = setup;
+        let monas_config::HostSetup { agents, links, modules, body, source } = setup;
+        self.body = body.or(self.body);
         let local = self.local();
         local.modules.extend(modules);
         local.agents.extend(agents);
@@ -147,7 +151,7 @@ impl Talws {
                 format!("`{}` has links, and other processes do not wait for simulated time", host.name);
             return Err(Error::new(ErrorKind::Link, message).with_hint("pace it, with `simulate_linked`"));
         }
-        Simulation::new(self.config, seed)
+        Simulation::new(self.with_body(seed)?.config, seed)
     }
 
     /// As [`simulate`](Talws::simulate), with the links of all hosts. Messages of links arrive in
@@ -157,7 +161,7 @@ impl Talws {
     /// # Errors
     /// As in [`simulate`](Talws::simulate), and when a link cannot be opened.
     pub fn simulate_linked(self, seed: u64) -> Result<Simulation, Error> {
-        Simulation::new(self.config, seed)
+        Simulation::new(self.with_body(seed)?.config, seed)
     }
 
     /// The diagnostics of a run before its start: charts that do not fit the program, sources
@@ -176,7 +180,19 @@ impl Talws {
     /// # Errors
     /// As in [`simulate`](Talws::simulate), and when a thread cannot be created.
     pub fn start(self) -> Result<RealTimeRun, Error> {
-        RealTimeRun::start(self.config, REAL_TIME_SEED)
+        RealTimeRun::start(self.with_body(REAL_TIME_SEED)?.config, REAL_TIME_SEED)
+    }
+
+    /// Opens the body that a configuration named.
+    fn with_body(mut self, seed: u64) -> Result<Talws, Error> {
+        if let Some(settings) = self.body.take() {
+            let opened = settings.open(None, seed).map_err(|error| {
+                let message = format!("the body `{}` cannot be opened: {error}", settings.kind);
+                Error::new(ErrorKind::Body, message).caused_by(error)
+            });
+            self.local().body = Some(opened?);
+        }
+        Ok(self)
     }
 
     /// Prepares a replay of the agents of these hosts, which need no bodies, on a recording of

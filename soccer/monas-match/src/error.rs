@@ -16,6 +16,8 @@ pub struct Error {
 pub enum ErrorKind {
     /// The field rejects its parameters or the line-up.
     Field,
+    /// A body cannot be opened.
+    Body,
     /// The agents cannot be built or run.
     Agents,
     /// The recording cannot be written or read.
@@ -27,6 +29,11 @@ pub enum ErrorKind {
 impl Error {
     pub(crate) fn field(error: monas_sim::Error) -> Error {
         Error { kind: ErrorKind::Field, message: error.to_string(), source: Some(error.into()) }
+    }
+
+    pub(crate) fn body(host: &str, error: monas_robot::Error) -> Error {
+        let message = format!("the body of {host} cannot be opened: {error}");
+        Error { kind: ErrorKind::Body, message, source: Some(error.into()) }
     }
 
     pub(crate) fn agents(error: monas::Error) -> Error {

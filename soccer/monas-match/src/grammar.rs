@@ -6,7 +6,7 @@ use monas::config::{AttributeRule, ElementRule, Grammar, Identity, Kind};
 use monas_sim::{FieldGeometry, MatchRules, Parameter, Physics, Radio};
 
 /// The roots of a robot's role.
-pub(crate) const ROLE: [&str; 3] = ["agent", "provider", "link"];
+pub(crate) const ROLE: [&str; 4] = ["agent", "provider", "link", "body"];
 
 /// The grammar of matches, fields, simulators and roles.
 pub fn of_matches() -> Grammar {

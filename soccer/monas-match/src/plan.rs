@@ -9,7 +9,7 @@ use monas::{
     Agent, ChartListener, ConfigurationBundle, HostConfig, LinkConfig, Module, Registry, RunHash, Talws,
 };
 use monas_gamecontroller::{ControlReceiver, ControlSender, RuleBook};
-use monas_robot::Robot;
+use monas_robot::{BodySettings, Robot};
 use monas_sim::{FieldGeometry, MatchRules, Physics, Radio, Setup, SharedField, SimulatedWorld, TeamSetup};
 use monas_tape::Tape;
 use yase::{Diagnostic, Source};
@@ -90,7 +90,7 @@ fn robots(
             diagnostics.extend(resolved.diagnostics);
             diagnostics.extend(settings.unmatched(&robot.own, resolved.unmatched));
             let setup = config::assemble(&resolved.elements, &robot.role, &registry, diagnostics);
-            let config::HostSetup { agents, links, modules, source } = setup;
+            let config::HostSetup { agents, links, modules, body, source } = setup;
             // Modules loaded for one robot are available to the next.
             registry = modules
                 .iter()
@@ -103,6 +103,7 @@ fn robots(
                 agents,
                 links,
                 modules,
+                body: body.unwrap_or_default(),
                 source,
             });
         }
@@ -171,6 +172,7 @@ struct RobotPlan {
     agents: Vec<Agent>,
     links: Vec<LinkConfig>,
     modules: Vec<Module>,
+    body: BodySettings,
     /// The text of its role.
     source: Option<Arc<Source>>,
 }
@@ -316,7 +318,8 @@ impl MatchPlan {
     /// # Errors
     /// The field rejects its parameters or the line-up.
     pub fn check(self) -> Result<Vec<Diagnostic>, Error> {
-        Ok(self.set_up(0)?.talws.check())
+        // No body is opened: a robot need not be there when its configuration is checked.
+        Ok(self.set_up(0, |_, _, _| Ok(None))?.talws.check())
     }
 
     /// Starts the match.
@@ -327,7 +330,10 @@ impl MatchPlan {
         let (length, is_linked, files) = (self.length(), self.is_linked, self.files.clone());
         let settings = self.settings.clone();
         let hosts: Vec<String> = self.robots.iter().map(|robot| robot.host.clone()).collect();
-        let MatchParts { mut talws, pitch, league } = self.set_up(options.seed)?;
+        let parts = self.set_up(options.seed, |settings, simulated, robot| {
+            settings.open(simulated, options.seed.wrapping_add(robot as u64)).map(Some)
+        })?;
+        let MatchParts { mut talws, pitch, league } = parts;
         let hash = RunHash::new();
         talws.observe(Box::new(hash.clone()));
         let tape = options.record;
@@ -344,8 +350,16 @@ impl MatchPlan {
         Ok(RunningMatch::new(simulation, pitch, hash, tape, length, league))
     }
 
-    /// The robots with their bodies on the field.
-    fn set_up(self, seed: u64) -> Result<MatchParts, Error> {
+    /// The robots with their bodies, which `open` opens over those on the field.
+    fn set_up(
+        self,
+        seed: u64,
+        open: impl Fn(
+            &BodySettings,
+            Option<Box<dyn Robot>>,
+            usize,
+        ) -> Result<Option<Box<dyn Robot>>, monas_robot::Error>,
+    ) -> Result<MatchParts, Error> {
         let lineup =
             self.robots.iter().map(|robot| monas_sim::RobotSetup { team: robot.team, number: robot.number });
         let setup = Setup {
@@ -372,8 +386,10 @@ impl MatchPlan {
             }
         });
         for (index, robot) in self.robots.into_iter().enumerate() {
-            let RobotPlan { team, number, host, agents, links, modules, source } = robot;
-            let body = pitch.body(index).map(|body| (self.embody)(team, number, Box::new(body)));
+            let RobotPlan { team, number, host, agents, links, modules, body, source } = robot;
+            let simulated = pitch.body(index).map(|body| Box::new(body) as _);
+            let body = open(&body, simulated, index).map_err(|error| Error::body(&host, error))?;
+            let body = body.map(|body| (self.embody)(team, number, body));
             let (team, number) = (team.into(), number.into());
             let configuration = source;
             talws.host(HostConfig { name: host, team, number, body, agents, links, modules, configuration });

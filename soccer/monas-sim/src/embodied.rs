@@ -11,13 +11,25 @@ mod skill;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use monas_robot::Announcement;
+use monas_robot::{Announcement, BodyKind, BodySite};
 
 use crate::{Error, EventKind, GameState, Pose, SimulatedWorld};
 
 use radio_channel::RadioChannel;
 
 pub use body::FieldBody;
+
+monas_robot::body_kind!(BodyKind {
+    name: BodyKind::DEFAULT,
+    summary: "the simulated world's own body: a disk on the embedded field",
+    open: |site: BodySite| site.simulated.ok_or_else(nowhere),
+    probe: |_| Ok("it answers in matches".to_owned()),
+});
+
+fn nowhere() -> monas_robot::Error {
+    let message = "a body of kind `field` is in a match only: there is no simulated world";
+    monas_robot::Error::new(monas_robot::ErrorKind::Configuration, message)
+}
 
 /// A world shared by the bodies in it. Clones refer to the same world.
 #[derive(Clone)]

@@ -6,7 +6,7 @@ use super::TidyFinding;
 use super::workspace::{Crate, Dependency, Workspace};
 
 /// Every crate of the product and its layer.
-const LAYERS: [(&str, u8); 33] = [
+const LAYERS: [(&str, u8); 34] = [
     ("monas-diagnostics", 0),
     ("monas-files", 0),
     ("narukom", 0),

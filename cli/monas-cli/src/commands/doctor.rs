@@ -1,6 +1,7 @@
 //! `monas doctor`: checks whether this computer and this folder can run agents, and suggests
 //! repairs.
 
+mod bodies;
 mod clock;
 mod permissions;
 mod ports;
@@ -87,6 +88,7 @@ pub(crate) fn execute(
         .into_iter()
         .flatten()
         .chain(ports::findings(arguments))
+        .chain(bodies::findings(arguments))
         .chain([configuration])
         .collect();
     for finding in &findings {

@@ -16,12 +16,14 @@ impl Grammar {
             .children("provider")
             .children("link")
             .children("module")
+            .children("body")
             .children("agents");
         Grammar::default()
             .root(agent())
             .root(provider())
             .root(link())
             .root(module())
+            .root(body())
             .root(agents)
             .with(ElementRule::new("name", "the name of the agent").text("name", Kind::Text))
             .with(activity())
@@ -121,6 +123,27 @@ fn chart_settings() -> [AttributeRule; 9] {
         ),
         attribute("elsewhere", Kind::List, "activities that run in another process"),
     ]
+}
+
+fn body() -> ElementRule {
+    ElementRule::new("body", "the body of the robot; in a match that of the field by default").attributes([
+        attribute("kind", Kind::Name, "its kind; `monas doctor` lists those of the program").or("field"),
+        attribute("address", Kind::Text, "where its interface answers; by default the usual one of the kind"),
+        attribute("delay", Kind::Duration { least: Duration::ZERO }, "delay of commands, for trials")
+            .or("0s"),
+        attribute(
+            "noise",
+            Kind::number_in(0.0, 1.0),
+            "standard deviation of what is added to measured angles and bearings, rad, for trials",
+        )
+        .or("0"),
+        attribute(
+            "loss",
+            Kind::number_in(0.0, 1.0),
+            "probability with which sightings and radio messages are lost, for trials",
+        )
+        .or("0"),
+    ])
 }
 
 fn agent() -> ElementRule {

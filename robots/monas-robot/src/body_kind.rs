@@ -1,0 +1,117 @@
+//! Kinds of bodies that configurations can name.
+
+use std::fmt;
+
+use crate::{Disturbances, Error, ErrorKind, Robot, WrappedBody};
+
+/// A kind of body, as [`body_kind!`](crate::body_kind!) registers it at link time.
+#[derive(Clone, Copy)]
+pub struct BodyKind {
+    /// The name that configurations use.
+    pub name: &'static str,
+    /// What it is, in one line.
+    pub summary: &'static str,
+    /// Opens a body of this kind.
+    pub open: fn(BodySite) -> Result<Box<dyn Robot>, Error>,
+    /// Whether a body of this kind answers at an address, or at its usual one: what answers.
+    pub probe: fn(Option<&str>) -> Result<String, Error>,
+}
+
+/// Where a body is opened.
+#[derive(Default)]
+pub struct BodySite {
+    /// The address that the configuration names; by default the usual one of the kind.
+    pub address: Option<String>,
+    /// The body of the simulated world that the robot stands in, in simulated time; none on a
+    /// robot.
+    pub simulated: Option<Box<dyn Robot>>,
+}
+
+/// The body of a robot, as a configuration names it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct BodySettings {
+    /// The name of its kind.
+    pub kind: String,
+    /// Where its interface answers; by default where the kind expects it.
+    pub address: Option<String>,
+    /// What lies between the body and the software.
+    pub disturbances: Disturbances,
+}
+
+impl Default for BodySettings {
+    /// The simulated world's own body, without disturbances.
+    fn default() -> BodySettings {
+        let disturbances = Disturbances::default();
+        BodySettings { kind: BodyKind::DEFAULT.to_owned(), address: None, disturbances }
+    }
+}
+
+impl BodySettings {
+    /// Opens the body, with the simulated world's body if there is one. The seed determines the
+    /// disturbances.
+    ///
+    /// # Errors
+    /// There is no such kind, or the body does not answer.
+    pub fn open(&self, simulated: Option<Box<dyn Robot>>, seed: u64) -> Result<Box<dyn Robot>, Error> {
+        let kind = BodyKind::named(&self.kind)?;
+        let body = (kind.open)(BodySite { address: self.address.clone(), simulated })?;
+        Ok(match self.disturbances == Disturbances::default() {
+            true => body,
+            false => Box::new(WrappedBody::new(body, self.disturbances, seed)),
+        })
+    }
+}
+
+/// Every kind of body in the crates of this program.
+#[doc(hidden)]
+#[narukom::linkme::distributed_slice]
+#[linkme(crate = narukom::linkme)]
+pub static BODY_KINDS: [BodyKind];
+
+/// Registers a kind of body, so that configurations can name it.
+///
+/// The linker drops a crate that the program does not mention, with its kinds: write `use its_name
+/// as _;` in the program.
+#[macro_export]
+macro_rules! body_kind {
+    ($kind:expr) => {
+        const _: () = {
+            #[allow(unsafe_code)] // the section of the executable that the linker collects
+            #[$crate::linked::linkme::distributed_slice($crate::linked::BODY_KINDS)]
+            #[linkme(crate = $crate::linked::linkme)]
+            static KIND: $crate::BodyKind = $kind;
+        };
+    };
+}
+
+impl BodyKind {
+    /// The kind of a simulated world's own bodies, which needs no name.
+    pub const DEFAULT: &'static str = "field";
+
+    /// All kinds of this program, by name.
+    pub fn linked() -> Vec<BodyKind> {
+        let mut kinds = BODY_KINDS.to_vec();
+        kinds.sort_by_key(|kind| kind.name);
+        kinds
+    }
+
+    /// The kind with a name.
+    ///
+    /// # Errors
+    /// There is none; the error names those there are.
+    pub fn named(name: &str) -> Result<BodyKind, Error> {
+        let kinds = BodyKind::linked();
+        kinds.iter().find(|kind| kind.name == name).copied().ok_or_else(|| {
+            let names: Vec<String> = kinds.iter().map(|kind| format!("`{}`", kind.name)).collect();
+            let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+            let message = format!("there is no body of kind `{name}`; linked are {known}");
+            Error::new(ErrorKind::Configuration, message)
+        })
+    }
+}
+
+impl fmt::Debug for BodyKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "BodyKind({})", self.name)
+    }
+}

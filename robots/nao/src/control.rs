@@ -1,0 +1,350 @@
+//! What a Nao does in each cycle: commands in the plane and of joints become an actuator packet,
+//! sensor packets become percepts.
+
+use monas_robot::{
+    Actuators, Anatomy, Battery, Contacts, Error, Inertial, JointCommands, JointTargets, Joints, Leds,
+    Percepts, Posture, Sensors, Skill, Sonar,
+};
+use narukom::Timestamp;
+
+use crate::anatomy::{self, NaoJoint, limits};
+use crate::kinematics::JointAngles;
+use crate::leds;
+use crate::lola::{ActuatorPacket, CYCLE_SECONDS, JOINTS, SensorPacket, Touch};
+use crate::motions::{Motion, stand};
+use crate::walk::{SteppingWalk, WalkEngine, WalkVelocity, displacement};
+
+/// Stiffness of the joints in motion.
+const STIFFNESS: f64 = 0.8;
+/// The time in which the joints become stiff and the robot goes to its stand, s.
+const STIFFENING: f64 = 1.0;
+/// The time in which the joints lose their stiffness, s.
+const RELAXING: f64 = 0.5;
+/// A torso that is more inclined than this lies, rad.
+const LYING: f64 = 1.0;
+/// A torso that is less inclined than this is upright, rad.
+const UPRIGHT: f64 = 0.3;
+/// Less weight than this on both soles, kg, and the feet are off the ground.
+const LEAST_WEIGHT: f64 = 0.5;
+
+/// What the joints do.
+#[derive(Debug)]
+enum Activity {
+    /// They do nothing until the first sensors arrive.
+    Waiting,
+    /// They become stiff on the way to the stand; the part of the time that is over.
+    Stiffening { motion: Motion, elapsed: f64 },
+    /// They follow walk, skill and commands.
+    Active { skill: Option<(Skill, Motion)> },
+    /// They go to the seat.
+    SittingDown { motion: Motion },
+    /// They lose their stiffness, for good.
+    Relaxing { elapsed: f64 },
+}
+
+/// The state of a Nao between two cycles.
+pub(crate) struct NaoControl {
+    anatomy: Anatomy,
+    walk: Box<dyn WalkEngine>,
+    activity: Activity,
+    commands: Actuators,
+    skill_number: u64,
+    skill_done: u64,
+    targets: JointTargets,
+    leds: Leds,
+    sensors: SensorPacket,
+    /// Measured angles, the latest and those before.
+    measured: JointAngles,
+    measured_before: JointAngles,
+    /// What the joints are commanded, before the commands to single joints.
+    angles: JointAngles,
+    odometry: [f64; 3],
+    packet: ActuatorPacket,
+}
+
+impl NaoControl {
+    pub(crate) fn new() -> NaoControl {
+        NaoControl {
+            anatomy: anatomy::anatomy(),
+            walk: Box::new(SteppingWalk::default()),
+            activity: Activity::Waiting,
+            commands: Actuators::default(),
+            skill_number: 0,
+            skill_done: 0,
+            targets: JointTargets::default(),
+            leds: Leds::default(),
+            sensors: SensorPacket::default(),
+            measured: stand(),
+            measured_before: stand(),
+            angles: stand(),
+            odometry: [0.0; 3],
+            packet: ActuatorPacket::default(),
+        }
+    }
+
+    pub(crate) fn set_walk(&mut self, walk: Box<dyn WalkEngine>) {
+        self.walk = walk;
+    }
+
+    pub(crate) fn anatomy(&self) -> &Anatomy {
+        &self.anatomy
+    }
+
+    pub(crate) fn anatomy_mut(&mut self) -> &mut Anatomy {
+        &mut self.anatomy
+    }
+
+    /// Takes a sensor packet.
+    pub(crate) fn receive(&mut self, packet: &SensorPacket) {
+        self.sensors.clone_from(packet);
+        let measured = packet.position.map(f64::from);
+        if matches!(self.activity, Activity::Waiting) {
+            (self.measured, self.angles) = (measured, measured);
+            self.activity =
+                Activity::Stiffening { motion: Motion::stand(measured, STIFFENING), elapsed: 0.0 };
+        }
+        self.measured_before = std::mem::replace(&mut self.measured, measured);
+        if self.has_weight() && self.tilt() < UPRIGHT {
+            let [x, y, turn] = displacement(&self.measured_before, &self.measured);
+            let [before_x, before_y, heading] = self.odometry;
+            let (sin, cos) = libm::sincos(heading);
+            self.odometry = [before_x + cos * x - sin * y, before_y + sin * x + cos * y, heading + turn];
+        }
+    }
+
+    /// Computes the actuators of one cycle.
+    pub(crate) fn actuators(&mut self) -> &ActuatorPacket {
+        let (stiffness, is_echo) = self.advance();
+        for joint in 0..JOINTS {
+            let command = self.targets.of(joint).filter(|_| matches!(self.activity, Activity::Active { .. }));
+            let (target, stiffness) = command.unwrap_or((limits(joint).clamp(self.angles[joint]), stiffness));
+            // A joint without stiffness is given the angle that it has.
+            self.packet.position[joint] = if is_echo { self.sensors.position[joint] } else { target as f32 };
+            self.packet.stiffness[joint] = stiffness as f32;
+        }
+        leds::set(&mut self.packet, &self.commands, &self.leds);
+        &self.packet
+    }
+
+    /// Advances the motion by one cycle; returns the stiffness, and whether the joints only repeat
+    /// where they are.
+    fn advance(&mut self) -> (f64, bool) {
+        let tilt = self.tilt();
+        let seconds = CYCLE_SECONDS;
+        match &mut self.activity {
+            Activity::Waiting => (0.0, true),
+            Activity::Stiffening { motion, elapsed } => {
+                *elapsed += seconds;
+                let part = (*elapsed / STIFFENING).min(1.0);
+                if motion.advance(seconds, tilt, &mut self.angles) {
+                    self.activity = Activity::Active { skill: None };
+                }
+                (part * STIFFNESS, false)
+            }
+            Activity::Active { skill: None } => {
+                self.move_head();
+                let Actuators { walk_x, walk_y, walk_turn, .. } = self.commands;
+                let mut velocity = WalkVelocity { x: walk_x, y: walk_y, turn: walk_turn };
+                if tilt > UPRIGHT {
+                    self.walk.stop();
+                    velocity = WalkVelocity::STILL;
+                }
+                self.walk.advance(velocity, seconds, &mut self.angles);
+                (STIFFNESS, false)
+            }
+            Activity::Active { skill: Some((_, motion)) } => {
+                if motion.advance(seconds, tilt, &mut self.angles) {
+                    self.skill_done = self.skill_number;
+                    self.walk.stop();
+                    self.activity = Activity::Active { skill: None };
+                }
+                self.move_head();
+                (STIFFNESS, false)
+            }
+            Activity::SittingDown { motion } => {
+                if motion.advance(seconds, tilt, &mut self.angles) || tilt > UPRIGHT {
+                    self.activity = Activity::Relaxing { elapsed: 0.0 };
+                }
+                (STIFFNESS, false)
+            }
+            Activity::Relaxing { elapsed } => {
+                *elapsed += seconds;
+                let part = 1.0 - *elapsed / RELAXING;
+                (part.max(0.0) * STIFFNESS, part <= 0.0)
+            }
+        }
+    }
+
+    fn move_head(&mut self) {
+        let Actuators { head_yaw, head_pitch, .. } = self.commands;
+        self.angles[NaoJoint::HeadYaw as usize] = self.anatomy.head_yaw.clamp(head_yaw);
+        self.angles[NaoJoint::HeadPitch as usize] = self.anatomy.head_pitch.clamp(head_pitch);
+    }
+
+    /// Sets the commands in the plane. A skill begins if its number is new and no other is active.
+    pub(crate) fn act(&mut self, actuators: &Actuators) {
+        if self.rests() {
+            return;
+        }
+        self.commands = *actuators;
+        let (number, wanted) = (actuators.skill_number, actuators.skill());
+        if number == self.skill_number {
+            return;
+        }
+        self.skill_number = number;
+        match (&mut self.activity, Motion::of(wanted, self.angles)) {
+            (Activity::Active { skill: skill @ None }, Some(motion)) => *skill = Some((wanted, motion)),
+            (Activity::Active { skill: Some(_) }, _) => {}
+            _ => self.skill_done = number,
+        }
+    }
+
+    pub(crate) fn command_joints(&mut self, commands: &JointCommands) -> Result<(), Error> {
+        self.targets.set(commands, &self.anatomy)
+    }
+
+    pub(crate) fn light(&mut self, leds: &Leds) {
+        leds::merge(&mut self.leds, leds);
+    }
+
+    /// Sits down and switches off the stiffness, for good.
+    pub(crate) fn rest(&mut self) {
+        if self.rests() {
+            return;
+        }
+        self.commands = Actuators::default();
+        self.walk.stop();
+        self.activity = match self.activity {
+            Activity::Waiting | Activity::Stiffening { .. } => Activity::Relaxing { elapsed: 0.0 },
+            _ => Activity::SittingDown { motion: Motion::sit_down(self.angles) },
+        };
+    }
+
+    fn rests(&self) -> bool {
+        matches!(self.activity, Activity::SittingDown { .. } | Activity::Relaxing { .. })
+    }
+
+    /// Whether the robot rests and its joints have lost their stiffness.
+    pub(crate) fn is_relaxed(&self) -> bool {
+        matches!(self.activity, Activity::Relaxing { elapsed } if elapsed >= RELAXING)
+    }
+
+    fn tilt(&self) -> f64 {
+        let [roll, pitch] = self.sensors.angles.map(|angle| f64::from(angle).abs());
+        roll.max(pitch)
+    }
+
+    fn has_weight(&self) -> bool {
+        self.sensors.fsr.iter().copied().map(f64::from).sum::<f64>() >= LEAST_WEIGHT
+    }
+
+    fn posture(&self) -> Posture {
+        let tilt = self.tilt();
+        match &self.activity {
+            Activity::Waiting => Posture::Unknown,
+            Activity::Active { skill: Some((Skill::StandUp, _)) } => Posture::StandingUp,
+            Activity::Active { skill: Some(_) } => Posture::Busy,
+            _ if tilt > LYING => Posture::Fallen,
+            Activity::SittingDown { .. } | Activity::Relaxing { .. } => Posture::Sitting,
+            _ if tilt > UPRIGHT => Posture::Busy,
+            _ if !self.has_weight() => Posture::Lifted,
+            Activity::Stiffening { .. } => Posture::Busy,
+            Activity::Active { skill: None } if self.walk.is_moving() => Posture::Walking,
+            Activity::Active { skill: None } => Posture::Standing,
+        }
+    }
+
+    /// Writes what was measured; odometry since the last call.
+    pub(crate) fn percepts(&mut self, measured_at: Timestamp, percepts: &mut Percepts) {
+        let measured_at = measured_at.as_nanos();
+        let packet = &self.sensors;
+        let [odometry_x, odometry_y, odometry_turn] = std::mem::take(&mut self.odometry);
+        let [torso_roll, torso_pitch] = packet.angles.map(f64::from);
+        let touched = |touch| packet.is_touched(touch);
+        let left_bumper = touched(Touch::LeftFootLeft) || touched(Touch::LeftFootRight);
+        let right_bumper = touched(Touch::RightFootLeft) || touched(Touch::RightFootRight);
+        percepts.sensors = Sensors {
+            measured_at,
+            head_yaw: self.anatomy.head_yaw.clamp(self.measured[NaoJoint::HeadYaw as usize]),
+            head_pitch: self.anatomy.head_pitch.clamp(self.measured[NaoJoint::HeadPitch as usize]),
+            torso_roll,
+            torso_pitch,
+            odometry_x,
+            odometry_y,
+            odometry_turn,
+            chest_button: touched(Touch::Chest),
+            left_bumper,
+            right_bumper,
+            posture: self.posture() as i32,
+            skill_done: self.skill_done,
+            battery: packet.battery[0].into(),
+            relaxed: packet.stiffness.iter().all(|&stiffness| stiffness <= 0.0),
+        };
+        self.write_joints(measured_at, percepts.joints.get_or_insert_default());
+        let packet = &self.sensors;
+        let [gyro_x, gyro_y, gyro_z] = packet.gyroscope.map(f64::from);
+        // The robot counts gravity, this message what carries it.
+        let [acceleration_x, acceleration_y, acceleration_z] =
+            packet.accelerometer.map(|value| -f64::from(value));
+        percepts.inertial = Some(Inertial {
+            measured_at,
+            gyro_x,
+            gyro_y,
+            gyro_z,
+            acceleration_x,
+            acceleration_y,
+            acceleration_z,
+            roll: torso_roll,
+            pitch: torso_pitch,
+        });
+        let contacts = percepts.contacts.get_or_insert_default();
+        refill(&mut contacts.foot_pressures, packet.fsr.iter().copied().map(f64::from));
+        *contacts = Contacts {
+            measured_at,
+            foot_pressures: std::mem::take(&mut contacts.foot_pressures),
+            left_bumper,
+            right_bumper,
+            chest_button: packet.is_touched(Touch::Chest),
+            head_front: packet.is_touched(Touch::HeadFront),
+            head_middle: packet.is_touched(Touch::HeadMiddle),
+            head_rear: packet.is_touched(Touch::HeadRear),
+            left_hand: packet.is_touched(Touch::LeftHandBack),
+            right_hand: packet.is_touched(Touch::RightHandBack),
+        };
+        let [left, right] = packet.sonar.map(f64::from);
+        percepts.sonar = Some(Sonar { measured_at, left, right });
+        let [charge, status, current, temperature] = packet.battery.map(f64::from);
+        percepts.battery = Some(Battery {
+            measured_at,
+            charge,
+            current,
+            temperature,
+            charging: (status as i32) & CHARGING != 0,
+        });
+    }
+
+    fn write_joints(&self, measured_at: u64, joints: &mut Joints) {
+        let packet = &self.sensors;
+        joints.measured_at = measured_at;
+        refill(&mut joints.positions, self.measured);
+        let speeds = self
+            .measured
+            .iter()
+            .zip(&self.measured_before)
+            .map(|(now, before)| (now - before) / CYCLE_SECONDS);
+        refill(&mut joints.velocities, speeds);
+        refill(&mut joints.temperatures, packet.temperature.iter().copied().map(f64::from));
+        refill(&mut joints.currents, packet.current.iter().copied().map(f64::from));
+        refill(&mut joints.stiffnesses, packet.stiffness.iter().copied().map(f64::from));
+        joints.clamped = self.targets.clamped();
+    }
+}
+
+/// The bit in the status of the battery that says it is charging.
+const CHARGING: i32 = 0x80;
+
+/// Replaces the values of a list in its memory.
+fn refill(list: &mut Vec<f64>, values: impl IntoIterator<Item = f64>) {
+    list.clear();
+    list.extend(values);
+}

@@ -1,0 +1,79 @@
+//! The Nao V6 as a body.
+//!
+//! [`Nao`] implements [`monas_robot::Robot`] on LoLA, the interface to the robot's hardware: a Unix
+//! socket with a packet of [sensors](lola::SensorPacket) every 12 ms, answered by a packet of
+//! [actuators](lola::ActuatorPacket). [`LolaServer`] is the other side, for simulations: it gives
+//! joints to a body that moves in the plane, such as a robot of the embedded field.
+//! [`SimulatedNao`] is both in lockstep, in simulated time. A configuration names the body: `<body
+//! kind="nao"/>`.
+//!
+//! The commands in the plane, which all bodies have, become joint targets here: a [`WalkEngine`]
+//! turns velocities into steps, skills are motions of the joints, and odometry follows from the
+//! foot on the ground by the [`kinematics`] of the legs.
+//!
+//! # Limits
+//!
+//! LoLA has no images, no referee and no radio. Where a simulation stands in for the robot, it
+//! offers them on sockets of their own, beside LoLA's; the camera's delivers objects in place of
+//! images. On a robot they are missing. The walk engine and the motions have no feedback of
+//! balance: they are made for the embedded field and have not been tried on a robot.
+//!
+//! ```
+//! use monas_nao::lola::{Decoded, SENSOR_BYTES, SensorPacket};
+//!
+//! let mut bytes = Vec::new();
+//! SensorPacket::default().encode(&mut bytes);
+//! let decoded = SensorPacket::default().decode(&bytes)?;
+//! assert_eq!(decoded, Decoded::Packet { bytes: SENSOR_BYTES });
+//! # Ok::<(), monas_nao::Error>(())
+//! ```
+
+mod anatomy;
+mod control;
+mod error;
+pub mod kinematics;
+mod leds;
+pub mod lola;
+mod motions;
+mod nao;
+mod server;
+mod side_channels;
+mod simulated_nao;
+mod socket;
+mod walk;
+
+use std::path::Path;
+
+use monas_robot::{BodyKind, BodySite, Robot};
+
+pub use anatomy::{NaoJoint, anatomy};
+pub use error::{Error, ErrorKind};
+pub use nao::Nao;
+pub use server::LolaServer;
+pub use simulated_nao::SimulatedNao;
+pub use walk::{SteppingWalk, WalkEngine, WalkVelocity};
+
+monas_robot::body_kind!(BodyKind {
+    name: "nao",
+    summary: "a Nao V6 through LoLA; in simulated time through a LoLA server over the field's body",
+    open,
+    probe,
+});
+
+/// Opens a Nao: in a simulated world over its body there, else at a socket.
+fn open(site: BodySite) -> Result<Box<dyn Robot>, monas_robot::Error> {
+    match site {
+        BodySite { simulated: Some(body), address: None } => Ok(Box::new(SimulatedNao::new(body)?)),
+        BodySite { address, .. } => {
+            let path = address.as_deref().unwrap_or(lola::SOCKET);
+            Ok(Box::new(Nao::open(Path::new(path))?))
+        }
+    }
+}
+
+/// Whether LoLA answers at a socket.
+fn probe(address: Option<&str>) -> Result<String, monas_robot::Error> {
+    let path = Path::new(address.unwrap_or(lola::SOCKET));
+    socket::Socket::connect(path)?;
+    Ok(format!("LoLA answers at {}", path.display()))
+}

@@ -1,0 +1,97 @@
+//! What a Nao has beside LoLA, as far as a simulation stands in for it: camera, referee and radio.
+
+use std::path::{Path, PathBuf};
+
+use monas_robot::{Announcement, Heard, Percepts, Said, Sightings};
+
+use crate::error::Error;
+use crate::socket::{MessageSocket, Socket};
+
+/// A message without content, for the direction in which nothing is sent.
+type Nothing = ();
+
+/// The simulation's ends of the sockets.
+///
+/// LoLA carries neither images nor what the referee says nor the radio of the team. A simulation
+/// offers three more sockets: on the first it sends what the cameras would show, as objects seen in
+/// place of images; on the second the announcements of the referee; on the third the radio messages
+/// of the team in both directions.
+pub(crate) struct SimulatedChannels {
+    pub(crate) camera: MessageSocket<Sightings, Nothing>,
+    pub(crate) referee: MessageSocket<Announcement, Nothing>,
+    pub(crate) radio: MessageSocket<Heard, Said>,
+}
+
+/// The robot's ends of the sockets.
+pub(crate) struct RobotChannels {
+    camera: MessageSocket<Nothing, Sightings>,
+    referee: MessageSocket<Nothing, Announcement>,
+    radio: MessageSocket<Said, Heard>,
+}
+
+/// The endings of the paths of the three sockets, after the path of LoLA's.
+const ENDINGS: [&str; 3] = ["simulated_camera", "simulated_referee", "simulated_radio"];
+
+/// The path of one of the three sockets.
+fn path(lola: &Path, ending: &str) -> PathBuf {
+    let mut path = lola.as_os_str().to_owned();
+    path.push(format!(".{ending}"));
+    path.into()
+}
+
+impl SimulatedChannels {
+    /// Listens beside the socket of LoLA.
+    pub(crate) fn listen(lola: &Path) -> Result<SimulatedChannels, Error> {
+        let [camera, referee, radio] = ENDINGS.map(|ending| Socket::listen(&path(lola, ending)));
+        Ok(SimulatedChannels {
+            camera: MessageSocket::new(camera?),
+            referee: MessageSocket::new(referee?),
+            radio: MessageSocket::new(radio?),
+        })
+    }
+}
+
+impl RobotChannels {
+    /// Connects beside the socket of LoLA. On a robot there are no such sockets, and no channels.
+    pub(crate) fn connect(lola: &Path) -> Result<Option<RobotChannels>, Error> {
+        if !ENDINGS.iter().all(|ending| path(lola, ending).exists()) {
+            return Ok(None);
+        }
+        let [camera, referee, radio] = ENDINGS.map(|ending| Socket::connect(&path(lola, ending)));
+        Ok(Some(RobotChannels {
+            camera: MessageSocket::new(camera?),
+            referee: MessageSocket::new(referee?),
+            radio: MessageSocket::new(radio?),
+        }))
+    }
+
+    /// Takes what has arrived: the newest sightings and announcement, and all radio messages.
+    pub(crate) fn receive(&mut self, percepts: &mut Percepts) -> Result<(), Error> {
+        self.camera.receive(|sightings| percepts.sightings = Some(sightings))?;
+        self.referee.receive(|announcement| percepts.announcement = Some(announcement))?;
+        self.radio.receive(|heard| percepts.heard.push(heard))
+    }
+
+    /// Sends a message to the team.
+    pub(crate) fn say(&mut self, words: &[u8]) -> Result<(), Error> {
+        self.radio.send(&Said { words: words.to_vec() })
+    }
+}
+
+/// Both ends of three connections.
+pub(crate) fn pair() -> Result<(SimulatedChannels, RobotChannels), Error> {
+    let (camera, cameras) = Socket::pair()?;
+    let (referee, referees) = Socket::pair()?;
+    let (radio, radios) = Socket::pair()?;
+    let simulated = SimulatedChannels {
+        camera: MessageSocket::new(camera),
+        referee: MessageSocket::new(referee),
+        radio: MessageSocket::new(radio),
+    };
+    let robot = RobotChannels {
+        camera: MessageSocket::new(cameras),
+        referee: MessageSocket::new(referees),
+        radio: MessageSocket::new(radios),
+    };
+    Ok((simulated, robot))
+}

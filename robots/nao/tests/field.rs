@@ -1,0 +1,165 @@
+//! A Nao over a robot of the embedded field.
+#![allow(clippy::panic, clippy::unwrap_used)] // tests
+
+use monas_nao::SimulatedNao;
+use monas_robot::{Actuators, JointCommands, Percepts, Posture, Robot, Skill};
+use monas_sim::{
+    FieldSide, GameState, Pose, RobotSetup, Setup, SharedField, SimulatedWorld, TeamColour, TeamSetup,
+};
+use narukom::Timestamp;
+
+/// A field with one robot that plays from the beginning.
+fn field() -> SharedField {
+    let team = |number, colour, plays| TeamSetup { number, name: format!("team {number}"), colour, plays };
+    let setup = Setup {
+        field: Default::default(),
+        physics: Default::default(),
+        rules: Default::default(),
+        radio: Default::default(),
+        teams: [team(1, TeamColour::Blue, FieldSide::Left), team(2, TeamColour::Red, FieldSide::Right)],
+        robots: vec![RobotSetup { team: 1, number: 2 }],
+        seed: 7,
+    };
+    let mut world = SimulatedWorld::new(setup).unwrap();
+    while world.referee().state() != GameState::Playing {
+        world.step();
+    }
+    SharedField::new(world)
+}
+
+/// A Nao on a field, and the time.
+struct Trial {
+    field: SharedField,
+    nao: SimulatedNao,
+    percepts: Percepts,
+    cycle: u64,
+}
+
+impl Trial {
+    fn new() -> Trial {
+        let field = field();
+        let nao = SimulatedNao::new(Box::new(field.body(0).unwrap())).unwrap();
+        let mut trial = Trial { field, nao, percepts: Percepts::default(), cycle: 0 };
+        trial.run(1.5, Actuators::default());
+        trial
+    }
+
+    /// Runs for a time with a command; returns the odometry: x, y and heading.
+    fn run(&mut self, seconds: f64, command: Actuators) -> Pose {
+        let mut way = Pose::default();
+        for _ in 0..(seconds / 0.012).round() as usize {
+            self.cycle += 1;
+            let now = Timestamp::from_nanos(self.cycle * 12_000_000);
+            while self.field.with_world(|world| world.time()) + 0.005 < now.as_nanos() as f64 / 1e9 + START {
+                self.field.step();
+            }
+            self.percepts.clear_news();
+            self.nao.sense(now, &mut self.percepts).unwrap();
+            self.nao.act(now, &command).unwrap();
+            let felt = &self.percepts.sensors;
+            way = way.compose(&Pose::new(felt.odometry_x, felt.odometry_y, felt.odometry_turn));
+        }
+        way
+    }
+
+    fn pose(&self) -> Pose {
+        self.field.with_world(|world| world.robots()[0].pose)
+    }
+
+    fn posture(&self) -> Posture {
+        self.percepts.sensors.posture()
+    }
+}
+
+/// The time of the field at which a robot plays, s.
+const START: f64 = 6.0;
+
+#[test]
+fn it_is_a_body_like_any_other() {
+    let field = field();
+    let mut nao = SimulatedNao::new(Box::new(field.body(0).unwrap())).unwrap();
+    monas_robot::conformance::check(&mut nao);
+}
+
+#[test]
+fn legs_carry_the_robot_of_the_field() {
+    for (x, y, turn) in [(0.2, 0.0, 0.0), (0.0, 0.1, 0.0), (0.1, 0.0, 0.4)] {
+        let mut trial = Trial::new();
+        assert_eq!(trial.posture(), Posture::Standing);
+        let before = trial.pose();
+        let command = Actuators { walk_x: x, walk_y: y, walk_turn: turn, ..Actuators::default() };
+        let felt = trial.run(4.0, command);
+        assert_eq!(trial.posture(), Posture::Walking);
+        let after = trial.pose();
+        let way = before.to_own(after.position);
+        let turned = monas_sim::normalize_angle(after.heading - before.heading);
+        // The steps of the field slip by 8 percent.
+        assert!((way - felt.position).norm() < 0.25, "{way} {}", felt.position);
+        assert!((turned - felt.heading).abs() < 0.4, "{turned} {}", felt.heading);
+        // Four seconds less the time to reach the speed.
+        let least = if turn == 0.0 { 3.7 * x.max(y) } else { 0.3 };
+        assert!(felt.position.norm() > least && felt.heading >= 3.7 * turn, "{felt:?}");
+        trial.run(4.0, Actuators::default());
+        assert_eq!(trial.posture(), Posture::Standing);
+    }
+}
+
+#[test]
+fn a_dive_and_standing_up_are_motions_of_joints() {
+    let mut trial = Trial::new();
+    let skill =
+        |skill: Skill, skill_number| Actuators { skill: skill as i32, skill_number, ..Actuators::default() };
+    trial.run(0.3, skill(Skill::DiveLeft, 1));
+    assert_eq!(trial.posture(), Posture::Busy);
+    trial.run(1.0, skill(Skill::DiveLeft, 1));
+    assert_eq!((trial.posture(), trial.percepts.sensors.skill_done), (Posture::Fallen, 1));
+    assert!(trial.percepts.sensors.torso_roll < -1.2, "{:?}", trial.percepts.sensors);
+    trial.run(2.0, skill(Skill::StandUp, 2));
+    assert_eq!(trial.posture(), Posture::StandingUp);
+    trial.run(4.0, skill(Skill::StandUp, 2));
+    assert_eq!((trial.posture(), trial.percepts.sensors.skill_done), (Posture::Standing, 2));
+}
+
+#[test]
+fn resting_sits_down_and_relaxes_the_joints() {
+    let mut trial = Trial::new();
+    trial.run(1.0, Actuators { walk_x: 0.2, ..Actuators::default() });
+    trial.nao.rest(Timestamp::ZERO).unwrap();
+    trial.run(5.0, Actuators { walk_x: 0.2, ..Actuators::default() });
+    let felt = &trial.percepts.sensors;
+    assert_eq!((felt.posture(), felt.relaxed), (Posture::Sitting, true));
+    let phase = trial.field.with_world(|world| world.robots()[0].phase);
+    assert_eq!(phase, monas_sim::BodyPhase::Sitting);
+    let joints = trial.percepts.joints.as_ref().unwrap();
+    assert!(joints.stiffnesses.iter().all(|&stiffness| stiffness == 0.0));
+    let knee = trial.nao.anatomy().joint("LKneePitch").unwrap();
+    assert!(joints.positions[knee] > 2.0, "{:?}", joints.positions);
+}
+
+#[test]
+fn commands_to_joints_move_them_and_are_released() {
+    let mut trial = Trial::new();
+    let anatomy = trial.nao.anatomy();
+    let (elbow, head) = (anatomy.joint("RElbowRoll").unwrap(), anatomy.joint("HeadYaw").unwrap());
+    let joints = vec![elbow as u32, head as u32];
+    let commands = JointCommands { joints, targets: vec![1.0, 0.5], stiffnesses: vec![1.0, 0.6] };
+    trial.nao.command_joints(Timestamp::ZERO, &commands).unwrap();
+    trial.run(1.0, Actuators { head_yaw: -0.5, ..Actuators::default() });
+    let joints = trial.percepts.joints.clone().unwrap();
+    assert!((joints.positions[elbow] - 1.0).abs() < 1e-3 && (joints.positions[head] - 0.5).abs() < 1e-3);
+    assert!((joints.stiffnesses[head] - 0.6).abs() < 1e-6);
+    trial.nao.command_joints(Timestamp::ZERO, &JointCommands::default()).unwrap();
+    trial.run(1.0, Actuators { head_yaw: -0.5, ..Actuators::default() });
+    assert!((trial.percepts.sensors.head_yaw + 0.5).abs() < 1e-3, "{:?}", trial.percepts.sensors);
+}
+
+#[test]
+fn a_fallen_or_lifted_robot_has_no_weight_on_its_soles() {
+    let mut trial = Trial::new();
+    let weight = |trial: &Trial| trial.percepts.contacts.as_ref().unwrap().foot_pressures.iter().sum::<f64>();
+    assert!((weight(&trial) - 5.3).abs() < 0.01);
+    let inertial = trial.percepts.inertial.unwrap();
+    assert!((inertial.acceleration_z - 9.81).abs() < 0.1, "{inertial:?}");
+    trial.run(2.0, Actuators { skill: Skill::FallRight as i32, skill_number: 1, ..Actuators::default() });
+    assert_eq!((trial.posture(), weight(&trial)), (Posture::Fallen, 0.0));
+}
