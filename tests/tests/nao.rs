@@ -1,5 +1,5 @@
-//! The goalie through the interface of a Nao: its joints, against the same shooters as with the body
-//! of the field.
+//! The goalie through the interface of a Nao: its joints, against the same shooters as with the
+//! body of the field.
 //!
 //! `MONAS_SHOOTERS=20 cargo test -p monas-tests --test nao -- --nocapture` plays as many seeds of
 //! five minutes each, and prints the table.

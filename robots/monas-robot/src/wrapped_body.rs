@@ -201,7 +201,7 @@ mod tests {
     fn run(body: &mut WrappedBody, yaw: f64) -> Vec<(f64, Option<f64>)> {
         let turn = Actuators { head_yaw: yaw, ..Actuators::default() };
         body.act(Timestamp::ZERO, &turn).unwrap();
-        let cycle = |cycle| {
+        let cycle = |cycle: u64| {
             let mut percepts = Percepts::default();
             body.sense(Timestamp::from_nanos(cycle * 10_000_000), &mut percepts).unwrap();
             let seen = percepts.sightings.map(|sightings| sightings.objects[0].bearing);

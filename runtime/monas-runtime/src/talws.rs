@@ -74,8 +74,9 @@ impl Talws {
         Ok(Talws::new().registry(registry).setup(setup))
     }
 
-    /// Adds the agents, links, modules and body of a configuration to the host [`LOCAL`](Talws::LOCAL).
-    /// The body is opened when the run begins. Changes at runtime can be saved into its text.
+    /// Adds the agents, links, modules and body of a configuration to the host
+    /// [`LOCAL`](Talws::LOCAL). The body is opened when the run begins. Changes at runtime can be
+    /// saved into its text.
     pub fn setup(mut self, setup: monas_config::HostSetup) -> Talws {
         let monas_config::HostSetup { agents, links, modules, body, source } = setup;
         self.body = body.or(self.body);

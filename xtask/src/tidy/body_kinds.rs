@@ -1,4 +1,5 @@
-//! Code outside of `robots/` does not depend on the kind of a body: no branch on its name, no `cfg`.
+//! Code outside of `robots/` does not depend on the kind of a body: no branch on its name, no
+//! `cfg`.
 
 use super::TidyFinding;
 use super::source::{code, without_tests};
