@@ -74,11 +74,12 @@ pub struct PlayFigures {
     pub falls: u32,
 }
 
-/// What the programs of one robot cost, without the field: the difference to a match whose robots
-/// have no programs.
+/// What the programs of one robot cost in a match against robots without programs. Allocations and
+/// messages are those beyond a match in which no robot has a program.
 #[derive(Clone, Copy, PartialEq, Default, Debug)]
 pub struct CostFigures {
-    /// Processor time a cycle of the body, 20 ms of simulated time.
+    /// Processor time a cycle of the body, 20 ms of simulated time, with the robot's share of the
+    /// field.
     pub cycle: Duration,
     /// Allocations a cycle; zero if the program does not count them.
     pub allocations: f64,
@@ -143,7 +144,7 @@ pub fn evaluate(
             let plan = alone(plan(settings, methodology, registry)?);
             costs.push(measure(plan, seed, settings.length, processor_time)?);
         }
-        let cost = median(costs).per_robot_beyond(&idle, settings.length);
+        let cost = median(costs).per_robot(&idle, settings.length);
         rows.push((methodology, play, cost, sources::of(methodology)));
     }
     Ok(Evaluation { settings: settings.clone(), rows })
@@ -246,12 +247,11 @@ fn median(mut costs: Vec<MatchCost>) -> MatchCost {
 }
 
 impl MatchCost {
-    fn per_robot_beyond(&self, idle: &MatchCost, length: Duration) -> CostFigures {
+    fn per_robot(&self, idle: &MatchCost, length: Duration) -> CostFigures {
         let robot_seconds = length.as_secs_f64() * ROBOTS;
         let beyond = |all: u64, idle: u64| all.saturating_sub(idle) as f64 / robot_seconds;
-        let time = self.processor_time.saturating_sub(idle.processor_time);
         CostFigures {
-            cycle: time.div_f64((robot_seconds * CYCLES).max(1.0)),
+            cycle: self.processor_time.div_f64((robot_seconds * CYCLES).max(1.0)),
             allocations: beyond(self.allocations, idle.allocations) / CYCLES,
             messages: beyond(self.messages, idle.messages),
         }
@@ -292,7 +292,7 @@ impl fmt::Display for Evaluation {
             ("shots faced", &|row| row.1.shots_faced.to_string()),
             ("saves", &|row| row.1.saves.to_string()),
             ("falls", &|row| row.1.falls.to_string()),
-            ("processor time a cycle of a robot, us", &|row| {
+            ("processor time a cycle, with the field, us", &|row| {
                 format!("{:.1}", row.2.cycle.as_secs_f64() * 1e6)
             }),
             ("allocations a cycle of a robot", &|row| format!("{:.2}", row.2.allocations)),
