@@ -113,8 +113,8 @@ pub(crate) enum Command {
     /// held it, each part of its guard with its value, and the messages behind these values, back
     /// to the readings of sensors, also over the radio. A click on a state or a transition in the
     /// studio of a tape shows the same.
-    #[command(after_help = "Examples: monas why match.mcap blue-2 --state RightKick --at 22.5\n          \
-                             monas why match.mcap blue-2 --transition 'CONDITION -> kickBall' --at 22.5")]
+    #[command(after_help = "Example: monas why match.mcap blue-2 --state RightKick --at 22.5\n\
+                            Example: monas why match.mcap blue-2 --transition 'CONDITION -> kickBall' --at 22.5")]
     Why(WhyArguments),
     /// Follow the log of a run, or read it from a tape.
     ///

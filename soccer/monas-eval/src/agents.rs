@@ -6,7 +6,7 @@ mod player;
 
 use monas::{Blackboard, BoxError};
 use monas_soccer::activities::motion_requests::request_stand;
-use monas_soccer::{Calibration, MotionPhase, PlayerState, topics};
+use monas_soccer::{MotionPhase, PlayerState, topics};
 use narukom::PublisherId;
 
 pub use goalie::BehaviorGoalie;
@@ -15,21 +15,20 @@ pub use player::BehaviorPlayer;
 /// What both behaviours know of the start of the robot and of the messages they have used.
 #[derive(Clone, Copy, Debug, Default)]
 struct StartUp {
-    is_calibrated: bool,
+    has_stood_up: bool,
     used_ball: Option<(PublisherId, u64)>,
 }
 
 impl StartUp {
     /// Whether the behaviour decides now: the robot has stood up, it plays, and the ball is news.
     fn is_ready(&mut self, blackboard: &mut Blackboard) -> Result<bool, BoxError> {
-        if !self.is_calibrated {
+        if !self.has_stood_up {
             let phase = blackboard.read(topics::MOTION_STATE).map(|state| state.phase());
             if phase != Some(MotionPhase::Standing) {
                 request_stand(blackboard)?;
                 return Ok(false);
             }
-            blackboard.publish(topics::CALIBRATION, Calibration { number: 1 })?;
-            self.is_calibrated = true;
+            self.has_stood_up = true;
         }
         let state = blackboard.read(topics::GAME_STATE).map(|game| game.player_state());
         if state != Some(PlayerState::Playing) {

@@ -70,7 +70,7 @@ impl Activity for BehaviorPlayer {
     fn topics(&self) -> Topics {
         let topics = Topics::declared().reads(topics::BALL).reads(topics::GAME_STATE).reads(topics::POSE);
         let topics = topics.reads(topics::ROBOTS).reads(topics::MOTION).reads(topics::MOTION_STATE);
-        topics.publishes(topics::MOTION).publishes(topics::HEAD).publishes(topics::CALIBRATION)
+        topics.publishes(topics::MOTION).publishes(topics::HEAD)
     }
 }
 

@@ -192,7 +192,7 @@ fn names_that_are_not_known_come_with_the_nearest_that_is() {
     check(
         "<robot/>",
         &[
-            "agents.xml:1:2: error[E0303]: unknown element `robot` (expected `agent`, `provider`, `link`, `module` or `agents`)",
+            "agents.xml:1:2: error[E0303]: unknown element `robot` (expected `agent`, `provider`, `link`, `module`, `body` or `agents`)",
         ],
     );
 }
