@@ -161,29 +161,34 @@ fn pause_step_and_resume_in_a_match_are_replayed() {
         let tape = folder.path().join("live.mcap").display().to_string();
         let arguments = ["run", "config/match.xml", "--record", &tape, "--control", "game"];
         let run = Running::start(folder.path(), &[&arguments[..], mode].concat(), "control socket: ");
-        let ask = |command: &str, more: &[&str]| {
-            let agent = ["agent", command, "Attacker", "--host", "blue-2"];
+        let ask_host = |host: &str, command: &str, more: &[&str]| {
+            let agent = ["agent", command, "Attacker", "--host", host];
             let answer = ask(folder.path(), &[&agent[..], more].concat());
             assert_eq!(answer.code, Some(0), "{mode:?}: {answer:?}");
             answer.out
         };
-        let cycles = || objects(&ask("list", &["--format", "json"]))[0]["cycles"].as_u64().expect("a number");
-        let await_progress = || {
-            let before = cycles();
-            assert!((0..100).any(|_| cycles() > before), "{mode:?}: it makes no progress");
+        let ask = |command: &str| ask_host("blue-2", command, &[]);
+        let cycles_of = |host: &str| {
+            let listed = ask_host(host, "list", &["--format", "json"]);
+            objects(&listed)[0]["cycles"].as_u64().expect("a number")
         };
-        await_progress();
-        ask("pause", &[]);
-        let paused = cycles();
-        assert_eq!(cycles(), paused, "{mode:?}");
-        // A step at a moment at which nothing has arrived and no timer is due makes no cycle.
-        let steps = |_| {
-            ask("step", &[]);
-            cycles() > paused
+        let await_cycles = |host: &str, count: u64| {
+            let before = cycles_of(host);
+            let made = |_| cycles_of(host) >= before + count;
+            assert!((0..1000).any(made), "{mode:?}: {host} makes no progress");
         };
-        assert!((0..100).any(steps), "{mode:?}: no step was made");
-        ask("resume", &[]);
-        await_progress();
+        await_cycles("blue-2", 1);
+        ask("pause");
+        let paused = cycles_of("blue-2");
+        // A step is made if one is due, so time passes first: a robot that is not paused shows it.
+        for step in 0..3 {
+            await_cycles("blue-3", 20);
+            assert_eq!(cycles_of("blue-2"), paused + step, "{mode:?}");
+            ask("step");
+            assert_eq!(cycles_of("blue-2"), paused + step + 1, "{mode:?}: no step was made");
+        }
+        ask("resume");
+        await_cycles("blue-2", 1);
         assert_eq!(run.interrupt().code, Some(130), "{mode:?}");
         let verified = monas(&["tape", "verify", &tape]);
         assert_eq!(verified.code, Some(0), "{mode:?}: {verified:?}");
