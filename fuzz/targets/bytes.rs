@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 use libfuzzer_sys::fuzz_target;
 use monas_robot as _;
-use narukom::{Arrival, ErrorKind, Timestamp, Hub};
+use narukom::{RemoteHeader, ErrorKind, Timestamp, Hub};
 
 fn hub() -> &'static Hub {
     static HUB: OnceLock<Hub> = OnceLock::new();
@@ -20,17 +20,17 @@ fn hub() -> &'static Hub {
 
 /// The bytes of a message after publication; none if it was rejected.
 fn published(path: &str, bytes: &[u8]) -> Option<Vec<u8>> {
-    let (Ok(mut tap), Ok(mut publisher)) = (hub().tap(path), hub().publisher_by_name(path, "stranger")) else {
+    let (Ok(mut subscriber), Ok(mut publisher)) = (hub().encoded_subscriber(path), hub().publisher_by_name(path, "stranger")) else {
         panic!("`{path}` is declared");
     };
-    while tap.next_encoded().is_some() {}
+    while subscriber.next_encoded().is_some() {}
     if let Err(error) = publisher.publish_bytes(bytes, Timestamp::ZERO) {
         assert_eq!(error.kind(), ErrorKind::Malformed);
         assert!(error.to_string().contains(path), "{error}");
-        assert!(tap.next_encoded().is_none(), "what was refused was published");
+        assert!(subscriber.next_encoded().is_none(), "what was refused was published");
         return None;
     }
-    tap.next_encoded().map(|encoded| encoded.bytes().to_vec())
+    subscriber.next_encoded().map(|encoded| encoded.bytes().to_vec())
 }
 
 fuzz_target!(|bytes: &[u8]| {
@@ -43,6 +43,6 @@ fuzz_target!(|bytes: &[u8]| {
     }
     let Ok(mut receiver) = hub().receiver("elsewhere", "stranger", path) else { panic!("`{path}` is declared") };
     let arrival =
-        Arrival { sequence: 1, published: Timestamp::MAX, local: Timestamp::ZERO, received: Timestamp::ZERO };
+        RemoteHeader { sequence: 1, published: Timestamp::MAX, local: Timestamp::ZERO, received: Timestamp::ZERO };
     assert_eq!(receiver.receive_bytes(bytes, arrival).is_ok(), first.is_some(), "`{path}`");
 });

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use libfuzzer_sys::fuzz_target;
 use monas_link::example::Ball;
-use monas_link::{Bridge, LinkSettings, Packet};
+use monas_link::{HubBridge, LinkSettings, Packet};
 use narukom::{Timestamp, Hub, Signal, State, topic};
 
 topic! {
@@ -37,9 +37,9 @@ fuzz_target!(|data: &[u8]| {
     }
 });
 
-fn end(hub: &Hub, incarnation: u64) -> Bridge {
+fn end(hub: &Hub, incarnation: u64) -> HubBridge {
     let settings = LinkSettings { guests: true, ..LinkSettings::default() };
-    Bridge::new(hub, settings.sending("soccer/*").receiving("soccer/*"), incarnation).expect("the settings fit")
+    HubBridge::new(hub, settings.sending("soccer/*").receiving("soccer/*"), incarnation).expect("the settings fit")
 }
 
 /// A modified packet of the conversation: the second byte selects it, the others are edits; or raw

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use libfuzzer_sys::fuzz_target;
 use monas::Registry;
 use monas_fuzz::assert_findings_fit;
-use monas_match::Match;
+use monas_match::MatchSource;
 use tempfile::TempDir;
 
 /// A folder with files that a match can refer to.
@@ -23,7 +23,7 @@ static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
 fuzz_target!(|text: &str| {
     let path = FOLDER.path().join("match.xml");
     std::fs::write(&path, text).expect("there is room for a file");
-    if let Err(findings) = Match::load(&path, &Registry::empty()) {
+    if let Err(findings) = MatchSource::load(&path, &Registry::empty()) {
         assert!(!findings.is_empty(), "it is refused without a reason");
         assert_findings_fit(text, &findings);
     }

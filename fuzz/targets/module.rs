@@ -3,10 +3,10 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use monas::BuildNote;
+use monas_module::read_fingerprint;
 
 fuzz_target!(|bytes: &[u8]| {
-    match BuildNote::of_file(bytes) {
+    match read_fingerprint(bytes) {
         Ok(note) => {
             assert!(!note.module().is_empty(), "{note:?}");
             assert_eq!(note.to_string().lines().count(), note.fields().count(), "{note:?}");

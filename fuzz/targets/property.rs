@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use aseme_verify::properties::{Monitor, bind, parse};
 use libfuzzer_sys::fuzz_target;
 use monas_fuzz::assert_findings_fit;
-use yase::{Chart, Source, Vocabulary};
+use yase::{CompiledChart, Source, TypeEnvironment};
 
 fuzz_target!(|text: &str| {
     let (properties, findings) = parse(text);
@@ -30,7 +30,7 @@ fuzz_target!(|text: &str| {
 });
 
 /// A chart that defines some of the names.
-static CHART: LazyLock<Option<Chart>> = LazyLock::new(|| {
+static CHART: LazyLock<Option<CompiledChart>> = LazyLock::new(|| {
     let text = "Role: r\nLiveness:\nr = a . (b | c)\nTransitions:\na -> (b|c) : go\n";
-    aseme_models::statechart_of(&Source::new("r.srm", text)).0.compile(&Vocabulary::default()).ok()
+    aseme_models::statechart_of(&Source::new("r.srm", text)).0.compile(&TypeEnvironment::default()).ok()
 });

@@ -5,7 +5,7 @@
 use aseme::SrmFile;
 use libfuzzer_sys::fuzz_target;
 use monas_fuzz::assert_findings_fit;
-use yase::{Source, Vocabulary};
+use yase::{Source, TypeEnvironment};
 
 /// Charts with more nodes than this are not drawn, to save time.
 const DRAWN: usize = 2000;
@@ -22,7 +22,7 @@ fuzz_target!(|text: &str| {
         assert!(!aseme::to_text(&chart).is_empty());
         assert!(yase_export::to_svg(&chart).ends_with("</svg>\n"));
         assert!(aseme::to_json(&chart).is_object());
-        if let Err(findings) = chart.compile(&Vocabulary::default()) {
+        if let Err(findings) = chart.compile(&TypeEnvironment::default()) {
             assert!(!findings.is_empty());
         }
     }

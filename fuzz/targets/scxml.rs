@@ -7,14 +7,14 @@ use std::time::Duration;
 use libfuzzer_sys::fuzz_target;
 use monas_fuzz::assert_findings_fit;
 use yase::{Timestamp, Source};
-use yase_scxml::{self, Event, NoPlatform, Session};
+use yase_scxml::{NoPlatform, ScxmlEvent, Session};
 
 fuzz_target!(|text: &str| {
-    let (document, findings) = scxml::read(&Source::new("document", text));
+    let (document, findings) = yase_scxml::read(&Source::new("document", text));
     assert_findings_fit(text, &findings);
     let Some(document) = document else { return assert!(!findings.is_empty()) };
     if let Ok(written) = document.write() {
-        let (again, findings) = scxml::read(&Source::new("again", written.as_str()));
+        let (again, findings) = yase_scxml::read(&Source::new("again", written.as_str()));
         let again = again.unwrap_or_else(|| panic!("{findings:?}\n{written}"));
         assert_eq!(again.write().as_deref(), Ok(written.as_str()));
     }
@@ -32,7 +32,7 @@ fn play(mut session: Session<NoPlatform>, text: &str) {
     for (round, name) in (1..).zip(["e", "ball.near", "whistle", "stop", "error.execution"]) {
         let moment = Timestamp::ZERO + Duration::from_secs(round);
         let next = session.next_deadline().map_or(moment, |deadline| deadline.min(moment));
-        if session.send(Event::new(name)).is_err() || session.advance_to(next).is_err() {
+        if session.send(ScxmlEvent::new(name)).is_err() || session.advance_to(next).is_err() {
             return;
         }
         for state in session.configuration() {

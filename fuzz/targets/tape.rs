@@ -6,7 +6,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use libfuzzer_sys::fuzz_target;
 use monas_robot::{Announcement, Sensors, topics};
-use monas_tape::{Content, Decoder, Recording, Tape};
+use monas_tape::{RecordingItem, Decoder, Recording, Tape};
 use narukom::{Timestamp, Hub};
 
 static WHOLE: LazyLock<Vec<u8>> = LazyLock::new(|| recorded().expect("a tape is recorded in memory"));
@@ -25,7 +25,7 @@ fn read(bytes: Vec<u8>) -> usize {
     assert!(overview.bytes == recording.size());
     let mut decoder = Decoder::new();
     for content in recording.contents().into_iter().flatten() {
-        if let Ok(Content::Message(message)) = content
+        if let Ok(RecordingItem::Message(message)) = content
             && let Ok(value) = decoder.decode(&message.channel, message.bytes)
         {
             assert!(value.differences(&value).is_empty());

@@ -5,10 +5,10 @@
 use libfuzzer_sys::fuzz_target;
 use monas_link::AccessList;
 use monas_robot as _;
-use narukom::Narukom;
+use narukom::Hub;
 
 fuzz_target!(|text: &str| {
-    let Ok(hub) = Narukom::with_linked_topics("host") else { panic!("the topics contradict each other") };
+    let Ok(hub) = Hub::with_linked_topics("host") else { panic!("the topics contradict each other") };
     let path = hub.topic(text).and_then(|slot| hub.declaration(slot)).map(|topic| topic.path());
     assert!(path.is_none_or(|path| path == text), "`{text}` is taken for `{path:?}`");
     assert_eq!(hub.blackboard("reader").slot(text), hub.topic(text));

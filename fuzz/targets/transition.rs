@@ -4,11 +4,13 @@
 
 use libfuzzer_sys::fuzz_target;
 use monas_fuzz::assert_findings_fit;
-use yase::expression::{EventTable, Names, ScriptTable, parse_actions, parse_condition, parse_transition};
+use yase::expression::{
+    EventInterner, NameScope, ScriptInterner, parse_actions, parse_condition, parse_transition,
+};
 use yase::statechart::{Constant, ConstantValue};
 use yase::vocabulary::{
     Enumeration, FieldEntry, FieldId, FunctionEntry, FunctionId, MessageEntry, TopicEntry, TopicId,
-    TopicKind, ValueType, Vocabulary,
+    TopicKind, TypeEnvironment, ValueType,
 };
 
 fuzz_target!(|text: &str| {
@@ -23,13 +25,13 @@ fuzz_target!(|text: &str| {
         assert_eq!(again.to_string(), canonical);
     }
     let timers: Vec<String> = transition.started_timers().collect();
-    let mut events = EventTable::new();
-    let compiled = transition.compile(&mut Names {
+    let mut events = EventInterner::new();
+    let compiled = transition.compile(&mut NameScope {
         vocabulary: &vocabulary(),
         constants: &[Constant { name: "near".into(), value: ConstantValue::Number(0.25) }],
         timers: &timers,
         events: &mut events,
-        scripts: &mut ScriptTable::new(),
+        scripts: &mut ScriptInterner::new(),
         states: &|_| None,
     });
     if let Err(findings) = compiled {
@@ -39,7 +41,7 @@ fuzz_target!(|text: &str| {
 });
 
 /// A vocabulary of ball and game, so that some expressions can be compiled.
-fn vocabulary() -> Vocabulary {
+fn vocabulary() -> TypeEnvironment {
     let field = |id, name: &str, kind| FieldEntry { id: FieldId(id), name: name.into(), kind };
     let topic = |id, path: &str, kind, message: &str| TopicEntry {
         id: TopicId(id),
@@ -54,7 +56,7 @@ fn vocabulary() -> Vocabulary {
         field(3, "owner", ValueType::Message("Game".into())),
     ];
     let game = vec![field(0, "phase", ValueType::Enumeration("Phase".into()))];
-    Vocabulary {
+    TypeEnvironment {
         scripts: true,
         topics: vec![
             topic(0, "soccer/ball", TopicKind::State, "Ball"),
