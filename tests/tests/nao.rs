@@ -35,8 +35,8 @@ fn the_goalie_defends_through_the_interface_of_a_nao() {
         "{seeds} matches of {} s: conceded {conceded}, saves {saves}; as a Nao conceded {conceded_nao}, saves {saves_nao}",
         length.as_secs()
     );
-    assert!(saves_nao >= 1, "the goalie saves nothing");
-    assert!(conceded_nao <= conceded + conceded / 2 + 2, "{conceded_nao} goals instead of {conceded}");
+    assert!(saves > 0 && 5 * saves_nao >= 4 * saves, "{saves_nao} saves instead of {saves}");
+    assert!(2 * conceded_nao <= 3 * conceded, "{conceded_nao} goals instead of {conceded}");
 }
 
 #[test]

@@ -151,10 +151,7 @@ pub fn evaluate(
 }
 
 /// The match in which blue is built by a methodology.
-///
-/// # Errors
-/// The match file is missing or wrong.
-pub fn plan(
+fn plan(
     settings: &EvaluationSettings,
     methodology: Methodology,
     registry: &Registry,

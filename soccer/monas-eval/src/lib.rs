@@ -30,7 +30,8 @@ pub mod agents;
 pub mod direct;
 mod evaluation;
 pub mod sources;
+mod thresholds;
 
 pub use evaluation::{
-    CostFigures, Error, Evaluation, EvaluationSettings, Methodology, PlayFigures, Row, evaluate, plan,
+    CostFigures, Error, Evaluation, EvaluationSettings, Methodology, PlayFigures, Row, evaluate,
 };

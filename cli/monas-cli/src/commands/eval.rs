@@ -16,7 +16,7 @@ pub(crate) struct EvalArguments {
     #[arg(default_value = "config/evaluation", value_hint = ValueHint::DirPath)]
     folder: PathBuf,
     /// The number of matches of each way, with the seeds from 1.
-    #[arg(long, value_name = "COUNT", default_value_t = 10)]
+    #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..))]
     seeds: u64,
     /// The simulated time of each match, for example 600s or 2min.
     #[arg(long = "for", value_name = "DURATION", value_parser = duration::parse, default_value = "600s")]
@@ -30,10 +30,11 @@ pub(crate) fn execute(
     let EvalArguments { folder, seeds, length } = arguments;
     let settings = EvaluationSettings { folder: folder.clone(), seeds: *seeds, length: *length };
     let processor_time = || monas::cpu_time().unwrap_or_default();
-    let err = &mut *console.err;
-    let mut progress = |line: &str| drop(writeln!(err, "playing {line}"));
+    let mut remarks = console.remarks();
+    let mut progress = |line: &str| drop(writeln!(remarks, "playing {line}"));
     let evaluation = monas_eval::evaluate(&settings, &Registry::linked(), &processor_time, &mut progress)
         .map_err(|error| CommandFailure::failed(Format::Text, error.to_string()))?;
+    drop(remarks);
     write!(console.out, "{evaluation}")?;
     Ok(Exit::Success)
 }

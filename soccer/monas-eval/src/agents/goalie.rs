@@ -8,6 +8,7 @@ use monas_soccer::functionality::head::HeadController;
 use monas_soccer::{MotionKind, topics};
 
 use super::{StartUp, is_under_way};
+use crate::thresholds::goalie::*;
 
 /// Tracks the ball, stays between ball and goal, and falls or dives before a shot.
 #[derive(Clone, Debug, Default)]
@@ -17,12 +18,6 @@ pub struct BehaviorGoalie {
     start_up: StartUp,
     diving: Option<u64>,
 }
-
-/// The goalie acts if the ball crosses its lateral axis within this time, seconds.
-const ACT_WITHIN: f64 = 1.0;
-/// Beyond this bearing it falls, and beyond the second it dives; radians.
-const FALL_FROM: f64 = 15.0 * std::f64::consts::PI / 180.0;
-const DIVE_FROM: f64 = 25.0 * std::f64::consts::PI / 180.0;
 
 impl Activity for BehaviorGoalie {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {

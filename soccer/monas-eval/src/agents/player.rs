@@ -19,6 +19,7 @@ use nalgebra::Point2;
 use narukom::Timestamp;
 
 use super::{StartUp, is_under_way};
+use crate::thresholds::player::*;
 
 /// Searches for the ball, walks to it, and kicks it towards the goal.
 #[derive(Clone, Debug, Default)]
@@ -32,31 +33,6 @@ pub struct BehaviorPlayer {
     next_glance_at: Timestamp,
     glancing_until: Option<Timestamp>,
 }
-
-/// Below this distance the robot aligns with the ball, metres.
-const NEAR: f64 = 0.25;
-/// The ball's position for a kick, and the accepted error, metres.
-const KICK: (f64, f64) = (0.15, 0.05);
-const TOLERANCE: f64 = 0.025;
-/// A team mate that is so much nearer to the ball takes it, metres.
-const NEARER: f64 = 0.3;
-/// Without the ball only the head searches for the first time, and the robot turns until the
-/// second; seconds.
-const LOOK: f64 = 2.5;
-const WANDER: f64 = 13.0;
-/// From here on either axis the robot stands in the centre, metres.
-const CENTRAL: f64 = 0.5;
-/// A ball that is faster rolls, m/s.
-const STILL: f64 = 0.3;
-/// Speed of a turn, rad/s.
-const TURN: f64 = 0.7;
-/// The robot glances at a goal below this confidence of its pose, while the ball is farther away
-/// than this (m) and was seen within this time (s).
-const CERTAIN: f64 = 0.85;
-const QUIET: f64 = 0.7;
-const SEEN: f64 = 0.6;
-const GLANCE: Duration = Duration::from_millis(400);
-const GLANCE_EVERY: Duration = Duration::from_secs(3);
 
 impl Activity for BehaviorPlayer {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {

@@ -7,6 +7,7 @@ use monas_soccer::functionality::head::HeadController;
 use monas_soccer::functionality::motion::{DesiredMotion, Skill};
 
 use super::{Behaviour, GazeRequest, SharedMemory};
+use crate::thresholds::goalie::*;
 
 /// Tracks the ball, stays between ball and goal, and falls or dives before a shot.
 #[derive(Clone, Debug, Default)]
@@ -15,12 +16,6 @@ pub struct DirectGoalie {
     guard: GoalPositioning,
     diving: Option<u64>,
 }
-
-/// The goalie acts if the ball crosses its lateral axis within this time, seconds.
-const ACT_WITHIN: f64 = 1.0;
-/// Beyond this bearing it falls, and beyond the second it dives; radians.
-const FALL_FROM: f64 = 15.0 * std::f64::consts::PI / 180.0;
-const DIVE_FROM: f64 = 25.0 * std::f64::consts::PI / 180.0;
 
 impl Behaviour for DirectGoalie {
     const VISION: Duration = Duration::from_millis(200);

@@ -7,15 +7,16 @@ use monas_soccer::functionality::aim::{kick_target, shot_target};
 use monas_soccer::functionality::align::Alignment;
 use monas_soccer::functionality::approach::Approach;
 use monas_soccer::functionality::avoidance::{avoid, keep_out};
-use monas_soccer::functionality::field::{FieldModel, Goal};
+use monas_soccer::functionality::field::Goal;
 use monas_soccer::functionality::head::{Gaze, HeadController};
 use monas_soccer::functionality::motion::{DesiredMotion, Skill};
 use monas_soccer::functionality::support::support_place;
 use monas_soccer::functionality::walk::{Walk, stride_to, turn_to};
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Point2;
 use narukom::Timestamp;
 
 use super::{Behaviour, GazeRequest, SharedMemory};
+use crate::thresholds::player::*;
 
 /// Searches for the ball, walks to it, and kicks it towards the goal.
 #[derive(Clone, Debug, Default)]
@@ -28,31 +29,6 @@ pub struct DirectPlayer {
     next_glance_at: Timestamp,
     glancing_until: Option<Timestamp>,
 }
-
-/// Below this distance the robot aligns with the ball, metres.
-const NEAR: f64 = 0.25;
-/// The ball's position for a kick, and the accepted error, metres.
-const KICK: (f64, f64) = (0.15, 0.05);
-const TOLERANCE: f64 = 0.025;
-/// A team mate that is so much nearer to the ball takes it, metres.
-const NEARER: f64 = 0.3;
-/// Without the ball only the head searches for the first time, and the robot turns until the
-/// second; seconds.
-const LOOK: f64 = 2.5;
-const WANDER: f64 = 13.0;
-/// From here on either axis the robot stands in the centre, metres.
-const CENTRAL: f64 = 0.5;
-/// A ball that is faster rolls, m/s.
-const STILL: f64 = 0.3;
-/// Speed of a turn, rad/s.
-const TURN: f64 = 0.7;
-/// The robot glances at a goal below this confidence of its pose, while the ball is farther away
-/// than this (m) and was seen within this time (s).
-const CERTAIN: f64 = 0.85;
-const QUIET: f64 = 0.7;
-const SEEN: f64 = 0.6;
-const GLANCE: Duration = Duration::from_millis(400);
-const GLANCE_EVERY: Duration = Duration::from_secs(3);
 
 impl Behaviour for DirectPlayer {
     const VISION: Duration = Duration::from_millis(100);
@@ -171,7 +147,6 @@ fn target(memory: &SharedMemory, ball: &Ball) -> Point2<f64> {
     let Some((field, pose)) = memory.ground() else {
         return Point2::new(ball.x + 3.0, ball.y);
     };
-    let (field, pose): (FieldModel, Isometry2<f64>) = (field, pose);
     let robots = memory.robots.robots.iter();
     let opponents: Vec<Point2<f64>> =
         robots.filter(|robot| !robot.team_mate).map(|robot| pose * robot.position()).collect();
