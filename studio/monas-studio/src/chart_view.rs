@@ -38,7 +38,8 @@ pub(crate) struct ChartView {
     /// Whether the active states and shapes are out of date.
     is_stale: bool,
     active: BTreeSet<u32>,
-    steps: VecDeque<Value>,
+    /// The latest steps. Shared by the moments of a run.
+    steps: VecDeque<Arc<Value>>,
     /// How many steps there were.
     count: u64,
     /// Counts changes.
@@ -84,9 +85,9 @@ impl ChartView {
         if self.steps.len() == STEPS {
             self.steps.pop_front();
         }
-        self.steps
-            .push_back(json!({"t": seconds(time), "number": self.count, "event": event, "fired": fired,
-            "held": step.held, "exits": step.exits, "entries": step.entries}));
+        let step = json!({"t": seconds(time), "number": self.count, "event": event, "fired": fired,
+            "held": step.held, "exits": step.exits, "entries": step.entries});
+        self.steps.push_back(Arc::new(step));
         self.count += 1;
         self.revision += 1;
     }
@@ -99,7 +100,7 @@ impl ChartView {
     /// The state, with the steps from a number on.
     pub(crate) fn object(&self, key: &ChartKey, from: u64) -> Value {
         let skipped = (from + self.steps.len() as u64).saturating_sub(self.count) as usize;
-        let steps: Vec<&Value> = self.steps.iter().skip(skipped).collect();
+        let steps: Vec<&Value> = self.steps.iter().skip(skipped).map(|step| &**step).collect();
         json!({"key": key.text(), "host": key.host, "agent": key.agent, "chart": key.chart, "model": self.model,
             "state": self.state, "drawing": self.drawing, "active": self.active, "steps": steps})
     }

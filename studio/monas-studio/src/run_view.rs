@@ -1,6 +1,7 @@
 //! What is known of a run at one time, and what of it a viewer has not seen yet.
 
 use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
 
 use monas::records::{self, AgentEntry, ChartState, Model, foxglove::Log};
 use prost::Message;
@@ -70,7 +71,7 @@ pub(crate) struct RunView {
     latest: BTreeMap<(String, String), Latest>,
     /// Counts messages of the scene.
     scene_revision: u64,
-    lines: VecDeque<Value>,
+    lines: VecDeque<Arc<Value>>,
     line_count: u64,
     agents: Value,
     topics: Value,
@@ -138,9 +139,9 @@ impl RunView {
             self.lines.pop_front();
         }
         let level = log.level().as_str_name().to_lowercase();
-        self.lines
-            .push_back(json!({"number": self.line_count, "t": seconds(message.time), "host": message.host,
-            "level": level, "name": log.name, "text": log.message}));
+        let line = json!({"number": self.line_count, "t": seconds(message.time), "host": message.host,
+            "level": level, "name": log.name, "text": log.message});
+        self.lines.push_back(Arc::new(line));
         self.line_count += 1;
     }
 
@@ -203,7 +204,7 @@ impl RunView {
         if cursor.line != self.line_count {
             has_news = true;
             let skipped = (cursor.line + self.lines.len() as u64).saturating_sub(self.line_count) as usize;
-            frame["log"] = self.lines.iter().skip(skipped).cloned().collect();
+            frame["log"] = self.lines.iter().skip(skipped).map(|line| Value::clone(line)).collect();
             cursor.line = self.line_count;
         }
         let charts = self.chart_news(cursor);
