@@ -20,8 +20,9 @@ const FRAME: Duration = Duration::from_nanos(1_000_000_000 / 30);
 /// The longest that a page may take to receive a frame; a slower one is disconnected.
 const SLOWEST: Duration = Duration::from_secs(5);
 
-/// How long to wait for the page's reply to the end of the studio.
-const FAREWELL: Duration = Duration::from_millis(200);
+/// How long to wait for the page's reply to the end of the studio: a page on a busy computer may be
+/// slow, and one that has frozen must not hold up the end of a run for longer.
+const FAREWELL: Duration = Duration::from_secs(2);
 
 /// The longest request of a page, in bytes.
 const REQUEST_LIMIT: usize = 16 << 10;
@@ -66,9 +67,9 @@ fn exchange(stream: TcpStream, session: &mut dyn Session, is_over: &AtomicBool) 
     socket.flush()?;
     // What the page has sent is read, or else the system resets the connection, and the page may
     // lose the reason. At its reply the socket reports that it is closed.
-    socket.get_ref().set_read_timeout(Some(FAREWELL))?;
-    for _ in 0..REQUESTS {
-        socket.read()?;
+    let deadline = now() + FAREWELL;
+    while now() < deadline {
+        next_request(&mut socket, deadline.saturating_duration_since(now()))?;
     }
     Ok(())
 }

@@ -190,8 +190,14 @@ const TESTS = {
   },
 
   async 'an end is said'({ page, run }) {
+    const isRetry = (message) => message.type() === 'error' && /WebSocket/.test(message.text());
+    const retry = page.waitForEvent('console', isRetry);
     await run.stop();
-    await until(page, 'the notice', () => /The studio has ended/.test(document.querySelector('.notice')?.textContent ?? ''));
+    const notice = () => /The studio has ended/.test(document.querySelector('.notice')?.textContent ?? '');
+    await until(page, 'the notice', notice);
+    await retry;
+    await page.waitForEvent('console', isRetry);
+    assert.ok(await page.evaluate(notice), 'a retry takes the reason back');
     assert.equal(await page.locator('.robots li').count(), 6);
     await shot(page, 'ended');
   },

@@ -101,7 +101,8 @@ export class StudioClient {
         return;
       }
       this.connection = 'closed';
-      this.hasEnded = event.code === GOING_AWAY;
+      // A connection that cannot be opened afterwards does not take back what was said.
+      this.hasEnded ||= event.code === GOING_AWAY;
       setTimeout(() => this.connect(), this.#retry);
       this.#retry = Math.min(this.#retry * 2, LAST_RETRY);
     };
