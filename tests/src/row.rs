@@ -72,7 +72,7 @@ impl MatchRow {
             returns: (sum(|team| team.returns), summary.teams.iter().map(|team| team.return_seconds).sum()),
             first_touch: summary.time_to_first_touch.map(|time| time.as_secs_f64()),
             team_play,
-            hash: summary.hash.clone(),
+            hash: summary.hash.clone().unwrap_or_default(),
         }
     }
 

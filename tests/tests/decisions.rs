@@ -39,7 +39,7 @@ fn played(path: &Path, seed: u64, seconds: u64) -> (MatchSummary, monas::Statist
     let plan = MatchSource::load(path, &monas::Registry::linked()).unwrap();
     let mut running = plan.start(MatchOptions { seed, record: None }).unwrap();
     running.advance(Duration::from_secs(seconds)).unwrap();
-    let statistics = running.simulation().statistics();
+    let statistics = running.simulation().unwrap().statistics();
     (running.finish().unwrap(), statistics)
 }
 

@@ -19,7 +19,7 @@ fn hash_of(path: &Path, seed: u64) -> (String, u64) {
     let mut running = plan.start(MatchOptions { seed, record: None }).unwrap();
     running.advance(LENGTH).unwrap();
     let summary = running.finish().unwrap();
-    (summary.hash, summary.messages)
+    (summary.hash.unwrap(), summary.messages)
 }
 
 #[test]

@@ -77,7 +77,9 @@ pub use narukom::{Blackboard, Timestamp};
 pub use parameters::{ParameterFault, Parameters};
 pub use registry::Registry;
 pub use run_hash::RunHash;
-pub use statistics::{ActivityStatistics, AgentStatistics, MovingAverage, Percentiles, Statistics};
+pub use statistics::{
+    ActivityStatistics, AgentStatistics, BodyStatistics, MovingAverage, Percentiles, Statistics,
+};
 pub use stopwatch::{Histogram, Stopwatch, TimeSource, TimingGuard, TimingPolicy, Totals};
 
 /// Items used by the expansions of this crate's macros.

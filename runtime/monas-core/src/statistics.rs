@@ -10,8 +10,13 @@ use monas_link::LinkStatistics;
 pub struct Statistics {
     /// One entry for each agent.
     pub agents: Vec<AgentStatistics>,
+    /// One entry for each body at the end of a run in real time; none before, nor in simulated
+    /// time.
+    pub bodies: Vec<BodyStatistics>,
     /// One entry for each link.
     pub links: Vec<LinkStatistics>,
+    /// The failure of the world that has ended a run in real time.
+    pub failure: Option<String>,
 }
 
 /// Statistics of one agent so far.
@@ -40,6 +45,26 @@ pub struct AgentStatistics {
     pub cycle_percentiles: Option<Percentiles>,
     /// Why it has stopped, if it has.
     pub stopped: Option<String>,
+}
+
+/// Statistics of the cycles of a body in real time: it forwards commands, then senses.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct BodyStatistics {
+    /// Its host.
+    pub host: String,
+    /// The period of its cycles.
+    pub period: Duration,
+    /// Its cycles.
+    pub cycles: u64,
+    /// Cycles that began when the next was due, or later. They are made up for.
+    pub overruns: u64,
+    /// Cycles that failed.
+    pub failures: u64,
+    /// How long after their due times the cycles began.
+    pub lateness: Option<Percentiles>,
+    /// From sensing to acting: the time between the last sensing before a command was published and
+    /// the moment at which the body received the command.
+    pub latency: Option<Percentiles>,
 }
 
 /// Statistics of one activity so far.

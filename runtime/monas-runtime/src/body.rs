@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use monas_robot::topics::{ACTUATORS, ANNOUNCEMENT, HEARD, SAID, SENSORS, SIGHTINGS};
 use monas_robot::{Announcement, Heard, Percepts, Robot, Sensors, Sightings};
-use narukom::{Blackboard, Hub, Publisher, PublisherId, Retention, Timestamp, Topic};
+use narukom::{Blackboard, Hub, Publisher, PublisherId, Retention, Sample, Timestamp, Topic};
 
 use monas_core::error::{Error, ErrorKind};
 
@@ -83,14 +83,15 @@ impl BodyBridge {
         Ok(())
     }
 
-    /// Forwards the newest speech and actuator commands that the body does not have yet.
-    pub(crate) fn act(&mut self, now: Timestamp) -> Result<(), Error> {
+    /// Forwards the newest speech and actuator commands that the body does not have yet. Returns
+    /// when the actuator command was published, if there was one.
+    pub(crate) fn act(&mut self, now: Timestamp) -> Result<Option<Timestamp>, Error> {
         if self.is_safe_state {
-            return Ok(());
+            return Ok(None);
         }
         self.commands.process_messages(now);
         if let Some(said) = newest(&self.commands, SAID, &mut self.delivered_speech)
-            && let Err(error) = self.robot.say(now, &said.words)
+            && let Err(error) = self.robot.say(now, &said.message.words)
         {
             // A body without speech can still walk.
             tracing::error!(robot = %self.commands.hub().host(), "nothing is said: {error}");
@@ -98,10 +99,11 @@ impl BodyBridge {
         if let Some(joints) = &mut self.joints {
             joints.act(&self.commands, &mut *self.robot, now);
         }
-        match newest(&self.commands, ACTUATORS, &mut self.delivered_commands) {
-            Some(actuators) => self.robot.act(now, actuators).map_err(failed),
-            None => Ok(()),
-        }
+        let Some(actuators) = newest(&self.commands, ACTUATORS, &mut self.delivered_commands) else {
+            return Ok(None);
+        };
+        self.robot.act(now, actuators.message).map_err(failed)?;
+        Ok(Some(actuators.header.published))
     }
 
     /// Enters the safe state: the agents' commands are ignored from now on.
@@ -116,10 +118,10 @@ fn newest<'a, K: Retention>(
     commands: &'a Blackboard,
     topic: Topic<K>,
     taken: &mut Option<MessageId>,
-) -> Option<&'a K::Message> {
+) -> Option<Sample<'a, K::Message>> {
     let sample = commands.sample(topic)?;
     let which = (sample.header.publisher, sample.header.sequence);
-    (taken.replace(which) != Some(which)).then_some(sample.message)
+    (taken.replace(which) != Some(which)).then_some(sample)
 }
 
 fn failed(error: monas_robot::Error) -> Error {

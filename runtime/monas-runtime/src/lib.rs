@@ -32,6 +32,7 @@ mod agent_instance;
 mod agent_shared;
 mod agent_update;
 mod body;
+mod body_thread;
 mod call_meter;
 mod chart_thread;
 mod clock;

@@ -3,25 +3,26 @@
 
 use std::fmt;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{Sender, channel};
 use std::thread::JoinHandle;
 
-use narukom::Hub;
+use narukom::{Hub, Timestamp};
 
 use super::agent_factory::AgentFactory;
 use super::body::BodyBridge;
+use super::body_thread::BodyThread;
 use super::clock::RunClock;
 use super::links::{RunningLink, time_of_other};
 use super::real_time_host::{ConnectedAgent, HostSite, RealTimeHost, WakeCallback, spawn};
 use super::run_config::RunConfig;
 use super::run_handle::RunHandle;
-use super::setup::{PreparedHost, PreparedRun, WorldDriver, first_tick, tick};
+use super::setup::{PreparedHost, PreparedRun, WorldDriver};
 use super::stop_handle::StopHandle;
 use super::supervisor::Supervisor;
 use super::supervisor_request::{SupervisorHandle, SupervisorRequest, wake_on_stop};
 use monas_core::error::{Error, ErrorKind};
-use monas_core::statistics::{AgentStatistics, Statistics};
+use monas_core::statistics::{AgentStatistics, BodyStatistics, Statistics};
 use monas_link::LinkStatistics;
 use monas_log::LogHosts;
 
@@ -32,7 +33,8 @@ pub struct RealTimeRun {
     clock: RunClock,
     line: Sender<SupervisorRequest>,
     supervisor: Option<JoinHandle<Vec<AgentStatistics>>>,
-    others: Vec<JoinHandle<()>>,
+    world: Option<JoinHandle<Result<(), Error>>>,
+    bodies: Vec<JoinHandle<BodyStatistics>>,
     links: Vec<RunningLink>,
     hubs: Vec<Hub>,
 }
@@ -54,12 +56,15 @@ impl RealTimeRun {
             clock: run_clock(&stations)?,
             line,
             supervisor: None,
-            others: Vec::new(),
+            world: None,
+            bodies: Vec::new(),
             links: Vec::new(),
-            hubs: world.iter().map(|world| world.hub().clone()).collect(),
+            hubs: Vec::new(),
         };
         let mut hosts = Vec::new();
+        let hub_of_world = world.as_ref().map(|world| world.hub().clone());
         let launched = running.launch(world, stations, &factory, &mut hosts);
+        running.hubs.extend(hub_of_world);
         wake_on_stop(&running.line, &running.stopper);
         let supervisor = Supervisor { hosts, events, stopper: running.stopper.clone(), clock: running.clock };
         if launched.is_err() {
@@ -93,6 +98,16 @@ impl RealTimeRun {
         self.links.iter().map(RunningLink::statistics).collect()
     }
 
+    /// The present time of the run.
+    pub fn now(&self) -> Timestamp {
+        self.clock.now()
+    }
+
+    /// Waits until a moment of the run; returns false if the run is stopped before.
+    pub fn wait_until(&self, moment: Timestamp) -> bool {
+        self.stopper.wait_until(moment, &self.clock)
+    }
+
     /// Whether the run has been stopped, or every agent has ended.
     pub fn has_ended(&self) -> bool {
         self.stopper.is_stopped()
@@ -118,13 +133,20 @@ impl RealTimeRun {
                 Vec::new()
             })
         });
-        for thread in self.others.drain(..) {
-            if thread.join().is_err() {
-                tracing::error!("the thread of a body or the world has panicked");
+        let failure = match self.world.take().map(JoinHandle::join) {
+            None | Some(Ok(Ok(()))) => None,
+            Some(Ok(Err(error))) => Some(error.to_string()),
+            Some(Err(_)) => Some("the thread of the world has panicked".to_owned()),
+        };
+        let mut bodies = Vec::new();
+        for thread in self.bodies.drain(..) {
+            match thread.join() {
+                Ok(body) => bodies.push(body),
+                Err(_) => tracing::error!("the thread of a body has panicked"),
             }
         }
         let links = self.links.drain(..).map(RunningLink::stop).collect();
-        Statistics { agents: agents.unwrap_or_default(), links }
+        Statistics { agents: agents.unwrap_or_default(), bodies, links, failure }
     }
 
     fn launch_world(&mut self, mut world: WorldDriver) -> Result<(), Error> {
@@ -135,11 +157,13 @@ impl RealTimeRun {
             while stopper.wait_until(world.due(), &clock) {
                 if let Err(error) = world.advance(world.due()) {
                     tracing::error!("{error}");
-                    return stopper.stop();
+                    stopper.stop();
+                    return Err(error);
                 }
             }
+            Ok(())
         })?;
-        self.others.push(thread);
+        self.world = Some(thread);
         Ok(())
     }
 
@@ -185,30 +209,13 @@ impl RealTimeRun {
         Ok(ConnectedHost { agents, body: body.map(|body| (body, hub)), safe_state })
     }
 
-    /// Forwards the newest commands to a body and publishes what it senses, in each of its cycles.
-    fn launch_body(&mut self, mut body: BodyBridge, hub: &Hub, rests: Arc<AtomicBool>) -> Result<(), Error> {
-        let (stopper, clock, host) = (self.stopper.clone(), self.clock, hub.host().to_owned());
+    /// Starts the cycles of a body.
+    fn launch_body(&mut self, body: BodyBridge, hub: &Hub, rests: Arc<AtomicBool>) -> Result<(), Error> {
+        let clock = self.clock;
         let hosting = LogHosts::real([hub], move || clock.now());
-        let thread = spawn(&format!("{host} body"), move || {
-            let _hosted = hosting.begin();
-            let mut next = first_tick(body.period(), clock.begin());
-            while stopper.wait_until(tick(body.period(), next), &clock) {
-                next += 1;
-                let now = clock.now();
-                let acted =
-                    if rests.load(Ordering::SeqCst) { body.enter_safe_state(now) } else { body.act(now) };
-                if let Err(error) = acted.and_then(|()| body.sense(now)) {
-                    tracing::error!(%host, "{error}");
-                }
-            }
-            // A run that ends because all agents have ended leaves the body in its safe state.
-            if rests.load(Ordering::SeqCst)
-                && let Err(error) = body.enter_safe_state(clock.now())
-            {
-                tracing::error!(%host, "{error}");
-            }
-        })?;
-        self.others.push(thread);
+        let name = format!("{} body", hub.host());
+        let thread = BodyThread::new(body, hub.host().to_owned(), self.stopper.clone(), clock, rests);
+        self.bodies.push(spawn(&name, move || hosting.during(|| thread.run()))?);
         Ok(())
     }
 }

@@ -167,7 +167,7 @@ impl Simulation {
     pub fn statistics(&self) -> Statistics {
         let agents = self.hosts.iter().flat_map(SimulatedHost::statistics);
         let links = self.links.iter().map(RunningLink::statistics).collect();
-        Statistics { agents: agents.collect(), links }
+        Statistics { agents: agents.collect(), links, ..Statistics::default() }
     }
 
     /// A handle for inspecting the run and publishing from outside. External messages are published

@@ -67,11 +67,11 @@
 //!   messages, so that every recorder of topics records them.
 
 pub use monas_core::{
-    Activity, ActivityStatistics, Agent, AgentStatistics, Blackboard, BoxError, BuildFingerprint,
-    ChartCoverage, ChartListener, ChartSettings, Error, ErrorKind, FailurePolicy, Frequency, Histogram, Hz,
-    IntoProgress, MicroStep, Module, MovingAverage, ParameterFault, Parameters, Percentiles, Progress,
-    Registry, RunHash, StateCoverage, Statistics, Stopwatch, TimeSource, Timestamp, TimingGuard,
-    TimingPolicy, Topics, Totals, TransitionCoverage, ViolationResponse,
+    Activity, ActivityStatistics, Agent, AgentStatistics, Blackboard, BodyStatistics, BoxError,
+    BuildFingerprint, ChartCoverage, ChartListener, ChartSettings, Error, ErrorKind, FailurePolicy,
+    Frequency, Histogram, Hz, IntoProgress, MicroStep, Module, MovingAverage, ParameterFault, Parameters,
+    Percentiles, Progress, Registry, RunHash, StateCoverage, Statistics, Stopwatch, TimeSource, Timestamp,
+    TimingGuard, TimingPolicy, Topics, Totals, TransitionCoverage, ViolationResponse,
 };
 pub use monas_core::{activity, function, module, statechart};
 pub use monas_core::{activity_name, call_slot, generated, memory, records, scenario};

@@ -42,6 +42,10 @@ impl Error {
         Error { kind: ErrorKind::Agents, message, source: Some(error.into()) }
     }
 
+    pub(crate) fn refused(message: String) -> Error {
+        Error { kind: ErrorKind::Agents, message, source: None }
+    }
+
     pub(crate) fn recording(error: monas_tape::Error) -> Error {
         let message = format!("cannot record: {error}");
         Error { kind: ErrorKind::Recording, message, source: Some(error.into()) }

@@ -20,7 +20,7 @@ use crate::league::League;
 use crate::league_player::LeaguePlayers;
 use crate::league_referee::LeagueReferee;
 use crate::match_world::MatchWorld;
-use crate::running_match::RunningMatch;
+use crate::running_match::{MatchRun, RunningMatch};
 use crate::settings::MatchSettings;
 
 /// Loads matches.
@@ -133,7 +133,6 @@ pub struct MatchPlan {
     registry: Registry,
     listeners: Vec<Box<dyn ChartListener>>,
     warnings: Vec<Diagnostic>,
-    is_linked: bool,
     league: Option<LeagueSetup>,
     files: ConfigurationBundle,
     settings: String,
@@ -177,6 +176,12 @@ struct RobotPlan {
     source: Option<Arc<Source>>,
 }
 
+/// What determines the time of a match.
+enum MatchTime {
+    Simulated,
+    Real,
+}
+
 /// A match that is set up.
 struct MatchParts {
     talws: Talws,
@@ -210,7 +215,6 @@ impl MatchPlan {
             registry,
             listeners: Vec::new(),
             warnings: Vec::new(),
-            is_linked: false,
             league: None,
             files: ConfigurationBundle::default(),
             settings: String::new(),
@@ -229,17 +233,10 @@ impl MatchPlan {
         self
     }
 
-    /// Whether robots have links to other processes.
+    /// Whether robots have links to other processes, which do not wait for simulated time: the
+    /// match [starts in real time](MatchPlan::start_in_real_time) only.
     pub fn has_links(&self) -> bool {
         self.robots.iter().any(|robot| !robot.links.is_empty())
-    }
-
-    /// Opens the links of the robots when the match begins. The caller of
-    /// [`advance`](RunningMatch::advance) then sets the pace, and the match is no longer a function
-    /// of its seed. Without this, a match with links is rejected.
-    pub fn linked(mut self) -> MatchPlan {
-        self.is_linked = true;
-        self
     }
 
     /// Lets a GameController decide instead of the match's own referee: states, penalties and goals
@@ -322,13 +319,26 @@ impl MatchPlan {
         Ok(self.set_up(0, |_, _, _| Ok(None))?.talws.check())
     }
 
-    /// Starts the match.
+    /// Starts the match in simulated time.
+    ///
+    /// # Errors
+    /// The recording cannot be written, a part cannot be set up, or robots have links.
+    pub fn start(self, options: MatchOptions) -> Result<RunningMatch, Error> {
+        self.start_in(MatchTime::Simulated, options)
+    }
+
+    /// Starts the match in real time: the field advances on a thread of its own, and each body and
+    /// the agents of each robot have threads, as on a robot. The match is no longer a function of
+    /// its seed. A recording is one of real time: see [`Tape::create_real_time`].
     ///
     /// # Errors
     /// The recording cannot be written, or a part cannot be set up.
-    pub fn start(self, options: MatchOptions) -> Result<RunningMatch, Error> {
-        let (length, is_linked, files) = (self.length(), self.is_linked, self.files.clone());
-        let settings = self.settings.clone();
+    pub fn start_in_real_time(self, options: MatchOptions) -> Result<RunningMatch, Error> {
+        self.start_in(MatchTime::Real, options)
+    }
+
+    fn start_in(self, time: MatchTime, options: MatchOptions) -> Result<RunningMatch, Error> {
+        let (length, files, settings) = (self.length(), self.files.clone(), self.settings.clone());
         let hosts: Vec<String> = self.robots.iter().map(|robot| robot.host.clone()).collect();
         let parts = self.set_up(options.seed, |settings, simulated, robot| {
             settings.open(simulated, options.seed.wrapping_add(robot as u64)).map(Some)
@@ -338,16 +348,22 @@ impl MatchPlan {
         talws.observe(Box::new(hash.clone()));
         let tape = options.record;
         if let Some(tape) = &tape {
-            monas_recording::label_simulated(tape, &files, &settings, options.seed, &hosts)
-                .map_err(Error::recording)?;
+            let labelled = match time {
+                MatchTime::Simulated => {
+                    monas_recording::label_simulated(tape, &files, &settings, options.seed, &hosts)
+                }
+                MatchTime::Real => monas_recording::label_real_time(tape, &files, &settings, &hosts),
+            };
+            labelled.map_err(Error::recording)?;
             talws.observe(Box::new(tape.clone()));
         }
-        let simulation = match is_linked {
-            true => talws.simulate_linked(options.seed),
-            false => talws.simulate(options.seed),
+        let run = match time {
+            MatchTime::Simulated => {
+                talws.simulate(options.seed).map(|run| MatchRun::Simulated(Box::new(run)))
+            }
+            MatchTime::Real => talws.start().map(MatchRun::RealTime),
         };
-        let simulation = simulation.map_err(Error::agents)?;
-        Ok(RunningMatch::new(simulation, pitch, hash, tape, length, league))
+        Ok(RunningMatch::new(run.map_err(Error::agents)?, pitch, hash, tape, length, league))
     }
 
     /// The robots with their bodies, which `open` opens over those on the field.

@@ -3,7 +3,10 @@
 use std::time::Duration;
 
 use monas::records::{Change, Changed};
-use monas::{RunHash, Simulation, Statistics, Timestamp};
+use monas::{
+    ActivityStatistics, AgentStatistics, ChartCoverage, RealTimeRun, RunHandle, RunHash, Simulation,
+    Statistics, Timestamp,
+};
 use monas_sim::{GameState, SharedField, SimulatedWorld, TeamColour};
 use monas_tape::Tape;
 
@@ -15,9 +18,9 @@ use crate::summary::{AgentSummary, MatchEvent, MatchSummary, Scoreboard, TeamSco
 /// How long the end of a match waits for the activities to stop, in real time.
 const STOP_LIMIT: Duration = Duration::from_secs(3);
 
-/// A running match, in simulated time.
+/// A running match, in simulated or in real time.
 pub struct RunningMatch {
-    simulation: Simulation,
+    run: MatchRun,
     pitch: SharedField,
     hash: RunHash,
     tape: Option<Tape>,
@@ -27,24 +30,35 @@ pub struct RunningMatch {
     league: Option<League>,
 }
 
+/// The agents and bodies of a match.
+pub(crate) enum MatchRun {
+    /// All on one thread, in a defined order.
+    Simulated(Box<Simulation>),
+    /// On threads of their own.
+    RealTime(RealTimeRun),
+}
+
 impl RunningMatch {
     pub(crate) fn new(
-        simulation: Simulation,
+        run: MatchRun,
         pitch: SharedField,
         hash: RunHash,
         tape: Option<Tape>,
         length: Duration,
         league: Option<League>,
     ) -> RunningMatch {
-        RunningMatch { simulation, pitch, hash, tape, length, events: Vec::new(), seen_events: 0, league }
+        RunningMatch { run, pitch, hash, tape, length, events: Vec::new(), seen_events: 0, league }
     }
 
-    /// Advances the match to the given time since its start.
+    /// Advances the match to the given time since its start; in real time, waits for it.
     ///
     /// # Errors
     /// The field or a body failed. Failures of activities are handled by the policy of their agent.
     pub fn advance(&mut self, to: Duration) -> Result<(), Error> {
-        self.simulation.run_until(timestamp(to)).map_err(Error::agents)?;
+        match &mut self.run {
+            MatchRun::Simulated(simulation) => simulation.run_until(timestamp(to)).map_err(Error::agents)?,
+            MatchRun::RealTime(run) => _ = run.wait_until(timestamp(to)),
+        }
         self.collect_events();
         Ok(())
     }
@@ -59,8 +73,17 @@ impl RunningMatch {
         to: Duration,
         is_cancelled: impl Fn() -> bool,
     ) -> Result<RunningMatch, Error> {
-        let advanced = self.simulation.run_until_cancelled(timestamp(to), is_cancelled, STOP_LIMIT);
-        let mut running = RunningMatch { simulation: advanced.map_err(Error::agents)?, ..self };
+        let run = match self.run {
+            MatchRun::Simulated(simulation) => {
+                let advanced = simulation.run_until_cancelled(timestamp(to), is_cancelled, STOP_LIMIT);
+                MatchRun::Simulated(Box::new(advanced.map_err(Error::agents)?))
+            }
+            MatchRun::RealTime(run) => {
+                run.wait_until(timestamp(to));
+                MatchRun::RealTime(run)
+            }
+        };
+        let mut running = RunningMatch { run, ..self };
         running.collect_events();
         Ok(running)
     }
@@ -74,9 +97,12 @@ impl RunningMatch {
         });
     }
 
-    /// From now on measures the agents, see [`Simulation::measure`].
+    /// From now on measures the agents, see [`Simulation::measure`]. In real time they are measured
+    /// from the start.
     pub fn measure(&mut self) {
-        self.simulation.measure();
+        if let MatchRun::Simulated(simulation) = &mut self.run {
+            simulation.measure();
+        }
     }
 
     /// Applies a change to the agents of a robot now, between two of their cycles.
@@ -84,20 +110,31 @@ impl RunningMatch {
     /// # Errors
     /// There is no such robot. The refusal of a change is part of the reply.
     pub fn change(&mut self, host: &str, change: Change) -> Result<Changed, Error> {
-        self.simulation.change(host, change).map_err(Error::agents)
+        match &mut self.run {
+            MatchRun::Simulated(simulation) => simulation.change(host, change).map_err(Error::agents),
+            MatchRun::RealTime(run) => run.run_handle().change(host, change).map_err(Error::refused),
+        }
     }
 
-    /// The simulated time since the start.
+    /// The time since the start.
     pub fn now(&self) -> Duration {
-        Duration::from_nanos(self.simulation.now().as_nanos())
+        let now = match &self.run {
+            MatchRun::Simulated(simulation) => simulation.now(),
+            MatchRun::RealTime(run) => run.now(),
+        };
+        Duration::from_nanos(now.as_nanos())
     }
 
-    /// Whether both halves have been played.
+    /// Whether both halves have been played, or the match has ended early: in real time it ends
+    /// when the field fails, or when every agent has ended.
     pub fn is_over(&self) -> bool {
         let has_ended = |world: &SimulatedWorld| {
             (world.referee().state(), world.referee().half()) == (GameState::Finished, 2)
         };
-        self.now() >= self.length || (self.league.is_some() && self.pitch.with_world(has_ended))
+        let has_stopped = matches!(&self.run, MatchRun::RealTime(run) if run.has_ended());
+        has_stopped
+            || self.now() >= self.length
+            || (self.league.is_some() && self.pitch.with_world(has_ended))
     }
 
     /// What the match has exchanged with a GameController, or as one; none if it has neither.
@@ -143,9 +180,20 @@ impl RunningMatch {
         &self.pitch
     }
 
-    /// The simulation of the agents.
-    pub fn simulation(&self) -> &Simulation {
-        &self.simulation
+    /// The simulation of the agents; none in real time.
+    pub fn simulation(&self) -> Option<&Simulation> {
+        match &self.run {
+            MatchRun::Simulated(simulation) => Some(simulation),
+            MatchRun::RealTime(_) => None,
+        }
+    }
+
+    /// A handle for inspecting the match and publishing from outside.
+    pub fn run_handle(&self) -> RunHandle {
+        match &self.run {
+            MatchRun::Simulated(simulation) => simulation.run_handle(),
+            MatchRun::RealTime(run) => run.run_handle(),
+        }
     }
 
     /// Ends the match. The caller finishes its tape. It waits three seconds of real time for the
@@ -156,23 +204,22 @@ impl RunningMatch {
     pub fn finish(self) -> Result<MatchSummary, Error> {
         let simulated = self.now();
         let league = self.league();
-        let RunningMatch { simulation, pitch, hash, tape, events, .. } = self;
+        let RunningMatch { run, pitch, hash, tape, events, .. } = self;
         if let Some(tape) = &tape {
-            monas_recording::ended(tape, simulation.now()).map_err(Error::recording)?;
+            monas_recording::ended(tape, timestamp(simulated)).map_err(Error::recording)?;
         }
-        let last = (simulation.statistics(), simulation.coverage());
-        let ((statistics, coverage), unstopped) = match simulation.stop_within(STOP_LIMIT) {
-            Ok(stopped) => ((stopped.statistics(), stopped.coverage()), None),
-            Err(error) => (last, Some(error.to_string())),
-        };
+        let is_simulated = matches!(run, MatchRun::Simulated(_));
+        let RunEnd { statistics, coverage, unstopped } = run.end();
         let (hash, messages) = hash.finish();
         let touch = pitch.with_world(|world| world.statistics().time_to_first_touch());
         Ok(MatchSummary {
-            hash,
+            hash: is_simulated.then_some(hash),
             messages,
             simulated,
             teams: pitch.with_world(teams),
-            agents: agents(&statistics),
+            agents: statistics.agents.iter().map(agent).collect(),
+            bodies: statistics.bodies,
+            failure: statistics.failure,
             time_to_first_touch: touch.map(Duration::from_secs_f64),
             coverage,
             links: statistics.links,
@@ -187,17 +234,50 @@ fn timestamp(time: Duration) -> Timestamp {
     Timestamp::from_nanos(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX))
 }
 
-fn agents(statistics: &Statistics) -> Vec<AgentSummary> {
-    let summary = |agent: &monas::AgentStatistics| AgentSummary {
+/// What the end of the agents leaves.
+struct RunEnd {
+    statistics: Statistics,
+    coverage: Vec<ChartCoverage>,
+    /// Names the activity that has not returned.
+    unstopped: Option<String>,
+}
+
+impl MatchRun {
+    fn end(self) -> RunEnd {
+        let simulation = match self {
+            MatchRun::Simulated(simulation) => simulation,
+            MatchRun::RealTime(run) => {
+                return RunEnd { statistics: run.stop(), coverage: Vec::new(), unstopped: None };
+            }
+        };
+        let (statistics, coverage) = (simulation.statistics(), simulation.coverage());
+        match simulation.stop_within(STOP_LIMIT) {
+            Ok(stopped) => {
+                RunEnd { statistics: stopped.statistics(), coverage: stopped.coverage(), unstopped: None }
+            }
+            Err(error) => RunEnd { statistics, coverage, unstopped: Some(error.to_string()) },
+        }
+    }
+}
+
+/// The CPU time of an activity, from the calls in which it was measured.
+fn cpu(activity: &ActivityStatistics) -> Option<Duration> {
+    let calls = u32::try_from(activity.calls).unwrap_or(u32::MAX);
+    Some(activity.call_cpu?.mean().saturating_mul(calls))
+}
+
+fn agent(agent: &AgentStatistics) -> AgentSummary {
+    AgentSummary {
         host: agent.host.clone(),
         agent: agent.agent.clone(),
         cycles: agent.cycles,
         overruns: agent.overruns,
         micro_steps: agent.micro_steps,
         activity_calls: agent.activities.iter().map(|activity| activity.calls).sum(),
+        cycle: agent.cycle_percentiles,
+        cpu: agent.activities.iter().filter_map(cpu).reduce(|one, other| one + other),
         stopped: agent.stopped.clone(),
-    };
-    statistics.agents.iter().map(summary).collect()
+    }
 }
 
 fn teams(world: &SimulatedWorld) -> Vec<TeamSummary> {

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use monas::{BodyStatistics, Percentiles};
+
 /// The scoreboard.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Scoreboard {
@@ -29,7 +31,7 @@ pub struct TeamScore {
 /// A notable event.
 #[derive(Clone, PartialEq, Debug)]
 pub struct MatchEvent {
-    /// Simulated time since the start.
+    /// Time since the start.
     pub time: Duration,
     /// Description: `goal for Blue by 2, 1 : 0`.
     pub text: String,
@@ -38,11 +40,12 @@ pub struct MatchEvent {
 /// The results of a match.
 #[derive(Clone, Debug)]
 pub struct MatchSummary {
-    /// The hash of all messages, 64 hexadecimal digits: see [`monas::RunHash`].
-    pub hash: String,
+    /// The hash of all messages, 64 hexadecimal digits: see [`monas::RunHash`]. None in real time,
+    /// in which no match is like another.
+    pub hash: Option<String>,
     /// The number of published messages.
     pub messages: u64,
-    /// The simulated time of the match.
+    /// How long the field was simulated.
     pub simulated: Duration,
     /// The teams, in the order of the match file.
     pub teams: Vec<TeamSummary>,
@@ -52,12 +55,16 @@ pub struct MatchSummary {
     pub events: Vec<MatchEvent>,
     /// Time from the start of play to the first touch of the ball.
     pub time_to_first_touch: Option<Duration>,
-    /// Active states and fired transitions of each chart.
+    /// The bodies in real time; none in simulated time.
+    pub bodies: Vec<BodyStatistics>,
+    /// Active states and fired transitions of each chart; none in real time.
     pub coverage: Vec<monas::ChartCoverage>,
     /// Statistics of the robots' links.
     pub links: Vec<monas::LinkStatistics>,
     /// What was exchanged with a GameController, or as one.
     pub league: Option<crate::LeagueCounts>,
+    /// The failure of the field that has ended a match in real time.
+    pub failure: Option<String>,
     /// Names the activity that has not returned at the end, if there is one. Its thread remains.
     pub unstopped: Option<String>,
 }
@@ -105,6 +112,10 @@ pub struct AgentSummary {
     pub cycles: u64,
     /// Cycles that took longer than their period; none in simulated time.
     pub overruns: u64,
+    /// Percentiles of the durations of cycles, where they are measured.
+    pub cycle: Option<Percentiles>,
+    /// The CPU time of its activities, estimated from some of their calls, where it is measured.
+    pub cpu: Option<Duration>,
     /// Micro-steps of its charts.
     pub micro_steps: u64,
     /// Calls of its activities.

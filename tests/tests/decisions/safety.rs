@@ -12,8 +12,8 @@ use super::changed;
 /// The sensor readings of a robot after some seconds.
 fn felt(running: &mut monas_match::RunningMatch, host: &str, seconds: u64) -> Sensors {
     running.advance(Duration::from_secs(seconds)).unwrap();
-    let now = running.simulation().now();
-    let mut looking = running.simulation().hub(host).unwrap().blackboard("looking on");
+    let now = running.simulation().unwrap().now();
+    let mut looking = running.simulation().unwrap().hub(host).unwrap().blackboard("looking on");
     looking.process_messages(now);
     *looking.sample(SENSORS).unwrap().message
 }

@@ -1,5 +1,6 @@
 //! `monas run`: runs a match in simulated time, or a set of agents in real time.
 
+mod bodies;
 mod control;
 #[cfg(feature = "soccer")]
 mod coverage;
@@ -60,12 +61,13 @@ pub(crate) struct RunArguments {
     /// Replace the files of the recording and of the log if they exist and no run is writing them.
     #[arg(long)]
     pub(crate) overwrite: bool,
-    /// Run simulated time no faster than real time. Without a match, agents always run in real
-    /// time.
-    #[arg(long)]
+    /// Run a match in real time: the field, each body and the agents of each robot on threads of
+    /// their own, as on robots. Without a match, agents always run so. For simulated time that
+    /// passes as fast as real time see --pace.
+    #[arg(long, conflicts_with = "pace")]
     pub(crate) realtime: bool,
     /// Show the field of a match from above, as text: redrawn in place on a terminal, one picture a
-    /// second elsewhere. With --realtime as fast as in reality.
+    /// second elsewhere. With --pace 1 as fast as in reality.
     #[cfg(feature = "soccer")]
     #[arg(long)]
     pub(crate) field: bool,
@@ -85,7 +87,7 @@ pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) listen: crate::commands::studio::ListenArgument,
     /// How many seconds of simulated time pass in a second, at most: 0.5 for slow motion, 10 for
-    /// ten times real time. 1 with --realtime or --studio, unlimited otherwise.
+    /// ten times real time. 1 with --studio, unlimited otherwise. Results do not depend on it.
     #[arg(long, value_name = "FACTOR", value_parser = pace)]
     pub(crate) pace: Option<f64>,
     #[cfg(feature = "soccer")]

@@ -135,7 +135,7 @@ fn mistakes_are_answered_with_what_would_be_right() {
 #[test]
 fn a_match_in_simulated_time_is_changed_by_host_and_looking_on_changes_nothing() {
     let folder = folder();
-    let arguments = ["run", "config/match.xml", "--realtime", "--control", "game"];
+    let arguments = ["run", "config/match.xml", "--pace", "1", "--control", "game"];
     let run = Running::start(folder.path(), &arguments, "control socket: ");
     let ask = |arguments: &[&str]| ask(folder.path(), &[&["agent"], arguments].concat());
     let agents = objects(&ask(&["list", "--format", "json"]).out);
@@ -156,7 +156,7 @@ fn a_match_in_simulated_time_is_changed_by_host_and_looking_on_changes_nothing()
 
 #[test]
 fn pause_step_and_resume_in_a_match_are_replayed() {
-    for mode in [&["--realtime"][..], &[]] {
+    for mode in [&["--realtime"][..], &["--pace", "1"], &[]] {
         let folder = folder();
         let tape = folder.path().join("live.mcap").display().to_string();
         let arguments = ["run", "config/match.xml", "--record", &tape, "--control", "game"];

@@ -4,6 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use serde_json::Value;
+
 use crate::crashes::faulty;
 use crate::kit::{Answer, monas, root};
 use crate::running::{Running, ask};
@@ -45,7 +47,7 @@ fn run(folder: &Path, config: &Path, more: &[&str], fault: &str) -> Command {
 
 #[test]
 fn an_interrupted_match_whose_activity_does_not_return_ends_and_names_it() {
-    for mode in [&[][..], &["--realtime"]] {
+    for mode in [&[][..], &["--pace", "1"]] {
         let folder = tempfile::tempdir().expect("a folder");
         let config = match_of(HEAD, folder.path());
         let tape = folder.path().join("hung.mcap").display().to_string();
@@ -64,8 +66,23 @@ fn an_interrupted_match_whose_activity_does_not_return_ends_and_names_it() {
 }
 
 #[test]
+fn in_real_time_the_others_play_on_beside_an_activity_that_does_not_return() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = match_of(HEAD, folder.path());
+    let more = ["--realtime", "--for", "3s", "--no-control", "--format", "json"];
+    let answer: Answer = run(folder.path(), &config, &more, "hang").output().expect("it starts").into();
+    assert_eq!(answer.code, Some(1), "{answer:?}");
+    let agents: Vec<Value> =
+        answer.out.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    let agent = |name: &str| agents.iter().find(|object| object["agent"] == name).expect("the agent");
+    assert!(agent("Legs")["cycles"].as_u64() >= Some(140), "{answer:?}");
+    let stopped = agent("Head")["stopped"].as_str().expect("a reason");
+    assert!(stopped.contains("activity `Faulty` is stuck"), "{answer:?}");
+}
+
+#[test]
 fn a_second_interrupt_ends_a_hung_match_at_once() {
-    for mode in [&[][..], &["--realtime"]] {
+    for mode in [&[][..], &["--pace", "1"]] {
         let folder = tempfile::tempdir().expect("a folder");
         let config = match_of(HEAD, folder.path());
         let more = [&["--no-control"][..], mode].concat();
@@ -110,7 +127,7 @@ fn a_loop_without_a_wait_is_reported_once_in_real_time() {
 
 #[test]
 fn a_loop_without_a_wait_ends_its_agent_in_a_match() {
-    for mode in [&[][..], &["--realtime"]] {
+    for mode in [&[][..], &["--pace", "1"]] {
         let folder = tempfile::tempdir().expect("a folder");
         let config = match_of(MIND, folder.path());
         let more = [&["--no-control", "--for", "1s"][..], mode].concat();

@@ -13,7 +13,7 @@ const MATCH: &str = "config/match.xml";
 
 /// A run that records until it is interrupted.
 fn live(folder: &Path, tape: &str, more: &[&str]) -> Running {
-    let arguments = ["run", MATCH, "--realtime", "--record", tape, "--control", "one"];
+    let arguments = ["run", MATCH, "--pace", "1", "--record", tape, "--control", "one"];
     Running::start(folder, &[&arguments[..], more].concat(), "control socket: ")
 }
 

@@ -81,7 +81,7 @@ fn a_recording_that_cannot_be_written_is_a_failure() {
 #[test]
 #[cfg(unix)]
 fn an_interrupted_match_ends_with_its_figures_so_far() {
-    let mut child = command(&["run", MATCH, "--realtime"])
+    let mut child = command(&["run", MATCH, "--pace", "1"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
@@ -207,12 +207,45 @@ fn two_mistakes_in_two_files_are_two_diagnostics() {
 }
 
 #[test]
-fn real_time_holds_a_match_back() {
-    let answer = monas(&["run", MATCH, "--for", "300ms", "--realtime", "--format", "json"]);
+fn a_pace_holds_a_match_back() {
+    let answer = monas(&["run", MATCH, "--for", "300ms", "--pace", "1", "--format", "json"]);
     let run: Value =
         answer.out.lines().last().and_then(|line| serde_json::from_str(line).ok()).expect("the run");
     assert_eq!(run["simulated_seconds"], 0.3);
     assert!(run["wall_seconds"].as_f64().is_some_and(|wall| wall >= 0.3), "{run}");
+}
+
+/// Bodies and agents have threads of their own; no body drifts from the clock, and a command
+/// reaches it in the cycle after the sensing that it is based on.
+#[test]
+#[cfg(feature = "soccer")]
+fn in_real_time_bodies_keep_their_cycles_and_receive_commands_in_the_next() {
+    for (config, periods) in
+        [("config/match.xml", [0.02; 6]), ("config/nao_sim.xml", [0.012, 0.012, 0.012, 0.02, 0.02, 0.02])]
+    {
+        let answer = monas(&["run", config, "--realtime", "--for", "4s", "--no-control", "--format", "json"]);
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        let objects: Vec<Value> =
+            answer.out.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+        let of_kind = |kind: &'static str| objects.iter().filter(move |object| object["kind"] == kind);
+        let run = of_kind("run").next().expect("the run");
+        assert!(
+            run["hash"].is_null() && run["simulated_seconds"].as_f64().is_some_and(|s| s >= 4.0),
+            "{run}"
+        );
+        let bodies: Vec<&Value> = of_kind("body").collect();
+        assert_eq!(bodies.len(), 6, "{}", answer.out);
+        for (body, period) in bodies.into_iter().zip(periods) {
+            assert_eq!((body["period_seconds"].as_f64(), body["failures"].as_u64()), (Some(period), Some(0)));
+            let cycles = body["cycles"].as_f64().expect("a number");
+            assert!(cycles >= 4.0 / period - 1.0, "{config}: {body}");
+            let delay = body["sense_to_act_p50_seconds"].as_f64().expect("the robots move");
+            assert!(delay < 1.5 * period, "{config}: {body}");
+        }
+        let moved =
+            |agent: &Value| agent["micro_steps"].as_u64() > Some(0) && agent["core_share"].is_number();
+        assert!(of_kind("agent").all(moved), "{}", answer.out);
+    }
 }
 
 #[test]

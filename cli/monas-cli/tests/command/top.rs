@@ -34,9 +34,9 @@ fn top_reports_agents_and_their_rates() {
 }
 
 #[test]
-fn a_match_in_real_time_is_measured_and_stays_the_same_match() {
+fn a_match_at_the_pace_of_real_time_is_measured_and_stays_the_same_match() {
     let folder = tempfile::tempdir().expect("a folder");
-    let game = ["run", "config/match.xml", "--realtime", "--control", "game"];
+    let game = ["run", "config/match.xml", "--pace", "1", "--control", "game"];
     let run = Running::start(folder.path(), &game, "control socket: ");
     let look = |more: &[&str]| {
         let top = ["top", "--every", "300ms", "--host", "blue-2"];
@@ -63,5 +63,5 @@ fn a_match_in_real_time_is_measured_and_stays_the_same_match() {
         let answer = ask(folder.path(), &[&["run", "config/match.xml", "--for", "500ms"], mode].concat());
         answer.out.lines().find(|line| line.starts_with("hash: ")).expect("a hash").to_owned()
     };
-    assert_eq!(hash(&["--realtime"]), hash(&[]));
+    assert_eq!(hash(&["--pace", "1"]), hash(&[]));
 }

@@ -45,9 +45,9 @@ impl JointBridge {
     /// the body keeps the previous one.
     pub(super) fn act(&mut self, commands: &Blackboard, robot: &mut dyn Robot, now: Timestamp) {
         let joints = newest(commands, JOINT_COMMANDS, &mut self.delivered_joints);
-        let joints = joints.map_or(Ok(()), |joints| robot.command_joints(now, joints));
+        let joints = joints.map_or(Ok(()), |joints| robot.command_joints(now, joints.message));
         let leds = newest(commands, LEDS, &mut self.delivered_leds);
-        let leds = leds.map_or(Ok(()), |leds| robot.light(now, leds));
+        let leds = leds.map_or(Ok(()), |leds| robot.light(now, leds.message));
         for error in [joints, leds].into_iter().filter_map(Result::err) {
             tracing::error!(robot = %commands.hub().host(), "a command is refused: {error}");
         }

@@ -156,7 +156,7 @@ impl SimulatedHost {
 
     /// Forwards the newest commands to the body, which must not publish here.
     pub(crate) fn act(&mut self, now: Timestamp) -> Result<(), Error> {
-        self.team.body.as_mut().map_or(Ok(()), |(body, _)| body.act(now))
+        self.team.body.as_mut().map_or(Ok(()), |(body, _)| body.act(now).map(drop))
     }
 
     pub(crate) fn raise(&mut self, agent: &str, event: &str) -> bool {

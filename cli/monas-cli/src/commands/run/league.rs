@@ -16,12 +16,11 @@ pub(crate) struct LeagueArguments {
     /// this address of this computer, and report to it: 127.0.0.1, or 0.0.0.0 for broadcasts. The
     /// port is 3838 if not given. Needs --realtime.
     #[arg(long, value_name = "ADDRESS", requires = "realtime")]
-    #[arg(conflicts_with_all = ["pace", "referee"])]
+    #[arg(conflicts_with = "referee")]
     pub(crate) gamecontroller: Option<Endpoint>,
     /// Send the decisions of the match's referee to robots at this address, as a GameController
     /// does, and receive their reports. The port is 3838 if not given. Needs --realtime.
     #[arg(long, value_name = "ADDRESS", requires = "realtime")]
-    #[arg(conflicts_with = "pace")]
     pub(crate) referee: Option<Endpoint>,
     /// The rule book of the packets of --referee: Standard Platform League (version 18) or Humanoid
     /// Soccer League (version 19).

@@ -1,4 +1,4 @@
-//! Runs a match in simulated time and shows its progress.
+//! Runs a match in simulated or real time and shows its progress.
 
 use std::time::Duration;
 
@@ -26,19 +26,16 @@ pub(crate) fn execute(
     let plan = MatchSource::load_with(&arguments.config, &monas::Registry::linked(), layers)
         .map_err(|diagnostics| CommandFailure::Invalid(format, diagnostics))?;
     report::write(console, format, plan.warnings())?;
-    let plan = match plan.has_links() {
-        true if !arguments.realtime => {
-            let message = "robots of this match have links to other processes, which do not wait for simulated time: add \
-                           --realtime";
-            return Err(CommandFailure::Usage(message.into()));
-        }
-        true => plan.linked(),
-        false => plan,
-    };
+    if plan.has_links() && !arguments.realtime {
+        let message = "robots of this match have links to other processes, which do not wait for simulated time: add \
+                       --realtime";
+        return Err(CommandFailure::Usage(message.into()));
+    }
     let plan = arguments.league.join(plan).map_err(|error| CommandFailure::failed(format, error))?;
     let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
     let socket = control::bind(arguments, console)?;
-    let tape = outputs::open(arguments, Tape::to_file, console)?;
+    let to_tape = if arguments.realtime { Tape::to_file_real_time } else { Tape::to_file };
+    let tape = outputs::open(arguments, to_tape, console)?;
     let clock = WallClock::start();
     let running = play(plan, arguments, socket, tape.clone(), &interrupt, clock, console);
     let wall = clock.elapsed();
@@ -50,8 +47,8 @@ pub(crate) fn execute(
     let results = running.finish().map_err(|error| CommandFailure::failed(format, error))?;
     summary::write(console.out, format, &results, wall)?;
     outputs::finish(tape, format)?;
-    if let Some(unstopped) = results.unstopped {
-        return Err(CommandFailure::failed(format, unstopped));
+    if let Some(failure) = results.failure.or(results.unstopped) {
+        return Err(CommandFailure::failed(format, failure));
     }
     Ok(match interrupt.exit() {
         Some(exit) => exit,
@@ -73,17 +70,23 @@ fn play(
     let failed = |error: monas_match::Error| CommandFailure::failed(arguments.format.value, error);
     let length = arguments.length.unwrap_or_else(|| plan.length());
     let options = MatchOptions { seed: arguments.seed.unwrap_or_default(), record: tape.clone() };
-    let mut running = plan.start(options).map_err(|error| match error.diagnostics() {
+    let started = match arguments.realtime {
+        true => plan.start_in_real_time(options),
+        false => plan.start(options),
+    };
+    let mut running = started.map_err(|error| match error.diagnostics() {
         [] => failed(error),
         wrong => CommandFailure::Invalid(arguments.format.value, wrong.to_vec()),
     })?;
     // The socket closes with this function, since nothing advances the match afterwards.
-    let handle = running.simulation().run_handle();
+    let handle = running.run_handle();
     let control = control::serve(socket, handle.clone(), tape.clone(), arguments)?;
     let pace = Pace::new(factor(arguments));
-    let _studio = control::view(control.as_ref(), Some(pace.clone()), arguments, console)?;
-    let mut pacer = Pacer::new(clock, pace.clone());
-    let mut alarm = RecordingAlarm::new(tape, handle);
+    // Real time has no other pace.
+    let shown_pace = (!arguments.realtime).then(|| pace.clone());
+    let _studio = control::view(control.as_ref(), shown_pace, arguments, console)?;
+    let mut pacer = (!arguments.realtime).then(|| Pacer::new(clock, pace.clone()));
+    let mut alarm = RecordingAlarm::new(tape, handle.clone());
     if pace.factor().is_finite() {
         running.measure();
     }
@@ -93,11 +96,13 @@ fn play(
         let look = if pace.factor().is_finite() { PACED_LOOK } else { LOOK };
         let next = (running.now() + look).min(length);
         running = running.advance_until_cancelled(next, || interrupt.is_requested()).map_err(failed)?;
-        alarm.check(running.simulation().now());
+        alarm.check(handle.now());
         scoreboard.show(&running)?;
-        pacer.wait(running.now(), interrupt);
+        if let Some(pacer) = &mut pacer {
+            pacer.wait(running.now(), interrupt);
+        }
     }
-    alarm.check(running.simulation().now());
+    alarm.check(handle.now());
     Ok(running)
 }
 

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use yase::Diagnostic;
 
 use super::outputs::RecordingAlarm;
-use super::{RunArguments, control, links, outputs};
+use super::{RunArguments, bodies, control, links, outputs};
 use crate::input::load_agents;
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, report, table};
 
@@ -49,12 +49,13 @@ pub(crate) fn execute(
     });
     alarm.check(overview.now());
     drop((control, alarm));
-    let Statistics { agents, links } = running.stop();
+    let Statistics { agents, bodies, links, .. } = running.stop();
     if let Some(tape) = &tape {
         monas_recording::ended(tape, overview.now())
             .map_err(|error| CommandFailure::failed(format, error))?;
     }
     write(console.out, format, &agents)?;
+    bodies::write(console.out, format, &bodies)?;
     match format {
         Format::Text => links::write(console.out, &links)?,
         Format::Json => {

@@ -6,7 +6,7 @@ use std::time::Duration;
 use monas_match::{AgentSummary, LeagueCounts, MatchSummary, TeamSummary};
 use serde_json::{Value, json};
 
-use super::{coverage, links};
+use super::{bodies, coverage, links};
 use crate::terminal::table::Table;
 use crate::terminal::{Format, table};
 
@@ -25,7 +25,8 @@ pub(crate) fn write(
 
 fn write_text(out: &mut dyn Write, summary: &MatchSummary, wall: Duration) -> io::Result<()> {
     writeln!(out, "{}\n", teams(&summary.teams))?;
-    writeln!(out, "{}\n", agents(&summary.agents))?;
+    writeln!(out, "{}\n", agents(summary))?;
+    bodies::write(out, Format::Text, &summary.bodies)?;
     for AgentSummary { host, agent, stopped, .. } in &summary.agents {
         if let Some(reason) = stopped {
             writeln!(out, "{agent} on {host} has stopped: {reason}\n")?;
@@ -49,7 +50,7 @@ fn write_text(out: &mut dyn Write, summary: &MatchSummary, wall: Duration) -> io
         )?;
     }
     writeln!(out, "messages: {}", summary.messages)?;
-    writeln!(out, "hash: {}", summary.hash)
+    summary.hash.iter().try_for_each(|hash| writeln!(out, "hash: {hash}"))
 }
 
 /// The cell of a team in one row.
@@ -98,13 +99,31 @@ fn return_time(team: &TeamSummary) -> Option<f64> {
     (team.returns > 0).then(|| team.return_seconds / f64::from(team.returns))
 }
 
-fn agents(agents: &[AgentSummary]) -> Table {
+/// The agents; in real time with their load of a core and the durations of their cycles.
+fn agents(summary: &MatchSummary) -> Table {
+    let is_real = summary.hash.is_none();
     let row = |agent: &AgentSummary| {
         let counts = [agent.cycles, agent.overruns, agent.micro_steps, agent.activity_calls];
-        [agent.host.clone(), agent.agent.clone()].into_iter().chain(counts.map(|count| count.to_string()))
+        let mut cells = vec![agent.host.clone(), agent.agent.clone()];
+        cells.extend(counts.map(|count| count.to_string()));
+        if is_real {
+            let load = load(agent, summary.simulated);
+            cells.push(load.map_or_else(none, |load| format!("{:.2} %", load * 100.0)));
+            cells.extend(bodies::median_and_p99(agent.cycle));
+        }
+        cells
     };
-    let header = ["host", "agent", "cycles", "overruns", "micro-steps", "activity calls"];
-    table::of_numbers(header, 2, agents.iter().map(row))
+    let mut header = vec!["host", "agent", "cycles", "overruns", "micro-steps", "activity calls"];
+    if is_real {
+        header.extend(["core", "p50 ms", "p99 ms"]);
+    }
+    table::of_numbers(header, 2, summary.agents.iter().map(row))
+}
+
+/// The share of a core that the activities of an agent have used.
+fn load(agent: &AgentSummary, length: Duration) -> Option<f64> {
+    let used = agent.cpu?.as_secs_f64();
+    (!length.is_zero()).then(|| used / length.as_secs_f64())
 }
 
 /// One object for each event, team, agent and link, and one for the run.
@@ -114,7 +133,8 @@ fn objects(summary: &MatchSummary, wall: Duration) -> Vec<Value> {
         .iter()
         .map(|event| json!({"kind": "event", "seconds": event.time.as_secs_f64(), "text": event.text}));
     let teams = summary.teams.iter().map(team_object);
-    let agents = summary.agents.iter().map(agent_object);
+    let agents = summary.agents.iter().map(|agent| agent_object(agent, summary.simulated));
+    let bodies = summary.bodies.iter().map(bodies::object);
     let roles = coverage::by_role(&summary.coverage);
     let league = summary.league.map(|league| {
         json!({"kind": "gamecontroller", "announcements": league.control, "reports": league.reports,
@@ -132,6 +152,7 @@ fn objects(summary: &MatchSummary, wall: Duration) -> Vec<Value> {
     events
         .chain(teams)
         .chain(agents)
+        .chain(bodies)
         .chain(roles.iter().map(coverage::object))
         .chain(links::objects(&summary.links))
         .chain(league)
@@ -146,9 +167,12 @@ fn team_object(team: &TeamSummary) -> Value {
         "return_seconds": return_time(team)})
 }
 
-fn agent_object(agent: &AgentSummary) -> Value {
+fn agent_object(agent: &AgentSummary, length: Duration) -> Value {
     json!({"kind": "agent", "host": agent.host, "agent": agent.agent, "cycles": agent.cycles,
         "overruns": agent.overruns, "micro_steps": agent.micro_steps, "activity_calls": agent.activity_calls,
+        "core_share": load(agent, length),
+        "cycle_p50_seconds": agent.cycle.map(|cycle| cycle.p50.as_secs_f64()),
+        "cycle_p99_seconds": agent.cycle.map(|cycle| cycle.p99.as_secs_f64()),
         "stopped": agent.stopped})
 }
 
