@@ -62,7 +62,7 @@ Environment:
 pub(crate) enum Command {
     /// Run a match or a set of agents.
     #[command(after_help = "Example: monas run config/match.xml --seed 7 --for 60s")]
-    Run(RunArguments),
+    Run(Box<RunArguments>),
     /// Read, check and draw models.
     #[command(subcommand)]
     Model(ModelCommand),

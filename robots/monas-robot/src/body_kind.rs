@@ -12,10 +12,16 @@ pub struct BodyKind {
     /// What it is, in one line.
     pub summary: &'static str,
     /// Opens a body of this kind.
-    pub open: fn(BodySite) -> Result<Box<dyn Robot>, Error>,
+    pub open: OpenBody,
+    /// Offers a body of a simulated world at an address through the interface of this kind, for
+    /// agents in another process, which command it; none if this kind has no such interface.
+    pub serve: Option<OpenBody>,
     /// Whether a body of this kind answers at an address, or at its usual one: what answers.
     pub probe: fn(Option<&str>) -> Result<String, Error>,
 }
+
+/// Opens a body at a site.
+pub type OpenBody = fn(BodySite) -> Result<Box<dyn Robot>, Error>;
 
 /// Where a body is opened.
 #[derive(Default)]
@@ -47,6 +53,24 @@ impl Default for BodySettings {
 }
 
 impl BodySettings {
+    /// Offers a simulated world's body at an address, for agents in another process that open a
+    /// body of this kind there. What is returned senses the body, and ignores commands.
+    ///
+    /// # Errors
+    /// There is no such kind, it has no interface for other processes, or the address cannot be
+    /// used.
+    pub fn serve(&self, simulated: Box<dyn Robot>, address: String) -> Result<Box<dyn Robot>, Error> {
+        let kind = BodyKind::named(&self.kind)?;
+        let serve = kind.serve.ok_or_else(|| {
+            let message = format!(
+                "a body of kind `{}` has no interface for agents in another process; one of kind `nao` has",
+                kind.name
+            );
+            Error::new(ErrorKind::Configuration, message)
+        })?;
+        serve(BodySite { address: Some(address), simulated: Some(simulated) })
+    }
+
     /// Opens the body, with the simulated world's body if there is one. The seed determines the
     /// disturbances.
     ///

@@ -4,8 +4,8 @@
 //! socket with a packet of [sensors](lola::SensorPacket) every 12 ms, answered by a packet of
 //! [actuators](lola::ActuatorPacket). [`LolaServer`] is the other side, for simulations: it gives
 //! joints to a body that moves in the plane, such as a robot of the embedded field.
-//! [`SimulatedNao`] is both in lockstep, in simulated time. A configuration names the body: `<body
-//! kind="nao"/>`.
+//! [`SimulatedNao`] is both in lockstep, in simulated time, and [`ServedNao`] is the server for
+//! agents in another process. A configuration names the body: `<body kind="nao"/>`.
 //!
 //! The commands in the plane, which all bodies have, become joint targets here: a [`WalkEngine`]
 //! turns velocities into steps, skills are motions of the joints, and odometry follows from the
@@ -36,6 +36,7 @@ mod leds;
 pub mod lola;
 mod motions;
 mod nao;
+mod served_nao;
 mod server;
 mod side_channels;
 mod simulated_nao;
@@ -49,6 +50,7 @@ use monas_robot::{BodyKind, BodySite, Robot};
 pub use anatomy::{NaoJoint, anatomy};
 pub use error::{Error, ErrorKind};
 pub use nao::Nao;
+pub use served_nao::ServedNao;
 pub use server::LolaServer;
 pub use simulated_nao::SimulatedNao;
 pub use walk::{SteppingWalk, WalkEngine, WalkVelocity};
@@ -57,6 +59,7 @@ monas_robot::body_kind!(BodyKind {
     name: "nao",
     summary: "a Nao V6 through LoLA; in simulated time through a LoLA server over the field's body",
     open,
+    serve: Some(serve),
     probe,
 });
 
@@ -69,6 +72,15 @@ fn open(site: BodySite) -> Result<Box<dyn Robot>, monas_robot::Error> {
             Ok(Box::new(Nao::open(Path::new(path))?))
         }
     }
+}
+
+/// Offers a simulated body at a LoLA socket.
+fn serve(site: BodySite) -> Result<Box<dyn Robot>, monas_robot::Error> {
+    let (Some(body), Some(address)) = (site.simulated, site.address) else {
+        let message = "a LoLA server needs a simulated body and the path of a socket";
+        return Err(monas_robot::Error::new(monas_robot::ErrorKind::Configuration, message));
+    };
+    Ok(Box::new(ServedNao::listen(Path::new(&address), body)?))
 }
 
 /// Whether LoLA answers at a socket.

@@ -171,6 +171,10 @@ impl Robot for Nao {
             tracing::warn!("the simulated camera, referee and radio are gone: {error}");
             self.channels = None;
         }
+        if let Some(sightings) = &mut percepts.sightings {
+            // The simulation has a clock of its own.
+            sightings.taken_at = now.as_nanos();
+        }
         Ok(())
     }
 

@@ -11,7 +11,7 @@ mod joint_motion;
 
 use std::path::Path;
 
-use monas_robot::{Actuators, Error, Percepts, Posture, Robot};
+use monas_robot::{Actuators, Error, Percepts, Posture, Robot, Sensors};
 use narukom::Timestamp;
 
 use crate::anatomy::{NaoJoint, limits};
@@ -71,6 +71,11 @@ impl LolaServer {
     /// The actuators that the client has sent last.
     pub fn actuators(&self) -> &ActuatorPacket {
         &self.actuators
+    }
+
+    /// What the body has felt last.
+    pub(crate) fn sensors(&self) -> Sensors {
+        self.percepts.sensors
     }
 
     /// Whether a client is connected.

@@ -51,6 +51,8 @@ pub(crate) struct RobotFile {
     pub(crate) number: u8,
     /// The file of its role.
     pub(crate) role: PathBuf,
+    /// Its agents run in a process of their own, in real time.
+    pub(crate) has_process: bool,
     /// Overrides of the role for this robot.
     pub(crate) own: Layers,
 }
@@ -290,7 +292,8 @@ fn read_robot(
     let values = Values::of(robot, grammar);
     let role = values.given("role").and_then(|role| named(path, role, diagnostics));
     let own = Layers::new().robot(robot.children().iter().cloned());
-    Some(RobotFile { number: values.number("number")?, role: role?, own })
+    let has_process = values.flag("process").unwrap_or_default();
+    Some(RobotFile { number: values.number("number")?, role: role?, has_process, own })
 }
 
 /// Checks that involve both teams.

@@ -54,6 +54,11 @@ fn robot() -> ElementRule {
     let robot = ElementRule::new("robot", "a robot with its role; what stands in it goes over the role")
         .attribute(AttributeRule::new("number", Kind::whole_in(0, 255), "its number in the team").required())
         .attribute(AttributeRule::new("role", Kind::File, "the file of the agents it runs").required())
+        .attribute(AttributeRule::new(
+            "process",
+            Kind::Flag,
+            "whether its agents run in a process of their own, in real time; its body then needs a kind such as nao",
+        ))
         .identified_by(Identity::Attribute("number"))
         .layer();
     ROLE.into_iter().fold(robot, ElementRule::children)

@@ -100,6 +100,7 @@ fn robots(
                 team: team.setup.number,
                 number: robot.number,
                 host,
+                has_process: robot.has_process,
                 agents,
                 links,
                 modules,
@@ -137,10 +138,14 @@ pub struct MatchPlan {
     files: ConfigurationBundle,
     settings: String,
     embody: Embody,
+    /// Where the bodies of robots with processes of their own are served, given the host.
+    addresses: Option<Addresses>,
 }
 
 /// Replaces the body of a robot, given its team and number.
 type Embody = Box<dyn Fn(u8, u8, Box<dyn Robot>) -> Box<dyn Robot> + Send>;
+
+type Addresses = Box<dyn Fn(&str) -> String + Send>;
 
 impl std::fmt::Debug for MatchPlan {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -168,6 +173,8 @@ struct RobotPlan {
     team: u8,
     number: u8,
     host: String,
+    /// Its agents run in a process of their own, in real time.
+    has_process: bool,
     agents: Vec<Agent>,
     links: Vec<LinkConfig>,
     modules: Vec<Module>,
@@ -177,6 +184,7 @@ struct RobotPlan {
 }
 
 /// What determines the time of a match.
+#[derive(Clone, Copy)]
 enum MatchTime {
     Simulated,
     Real,
@@ -219,6 +227,7 @@ impl MatchPlan {
             files: ConfigurationBundle::default(),
             settings: String::new(),
             embody: Box::new(|_, _, body| body),
+            addresses: None,
         })
     }
 
@@ -277,6 +286,43 @@ impl MatchPlan {
         self
     }
 
+    /// The hosts of the robots whose agents run in processes of their own in real time.
+    pub fn processes(&self) -> Vec<String> {
+        self.robots.iter().filter(|robot| robot.has_process).map(|robot| robot.host.clone()).collect()
+    }
+
+    /// Leaves the agents of these robots to other processes when the match
+    /// [starts in real time](MatchPlan::start_in_real_time): it serves their bodies at an address
+    /// for each host. In simulated time, and without this, all agents run here.
+    pub fn serve_bodies(mut self, address: impl Fn(&str) -> String + Send + 'static) -> MatchPlan {
+        self.addresses = Some(Box::new(address));
+        self
+    }
+
+    /// The agents of one robot with the body at an address, to be started in real time: the match
+    /// itself runs in another process, which serves the body there.
+    ///
+    /// # Errors
+    /// There is no such robot, or the body does not answer.
+    pub fn robot(self, host: &str, address: &str) -> Result<Talws, Error> {
+        let hosts: Vec<&str> = self.robots.iter().map(|robot| robot.host.as_str()).collect();
+        let unknown = format!("the match has no robot `{host}`; there are {}", hosts.join(", "));
+        let Some(robot) = self.robots.into_iter().find(|robot| robot.host == host) else {
+            return Err(Error::refused(unknown));
+        };
+        let RobotPlan { team, number, host, agents, links, modules, body, source, .. } = robot;
+        let body = BodySettings { address: Some(address.to_owned()), ..body };
+        let body = body.open(None, u64::from(number)).map_err(|error| Error::body(&host, error))?;
+        let (team, number, configuration) = (team.into(), number.into(), source);
+        let mut talws = Talws::new().registry(self.registry);
+        let body = Some(body);
+        talws.host(HostConfig { name: host, team, number, body, agents, links, modules, configuration });
+        for listener in self.listeners {
+            talws.listen(listener);
+        }
+        Ok(talws)
+    }
+
     /// Removes the agents of a team, whose robots then stay where they are placed.
     pub fn without_agents(mut self, team: u8) -> MatchPlan {
         for robot in self.robots.iter_mut().filter(|robot| robot.team == team) {
@@ -316,7 +362,7 @@ impl MatchPlan {
     /// The field rejects its parameters or the line-up.
     pub fn check(self) -> Result<Vec<Diagnostic>, Error> {
         // No body is opened: a robot need not be there when its configuration is checked.
-        Ok(self.set_up(0, |_, _, _| Ok(None))?.talws.check())
+        Ok(self.set_up(0, |_, _, _| Ok((None, false)))?.talws.check())
     }
 
     /// Starts the match in simulated time.
@@ -337,12 +383,20 @@ impl MatchPlan {
         self.start_in(MatchTime::Real, options)
     }
 
-    fn start_in(self, time: MatchTime, options: MatchOptions) -> Result<RunningMatch, Error> {
+    fn start_in(mut self, time: MatchTime, options: MatchOptions) -> Result<RunningMatch, Error> {
         let (length, files, settings) = (self.length(), self.files.clone(), self.settings.clone());
         let hosts: Vec<String> = self.robots.iter().map(|robot| robot.host.clone()).collect();
-        let parts = self.set_up(options.seed, |settings, simulated, robot| {
-            settings.open(simulated, options.seed.wrapping_add(robot as u64)).map(Some)
-        })?;
+        let addresses = self.addresses.take();
+        let parts =
+            self.set_up(options.seed, |robot, simulated, index| match (time, simulated, &addresses) {
+                (MatchTime::Real, Some(simulated), Some(address)) if robot.has_process => {
+                    robot.body.serve(simulated, address(&robot.host)).map(|body| (Some(body), true))
+                }
+                (_, simulated, _) => {
+                    let seed = options.seed.wrapping_add(index as u64);
+                    robot.body.open(simulated, seed).map(|body| (Some(body), false))
+                }
+            })?;
         let MatchParts { mut talws, pitch, league } = parts;
         let hash = RunHash::new();
         talws.observe(Box::new(hash.clone()));
@@ -366,15 +420,16 @@ impl MatchPlan {
         Ok(RunningMatch::new(run.map_err(Error::agents)?, pitch, hash, tape, length, league))
     }
 
-    /// The robots with their bodies, which `open` opens over those on the field.
+    /// The robots with their bodies, which `open` opens over those on the field; it also returns
+    /// whether the agents of the robot are elsewhere.
     fn set_up(
         self,
         seed: u64,
         open: impl Fn(
-            &BodySettings,
+            &RobotPlan,
             Option<Box<dyn Robot>>,
             usize,
-        ) -> Result<Option<Box<dyn Robot>>, monas_robot::Error>,
+        ) -> Result<(Option<Box<dyn Robot>>, bool), monas_robot::Error>,
     ) -> Result<MatchParts, Error> {
         let lineup =
             self.robots.iter().map(|robot| monas_sim::RobotSetup { team: robot.team, number: robot.number });
@@ -402,9 +457,13 @@ impl MatchPlan {
             }
         });
         for (index, robot) in self.robots.into_iter().enumerate() {
-            let RobotPlan { team, number, host, agents, links, modules, body, source } = robot;
             let simulated = pitch.body(index).map(|body| Box::new(body) as _);
-            let body = open(&body, simulated, index).map_err(|error| Error::body(&host, error))?;
+            let (body, is_elsewhere) =
+                open(&robot, simulated, index).map_err(|error| Error::body(&robot.host, error))?;
+            let RobotPlan { team, number, host, mut agents, mut links, modules, source, .. } = robot;
+            if is_elsewhere {
+                (agents, links) = (Vec::new(), Vec::new());
+            }
             let body = body.map(|body| (self.embody)(team, number, body));
             let (team, number) = (team.into(), number.into());
             let configuration = source;

@@ -23,6 +23,7 @@ monas_robot::body_kind!(BodyKind {
     name: BodyKind::DEFAULT,
     summary: "the simulated world's own body: a disk on the embedded field",
     open: |site: BodySite| site.simulated.ok_or_else(nowhere),
+    serve: None,
     probe: |_| Ok("it answers in matches".to_owned()),
 });
 

@@ -14,6 +14,8 @@ mod outputs;
 mod pacer;
 #[cfg(feature = "soccer")]
 mod play;
+#[cfg(all(unix, feature = "soccer"))]
+mod processes;
 mod real_time;
 #[cfg(feature = "soccer")]
 mod scoreboard;
@@ -90,6 +92,15 @@ pub(crate) struct RunArguments {
     /// ten times real time. 1 with --studio, unlimited otherwise. Results do not depend on it.
     #[arg(long, value_name = "FACTOR", value_parser = pace)]
     pub(crate) pace: Option<f64>,
+    /// Run the agents of this robot of a match only, in real time, for example `blue-1`. The match
+    /// runs in another process, and serves the body of this robot, which has `process="1"`.
+    #[cfg(all(unix, feature = "soccer"))]
+    #[arg(long, value_name = "ROBOT", requires = "body", conflicts_with_all = ["pace", "seed", "studio"])]
+    pub(crate) only: Option<String>,
+    /// Where the body of the robot of --only is served.
+    #[cfg(all(unix, feature = "soccer"))]
+    #[arg(long, value_name = "ADDRESS", requires = "only", value_hint = ValueHint::FilePath)]
+    pub(crate) body: Option<String>,
     #[cfg(feature = "soccer")]
     #[command(flatten)]
     pub(crate) league: league::LeagueArguments,
@@ -129,6 +140,11 @@ pub(crate) fn execute(
     #[cfg(feature = "soccer")]
     if kind == ConfigurationKind::Agents && arguments.league.is_given() {
         let message = "--gamecontroller and --referee are for matches; these agents have no field";
+        return Err(CommandFailure::Usage(message.into()));
+    }
+    #[cfg(all(unix, feature = "soccer"))]
+    if kind == ConfigurationKind::Agents && arguments.only.is_some() {
+        let message = "--only is for matches; this configuration has the agents of one robot";
         return Err(CommandFailure::Usage(message.into()));
     }
     let unlinked = differences(&arguments.config);

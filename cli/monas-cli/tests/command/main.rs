@@ -31,6 +31,8 @@ mod log;
 mod model;
 mod mutate;
 mod new;
+#[cfg(all(unix, feature = "soccer"))]
+mod processes;
 mod protocol;
 mod reading;
 mod recordings;

@@ -9,6 +9,10 @@ use monas_tape::Tape;
 
 use super::outputs::RecordingAlarm;
 use super::pacer::Pacer;
+#[cfg(unix)]
+use super::processes::{self, RobotProcesses};
+#[cfg(unix)]
+use super::real_time;
 use super::{RunArguments, control, outputs, scoreboard, summary};
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Interrupt, WallClock, report};
 
@@ -26,6 +30,12 @@ pub(crate) fn execute(
     let plan = MatchSource::load_with(&arguments.config, &monas::Registry::linked(), layers)
         .map_err(|diagnostics| CommandFailure::Invalid(format, diagnostics))?;
     report::write(console, format, plan.warnings())?;
+    #[cfg(unix)]
+    if let (Some(robot), Some(address)) = (&arguments.only, &arguments.body) {
+        processes::end_with_parent();
+        let talws = plan.robot(robot, address).map_err(|error| CommandFailure::failed(format, error))?;
+        return real_time::run(talws, robot, arguments, layers, console);
+    }
     if plan.has_links() && !arguments.realtime {
         let message = "robots of this match have links to other processes, which do not wait for simulated time: add \
                        --realtime";
@@ -34,18 +44,38 @@ pub(crate) fn execute(
     let plan = arguments.league.join(plan).map_err(|error| CommandFailure::failed(format, error))?;
     let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
     let socket = control::bind(arguments, console)?;
+    #[cfg(unix)]
+    let (plan, mut processes) = match arguments.realtime {
+        true => {
+            let (plan, processes) = RobotProcesses::prepare(plan, arguments, socket.as_ref())
+                .map_err(|error| CommandFailure::failed(format, error))?;
+            (plan, Some(processes))
+        }
+        false => (plan, None),
+    };
     let to_tape = if arguments.realtime { Tape::to_file_real_time } else { Tape::to_file };
     let tape = outputs::open(arguments, to_tape, console)?;
     let clock = WallClock::start();
-    let running = play(plan, arguments, socket, tape.clone(), &interrupt, clock, console);
-    let wall = clock.elapsed();
+    let mut each_look = || {
+        #[cfg(unix)]
+        if let Some(processes) = &mut processes {
+            processes.watch();
+        }
+    };
+    let running = play(plan, arguments, socket, tape.clone(), &interrupt, &mut each_look, console);
     let running = running.or_else(|failure| {
         // A thread that does not return keeps the match, and with it the tape.
         outputs::finish(tape.clone(), format)?;
         Err(failure)
     })?;
+    // A robot sits down while the field is still there.
+    #[cfg(unix)]
+    let robots = processes.map(RobotProcesses::end).unwrap_or_default();
+    let wall = clock.elapsed();
     let results = running.finish().map_err(|error| CommandFailure::failed(format, error))?;
     summary::write(console.out, format, &results, wall)?;
+    #[cfg(unix)]
+    robots.iter().try_for_each(|robot| robot.write(console.out, format))?;
     outputs::finish(tape, format)?;
     if let Some(failure) = results.failure.or(results.unstopped) {
         return Err(CommandFailure::failed(format, failure));
@@ -64,7 +94,7 @@ fn play(
     socket: Option<control::ControlSocket>,
     tape: Option<Tape>,
     interrupt: &Interrupt,
-    clock: WallClock,
+    each_look: &mut dyn FnMut(),
     console: &mut CommandOutput<'_>,
 ) -> Result<RunningMatch, CommandFailure> {
     let failed = |error: monas_match::Error| CommandFailure::failed(arguments.format.value, error);
@@ -85,7 +115,7 @@ fn play(
     // Real time has no other pace.
     let shown_pace = (!arguments.realtime).then(|| pace.clone());
     let _studio = control::view(control.as_ref(), shown_pace, arguments, console)?;
-    let mut pacer = (!arguments.realtime).then(|| Pacer::new(clock, pace.clone()));
+    let mut pacer = (!arguments.realtime).then(|| Pacer::new(WallClock::start(), pace.clone()));
     let mut alarm = RecordingAlarm::new(tape, handle.clone());
     if pace.factor().is_finite() {
         running.measure();
@@ -97,6 +127,7 @@ fn play(
         let next = (running.now() + look).min(length);
         running = running.advance_until_cancelled(next, || interrupt.is_requested()).map_err(failed)?;
         alarm.check(handle.now());
+        each_look();
         scoreboard.show(&running)?;
         if let Some(pacer) = &mut pacer {
             pacer.wait(running.now(), interrupt);

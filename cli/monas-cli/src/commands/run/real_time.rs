@@ -19,19 +19,30 @@ pub(crate) fn execute(
     layers: &Layers,
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
-    let format = arguments.format.value;
     if arguments.seed.is_some() {
         return Err(CommandFailure::Usage(
             "--seed is for simulated time; these agents run in real time".into(),
         ));
     }
-    let mut talws = talws(arguments, layers, console)?;
+    let talws = talws(arguments, layers, console)?;
+    run(talws, Talws::LOCAL, arguments, layers, console)
+}
+
+/// Runs the agents of a host.
+pub(super) fn run(
+    mut talws: Talws,
+    host: &str,
+    arguments: &RunArguments,
+    layers: &Layers,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let format = arguments.format.value;
     let socket = control::bind(arguments, console)?;
     let tape = outputs::open(arguments, Tape::to_file_real_time, console)?;
     if let Some(tape) = &tape {
         let files = ConfigurationBundle::of(&arguments.config);
         let settings = layers.settings().collect::<Vec<_>>().join("\n");
-        monas_recording::label_real_time(tape, &files, &settings, &[Talws::LOCAL.to_owned()])
+        monas_recording::label_real_time(tape, &files, &settings, &[host.to_owned()])
             .map_err(|error| CommandFailure::failed(format, error))?;
         talws.observe(Box::new(tape.clone()));
     }
