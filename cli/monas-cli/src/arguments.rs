@@ -19,6 +19,8 @@ use crate::commands::model::ModelCommand;
 #[cfg(unix)]
 use crate::commands::module::ModuleCommand;
 use crate::commands::new::NewArguments;
+#[cfg(feature = "soccer")]
+use crate::commands::referee::RefereeArguments;
 use crate::commands::run::RunArguments;
 #[cfg(unix)]
 use crate::commands::studio::StudioArguments;
@@ -142,6 +144,13 @@ pub(crate) enum Command {
     /// Check toolchain, permissions, clock, ports and configuration, and suggest repairs.
     #[command(after_help = "Example: monas doctor config/agents.xml")]
     Doctor(DoctorArguments),
+    /// Referee robots elsewhere by the league's protocol, as a GameController does.
+    ///
+    /// Reads decisions from standard input, one per line, and sends the state of the game twice a
+    /// second. It says which players report. The referee of a match decides by itself: see `monas
+    /// run --referee`.
+    #[cfg(feature = "soccer")]
+    Referee(RefereeArguments),
     /// Compare goalie and attacker built in three ways: play, cost, lines and state.
     ///
     /// Directly on the robot interface, as Monas agents with one activity for all decisions, and by

@@ -16,6 +16,8 @@ pub(crate) mod model;
 #[cfg(unix)]
 pub(crate) mod module;
 pub(crate) mod new;
+#[cfg(feature = "soccer")]
+pub(crate) mod referee;
 pub(crate) mod run;
 #[cfg(unix)]
 pub(crate) mod studio;

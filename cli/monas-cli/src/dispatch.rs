@@ -71,6 +71,8 @@ fn execute(command: Command, console: &mut CommandOutput<'_>) -> Result<Exit, Co
         Command::Deploy(arguments) => commands::deploy::execute(&arguments, console),
         Command::Doctor(arguments) => commands::doctor::execute(&arguments, console),
         #[cfg(feature = "soccer")]
+        Command::Referee(arguments) => commands::referee::execute(&arguments, console),
+        #[cfg(feature = "soccer")]
         Command::Eval(arguments) => commands::eval::execute(&arguments, console),
         Command::Explain(arguments) => commands::explain::execute(&arguments, console),
         Command::Man { folder } => manual_pages(&folder),

@@ -8,6 +8,7 @@
 //!
 //! [`ControlReceiver`] is the robots' end of the protocol, [`ControlSender`] the referee's. Neither
 //! has a thread or a clock: the caller passes the time and asks for what has arrived.
+//! [`OperatedGame`] is a game whose decisions a person makes, as [`OperatorCommand`]s.
 //! [`GameControlData::announcement`] converts a packet to the message that a robot's software
 //! reads.
 //!
@@ -32,6 +33,8 @@ mod jersey_colour;
 mod league_state;
 mod monitor_request;
 mod online_players;
+mod operated_game;
+mod operator_command;
 mod packet_reader;
 mod penalty;
 mod ports;
@@ -52,6 +55,8 @@ pub use jersey_colour::JerseyColour;
 pub use league_state::{LeaguePhase, LeagueState};
 pub use monitor_request::MonitorRequest;
 pub use online_players::{Connection, OnlinePlayers};
+pub use operated_game::OperatedGame;
+pub use operator_command::OperatorCommand;
 pub use penalty::Penalty;
 pub use ports::{CONTROL_PORT, RETURN_PORT};
 pub use received::Received;

@@ -7,7 +7,7 @@ mod coverage;
 #[cfg(feature = "soccer")]
 mod field_view;
 #[cfg(feature = "soccer")]
-mod league;
+pub(crate) mod league;
 mod links;
 mod outputs;
 #[cfg(feature = "soccer")]

@@ -1,21 +1,8 @@
 //! The options that each command has, and standard input.
 
 use std::fs;
-use std::io::Write;
-use std::process::Stdio;
 
-use crate::kit::{Answer, command, monas};
-
-/// Runs the command with a text on standard input.
-fn given(arguments: &[&str], input: &str) -> Answer {
-    let mut command = command(arguments);
-    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().expect("the command starts");
-    let mut stdin = child.stdin.take().expect("it is piped");
-    stdin.write_all(input.as_bytes()).expect("the command reads");
-    drop(stdin);
-    child.wait_with_output().expect("the command ends").into()
-}
+use crate::kit::{Answer, command, given, monas};
 
 const WARNED: &str = "Role: a\nLiveness:\na = Stand . TrackBall | SearchBall\n";
 const AGENT: &str = "<agent thread_frequency=\"10\"><name>A</name><activity>Stand</activity></agent>";

@@ -1,8 +1,9 @@
 //! Starts the built command as a user would, in the folder of the workspace.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use crate::copying::copy;
 
@@ -36,6 +37,17 @@ impl From<Output> for Answer {
 /// Runs the command to its end.
 pub(crate) fn monas(arguments: &[&str]) -> Answer {
     command(arguments).output().expect("the command starts").into()
+}
+
+/// Runs the command with a text on standard input.
+pub(crate) fn given(arguments: &[&str], input: &str) -> Answer {
+    let mut command = command(arguments);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the command starts");
+    let mut stdin = child.stdin.take().expect("it is piped");
+    stdin.write_all(input.as_bytes()).expect("the command reads");
+    drop(stdin);
+    child.wait_with_output().expect("the command ends").into()
 }
 
 /// A copy of the project's configuration and models with one text replaced, and the line of it.

@@ -3,7 +3,7 @@
 use std::net::UdpSocket;
 use std::process::{Child, Stdio};
 
-use crate::kit::{Answer, command, monas};
+use crate::kit::{Answer, command, given, monas};
 
 #[test]
 fn what_cannot_be_combined_is_a_clear_error() {
@@ -75,4 +75,41 @@ fn the_referee_of_one_process_decides_the_match_of_another() {
     let heard = count(answer(players), "announcements");
     let reported = count(answer(referee), "reports");
     assert!(heard >= 1 && reported >= 6, "{heard} announcements were heard, {reported} reports came");
+}
+
+/// A person's decisions, read line by line, decide a match in another process.
+#[test]
+fn the_decisions_of_a_person_decide_a_match() {
+    let ports: Vec<UdpSocket> =
+        (0..2).map(|_| UdpSocket::bind("127.0.0.1:0").expect("a free port")).collect();
+    let [control, reports] =
+        [0, 1].map(|index: usize| ports[index].local_addr().expect("its address").port().to_string());
+    drop(ports);
+    let to = format!("127.0.0.1:{control}");
+    let players = ["run", "config/match.xml", "--realtime", "--no-control", "--format", "json"];
+    let ports = ["--gamecontroller", &to, "--return-port", &reports, "--for", "9s"];
+    let mut players = command(&[&players[..], &ports].concat());
+    let players = players.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
+    let referee = ["referee", &to, "--return-port", &reports, "--teams", "1,2", "--players", "3"];
+    let script = "ready 1\nwait 1\ngoal 1\nset\nwait 1\nplay\npenalize 2 3 pushing\nwait 3\ngoal 2\nwait 2\n";
+    let referee = given(&referee, script);
+    assert_eq!(referee.code, Some(1), "a decision was refused: {referee:?}");
+    assert_eq!(referee.err.matches("error: ").count(), 1, "{referee:?}");
+    assert!(referee.err.contains("error: a goal is scored in PLAYING; the state is READY"), "{referee:?}");
+    assert!(
+        referee.out.contains("PLAYING, 1 0 : 0 2") && referee.out.contains("3 of 2: pushing"),
+        "{referee:?}"
+    );
+    assert!(referee.out.contains("player 1 of team 1 is online"), "{referee:?}");
+    let played = Answer::from(players.wait_with_output().expect("it ends"));
+    assert_eq!(played.code, Some(0), "{played:?}");
+    let all = crate::running::objects(&played.out);
+    let goals: Vec<_> =
+        all.iter().filter(|object| object["kind"] == "team").map(|team| &team["goals"]).collect();
+    assert_eq!(goals, [0, 1], "{played:?}");
+    let said = |text: &str| all.iter().any(|object| object["text"] == text);
+    assert!(
+        said("kick-off for Blue") && said("penalty for Red 3: announced by the GameController"),
+        "{played:?}"
+    );
 }

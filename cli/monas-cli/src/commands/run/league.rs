@@ -45,6 +45,15 @@ pub(crate) enum RuleBookArgument {
     Hsl,
 }
 
+impl RuleBookArgument {
+    pub(crate) fn rule_book(self) -> RuleBook {
+        match self {
+            RuleBookArgument::Spl => RuleBook::StandardPlatform,
+            RuleBookArgument::Hsl => RuleBook::HumanoidSoccer,
+        }
+    }
+}
+
 impl LeagueArguments {
     /// Whether the match takes part in the protocol.
     pub(crate) fn is_given(&self) -> bool {
@@ -62,10 +71,6 @@ impl LeagueArguments {
         let Some(to) = self.referee else { return Ok(plan) };
         let refused = |error: io::Error| format!("cannot receive reports at port {port}: {error}");
         let sender = ControlSender::open(to, port).map_err(refused)?;
-        let rules = match self.rules {
-            RuleBookArgument::Spl => RuleBook::StandardPlatform,
-            RuleBookArgument::Hsl => RuleBook::HumanoidSoccer,
-        };
-        Ok(plan.referee_others(sender, rules, self.whistle_delay))
+        Ok(plan.referee_others(sender, self.rules.rule_book(), self.whistle_delay))
     }
 }
