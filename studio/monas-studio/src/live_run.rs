@@ -49,20 +49,24 @@ pub(crate) struct LiveState {
     pub(crate) socket: PathBuf,
     pub(crate) scene: Option<Arc<dyn Scene>>,
     pub(crate) pace: Option<Pace>,
+    /// Whether viewers may change the run.
+    pub(crate) allows_control: bool,
     view: Mutex<RunView>,
     /// What the run was before. It is locked after the view.
     ring: Mutex<RunRing>,
 }
 
 impl LiveRun {
-    /// Connects to the run whose control socket is at a path.
+    /// Connects to the run whose control socket is at a path; viewers may change it if
+    /// `allows_control`.
     pub(crate) fn new(
         socket: &Path,
         scene: Option<Arc<dyn Scene>>,
         pace: Option<Pace>,
+        allows_control: bool,
     ) -> Result<LiveRun, Error> {
         let (socket, view, ring) = (socket.to_owned(), Mutex::default(), Mutex::default());
-        let state = Arc::new(LiveState { socket, scene, pace, view, ring });
+        let state = Arc::new(LiveState { socket, scene, pace, allows_control, view, ring });
         let collector = state.clone();
         let (ends, ended) = mpsc::channel();
         let thread =
@@ -83,6 +87,10 @@ impl Drop for LiveRun {
 impl Source for LiveRun {
     fn open(&self) -> Box<dyn Session> {
         Box::new(LiveSession::new(self.state.clone()))
+    }
+
+    fn allows_control(&self) -> bool {
+        self.state.allows_control
     }
 
     fn foxglove(&self) -> Option<FoxgloveSource> {

@@ -72,6 +72,8 @@ pub struct StudioSettings {
     /// Origins of pages that may read a run by Foxglove's protocol, such as
     /// `https://app.foxglove.dev`; programs that are no pages need no origin.
     pub origins: Vec<String>,
+    /// Whether viewers may change the run: its agents and models, messages, and events.
+    pub allows_control: bool,
 }
 
 /// A running studio; dropping it ends it.
@@ -100,8 +102,8 @@ impl Studio {
     /// The address is not available.
     #[cfg(unix)]
     pub fn of_run(socket: &Path, settings: StudioSettings) -> Result<Studio, Error> {
-        let StudioSettings { listen, scene, pace, origins } = settings;
-        Studio::serve(listen, origins, Box::new(LiveRun::new(socket, scene, pace)?))
+        let StudioSettings { listen, scene, pace, origins, allows_control } = settings;
+        Studio::serve(listen, origins, Box::new(LiveRun::new(socket, scene, pace, allows_control)?))
     }
 
     /// Serves a tape.
@@ -301,7 +303,8 @@ impl ServerState {
             foxglove::serve(stream, &source, &self.is_over);
             return Ok(());
         }
-        viewer::serve(stream, self.source.open(), &self.is_over);
+        let limit = viewer::request_limit(self.source.allows_control());
+        viewer::serve(stream, self.source.open(), limit, &self.is_over);
         Ok(())
     }
 }

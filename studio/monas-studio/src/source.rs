@@ -13,6 +13,11 @@ pub(crate) trait Source: Send + Sync {
     /// A view for one viewer.
     fn open(&self) -> Box<dyn Session>;
 
+    /// Whether viewers may change it.
+    fn allows_control(&self) -> bool {
+        false
+    }
+
     /// What is served to viewers of others, if it is a run.
     #[cfg(unix)]
     fn foxglove(&self) -> Option<FoxgloveSource> {

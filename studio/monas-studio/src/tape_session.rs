@@ -114,6 +114,10 @@ impl Session for TapeSession {
             }
             ViewerRequest::Unwatch => self.watched = None,
             ViewerRequest::Live => {}
+            ViewerRequest::Control(id, _) => {
+                let reason = "a tape cannot be changed";
+                return Some(json!({"type": "reply", "id": id, "done": false, "reason": reason}));
+            }
             ViewerRequest::Pace(factor) => {
                 // At its end a tape is played again from its begin.
                 if factor > 0.0 && self.moment.view.now >= self.tape.end() {

@@ -33,7 +33,7 @@ pub(crate) struct StudioArguments {
 }
 
 /// Where a studio listens.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 pub(crate) struct ListenArgument {
     /// The studio's address, such as 127.0.0.1:8080; 127.0.0.1 with the first free port from 4810
     /// on if not given. At any other address than loopback the page needs a token, which is part of
@@ -44,11 +44,16 @@ pub(crate) struct ListenArgument {
     /// https://app.foxglove.dev. May be given several times.
     #[arg(long = "allow-origin", value_name = "ORIGIN")]
     origins: Vec<String>,
+    /// Let pages change the run, as `monas agent`, `monas topic pub` and `monas chart raise` do:
+    /// agents, activities, models, messages, events, and the referee of a match. Without it they
+    /// only look.
+    #[arg(long)]
+    allow_control: bool,
 }
 
 impl ListenArgument {
     pub(crate) fn is_given(&self) -> bool {
-        self.listen.is_some() || !self.origins.is_empty()
+        self.listen.is_some() || !self.origins.is_empty() || self.allow_control
     }
 }
 
@@ -60,6 +65,11 @@ pub(crate) fn execute(
     let format = arguments.format.value;
     let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
     let _studio = match &arguments.tape {
+        Some(_) if arguments.listen.allow_control => {
+            return Err(CommandFailure::Usage(
+                "--allow-control is for a run; a tape cannot be changed".into(),
+            ));
+        }
         Some(tape) => serve_tape(tape, &arguments.listen, format, console)?,
         None => {
             let selector = RunSelector::of(arguments.run.clone(), None, arguments.format);
@@ -79,8 +89,8 @@ pub(crate) fn serve(
     format: Format,
     console: &mut CommandOutput<'_>,
 ) -> Result<Studio, CommandFailure> {
-    let settings =
-        StudioSettings { listen: listen.listen, scene: scene(), pace, origins: listen.origins.clone() };
+    let ListenArgument { listen, origins, allow_control } = listen.clone();
+    let settings = StudioSettings { listen, scene: scene(), pace, origins, allows_control: allow_control };
     let studio = Studio::of_run(socket, settings).map_err(|error| CommandFailure::failed(format, error))?;
     announce(studio, console)
 }

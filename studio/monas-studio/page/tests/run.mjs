@@ -331,11 +331,139 @@ async function whyNot(page, seek, time) {
   await page.locator('.why button', { hasText: 'back to now' }).click();
 }
 
+/** A run that pages may change: agents, messages, the referee, events; and one that they may not. */
+async function steering(browser) {
+  const run = start(PROGRAM, ['run', MATCH, '--studio', '--allow-control', '--seed', '1', '--for', '600s']);
+  const { page, faults } = await open(browser, await run.url);
+  await until(page, 'six charts', () => document.querySelectorAll('.robots li').length === 6);
+  // the referee, by keyboard alone
+  await page.getByRole('button', { name: 'Ready', exact: true }).focus();
+  await page.keyboard.press('Enter');
+  await until(page, 'READY', () => /ready/.test(document.querySelector('.panel header')?.textContent ?? ''));
+  for (const [button, state] of [['Set', 'set'], ['Play', 'playing']]) {
+    await page.getByRole('button', { name: button, exact: true }).click();
+    await until(page, state, (state) => document.querySelector('.panel header')?.textContent?.includes(state), state);
+  }
+  await page.locator('.robots button', { hasText: 'blue-2' }).click();
+  await page.getByRole('button', { name: 'Penalize blue-2' }).click();
+  await until(page, 'a robot off the field', () => document.querySelectorAll('.body.out').length === 1);
+  await shot(page, 'referee');
+  await page.getByRole('button', { name: 'Return blue-2' }).click();
+  await until(page, 'all on the field', () => document.querySelectorAll('.body.out').length === 0);
+  await page.getByRole('button', { name: 'Stop', exact: true }).click();
+  await page.getByRole('button', { name: 'Resume', exact: true }).click();
+  // an agent is paused, stepped and resumed
+  await page.keyboard.press('2');
+  await page.locator('tr.choice', { hasText: 'blue-2' }).click();
+  const control = page.getByRole('region', { name: /Control Attacker of blue-2/ });
+  const state = () => page.locator('tr.choice', { hasText: 'blue-2' }).locator('td').nth(2).innerText();
+  const outcome = (pattern) => control.locator('.outcome', { hasText: pattern }).waitFor();
+  const button = (name) => control.getByRole('button', { name, exact: true });
+  const steps = () => page.locator('tr.choice', { hasText: 'blue-2' }).locator('td').nth(6).innerText();
+  await button('Pause').click();
+  await outcome(/pause: done/);
+  await page.locator('tr.choice', { hasText: 'blue-2' }).getByText('pauses').waitFor();
+  await page.waitForTimeout(1500);
+  const before = await steps();
+  await page.waitForTimeout(1500);
+  assert.equal(await steps(), before, 'a paused agent makes no steps');
+  await button('Step').click();
+  await outcome(/step: done/);
+  await shot(page, 'control');
+  await button('Resume').click();
+  await outcome(/resume: done/);
+  await page.locator('tr.choice', { hasText: 'blue-2' }).getByText('runs').waitFor();
+  assert.equal(await state(), 'runs');
+  await control.getByLabel('What is set').fill('WalkTowardsBall.nonsense');
+  await control.getByLabel('Value', { exact: true }).fill('1');
+  await control.getByRole('button', { name: 'Set', exact: true }).click();
+  await outcome(/refused.*nonsense/);
+  // a model of its own, and one that is none
+  const model = (name, text) => control.getByLabel('File of the model').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(text) });
+  await model('broken.srm', 'Liveness:\n  x = (');
+  await control.getByRole('button', { name: 'Replace', exact: true }).click();
+  await outcome(/broken\.srm:\d+:\d+/);
+  // a message by form
+  await page.locator('h2').first().click();
+  await page.keyboard.press('3');
+  await page.getByLabel('Filter topics').fill('soccer/ball');
+  await page.locator('tr.choice', { hasText: 'red-1' }).click();
+  const form = page.getByRole('form', { name: 'Publish' });
+  await form.getByLabel('distance').fill('far');
+  await form.getByRole('button', { name: /Publish on red-1/ }).click();
+  await form.locator('.outcome', { hasText: 'distance is no number' }).waitFor();
+  await page.getByRole('button', { name: 'Close' }).click();
+  await page.getByLabel('Filter topics').fill('sim/referee');
+  await page.locator('tr.choice', { hasText: 'sim/referee' }).filter({ hasText: 'field' }).click();
+  await form.getByLabel('kind').selectOption('STOP');
+  await form.getByLabel('number').fill('3');
+  await form.getByRole('button', { name: /Publish on field/ }).click();
+  await form.locator('.outcome', { hasText: 'publish: done' }).waitFor();
+  await until(page, 'the message in the tree', () => /kind\s*"STOP"/.test(document.querySelector('.message')?.textContent ?? ''));
+  await until(page, 'its number', () => /number\s*3/.test(document.querySelector('.message')?.textContent ?? ''));
+  await shot(page, 'publish');
+  // held simulated time takes requests too
+  await page.locator('h2').first().click();
+  await page.keyboard.press(' ');
+  await until(page, 'the run is held', () => document.querySelector('.link')?.textContent === 'Held');
+  await page.waitForTimeout(3000);
+  await form.getByLabel('kind').selectOption('RESUME');
+  await form.getByRole('button', { name: /Publish on field/ }).click();
+  await until(page, 'a message while held', () => /kind\s*"RESUME"/.test(document.querySelector('.message')?.textContent ?? ''));
+  assert.equal(await textOf(page, '.link'), 'Held');
+  // looking back there are no controls
+  await page.locator('h2').first().click();
+  await page.keyboard.press(' ');
+  await page.getByLabel('Moment').fill('3');
+  await until(page, 'a moment before', () => document.querySelector('.link')?.textContent === 'Looking back');
+  assert.equal(await page.getByRole('form', { name: 'Publish' }).count(), 0);
+  assert.deepEqual(faults, []);
+  await page.close();
+  await run.stop();
+
+  const plain = start(PROGRAM, ['run', MATCH, '--studio', '--seed', '1', '--for', '600s']);
+  const { page: looking } = await open(browser, await plain.url);
+  await until(looking, 'six charts', () => document.querySelectorAll('.robots li').length === 6);
+  for (const [key, what] of [['1', 'Referee'], ['2', /Control/]]) {
+    await looking.keyboard.press(key);
+    if (key === '2') {
+      await looking.locator('tr.choice', { hasText: 'blue-2' }).click();
+      await looking.locator('.inner').waitFor();
+    }
+    assert.equal(await looking.getByRole('region', { name: what }).count(), 0);
+  }
+  assert.equal(await looking.getByText('may control').count(), 0);
+  const reply = await looking.evaluate(
+    () =>
+      new Promise((resolve) => {
+        const socket = new WebSocket(`ws://${location.host}/socket`);
+        socket.onopen = () => socket.send(JSON.stringify({ type: 'change', id: 5, host: 'blue-2', agent: 'Attacker', action: 'pause' }));
+        socket.onmessage = (event) => {
+          const message = JSON.parse(event.data);
+          if (message.type === 'reply') {
+            resolve(message);
+          }
+        };
+      }),
+  );
+  assert.equal(reply.done, false);
+  assert.match(reply.reason, /--allow-control/);
+  await looking.waitForTimeout(1500);
+  assert.equal(await looking.locator('tr.choice', { hasText: 'blue-2' }).locator('td').nth(2).innerText(), 'runs');
+  await looking.close();
+  await plain.stop();
+}
+
 mkdirSync(SCREENSHOTS, { recursive: true });
 const browser = await launch();
+/** With ONLY=words, only the parts with these words in their names. */
+const ONLY = process.env.ONLY ?? '';
 const run = start(PROGRAM, ['run', MATCH, '--studio', '--seed', '1', '--for', '600s']);
 let failed = 0;
 const check = async (name, test) => {
+  if (!name.includes(ONLY)) {
+    return;
+  }
   try {
     await test();
     console.log(`ok      ${name}`);
@@ -355,6 +483,7 @@ try {
   await page.close();
   await check('a studio beside runs follows them', () => beside(browser));
   await check('a tape is played, searched and stepped', () => tape(browser));
+  await check('a run is steered only with permission', () => steering(browser));
 } finally {
   await browser.close();
   await run.stop();

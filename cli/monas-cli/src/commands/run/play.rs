@@ -95,7 +95,11 @@ fn play(
         running = running.advance_until_cancelled(next, || interrupt.is_requested()).map_err(failed)?;
         alarm.check(running.simulation().now());
         scoreboard.show(&running)?;
-        pacer.wait(running.now(), interrupt);
+        while !pacer.wait(running.now(), interrupt) {
+            // Requests are handled between two steps: while time is held, between no two.
+            let now = running.now();
+            running = running.advance_until_cancelled(now, || interrupt.is_requested()).map_err(failed)?;
+        }
     }
     alarm.check(running.simulation().now());
     Ok(running)
