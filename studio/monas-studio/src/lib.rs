@@ -45,6 +45,8 @@ mod control_request;
 mod error;
 #[cfg(unix)]
 mod foxglove;
+#[cfg(unix)]
+mod foxglove_views;
 mod guard_atom;
 mod http_request;
 #[cfg(unix)]
@@ -62,8 +64,12 @@ mod run_ring;
 #[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are followed"))]
 mod run_view;
 mod scene;
+#[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are served to others"))]
+mod scene_update;
 mod server;
 mod source;
+#[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are served to others"))]
+mod state_name;
 mod tape_difference;
 mod tape_moment;
 mod tape_run;

@@ -94,7 +94,7 @@ impl Source for LiveRun {
     }
 
     fn foxglove(&self) -> Option<FoxgloveSource> {
-        Some(FoxgloveSource { socket: self.state.socket.clone() })
+        Some(FoxgloveSource { state: self.state.clone() })
     }
 }
 

@@ -252,6 +252,11 @@ impl RunView {
         object
     }
 
+    /// Counts messages of the scene.
+    pub(crate) fn scene_revision(&self) -> u64 {
+        self.scene_revision
+    }
+
     pub(crate) fn scene_picture(&mut self, scene: &dyn Scene) -> ScenePicture {
         for ((_, topic), latest) in &mut self.latest {
             if latest.value.is_none() && self.decoder.knows(topic) {

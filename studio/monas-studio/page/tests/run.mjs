@@ -2,7 +2,7 @@
 // written to tests/screenshots.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -81,6 +81,62 @@ const TESTS = {
   async 'the drawing is saved as SVG'({ page }) {
     const [download] = await Promise.all([page.waitForEvent('download'), page.locator('.chart button', { hasText: 'SVG' }).click()]);
     assert.match(download.suggestedFilename(), /^blue-3-Attacker\.svg$/);
+  },
+
+  async 'the drawing is saved as PNG, with two pixels for one'({ page }) {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('.chart button', { hasText: 'PNG' }).click()]);
+    assert.match(download.suggestedFilename(), /^blue-3-Attacker\.png$/);
+    const bytes = readFileSync(await download.path());
+    assert.equal(bytes.subarray(1, 4).toString(), 'PNG');
+    const size = await page.locator('.chart svg').getAttribute('viewBox');
+    const [, , width, height] = size.split(' ').map(Number);
+    assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], [Math.ceil(width * 2), Math.ceil(height * 2)]);
+    const colours = await page.evaluate(async (text) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${text}`;
+      await image.decode();
+      const canvas = new OffscreenCanvas(image.width, image.height);
+      const context = canvas.getContext('2d');
+      context.drawImage(image, 0, 0);
+      const { data } = context.getImageData(0, 0, image.width, image.height);
+      return new Set(new Uint32Array(data.buffer)).size;
+    }, bytes.toString('base64'));
+    assert.ok(colours > 20, `${colours} colours: something is drawn`);
+  },
+
+  async 'composites that only enclose another are folded'({ page }) {
+    const picture = await page.evaluate(
+      () =>
+        new Promise((resolve) => {
+          const socket = new WebSocket(`ws://${location.host}/socket`);
+          socket.onopen = () => setInterval(() => socket.send(JSON.stringify({ type: 'picture', key: 'blue-2/Attacker/0' })), 500);
+          socket.onmessage = (event) => {
+            const message = JSON.parse(event.data);
+            if (message.type === 'picture' && message.picture) {
+              socket.close();
+              resolve(message.picture);
+            }
+          };
+        }),
+    );
+    const { nodes } = picture;
+    const drawn = nodes.map((node, id) => (node.shape ? id : null)).filter((id) => id !== null);
+    const composites = (list) => list.filter((id) => ['OR', 'AND'].includes(nodes[id].kind));
+    const around = (id) => {
+      let parent = nodes[id].parent;
+      while (parent !== null && !nodes[parent].shape) {
+        parent = nodes[parent].parent;
+      }
+      return parent;
+    };
+    const all = composites(nodes.map((_, id) => id));
+    assert.ok(composites(drawn).length < all.length, `${composites(drawn).length} of ${all.length} are drawn`);
+    for (const id of composites(drawn).filter((id) => nodes[id].kind === 'OR')) {
+      const inside = drawn.filter((other) => around(other) === id);
+      const onlyWraps = inside.length > 0 && inside.every((other) => ['OR', 'AND', 'START', 'END'].includes(nodes[other].kind)) && composites(inside).length === 1;
+      const leads = picture.arrows.some((arrow) => inside.includes(arrow.source) && arrow.lines.length > 0);
+      assert.ok(!onlyWraps || leads, `${nodes[id].name} only encloses ${composites(inside).map((other) => nodes[other].name)}`);
+    }
   },
 
   async 'simulated time is held and goes on'({ page }) {
